@@ -1,0 +1,1 @@
+//! Local adaptation of a drag table to observations.

@@ -1,0 +1,1 @@
+//! Standard atmosphere, airspeeds, temperatures, gravity, viscosity.

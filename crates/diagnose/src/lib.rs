@@ -1,0 +1,1 @@
+//! Where a model differs from flight, which effect it lacks, how far the gap shrinks.

@@ -1,0 +1,40 @@
+//! The nouns that cruisefit's stages exchange: [`Report`], [`Track`], [`Segment`], [`Observation`], [`Finding`] and
+//! the ids of physical [effects](effect::EffectId).
+//!
+//! What it is not: there is no algorithm here. A stage crate depends on this one and never on another stage, so each
+//! can be used alone and replaced.
+//!
+//! The one design decision: plain data, valid by construction. What has invariants ([`Report`], [`Track`]) has private
+//! fields and one fallible constructor; what has none is a struct of named values with their unit in the name.
+//! A `Report` holds what was sent; nothing that was derived ever overwrites it.
+//!
+//! ```
+//! use flight::column::Column;
+//!
+//! let column = Column::from_name("N2(2)").expect("a column of the format");
+//! assert_eq!(column, Column::N2(2));
+//! assert_eq!(column.canonical_unit(), "%");
+//! ```
+
+pub mod column;
+pub mod effect;
+mod finding;
+mod header;
+mod observation;
+mod report;
+mod segment;
+mod track;
+
+pub use finding::{Finding, Severity};
+pub use header::{Assumption, FlightIdentity, MissingColumn, ReportHeader};
+pub use jiff::Timestamp;
+pub use observation::{Observation, ObservationVariance};
+pub use report::{FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportDataError};
+pub use segment::{Segment, SegmentMeans};
+pub use track::{
+    DroppedRun, DroppedRunReason, SampleRun, Sampling, TemperatureSource, Track, TrackDataError,
+    TrackParts,
+};
+
+/// Largest number of engines that a report may speak of.
+pub const MAXIMUM_ENGINES: usize = 4;

@@ -1,0 +1,339 @@
+//! The cruise report as sent.
+
+use crate::{MAXIMUM_ENGINES, ReportHeader};
+
+/// A column whose samples may be unavailable one by one.
+pub type OptionalColumn = Vec<Option<f64>>;
+
+/// Fuel flow as it was recorded: engine by engine, or of all together.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FuelFlowColumns {
+    /// `[engine][sample]`, kg/s per engine.
+    PerEngine(Vec<Vec<f64>>),
+    /// `[sample]`, kg/s of all engines together.
+    Total(Vec<f64>),
+}
+
+impl FuelFlowColumns {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::PerEngine(engines) => engines.first().map_or(0, Vec::len),
+            Self::Total(total) => total.len(),
+        }
+    }
+
+    /// Whether there is no sample.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Total fuel flow of one sample, kg/s: the engines summed in their order.
+    #[must_use]
+    pub fn total_kg_s(&self, sample: usize) -> f64 {
+        match self {
+            Self::PerEngine(engines) => engines.iter().map(|engine| engine[sample]).sum(),
+            Self::Total(total) => total[sample],
+        }
+    }
+}
+
+/// The columns of a report, each of the same length, SI unless the name says otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReportColumns {
+    /// Time since START, s; strictly increasing.
+    pub time_s: Vec<f64>,
+    /// Pressure altitude, m.
+    pub pressure_altitude_m: Vec<f64>,
+    /// Static air temperature, K; absent when declared missing.
+    pub static_air_temperature_k: Option<Vec<f64>>,
+    /// Mach number.
+    pub mach: Vec<f64>,
+    /// True airspeed, m/s.
+    pub true_airspeed_m_s: Vec<f64>,
+    /// Ground speed, m/s.
+    pub ground_speed_m_s: Vec<f64>,
+    /// Roll angle, degrees; absent when declared missing.
+    pub roll_deg: Option<Vec<f64>>,
+    /// Drift angle (track minus heading), degrees; absent when declared missing.
+    pub drift_deg: Option<Vec<f64>>,
+    /// High-pressure rotor speed, %, `[engine][sample]`; absent when declared missing.
+    pub n2_percent: Option<Vec<Vec<f64>>>,
+    /// Fuel flow.
+    pub fuel_flow: FuelFlowColumns,
+    /// Fuel used since engine start by all engines, kg.
+    pub fuel_used_kg: Vec<f64>,
+    /// Latitude, degrees, north positive.
+    pub latitude_deg: Option<OptionalColumn>,
+    /// Longitude, degrees, east positive.
+    pub longitude_deg: Option<OptionalColumn>,
+    /// True heading, degrees.
+    pub true_heading_deg: Option<OptionalColumn>,
+    /// Center of gravity, % of the mean aerodynamic chord.
+    pub center_of_gravity_percent_mac: Option<OptionalColumn>,
+    /// Total air temperature, K.
+    pub total_air_temperature_k: Option<OptionalColumn>,
+    /// Low-pressure rotor speed, %, by engine.
+    pub n1_percent: [Option<OptionalColumn>; MAXIMUM_ENGINES],
+    /// Exhaust gas temperature, K, by engine.
+    pub exhaust_gas_temperature_k: [Option<OptionalColumn>; MAXIMUM_ENGINES],
+    /// Fuel quantity by the tank gauges, kg.
+    pub fuel_quantity_kg: Option<OptionalColumn>,
+    /// Anti-ice bleed, 0 or 1.
+    pub anti_ice: Option<OptionalColumn>,
+}
+
+/// One cruise of one aircraft, as it was sent. Every column has the same length of at least three samples, time
+/// strictly increases, every number is finite, every sample's mass is positive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    header: ReportHeader,
+    columns: ReportColumns,
+}
+
+/// Why header and columns do not make a report.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportDataError {
+    /// Fewer than three samples.
+    #[error("{found} samples, at least 3 are needed")]
+    TooFewSamples {
+        /// Samples found.
+        found: usize,
+    },
+    /// A column of another length than `time_s`.
+    #[error("column {column} has {found} samples, time has {expected}")]
+    LengthsDiffer {
+        /// Field name of the column.
+        column: &'static str,
+        /// Its length.
+        found: usize,
+        /// Length of the time column.
+        expected: usize,
+    },
+    /// A number that is not finite.
+    #[error("column {column} sample {sample}: {value} is not finite")]
+    NotFinite {
+        /// Field name of the column.
+        column: &'static str,
+        /// Sample from 0.
+        sample: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Time does not strictly increase.
+    #[error("sample {sample}: time {time_s} s does not follow {previous_s} s")]
+    TimeNotIncreasing {
+        /// Sample from 0.
+        sample: usize,
+        /// Its time.
+        time_s: f64,
+        /// The time before.
+        previous_s: f64,
+    },
+    /// No engine, more than four, or sets of engines that differ.
+    #[error("{found} engines in {column}, expected {expected}")]
+    Engines {
+        /// Field name of the column.
+        column: &'static str,
+        /// Engines found.
+        found: usize,
+        /// What would be right.
+        expected: &'static str,
+    },
+    /// A mass at or below zero.
+    #[error("sample {sample}: mass {mass_kg} kg is not positive")]
+    MassNotPositive {
+        /// Sample from 0.
+        sample: usize,
+        /// Zero-fuel mass plus fuel on board less fuel used.
+        mass_kg: f64,
+    },
+}
+
+impl Report {
+    /// Header and columns as one report.
+    ///
+    /// # Errors
+    /// [`ReportDataError`] when the columns are not consistent with each other. Ranges of single columns are the
+    /// reader's business ([`crate::column::Column::range`]).
+    pub fn new(header: ReportHeader, columns: ReportColumns) -> Result<Self, ReportDataError> {
+        check_columns(&columns)?;
+        let ramp_mass_kg =
+            header.zero_fuel_mass.to_kilograms() + header.fuel_on_board.to_kilograms();
+        for (sample, fuel_used_kg) in columns.fuel_used_kg.iter().enumerate() {
+            let mass_kg = ramp_mass_kg - fuel_used_kg;
+            // Written so that NaN is refused too.
+            if mass_kg.is_nan() || mass_kg <= 0.0 {
+                return Err(ReportDataError::MassNotPositive { sample, mass_kg });
+            }
+        }
+        Ok(Self { header, columns })
+    }
+
+    /// The header.
+    #[must_use]
+    pub const fn header(&self) -> &ReportHeader {
+        &self.header
+    }
+
+    /// The columns.
+    #[must_use]
+    pub const fn columns(&self) -> &ReportColumns {
+        &self.columns
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.columns.time_s.len()
+    }
+
+    /// Always false: a report has at least three samples.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.columns.time_s.is_empty()
+    }
+
+    /// Number of engines recorded apart; `None` where only total fuel flow is known and no rotor speed.
+    #[must_use]
+    pub fn engines(&self) -> Option<usize> {
+        match (&self.columns.fuel_flow, &self.columns.n2_percent) {
+            (FuelFlowColumns::PerEngine(engines), _)
+            | (FuelFlowColumns::Total(_), Some(engines)) => Some(engines.len()),
+            (FuelFlowColumns::Total(_), None) => None,
+        }
+    }
+
+    /// Takes the report apart.
+    #[must_use]
+    pub fn into_parts(self) -> (ReportHeader, ReportColumns) {
+        (self.header, self.columns)
+    }
+}
+
+fn check_columns(columns: &ReportColumns) -> Result<(), ReportDataError> {
+    let samples = columns.time_s.len();
+    if samples < 3 {
+        return Err(ReportDataError::TooFewSamples { found: samples });
+    }
+    check_full("time_s", &columns.time_s, samples)?;
+    for (sample, pair) in columns.time_s.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            return Err(ReportDataError::TimeNotIncreasing {
+                sample: sample + 1,
+                time_s: pair[1],
+                previous_s: pair[0],
+            });
+        }
+    }
+    check_full("pressure_altitude_m", &columns.pressure_altitude_m, samples)?;
+    check_full("mach", &columns.mach, samples)?;
+    check_full("true_airspeed_m_s", &columns.true_airspeed_m_s, samples)?;
+    check_full("ground_speed_m_s", &columns.ground_speed_m_s, samples)?;
+    check_full("fuel_used_kg", &columns.fuel_used_kg, samples)?;
+    for (name, column) in [
+        ("static_air_temperature_k", &columns.static_air_temperature_k),
+        ("roll_deg", &columns.roll_deg),
+        ("drift_deg", &columns.drift_deg),
+    ] {
+        if let Some(values) = column {
+            check_full(name, values, samples)?;
+        }
+    }
+    check_engines(columns, samples)?;
+    for (name, column) in [
+        ("latitude_deg", &columns.latitude_deg),
+        ("longitude_deg", &columns.longitude_deg),
+        ("true_heading_deg", &columns.true_heading_deg),
+        ("center_of_gravity_percent_mac", &columns.center_of_gravity_percent_mac),
+        ("total_air_temperature_k", &columns.total_air_temperature_k),
+        ("fuel_quantity_kg", &columns.fuel_quantity_kg),
+        ("anti_ice", &columns.anti_ice),
+    ] {
+        check_optional(name, column.as_ref(), samples)?;
+    }
+    for column in &columns.n1_percent {
+        check_optional("n1_percent", column.as_ref(), samples)?;
+    }
+    for column in &columns.exhaust_gas_temperature_k {
+        check_optional("exhaust_gas_temperature_k", column.as_ref(), samples)?;
+    }
+    Ok(())
+}
+
+fn check_engines(columns: &ReportColumns, samples: usize) -> Result<(), ReportDataError> {
+    let one_to_four = "1 to 4";
+    match &columns.fuel_flow {
+        FuelFlowColumns::Total(total) => check_full("fuel_flow", total, samples)?,
+        FuelFlowColumns::PerEngine(engines) => {
+            if !(1..=MAXIMUM_ENGINES).contains(&engines.len()) {
+                return Err(ReportDataError::Engines {
+                    column: "fuel_flow",
+                    found: engines.len(),
+                    expected: one_to_four,
+                });
+            }
+            for engine in engines {
+                check_full("fuel_flow", engine, samples)?;
+            }
+        }
+    }
+    if let Some(engines) = &columns.n2_percent {
+        if !(1..=MAXIMUM_ENGINES).contains(&engines.len()) {
+            return Err(ReportDataError::Engines {
+                column: "n2_percent",
+                found: engines.len(),
+                expected: one_to_four,
+            });
+        }
+        if let FuelFlowColumns::PerEngine(flows) = &columns.fuel_flow
+            && flows.len() != engines.len()
+        {
+            return Err(ReportDataError::Engines {
+                column: "n2_percent",
+                found: engines.len(),
+                expected: "as many as in fuel_flow",
+            });
+        }
+        for engine in engines {
+            check_full("n2_percent", engine, samples)?;
+        }
+    }
+    Ok(())
+}
+
+fn check_full(
+    column: &'static str,
+    values: &[f64],
+    expected: usize,
+) -> Result<(), ReportDataError> {
+    if values.len() != expected {
+        return Err(ReportDataError::LengthsDiffer { column, found: values.len(), expected });
+    }
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(sample) => Err(ReportDataError::NotFinite { column, sample, value: values[sample] }),
+        None => Ok(()),
+    }
+}
+
+fn check_optional(
+    column: &'static str,
+    values: Option<&OptionalColumn>,
+    expected: usize,
+) -> Result<(), ReportDataError> {
+    let Some(values) = values else { return Ok(()) };
+    if values.len() != expected {
+        return Err(ReportDataError::LengthsDiffer { column, found: values.len(), expected });
+    }
+    for (sample, value) in values.iter().enumerate() {
+        if let Some(value) = value
+            && !value.is_finite()
+        {
+            return Err(ReportDataError::NotFinite { column, sample, value: *value });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,1 @@
+//! Global weighted least squares over a table.

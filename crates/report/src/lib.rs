@@ -1,0 +1,1 @@
+//! Cruise-report text and other layouts into Report, refusals with position.

@@ -1,0 +1,1 @@
+//! Stabilised cruise segments by named trim criteria, with reasons for what is dropped.

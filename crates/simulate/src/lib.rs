@@ -1,0 +1,1 @@
+//! A virtual aircraft: cruise flights with a truth that is known.

@@ -1,0 +1,1 @@
+//! Mass, along-path acceleration and vertical speed along a report.
