@@ -1,0 +1,171 @@
+//! Mach number, TAS, CAS and EAS, each from each; impact and dynamic pressure.
+//!
+//! What has calibrated airspeed or impact pressure in it is subsonic: the Pitot tube of a supersonic aircraft sits
+//! behind a shock and obeys another law. Outside 0 ≤ M ≤ 1 or 0 ≤ CAS ≤ a0 these functions return NaN, not the
+//! value of a law that does not hold there.
+//!
+//! `(1 + x)^n − 1` is computed as `exp_m1(n·ln_1p(x))` throughout, so that slow airspeeds keep their digits.
+
+use units::{
+    CalibratedAirspeed, Density, EquivalentAirspeed, Mach, Pressure, Temperature, TrueAirspeed,
+};
+
+use crate::constants::{
+    RATIO_OF_SPECIFIC_HEATS, SEA_LEVEL_DENSITY_KG_M3, SEA_LEVEL_PRESSURE_PA,
+    SEA_LEVEL_TEMPERATURE_K,
+};
+use crate::isa::speed_of_sound;
+
+/// γ/(γ − 1) = 3.5.
+const COMPRESSION_EXPONENT: f64 = RATIO_OF_SPECIFIC_HEATS / (RATIO_OF_SPECIFIC_HEATS - 1.0);
+/// (γ − 1)/2 = 0.2.
+const HEATING_FACTOR: f64 = (RATIO_OF_SPECIFIC_HEATS - 1.0) / 2.0;
+
+/// True airspeed of a Mach number: V = M·a(SAT). `[atmosphere.7]`
+#[inline]
+#[must_use]
+pub fn mach_to_true_airspeed(mach: Mach, sat: Temperature) -> TrueAirspeed {
+    TrueAirspeed::meters_per_second(mach.value() * speed_of_sound(sat).to_meters_per_second())
+}
+
+/// Mach number of a true airspeed: M = V/a(SAT). `[atmosphere.7]`
+#[inline]
+#[must_use]
+pub fn true_airspeed_to_mach(true_airspeed: TrueAirspeed, sat: Temperature) -> Mach {
+    Mach::new(true_airspeed.to_meters_per_second() / speed_of_sound(sat).to_meters_per_second())
+}
+
+/// Impact pressure: total minus static pressure, what the airspeed indicator measures.
+///
+/// ```text
+/// qc = p·((1 + (γ−1)/2·M²)^(γ/(γ−1)) − 1)                           [atmosphere.8]
+/// ```
+///
+/// NaN outside 0 ≤ M ≤ 1.
+///
+/// # Source
+/// Isentropic compression; Anderson, *Modern Compressible Flow*, equation (3.30).
+#[inline]
+#[must_use]
+pub fn impact_pressure(mach: Mach, static_pressure: Pressure) -> Pressure {
+    Pressure::pascals(static_pressure.to_pascals() * impact_pressure_ratio(mach.value()))
+}
+
+/// Dynamic pressure q = ½ρV². `[atmosphere.9]`
+///
+/// Not the impact pressure: that is larger by the compressibility of air, 16 % at Mach 0.8.
+#[inline]
+#[must_use]
+pub fn dynamic_pressure(density: Density, true_airspeed: TrueAirspeed) -> Pressure {
+    let true_airspeed_m_s = true_airspeed.to_meters_per_second();
+    Pressure::pascals(
+        0.5 * density.to_kilograms_per_cubic_meter() * true_airspeed_m_s * true_airspeed_m_s,
+    )
+}
+
+/// Calibrated airspeed of a Mach number at a static pressure.
+///
+/// ```text
+/// CAS = a0·√(2/(γ−1)·((qc/p0 + 1)^((γ−1)/γ) − 1))                   [atmosphere.10]
+/// ```
+///
+/// with qc of [`impact_pressure`]. NaN outside 0 ≤ M ≤ 1 and where the result would exceed a0.
+///
+/// # Source
+/// The definition of calibrated airspeed: the airspeed at sea level of the standard day with that impact pressure.
+#[inline]
+#[must_use]
+pub fn mach_to_calibrated_airspeed(mach: Mach, static_pressure: Pressure) -> CalibratedAirspeed {
+    let impact_pressure_pa = impact_pressure(mach, static_pressure).to_pascals();
+    let sea_level_mach = mach_of_impact_pressure_ratio(impact_pressure_pa / SEA_LEVEL_PRESSURE_PA);
+    CalibratedAirspeed::meters_per_second(sea_level_mach * sea_level_speed_of_sound_m_s())
+}
+
+/// Mach number of a calibrated airspeed at a static pressure: the inverse of [`mach_to_calibrated_airspeed`].
+///
+/// ```text
+/// M = √(2/(γ−1)·((qc/p + 1)^((γ−1)/γ) − 1))                         [atmosphere.11]
+/// ```
+///
+/// with qc of CAS/a0 at p0 by `[atmosphere.8]`. NaN outside 0 ≤ CAS ≤ a0 and where the result would exceed 1.
+#[inline]
+#[must_use]
+pub fn calibrated_airspeed_to_mach(
+    calibrated_airspeed: CalibratedAirspeed,
+    static_pressure: Pressure,
+) -> Mach {
+    let sea_level_mach =
+        calibrated_airspeed.to_meters_per_second() / sea_level_speed_of_sound_m_s();
+    let impact_pressure_pa = SEA_LEVEL_PRESSURE_PA * impact_pressure_ratio(sea_level_mach);
+    Mach::new(mach_of_impact_pressure_ratio(impact_pressure_pa / static_pressure.to_pascals()))
+}
+
+/// Calibrated airspeed of a true airspeed: by way of the Mach number, so subsonic like it. `[atmosphere.10]`
+#[inline]
+#[must_use]
+pub fn true_airspeed_to_calibrated_airspeed(
+    true_airspeed: TrueAirspeed,
+    static_pressure: Pressure,
+    sat: Temperature,
+) -> CalibratedAirspeed {
+    mach_to_calibrated_airspeed(true_airspeed_to_mach(true_airspeed, sat), static_pressure)
+}
+
+/// True airspeed of a calibrated airspeed: by way of the Mach number, so subsonic like it. `[atmosphere.11]`
+#[inline]
+#[must_use]
+pub fn calibrated_airspeed_to_true_airspeed(
+    calibrated_airspeed: CalibratedAirspeed,
+    static_pressure: Pressure,
+    sat: Temperature,
+) -> TrueAirspeed {
+    mach_to_true_airspeed(calibrated_airspeed_to_mach(calibrated_airspeed, static_pressure), sat)
+}
+
+/// Equivalent airspeed of a true airspeed: EAS = V·√(ρ/ρ0). `[atmosphere.12]`
+#[inline]
+#[must_use]
+pub fn true_airspeed_to_equivalent_airspeed(
+    true_airspeed: TrueAirspeed,
+    density: Density,
+) -> EquivalentAirspeed {
+    EquivalentAirspeed::meters_per_second(
+        true_airspeed.to_meters_per_second() * density_ratio_root(density),
+    )
+}
+
+/// True airspeed of an equivalent airspeed: V = EAS/√(ρ/ρ0). `[atmosphere.12]`
+#[inline]
+#[must_use]
+pub fn equivalent_airspeed_to_true_airspeed(
+    equivalent_airspeed: EquivalentAirspeed,
+    density: Density,
+) -> TrueAirspeed {
+    TrueAirspeed::meters_per_second(
+        equivalent_airspeed.to_meters_per_second() / density_ratio_root(density),
+    )
+}
+
+/// qc/p of a subsonic Mach number, NaN for others.
+fn impact_pressure_ratio(mach: f64) -> f64 {
+    (COMPRESSION_EXPONENT * (HEATING_FACTOR * subsonic(mach).powi(2)).ln_1p()).exp_m1()
+}
+
+/// The Mach number that compresses air by qc/p, NaN where it is not subsonic.
+fn mach_of_impact_pressure_ratio(impact_pressure_ratio: f64) -> f64 {
+    subsonic(
+        ((impact_pressure_ratio.ln_1p() / COMPRESSION_EXPONENT).exp_m1() / HEATING_FACTOR).sqrt(),
+    )
+}
+
+fn subsonic(mach: f64) -> f64 {
+    if (0.0..=1.0).contains(&mach) { mach } else { f64::NAN }
+}
+
+fn sea_level_speed_of_sound_m_s() -> f64 {
+    speed_of_sound(Temperature::kelvin(SEA_LEVEL_TEMPERATURE_K)).to_meters_per_second()
+}
+
+fn density_ratio_root(density: Density) -> f64 {
+    (density.to_kilograms_per_cubic_meter() / SEA_LEVEL_DENSITY_KG_M3).sqrt()
+}

@@ -1,0 +1,195 @@
+//! The international standard atmosphere over pressure altitude, −2 to 20 km.
+
+use units::{
+    Density, OutOfDomain, Pressure, PressureAltitude, SpeedOfSound, Temperature,
+    TemperatureDifference, check_within,
+};
+
+use crate::constants::{
+    HIGHEST_PRESSURE_ALTITUDE_M, ISOTHERMAL_SCALE_HEIGHT_M, LAPSE_RATE_K_M,
+    LOWEST_PRESSURE_ALTITUDE_M, RATIO_OF_SPECIFIC_HEATS, SEA_LEVEL_DENSITY_KG_M3,
+    SEA_LEVEL_PRESSURE_PA, SEA_LEVEL_TEMPERATURE_K, SPECIFIC_GAS_CONSTANT_J_KG_K,
+    TROPOPAUSE_PRESSURE_ALTITUDE_M, TROPOPAUSE_TEMPERATURE_K, TROPOSPHERE_PRESSURE_EXPONENT,
+};
+
+/// Temperature of the standard day at a pressure altitude.
+///
+/// ```text
+/// T = T0 − L·hp      hp ≤ 11 000 m
+/// T = 216.65 K       above                                          [atmosphere.1]
+/// ```
+///
+/// # Errors
+/// [`OutOfDomain`] outside −2000..=20 000 m, and for NaN.
+///
+/// # Source
+/// ISO 2533:1975, equation (11) and table 4.
+#[inline]
+pub fn temperature(pressure_altitude: PressureAltitude) -> Result<Temperature, OutOfDomain> {
+    let pressure_altitude_m = check_pressure_altitude_m(pressure_altitude)?;
+    Ok(Temperature::kelvin(temperature_k(pressure_altitude_m)))
+}
+
+/// Static pressure at a pressure altitude. This is the definition of pressure altitude: it holds on every day.
+///
+/// ```text
+/// p = p0·(T/T0)^(g0/(R L))                       hp ≤ 11 000 m
+/// p = p11·exp(−(hp − 11 000 m)·g0/(R T11))       above              [atmosphere.2]
+/// ```
+///
+/// # Errors
+/// [`OutOfDomain`] outside −2000..=20 000 m, and for NaN.
+///
+/// # Source
+/// ISO 2533:1975, equations (12) and (13).
+#[inline]
+pub fn pressure(pressure_altitude: PressureAltitude) -> Result<Pressure, OutOfDomain> {
+    let pressure_altitude_m = check_pressure_altitude_m(pressure_altitude)?;
+    Ok(Pressure::pascals(pressure_pa(pressure_altitude_m)))
+}
+
+/// Pressure altitude at which the static pressure occurs: the inverse of [`pressure`].
+///
+/// ```text
+/// hp = (T0/L)·(1 − (p/p0)^(R L/g0))              p ≥ p11
+/// hp = 11 000 m − (R T11/g0)·ln(p/p11)           below              [atmosphere.3]
+/// ```
+///
+/// At the two ends of the domain the result is held to the end, against the last bit of rounding.
+///
+/// # Errors
+/// [`OutOfDomain`] for a static pressure outside that of 20 000 m to that of −2000 m, and for NaN.
+///
+/// # Source
+/// ISO 2533:1975, equations (12) and (13) solved for the altitude.
+#[inline]
+pub fn pressure_altitude(static_pressure: Pressure) -> Result<PressureAltitude, OutOfDomain> {
+    let static_pressure_pa = check_within(
+        "static pressure",
+        "Pa",
+        static_pressure.to_pascals(),
+        pressure_pa(HIGHEST_PRESSURE_ALTITUDE_M),
+        pressure_pa(LOWEST_PRESSURE_ALTITUDE_M),
+    )?;
+    let pressure_altitude_m = pressure_altitude_m(static_pressure_pa)
+        .clamp(LOWEST_PRESSURE_ALTITUDE_M, HIGHEST_PRESSURE_ALTITUDE_M);
+    Ok(PressureAltitude::meters(pressure_altitude_m))
+}
+
+/// Density of air of a static pressure and the *measured* SAT.
+///
+/// ```text
+/// ρ = p/(R·SAT)                                                     [atmosphere.4]
+/// ```
+///
+/// Dry air. Not positive, or NaN, arguments give what the division gives.
+///
+/// # Source
+/// ISO 2533:1975, equation (2).
+#[inline]
+#[must_use]
+pub fn density(static_pressure: Pressure, sat: Temperature) -> Density {
+    Density::kilograms_per_cubic_meter(
+        static_pressure.to_pascals() / (SPECIFIC_GAS_CONSTANT_J_KG_K * sat.to_kelvin()),
+    )
+}
+
+/// Temperature ratio θ = T/T0, of a static or a total temperature. `[atmosphere.5]`
+#[doc(alias = "theta")]
+#[inline]
+#[must_use]
+pub fn temperature_ratio(temperature: Temperature) -> f64 {
+    temperature.to_kelvin() / SEA_LEVEL_TEMPERATURE_K
+}
+
+/// Pressure ratio δ = p/p0. `[atmosphere.5]`
+#[doc(alias = "delta")]
+#[inline]
+#[must_use]
+pub fn pressure_ratio(pressure: Pressure) -> f64 {
+    pressure.to_pascals() / SEA_LEVEL_PRESSURE_PA
+}
+
+/// Density ratio σ = ρ/ρ0, which is δ/θ. `[atmosphere.5]`
+#[doc(alias = "sigma")]
+#[inline]
+#[must_use]
+pub fn density_ratio(density: Density) -> f64 {
+    density.to_kilograms_per_cubic_meter() / SEA_LEVEL_DENSITY_KG_M3
+}
+
+/// Speed of sound at a static air temperature.
+///
+/// ```text
+/// a = √(γ R SAT)                                                    [atmosphere.6]
+/// ```
+///
+/// NaN for a negative temperature.
+///
+/// # Source
+/// ISO 2533:1975, equation (21).
+#[inline]
+#[must_use]
+pub fn speed_of_sound(sat: Temperature) -> SpeedOfSound {
+    SpeedOfSound::meters_per_second(
+        (RATIO_OF_SPECIFIC_HEATS * SPECIFIC_GAS_CONSTANT_J_KG_K * sat.to_kelvin()).sqrt(),
+    )
+}
+
+/// How much warmer the day is than the standard one: SAT − T(hp) with [`temperature`]. `[atmosphere.1]`
+///
+/// # Errors
+/// [`OutOfDomain`] for a pressure altitude outside −2000..=20 000 m, and for NaN.
+#[inline]
+pub fn isa_deviation(
+    pressure_altitude: PressureAltitude,
+    sat: Temperature,
+) -> Result<TemperatureDifference, OutOfDomain> {
+    Ok(sat - temperature(pressure_altitude)?)
+}
+
+fn check_pressure_altitude_m(pressure_altitude: PressureAltitude) -> Result<f64, OutOfDomain> {
+    check_within(
+        "pressure altitude",
+        "m",
+        pressure_altitude.to_meters(),
+        LOWEST_PRESSURE_ALTITUDE_M,
+        HIGHEST_PRESSURE_ALTITUDE_M,
+    )
+}
+
+fn temperature_k(pressure_altitude_m: f64) -> f64 {
+    if pressure_altitude_m <= TROPOPAUSE_PRESSURE_ALTITUDE_M {
+        SEA_LEVEL_TEMPERATURE_K - LAPSE_RATE_K_M * pressure_altitude_m
+    } else {
+        TROPOPAUSE_TEMPERATURE_K
+    }
+}
+
+fn pressure_pa(pressure_altitude_m: f64) -> f64 {
+    if pressure_altitude_m <= TROPOPAUSE_PRESSURE_ALTITUDE_M {
+        SEA_LEVEL_PRESSURE_PA
+            * (temperature_k(pressure_altitude_m) / SEA_LEVEL_TEMPERATURE_K)
+                .powf(TROPOSPHERE_PRESSURE_EXPONENT)
+    } else {
+        let above_tropopause_m = pressure_altitude_m - TROPOPAUSE_PRESSURE_ALTITUDE_M;
+        tropopause_pressure_pa() * (-above_tropopause_m / ISOTHERMAL_SCALE_HEIGHT_M).exp()
+    }
+}
+
+fn pressure_altitude_m(static_pressure_pa: f64) -> f64 {
+    let tropopause_pressure_pa = tropopause_pressure_pa();
+    if static_pressure_pa >= tropopause_pressure_pa {
+        let temperature_ratio =
+            (static_pressure_pa / SEA_LEVEL_PRESSURE_PA).powf(1.0 / TROPOSPHERE_PRESSURE_EXPONENT);
+        SEA_LEVEL_TEMPERATURE_K / LAPSE_RATE_K_M * (1.0 - temperature_ratio)
+    } else {
+        TROPOPAUSE_PRESSURE_ALTITUDE_M
+            - ISOTHERMAL_SCALE_HEIGHT_M * (static_pressure_pa / tropopause_pressure_pa).ln()
+    }
+}
+
+/// p11, computed and not typed: a rounded literal here is a step of the pressure at 11 km.
+fn tropopause_pressure_pa() -> f64 {
+    pressure_pa(TROPOPAUSE_PRESSURE_ALTITUDE_M)
+}
