@@ -67,7 +67,7 @@ pub struct TrackParts {
     pub report: Report,
     /// Which of the two.
     pub sampling: Sampling,
-    /// Median time step Δt of `report`, s.
+    /// Time Δt that each sample stands for, s: the median time step of `report` as sent, or the length of a bin.
     pub sample_interval_s: f64,
     /// Static air temperature of each sample, K.
     pub static_air_temperature_k: Vec<f64>,
@@ -152,7 +152,7 @@ impl Track {
         self.parts.sampling
     }
 
-    /// Median time step, s.
+    /// Time Δt that each sample stands for, s: median time step as sent, or length of a bin.
     #[must_use]
     pub const fn sample_interval_s(&self) -> f64 {
         self.parts.sample_interval_s

@@ -41,6 +41,7 @@
 
 mod altitude;
 pub mod convert;
+mod direction;
 mod domain;
 mod mass;
 mod motion;
@@ -50,6 +51,7 @@ mod state;
 mod temperature;
 
 pub use altitude::{GeometricAltitude, PressureAltitude};
+pub use direction::mean_direction_deg;
 pub use domain::{OutOfDomain, check_finite, check_within};
 pub use mass::{FuelFlowEngine, FuelFlowTotal, Mass, SpecificRange, Tsfc};
 pub use motion::{Acceleration, Angle, Area, Force, VerticalSpeed};
