@@ -1,0 +1,296 @@
+//! An axis of a table: checked breakpoints and the search among them.
+
+use serde::{Deserialize, Serialize};
+
+mod decimal;
+
+/// A coordinate this near to a breakpoint is that breakpoint. The specification's width, in the axis' own unit.
+pub const SNAP: f64 = 1e-9;
+
+/// Largest magnitude of a breakpoint: squares of distances stay far from overflow.
+const MAXIMUM_MAGNITUDE: f64 = 1e100;
+/// Largest number of breakpoints that [`Axis::from_step`] makes: more is a mistyped step.
+const MAXIMUM_BREAKPOINTS: usize = 1_000_000;
+/// An axis is even when every breakpoint is this share of a step or less from its place. The search corrects a first
+/// guess by one cell, so any share below a half would do.
+const EVEN_SHARE: f64 = 1e-6;
+/// Up to this length counting breakpoints without branches beats a binary search (measured, `benches/lookup.rs`).
+const COUNTED_LENGTH: usize = 64;
+
+/// Breakpoints of one axis: two or more, finite, increasing, no two closer than twice [`SNAP`].
+///
+/// ```
+/// let axis = lut::Axis::from_step(0.1, 0.8, 0.05)?;
+/// assert_eq!(axis.len(), 15);
+/// assert_eq!(axis.breakpoints()[4], 0.3); // and not 0.1 + 4.0 * 0.05, which is 0.30000000000000004
+/// # Ok::<(), lut::AxisError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+pub struct Axis {
+    breakpoints: Vec<f64>,
+    /// Cells per unit length where the axis is even.
+    cells_per_unit: Option<f64>,
+}
+
+/// Why breakpoints are no axis.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AxisError {
+    /// Fewer than two breakpoints span no cell.
+    #[error("{count} breakpoints, an axis needs 2 or more")]
+    TooShort {
+        /// How many were given.
+        count: usize,
+    },
+    /// A breakpoint is not finite or too large to square.
+    #[error("breakpoint {index} is {value}, outside -1e100..=1e100")]
+    NotFinite {
+        /// Its index, from 0.
+        index: usize,
+        /// What was given.
+        value: f64,
+    },
+    /// A breakpoint does not exceed its predecessor.
+    #[error("breakpoint {index} is {value} after {previous}: breakpoints must increase")]
+    NotIncreasing {
+        /// Index of the second of the two, from 0.
+        index: usize,
+        /// The first of the two.
+        previous: f64,
+        /// The second of the two.
+        value: f64,
+    },
+    /// Two breakpoints are so close that one point would be both.
+    #[error("breakpoint {index} is {value} after {previous}: closer than 2e-9")]
+    TooClose {
+        /// Index of the second of the two, from 0.
+        index: usize,
+        /// The first of the two.
+        previous: f64,
+        /// The second of the two.
+        value: f64,
+    },
+    /// First, last or step of an even axis is not finite, or has more digits than exact decimal arithmetic holds.
+    #[error("axis from {from} to {to} by {step}: not finite, or too many digits")]
+    StepDigits {
+        /// First breakpoint.
+        from: f64,
+        /// Last breakpoint.
+        to: f64,
+        /// Distance of neighbors.
+        step: f64,
+    },
+    /// The step is not positive, or does not lead from the first to the last breakpoint.
+    #[error("a step of {step} does not lead from {from} to {to}")]
+    StepDoesNotReach {
+        /// First breakpoint.
+        from: f64,
+        /// Last breakpoint.
+        to: f64,
+        /// Distance of neighbors.
+        step: f64,
+    },
+    /// The step asks for more than a million breakpoints.
+    #[error("axis from {from} to {to} by {step}: more than 1000000 breakpoints")]
+    TooLong {
+        /// First breakpoint.
+        from: f64,
+        /// Last breakpoint.
+        to: f64,
+        /// Distance of neighbors.
+        step: f64,
+    },
+}
+
+/// Where a coordinate lies on an axis: the cell, and the distances to its two ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Position {
+    pub(crate) index: usize,
+    pub(crate) above_low: f64,
+    pub(crate) below_high: f64,
+    pub(crate) width: f64,
+    pub(crate) held: bool,
+}
+
+impl Axis {
+    /// An axis of these breakpoints.
+    ///
+    /// # Errors
+    /// [`AxisError`] says which breakpoint is wrong, and how.
+    pub fn new(breakpoints: Vec<f64>) -> Result<Self, AxisError> {
+        if breakpoints.len() < 2 {
+            return Err(AxisError::TooShort { count: breakpoints.len() });
+        }
+        for (index, &value) in breakpoints.iter().enumerate() {
+            if value.is_nan() || value.abs() > MAXIMUM_MAGNITUDE {
+                return Err(AxisError::NotFinite { index, value });
+            }
+        }
+        for (index, pair) in breakpoints.windows(2).enumerate() {
+            let (index, previous, value) = (index + 1, pair[0], pair[1]);
+            if value <= previous {
+                return Err(AxisError::NotIncreasing { index, previous, value });
+            }
+            if value - previous <= 2.0 * SNAP {
+                return Err(AxisError::TooClose { index, previous, value });
+            }
+        }
+        let cells_per_unit = cells_per_unit(&breakpoints);
+        Ok(Self { breakpoints, cells_per_unit })
+    }
+
+    /// An even axis; every breakpoint is the double nearest to its decimal number, as if all had been typed.
+    ///
+    /// `to` counts as reached within [`SNAP`]; the last breakpoint is then the decimal `from + n·step`.
+    ///
+    /// # Errors
+    /// [`AxisError`] where the step does not lead from `from` to `to`, or the result is no axis.
+    pub fn from_step(from: f64, to: f64, step: f64) -> Result<Self, AxisError> {
+        let cells = ((to - from) / step).round();
+        let decimals = decimal::Progression::new(from, step);
+        let Some(decimals) = decimals.filter(|_| to.is_finite()) else {
+            return Err(AxisError::StepDigits { from, to, step });
+        };
+        if !(step > 0.0 && cells >= 1.0) {
+            return Err(AxisError::StepDoesNotReach { from, to, step });
+        }
+        if cells >= MAXIMUM_BREAKPOINTS as f64 {
+            return Err(AxisError::TooLong { from, to, step });
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number between 1 and a million"
+        )]
+        let cells = cells as u32;
+        let breakpoints: Option<Vec<f64>> = (0..=cells).map(|i| decimals.value(i)).collect();
+        let Some(breakpoints) = breakpoints else {
+            return Err(AxisError::StepDigits { from, to, step });
+        };
+        if !breakpoints.last().is_some_and(|last| (last - to).abs() <= SNAP) {
+            return Err(AxisError::StepDoesNotReach { from, to, step });
+        }
+        Self::new(breakpoints)
+    }
+
+    /// The breakpoints, increasing.
+    #[must_use]
+    pub fn breakpoints(&self) -> &[f64] {
+        &self.breakpoints
+    }
+
+    /// Number of breakpoints, at least 2.
+    #[expect(clippy::len_without_is_empty, reason = "an axis is never empty")]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.breakpoints.len()
+    }
+
+    /// The smallest breakpoint.
+    #[must_use]
+    #[inline]
+    pub fn first(&self) -> f64 {
+        self.breakpoints[0]
+    }
+
+    /// The largest breakpoint.
+    #[must_use]
+    #[inline]
+    pub fn last(&self) -> f64 {
+        self.breakpoints[self.breakpoints.len() - 1]
+    }
+
+    /// Where `coordinate` lies, `None` beyond the ends (or NaN); with `hold` the nearer end stands for what is beyond.
+    #[inline]
+    pub(crate) fn position(&self, coordinate: f64, hold: bool) -> Option<Position> {
+        let (first, last) = (self.first(), self.last());
+        let mut at = coordinate;
+        let mut held = false;
+        // Within SNAP of an end a point is that end, and therefore inside.
+        if !(first - at <= SNAP && at - last <= SNAP) {
+            if !(hold && at.is_finite()) {
+                return None;
+            }
+            held = true;
+        }
+        at = at.clamp(first, last);
+
+        let final_cell = self.breakpoints.len() - 2;
+        let mut index = self.cell(at);
+        let mut low = self.breakpoints[index];
+        let mut high = self.breakpoints[index + 1];
+        let mut above_low = at - low;
+        let mut below_high = high - at;
+        let width = high - low;
+        if above_low <= SNAP {
+            return Some(Position { index, above_low: 0.0, below_high: width, width, held });
+        }
+        if below_high <= SNAP {
+            if index == final_cell {
+                return Some(Position { index, above_low: width, below_high: 0.0, width, held });
+            }
+            // The point is the next breakpoint, and that belongs to the next cell.
+            index += 1;
+            low = high;
+            high = self.breakpoints[index + 1];
+            above_low = 0.0;
+            below_high = high - low;
+            return Some(Position { index, above_low, below_high, width: below_high, held });
+        }
+        Some(Position { index, above_low, below_high, width, held })
+    }
+
+    /// The half-open cell of a coordinate between the ends; the last breakpoint belongs to the last cell.
+    #[inline]
+    fn cell(&self, at: f64) -> usize {
+        let final_cell = self.breakpoints.len() - 2;
+        if let Some(cells_per_unit) = self.cells_per_unit {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "between 0 and the number of cells; the cast saturates anyway"
+            )]
+            let guess = (((at - self.first()) * cells_per_unit) as usize).min(final_cell);
+            // The guess is off by one at most, and only next to a breakpoint.
+            if at < self.breakpoints[guess] {
+                return guess.saturating_sub(1);
+            }
+            if at >= self.breakpoints[guess + 1] {
+                return (guess + 1).min(final_cell);
+            }
+            return guess;
+        }
+        let inner = &self.breakpoints[1..=final_cell];
+        if inner.len() <= COUNTED_LENGTH {
+            inner.iter().map(|&breakpoint| usize::from(breakpoint <= at)).sum()
+        } else {
+            inner.partition_point(|&breakpoint| breakpoint <= at)
+        }
+    }
+}
+
+impl TryFrom<Vec<f64>> for Axis {
+    type Error = AxisError;
+    fn try_from(breakpoints: Vec<f64>) -> Result<Self, AxisError> {
+        Self::new(breakpoints)
+    }
+}
+
+impl From<Axis> for Vec<f64> {
+    fn from(axis: Axis) -> Self {
+        axis.breakpoints
+    }
+}
+
+/// Cells per unit length of an even axis, `None` of an uneven one.
+fn cells_per_unit(breakpoints: &[f64]) -> Option<f64> {
+    let cells = (breakpoints.len() - 1) as f64;
+    let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
+    let step = (last - first) / cells;
+    let even = breakpoints
+        .iter()
+        .enumerate()
+        .all(|(i, &value)| (value - (first + i as f64 * step)).abs() <= EVEN_SHARE * step);
+    even.then_some(cells / (last - first))
+}

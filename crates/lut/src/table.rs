@@ -1,0 +1,148 @@
+//! Values at the nodes of a grid.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Cell, Grid};
+
+/// Values at the nodes of a grid, bilinear between them.
+///
+/// Cells must come from the table's own grid (or an equal one): a cell of another grid is a programmer's mistake.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Parts", into = "Parts")]
+pub struct Table {
+    grid: Arc<Grid>,
+    values: Vec<f64>,
+}
+
+/// Why values are no table.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// Not one value a node.
+    #[error("{values} values for {nodes} nodes")]
+    Length {
+        /// How many values were given.
+        values: usize,
+        /// How many nodes the grid has.
+        nodes: usize,
+    },
+    /// A value is not finite.
+    #[error("value of node {node} is {value}, not a finite number")]
+    NotFinite {
+        /// The node.
+        node: usize,
+        /// What was given.
+        value: f64,
+    },
+}
+
+impl Table {
+    /// A table of these values, one a node, x outer and y inner.
+    ///
+    /// # Errors
+    /// [`TableError`] where the number of values is not the grid's, or a value is not finite.
+    pub fn new(grid: Arc<Grid>, values: Vec<f64>) -> Result<Self, TableError> {
+        if values.len() != grid.nodes() {
+            return Err(TableError::Length { values: values.len(), nodes: grid.nodes() });
+        }
+        if let Some((node, &value)) =
+            values.iter().enumerate().find(|(_, value)| !value.is_finite())
+        {
+            return Err(TableError::NotFinite { node, value });
+        }
+        Ok(Self { grid, values })
+    }
+
+    /// The grid, shared.
+    #[must_use]
+    pub const fn grid(&self) -> &Arc<Grid> {
+        &self.grid
+    }
+
+    /// The value at a node.
+    ///
+    /// # Panics
+    /// Where `node` is not a node of the grid.
+    #[must_use]
+    pub fn value_at_node(&self, node: usize) -> f64 {
+        self.values[node]
+    }
+
+    /// All values, in node order.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// All values, to be changed. Keep them finite: reading does not check again.
+    #[must_use]
+    pub fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    /// The bilinear value at a located point; at a node exactly the node's value.
+    ///
+    /// # Panics
+    /// Where the cell is of a larger grid.
+    ///
+    /// # Source
+    /// Book `[tables.2]`, `[tables.3]`; Ghazi et al. 2020, equations (9)–(11).
+    #[must_use]
+    #[inline]
+    pub fn interpolate(&self, cell: &Cell) -> f64 {
+        let [a, b, c, d] = self.corners(cell);
+        let [wa, wb, wc, wd] = cell.weights();
+        wa * a + wb * b + wc * c + wd * d
+    }
+
+    /// Slopes along x and y of the bilinear surface at a located point.
+    ///
+    /// On a grid line it is the slope of the cell that the point belongs to. Where the point is held at an edge the
+    /// value does not change further out, and the slope across that edge is 0.
+    ///
+    /// # Panics
+    /// Where the cell is of a larger grid.
+    ///
+    /// # Source
+    /// Book `[tables.5]`: the derivative of the bilinear form.
+    #[must_use]
+    #[inline]
+    pub fn gradient(&self, cell: &Cell) -> (f64, f64) {
+        let [a, b, c, d] = self.corners(cell);
+        let (u, v) = cell.local();
+        let (width_x, width_y) = cell.widths();
+        let (held_x, held_y) = cell.held_along();
+        let along_x = ((1.0 - v) * (c - a) + v * (d - b)) / width_x;
+        let along_y = ((1.0 - u) * (b - a) + u * (d - c)) / width_y;
+        (if held_x { 0.0 } else { along_x }, if held_y { 0.0 } else { along_y })
+    }
+
+    #[inline]
+    fn corners(&self, cell: &Cell) -> [f64; 4] {
+        let [a, b, c, d] = cell.nodes();
+        [self.values[a], self.values[b], self.values[c], self.values[d]]
+    }
+}
+
+/// A table as it is written: the grid in full. Tables that share a grid should be written by their owner, grid once.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Table", deny_unknown_fields)]
+struct Parts {
+    grid: Grid,
+    values: Vec<f64>,
+}
+
+impl TryFrom<Parts> for Table {
+    type Error = TableError;
+    fn try_from(parts: Parts) -> Result<Self, TableError> {
+        Self::new(Arc::new(parts.grid), parts.values)
+    }
+}
+
+impl From<Table> for Parts {
+    fn from(table: Table) -> Self {
+        Self { grid: Arc::unwrap_or_clone(table.grid), values: table.values }
+    }
+}
