@@ -1,1 +1,143 @@
-//! Mass, along-path acceleration and vertical speed along a report.
+//! From a [`Report`] to a [`Track`]: sample runs, mass, along-path acceleration and vertical speed.
+//!
+//! What it is: everything that is known about the samples of one cruise before any of them is judged.
+//! What it is not: there is no trim criterion here and no performance model; no sample is dropped but in runs too
+//! short for a rate, and those are named in [`Track::dropped_runs`].
+//!
+//! The one design decision: rates are taken before anything is thrown away. A forward difference belongs to the start
+//! of its step, so the last kept sample of a stable piece still has the true rate of the step that follows it.
+//!
+//! Limits: a step above 1.5 Δt ends a run, Δt being the median step. A recording with Δt below 59 s is averaged into
+//! bins of 60 s ([`bins`]); one with Δt above 90 s is refused, because its neighbors say nothing about steadiness.
+//! Static air temperature that was not recorded is taken from the header's assumption or refused, never guessed.
+//!
+//! ```
+//! use flight::{FlightIdentity, FuelFlowColumns, Report, ReportColumns, ReportHeader, Timestamp};
+//! use units::Mass;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let header = ReportHeader {
+//!     aircraft_type: "C750".to_owned(),
+//!     identity: FlightIdentity {
+//!         tail: "T-001".to_owned(),
+//!         start: "2018-05-20T14:14:21Z".parse()?,
+//!         flight: "0007".to_owned(),
+//!     },
+//!     zero_fuel_mass: Mass::kilograms(11_000.0),
+//!     fuel_on_board: Mass::kilograms(3_000.0),
+//!     lower_heating_value_mj_kg: None,
+//!     missing: vec![],
+//!     assumed: vec![],
+//!     notes: vec![],
+//! };
+//! let columns = ReportColumns {
+//!     time_s: vec![0.0, 60.0, 120.0],
+//!     pressure_altitude_m: vec![12_000.0; 3],
+//!     static_air_temperature_k: Some(vec![217.0; 3]),
+//!     mach: vec![0.80; 3],
+//!     true_airspeed_m_s: vec![236.0; 3],
+//!     ground_speed_m_s: vec![230.0, 230.6, 231.2],
+//!     roll_deg: Some(vec![0.0; 3]),
+//!     drift_deg: Some(vec![2.0; 3]),
+//!     n2_percent: Some(vec![vec![89.4; 3]; 2]),
+//!     fuel_flow: FuelFlowColumns::PerEngine(vec![vec![0.083; 3]; 2]),
+//!     fuel_used_kg: vec![600.0, 610.0, 620.0],
+//!     latitude_deg: None,
+//!     longitude_deg: None,
+//!     true_heading_deg: None,
+//!     center_of_gravity_percent_mac: None,
+//!     total_air_temperature_k: None,
+//!     n1_percent: [const { None }; 4],
+//!     exhaust_gas_temperature_k: [const { None }; 4],
+//!     fuel_quantity_kg: None,
+//!     anti_ice: None,
+//! };
+//! let track = track::derive(Report::new(header, columns)?)?;
+//! assert_eq!(track.mass_kg(), [13_400.0, 13_390.0, 13_380.0]);
+//! assert!((track.runs()[0].acceleration_m_s2[0] - 0.01).abs() < 1e-12);
+//! # Ok(())
+//! # }
+//! ```
+
+pub mod bins;
+mod error;
+mod interval;
+mod mass;
+mod rate;
+mod temperature;
+
+use core::ops::Range;
+
+use flight::{DroppedRun, DroppedRunReason, Report, SampleRun, Sampling, Track, TrackParts};
+
+pub use error::TrackError;
+pub use interval::{GAP_INTERVALS, SAMPLE_INTERVAL_MAXIMUM_S};
+pub use mass::gross_mass;
+
+/// Fewest samples of a run: a neighbor criterion compares a run's first sample with the next two.
+pub const RUN_SAMPLES_MINIMUM: usize = 3;
+
+/// The track of a report: samples as sent or averaged into bins, split into runs, with mass and rates.
+///
+/// # Errors
+/// [`TrackError`] where the samples are too far apart, where nothing says what the static air temperature is, and
+/// where averaging leaves fewer than three bins.
+///
+/// # Source
+/// `[steadiness.1]` to `[steadiness.6]`; Ghazi et al. 2020, eqs. (16) to (18).
+pub fn derive(report: Report) -> Result<Track, TrackError> {
+    let recorded_interval_s = interval::median_step_s(&report.columns().time_s);
+    interval::check_interval(recorded_interval_s)?;
+    let (report, sampling, sample_interval_s, pieces) =
+        if bins::is_faster_than_bins(recorded_interval_s) {
+            let binned = bins::average(report, recorded_interval_s)?;
+            let sampling = Sampling::AveragedToBins {
+                bin_s: bins::BIN_S,
+                recorded_interval_s,
+                incomplete_bins: binned.incomplete_bins,
+            };
+            (binned.report, sampling, bins::BIN_S, binned.runs)
+        } else {
+            let pieces = interval::split_at_gaps(
+                &report.columns().time_s,
+                GAP_INTERVALS * recorded_interval_s,
+            );
+            (report, Sampling::AsSent, recorded_interval_s, pieces)
+        };
+    let (static_air_temperature_k, temperature_source) =
+        temperature::static_air_temperature_k(&report)?;
+    let mass_kg = mass::gross_mass_kg(&report);
+    let (runs, dropped_runs) = runs(&report, pieces);
+    let parts = TrackParts {
+        report,
+        sampling,
+        sample_interval_s,
+        static_air_temperature_k,
+        temperature_source,
+        mass_kg,
+        runs,
+        dropped_runs,
+    };
+    Ok(Track::new(parts)?)
+}
+
+/// Rates along each piece that is long enough for them; the others with their reason.
+fn runs(report: &Report, pieces: Vec<Range<usize>>) -> (Vec<SampleRun>, Vec<DroppedRun>) {
+    let columns = report.columns();
+    let (mut runs, mut dropped) = (Vec::new(), Vec::new());
+    for samples in pieces {
+        if samples.len() < RUN_SAMPLES_MINIMUM {
+            let reason = DroppedRunReason::FewerThanThreeSamples;
+            dropped.push(DroppedRun { samples, reason });
+            continue;
+        }
+        let time_s = &columns.time_s[samples.clone()];
+        let rate_of = |column: &[f64]| rate::along_run(time_s, &column[samples.clone()]);
+        runs.push(SampleRun {
+            acceleration_m_s2: rate_of(&columns.ground_speed_m_s),
+            vertical_speed_m_s: rate_of(&columns.pressure_altitude_m),
+            samples,
+        });
+    }
+    (runs, dropped)
+}

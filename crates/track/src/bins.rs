@@ -1,0 +1,167 @@
+//! Recordings faster than the trim criteria, averaged into bins of 60 s.
+//!
+//! The criteria limit what may change from one sample to the next, one minute apart. At one sample a second the same
+//! limits would let everything pass, so the recording is averaged before anything else is derived from it.
+//!
+//! - A recording whose median step is below 59 s is averaged (TIME in whole seconds resolves a step to ±1 s, so 59 s
+//!   is a one-minute recording as sent).
+//! - The recording is split at its holes first, and bins begin anew with the first sample after one. A hole is a step
+//!   above 1.5 median steps and above half a bin: a lost second in a recording of one sample a second costs a bin
+//!   one sample, not its neighbors.
+//! - A bin that holds less than half of the samples it should hold, bin length over median step, is dropped and
+//!   counted; it ends the run, as a hole does.
+//! - Time, fuel used and every other number are means over the bin's samples, so that rates between bins are those
+//!   between their mean times. Longitude and true heading are mean directions. In an optional column the mean is over
+//!   the samples that have a value. Anti-ice bleed is the share of the samples that have it on, from 0 to 1.
+//!
+//! Limit: what moves within a bin is not seen. A roll of ±3° within a minute passes as its mean.
+
+use core::ops::Range;
+
+use flight::{FuelFlowColumns, OptionalColumn, Report, ReportColumns};
+use units::mean_direction_deg;
+
+use crate::{GAP_INTERVALS, TrackError, interval};
+
+/// Length of a bin, s: the sampling for which the trim criteria were published.
+pub const BIN_S: f64 = 60.0;
+/// A median step at least this long is a one-minute recording, s.
+pub const AS_SENT_INTERVAL_MINIMUM_S: f64 = 59.0;
+
+/// A report of bins.
+pub(crate) struct Binned {
+    /// One sample a bin.
+    pub(crate) report: Report,
+    /// Bins without a hole or a dropped bin between them.
+    pub(crate) runs: Vec<Range<usize>>,
+    /// Dropped bins.
+    pub(crate) incomplete_bins: usize,
+}
+
+/// Whether a recording is to be averaged.
+pub(crate) fn is_faster_than_bins(sample_interval_s: f64) -> bool {
+    sample_interval_s < AS_SENT_INTERVAL_MINIMUM_S - interval::TIME_TOLERANCE_S
+}
+
+/// Averages a recording with the median step `recorded_interval_s`. `[steadiness.7]`
+pub(crate) fn average(report: Report, recorded_interval_s: f64) -> Result<Binned, TrackError> {
+    let layout = layout(&report.columns().time_s, recorded_interval_s);
+    if layout.bins.len() < crate::RUN_SAMPLES_MINIMUM {
+        return Err(TrackError::TooFewBins {
+            bins: layout.bins.len(),
+            incomplete_bins: layout.incomplete_bins,
+        });
+    }
+    let (header, columns) = report.into_parts();
+    let averaged = average_columns(&columns, &layout.bins);
+    let report = Report::new(header, averaged).map_err(TrackError::Averaged)?;
+    Ok(Binned { report, runs: layout.runs, incomplete_bins: layout.incomplete_bins })
+}
+
+/// Which samples make which bin, and which bins follow each other.
+struct Layout {
+    /// Samples of each complete bin.
+    bins: Vec<Range<usize>>,
+    /// Complete bins that follow each other.
+    runs: Vec<Range<usize>>,
+    incomplete_bins: usize,
+}
+
+fn layout(time_s: &[f64], recorded_interval_s: f64) -> Layout {
+    let hole_s = (GAP_INTERVALS * recorded_interval_s).max(0.5 * BIN_S);
+    let mut layout = Layout { bins: Vec::new(), runs: Vec::new(), incomplete_bins: 0 };
+    for recorded in interval::split_at_gaps(time_s, hole_s) {
+        let mut run_start = layout.bins.len();
+        let mut bin_end_s = time_s[recorded.start] + BIN_S;
+        let mut sample = recorded.start;
+        while sample < recorded.end {
+            let start = sample;
+            while sample < recorded.end && time_s[sample] < bin_end_s - interval::TIME_TOLERANCE_S {
+                sample += 1;
+            }
+            bin_end_s += BIN_S;
+            let samples = (sample - start) as f64;
+            if 2.0 * samples * recorded_interval_s >= BIN_S - interval::TIME_TOLERANCE_S {
+                layout.bins.push(start..sample);
+            } else {
+                layout.incomplete_bins += 1;
+                end_run(&mut layout, &mut run_start);
+            }
+        }
+        end_run(&mut layout, &mut run_start);
+    }
+    layout
+}
+
+fn end_run(layout: &mut Layout, run_start: &mut usize) {
+    let end = layout.bins.len();
+    if end > *run_start {
+        layout.runs.push(*run_start..end);
+        *run_start = end;
+    }
+}
+
+fn average_columns(columns: &ReportColumns, bins: &[Range<usize>]) -> ReportColumns {
+    let mean = |column: &Vec<f64>| -> Vec<f64> {
+        bins.iter()
+            .map(|bin| {
+                let values = &column[bin.clone()];
+                values.iter().sum::<f64>() / values.len() as f64
+            })
+            .collect()
+    };
+    let engines = |engines: &Vec<Vec<f64>>| -> Vec<Vec<f64>> { engines.iter().map(mean).collect() };
+    let optional = |column: &Option<OptionalColumn>| column.as_ref().map(|c| available(c, bins));
+    ReportColumns {
+        time_s: mean(&columns.time_s),
+        pressure_altitude_m: mean(&columns.pressure_altitude_m),
+        static_air_temperature_k: columns.static_air_temperature_k.as_ref().map(mean),
+        mach: mean(&columns.mach),
+        true_airspeed_m_s: mean(&columns.true_airspeed_m_s),
+        ground_speed_m_s: mean(&columns.ground_speed_m_s),
+        roll_deg: columns.roll_deg.as_ref().map(mean),
+        drift_deg: columns.drift_deg.as_ref().map(mean),
+        n2_percent: columns.n2_percent.as_ref().map(engines),
+        fuel_flow: match &columns.fuel_flow {
+            FuelFlowColumns::PerEngine(flows) => FuelFlowColumns::PerEngine(engines(flows)),
+            FuelFlowColumns::Total(total) => FuelFlowColumns::Total(mean(total)),
+        },
+        fuel_used_kg: mean(&columns.fuel_used_kg),
+        latitude_deg: optional(&columns.latitude_deg),
+        longitude_deg: columns.longitude_deg.as_ref().map(|column| {
+            // 0 … 360 back to the −180 … 180 in which longitudes are written.
+            let mut means = directions(column, bins);
+            for mean_deg in means.iter_mut().flatten().filter(|mean_deg| **mean_deg > 180.0) {
+                *mean_deg -= 360.0;
+            }
+            means
+        }),
+        true_heading_deg: columns.true_heading_deg.as_ref().map(|column| directions(column, bins)),
+        center_of_gravity_percent_mac: optional(&columns.center_of_gravity_percent_mac),
+        total_air_temperature_k: optional(&columns.total_air_temperature_k),
+        n1_percent: columns.n1_percent.each_ref().map(optional),
+        exhaust_gas_temperature_k: columns.exhaust_gas_temperature_k.each_ref().map(optional),
+        fuel_quantity_kg: optional(&columns.fuel_quantity_kg),
+        anti_ice: optional(&columns.anti_ice),
+    }
+}
+
+/// Means over the samples that have a value.
+fn available(column: &OptionalColumn, bins: &[Range<usize>]) -> OptionalColumn {
+    let mean_of = |bin: &Range<usize>| {
+        let (mut sum, mut count) = (0.0, 0_u32);
+        for value in column[bin.clone()].iter().flatten() {
+            sum += value;
+            count += 1;
+        }
+        (count > 0).then(|| sum / f64::from(count))
+    };
+    bins.iter().map(mean_of).collect()
+}
+
+/// Mean directions over the samples that have a value.
+fn directions(column: &OptionalColumn, bins: &[Range<usize>]) -> OptionalColumn {
+    bins.iter()
+        .map(|bin| mean_direction_deg(column[bin.clone()].iter().flatten().copied()))
+        .collect()
+}
