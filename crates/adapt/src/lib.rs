@@ -1,1 +1,37 @@
-//! Local adaptation of a drag table to observations.
+//! Local adaptation of a drag table to observations, segment by segment.
+//!
+//! What it is not: it reads no reports, knows neither engine nor atmosphere, and never sees a whole fleet. An
+//! [`Observation`](flight::Observation) carries all that a table can learn from a segment; spreading what was learnt
+//! over nodes that were never visited is another crate's work.
+//!
+//! The one design decision: a law is a value with its settings and no memory. What has been learnt is the caller's
+//! [`State`](paper::State), what happened is the returned [`Update`](paper::Update) with every number before and
+//! after, so that a ledger, a log or an undo needs nothing else.
+//!
+//! Limits: order matters. Segments go in by time, flights by START; the law [`paper`] gives another table for another
+//! order. See that module for what else it does not do.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use adapt::paper::{PaperLaw, State, Update};
+//! use flight::{Observation, ObservationVariance, Timestamp};
+//! use lut::{Axis, Grid, Table};
+//!
+//! let grid = Arc::new(Grid::new(Axis::from_step(0.3, 0.5, 0.1)?, Axis::from_step(0.7, 0.9, 0.1)?));
+//! let mut state = State::new(Table::new(grid, vec![0.030; 9])?);
+//! let observation = Observation {
+//!     time: Timestamp::UNIX_EPOCH,
+//!     lift_coefficient: 0.42,
+//!     mach: 0.78,
+//!     drag_coefficient: 0.033,
+//!     fuel_flow_total_kg_s: 0.33,
+//!     fuel_flow_per_drag_coefficient_kg_s: 10.0,
+//!     variance: ObservationVariance { segment: 1e-4, flight: 1e-4 },
+//! };
+//! // 100 · 10 · (0.033 − 0.030)/0.33 = 9.09 %: beyond the threshold.
+//! let update = PaperLaw::ghazi_2020().adapt(&mut state, &observation);
+//! assert!(matches!(update, Update::Adapted { error_percent, .. } if (error_percent - 9.0909).abs() < 1e-4));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod paper;

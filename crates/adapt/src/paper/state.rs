@@ -1,0 +1,89 @@
+//! What law `paper` has learnt: two tables on one grid.
+
+use std::sync::Arc;
+
+use lut::{Grid, Table};
+
+/// Drag coefficient and confidence λ over (lift coefficient, Mach number), on one grid; λ ≥ 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    drag_coefficient: Table,
+    confidence: Table,
+}
+
+/// Why two tables are no state.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StateError {
+    /// The tables are not on one grid.
+    #[error("drag coefficient and confidence are on different grids")]
+    GridsDiffer,
+    /// A confidence is below 1.
+    #[error("confidence of node {node} is {value}, below 1")]
+    ConfidenceBelowOne {
+        /// The node.
+        node: usize,
+        /// What was given.
+        value: f64,
+    },
+}
+
+impl State {
+    /// Nothing learnt yet: confidence 1 at every node.
+    #[must_use]
+    pub fn new(drag_coefficient: Table) -> Self {
+        let mut confidence = drag_coefficient.clone(); // shares the grid
+        confidence.values_mut().fill(1.0);
+        Self { drag_coefficient, confidence }
+    }
+
+    /// What was learnt earlier.
+    ///
+    /// # Errors
+    /// [`StateError`] where the tables are on different grids or a confidence is below 1.
+    pub fn from_tables(drag_coefficient: Table, confidence: Table) -> Result<Self, StateError> {
+        if drag_coefficient.grid() != confidence.grid() {
+            return Err(StateError::GridsDiffer);
+        }
+        let below = confidence.values().iter().enumerate().find(|(_, value)| **value < 1.0);
+        if let Some((node, &value)) = below {
+            return Err(StateError::ConfidenceBelowOne { node, value });
+        }
+        Ok(Self { drag_coefficient, confidence })
+    }
+
+    /// The grid of both tables: x is the lift coefficient, y the Mach number.
+    #[must_use]
+    pub const fn grid(&self) -> &Arc<Grid> {
+        self.drag_coefficient.grid()
+    }
+
+    /// Drag coefficients.
+    #[must_use]
+    pub const fn drag_coefficient(&self) -> &Table {
+        &self.drag_coefficient
+    }
+
+    /// Confidences λ.
+    #[must_use]
+    pub const fn confidence(&self) -> &Table {
+        &self.confidence
+    }
+
+    /// Both tables, drag coefficient and confidence, given up.
+    #[must_use]
+    pub fn into_tables(self) -> (Table, Table) {
+        (self.drag_coefficient, self.confidence)
+    }
+
+    /// Both tables, drag coefficient and confidence, for a global refit. Confidences must stay 1 or more, and both
+    /// tables on the grid.
+    #[must_use]
+    pub const fn tables_mut(&mut self) -> (&mut Table, &mut Table) {
+        (&mut self.drag_coefficient, &mut self.confidence)
+    }
+
+    pub(super) fn values_mut(&mut self) -> (&mut [f64], &mut [f64]) {
+        (self.drag_coefficient.values_mut(), self.confidence.values_mut())
+    }
+}
