@@ -44,7 +44,7 @@ pub fn true_airspeed_to_mach(true_airspeed: TrueAirspeed, sat: Temperature) -> M
 /// NaN outside 0 ≤ M ≤ 1.
 ///
 /// # Source
-/// Isentropic compression; Anderson, *Modern Compressible Flow*, equation (3.30).
+/// Isentropic compression: NACA Report 1135 (1953); Anderson, *Modern Compressible Flow*, equation (3.30).
 #[inline]
 #[must_use]
 pub fn impact_pressure(mach: Mach, static_pressure: Pressure) -> Pressure {
@@ -53,7 +53,7 @@ pub fn impact_pressure(mach: Mach, static_pressure: Pressure) -> Pressure {
 
 /// Dynamic pressure q = ½ρV². `[atmosphere.9]`
 ///
-/// Not the impact pressure: that is larger by the compressibility of air, 16 % at Mach 0.8.
+/// Not the impact pressure: that is larger by the compressibility of air, 17 % at Mach 0.8.
 #[inline]
 #[must_use]
 pub fn dynamic_pressure(density: Density, true_airspeed: TrueAirspeed) -> Pressure {
@@ -168,4 +168,84 @@ fn sea_level_speed_of_sound_m_s() -> f64 {
 
 fn density_ratio_root(density: Density) -> f64 {
     (density.to_kilograms_per_cubic_meter() / SEA_LEVEL_DENSITY_KG_M3).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::isa;
+
+    const SEA_LEVEL: Pressure = Pressure::pascals(SEA_LEVEL_PRESSURE_PA);
+
+    #[test]
+    fn calibrated_is_true_airspeed_at_sea_level_of_the_standard_day() {
+        // The definition of calibrated airspeed.
+        let sat = Temperature::kelvin(SEA_LEVEL_TEMPERATURE_K);
+        for knots in [1.0, 100.0, 250.0, 500.0, 660.0] {
+            let calibrated =
+                true_airspeed_to_calibrated_airspeed(TrueAirspeed::knots(knots), SEA_LEVEL, sat);
+            assert!((calibrated.to_knots() / knots - 1.0).abs() < 1e-14, "{calibrated}");
+        }
+    }
+
+    #[test]
+    fn impact_pressure_at_mach_one() {
+        // Total over static pressure at Mach 1 is 1.2^3.5 = 1.892929 (NACA Report 1135, table I: p/pt = 0.5283).
+        let impact_pressure_pa = impact_pressure(Mach::new(1.0), SEA_LEVEL).to_pascals();
+        assert!((impact_pressure_pa / SEA_LEVEL_PRESSURE_PA - 0.892929).abs() < 1e-6);
+        assert!((1.0 / (impact_pressure_pa / SEA_LEVEL_PRESSURE_PA + 1.0) - 0.5283).abs() < 5e-5);
+    }
+
+    #[test]
+    fn compressibility_at_mach_0_8() {
+        // By hand: 1.128^3.5 = 1.524342, so qc/p = 0.524342; q/p = 0.7·0.64 = 0.448; qc/q = 1.1704.
+        let sat = Temperature::kelvin(216.65);
+        let static_pressure = Pressure::pascals(20_000.0);
+        let true_airspeed = mach_to_true_airspeed(Mach::new(0.8), sat);
+        let dynamic = dynamic_pressure(isa::density(static_pressure, sat), true_airspeed);
+        let impact = impact_pressure(Mach::new(0.8), static_pressure);
+        assert!((dynamic.to_pascals() - 0.448 * 20_000.0).abs() < 1e-8);
+        assert!((impact / dynamic - 1.1704).abs() < 5e-5);
+    }
+
+    #[test]
+    fn slow_airspeeds_keep_their_digits() {
+        // Incompressible limit: CAS = EAS. A plain power minus 1 is wrong by 1e-8 here.
+        let static_pressure = Pressure::pascals(25_000.0);
+        let sat = Temperature::kelvin(220.0);
+        let true_airspeed = TrueAirspeed::meters_per_second(0.001);
+        let calibrated = true_airspeed_to_calibrated_airspeed(true_airspeed, static_pressure, sat);
+        let density = isa::density(static_pressure, sat);
+        let equivalent = true_airspeed_to_equivalent_airspeed(true_airspeed, density);
+        let ratio = calibrated.to_meters_per_second() / equivalent.to_meters_per_second();
+        assert!((ratio - 1.0).abs() < 1e-11, "{ratio}");
+    }
+
+    #[test]
+    fn equivalent_airspeed_by_hand() {
+        // σ = 0.25: EAS = TAS/2.
+        let density = Density::kilograms_per_cubic_meter(SEA_LEVEL_DENSITY_KG_M3 / 4.0);
+        let equivalent = true_airspeed_to_equivalent_airspeed(TrueAirspeed::knots(480.0), density);
+        assert!((equivalent.to_knots() - 240.0).abs() < 1e-12);
+        let back = equivalent_airspeed_to_true_airspeed(equivalent, density);
+        assert!((back.to_knots() - 480.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn no_value_where_the_law_does_not_hold() {
+        for mach in [-0.1, 1.001, f64::NAN, f64::INFINITY] {
+            assert!(!impact_pressure(Mach::new(mach), SEA_LEVEL).is_finite(), "{mach}");
+            assert!(!mach_to_calibrated_airspeed(Mach::new(mach), SEA_LEVEL).is_finite());
+        }
+        for meters_per_second in [-1.0, 341.0, f64::NAN] {
+            let calibrated = CalibratedAirspeed::meters_per_second(meters_per_second);
+            assert!(!calibrated_airspeed_to_mach(calibrated, SEA_LEVEL).is_finite());
+        }
+        // Subsonic CAS, supersonic Mach number: 600 kt CAS at 12 km.
+        let high = Pressure::pascals(19_330.0);
+        assert!(!calibrated_airspeed_to_mach(CalibratedAirspeed::knots(600.0), high).is_finite());
+        // Subsonic Mach number, CAS above a0: Mach 0.99 at −2000 m.
+        let low = Pressure::pascals(127_774.0);
+        assert!(!mach_to_calibrated_airspeed(Mach::new(0.99), low).is_finite());
+    }
 }

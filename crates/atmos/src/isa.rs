@@ -23,7 +23,7 @@ use crate::constants::{
 /// [`OutOfDomain`] outside −2000..=20 000 m, and for NaN.
 ///
 /// # Source
-/// ISO 2533:1975, equation (11) and table 4.
+/// ISO 2533:1975, clause 2 and its table of temperature gradients; EUROCONTROL BADA 3.12, section 3.1.
 #[inline]
 pub fn temperature(pressure_altitude: PressureAltitude) -> Result<Temperature, OutOfDomain> {
     let pressure_altitude_m = check_pressure_altitude_m(pressure_altitude)?;
@@ -41,7 +41,7 @@ pub fn temperature(pressure_altitude: PressureAltitude) -> Result<Temperature, O
 /// [`OutOfDomain`] outside −2000..=20 000 m, and for NaN.
 ///
 /// # Source
-/// ISO 2533:1975, equations (12) and (13).
+/// ISO 2533:1975, clause 2; EUROCONTROL BADA 3.12, equations 3.1-18 and 3.1-20.
 #[inline]
 pub fn pressure(pressure_altitude: PressureAltitude) -> Result<Pressure, OutOfDomain> {
     let pressure_altitude_m = check_pressure_altitude_m(pressure_altitude)?;
@@ -61,7 +61,7 @@ pub fn pressure(pressure_altitude: PressureAltitude) -> Result<Pressure, OutOfDo
 /// [`OutOfDomain`] for a static pressure outside that of 20 000 m to that of −2000 m, and for NaN.
 ///
 /// # Source
-/// ISO 2533:1975, equations (12) and (13) solved for the altitude.
+/// `[atmosphere.2]` solved for the altitude.
 #[inline]
 pub fn pressure_altitude(static_pressure: Pressure) -> Result<PressureAltitude, OutOfDomain> {
     let static_pressure_pa = check_within(
@@ -85,7 +85,7 @@ pub fn pressure_altitude(static_pressure: Pressure) -> Result<PressureAltitude, 
 /// Dry air. Not positive, or NaN, arguments give what the division gives.
 ///
 /// # Source
-/// ISO 2533:1975, equation (2).
+/// The perfect gas, ISO 2533:1975, clause 2.
 #[inline]
 #[must_use]
 pub fn density(static_pressure: Pressure, sat: Temperature) -> Density {
@@ -127,7 +127,7 @@ pub fn density_ratio(density: Density) -> f64 {
 /// NaN for a negative temperature.
 ///
 /// # Source
-/// ISO 2533:1975, equation (21).
+/// ISO 2533:1975, clause 2.
 #[inline]
 #[must_use]
 pub fn speed_of_sound(sat: Temperature) -> SpeedOfSound {
@@ -192,4 +192,60 @@ fn pressure_altitude_m(static_pressure_pa: f64) -> f64 {
 /// p11, computed and not typed: a rounded literal here is a step of the pressure at 11 km.
 fn tropopause_pressure_pa() -> f64 {
     pressure_pa(TROPOPAUSE_PRESSURE_ALTITUDE_M)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_domain_is_closed_and_refused_outside() {
+        for pressure_altitude_m in [-2000.0, 20_000.0] {
+            let pressure_altitude = PressureAltitude::meters(pressure_altitude_m);
+            assert!(temperature(pressure_altitude).is_ok());
+            let static_pressure = pressure(pressure_altitude).unwrap();
+            let back = super::pressure_altitude(static_pressure).unwrap();
+            assert!((back.to_meters() - pressure_altitude_m).abs() < 1e-8);
+        }
+        for pressure_altitude_m in [-2000.001, 20_000.001, f64::NAN, f64::INFINITY] {
+            let pressure_altitude = PressureAltitude::meters(pressure_altitude_m);
+            assert!(temperature(pressure_altitude).is_err(), "{pressure_altitude_m}");
+            assert!(pressure(pressure_altitude).is_err(), "{pressure_altitude_m}");
+            assert!(isa_deviation(pressure_altitude, Temperature::kelvin(220.0)).is_err());
+        }
+        // The pressures of 20 000 and −2000 m are 5474.877 and 127 773.730 Pa.
+        for static_pressure_pa in [5474.87, 127_773.74, 0.0, -1.0, f64::NAN] {
+            assert!(super::pressure_altitude(Pressure::pascals(static_pressure_pa)).is_err());
+        }
+    }
+
+    #[test]
+    fn refusal_names_quantity_value_and_limits() {
+        let error = pressure(PressureAltitude::meters(21_000.0)).unwrap_err();
+        assert_eq!(error.to_string(), "pressure altitude 21000 m outside -2000..=20000 m");
+        let error = super::pressure_altitude(Pressure::pascals(1.0)).unwrap_err();
+        assert_eq!((error.quantity, error.unit), ("static pressure", "Pa"));
+    }
+
+    #[test]
+    fn the_layers_meet() {
+        // Both laws at 11 000 m give p11; a millimeter apart they differ by ρ g0 dh = 3.57e-3 Pa, not by a step.
+        let at = |pressure_altitude_m: f64| {
+            pressure(PressureAltitude::meters(pressure_altitude_m)).unwrap().to_pascals()
+        };
+        let step_pa = at(11_000.0) - at(11_000.001);
+        assert!((step_pa - 0.363_918 * 9.80665 * 0.001).abs() < 1e-6, "{step_pa}");
+        let below = super::pressure_altitude(Pressure::pascals(at(11_000.0))).unwrap();
+        assert!((below.to_meters() - 11_000.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_warm_day_is_thinner_by_its_temperature() {
+        // ρ ∝ 1/SAT at one pressure: +10 K on 216.65 K is 216.65/226.65 = 0.955879.
+        let static_pressure = pressure(PressureAltitude::feet(39_000.0)).unwrap();
+        let standard = density(static_pressure, Temperature::kelvin(216.65));
+        let warm = density(static_pressure, Temperature::kelvin(226.65));
+        let ratio = warm.to_kilograms_per_cubic_meter() / standard.to_kilograms_per_cubic_meter();
+        assert!((ratio - 0.955_879).abs() < 1e-6);
+    }
 }
