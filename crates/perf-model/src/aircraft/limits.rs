@@ -1,0 +1,99 @@
+//! What the numbers of the aircraft file may be: each bound once, for reading text and for building in code.
+//!
+//! A bound is checked while the text is read, so that the error knows the place.
+
+use core::fmt::Display;
+
+use ron::value::RawValue;
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer, Serializer};
+
+/// A number with its bounds: `check` for code, `deserialize` for text, `deserialize_optional` for an optional field.
+macro_rules! bounded {
+    ($name:ident, $quantity:literal, $unit:literal, $minimum:expr, $maximum:expr) => {
+        pub(in crate::aircraft) mod $name {
+            use serde::{Deserialize, Deserializer, de::Error};
+            use units::{OutOfDomain, check_within};
+
+            pub(in crate::aircraft) fn check(value: f64) -> Result<f64, OutOfDomain> {
+                check_within($quantity, $unit, value, $minimum, $maximum)
+            }
+
+            #[allow(dead_code, reason = "a field is optional or not")]
+            pub(in crate::aircraft) fn deserialize<'de, D: Deserializer<'de>>(
+                deserializer: D,
+            ) -> Result<f64, D::Error> {
+                check(f64::deserialize(deserializer)?).map_err(D::Error::custom)
+            }
+
+            #[allow(dead_code, reason = "a field is optional or not")]
+            pub(in crate::aircraft) fn deserialize_optional<'de, D: Deserializer<'de>>(
+                deserializer: D,
+            ) -> Result<Option<f64>, D::Error> {
+                super::optional(deserializer)?.map(check).transpose().map_err(D::Error::custom)
+            }
+        }
+    };
+}
+
+// Largest wing ever flown is 905 m² (An-225).
+bounded!(wing_area_m2, "wing area", "m²", 1.0, 2000.0);
+// Turbojets reach about 1.2 without reheat; today's fans about 0.3.
+bounded!(static_lb_per_lbf_h, "static TSFC", "lb/(lbf h)", 0.05, 3.0);
+bounded!(mach_exponent, "TSFC Mach exponent", "-", -2.0, 4.0);
+bounded!(mean_aerodynamic_chord_m, "mean aerodynamic chord", "m", 0.1, 30.0);
+bounded!(drag_divergence_mach, "drag-divergence Mach number", "Mach", 0.4, 1.0);
+// Kerosene is 42.8 to 43.5.
+bounded!(reference_lhv_mj_kg, "reference lower heating value", "MJ/kg", 35.0, 50.0);
+
+// Standard deviations. Two are divided by and may not be zero: fuel flow and N2.
+bounded!(fuel_flow_percent, "standard deviation of fuel flow", "%", 0.001, 20.0);
+bounded!(mach, "standard deviation of Mach number", "Mach", 0.0, 0.05);
+bounded!(static_air_temperature_k, "standard deviation of SAT", "K", 0.0, 20.0);
+bounded!(acceleration_m_s2, "standard deviation of acceleration", "m/s²", 0.0, 0.1);
+bounded!(mass_percent, "standard deviation of mass", "%", 0.0, 20.0);
+bounded!(mass_kg, "standard deviation of mass", "kg", 0.0, 50_000.0);
+bounded!(lower_heating_value_percent, "standard deviation of heating value", "%", 0.0, 10.0);
+bounded!(n2_percent, "standard deviation of N2", "%", 0.001, 10.0);
+bounded!(pressure_altitude_m, "standard deviation of pressure altitude", "m", 0.0, 500.0);
+
+/// Limits of the table's lift-coefficient axis.
+pub(super) const TABLE_LIFT_COEFFICIENT: (f64, f64) = (0.0, 3.0);
+/// Limits of the table's Mach axis.
+pub(super) const TABLE_MACH: (f64, f64) = (0.05, 1.2);
+/// Longest axis: 1000 × 1000 nodes are more than any fleet can inform, and still fit into memory.
+pub(super) const MAXIMUM_BREAKPOINTS: usize = 1000;
+
+/// An optional number, written plainly or as `Some(…)`.
+pub(super) fn optional<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<f64>, D::Error> {
+    let raw = Box::<RawValue>::deserialize(deserializer)?;
+    let text = raw.trim().get_ron();
+    if text.starts_with("Some") || text.starts_with("None") {
+        from_text(text)
+    } else {
+        from_text(text).map(Some)
+    }
+}
+
+/// Writes an optional number plainly. Absent ones are skipped before this is asked.
+#[expect(clippy::ref_option, reason = "the signature that serde calls")]
+pub(super) fn serialize_optional<S: Serializer>(
+    value: &Option<f64>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match value {
+        Some(number) => serializer.serialize_f64(*number),
+        None => serializer.serialize_none(),
+    }
+}
+
+/// A piece of RON text as a value; the inner position is dropped, the outer reader knows a better one.
+pub(super) fn from_text<T: DeserializeOwned, E: Error>(text: &str) -> Result<T, E> {
+    ron::from_str(text).map_err(|error| custom(error.code))
+}
+
+fn custom<E: Error>(message: impl Display) -> E {
+    E::custom(message)
+}

@@ -1,0 +1,109 @@
+//! How far readings stray: the standard deviations that uncertainties are propagated from.
+
+use serde::{Deserialize, Serialize};
+
+use super::AircraftError;
+use super::limits;
+
+/// Standard deviations of what is recorded. All are of a segment's mean unless the field says otherwise, and stand for
+/// what differs from segment to segment; a bias that never changes is no matter of variance but of diagnosis.
+///
+/// The defaults are handbook values. A fleet in level flight is quieter: take them from past reports where there are
+/// some.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SensorDeviations {
+    /// Fuel flow of each engine, % of the reading; engines err independently. Default 0.5: the accuracy that
+    /// operators quote for flow meters.
+    #[serde(deserialize_with = "limits::fuel_flow_percent::deserialize")]
+    pub fuel_flow_percent: f64,
+    /// Mach number; true airspeed errs with it. Default 0.001: the resolution and repeatability of an air-data computer.
+    #[serde(deserialize_with = "limits::mach::deserialize")]
+    pub mach: f64,
+    /// Static air temperature, K; true airspeed errs with it. Default 0.3: a total-temperature probe.
+    #[serde(deserialize_with = "limits::static_air_temperature_k::deserialize")]
+    pub static_air_temperature_k: f64,
+    /// Along-path acceleration of one *sample* of 60 s, m/s². Default 0.0045: the middle of 0.003 to 0.006, seen in
+    /// simulated turbulence with ground speed rounded to 0.5 kt.
+    #[serde(deserialize_with = "limits::acceleration_m_s2::deserialize")]
+    pub acceleration_m_s2: f64,
+    /// Gross mass from *flight to flight*: loading, standard passenger weights. Default 0.7 %: 80 kg of an 11 t
+    /// zero-fuel mass.
+    pub mass: MassDeviation,
+    /// Lower heating value of the fuel from *flight to flight*, %. Default 0.3: the spread of batches is about ±0.5.
+    #[serde(deserialize_with = "limits::lower_heating_value_percent::deserialize")]
+    pub lower_heating_value_percent: f64,
+    /// High-pressure rotor speed, % of the reading. Default 0.08.
+    #[serde(deserialize_with = "limits::n2_percent::deserialize")]
+    pub n2_percent: f64,
+    /// Pressure altitude, m. Default 8: the resolution and repeatability of an air-data computer.
+    #[serde(deserialize_with = "limits::pressure_altitude_m::deserialize")]
+    pub pressure_altitude_m: f64,
+}
+
+/// Standard deviation of the gross mass from flight to flight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum MassDeviation {
+    /// Share of the gross mass, %.
+    Percent(#[serde(deserialize_with = "limits::mass_percent::deserialize")] f64),
+    /// The same mass at every loading, kg.
+    Kilograms(#[serde(deserialize_with = "limits::mass_kg::deserialize")] f64),
+}
+
+impl MassDeviation {
+    /// Relative to a gross mass: 0.007 for 0.7 %.
+    #[must_use]
+    pub fn relative_to(self, gross_mass: units::Mass) -> f64 {
+        match self {
+            Self::Percent(percent) => percent / 100.0,
+            Self::Kilograms(kilograms) => kilograms / gross_mass.to_kilograms(),
+        }
+    }
+}
+
+impl Default for SensorDeviations {
+    fn default() -> Self {
+        Self {
+            fuel_flow_percent: 0.5,
+            mach: 0.001,
+            static_air_temperature_k: 0.3,
+            acceleration_m_s2: 0.0045,
+            mass: MassDeviation::Percent(0.7),
+            lower_heating_value_percent: 0.3,
+            n2_percent: 0.08,
+            pressure_altitude_m: 8.0,
+        }
+    }
+}
+
+impl SensorDeviations {
+    pub(super) fn check(&self) -> Result<(), AircraftError> {
+        limits::fuel_flow_percent::check(self.fuel_flow_percent)?;
+        limits::mach::check(self.mach)?;
+        limits::static_air_temperature_k::check(self.static_air_temperature_k)?;
+        limits::acceleration_m_s2::check(self.acceleration_m_s2)?;
+        match self.mass {
+            MassDeviation::Percent(percent) => limits::mass_percent::check(percent)?,
+            MassDeviation::Kilograms(kilograms) => limits::mass_kg::check(kilograms)?,
+        };
+        limits::lower_heating_value_percent::check(self.lower_heating_value_percent)?;
+        limits::n2_percent::check(self.n2_percent)?;
+        limits::pressure_altitude_m::check(self.pressure_altitude_m)?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mass_deviation_of_the_default_is_80_kg_of_eleven_tonnes() {
+        // 80/11 400 = 0.702 %, by hand.
+        let relative =
+            SensorDeviations::default().mass.relative_to(units::Mass::kilograms(11_400.0));
+        assert!((relative - 80.0 / 11_400.0).abs() < 2e-5);
+        let fixed = MassDeviation::Kilograms(80.0).relative_to(units::Mass::kilograms(16_000.0));
+        assert!((fixed - 0.005).abs() < 1e-15);
+    }
+}
