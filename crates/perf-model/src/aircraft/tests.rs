@@ -29,8 +29,8 @@ fn the_specifications_file_reads() {
     assert_eq!(aircraft.engines(), 2);
     assert!((aircraft.wing_area().to_square_meters() - 48.96).abs() < 1e-12);
     assert_eq!(aircraft.grid().x().len(), 13);
-    assert_eq!(aircraft.grid().x().breakpoints()[4], 0.3); // the typed decimal
-    assert_eq!(aircraft.grid().y().last(), 0.95);
+    assert_eq!(aircraft.grid().x().breakpoints()[4].to_bits(), 0.3_f64.to_bits()); // as typed
+    assert_eq!(aircraft.grid().y().last().to_bits(), 0.95_f64.to_bits());
     assert_eq!(aircraft.polynomial(), Basis::SeparableQuadratic);
     assert_eq!(*aircraft.sensors(), SensorDeviations::default());
     // 0.405/(3600·9.80665) = 1.147 181e-5 kg/(N s), by hand.

@@ -1,0 +1,332 @@
+//! Comma-separated text with a header: what guide and flight points share.
+//!
+//! A file is read whole and refused at its first fault, with line, column and what was expected. Columns are found by
+//! name, in any order; columns whose name begins with `X-` are kept out of the meaning, as in cruise reports.
+
+use core::fmt;
+
+use units::{OutOfDomain, check_within};
+
+/// A column that a file may have: its name carries the unit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Column {
+    pub(crate) name: &'static str,
+    pub(crate) quantity: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) minimum: f64,
+    pub(crate) maximum: f64,
+}
+
+/// Why text is no guide or no list of flight points.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("line {line}{}: {reason}", At(.column.as_ref()))]
+pub struct CsvError {
+    /// Line of the file, from 1.
+    pub line: u64,
+    /// The column, where one is meant.
+    pub column: Option<CsvColumn>,
+    /// What is wrong.
+    pub reason: CsvErrorReason,
+}
+
+/// A column of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CsvColumn {
+    /// Number from 1.
+    pub number: usize,
+    /// Its name in the header, or what stands there.
+    pub name: String,
+}
+
+/// What is wrong with a file of comma-separated text.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CsvErrorReason {
+    /// No line with column names.
+    #[error("no header, expected column names: {known}")]
+    NoHeader {
+        /// Names the file may have.
+        known: String,
+    },
+    /// A header without rows.
+    #[error("no rows after the header")]
+    NoRows,
+    /// A name that the file does not define.
+    #[error("unknown column, expected one of {known}, or a name beginning with X-")]
+    UnknownColumn {
+        /// Names the file may have.
+        known: String,
+    },
+    /// A name that stands twice.
+    #[error("column stands twice, first as column {first}")]
+    DuplicatedColumn {
+        /// Number of the first, from 1.
+        first: usize,
+    },
+    /// A required column that is absent.
+    #[error("missing column {expected}")]
+    MissingColumn {
+        /// Its name, or the names of which one is required.
+        expected: String,
+    },
+    /// Two columns that say the same in different units.
+    #[error("column says the same as {other}, expected one of the two")]
+    ConflictingColumn {
+        /// The other one.
+        other: &'static str,
+    },
+    /// A row with too few or too many fields.
+    #[error("{found} fields, expected {expected} as in the header")]
+    FieldCount {
+        /// Fields found.
+        found: usize,
+        /// Columns of the header.
+        expected: usize,
+    },
+    /// Bytes that are no UTF-8.
+    #[error("not UTF-8 text")]
+    NotUtf8,
+    /// A field that is not a finite decimal number.
+    #[error("found {found:?}, expected a number")]
+    NotANumber {
+        /// The field.
+        found: String,
+    },
+    /// A field that is neither 0 nor 1.
+    #[error("found {found:?}, expected 0 or 1")]
+    NotZeroOrOne {
+        /// The field.
+        found: String,
+    },
+    /// A field that is no date.
+    #[error("found {found:?}, expected a date as 2018-05-20 or 2018-05-20T14:14:21Z")]
+    NotADate {
+        /// The field.
+        found: String,
+    },
+    /// A number that the quantity cannot have.
+    #[error("found {found:?}, expected {}..={} {} ({})", .domain.minimum, .domain.maximum, .domain.unit, .domain.quantity)]
+    OutOfDomain {
+        /// The field.
+        found: String,
+        /// The domain.
+        domain: OutOfDomain,
+    },
+    /// Fields that are each possible but not together.
+    #[error("together with the row's other fields: {domain}")]
+    Inconsistent {
+        /// What they give, and what it may be.
+        domain: OutOfDomain,
+    },
+}
+
+/// A file as text: names and fields as sent.
+#[derive(Debug)]
+pub(crate) struct CsvText {
+    header_line: u64,
+    pub(crate) header: Vec<String>,
+    pub(crate) rows: Vec<Row>,
+}
+
+/// A row as sent, with its line.
+#[derive(Debug)]
+pub(crate) struct Row {
+    pub(crate) line: u64,
+    pub(crate) fields: Vec<String>,
+}
+
+impl CsvText {
+    /// Splits the text and checks the header against the columns the file may have.
+    pub(crate) fn read(text: &[u8], known: &[Column]) -> Result<Self, CsvError> {
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true) // lengths are compared here, for a message with line and counts
+            .from_reader(text);
+        let mut record = csv::ByteRecord::new();
+        let mut rows = Vec::new();
+        // Reading bytes from memory into a flexible byte record cannot fail; an end is an end.
+        while reader.read_byte_record(&mut record).unwrap_or(false) {
+            let line = line_of(text, record.position());
+            rows.push(Row { line, fields: utf8_fields(&record, line)? });
+        }
+        let mut rows = rows.into_iter();
+        let Some(Row { line: header_line, fields: header }) = rows.next() else {
+            return Err(CsvError::new(1, CsvErrorReason::NoHeader { known: names(known) }));
+        };
+        check_header(header_line, &header, known)?;
+        let rows: Vec<Row> = rows.collect();
+        for row in &rows {
+            if row.fields.len() != header.len() {
+                let (found, expected) = (row.fields.len(), header.len());
+                return Err(CsvError::new(
+                    row.line,
+                    CsvErrorReason::FieldCount { found, expected },
+                ));
+            }
+        }
+        if rows.is_empty() {
+            return Err(CsvError::new(header_line, CsvErrorReason::NoRows));
+        }
+        Ok(Self { header_line, header, rows })
+    }
+
+    /// Index of a column, where the file has it.
+    pub(crate) fn find(&self, column: &Column) -> Option<usize> {
+        self.header.iter().position(|name| name.trim() == column.name)
+    }
+
+    /// Index of a column that must be there.
+    pub(crate) fn require(&self, column: &Column) -> Result<usize, CsvError> {
+        self.find(column).ok_or_else(|| self.missing(column.name.to_owned()))
+    }
+
+    /// Which of two columns of the same meaning the file has, and where; `None` where it has neither.
+    pub(crate) fn find_either<'c>(
+        &self,
+        [first, second]: [&'c Column; 2],
+    ) -> Result<Option<(usize, &'c Column)>, CsvError> {
+        match (self.find(first), self.find(second)) {
+            (Some(one), Some(other)) => {
+                let (index, other) =
+                    if one < other { (other, first.name) } else { (one, second.name) };
+                Err(self.header_error(index, CsvErrorReason::ConflictingColumn { other }))
+            }
+            (Some(index), None) => Ok(Some((index, first))),
+            (None, Some(index)) => Ok(Some((index, second))),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// Like [`find_either`](Self::find_either), of which one must be there.
+    pub(crate) fn require_either<'c>(
+        &self,
+        columns: [&'c Column; 2],
+    ) -> Result<(usize, &'c Column), CsvError> {
+        self.find_either(columns)?
+            .ok_or_else(|| self.missing(format!("{} or {}", columns[0].name, columns[1].name)))
+    }
+
+    /// A field as a number within its column's limits.
+    pub(crate) fn number(&self, row: &Row, index: usize, column: &Column) -> Result<f64, CsvError> {
+        let found = row.fields[index].trim();
+        let Some(value) = parse_number(found) else {
+            return Err(self.error(row, index, CsvErrorReason::NotANumber { found: found.into() }));
+        };
+        check_within(column.quantity, column.unit, value, column.minimum, column.maximum).map_err(
+            |domain| {
+                self.error(row, index, CsvErrorReason::OutOfDomain { found: found.into(), domain })
+            },
+        )
+    }
+
+    /// Like [`number`](Self::number); an empty field or `-` says "not available".
+    pub(crate) fn optional_number(
+        &self,
+        row: &Row,
+        index: Option<usize>,
+        column: &Column,
+    ) -> Result<Option<f64>, CsvError> {
+        match index.filter(|&index| is_available(&row.fields[index])) {
+            Some(index) => self.number(row, index, column).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// An error at a field.
+    pub(crate) fn error(&self, row: &Row, index: usize, reason: CsvErrorReason) -> CsvError {
+        CsvError { line: row.line, ..self.header_error(index, reason) }
+    }
+
+    fn header_error(&self, index: usize, reason: CsvErrorReason) -> CsvError {
+        let name = self.header[index].trim().to_owned();
+        CsvError {
+            line: self.header_line,
+            column: Some(CsvColumn { number: index + 1, name }),
+            reason,
+        }
+    }
+
+    fn missing(&self, expected: String) -> CsvError {
+        CsvError::new(self.header_line, CsvErrorReason::MissingColumn { expected })
+    }
+}
+
+impl CsvError {
+    fn new(line: u64, reason: CsvErrorReason) -> Self {
+        Self { line, column: None, reason }
+    }
+}
+
+/// Whether a field says anything.
+pub(crate) fn is_available(field: &str) -> bool {
+    !matches!(field.trim(), "" | "-")
+}
+
+/// `, column 4 (fuel_flow_lb_h)`, or nothing.
+struct At<'a>(Option<&'a CsvColumn>);
+
+impl fmt::Display for At<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(CsvColumn { number, name }) => write!(f, ", column {number} ({name})"),
+            None => Ok(()),
+        }
+    }
+}
+
+fn check_header(line: u64, header: &[String], known: &[Column]) -> Result<(), CsvError> {
+    for (index, name) in header.iter().enumerate() {
+        let name = name.trim();
+        let error = |reason| CsvError {
+            line,
+            column: Some(CsvColumn { number: index + 1, name: name.to_owned() }),
+            reason,
+        };
+        if let Some(first) = header[..index].iter().position(|other| other.trim() == name) {
+            return Err(error(CsvErrorReason::DuplicatedColumn { first: first + 1 }));
+        }
+        if !name.starts_with("X-") && known.iter().all(|column| column.name != name) {
+            return Err(error(CsvErrorReason::UnknownColumn { known: names(known) }));
+        }
+    }
+    Ok(())
+}
+
+fn names(known: &[Column]) -> String {
+    let names: Vec<&str> = known.iter().map(|column| column.name).collect();
+    names.join(", ")
+}
+
+fn utf8_fields(record: &csv::ByteRecord, line: u64) -> Result<Vec<String>, CsvError> {
+    record
+        .iter()
+        .enumerate()
+        .map(|(index, field)| {
+            core::str::from_utf8(field).map(str::to_owned).map_err(|_| CsvError {
+                line,
+                column: Some(CsvColumn {
+                    number: index + 1,
+                    name: String::from_utf8_lossy(field).into_owned(),
+                }),
+                reason: CsvErrorReason::NotUtf8,
+            })
+        })
+        .collect()
+}
+
+/// Line of a record, from 1. The reader's own position is where it began to look, before empty lines.
+fn line_of(text: &[u8], position: Option<&csv::Position>) -> u64 {
+    let Some(position) = position else { return 1 };
+    let start = usize::try_from(position.byte()).unwrap_or(usize::MAX).min(text.len());
+    let skipped = text[start..].iter().take_while(|byte| matches!(byte, b'\n' | b'\r'));
+    let empty_lines: u64 = skipped.map(|&byte| u64::from(byte == b'\n')).sum();
+    position.line() + empty_lines
+}
+
+/// A finite decimal number: what `f64` reads, without its words for infinity and NaN.
+fn parse_number(text: &str) -> Option<f64> {
+    let decimal =
+        text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
+    let value: f64 = if decimal { text.parse().ok()? } else { return None };
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,279 @@
+//! The flight-planning guide: fuel flow by weight, pressure altitude and true airspeed.
+
+use atmos::{airspeed, isa};
+use units::{
+    FuelFlowTotal, Mach, Mass, OutOfDomain, PressureAltitude, Temperature, TemperatureDifference,
+    TrueAirspeed, check_within,
+};
+
+use crate::columns::{
+    FUEL_FLOW_KG_H, FUEL_FLOW_LB_H, ISA_DEVIATION_C, MASS_KG, MAXIMUM_MACH, MINIMUM_MACH,
+    PRESSURE_ALTITUDE_FT, TRUE_AIRSPEED_KT, WEIGHT_LB,
+};
+use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Row};
+
+/// A flight-planning guide: level, unaccelerated cruise, one row a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guide {
+    points: Vec<GuidePoint>,
+}
+
+/// A row of a guide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GuidePoint {
+    /// Line of the file, from 1.
+    pub line: u64,
+    /// Gross mass ("weight").
+    pub mass: Mass,
+    /// Pressure altitude.
+    pub pressure_altitude: PressureAltitude,
+    /// True airspeed.
+    pub true_airspeed: TrueAirspeed,
+    /// Fuel flow of all engines.
+    pub fuel_flow_total: FuelFlowTotal,
+    /// Deviation from the ISA; zero where the guide does not say.
+    pub isa_deviation: TemperatureDifference,
+}
+
+/// Columns that a guide may have.
+const COLUMNS: [Column; 7] = [
+    WEIGHT_LB,
+    MASS_KG,
+    PRESSURE_ALTITUDE_FT,
+    TRUE_AIRSPEED_KT,
+    FUEL_FLOW_LB_H,
+    FUEL_FLOW_KG_H,
+    ISA_DEVIATION_C,
+];
+
+impl Guide {
+    /// Reads a guide.
+    ///
+    /// Comma-separated with a header that decides: `weight_lb` or `mass_kg`; `pressure_altitude_ft`;
+    /// `true_airspeed_kt`; `fuel_flow_lb_h` or `fuel_flow_kg_h`, all engines; optionally `isa_deviation_c`. Columns
+    /// whose name begins with `X-` are ignored.
+    ///
+    /// ```
+    /// use perf_model::Guide;
+    ///
+    /// let guide = Guide::from_csv(b"weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n\
+    ///     30000,43000,470,1610\n")?;
+    /// assert_eq!(guide.points()[0].line, 2);
+    ///
+    /// let error = Guide::from_csv(b"weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n\
+    ///     30000,43000,470,l610\n").unwrap_err();
+    /// assert_eq!(error.to_string(), "line 2, column 4 (fuel_flow_lb_h): found \"l610\", expected a number");
+    /// # Ok::<(), perf_model::CsvError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`CsvError`] at the first fault: an unknown, missing or doubled column, a row with too few or too many fields, a
+    /// number that is none or that the quantity cannot have, an airspeed that is no Mach number from 0.1 to 0.99.
+    pub fn from_csv(text: &[u8]) -> Result<Self, CsvError> {
+        let file = CsvText::read(text, &COLUMNS)?;
+        let (mass, mass_column) = file.require_either([&WEIGHT_LB, &MASS_KG])?;
+        let pressure_altitude = file.require(&PRESSURE_ALTITUDE_FT)?;
+        let true_airspeed = file.require(&TRUE_AIRSPEED_KT)?;
+        let (flow, flow_column) = file.require_either([&FUEL_FLOW_LB_H, &FUEL_FLOW_KG_H])?;
+        let isa_deviation = file.find(&ISA_DEVIATION_C);
+
+        let point = |row: &Row| -> Result<GuidePoint, CsvError> {
+            let point = GuidePoint {
+                line: row.line,
+                mass: mass_in(mass_column, file.number(row, mass, mass_column)?),
+                pressure_altitude: PressureAltitude::feet(file.number(
+                    row,
+                    pressure_altitude,
+                    &PRESSURE_ALTITUDE_FT,
+                )?),
+                true_airspeed: TrueAirspeed::knots(file.number(
+                    row,
+                    true_airspeed,
+                    &TRUE_AIRSPEED_KT,
+                )?),
+                fuel_flow_total: fuel_flow_in(flow_column, file.number(row, flow, flow_column)?),
+                isa_deviation: TemperatureDifference::kelvin(match isa_deviation {
+                    Some(index) => file.number(row, index, &ISA_DEVIATION_C)?,
+                    None => 0.0,
+                }),
+            };
+            point.mach().map_err(|domain| {
+                file.error(row, true_airspeed, CsvErrorReason::Inconsistent { domain })
+            })?;
+            Ok(point)
+        };
+        let points = file.rows.iter().map(point).collect::<Result<_, _>>()?;
+        Ok(Self { points })
+    }
+
+    /// The rows, in the file's order; one or more.
+    #[must_use]
+    pub fn points(&self) -> &[GuidePoint] {
+        &self.points
+    }
+}
+
+impl GuidePoint {
+    /// Static air temperature: that of the ISA plus the deviation.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a pressure altitude outside the atmosphere's domain.
+    pub fn static_air_temperature(&self) -> Result<Temperature, OutOfDomain> {
+        Ok(isa::temperature(self.pressure_altitude)? + self.isa_deviation)
+    }
+
+    /// Mach number: M = V/√(γ R SAT).
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] outside Mach 0.1 to 0.99, and for a pressure altitude outside the atmosphere's domain.
+    pub fn mach(&self) -> Result<Mach, OutOfDomain> {
+        let mach =
+            airspeed::true_airspeed_to_mach(self.true_airspeed, self.static_air_temperature()?);
+        check_within("Mach number", "Mach", mach.value(), MINIMUM_MACH, MAXIMUM_MACH)?;
+        Ok(mach)
+    }
+}
+
+/// A gross mass in the unit of its column.
+pub(crate) fn mass_in(column: &Column, value: f64) -> Mass {
+    if column.name == WEIGHT_LB.name { Mass::pounds(value) } else { Mass::kilograms(value) }
+}
+
+/// A total fuel flow in the unit of its column.
+pub(crate) fn fuel_flow_in(column: &Column, value: f64) -> FuelFlowTotal {
+    if column.name == FUEL_FLOW_LB_H.name {
+        FuelFlowTotal::pounds_per_hour(value)
+    } else {
+        FuelFlowTotal::kilograms_per_hour(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h";
+
+    fn read(text: &str) -> Result<Guide, CsvError> {
+        Guide::from_csv(text.as_bytes())
+    }
+
+    fn message(text: &str) -> String {
+        read(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn units_follow_the_header_in_any_order() {
+        let pounds = read(&format!("{HEADER}\n30000,41000,470,1688\n")).unwrap();
+        let point = pounds.points()[0];
+        assert!((point.mass.to_kilograms() - 13_607.771_1).abs() < 1e-9); // 30 000 × 0.453 592 37
+        assert!((point.pressure_altitude.to_meters() - 12_496.8).abs() < 1e-9); // 41 000 × 0.3048
+        assert!((point.true_airspeed.to_meters_per_second() - 241.788_889).abs() < 1e-6);
+        assert!((point.fuel_flow_total.to_kilograms_per_second() - 0.212_684_4).abs() < 1e-7);
+        // 470 kt in the stratosphere (a = 573.57 kt, the standard's 295.07 m/s) is Mach 0.8194.
+        assert!((point.mach().unwrap().value() - 470.0 / 573.57).abs() < 1e-4);
+
+        let kilograms = read(
+            "X-page,fuel_flow_kg_h,isa_deviation_c,true_airspeed_kt,mass_kg,pressure_altitude_ft\n\
+             12,765.66392056,10,470,13607.7711,41000\n",
+        )
+        .unwrap();
+        let other = kilograms.points()[0];
+        assert!((other.mass.to_kilograms() - point.mass.to_kilograms()).abs() < 1e-9);
+        assert!(
+            (other.fuel_flow_total - point.fuel_flow_total).to_kilograms_per_second().abs() < 1e-9
+        );
+        assert!((other.static_air_temperature().unwrap().to_kelvin() - 226.65).abs() < 1e-9);
+    }
+
+    #[test]
+    fn faults_of_the_header() {
+        assert_eq!(
+            message("weight_lb,pressure_altitude_ft,tas_kt,fuel_flow_lb_h\n1,2,3,4\n"),
+            "line 1, column 3 (tas_kt): unknown column, expected one of weight_lb, mass_kg, \
+             pressure_altitude_ft, true_airspeed_kt, fuel_flow_lb_h, fuel_flow_kg_h, isa_deviation_c, \
+             or a name beginning with X-"
+        );
+        assert_eq!(
+            message(&format!("{HEADER},weight_lb\n1,2,3,4,5\n")),
+            "line 1, column 5 (weight_lb): column stands twice, first as column 1"
+        );
+        assert_eq!(
+            message(&format!("{HEADER},mass_kg\n1,2,3,4,5\n")),
+            "line 1, column 5 (mass_kg): column says the same as weight_lb, expected one of the two"
+        );
+        assert_eq!(
+            message("weight_lb,pressure_altitude_ft,true_airspeed_kt\n1,2,3\n"),
+            "line 1: missing column fuel_flow_lb_h or fuel_flow_kg_h"
+        );
+        assert_eq!(
+            message("\n\nmass_kg,true_airspeed_kt,fuel_flow_kg_h\n1,2,3\n"),
+            "line 3: missing column pressure_altitude_ft"
+        );
+        assert!(message("").starts_with("line 1: no header, expected column names: weight_lb"));
+        assert_eq!(message(&format!("{HEADER}\n")), "line 1: no rows after the header");
+        // Another separator is one unknown column, shown as it stands.
+        assert!(
+            message("weight_lb;pressure_altitude_ft\n1;2\n")
+                .starts_with("line 1, column 1 (weight_lb;pressure_altitude_ft): unknown column")
+        );
+    }
+
+    #[test]
+    fn faults_of_a_row() {
+        let row = |row: &str| message(&format!("{HEADER}\n30000,41000,470,1688\n{row}\n"));
+        for (text, expected) in [
+            ("30000,41000,470", "line 3: 3 fields, expected 4 as in the header"),
+            ("30000,41000,470,1688,", "line 3: 5 fields, expected 4 as in the header"),
+            (
+                "30000,41000,,1688",
+                "line 3, column 3 (true_airspeed_kt): found \"\", expected a number",
+            ),
+            (
+                "30000,41000,470,inf",
+                "line 3, column 4 (fuel_flow_lb_h): found \"inf\", expected a number",
+            ),
+            (
+                "30000,41000,470,1e999",
+                "line 3, column 4 (fuel_flow_lb_h): found \"1e999\", expected a number",
+            ),
+            (
+                "30000,41000,470,1.688.0",
+                "line 3, column 4 (fuel_flow_lb_h): found \"1.688.0\", expected a number",
+            ),
+            (
+                "-30000,41000,470,1688",
+                "line 3, column 1 (weight_lb): found \"-30000\", expected 500..=1500000 lb (gross weight)",
+            ),
+            (
+                "30000,410000,470,1688",
+                "line 3, column 2 (pressure_altitude_ft): found \"410000\", expected -2000..=60000 ft (pressure altitude)",
+            ),
+            (
+                "30000,41000,470,0",
+                "line 3, column 4 (fuel_flow_lb_h): found \"0\", expected 1..=400000 lb/h (total fuel flow)",
+            ),
+        ] {
+            assert_eq!(row(text), expected);
+        }
+        // 600 kt at 41 000 ft is Mach 1.046: each field is possible, together they are not.
+        let error = row("30000,41000,600,1688");
+        assert!(
+            error.starts_with("line 3, column 3 (true_airspeed_kt): together with the row's other fields: Mach number 1.04"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn lines_are_physical_whatever_ends_them() {
+        let text =
+            format!("\u{feff}{HEADER}\r\n\r\n30000, 41000 ,470,1688\r\n\r\n\r\n30000,41000,x,1688");
+        assert!(message(&text).starts_with("line 6, column 3"), "{}", message(&text));
+        let guide = read(&text.replace('x', "450")).unwrap();
+        assert_eq!(guide.points().iter().map(|p| p.line).collect::<Vec<_>>(), [3, 6]);
+        let broken = [HEADER.as_bytes(), b"\n30000,41000,\xff,1688\n"].concat();
+        let error = Guide::from_csv(&broken).unwrap_err();
+        assert_eq!((error.line, error.column.unwrap().number), (2, 3));
+        assert_eq!(error.reason, CsvErrorReason::NotUtf8);
+    }
+}
