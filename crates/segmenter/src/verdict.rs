@@ -1,0 +1,105 @@
+//! What became of samples, pieces and the whole flight.
+
+use core::fmt;
+use core::ops::Range;
+
+use flight::{DroppedRun, Segment};
+
+use crate::{CriterionSet, Tally};
+
+/// The segments of one flight and the reason for everything else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segmentation {
+    /// Stabilised segments in the order of time.
+    pub segments: Vec<Segment>,
+    /// One verdict for each sample of the track.
+    pub verdicts: Vec<SampleVerdict>,
+    /// Sample runs that the track could not use, with reasons.
+    pub dropped_runs: Vec<DroppedRun>,
+    /// Pieces of stable runs that became no segment, with reasons.
+    pub dropped_pieces: Vec<DroppedPiece>,
+    /// The verdicts counted.
+    pub tally: Tally,
+}
+
+impl Segmentation {
+    /// Criteria whose channel was not recorded: what they would have rejected is not known.
+    #[must_use]
+    pub fn not_evaluated(&self) -> CriterionSet {
+        self.tally.not_evaluated()
+    }
+}
+
+/// What became of one sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SampleVerdict {
+    /// It lies in no sample run: the track dropped its run.
+    NotJudged,
+    /// It fails these criteria.
+    Unsteady(CriterionSet),
+    /// It meets all criteria, but lies too far from the mean of its piece in these channels.
+    Outlier(CriterionSet),
+    /// It is steady, but its piece became no segment.
+    InDroppedPiece(PieceDropReason),
+    /// It is kept.
+    Kept {
+        /// Index into [`Segmentation::segments`].
+        segment: usize,
+    },
+}
+
+/// Why a piece of a stable run became no segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum PieceDropReason {
+    /// One sample has no standard deviation.
+    OneSample,
+    /// After the filter it keeps fewer samples than a segment needs.
+    TooShort,
+}
+
+/// A piece of a stable run that became no segment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DroppedPiece {
+    /// Samples of the track.
+    pub samples: Range<usize>,
+    /// Samples that the filter left.
+    pub kept: usize,
+    /// Samples that a segment needs.
+    pub needed: usize,
+    /// Why.
+    pub reason: PieceDropReason,
+}
+
+/// The sentence for a person; samples count from 0.
+impl fmt::Display for DroppedPiece {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (first, last) = (self.samples.start, self.samples.end.saturating_sub(1));
+        match self.reason {
+            PieceDropReason::OneSample => write!(f, "sample {first} alone has no spread"),
+            PieceDropReason::TooShort => write!(
+                f,
+                "samples {first} to {last}: {} steady, {} left by the filter, {} needed",
+                self.samples.len(),
+                self.kept,
+                self.needed
+            ),
+        }
+    }
+}
+
+/// The sentence for a person.
+impl fmt::Display for SampleVerdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotJudged => f.write_str("not judged: too few samples between time gaps"),
+            Self::Unsteady(criteria) => write!(f, "unsteady: {criteria}"),
+            Self::Outlier(criteria) => write!(f, "outlier: {criteria}"),
+            Self::InDroppedPiece(PieceDropReason::OneSample) => f.write_str("steady, but alone"),
+            Self::InDroppedPiece(PieceDropReason::TooShort) => {
+                f.write_str("steady, but not long enough")
+            }
+            Self::Kept { segment } => write!(f, "kept in segment {segment}"),
+        }
+    }
+}
