@@ -1,0 +1,113 @@
+//! From checked rows to a report.
+
+use flight::column::Column;
+use flight::{
+    FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn, Report, ReportColumns, ReportDataError,
+    ReportHeader,
+};
+
+use super::columns::Field;
+use crate::line::Lines;
+use crate::refusal::{Found, Refusal, RefusalKind};
+
+/// The report of these rows; `values` holds one row after the other, in the units of the file.
+pub(super) fn report(
+    header: ReportHeader,
+    fields: &[Field],
+    engines: Option<u8>,
+    values: &[f64],
+) -> Result<Report, ReportDataError> {
+    let table = Table { fields, values };
+    let engine_count = engines.unwrap_or(0);
+    let n2_percent: Vec<_> =
+        (1..=engine_count).map_while(|engine| table.required(Column::N2(engine))).collect();
+    let flows: Vec<_> = (1..=engine_count)
+        .map_while(|engine| table.required(Column::FuelFlowEngine(engine)))
+        .collect();
+    let by_engine = |column: fn(u8) -> Column| {
+        let mut columns = [const { None }; MAXIMUM_ENGINES];
+        for (engine, place) in (1..).zip(&mut columns) {
+            *place = table.optional(column(engine));
+        }
+        columns
+    };
+    let columns = ReportColumns {
+        time_s: table.present(Column::Time),
+        pressure_altitude_m: table.present(Column::PressureAltitude),
+        static_air_temperature_k: table.required(Column::StaticAirTemperature),
+        mach: table.present(Column::Mach),
+        true_airspeed_m_s: table.present(Column::TrueAirspeed),
+        ground_speed_m_s: table.present(Column::GroundSpeed),
+        roll_deg: table.required(Column::Roll),
+        drift_deg: table.required(Column::Drift),
+        n2_percent: (!n2_percent.is_empty()).then_some(n2_percent),
+        fuel_flow: if flows.is_empty() {
+            FuelFlowColumns::Total(table.present(Column::FuelFlowTotal))
+        } else {
+            FuelFlowColumns::PerEngine(flows)
+        },
+        fuel_used_kg: table.present(Column::FuelUsed),
+        latitude_deg: table.optional(Column::Latitude),
+        longitude_deg: table.optional(Column::Longitude),
+        true_heading_deg: table.optional(Column::TrueHeading),
+        center_of_gravity_percent_mac: table.optional(Column::CenterOfGravity),
+        total_air_temperature_k: table.optional(Column::TotalAirTemperature),
+        n1_percent: by_engine(Column::N1),
+        exhaust_gas_temperature_k: by_engine(Column::ExhaustGasTemperature),
+        fuel_quantity_kg: table.optional(Column::FuelQuantity),
+        anti_ice: table.optional(Column::AntiIce),
+    };
+    Report::new(header, columns)
+}
+
+/// Where in the text the data lie that do not make a report. The reader's own checks leave hardly anything to refuse
+/// here: masses that vanish within rounding.
+pub(super) fn refusal(error: ReportDataError, mut lines: Lines<'_>) -> Refusal {
+    let (sample, found, kind) = match error {
+        ReportDataError::MassNotPositive { sample, mass_kg } => (
+            sample,
+            Found::Number { value: mass_kg, unit: "kg" },
+            RefusalKind::MassNotPositive { mass: "gross mass" },
+        ),
+        ReportDataError::NotFinite { sample, value, .. } => {
+            (sample, Found::Number { value, unit: "SI" }, RefusalKind::Inconsistent(error))
+        }
+        other => (0, Found::EndOfLine, RefusalKind::Inconsistent(other)),
+    };
+    for _ in 0..sample {
+        lines.next_of_meaning();
+    }
+    match lines.next_of_meaning() {
+        Some(line) => line.refuse(line.meaning().offset, found, kind),
+        None => lines.refuse_end(found, kind),
+    }
+}
+
+struct Table<'a> {
+    fields: &'a [Field],
+    values: &'a [f64],
+}
+
+impl Table<'_> {
+    /// The column in its stored unit; empty where it is absent, which the check of names has excluded.
+    fn present(&self, column: Column) -> Vec<f64> {
+        self.required(column).unwrap_or_default()
+    }
+
+    fn required(&self, column: Column) -> Option<Vec<f64>> {
+        Some(self.column(column)?.collect())
+    }
+
+    fn optional(&self, column: Column) -> Option<OptionalColumn> {
+        Some(self.column(column)?.map(|value| (!value.is_nan()).then_some(value)).collect())
+    }
+
+    fn column(&self, column: Column) -> Option<impl ExactSizeIterator<Item = f64>> {
+        let index = self
+            .fields
+            .iter()
+            .position(|field| field.column == Some(column) && field.is_handed_on)?;
+        let field = self.fields[index];
+        Some(self.values[index..].iter().step_by(self.fields.len()).map(move |v| field.convert(*v)))
+    }
+}

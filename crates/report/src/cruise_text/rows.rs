@@ -1,0 +1,248 @@
+//! Rows: the hot loop of the reader. Numbers are parsed where they stand and checked in the unit of the file; what is
+//! wrong is put into words only once it has happened.
+
+use flight::column::Column;
+use flight::{Finding, Severity};
+
+use super::columns::Field;
+use crate::line::{Line, Lines, Word, is_blank};
+use crate::number;
+use crate::refusal::{Found, Refusal, RefusalKind};
+
+/// A fuel-used counter may fall by this much, pounds or kilograms.
+const FUEL_USED_STEP_LB: f64 = 1.0;
+const FUEL_USED_STEP_KG: f64 = 0.5;
+/// Decimal differences in binary: a fall of exactly one step is no more than a step.
+const DIFFERENCE_ROUNDING: f64 = 1e-9;
+
+/// Reads all rows into `values`, one row after the other, in the units of the file (NaN for "not available"), and
+/// returns their number.
+pub(super) fn read(
+    lines: &mut Lines<'_>,
+    fields: &[Field],
+    values: &mut Vec<f64>,
+    findings: &mut Vec<Finding>,
+) -> Result<usize, Refusal> {
+    values.clear();
+    let mut rows = 0;
+    let mut series = Series::new(fields);
+    for line in lines.by_ref() {
+        let start = values.len();
+        values.resize(start + fields.len(), 0.0);
+        let row = &mut values[start..];
+        match read_row(line.text.as_bytes(), fields, row) {
+            Ok(true) => {}
+            Ok(false) => {
+                values.truncate(start);
+                continue;
+            }
+            Err(problem) => return Err(refusal(problem, line, fields)),
+        }
+        if !line.is_ended {
+            findings.push(accept_last_row(line, fields)?);
+        }
+        series.check(row, line, fields)?;
+        rows += 1;
+    }
+    Ok(rows)
+}
+
+/// What is wrong in a row, and the byte of the line where.
+#[derive(Clone, Copy, Debug)]
+enum RowProblem {
+    WrongLength,
+    NotANumber { offset: usize, column: Column },
+    OutOfRange { offset: usize, column: Column, field: usize, value: f64 },
+}
+
+/// Reads one line into `row`; `false` for a line that means nothing.
+#[inline]
+fn read_row(bytes: &[u8], fields: &[Field], row: &mut [f64]) -> Result<bool, RowProblem> {
+    let mut at = 0;
+    for (index, (field, value)) in fields.iter().zip(row).enumerate() {
+        at = skip_blanks(bytes, at);
+        if is_end_of_meaning(bytes, at) {
+            return if index == 0 { Ok(false) } else { Err(RowProblem::WrongLength) };
+        }
+        let Some(column) = field.column else {
+            at = end_of_word(bytes, at);
+            continue;
+        };
+        match number::leading(&bytes[at..]) {
+            Some((number, length)) if is_end_of_word(bytes, at + length) => {
+                if !(field.low <= number && number <= field.high)
+                    || (field.is_whole && number.fract() != 0.0)
+                {
+                    return Err(RowProblem::OutOfRange {
+                        offset: at,
+                        column,
+                        field: index,
+                        value: number,
+                    });
+                }
+                *value = number;
+                at += length;
+            }
+            _ if field.is_optional && bytes[at] == b'-' && is_end_of_word(bytes, at + 1) => {
+                *value = f64::NAN;
+                at += 1;
+            }
+            _ => return Err(RowProblem::NotANumber { offset: at, column }),
+        }
+    }
+    at = skip_blanks(bytes, at);
+    if is_end_of_meaning(bytes, at) { Ok(true) } else { Err(RowProblem::WrongLength) }
+}
+
+#[inline]
+fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
+    while bytes.get(at).is_some_and(|byte| is_blank(*byte)) {
+        at += 1;
+    }
+    at
+}
+
+#[inline]
+fn is_end_of_word(bytes: &[u8], at: usize) -> bool {
+    bytes.get(at).is_none_or(|byte| is_blank(*byte))
+}
+
+/// The line's end, or a comment: `at` is the start of a word.
+#[inline]
+fn is_end_of_meaning(bytes: &[u8], at: usize) -> bool {
+    bytes.get(at).is_none_or(|byte| *byte == b'#')
+}
+
+fn end_of_word(bytes: &[u8], mut at: usize) -> usize {
+    while !is_end_of_word(bytes, at) {
+        at += 1;
+    }
+    at
+}
+
+/// What holds from row to row.
+struct Series {
+    previous_time_s: f64,
+    previous_time: f64,
+    fuel_used: Option<usize>,
+    fuel_used_step: f64,
+    largest_fuel_used: f64,
+}
+
+impl Series {
+    fn new(fields: &[Field]) -> Self {
+        let fuel_used = fields.iter().position(|field| field.column == Some(Column::FuelUsed));
+        let is_in_pounds = fuel_used.is_some_and(|index| fields[index].unit.name == "lb");
+        Self {
+            previous_time_s: f64::NEG_INFINITY,
+            previous_time: f64::NEG_INFINITY,
+            fuel_used,
+            fuel_used_step: if is_in_pounds { FUEL_USED_STEP_LB } else { FUEL_USED_STEP_KG },
+            largest_fuel_used: f64::NEG_INFINITY,
+        }
+    }
+
+    #[inline]
+    fn check(&mut self, row: &[f64], line: Line<'_>, fields: &[Field]) -> Result<(), Refusal> {
+        let time_s = fields[0].convert(row[0]);
+        if time_s <= self.previous_time_s {
+            let kind = RefusalKind::TimeNotIncreasing {
+                previous: self.previous_time,
+                unit: fields[0].unit.name,
+            };
+            return Err(refuse_field(line, 0, kind));
+        }
+        self.previous_time_s = time_s;
+        self.previous_time = row[0];
+        let Some(index) = self.fuel_used else { return Ok(()) };
+        let fuel_used = row[index];
+        if fuel_used < self.largest_fuel_used - self.fuel_used_step - DIFFERENCE_ROUNDING {
+            let kind = RefusalKind::FuelUsedFalls {
+                largest: self.largest_fuel_used,
+                tolerance: self.fuel_used_step,
+                unit: fields[index].unit.name,
+            };
+            return Err(refuse_field(line, index, kind));
+        }
+        self.largest_fuel_used = self.largest_fuel_used.max(fuel_used);
+        Ok(())
+    }
+}
+
+/// A last row without line end is complete unless its last word is no whole number.
+fn accept_last_row(line: Line<'_>, fields: &[Field]) -> Result<Finding, Refusal> {
+    if ends_in_cut_off_word(line) {
+        return Err(refuse_last_row(line, fields));
+    }
+    Ok(Finding {
+        severity: Severity::Warning,
+        code: "last-row-without-line-end",
+        message: "the last row has no line end: its last number may be cut off".to_owned(),
+        line: Some(line.number),
+    })
+}
+
+fn ends_in_cut_off_word(line: Line<'_>) -> bool {
+    let whole_line = Word { offset: 0, text: line.text };
+    !line.text.ends_with([' ', '\t'])
+        && whole_line.words().last().is_some_and(|word| number::is_cut_off(word.text.as_bytes()))
+}
+
+fn refuse_last_row(line: Line<'_>, fields: &[Field]) -> Refusal {
+    let kind = RefusalKind::LastRowUnfinished { expected: fields.len() };
+    match line.meaning().words().last() {
+        Some(word) if ends_in_cut_off_word(line) => line.refuse_word(word, kind),
+        _ => line.refuse_end(Found::Fields(line.meaning().words().count()), kind),
+    }
+}
+
+fn refuse_field(line: Line<'_>, index: usize, kind: RefusalKind) -> Refusal {
+    match line.meaning().words().nth(index) {
+        Some(word) => line.refuse_word(word, kind),
+        None => line.refuse_end(Found::EndOfLine, kind),
+    }
+}
+
+/// A row of the wrong length is refused for that, whatever its fields hold: they are shifted.
+#[cold]
+fn refusal(problem: RowProblem, line: Line<'_>, fields: &[Field]) -> Refusal {
+    let expected = fields.len();
+    let count = line.meaning().words().count();
+    if let Some(surplus) = line.meaning().words().nth(expected) {
+        let kind = RefusalKind::TooManyFields { expected };
+        return line.refuse(surplus.offset, Found::Fields(count), kind);
+    }
+    if count < expected && line.is_ended {
+        return line.refuse_end(Found::Fields(count), RefusalKind::TooFewFields { expected });
+    }
+    match problem {
+        RowProblem::NotANumber { offset, column } if !is_cut_off_at(line, offset) => {
+            refuse_at(line, offset, RefusalKind::NotANumber { column })
+        }
+        RowProblem::OutOfRange { offset, column, field, value } => {
+            let field = &fields[field];
+            let limit = if value < field.low { field.minimum } else { field.maximum };
+            let limit = without_conversion_rounding(limit);
+            let unit = field.unit.name;
+            refuse_at(line, offset, RefusalKind::OutOfRange { column, limit, unit })
+        }
+        RowProblem::NotANumber { .. } | RowProblem::WrongLength => refuse_last_row(line, fields),
+    }
+}
+
+/// Whether the word at `offset` is where the text was cut.
+fn is_cut_off_at(line: Line<'_>, offset: usize) -> bool {
+    !line.is_ended
+        && end_of_word(line.text.as_bytes(), offset) == line.text.len()
+        && ends_in_cut_off_word(line)
+}
+
+fn refuse_at(line: Line<'_>, offset: usize, kind: RefusalKind) -> Refusal {
+    let end = end_of_word(line.text.as_bytes(), offset);
+    line.refuse_word(Word { offset, text: &line.text[offset..end] }, kind)
+}
+
+/// A limit as a person would write it: -100 and not -100.00000000000003.
+fn without_conversion_rounding(limit: f64) -> f64 {
+    format!("{limit:.11e}").parse().unwrap_or(limit)
+}

@@ -1,0 +1,80 @@
+//! From bytes to text: gzip, byte-order mark, UTF-8, NUL bytes.
+
+use std::io::{self, BufRead, Read};
+
+use flate2::bufread::MultiGzDecoder;
+
+use crate::refusal::{Found, Refusal, RefusalKind};
+
+/// Largest text that is read from a stream or out of gzip, bytes: several times a long flight with hundreds of
+/// parameters each second. A small file can claim to hold terabytes.
+pub const MAXIMUM_TEXT_BYTES: usize = 512 << 20;
+
+const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// The text that `bytes` holds, plain or gzip; `unpacked` is the place for decompressed text.
+pub(crate) fn text<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a str, Refusal> {
+    if bytes.starts_with(&GZIP_MAGIC) {
+        unpacked.clear();
+        read_to_limit(MultiGzDecoder::new(bytes), unpacked).map_err(|error| {
+            let kind = match error {
+                LimitedReadError::TooLarge => too_large(),
+                LimitedReadError::Io(io::ErrorKind::UnexpectedEof) => RefusalKind::GzipTruncated,
+                LimitedReadError::Io(_) => RefusalKind::GzipCorrupt,
+            };
+            refuse_at(unpacked, unpacked.len(), Found::EndOfText, kind)
+        })?;
+        plain(unpacked)
+    } else {
+        plain(bytes)
+    }
+}
+
+/// All bytes of a stream.
+pub(crate) fn bytes_of(stream: impl BufRead, bytes: &mut Vec<u8>) -> Result<(), Refusal> {
+    bytes.clear();
+    read_to_limit(stream, bytes).map_err(|error| {
+        let kind = match error {
+            LimitedReadError::TooLarge => too_large(),
+            LimitedReadError::Io(error) => RefusalKind::Unreadable { error },
+        };
+        refuse_at(bytes, bytes.len(), Found::EndOfText, kind)
+    })
+}
+
+enum LimitedReadError {
+    TooLarge,
+    Io(io::ErrorKind),
+}
+
+const fn too_large() -> RefusalKind {
+    RefusalKind::TooLarge { limit_bytes: MAXIMUM_TEXT_BYTES }
+}
+
+fn read_to_limit(stream: impl Read, bytes: &mut Vec<u8>) -> Result<(), LimitedReadError> {
+    let limit = MAXIMUM_TEXT_BYTES as u64 + 1;
+    stream.take(limit).read_to_end(bytes).map_err(|error| LimitedReadError::Io(error.kind()))?;
+    if bytes.len() > MAXIMUM_TEXT_BYTES { Err(LimitedReadError::TooLarge) } else { Ok(()) }
+}
+
+fn plain(bytes: &[u8]) -> Result<&str, Refusal> {
+    if let Some(at) = memchr::memchr(0, bytes) {
+        return Err(refuse_at(bytes, at, Found::Byte(0), RefusalKind::NulByte));
+    }
+    let text = core::str::from_utf8(bytes).map_err(|error| {
+        let at = error.valid_up_to();
+        refuse_at(bytes, at, Found::Byte(bytes[at]), RefusalKind::InvalidUtf8)
+    })?;
+    Ok(text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text))
+}
+
+/// Refuses at a byte of a text that is perhaps not UTF-8.
+fn refuse_at(bytes: &[u8], at: usize, found: Found, kind: RefusalKind) -> Refusal {
+    let before = &bytes[..at];
+    let line_start = memchr::memrchr(b'\n', before).map_or(0, |end| end + 1);
+    let line = memchr::memchr_iter(b'\n', before).count() + 1;
+    let line_text = String::from_utf8_lossy(&before[line_start..]);
+    let marks = usize::from(line == 1 && line_text.starts_with(BYTE_ORDER_MARK));
+    Refusal { line, column: line_text.chars().count() - marks + 1, found, kind }
+}

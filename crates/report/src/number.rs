@@ -1,0 +1,130 @@
+//! Numbers of the format: `[+-]digits[.digits][e[+-]digits]`, digits before or after the point may be missing, not both.
+//!
+//! The grammar is checked here, byte by byte: general float parsers accept more (`inf`, `nan`, `1E3`). The digits that
+//! the check has seen give the value at no further cost where that is exact; all else goes to `fast-float2`.
+//! Either way the value is the double nearest to the decimal.
+
+/// Powers of ten that a double holds exactly and that fifteen digits can need.
+const POWERS_OF_TEN: [f64; 16] =
+    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+
+/// Digits of an integer that a double surely holds exactly.
+const EXACT_DIGITS: usize = 15;
+
+/// The number at the start of `bytes` and its length; `None` if there is none or it is too large for a double.
+/// What follows the number is the caller's to judge.
+#[inline]
+pub(crate) fn leading(bytes: &[u8]) -> Option<(f64, usize)> {
+    let mut at = 0;
+    let negative = match bytes.first() {
+        Some(b'-') => {
+            at = 1;
+            true
+        }
+        Some(b'+') => {
+            at = 1;
+            false
+        }
+        _ => false,
+    };
+    let unsigned = at;
+    let mut mantissa = 0_u64;
+    let mut digits = take_digits(bytes, &mut at, &mut mantissa);
+    let mut fraction_digits = 0;
+    if bytes.get(at) == Some(&b'.') {
+        at += 1;
+        fraction_digits = take_digits(bytes, &mut at, &mut mantissa);
+        digits += fraction_digits;
+    }
+    if digits == 0 {
+        return None;
+    }
+    let magnitude = if digits <= EXACT_DIGITS && bytes.get(at) != Some(&b'e') {
+        // Both operands are exact, so that the quotient is the nearest double (Clinger 1990).
+        mantissa as f64 / POWERS_OF_TEN[fraction_digits]
+    } else {
+        general(bytes, unsigned, &mut at)?
+    };
+    Some((if negative { -magnitude } else { magnitude }, at))
+}
+
+/// The number that `bytes` is from start to end.
+pub(crate) fn whole(bytes: &[u8]) -> Option<f64> {
+    leading(bytes).filter(|(_, length)| *length == bytes.len()).map(|(value, _)| value)
+}
+
+/// Whether `bytes` ends where a number cannot: in a sign or in an exponent without digits.
+pub(crate) fn is_cut_off(bytes: &[u8]) -> bool {
+    let unsigned_exponent = bytes.strip_suffix(b"-").or_else(|| bytes.strip_suffix(b"+"));
+    match unsigned_exponent {
+        Some([]) => true,
+        Some(rest) => rest.strip_suffix(b"e").is_some_and(|mantissa| whole(mantissa).is_some()),
+        None => bytes.strip_suffix(b"e").is_some_and(|mantissa| whole(mantissa).is_some()),
+    }
+}
+
+#[inline]
+fn take_digits(bytes: &[u8], at: &mut usize, mantissa: &mut u64) -> usize {
+    let start = *at;
+    while let Some(digit) = bytes.get(*at).map(|byte| byte.wrapping_sub(b'0'))
+        && digit <= 9
+    {
+        // Wraps only beyond 19 digits, where the value is not used.
+        *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        *at += 1;
+    }
+    *at - start
+}
+
+/// Exponents and long mantissas; `at` is past the mantissa and moves past the exponent.
+#[cold]
+fn general(bytes: &[u8], unsigned: usize, at: &mut usize) -> Option<f64> {
+    if bytes.get(*at) == Some(&b'e') {
+        *at += 1;
+        if matches!(bytes.get(*at), Some(b'+' | b'-')) {
+            *at += 1;
+        }
+        if take_digits(bytes, at, &mut 0) == 0 {
+            return None;
+        }
+    }
+    fast_float2::parse::<f64, _>(&bytes[unsigned..*at]).ok().filter(|value| value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_grammar_and_nothing_else() {
+        for good in ["0", "-0", "+5", "5.", ".5", "-.5", "1e3", "1.5e-3", "1e+3", "007", "1e0"] {
+            assert_eq!(whole(good.as_bytes()), Some(good.parse().unwrap()), "{good}");
+        }
+        for bad in [
+            "", "-", "+", ".", "-.", "e3", ".e3", "1e", "1e+", "1E3", "inf", "-inf", "nan", "NaN",
+            "0x10", "1_000", "1,5", "--1", "+-1", "1e3.5", "1 ", " 1", "1e999", "infinity", "١",
+        ] {
+            assert_eq!(whole(bad.as_bytes()), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn cut_off_numbers() {
+        for cut in ["-", "+", "1e", "1.5e-", "-3e+"] {
+            assert!(is_cut_off(cut.as_bytes()), "{cut}");
+        }
+        for complete in ["", "1", "1.", "x-", "e", "e-", "1e5", "1-"] {
+            assert!(!is_cut_off(complete.as_bytes()), "{complete}");
+        }
+    }
+
+    proptest::proptest! {
+        /// Oracle: the standard library's correctly rounding parser.
+        #[test]
+        fn value_is_the_nearest_double(text in "[+-]?([0-9]{1,22}\\.?[0-9]{0,12}|\\.[0-9]{1,18})(e[+-]?[0-9]{1,3})?") {
+            let expected: f64 = text.parse().unwrap();
+            let expected = expected.is_finite().then_some(expected.to_bits());
+            proptest::prop_assert_eq!(whole(text.as_bytes()).map(f64::to_bits), expected);
+        }
+    }
+}

@@ -1,0 +1,347 @@
+//! Why a text is refused: where, what was found, what was expected.
+
+use core::fmt;
+use std::io;
+
+use flight::ReportDataError;
+use flight::column::{COLUMN_NAMES, Column};
+
+/// A refusal with its position. The caller adds the name of the file.
+///
+/// Lines are physical lines from 1. Columns are characters (Unicode scalar values) from 1 in the physical line; a tab
+/// is one character and a byte-order mark is none. What is missing at the end stands one character past the end.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("line {line}, column {column}: found {found}, expected {kind}")]
+pub struct Refusal {
+    /// Physical line from 1.
+    pub line: usize,
+    /// Character in that line from 1.
+    pub column: usize,
+    /// What stands there.
+    pub found: Found,
+    /// What is wrong; displays as what was expected.
+    pub kind: RefusalKind,
+}
+
+/// What was found where something else was expected.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Found {
+    /// Text as sent, at most 60 characters of it.
+    Text(String),
+    /// So many fields in a row.
+    Fields(usize),
+    /// So many units.
+    Units(usize),
+    /// So many rows.
+    Rows(usize),
+    /// A byte that no text contains.
+    Byte(u8),
+    /// The line ended.
+    EndOfLine,
+    /// The text ended.
+    EndOfText,
+    /// A number that was computed from what was sent, with its unit.
+    Number {
+        /// The number.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+}
+
+impl Found {
+    /// The text, cut after 60 characters.
+    pub(crate) fn text(text: &str) -> Self {
+        const KEPT: usize = 60;
+        match text.char_indices().nth(KEPT) {
+            Some((end, _)) => Self::Text(format!("{}…", &text[..end])),
+            None => Self::Text(text.to_owned()),
+        }
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(text) => write!(f, "{text:?}"),
+            Self::Fields(count) => write!(f, "{count} fields"),
+            Self::Units(count) => write!(f, "{count} units"),
+            Self::Rows(count) => write!(f, "{count} rows"),
+            Self::Byte(byte) => write!(f, "byte 0x{byte:02x}"),
+            Self::EndOfLine => f.write_str("the end of the line"),
+            Self::EndOfText => f.write_str("the end of the text"),
+            Self::Number { value, unit } => write!(f, "{value} {unit}"),
+        }
+    }
+}
+
+/// What is wrong, one variant a rule of the format. Displays as what was expected instead.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum RefusalKind {
+    /// The first line of meaning is not the format's name.
+    WrongFirstLine,
+    /// A version of the format that this program does not read.
+    UnsupportedVersion,
+    /// A required header key is absent.
+    HeaderKeyMissing {
+        /// The key.
+        key: &'static str,
+    },
+    /// A header key that may stand once stands twice.
+    HeaderKeyDoubled {
+        /// The key.
+        key: &'static str,
+        /// Line where it stands first.
+        first_line: usize,
+    },
+    /// A header value that is not of its form.
+    HeaderValueMalformed {
+        /// The key.
+        key: &'static str,
+        /// The form in words.
+        form: &'static str,
+    },
+    /// The text ends before a line that begins with `TIME`.
+    ColumnNamesMissing,
+    /// A column name that the format does not define and that does not begin with `X-`.
+    ColumnUnknown,
+    /// A column name that stands twice.
+    ColumnDoubled {
+        /// Character where it stands first in the line.
+        first_column: usize,
+    },
+    /// A required column is absent.
+    ColumnMissing {
+        /// The column.
+        column: Column,
+    },
+    /// An engine is left out: its columns are numbered from 1 without a gap.
+    EngineMissing {
+        /// The column that should be there too.
+        column: Column,
+    },
+    /// Rotor speed and fuel flow are not of the same engines.
+    EnginesDiffer {
+        /// The column that should be there too.
+        column: Column,
+    },
+    /// Fuel flow both of all engines and engine by engine.
+    FuelFlowTwice,
+    /// The text ends before the line of units.
+    UnitsMissing,
+    /// More or fewer units than columns.
+    UnitCountWrong {
+        /// Number of columns.
+        expected: usize,
+    },
+    /// A unit that the column is not read in.
+    UnitUnknown {
+        /// The column.
+        column: Column,
+    },
+    /// A row with fewer fields than columns.
+    TooFewFields {
+        /// Number of columns.
+        expected: usize,
+    },
+    /// A row with more fields than columns.
+    TooManyFields {
+        /// Number of columns.
+        expected: usize,
+    },
+    /// A field that is not a number, or one too large for any quantity.
+    NotANumber {
+        /// The column.
+        column: Column,
+    },
+    /// A value outside its column's range.
+    OutOfRange {
+        /// The column.
+        column: Column,
+        /// The limit that it violates, in the unit of the file.
+        limit: f64,
+        /// That unit.
+        unit: &'static str,
+    },
+    /// Time that does not strictly increase.
+    TimeNotIncreasing {
+        /// Time of the row before, in the unit of the file.
+        previous: f64,
+        /// That unit.
+        unit: &'static str,
+    },
+    /// Fuel used that falls by more than the counter's step.
+    FuelUsedFalls {
+        /// Its largest value so far, in the unit of the file.
+        largest: f64,
+        /// How far below it may lie.
+        tolerance: f64,
+        /// The unit of both.
+        unit: &'static str,
+    },
+    /// A mass at or below zero.
+    MassNotPositive {
+        /// Which: `ZFW`, `FOB` or `gross mass`.
+        mass: &'static str,
+    },
+    /// The last row has no line end and is not complete.
+    LastRowUnfinished {
+        /// Number of columns.
+        expected: usize,
+    },
+    /// Compressed text that ends too early.
+    GzipTruncated,
+    /// Compressed text that does not decompress, or whose checksum is wrong.
+    GzipCorrupt,
+    /// Bytes that are not UTF-8.
+    InvalidUtf8,
+    /// A NUL byte.
+    NulByte,
+    /// Fewer than three rows.
+    TooFewRows,
+    /// More text than any recording has; protects from compressed bombs.
+    TooLarge {
+        /// The limit in bytes.
+        limit_bytes: usize,
+    },
+    /// The source of the text could not be read to its end.
+    Unreadable {
+        /// Kind of the input error.
+        error: io::ErrorKind,
+    },
+    /// Columns that are readable one by one and do not make a report.
+    Inconsistent(ReportDataError),
+}
+
+impl RefusalKind {
+    /// Stable name of the kind, for counting.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::WrongFirstLine => "wrong-first-line",
+            Self::UnsupportedVersion => "unsupported-version",
+            Self::HeaderKeyMissing { .. } => "header-key-missing",
+            Self::HeaderKeyDoubled { .. } => "header-key-doubled",
+            Self::HeaderValueMalformed { .. } => "header-value-malformed",
+            Self::ColumnNamesMissing => "column-names-missing",
+            Self::ColumnUnknown => "column-unknown",
+            Self::ColumnDoubled { .. } => "column-doubled",
+            Self::ColumnMissing { .. } => "column-missing",
+            Self::EngineMissing { .. } => "engine-missing",
+            Self::EnginesDiffer { .. } => "engines-differ",
+            Self::FuelFlowTwice => "fuel-flow-twice",
+            Self::UnitsMissing => "units-missing",
+            Self::UnitCountWrong { .. } => "unit-count-wrong",
+            Self::UnitUnknown { .. } => "unit-unknown",
+            Self::TooFewFields { .. } => "too-few-fields",
+            Self::TooManyFields { .. } => "too-many-fields",
+            Self::NotANumber { .. } => "not-a-number",
+            Self::OutOfRange { .. } => "out-of-range",
+            Self::TimeNotIncreasing { .. } => "time-not-increasing",
+            Self::FuelUsedFalls { .. } => "fuel-used-falls",
+            Self::MassNotPositive { .. } => "mass-not-positive",
+            Self::LastRowUnfinished { .. } => "last-row-unfinished",
+            Self::GzipTruncated => "gzip-truncated",
+            Self::GzipCorrupt => "gzip-corrupt",
+            Self::InvalidUtf8 => "invalid-utf8",
+            Self::NulByte => "nul-byte",
+            Self::TooFewRows => "too-few-rows",
+            Self::TooLarge { .. } => "too-large",
+            Self::Unreadable { .. } => "unreadable",
+            Self::Inconsistent(_) => "inconsistent",
+        }
+    }
+}
+
+impl fmt::Display for RefusalKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WrongFirstLine => f.write_str("\"CRUISE-REPORT 1\" as the first line"),
+            Self::UnsupportedVersion => f.write_str("version 1 of the format"),
+            Self::HeaderKeyMissing { key } => {
+                write!(f, "header key {key} before the column names")
+            }
+            Self::HeaderKeyDoubled { key, first_line } => {
+                write!(f, "{key} once (it stands in line {first_line} already)")
+            }
+            Self::HeaderValueMalformed { key, form } => write!(f, "{form} after {key}"),
+            Self::ColumnNamesMissing => f.write_str("a line of column names that begins with TIME"),
+            Self::ColumnUnknown => {
+                write!(f, "one of {COLUMN_NAMES} (k from 1 to 4), or a name that begins with X-")
+            }
+            Self::ColumnDoubled { first_column } => {
+                write!(f, "each column once (it stands at column {first_column} already)")
+            }
+            Self::ColumnMissing { column } => write_missing_column(f, *column),
+            Self::EngineMissing { column } => {
+                write!(f, "{} too: engines count from 1 without a gap", column.name())
+            }
+            Self::EnginesDiffer { column } => {
+                write!(f, "{} too: N2 and WF are of the same engines", column.name())
+            }
+            Self::FuelFlowTwice => {
+                f.write_str("either WF(k) of each engine or WF of all engines, not both")
+            }
+            Self::UnitsMissing => f.write_str("a line of units"),
+            Self::UnitCountWrong { expected } => write!(f, "{expected} units, one a column"),
+            Self::UnitUnknown { column } => write_units(f, *column),
+            Self::TooFewFields { expected } | Self::TooManyFields { expected } => {
+                write!(f, "{expected} fields, one a column")
+            }
+            Self::NotANumber { column } => {
+                let or_dash = if column.is_optional() { " or -" } else { "" };
+                write!(f, "a number{or_dash} in {}", column.name())
+            }
+            Self::OutOfRange { column, limit, unit } => write!(
+                f,
+                "{} of {} (limit here {limit} {unit})",
+                column.name(),
+                column.range().words
+            ),
+            Self::TimeNotIncreasing { previous, unit } => {
+                write!(f, "TIME above that of the row before, {previous} {unit}")
+            }
+            Self::FuelUsedFalls { largest, tolerance, unit } => write!(
+                f,
+                "FU no more than {tolerance} {unit} below its largest value so far, {largest} {unit}"
+            ),
+            Self::MassNotPositive { mass } => write!(f, "{mass} above zero"),
+            Self::LastRowUnfinished { expected } => {
+                write!(f, "a complete row of {expected} fields and a line end")
+            }
+            Self::GzipTruncated => f.write_str("more compressed text: the gzip file is truncated"),
+            Self::GzipCorrupt => f.write_str("compressed text: the gzip file is corrupt"),
+            Self::InvalidUtf8 => f.write_str("UTF-8 text"),
+            Self::NulByte => f.write_str("text without NUL bytes"),
+            Self::TooFewRows => f.write_str("at least 3 rows"),
+            Self::TooLarge { limit_bytes } => write!(f, "at most {limit_bytes} bytes of text"),
+            Self::Unreadable { error } => write!(f, "readable input: {error}"),
+            Self::Inconsistent(error) => write!(f, "columns that make a report: {error}"),
+        }
+    }
+}
+
+fn write_missing_column(f: &mut fmt::Formatter<'_>, column: Column) -> fmt::Result {
+    match column {
+        Column::FuelFlowEngine(_) | Column::FuelFlowTotal => {
+            f.write_str("column WF(k) for each engine, or WF of all engines")
+        }
+        Column::N2(_) => f.write_str("column N2(k) for each engine, or MISSING N2 in the header"),
+        Column::StaticAirTemperature | Column::Roll | Column::Drift => {
+            write!(f, "column {0}, or MISSING {0} in the header", column.name())
+        }
+        _ => write!(f, "column {}", column.name()),
+    }
+}
+
+fn write_units(f: &mut fmt::Formatter<'_>, column: Column) -> fmt::Result {
+    for (index, unit) in column.units().iter().enumerate() {
+        if index > 0 {
+            f.write_str(if index + 1 == column.units().len() { " or " } else { ", " })?;
+        }
+        f.write_str(unit.name)?;
+    }
+    write!(f, " for {}", column.name())
+}
