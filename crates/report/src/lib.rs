@@ -5,7 +5,11 @@ mod decode;
 mod line;
 mod number;
 mod refusal;
+mod text_layout;
+mod write;
 
 pub use cruise_text::{Parsed, Reader};
 pub use decode::MAXIMUM_TEXT_BYTES;
 pub use refusal::{Found, Refusal, RefusalKind};
+pub use text_layout::{Decimals, TextLayout, UnitUnknown};
+pub use write::{WriteError, write};
