@@ -1,0 +1,151 @@
+//! Why a guide gives no initial model.
+
+use lut::TableError;
+use lut::surface::{COEFFICIENTS, FitError};
+use units::OutOfDomain;
+
+use crate::ModelError;
+
+/// Why a guide gives no initial model.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InitialModelError {
+    /// Fewer rows than coefficients.
+    #[error("{found} rows do not determine the polynomial's {needed} coefficients")]
+    TooFewPoints {
+        /// Rows found.
+        found: usize,
+        /// Coefficients.
+        needed: usize,
+    },
+    /// The rows leave a direction undetermined.
+    #[error(
+        "the guide does not determine the polynomial: {reason} (rank {rank} of 6, condition number {condition_number:.1e})"
+    )]
+    NotDetermined {
+        /// Directions that are determined.
+        rank: usize,
+        /// Largest over smallest singular value of the design; may be infinite.
+        condition_number: f64,
+        /// What the rows do not say.
+        reason: Undetermined,
+    },
+    /// The rows have rank enough, but their least error swamps the polynomial within their own range.
+    #[error(
+        "the guide does not determine the polynomial: an error of 1 % in its rows would be {amplification:.3} % at lift coefficient {lift_coefficient:.3}, Mach number {mach:.3}, within its own range (at most {maximum} % is admitted). Its {rows} rows have {weights} different weights and {pressure_altitudes} different pressure altitudes: they lie near one curve of lift coefficient over Mach number (condition number {condition_number:.1e})"
+    )]
+    PoorlyDetermined {
+        /// Growth of an error.
+        amplification: f64,
+        /// Largest growth that is admitted.
+        maximum: f64,
+        /// Lift coefficient where it grows most.
+        lift_coefficient: f64,
+        /// Mach number where it grows most.
+        mach: f64,
+        /// Rows of the guide.
+        rows: usize,
+        /// Different weights among them.
+        weights: usize,
+        /// Different pressure altitudes among them.
+        pressure_altitudes: usize,
+        /// Largest over smallest singular value of the design.
+        condition_number: f64,
+    },
+    /// The polynomial is not positive at a node.
+    #[error(
+        "the polynomial's drag coefficient {drag_coefficient:.5} at lift coefficient {lift_coefficient}, Mach number {mach} is not positive: {}",
+        if *.extrapolated { "the node lies outside the guide's range, narrow the table" } else { "the guide's fuel flows are not those of one aircraft" }
+    )]
+    DragNotPositive {
+        /// The node's lift coefficient.
+        lift_coefficient: f64,
+        /// The node's Mach number.
+        mach: f64,
+        /// The polynomial's value.
+        drag_coefficient: f64,
+        /// Whether the node lies outside the guide's range.
+        extrapolated: bool,
+    },
+    /// A row outside a domain.
+    #[error("line {line}: {domain}")]
+    OutOfDomain {
+        /// Line of the guide.
+        line: u64,
+        /// What is outside.
+        domain: OutOfDomain,
+    },
+    /// A node's value that is not finite.
+    #[error("table of the polynomial: {0}")]
+    Table(TableError),
+    /// Parts that do not fit.
+    #[error(transparent)]
+    Model(ModelError),
+    /// Any other refusal of the least-squares fit.
+    #[error("least squares: {0}")]
+    Fit(FitError),
+}
+
+/// What a guide's rows do not say.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Undetermined {
+    /// All rows fly at one Mach number.
+    #[error("all rows fly at Mach number {mach:.4}, {needed} different ones are needed")]
+    OneMach {
+        /// That Mach number.
+        mach: f64,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// Too few different Mach numbers.
+    #[error("the rows fly at {distinct} different Mach numbers, {needed} are needed")]
+    FewMachs {
+        /// How many there are.
+        distinct: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// All rows have one lift coefficient.
+    #[error("all rows have lift coefficient {lift_coefficient:.4}, different ones are needed")]
+    OneLiftCoefficient {
+        /// That lift coefficient.
+        lift_coefficient: f64,
+    },
+    /// Too few different lift coefficients.
+    #[error("the rows have {distinct} different lift coefficients, {needed} are needed")]
+    FewLiftCoefficients {
+        /// How many there are.
+        distinct: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// The rows lie on one curve, as those of one weight at one altitude do.
+    #[error(
+        "lift coefficient and Mach number of the rows hang on each other, as those of one weight at one altitude do"
+    )]
+    OneCurve,
+}
+
+/// In the field's words.
+pub(super) fn from_fit(error: FitError, rows: usize) -> InitialModelError {
+    use lut::surface::Undetermined as Of;
+
+    let FitError::RankDeficient { rank, condition_number, undetermined } = error else {
+        return match error {
+            FitError::TooFewPoints { .. } => {
+                InitialModelError::TooFewPoints { found: rows, needed: COEFFICIENTS }
+            }
+            other => InitialModelError::Fit(other),
+        };
+    };
+    let reason = match undetermined {
+        // Either basis is a parabola in Mach number.
+        Of::SameY { value } => Undetermined::OneMach { mach: value, needed: 3 },
+        Of::FewY { distinct, needed } => Undetermined::FewMachs { distinct, needed },
+        Of::SameX { value } => Undetermined::OneLiftCoefficient { lift_coefficient: value },
+        Of::FewX { distinct, needed } => Undetermined::FewLiftCoefficients { distinct, needed },
+        _ => Undetermined::OneCurve,
+    };
+    InitialModelError::NotDetermined { rank, condition_number, reason }
+}

@@ -1,0 +1,196 @@
+//! The performance model: aircraft, drag table, and what follows for segments and flight points.
+
+use std::sync::Arc;
+
+use flight::Segment;
+use lut::surface::Surface;
+use lut::{Cell, Grid, Outside, OutsideGrid, Table};
+use units::OutOfDomain;
+
+use crate::Aircraft;
+use crate::state::SegmentState;
+
+mod observe;
+mod predict;
+
+pub use observe::ObserveError;
+pub use predict::{PredictError, Prediction, SegmentPrediction};
+
+/// A node with a bilinear weight up to this took no part in a value: the point lies on a grid line or on a node.
+/// The specification's width.
+pub const NODE_WEIGHT_THRESHOLD: f64 = 1e-9;
+
+/// An aircraft with a drag table over lift coefficient and Mach number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PerformanceModel {
+    aircraft: Aircraft,
+    polynomial: Surface,
+    drag_table: Table,
+    extrapolated: Vec<bool>,
+}
+
+/// Why parts do not make a performance model.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// A table on another grid than the aircraft's.
+    #[error("the drag table is not on the grid of the aircraft file")]
+    GridDiffers,
+    /// Not one mark a node.
+    #[error("{found} marks of extrapolated nodes for {nodes} nodes")]
+    ExtrapolatedLength {
+        /// Marks found.
+        found: usize,
+        /// Nodes of the table.
+        nodes: usize,
+    },
+    /// A coefficient of the polynomial that is not finite.
+    #[error("coefficient {index} of the polynomial is {value}, not finite")]
+    CoefficientNotFinite {
+        /// Its index, from 0.
+        index: usize,
+        /// What was given.
+        value: f64,
+    },
+    /// A node without drag.
+    #[error(
+        "drag coefficient {drag_coefficient} at lift coefficient {lift_coefficient}, Mach number {mach} is not positive"
+    )]
+    DragNotPositive {
+        /// The node's lift coefficient.
+        lift_coefficient: f64,
+        /// The node's Mach number.
+        mach: f64,
+        /// The table's value there.
+        drag_coefficient: f64,
+    },
+}
+
+/// A point that the drag table does not hold. Nothing is extrapolated.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "lift coefficient {:.4}, Mach number {:.4} outside the table's lift coefficients {}..={} and Mach numbers {}..={}",
+    .lift_coefficient, .mach, .lift_coefficients.0, .lift_coefficients.1, .machs.0, .machs.1
+)]
+pub struct OutsideTable {
+    /// Lift coefficient of the point.
+    pub lift_coefficient: f64,
+    /// Mach number of the point.
+    pub mach: f64,
+    /// First and last lift coefficient of the table.
+    pub lift_coefficients: (f64, f64),
+    /// First and last Mach number of the table.
+    pub machs: (f64, f64),
+}
+
+impl PerformanceModel {
+    /// A model of these parts. `extrapolated` marks the nodes that no guide stands behind, one mark a node.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the table is not on the aircraft's grid, a drag coefficient is not positive, or lengths
+    /// differ.
+    pub fn new(
+        aircraft: Aircraft,
+        polynomial: Surface,
+        drag_table: Table,
+        extrapolated: Vec<bool>,
+    ) -> Result<Self, ModelError> {
+        let nodes = aircraft.grid().nodes();
+        if extrapolated.len() != nodes {
+            return Err(ModelError::ExtrapolatedLength { found: extrapolated.len(), nodes });
+        }
+        for (index, &value) in polynomial.coefficients.iter().enumerate() {
+            if !value.is_finite() {
+                return Err(ModelError::CoefficientNotFinite { index, value });
+            }
+        }
+        check_drag_table(&aircraft, &drag_table)?;
+        Ok(Self { aircraft, polynomial, drag_table, extrapolated })
+    }
+
+    /// The same model with another drag table, for example an adapted one.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the table is not on the aircraft's grid or a drag coefficient is not positive.
+    pub fn with_drag_table(&self, drag_table: Table) -> Result<Self, ModelError> {
+        check_drag_table(&self.aircraft, &drag_table)?;
+        Ok(Self { drag_table, ..self.clone() })
+    }
+
+    /// The aircraft.
+    #[must_use]
+    pub const fn aircraft(&self) -> &Aircraft {
+        &self.aircraft
+    }
+
+    /// The polynomial that was fitted to the guide.
+    #[must_use]
+    pub const fn polynomial(&self) -> &Surface {
+        &self.polynomial
+    }
+
+    /// Drag coefficient over lift coefficient (outer) and Mach number (inner).
+    #[must_use]
+    pub const fn drag_table(&self) -> &Table {
+        &self.drag_table
+    }
+
+    /// Which nodes no row of the guide stands behind, in node order.
+    #[must_use]
+    pub fn extrapolated(&self) -> &[bool] {
+        &self.extrapolated
+    }
+
+    /// The state of a segment: everything about it that does not need the drag table.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] as for [`SegmentState::of_means`].
+    pub fn state_of(&self, segment: &Segment) -> Result<SegmentState, OutOfDomain> {
+        SegmentState::of_means(&self.aircraft, &segment.means)
+    }
+
+    /// The cell of a point.
+    fn locate(&self, lift_coefficient: f64, mach: f64) -> Result<Cell, OutsideTable> {
+        Ok(self.aircraft.grid().locate(lift_coefficient, mach, Outside::Error)?)
+    }
+
+    /// Whether a node that the guide does not stand behind takes part in the value at a cell's point.
+    fn uses_extrapolated(&self, cell: &Cell) -> bool {
+        cell.nodes()
+            .into_iter()
+            .zip(cell.weights())
+            .any(|(node, weight)| weight > NODE_WEIGHT_THRESHOLD && self.extrapolated[node])
+    }
+}
+
+impl From<OutsideGrid> for OutsideTable {
+    fn from(outside: OutsideGrid) -> Self {
+        Self {
+            lift_coefficient: outside.x,
+            mach: outside.y,
+            lift_coefficients: (outside.x_first, outside.x_last),
+            machs: (outside.y_first, outside.y_last),
+        }
+    }
+}
+
+fn check_drag_table(aircraft: &Aircraft, drag_table: &Table) -> Result<(), ModelError> {
+    if !same_grid(aircraft.grid(), drag_table.grid()) {
+        return Err(ModelError::GridDiffers);
+    }
+    for (node, &drag_coefficient) in drag_table.values().iter().enumerate() {
+        // Written so that NaN is refused too: a table's values can be changed after it was made.
+        if drag_coefficient.is_nan() || drag_coefficient <= 0.0 {
+            let (lift_coefficient, mach) = drag_table.grid().coordinates(node);
+            return Err(ModelError::DragNotPositive { lift_coefficient, mach, drag_coefficient });
+        }
+    }
+    Ok(())
+}
+
+fn same_grid(a: &Arc<Grid>, b: &Arc<Grid>) -> bool {
+    Arc::ptr_eq(a, b) || a == b
+}
+
+#[cfg(test)]
+mod tests;
