@@ -8,9 +8,9 @@
 //! adds up. Whoever asks why a flight gave so little finds what each criterion cost, alone and together with others.
 //!
 //! Limits: neighbor criteria bound what changes from sample to sample, so a slow drift passes (20 ft a minute is
-//! 200 ft in ten minutes). A channel that was not recorded is not judged: its criterion is reported as not evaluated
-//! and the segments are as steady as the others can tell. The criteria are meant for samples one minute apart; `track`
-//! averages what is faster.
+//! 180 ft along a piece of ten samples). A channel that was not recorded is not judged: its criterion is reported as
+//! not evaluated and the segments are as steady as the others can tell. The criteria are meant for samples one minute
+//! apart; `track` averages what is faster.
 //!
 //! ```
 //! use segmenter::{Criterion, TrimCriteria};
