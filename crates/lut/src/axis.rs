@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use buckets::Buckets;
+
+mod buckets;
 mod decimal;
 
 /// A coordinate this near to a breakpoint is that breakpoint. The specification's width, in the axis' own unit.
@@ -11,12 +14,6 @@ pub const SNAP: f64 = 1e-9;
 const MAXIMUM_MAGNITUDE: f64 = 1e100;
 /// Largest number of breakpoints that [`Axis::from_step`] makes: more is a mistyped step.
 const MAXIMUM_BREAKPOINTS: usize = 1_000_000;
-/// An axis is even when every breakpoint is this share of a step or less from its place. The search corrects a first
-/// guess by one cell, so any share below a half would do.
-const EVEN_SHARE: f64 = 1e-6;
-/// Up to this length counting breakpoints without branches beats a binary search (measured, `benches/lookup.rs`).
-const COUNTED_LENGTH: usize = 64;
-
 /// Breakpoints of one axis: two or more, finite, increasing, no two closer than twice [`SNAP`].
 ///
 /// ```
@@ -25,12 +22,12 @@ const COUNTED_LENGTH: usize = 64;
 /// assert_eq!(axis.breakpoints()[4], 0.3); // and not 0.1 + 4.0 * 0.05, which is 0.30000000000000004
 /// # Ok::<(), lut::AxisError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Axis {
     breakpoints: Vec<f64>,
-    /// Cells per unit length where the axis is even.
-    cells_per_unit: Option<f64>,
+    /// Follows from the breakpoints.
+    buckets: Buckets,
 }
 
 /// Why breakpoints are no axis.
@@ -113,6 +110,14 @@ pub(crate) struct Position {
     pub(crate) held: bool,
 }
 
+impl Position {
+    /// Whether both ends of the cell are further away than [`SNAP`].
+    #[inline]
+    pub(crate) fn is_off_breakpoints(&self) -> bool {
+        self.above_low > SNAP && self.below_high > SNAP
+    }
+}
+
 impl Axis {
     /// An axis of these breakpoints.
     ///
@@ -136,8 +141,8 @@ impl Axis {
                 return Err(AxisError::TooClose { index, previous, value });
             }
         }
-        let cells_per_unit = cells_per_unit(&breakpoints);
-        Ok(Self { breakpoints, cells_per_unit })
+        let buckets = Buckets::new(&breakpoints);
+        Ok(Self { breakpoints, buckets })
     }
 
     /// An even axis; every breakpoint is the double nearest to its decimal number, as if all had been typed.
@@ -201,72 +206,61 @@ impl Axis {
         self.breakpoints[self.breakpoints.len() - 1]
     }
 
-    /// Where `coordinate` lies, `None` beyond the ends (or NaN); with `hold` the nearer end stands for what is beyond.
+    /// Whether `coordinate` is at least the first and below the last breakpoint.
     #[inline]
-    pub(crate) fn position(&self, coordinate: f64, hold: bool) -> Option<Position> {
-        let (first, last) = (self.first(), self.last());
-        let mut at = coordinate;
-        let mut held = false;
-        // Within SNAP of an end a point is that end, and therefore inside.
-        if !(first - at <= SNAP && at - last <= SNAP) {
-            if !(hold && at.is_finite()) {
-                return None;
-            }
-            held = true;
-        }
-        at = at.clamp(first, last);
-
-        let final_cell = self.breakpoints.len() - 2;
-        let mut index = self.cell(at);
-        let mut low = self.breakpoints[index];
-        let mut high = self.breakpoints[index + 1];
-        let mut above_low = at - low;
-        let mut below_high = high - at;
-        let width = high - low;
-        if above_low <= SNAP {
-            return Some(Position { index, above_low: 0.0, below_high: width, width, held });
-        }
-        if below_high <= SNAP {
-            if index == final_cell {
-                return Some(Position { index, above_low: width, below_high: 0.0, width, held });
-            }
-            // The point is the next breakpoint, and that belongs to the next cell.
-            index += 1;
-            low = high;
-            high = self.breakpoints[index + 1];
-            above_low = 0.0;
-            below_high = high - low;
-            return Some(Position { index, above_low, below_high, width: below_high, held });
-        }
-        Some(Position { index, above_low, below_high, width, held })
+    pub(crate) fn spans(&self, coordinate: f64) -> bool {
+        self.first() <= coordinate && coordinate < self.last()
     }
 
-    /// The half-open cell of a coordinate between the ends; the last breakpoint belongs to the last cell.
-    #[inline]
-    fn cell(&self, at: f64) -> usize {
-        let final_cell = self.breakpoints.len() - 2;
-        if let Some(cells_per_unit) = self.cells_per_unit {
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "between 0 and the number of cells; the cast saturates anyway"
-            )]
-            let guess = (((at - self.first()) * cells_per_unit) as usize).min(final_cell);
-            // The guess is off by one at most, and only next to a breakpoint.
-            if at < self.breakpoints[guess] {
-                return guess.saturating_sub(1);
-            }
-            if at >= self.breakpoints[guess + 1] {
-                return (guess + 1).min(final_cell);
-            }
-            return guess;
+    /// Where `coordinate` lies, which the axis must span; not yet snapped to a breakpoint.
+    #[expect(
+        clippy::inline_always,
+        reason = "a position through memory costs more than the search: measured"
+    )]
+    #[inline(always)]
+    pub(crate) fn position_unsnapped(&self, coordinate: f64) -> Position {
+        let index = self.buckets.cell(&self.breakpoints, coordinate);
+        let (low, high) = (self.breakpoints[index], self.breakpoints[index + 1]);
+        Position {
+            index,
+            above_low: coordinate - low,
+            below_high: high - coordinate,
+            width: high - low,
+            held: false,
         }
-        let inner = &self.breakpoints[1..=final_cell];
-        if inner.len() <= COUNTED_LENGTH {
-            inner.iter().map(|&breakpoint| usize::from(breakpoint <= at)).sum()
-        } else {
-            inner.partition_point(|&breakpoint| breakpoint <= at)
+    }
+
+    /// Where `coordinate` lies, `None` beyond the ends (or NaN); with `hold` the nearer end stands for what is beyond.
+    pub(crate) fn position(&self, coordinate: f64, hold: bool) -> Option<Position> {
+        let (first, last) = (self.first(), self.last());
+        // Within SNAP of an end a point is that end, and therefore inside.
+        let inside = first - coordinate <= SNAP && coordinate - last <= SNAP;
+        if !(inside || hold && coordinate.is_finite()) {
+            return None;
         }
+        if self.spans(coordinate) {
+            let position = self.position_unsnapped(coordinate);
+            if position.is_off_breakpoints() {
+                return Some(position);
+            }
+        }
+        let at = coordinate.clamp(first, last);
+        let nearest = self.breakpoints.partition_point(|&breakpoint| at - breakpoint > SNAP);
+        Some(Position { held: !inside, ..self.position_of_breakpoint(nearest) })
+    }
+
+    /// A breakpoint: the low end of its cell, or the high end of the last one.
+    fn position_of_breakpoint(&self, breakpoint: usize) -> Position {
+        let index = breakpoint.min(self.breakpoints.len() - 2);
+        let width = self.breakpoints[index + 1] - self.breakpoints[index];
+        let (above_low, below_high) = if breakpoint == index { (0.0, width) } else { (width, 0.0) };
+        Position { index, above_low, below_high, width, held: false }
+    }
+}
+
+impl PartialEq for Axis {
+    fn eq(&self, other: &Self) -> bool {
+        self.breakpoints == other.breakpoints
     }
 }
 
@@ -281,16 +275,4 @@ impl From<Axis> for Vec<f64> {
     fn from(axis: Axis) -> Self {
         axis.breakpoints
     }
-}
-
-/// Cells per unit length of an even axis, `None` of an uneven one.
-fn cells_per_unit(breakpoints: &[f64]) -> Option<f64> {
-    let cells = (breakpoints.len() - 1) as f64;
-    let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
-    let step = (last - first) / cells;
-    let even = breakpoints
-        .iter()
-        .enumerate()
-        .all(|(i, &value)| (value - (first + i as f64 * step)).abs() <= EVEN_SHARE * step);
-    even.then_some(cells / (last - first))
 }

@@ -82,16 +82,31 @@ impl Grid {
     ///
     /// # Errors
     /// [`OutsideGrid`] where the point is outside and `outside` says [`Outside::Error`], or is not finite.
-    #[inline]
+    #[expect(
+        clippy::inline_always,
+        reason = "a cell through memory costs more than the search: measured"
+    )]
+    #[inline(always)]
     pub fn locate(&self, x: f64, y: f64, outside: Outside) -> Result<Cell, OutsideGrid> {
-        let hold = matches!(outside, Outside::Hold);
+        if self.x.spans(x) && self.y.spans(y) {
+            let (along_x, along_y) = (self.x.position_unsnapped(x), self.y.position_unsnapped(y));
+            if along_x.is_off_breakpoints() && along_y.is_off_breakpoints() {
+                return Ok(Cell::new(along_x, along_y, self.y.len()));
+            }
+        }
+        self.locate_with_care(x, y, outside)
+    }
+
+    /// On a breakpoint, at an edge or outside.
+    #[cold]
+    fn locate_with_care(&self, x: f64, y: f64, outside: Outside) -> Result<Cell, OutsideGrid> {
+        let hold = outside == Outside::Hold;
         match (self.x.position(x, hold), self.y.position(y, hold)) {
             (Some(along_x), Some(along_y)) => Ok(Cell::new(along_x, along_y, self.y.len())),
             _ => Err(self.refuse(x, y)),
         }
     }
 
-    #[cold]
     fn refuse(&self, x: f64, y: f64) -> OutsideGrid {
         OutsideGrid {
             x,
