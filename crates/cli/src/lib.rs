@@ -1,1 +1,116 @@
-//! Command line of cruisefit: files, threads, progress, pages.
+//! The command line of cruisefit: files, threads, progress, pages. Glue only; every computation is in a stage crate.
+//!
+//! Exit status: 0 done; 1 done, but some input was refused (each refusal on stderr and in the summary); 2 nothing was
+//! done, with the reason on stderr.
+
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    clippy::disallowed_methods,
+    reason = "the command line talks to the world"
+)]
+
+pub mod args;
+pub mod columns;
+pub mod commands;
+pub mod difference;
+pub mod failure;
+pub mod files;
+pub mod folder;
+pub mod inputs;
+pub mod learning;
+pub mod mapping_stub;
+pub mod model_file;
+pub mod models;
+pub mod page;
+pub mod progress;
+pub mod reading;
+pub mod references;
+pub mod results;
+pub mod segments_table;
+pub mod statistics;
+pub mod summary;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::Parser;
+use tracing_subscriber::EnvFilter;
+
+use args::{Cli, Command, Common};
+use commands::Outcome;
+use failure::{DONE, Failure, NOTHING_DONE, SOME_REFUSED};
+
+/// Reads the command line, runs the command, tells what came of it.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    start_logging(cli.common.verbose);
+    let result = in_pool(&cli.common, || run_command(&cli.command, !cli.common.no_progress));
+    ExitCode::from(tell(result))
+}
+
+fn run_command(command: &Command, progress: bool) -> Result<Outcome, Failure> {
+    match command {
+        Command::Init(arguments) => commands::init::run(arguments),
+        Command::Adapt(arguments) => commands::adapt::run(arguments, progress),
+        Command::Segment(arguments) => commands::segment::run(arguments, progress),
+        Command::Predict(arguments) => commands::predict::run(arguments),
+        Command::Evaluate(arguments) => commands::evaluate::run(arguments, progress),
+        Command::Show(arguments) => commands::show::run(arguments),
+        Command::Export(arguments) => commands::export::run(arguments),
+        Command::Golden(command) => commands::golden::run(command),
+        Command::Demo(_) => {
+            Err(Failure::BadArgument { argument: "demo", reason: "being built".to_owned() })
+        }
+    }
+}
+
+/// Runs in a pool of as many threads as were asked for.
+fn in_pool<T: Send>(
+    common: &Common,
+    work: impl FnOnce() -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = common.threads {
+        builder = builder.num_threads(usize::from(threads));
+    }
+    let pool = builder.build().map_err(|error| Failure::BadArgument {
+        argument: "--threads",
+        reason: error.to_string(),
+    })?;
+    pool.install(work)
+}
+
+fn start_logging(verbose: u8) {
+    let level = match verbose {
+        0 => "warn",
+        1 => "info",
+        _ => "debug",
+    };
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+    // Only fails where a program that embeds this one has set a logger already: then that one serves.
+    let _ = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .without_time()
+        .with_target(false)
+        .try_init();
+}
+
+/// Results to standard output, refusals and reasons to standard error; the exit status.
+fn tell(result: Result<Outcome, Failure>) -> u8 {
+    match result {
+        Ok(Outcome { text, refused }) => {
+            // A reader that has seen enough (`| head`) is no error.
+            let _ = std::io::stdout().write_all(text.as_bytes());
+            for one in &refused {
+                eprintln!("refused: {one}");
+            }
+            if refused.is_empty() { DONE } else { SOME_REFUSED }
+        }
+        Err(failure) => {
+            eprintln!("{:?}", miette::Report::new(failure));
+            NOTHING_DONE
+        }
+    }
+}

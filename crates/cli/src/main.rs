@@ -1,1 +1,7 @@
-fn main() {}
+//! The binary `cruisefit`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::run()
+}

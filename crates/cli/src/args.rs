@@ -1,0 +1,212 @@
+//! The command line's grammar. What a command does is in `commands`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Aircraft performance monitoring from cruise reports.
+///
+/// Reads cruise reports, finds the stabilised segments, corrects the drag table of the aircraft's performance model
+/// so that the fuel flow it predicts is the fuel flow that is burnt. Errors are 100 (recorded − predicted)/recorded:
+/// positive, the aircraft burns more than the model says.
+#[derive(Debug, Parser)]
+#[command(name = "cruisefit", version, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Options of every command.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Options of every command.
+#[derive(Clone, Debug, Args)]
+pub struct Common {
+    /// Worker threads; results are the same bytes for any number [default: one a processor]
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Show no progress on the terminal
+    #[arg(long, global = true)]
+    pub no_progress: bool,
+    /// Log more to stderr (-v: what was done, -vv: why); `RUST_LOG` overrides
+    #[arg(long, short, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Initial model of an aircraft from its flight-planning guide
+    Init(InitArgs),
+    /// Adapt models to cruise reports, one model a tail
+    Adapt(AdaptArgs),
+    /// Stabilised segments only, no model needed
+    Segment(SegmentArgs),
+    /// Predict fuel flow and specific range at flight points
+    Predict(PredictArgs),
+    /// Fuel-flow error of a model over reports, nothing adapted
+    Evaluate(EvaluateArgs),
+    /// Look at a model
+    Show(ShowArgs),
+    /// Hand a model's table on as CSV
+    Export(ExportArgs),
+    /// Compare a whole run with expected files, or accept it as expected
+    #[command(subcommand)]
+    Golden(GoldenCommand),
+    /// The whole chain on embedded data, nothing to prepare
+    Demo(DemoArgs),
+}
+
+/// Where reports come from.
+#[derive(Clone, Debug, Args)]
+pub struct ReportsArgs {
+    /// Cruise reports: files, folders (searched recursively for .txt, .rpt, .gz) and globs
+    #[arg(required = true, value_name = "REPORTS")]
+    pub reports: Vec<PathBuf>,
+    /// Mapping file (RON), or the name of a preset, for recordings of another layout
+    #[arg(long, value_name = "MAPPING")]
+    pub mapping: Option<String>,
+    /// A refused report stops the batch before anything is written
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// Models to choose from.
+#[derive(Clone, Debug, Args)]
+pub struct ModelArgs {
+    /// Model file, or folder of them; may be given several times. A report takes the model of its tail, else that of
+    /// its type
+    #[arg(long = "model", required = true, value_name = "MODEL.ron")]
+    pub models: Vec<PathBuf>,
+}
+
+/// `init`
+#[derive(Debug, Args)]
+pub struct InitArgs {
+    /// Aircraft file (RON)
+    #[arg(long, value_name = "AIRCRAFT.ron")]
+    pub aircraft: PathBuf,
+    /// Flight-planning guide (CSV)
+    #[arg(long, value_name = "GUIDE.csv")]
+    pub guide: PathBuf,
+    /// Model file to write
+    #[arg(long, short, value_name = "MODEL.ron")]
+    pub output: PathBuf,
+}
+
+/// The adaptation laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LawName {
+    /// The local law of Ghazi et al. 2020 with its global refit
+    Paper,
+}
+
+/// `adapt`
+#[derive(Debug, Args)]
+pub struct AdaptArgs {
+    /// Reports.
+    #[command(flatten)]
+    pub reports: ReportsArgs,
+    /// Models.
+    #[command(flatten)]
+    pub models: ModelArgs,
+    /// Folder to write to; a folder that exists is gone on from
+    #[arg(long, short, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Adaptation law
+    #[arg(long, value_enum, default_value_t = LawName::Paper)]
+    pub law: LawName,
+    /// Law `paper`: adapt where the error exceeds this, in per cent [default: the model's]
+    #[arg(long, value_name = "PCT")]
+    pub threshold: Option<f64>,
+    /// Begin anew: an existing folder is kept aside under another name
+    #[arg(long)]
+    pub restart: bool,
+}
+
+/// `segment`
+#[derive(Debug, Args)]
+pub struct SegmentArgs {
+    /// Reports.
+    #[command(flatten)]
+    pub reports: ReportsArgs,
+    /// File to write, .csv or .parquet [default: CSV to standard output]
+    #[arg(long, short, value_name = "SEGMENTS")]
+    pub output: Option<PathBuf>,
+    /// Print what each criterion cost, flight by flight
+    #[arg(long)]
+    pub explain: bool,
+}
+
+/// `predict`
+#[derive(Debug, Args)]
+pub struct PredictArgs {
+    /// Model file
+    #[arg(long, value_name = "MODEL.ron")]
+    pub model: PathBuf,
+    /// Flight points, .csv or .parquet
+    #[arg(value_name = "POINTS")]
+    pub points: PathBuf,
+    /// File to write, .csv or .parquet [default: CSV to standard output]
+    #[arg(long, short, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+}
+
+/// `evaluate`
+#[derive(Debug, Args)]
+pub struct EvaluateArgs {
+    /// Reports.
+    #[command(flatten)]
+    pub reports: ReportsArgs,
+    /// Models.
+    #[command(flatten)]
+    pub models: ModelArgs,
+    /// Write the summary as JSON too
+    #[arg(long, value_name = "OUT.json")]
+    pub json: Option<PathBuf>,
+}
+
+/// `show`
+#[derive(Debug, Args)]
+pub struct ShowArgs {
+    /// Model file
+    #[arg(value_name = "MODEL.ron")]
+    pub model: PathBuf,
+}
+
+/// `export`
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// Model file
+    #[arg(value_name = "MODEL.ron")]
+    pub model: PathBuf,
+    /// CSV file to write [default: standard output]
+    #[arg(long, short, value_name = "TABLE.csv")]
+    pub output: Option<PathBuf>,
+}
+
+/// `golden`
+#[derive(Debug, Subcommand)]
+pub enum GoldenCommand {
+    /// Run what DIR/golden.ron says and print each value out of tolerance
+    Check {
+        /// Folder with golden.ron and expected files
+        #[arg(required = true, value_name = "DIR")]
+        folders: Vec<PathBuf>,
+    },
+    /// Run what DIR/golden.ron says and write the result as the expected files
+    Bless {
+        /// Folder with golden.ron
+        #[arg(required = true, value_name = "DIR")]
+        folders: Vec<PathBuf>,
+    },
+}
+
+/// `demo`
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Folder to write to
+    #[arg(long, short, value_name = "DIR", default_value = "cruisefit-demo")]
+    pub output: PathBuf,
+}

@@ -1,0 +1,67 @@
+//! The commands: each turns its arguments into an [`Outcome`], or says why nothing was done.
+
+pub mod adapt;
+pub mod evaluate;
+pub mod export;
+pub mod golden;
+pub mod init;
+pub mod predict;
+pub mod segment;
+pub mod show;
+
+use crate::mapping_stub::Mapping;
+use segmenter::TrimCriteria;
+
+use crate::args::ReportsArgs;
+use crate::failure::{Failure, RefusedReport};
+use crate::files::read_text;
+use crate::inputs;
+use crate::progress::Progress;
+use crate::reading::{self, Reading};
+
+/// What a command that did something came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// For standard output.
+    pub text: String,
+    /// What was refused while the rest went on.
+    pub refused: Vec<RefusedReport>,
+}
+
+impl Outcome {
+    /// Done, with this text for standard output.
+    pub fn text(text: impl Into<String>) -> Self {
+        Self { text: text.into(), refused: Vec::new() }
+    }
+}
+
+/// Collects, reads and segments the reports of a command.
+fn prepare(arguments: &ReportsArgs, progress: bool) -> Result<Reading, Failure> {
+    let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
+    let inputs = inputs::collect(&arguments.reports, mapping.is_some())?;
+    if inputs.skipped > 0 {
+        tracing::info!(skipped = inputs.skipped, "files that are no reports by their ending");
+    }
+    let bar = Progress::new(inputs.files.len(), "reading reports", progress);
+    let criteria = TrimCriteria::ghazi_2020_table_4();
+    let reading = reading::read_all(&inputs.files, mapping.as_ref(), &criteria, &bar);
+    bar.finish();
+    Ok(reading)
+}
+
+fn read_mapping(name: &str) -> Result<Mapping, Failure> {
+    if let Some(preset) = Mapping::preset(name) {
+        return Ok(preset);
+    }
+    let path = std::path::Path::new(name);
+    let text = read_text(path)?;
+    Mapping::from_ron(&text).map_err(|error| Failure::bad_file(path, error))
+}
+
+/// Tells each refusal, then that nothing was written.
+fn refuse_all(refused: &[RefusedReport], files: usize) -> Failure {
+    for one in refused {
+        eprintln!("refused: {one}");
+    }
+    Failure::Strict { refused: refused.len(), files }
+}

@@ -1,0 +1,330 @@
+//! `cruisefit adapt`: one adapted model a tail, going on from what the folder holds.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::args::AdaptArgs;
+use crate::commands::{Outcome, prepare, refuse_all};
+use crate::failure::{Failure, RefusedReport, show};
+use crate::folder::{Folder, StoredTail};
+use crate::learning::{self, FlightToLearn};
+use crate::model_file::{Learnt, LedgerEntry, ModelFile, PaperSettings};
+use crate::models::Models;
+use crate::page;
+use crate::reading::{FlightRead, Reading};
+use crate::results::{TailCounts, TailResult};
+use crate::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+
+/// Runs the command.
+///
+/// # Errors
+/// What leaves nothing done.
+pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
+    let models = Models::read(&arguments.models.models)?;
+    if let Some(threshold) = arguments.threshold {
+        check_threshold(threshold)?;
+    }
+    let mut reading = prepare(&arguments.reports, progress)?;
+    let files = reading.files();
+    let chosen = choose_models(&models, &mut reading, arguments.threshold);
+    if arguments.reports.strict && !reading.refused.is_empty() {
+        return Err(refuse_all(&reading.refused, files));
+    }
+    if reading.flights.is_empty() {
+        return Err(Failure::AllRefused { files, first: first_refusal(&reading.refused) });
+    }
+    let folder = Folder::open(&arguments.output, arguments.restart)?;
+    let mut stored = folder.load()?;
+    for (tail, start) in &chosen {
+        if let Some(known) = stored.get(tail) {
+            check_begun_alike(&arguments.output, known, start)?;
+        }
+    }
+    let mut by_tail: BTreeMap<String, Vec<FlightRead>> = BTreeMap::new();
+    for flight in reading.flights {
+        by_tail.entry(flight.identity.tail.clone()).or_default().push(flight);
+    }
+    let mut refused = reading.refused;
+    let mut already_known = 0;
+    let mut jobs = Vec::new();
+    for (tail, flights) in by_tail {
+        let Some(start) = chosen.get(&tail) else { continue };
+        let begun = stored.remove(&tail);
+        let sorted = sort_out(&tail, flights, begun.as_ref(), arguments.reports.strict);
+        refused.extend(sorted.refused);
+        already_known += sorted.already_known;
+        jobs.push(Job {
+            tail,
+            begun,
+            start: start.clone(),
+            flights: sorted.new,
+            warnings: sorted.warnings,
+        });
+    }
+    if arguments.reports.strict && !refused.is_empty() {
+        return Err(refuse_all(&refused, files));
+    }
+    // A tail's flights are learnt in order; tails do not know of each other.
+    let mut learnt: Vec<(TailResult, Vec<RefusedReport>)> =
+        jobs.into_par_iter().map(Job::learn).collect();
+    let mut read = 0;
+    let mut results = Vec::new();
+    for (result, not_learnt) in &mut learnt {
+        read += result.summary.flights_new;
+        refused.append(not_learnt);
+    }
+    for (result, _) in learnt {
+        if result.summary.flights_new > 0 || result.summary.flights > 0 {
+            results.push(result);
+        }
+    }
+    for result in &results {
+        if result.summary.flights_new > 0 || !folder.model_path(&result.tail).exists() {
+            folder.store(&result.tail, &result.model, &result.rows)?;
+        }
+    }
+    // The folder speaks of every tail it holds, also of those that nobody reported this time.
+    for (tail, StoredTail { model, segments }) in stored {
+        results.push(at_rest(tail, model, segments));
+    }
+    results.sort_by(|one, other| one.tail.cmp(&other.tail));
+    refused.sort_by(|one, other| one.path.cmp(&other.path));
+    let summary = Summary {
+        schema: SCHEMA,
+        reports: ReportsSummary {
+            read,
+            already_known,
+            refused: refused.iter().map(RefusedSummary::from).collect(),
+        },
+        tails: results.iter().map(|result| result.summary.clone()).collect(),
+    };
+    folder.write("summary.json", &summary.to_json())?;
+    let title = "Adaptation of performance models to cruise reports";
+    folder.write("report.html", page::report(&summary, &results, title).as_bytes())?;
+    let text = format!(
+        "{}Written to {}: models/, segments/, summary.json, report.html\n",
+        summary.to_text(),
+        show(&arguments.output)
+    );
+    Ok(Outcome { text, refused })
+}
+
+fn first_refusal(refused: &[RefusedReport]) -> String {
+    refused.first().map_or_else(String::new, ToString::to_string)
+}
+
+fn check_threshold(threshold: f64) -> Result<(), Failure> {
+    adapt::paper::PaperLaw::new(threshold).map(|_| ()).map_err(|error| Failure::BadArgument {
+        argument: "--threshold",
+        reason: error.to_string(),
+    })
+}
+
+/// The state from which each tail begins; a report without a model moves to the refused ones.
+fn choose_models(
+    models: &Models,
+    reading: &mut Reading,
+    threshold: Option<f64>,
+) -> BTreeMap<String, ModelFile> {
+    let mut chosen = BTreeMap::new();
+    let flights = std::mem::take(&mut reading.flights);
+    for flight in flights {
+        match models.for_flight(&flight) {
+            Ok(model) => {
+                chosen
+                    .entry(flight.identity.tail.clone())
+                    .or_insert_with(|| beginning(model, &flight.identity.tail, threshold));
+                reading.flights.push(flight);
+            }
+            Err(reason) => reading.refused.push(RefusedReport {
+                path: flight.path,
+                line: None,
+                column: None,
+                reason,
+            }),
+        }
+    }
+    chosen
+}
+
+/// A model's initial part with nothing learnt yet.
+fn beginning(model: &ModelFile, tail: &str, threshold: Option<f64>) -> ModelFile {
+    if let Some(learnt) = &model.learnt {
+        tracing::warn!(
+            tail,
+            "the model given has learnt {} flights of tail {}; adapting begins from its initial part",
+            learnt.ledger.len(),
+            learnt.tail
+        );
+    }
+    let settings = PaperSettings {
+        threshold_percent: threshold.unwrap_or(model.settings.paper.threshold_percent),
+    };
+    ModelFile { learnt: Some(learning::begin(&model.initial, tail, settings)), ..model.clone() }
+}
+
+fn check_begun_alike(
+    folder: &std::path::Path,
+    known: &StoredTail,
+    start: &ModelFile,
+) -> Result<(), Failure> {
+    let otherwise =
+        |what, difference| Failure::BegunOtherwise { folder: show(folder), what, difference };
+    if let Some((what, difference)) = start.difference_of_initial(&known.model) {
+        return Err(otherwise(what, difference));
+    }
+    if let Some(difference) = start.difference_of_law(&known.model) {
+        return Err(otherwise("law or setting", difference));
+    }
+    Ok(())
+}
+
+/// A tail that this run has nothing new for.
+fn at_rest(tail: String, model: ModelFile, segments: Vec<flight::Segment>) -> TailResult {
+    let counts = counts_of(&model, 0);
+    TailResult::new(tail, model, segments, counts, true, Vec::new())
+}
+
+fn counts_of(model: &ModelFile, flights_new: usize) -> TailCounts {
+    let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
+    TailCounts {
+        flights: ledger.len(),
+        flights_new,
+        samples: ledger.iter().map(|entry| entry.samples).sum(),
+    }
+}
+
+struct Sorted {
+    new: Vec<FlightRead>,
+    refused: Vec<RefusedReport>,
+    already_known: usize,
+    warnings: Vec<String>,
+}
+
+/// Puts a tail's flights in the order of flying and sorts out what the ledger, or the batch itself, already knows.
+fn sort_out(
+    tail: &str,
+    mut flights: Vec<FlightRead>,
+    begun: Option<&StoredTail>,
+    strict: bool,
+) -> Sorted {
+    flights.sort_by(|one, other| (&one.identity, &one.path).cmp(&(&other.identity, &other.path)));
+    let ledger = begun
+        .and_then(|begun| begun.model.learnt.as_ref())
+        .map_or(&[][..], |learnt| learnt.ledger.as_slice());
+    let mut known: BTreeMap<(String, String), String> = ledger
+        .iter()
+        .map(|entry| ((entry.start.clone(), entry.flight.clone()), entry.content.clone()))
+        .collect();
+    let newest =
+        ledger.iter().filter_map(|entry| entry.start.parse::<flight::Timestamp>().ok()).max();
+    let mut sorted =
+        Sorted { new: Vec::new(), refused: Vec::new(), already_known: 0, warnings: Vec::new() };
+    for flight in flights {
+        let key = (flight.identity.start.to_string(), flight.identity.flight.clone());
+        let refuse = |reason: String| RefusedReport {
+            path: flight.path.clone(),
+            line: None,
+            column: None,
+            reason,
+        };
+        match known.get(&key) {
+            Some(content) if *content == flight.content => {
+                sorted.already_known += 1;
+                continue;
+            }
+            Some(_) => {
+                sorted.refused.push(refuse(format!(
+                    "tail {tail} flight {} of {} is already known with other content",
+                    key.1, key.0
+                )));
+                continue;
+            }
+            None => {}
+        }
+        if newest.is_some_and(|newest| flight.identity.start < newest) {
+            let said = format!(
+                "flight {} of {} is older than the newest that tail {tail} has learnt",
+                key.1, key.0
+            );
+            if strict {
+                sorted.refused.push(refuse(said));
+                continue;
+            }
+            tracing::warn!("{said}; it is learnt now, after newer ones");
+            sorted.warnings.push(format!("{said}; it was learnt after newer ones"));
+        }
+        known.insert(key, flight.content.clone());
+        sorted.new.push(flight);
+    }
+    sorted
+}
+
+struct Job {
+    tail: String,
+    begun: Option<StoredTail>,
+    start: ModelFile,
+    flights: Vec<FlightRead>,
+    warnings: Vec<String>,
+}
+
+impl Job {
+    fn learn(self) -> (TailResult, Vec<RefusedReport>) {
+        let (mut model, mut segments) = match self.begun {
+            Some(StoredTail { model, segments }) => (model, segments),
+            None => (self.start, Vec::new()),
+        };
+        let mut refused = Vec::new();
+        let mut notes = self.warnings;
+        let mut flights_new = 0;
+        for flight in self.flights {
+            let Some(learnt) = &mut model.learnt else { break };
+            match learn_one(&model.initial, learnt, &flight) {
+                Ok(()) => {
+                    flights_new += 1;
+                    flight.add_notes(&mut notes);
+                    segments.extend(flight.segments);
+                }
+                Err(error) => refused.push(RefusedReport {
+                    path: flight.path,
+                    line: None,
+                    column: None,
+                    reason: error.to_string(),
+                }),
+            }
+        }
+        let counts = counts_of(&model, flights_new);
+        (TailResult::new(self.tail, model, segments, counts, true, notes), refused)
+    }
+}
+
+fn learn_one(
+    initial: &perf_model::PerformanceModel,
+    learnt: &mut Learnt,
+    flight: &FlightRead,
+) -> Result<(), learning::LearningError> {
+    let entry = LedgerEntry {
+        flight: flight.identity.flight.clone(),
+        start: flight.identity.start.to_string(),
+        content: flight.content.clone(),
+        samples: flight.samples as u64,
+        segments: 0,
+        outside_table: 0,
+    };
+    let result = learning::learn_flight(
+        initial,
+        learnt,
+        &FlightToLearn { entry, segments: &flight.segments },
+    )?;
+    tracing::debug!(
+        tail = flight.identity.tail,
+        flight = flight.identity.flight,
+        segments = flight.segments.len(),
+        adapted = result.adapted,
+        outside = result.outside_table,
+        refitted = result.refitted,
+        "learnt"
+    );
+    Ok(())
+}

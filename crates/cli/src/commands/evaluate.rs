@@ -1,0 +1,78 @@
+//! `cruisefit evaluate`: the fuel-flow error of a model over reports, nothing adapted.
+
+use std::collections::BTreeMap;
+
+use crate::args::EvaluateArgs;
+use crate::commands::{Outcome, prepare, refuse_all};
+use crate::failure::{Failure, RefusedReport};
+use crate::files::write_atomically;
+use crate::model_file::ModelFile;
+use crate::models::Models;
+use crate::reading::FlightRead;
+use crate::results::{TailCounts, TailResult};
+use crate::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+
+/// Runs the command.
+///
+/// # Errors
+/// What leaves nothing done.
+pub fn run(arguments: &EvaluateArgs, progress: bool) -> Result<Outcome, Failure> {
+    let models = Models::read(&arguments.models.models)?;
+    let reading = prepare(&arguments.reports, progress)?;
+    let files = reading.files();
+    let mut refused = reading.refused;
+    let mut by_tail: BTreeMap<String, (ModelFile, Vec<FlightRead>)> = BTreeMap::new();
+    for flight in reading.flights {
+        match models.for_flight(&flight) {
+            Ok(model) => by_tail
+                .entry(flight.identity.tail.clone())
+                .or_insert_with(|| (model.clone(), Vec::new()))
+                .1
+                .push(flight),
+            Err(reason) => {
+                refused.push(RefusedReport { path: flight.path, line: None, column: None, reason })
+            }
+        }
+    }
+    refused.sort_by(|one, other| one.path.cmp(&other.path));
+    if arguments.reports.strict && !refused.is_empty() {
+        return Err(refuse_all(&refused, files));
+    }
+    if by_tail.is_empty() {
+        let first = refused.first().map_or_else(String::new, ToString::to_string);
+        return Err(Failure::AllRefused { files, first });
+    }
+    let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
+    let tails = by_tail
+        .into_iter()
+        .map(|(tail, (model, flights))| evaluate_tail(tail, model, flights).summary)
+        .collect();
+    let summary = Summary {
+        schema: SCHEMA,
+        reports: ReportsSummary {
+            read,
+            already_known: 0,
+            refused: refused.iter().map(RefusedSummary::from).collect(),
+        },
+        tails,
+    };
+    if let Some(path) = &arguments.json {
+        write_atomically(path, &summary.to_json())?;
+    }
+    Ok(Outcome { text: summary.to_text(), refused })
+}
+
+fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -> TailResult {
+    flights.sort_by(|one, other| (&one.identity, &one.path).cmp(&(&other.identity, &other.path)));
+    let counts = TailCounts {
+        flights: flights.len(),
+        flights_new: flights.len(),
+        samples: flights.iter().map(|flight| flight.samples as u64).sum(),
+    };
+    let mut notes = Vec::new();
+    for flight in &flights {
+        flight.add_notes(&mut notes);
+    }
+    let segments = flights.into_iter().flat_map(|flight| flight.segments).collect();
+    TailResult::new(tail, model, segments, counts, false, notes)
+}

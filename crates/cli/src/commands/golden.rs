@@ -1,0 +1,191 @@
+//! `cruisefit golden`: a whole run against expected files.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::args::{AdaptArgs, GoldenCommand, InitArgs, LawName, ModelArgs, ReportsArgs};
+use crate::commands::{Outcome, adapt, export, init};
+use crate::difference::{Tolerance, differences};
+use crate::failure::{Failure, show};
+use crate::files::{make_folder, read_text, write_atomically};
+use crate::model_file::ModelFile;
+
+/// `golden.ron`: a run and how exactly its results must come again.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Golden {
+    /// Aircraft file; all paths are relative to the folder.
+    aircraft: PathBuf,
+    /// Flight-planning guide.
+    guide: PathBuf,
+    /// Files or folders with reports.
+    reports: Vec<PathBuf>,
+    /// Adaptation law.
+    law: Law,
+    /// How far numbers may be off.
+    tolerances: Tolerance,
+}
+
+/// A law with its settings.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+enum Law {
+    /// Law `paper`.
+    #[serde(rename = "paper")]
+    Paper {
+        /// Threshold, %.
+        threshold_percent: f64,
+    },
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// A folder that cannot be run, or, for `check`, values out of tolerance.
+pub fn run(command: &GoldenCommand) -> Result<Outcome, Failure> {
+    match command {
+        GoldenCommand::Check { folders } => check_all(folders),
+        GoldenCommand::Bless { folders } => bless_all(folders),
+    }
+}
+
+fn check_all(folders: &[PathBuf]) -> Result<Outcome, Failure> {
+    let mut text = String::new();
+    let mut count = 0;
+    let mut checked = 0;
+    for folder in folders {
+        if !folder.join("golden.ron").exists() {
+            let _ = writeln!(text, "{}: no golden.ron, passed over", show(folder));
+            continue;
+        }
+        let result = produce(folder)?;
+        let before = count;
+        for (name, found) in &result.files {
+            checked += 1;
+            let path = folder.join("expected").join(name);
+            let expected = read_text(&path)?;
+            for difference in differences(&expected, found, result.tolerances) {
+                count += 1;
+                let _ = writeln!(
+                    text,
+                    "{}:{}: value {}: expected {}, found {}",
+                    show(&path),
+                    difference.line,
+                    difference.token,
+                    difference.expected,
+                    difference.found
+                );
+            }
+        }
+        if count == before {
+            let _ = writeln!(text, "{}: {} files as expected", show(folder), result.files.len());
+        }
+    }
+    if count > 0 {
+        print_now(&text);
+        return Err(Failure::GoldenDiffers { count });
+    }
+    if checked == 0 {
+        return Err(Failure::BadArgument {
+            argument: "DIR",
+            reason: "none of the folders holds a golden.ron".to_owned(),
+        });
+    }
+    Ok(Outcome::text(text))
+}
+
+fn bless_all(folders: &[PathBuf]) -> Result<Outcome, Failure> {
+    let mut text = String::new();
+    for folder in folders {
+        let result = produce(folder)?;
+        let expected = folder.join("expected");
+        make_folder(&expected)?;
+        for (name, content) in &result.files {
+            write_atomically(&expected.join(name), content.as_bytes())?;
+        }
+        let _ = writeln!(text, "{}: {} files written", show(&expected), result.files.len());
+    }
+    Ok(Outcome::text(text))
+}
+
+struct Produced {
+    tolerances: Tolerance,
+    /// Name in `expected/`, and content.
+    files: Vec<(String, String)>,
+}
+
+/// Runs the chain that the folder describes and collects its results.
+fn produce(folder: &Path) -> Result<Produced, Failure> {
+    let path = folder.join("golden.ron");
+    let golden: Golden =
+        ron::from_str(&read_text(&path)?).map_err(|error| Failure::bad_file(&path, error))?;
+    let Law::Paper { threshold_percent } = golden.law;
+    let scratch =
+        tempfile::tempdir().map_err(|error| Failure::unwritable(&std::env::temp_dir(), error))?;
+    let model_path = scratch.path().join("MODEL.ron");
+    let _ = init::run(&InitArgs {
+        aircraft: folder.join(&golden.aircraft),
+        guide: folder.join(&golden.guide),
+        output: model_path.clone(),
+    })?;
+    let output = scratch.path().join("adapted");
+    let outcome = adapt::run(
+        &AdaptArgs {
+            reports: ReportsArgs {
+                reports: golden.reports.iter().map(|report| folder.join(report)).collect(),
+                mapping: None,
+                strict: true,
+            },
+            models: ModelArgs { models: vec![model_path.clone()] },
+            output: output.clone(),
+            law: LawName::Paper,
+            threshold: Some(threshold_percent),
+            restart: false,
+        },
+        false,
+    )?;
+    tracing::debug!("{}", outcome.text);
+    let initial = ModelFile::read(&model_path)?;
+    let mut files = vec![
+        ("initial_table.csv".to_owned(), text_of(&export::table(&initial).to_csv())),
+        ("summary.json".to_owned(), read_text(&output.join("summary.json"))?),
+    ];
+    for name in names_in(&output.join("models"))? {
+        let path = output.join("models").join(&name);
+        let model = ModelFile::read(&path)?;
+        let stem = name.trim_end_matches(".ron");
+        files.push((format!("{stem}_table.csv"), text_of(&export::table(&model).to_csv())));
+        files.push((format!("{stem}.ron"), without_checksum(&read_text(&path)?)));
+        let segments = output.join("segments").join(format!("{stem}.csv"));
+        files.push((format!("{stem}_segments.csv"), read_text(&segments)?));
+    }
+    Ok(Produced { tolerances: golden.tolerances, files })
+}
+
+fn names_in(folder: &Path) -> Result<Vec<String>, Failure> {
+    let entries = std::fs::read_dir(folder).map_err(|error| Failure::unreadable(folder, error))?;
+    let mut names = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(|error| Failure::unreadable(folder, error))?;
+        names.push(entry.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// A checksum changes with the last bit of any number: it is left out of what is compared within tolerance.
+fn without_checksum(text: &str) -> String {
+    text.lines()
+        .filter(|line| !line.trim_start().starts_with("checksum:"))
+        .fold(String::new(), |text, line| text + line + "\n")
+}
+
+fn text_of(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn print_now(text: &str) {
+    print!("{text}");
+}

@@ -1,0 +1,87 @@
+//! `cruisefit init`: the initial model of an aircraft from its flight-planning guide.
+
+use std::fmt::Write;
+
+use flight::Severity;
+use perf_model::{Aircraft, Guide, InitialModel};
+
+use crate::args::InitArgs;
+use crate::commands::Outcome;
+use crate::failure::{Failure, show};
+use crate::files::read_text;
+use crate::model_file::{GuideRecord, LawSettings, ModelFile};
+
+/// Runs the command.
+///
+/// # Errors
+/// What leaves nothing done.
+pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
+    let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?)
+        .map_err(|error| Failure::bad_file(&arguments.aircraft, error))?;
+    let guide = Guide::from_csv(read_text(&arguments.guide)?.as_bytes())
+        .map_err(|error| Failure::bad_file(&arguments.guide, error))?;
+    let initial = perf_model::initial_model(&aircraft, &guide)
+        .map_err(|error| Failure::bad_file(&arguments.guide, chain(&error)))?;
+    let model = model_of(&initial, &guide);
+    model.write(&arguments.output)?;
+    let mut text = String::new();
+    let grid = model.grid();
+    let _ = writeln!(
+        text,
+        "Initial model of {} ({}) from {} points of the guide: lift coefficient {:.3} to {:.3}, Mach number {:.3} to {:.3}.",
+        aircraft.name(),
+        aircraft.type_code(),
+        model.guide.points,
+        model.guide.lift_coefficient.0,
+        model.guide.lift_coefficient.1,
+        model.guide.mach.0,
+        model.guide.mach.1,
+    );
+    let _ = writeln!(
+        text,
+        "Fit residual {:.2} drag counts rms, condition number of the design {:.1e}.",
+        1e4 * model.guide.residual_rms,
+        model.guide.condition_number
+    );
+    let extrapolated = model.initial.extrapolated().iter().filter(|flag| **flag).count();
+    let _ = writeln!(
+        text,
+        "Table of {} lift coefficients by {} Mach numbers; {extrapolated} of {} nodes lie outside the guide's range and are extrapolated.",
+        grid.x().len(),
+        grid.y().len(),
+        grid.nodes()
+    );
+    for finding in &initial.findings {
+        let word = if finding.severity >= Severity::Warning { "Warning" } else { "Note" };
+        let _ = writeln!(text, "{word}: {}.", finding.message);
+    }
+    let _ = writeln!(text, "Written to {}", show(&arguments.output));
+    Ok(Outcome::text(text))
+}
+
+/// The model file of a fresh initial model, with the laws' published settings.
+pub fn model_of(initial: &InitialModel, guide: &Guide) -> ModelFile {
+    ModelFile {
+        initial: initial.model.clone(),
+        guide: GuideRecord {
+            points: guide.points().len() as u64,
+            lift_coefficient: initial.fit.lift_coefficients,
+            mach: initial.fit.machs,
+            residual_rms: initial.fit.residual_rms,
+            condition_number: initial.fit.condition_number,
+        },
+        settings: LawSettings::published(),
+        learnt: None,
+    }
+}
+
+/// An error with its causes, in one sentence.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let _ = write!(text, ": {error}");
+        cause = error.source();
+    }
+    text
+}

@@ -1,0 +1,126 @@
+//! `cruisefit predict`: fuel flow and specific range at flight points.
+
+use std::path::Path;
+
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use perf_model::{FlightPointRow, FlightPoints};
+
+use crate::args::PredictArgs;
+use crate::columns::Columns;
+use crate::commands::Outcome;
+use crate::failure::{Failure, RefusedReport, show};
+use crate::model_file::ModelFile;
+
+/// Runs the command.
+///
+/// # Errors
+/// What leaves nothing done.
+pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
+    let model = ModelFile::read(&arguments.model)?;
+    let current = model.current().map_err(|error| Failure::bad_file(&arguments.model, error))?;
+    let text = points_text(&arguments.points)?;
+    let points = FlightPoints::from_csv(&text)
+        .map_err(|error| Failure::bad_file(&arguments.points, error))?;
+    let mut refused = Vec::new();
+    let mut predicted = Vec::with_capacity(points.rows().len());
+    for row in points.rows() {
+        match current.predict(&row.point) {
+            Ok(prediction) => predicted.push(Some(prediction)),
+            // The row stays, without figures: a planner's table keeps its lines.
+            Err(error) => {
+                predicted.push(None);
+                refused.push(RefusedReport {
+                    path: arguments.points.clone(),
+                    line: usize::try_from(row.line).ok(),
+                    column: None,
+                    reason: error.to_string(),
+                });
+            }
+        }
+    }
+    table(points.header(), points.rows(), &predicted).write(arguments.output.as_deref())?;
+    let text = arguments.output.as_ref().map_or_else(String::new, |path| {
+        format!(
+            "{} of {} points predicted, written to {}\n",
+            points.rows().len() - refused.len(),
+            points.rows().len(),
+            show(path)
+        )
+    });
+    Ok(Outcome { text, refused })
+}
+
+/// The input's columns and the results.
+fn table(
+    header: &[String],
+    rows: &[FlightPointRow],
+    predicted: &[Option<perf_model::Prediction>],
+) -> Columns {
+    let mut columns = Columns::default();
+    for (column, name) in header.iter().enumerate() {
+        columns.text(name.as_str(), rows.iter().map(move |row| row.fields[column].clone()));
+    }
+    let figure = |of: fn(&perf_model::Prediction) -> f64| {
+        predicted.iter().map(move |prediction| prediction.as_ref().map(of))
+    };
+    columns.number("fuel_flow_kg_s", figure(|p| p.fuel_flow_total.to_kilograms_per_second()));
+    // Law `paper` knows no standard deviation: the column is there, and empty.
+    columns.number("fuel_flow_std_kg_s", predicted.iter().map(|_| None));
+    columns.number("specific_range_m_kg", figure(|p| p.specific_range.to_meters_per_kilogram()));
+    columns.number("lift_coefficient", figure(|p| p.lift_coefficient));
+    columns.number("drag_coefficient", figure(|p| p.drag_coefficient));
+    columns.number("extrapolated", figure(|p| if p.extrapolated { 1.0 } else { 0.0 }));
+    if rows.iter().any(|row| row.point.measured_fuel_flow_total.is_some()) {
+        columns.number(
+            "error_percent",
+            rows.iter().zip(predicted).map(|(row, prediction)| {
+                let measured = row.point.measured_fuel_flow_total?;
+                let prediction = prediction.as_ref()?;
+                Some(perf_model::fuel_flow::fuel_flow_error_percent(
+                    measured,
+                    prediction.fuel_flow_total,
+                ))
+            }),
+        );
+    }
+    columns
+}
+
+/// Flight points as CSV text; a Parquet file's rows are written as such first.
+fn points_text(path: &Path) -> Result<Vec<u8>, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
+    if !bytes.starts_with(b"PAR1") {
+        return Ok(bytes);
+    }
+    let file = std::fs::File::open(path).map_err(|error| Failure::unreadable(path, error))?;
+    let wrong = |error: parquet::errors::ParquetError| Failure::bad_file(path, error);
+    let reader = SerializedFileReader::new(file).map_err(wrong)?;
+    let names: Vec<String> = reader
+        .metadata()
+        .file_metadata()
+        .schema_descr()
+        .columns()
+        .iter()
+        .map(|column| column.name().to_owned())
+        .collect();
+    let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+    // Writing to memory cannot fail.
+    let _ = writer.write_record(&names);
+    for row in reader.get_row_iter(None).map_err(wrong)? {
+        let row = row.map_err(wrong)?;
+        let _ = writer.write_record(row.get_column_iter().map(|(_, field)| cell(field)));
+    }
+    writer.into_inner().map_err(|error| Failure::bad_file(path, error))
+}
+
+fn cell(field: &parquet::record::Field) -> String {
+    use parquet::record::Field;
+    match field {
+        Field::Null => String::new(),
+        Field::Str(text) => text.clone(),
+        Field::Double(value) => value.to_string(),
+        Field::Float(value) => value.to_string(),
+        Field::Bool(flag) => u8::from(*flag).to_string(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,101 @@
+//! `cruisefit segment`: stabilised segments, no model needed.
+
+use std::fmt::Write;
+
+use segmenter::{Criterion, Tally};
+
+use crate::args::SegmentArgs;
+use crate::commands::{Outcome, prepare, refuse_all};
+use crate::failure::{Failure, show};
+use crate::reading::FlightRead;
+use crate::segments_table::{self, SegmentRow};
+use crate::summary::aligned;
+
+/// Runs the command.
+///
+/// # Errors
+/// What leaves nothing done.
+pub fn run(arguments: &SegmentArgs, progress: bool) -> Result<Outcome, Failure> {
+    let mut reading = prepare(&arguments.reports, progress)?;
+    let files = reading.files();
+    if arguments.reports.strict && !reading.refused.is_empty() {
+        return Err(refuse_all(&reading.refused, files));
+    }
+    if reading.flights.is_empty() {
+        let first = reading.refused.first().map_or_else(String::new, ToString::to_string);
+        return Err(Failure::AllRefused { files, first });
+    }
+    // The order of flying, whatever the files are called.
+    reading.flights.sort_by(|one, other| {
+        let key = |flight: &FlightRead| {
+            (flight.identity.tail.clone(), flight.identity.start, flight.identity.flight.clone())
+        };
+        (key(one), &one.path).cmp(&(key(other), &other.path))
+    });
+    let explained = if arguments.explain { explain(&reading.flights) } else { String::new() };
+    let flights = reading.flights.len();
+    let rows: Vec<SegmentRow> = reading
+        .flights
+        .into_iter()
+        .flat_map(|flight| flight.segments)
+        .map(|segment| SegmentRow { segment, evaluated: None })
+        .collect();
+    let table = segments_table::table(&rows, segments_table::engines_of(&rows));
+    let mut text = String::new();
+    match &arguments.output {
+        Some(path) => {
+            table.write(Some(path))?;
+            text.push_str(&explained);
+            let _ = writeln!(
+                text,
+                "{} segments of {flights} flights written to {}",
+                rows.len(),
+                show(path)
+            );
+        }
+        // Standard output carries the table; the explanation goes where it does not get into it.
+        None => {
+            eprint!("{explained}");
+            table.write(None)?;
+        }
+    }
+    Ok(Outcome { text, refused: reading.refused })
+}
+
+/// What each criterion cost: a line a flight, then all flights together.
+fn explain(flights: &[FlightRead]) -> String {
+    let mut text = String::new();
+    let mut total = Tally::NOTHING;
+    for flight in flights {
+        total += flight.tally;
+        let _ =
+            writeln!(text, "{} {}: {}", flight.identity.tail, flight.identity.flight, flight.tally);
+        for note in &flight.notes {
+            let _ = writeln!(text, "    {note}");
+        }
+    }
+    let _ = writeln!(text, "\nAll {} flights: {total}\n", flights.len());
+    let head = ["criterion", "unsteady", "alone", "outliers", "alone", "not evaluated"];
+    let mut rows: Vec<Vec<String>> = vec![head.into_iter().map(str::to_owned).collect()];
+    for criterion in Criterion::ALL {
+        let cost = total.cost(criterion);
+        let not_evaluated = total.flights - cost.flights_evaluated;
+        rows.push(vec![
+            criterion.name().to_owned(),
+            cost.unsteady.to_string(),
+            cost.unsteady_alone.to_string(),
+            cost.outliers.to_string(),
+            cost.outliers_alone.to_string(),
+            match not_evaluated {
+                0 => String::new(),
+                1 => "1 flight".to_owned(),
+                n => format!("{n} flights"),
+            },
+        ]);
+    }
+    text.push_str(&aligned(&rows));
+    text.push_str(
+        "Samples that fail a criterion (alone: and no other), and that the two-sigma filter discards in its channel.\n\n",
+    );
+    text
+}

@@ -1,0 +1,148 @@
+//! What ends a command with nothing done, told so that a person can mend it, and the exit statuses.
+
+use std::path::{Path, PathBuf};
+
+/// Exit status 0: everything asked for was done.
+pub const DONE: u8 = 0;
+/// Exit status 1: done, but some input was refused.
+pub const SOME_REFUSED: u8 = 1;
+/// Exit status 2: nothing was done.
+pub const NOTHING_DONE: u8 = 2;
+
+/// A reason for which nothing was done.
+#[derive(Debug, thiserror::Error, miette::Diagnostic)]
+#[non_exhaustive]
+pub enum Failure {
+    /// A file or folder that cannot be read.
+    #[error("{path}: {reason}")]
+    Unreadable {
+        /// The path as given.
+        path: String,
+        /// What the operating system, or the reader, says.
+        reason: String,
+    },
+    /// A file or folder that cannot be written.
+    #[error("{path} cannot be written: {reason}")]
+    #[diagnostic(help("nothing was changed there; choose another place or make it writable"))]
+    Unwritable {
+        /// The path as given.
+        path: String,
+        /// What the operating system says.
+        reason: String,
+    },
+    /// A file whose content is wrong.
+    #[error("{path}: {reason}")]
+    BadFile {
+        /// The path as given.
+        path: String,
+        /// What is wrong, with position.
+        reason: String,
+        /// What may be done about it.
+        #[help]
+        help: Option<String>,
+    },
+    /// No report among the inputs.
+    #[error("no cruise report in {inputs}{skipped}")]
+    #[diagnostic(help(
+        "reports end in .txt, .rpt or .gz; recordings of another layout need --mapping"
+    ))]
+    NoReports {
+        /// What was given.
+        inputs: String,
+        /// ", 3 other files skipped" or nothing.
+        skipped: String,
+    },
+    /// Every report was refused.
+    #[error("none of {files} reports could be used; the first: {first}")]
+    AllRefused {
+        /// How many files there were.
+        files: usize,
+        /// The first refusal.
+        first: String,
+    },
+    /// A report was refused under `--strict`.
+    #[error(
+        "{refused} of {files} reports refused, and --strict was asked for; nothing was written"
+    )]
+    Strict {
+        /// Refused files.
+        refused: usize,
+        /// All files.
+        files: usize,
+    },
+    /// A folder that was begun with something else.
+    #[error("{folder} was begun with another {what}: {difference}")]
+    #[diagnostic(help(
+        "use another folder, or --restart to begin anew (the old folder is kept aside)"
+    ))]
+    BegunOtherwise {
+        /// The folder.
+        folder: String,
+        /// Initial model, law or setting.
+        what: &'static str,
+        /// Both values.
+        difference: String,
+    },
+    /// An argument that makes no sense.
+    #[error("{argument}: {reason}")]
+    BadArgument {
+        /// The argument as it is called.
+        argument: &'static str,
+        /// Why.
+        reason: String,
+    },
+    /// Values out of tolerance in `golden check`.
+    #[error("{count} values out of tolerance")]
+    GoldenDiffers {
+        /// How many.
+        count: usize,
+    },
+}
+
+impl Failure {
+    /// An unreadable path.
+    pub fn unreadable(path: &Path, reason: impl ToString) -> Self {
+        Self::Unreadable { path: show(path), reason: reason.to_string() }
+    }
+
+    /// An unwritable path.
+    pub fn unwritable(path: &Path, reason: impl ToString) -> Self {
+        Self::Unwritable { path: show(path), reason: reason.to_string() }
+    }
+
+    /// A file with wrong content.
+    pub fn bad_file(path: &Path, reason: impl ToString) -> Self {
+        Self::BadFile { path: show(path), reason: reason.to_string(), help: None }
+    }
+}
+
+/// A path for a message: as given, with forward slashes left as they are.
+pub fn show(path: &Path) -> String {
+    path.display().to_string()
+}
+
+/// A report that was refused, while the batch went on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RefusedReport {
+    /// File.
+    pub path: PathBuf,
+    /// Physical line from 1, where the refusal has one.
+    pub line: Option<usize>,
+    /// Column (character) from 1, where the refusal has one.
+    pub column: Option<usize>,
+    /// What was found and what was expected.
+    pub reason: String,
+}
+
+impl std::fmt::Display for RefusedReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+            if let Some(column) = self.column {
+                write!(f, ":{column}")?;
+            }
+        }
+        write!(f, ": {}", self.reason)
+    }
+}

@@ -1,0 +1,137 @@
+//! One tail's flights, learnt one after the other; and what a table says of segments.
+//!
+//! Everything here is a function of model and segments: no file, no thread, no clock.
+
+use adapt::paper::{self, PaperLaw, State as PaperState, Update};
+use flight::{Observation, Segment};
+use lut::{Outside, Table};
+use perf_model::PerformanceModel;
+use refit::RefitRule;
+
+use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
+use crate::references::References;
+use crate::segments_table::Evaluated;
+
+/// A flight to learn.
+#[derive(Clone, Debug)]
+pub struct FlightToLearn<'a> {
+    /// Its entry in the ledger, but for what learning counts.
+    pub entry: LedgerEntry,
+    /// Its segments in time order.
+    pub segments: &'a [Segment],
+}
+
+/// What learning one flight came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlightLearnt {
+    /// Segments that adapted the table.
+    pub adapted: usize,
+    /// Segments outside the grid, or that could not be reduced to an observation.
+    pub outside_table: usize,
+    /// Whether the polynomial was fitted anew.
+    pub refitted: bool,
+}
+
+/// The state in which a tail begins: the initial table, nothing learnt.
+pub fn begin(initial: &PerformanceModel, tail: &str, settings: PaperSettings) -> Learnt {
+    let table = initial.drag_table().clone();
+    let nodes = table.values().len();
+    Learnt {
+        tail: tail.to_owned(),
+        law: LawState::Paper {
+            settings,
+            state: PaperState::new(table),
+            ever_adapted: vec![false; nodes],
+            refits: 0,
+        },
+        references: References::default(),
+        ledger: Vec::new(),
+    }
+}
+
+/// Learns one flight: each segment in time order, then, perhaps, the global refit.
+///
+/// # Errors
+/// A threshold that is none, or a table whose nodes no longer determine its polynomial; the flight is then not learnt.
+pub fn learn_flight(
+    initial: &PerformanceModel,
+    learnt: &mut Learnt,
+    flight: &FlightToLearn<'_>,
+) -> Result<FlightLearnt, LearningError> {
+    let LawState::Paper { settings, state, ever_adapted, refits } = &mut learnt.law;
+    let law = PaperLaw::new(settings.threshold_percent)?;
+    let mut result = FlightLearnt::default();
+    for segment in flight.segments {
+        let Ok(observation) = initial.observe(segment) else {
+            result.outside_table += 1;
+            continue;
+        };
+        match law.adapt(state, &observation) {
+            update @ Update::Adapted { .. } => {
+                result.adapted += 1;
+                for change in update.changes() {
+                    ever_adapted[change.node] = true;
+                }
+            }
+            Update::WithinDeadBand { .. } => {}
+            Update::OutsideGrid(_) | Update::Unusable { .. } => result.outside_table += 1,
+        }
+        learnt.references.add(segment, observation.lift_coefficient);
+    }
+    let (drag_coefficient, confidence) = state.tables_mut();
+    let basis = initial.polynomial().basis;
+    let report = refit::refit(RefitRule::ghazi_2020(), basis, drag_coefficient, confidence)?;
+    if report.fit.is_some() {
+        result.refitted = true;
+        *refits += 1;
+    }
+    learnt.ledger.push(LedgerEntry {
+        segments: flight.segments.len() as u64,
+        outside_table: result.outside_table as u64,
+        ..flight.entry.clone()
+    });
+    Ok(result)
+}
+
+/// Why a flight was not learnt.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LearningError {
+    /// The law's threshold.
+    #[error(transparent)]
+    Threshold(#[from] paper::ThresholdError),
+    /// The global refit.
+    #[error(transparent)]
+    Refit(#[from] refit::RefitError),
+}
+
+/// A segment reduced to an observation; `None` where its state is outside what the model is defined for.
+pub fn observe(model: &PerformanceModel, segments: &[Segment]) -> Vec<Option<Observation>> {
+    segments.iter().map(|segment| model.observe(segment).ok()).collect()
+}
+
+/// What a table says of an observation; `None` outside its grid.
+pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
+    let cell =
+        table.grid().locate(observation.lift_coefficient, observation.mach, Outside::Error).ok()?;
+    Some(paper::error_percent(table, &cell, observation))
+}
+
+/// What a table says of each observation.
+pub fn evaluate(table: &Table, observations: &[Option<Observation>]) -> Vec<Option<Evaluated>> {
+    observations
+        .iter()
+        .map(|observation| {
+            observation.as_ref().map(|observation| {
+                let error = error_percent(table, observation);
+                Evaluated {
+                    lift_coefficient: observation.lift_coefficient,
+                    drag_coefficient: observation.drag_coefficient,
+                    predicted_fuel_flow_kg_s: error
+                        .map(|error| observation.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
+                    error_percent: error,
+                }
+            })
+        })
+        .collect()
+}

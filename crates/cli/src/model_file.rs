@@ -1,0 +1,248 @@
+//! `MODEL.ron`: what an aircraft's model is and what it has learnt.
+//!
+//! BE ADVISED: other programs, and older and newer versions of this one, read these files. `format` counts up when the
+//! meaning of a field changes; a field may be added with a default. Every number is written with the shortest decimals
+//! that read back to the same bits. The last field is a checksum of all bytes before it: a digit that a disk, a mail
+//! program or an editor changed is noticed before anybody acts on it.
+
+mod text;
+
+pub(crate) use text::hex;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use adapt::paper::State as PaperState;
+use lut::Table;
+use perf_model::PerformanceModel;
+use serde::{Deserialize, Serialize};
+
+use crate::failure::Failure;
+use crate::files::{read_text, write_atomically};
+use crate::references::References;
+
+/// The format that this program writes.
+pub const FORMAT: u32 = 1;
+
+/// A model, and what it has learnt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelFile {
+    /// The initial model: aircraft, polynomial, drag table, extrapolated nodes.
+    pub initial: PerformanceModel,
+    /// What the guide was like from which the initial model comes.
+    pub guide: GuideRecord,
+    /// Settings of the laws, fixed when the initial model is made.
+    pub settings: LawSettings,
+    /// What was learnt; `None` in an initial model.
+    pub learnt: Option<Learnt>,
+}
+
+/// What the initial model's guide was like, and how well the polynomial fits it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GuideRecord {
+    /// Rows.
+    pub points: u64,
+    /// Smallest and largest lift coefficient.
+    pub lift_coefficient: (f64, f64),
+    /// Smallest and largest Mach number.
+    pub mach: (f64, f64),
+    /// Root mean square of the fit's residuals in drag coefficient.
+    pub residual_rms: f64,
+    /// Condition number of the fit's design.
+    pub condition_number: f64,
+}
+
+/// Settings of the adaptation laws.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LawSettings {
+    /// Of law `paper`.
+    pub paper: PaperSettings,
+}
+
+impl LawSettings {
+    /// The settings that the laws were published with.
+    pub const fn published() -> Self {
+        Self {
+            paper: PaperSettings {
+                threshold_percent: adapt::paper::PaperLaw::ghazi_2020().threshold_percent(),
+            },
+        }
+    }
+}
+
+/// Settings of law `paper`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaperSettings {
+    /// A segment adapts the table where its absolute error exceeds this.
+    pub threshold_percent: f64,
+}
+
+/// What a model has learnt from one tail.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Learnt {
+    /// Whose flights.
+    pub tail: String,
+    /// The law and its state.
+    pub law: LawState,
+    /// Mean conditions.
+    pub references: References,
+    /// Flights, in the order in which they were learnt.
+    pub ledger: Vec<LedgerEntry>,
+}
+
+/// State of the law by which a model learns.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawState {
+    /// The local law of Ghazi et al. 2020 with its global refit.
+    Paper {
+        /// Settings in force.
+        settings: PaperSettings,
+        /// Drag and confidence tables.
+        state: PaperState,
+        /// Nodes that a segment ever adapted (the refit sets confidences back).
+        ever_adapted: Vec<bool>,
+        /// Global refits so far.
+        refits: u32,
+    },
+}
+
+/// A flight that was learnt.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LedgerEntry {
+    /// Flight as sent.
+    pub flight: String,
+    /// START, an instant.
+    pub start: String,
+    /// SHA-256 of the report's bytes (uncompressed).
+    pub content: String,
+    /// Samples of the report.
+    pub samples: u64,
+    /// Stabilised segments.
+    pub segments: u64,
+    /// Segments that the grid refused.
+    pub outside_table: u64,
+}
+
+impl ModelFile {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no model, is of a newer format, or whose checksum does not match.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        text::parse(&read_text(path)?).map_err(|error| Failure::BadFile {
+            path: path.display().to_string(),
+            help: error.help(),
+            reason: error.to_string(),
+        })
+    }
+
+    /// Writes a model file: whole or not at all.
+    ///
+    /// # Errors
+    /// A place that cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Failure> {
+        let text = self.to_text().map_err(|error| Failure::unwritable(path, error))?;
+        write_atomically(path, text.as_bytes())
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// None that is known: what RON refuses to write.
+    pub fn to_text(&self) -> Result<String, ron::Error> {
+        text::print(self)
+    }
+
+    /// The drag table as it stands: learnt, or initial.
+    pub fn drag_coefficient(&self) -> &Table {
+        match &self.learnt {
+            Some(Learnt { law: LawState::Paper { state, .. }, .. }) => state.drag_coefficient(),
+            None => self.initial.drag_table(),
+        }
+    }
+
+    /// The confidence table, where something was learnt.
+    pub fn confidence(&self) -> Option<&Table> {
+        match &self.learnt {
+            Some(Learnt { law: LawState::Paper { state, .. }, .. }) => Some(state.confidence()),
+            None => None,
+        }
+    }
+
+    /// The model that predicts: the initial one with the learnt table in its place.
+    ///
+    /// # Errors
+    /// None for a model that was read or learnt: both tables are on one grid.
+    pub fn current(&self) -> Result<PerformanceModel, perf_model::ModelError> {
+        self.initial.with_drag_table(self.drag_coefficient().clone())
+    }
+
+    /// Global refits, where the law makes them.
+    pub fn refits(&self) -> Option<u32> {
+        match &self.learnt {
+            Some(Learnt { law: LawState::Paper { refits, .. }, .. }) => Some(*refits),
+            None => None,
+        }
+    }
+
+    /// Share of nodes ever adapted.
+    pub fn informed_nodes(&self) -> f64 {
+        match &self.learnt {
+            Some(Learnt { law: LawState::Paper { ever_adapted, .. }, .. }) => {
+                let informed = ever_adapted.iter().filter(|adapted| **adapted).count();
+                informed as f64 / ever_adapted.len() as f64
+            }
+            None => 0.0,
+        }
+    }
+
+    /// Whether two files hold the same initial model and settings; if not, what differs and how.
+    pub fn difference_of_initial(&self, other: &Self) -> Option<(&'static str, String)> {
+        if self.initial.aircraft() != other.initial.aircraft() {
+            return Some((
+                "aircraft",
+                format!(
+                    "{:?} against {:?}",
+                    other.initial.aircraft().name(),
+                    self.initial.aircraft().name()
+                ),
+            ));
+        }
+        if self.initial != other.initial {
+            return Some((
+                "initial model",
+                format!(
+                    "polynomial {:?} against {:?}",
+                    other.initial.polynomial().coefficients,
+                    self.initial.polynomial().coefficients
+                ),
+            ));
+        }
+        if self.settings != other.settings {
+            return Some(("setting", format!("{:?} against {:?}", other.settings, self.settings)));
+        }
+        None
+    }
+
+    /// Whether two files learn by the same law with the same settings; if not, how they differ.
+    pub fn difference_of_law(&self, other: &Self) -> Option<String> {
+        let told = |model: &Self| {
+            model.learnt.as_ref().map(|learnt| match &learnt.law {
+                LawState::Paper { settings, .. } => {
+                    format!("law paper, threshold {} %", settings.threshold_percent)
+                }
+            })
+        };
+        let (one, other) = (told(self)?, told(other)?);
+        (one != other).then(|| format!("{other} against {one}"))
+    }
+
+    /// A grid shared by the model's tables.
+    pub fn grid(&self) -> &Arc<lut::Grid> {
+        self.initial.drag_table().grid()
+    }
+}

@@ -1,0 +1,130 @@
+//! Which model a report takes: that of its tail, else that of its type.
+
+use std::path::{Path, PathBuf};
+
+use crate::failure::Failure;
+use crate::model_file::ModelFile;
+use crate::reading::FlightRead;
+
+/// The models of a run.
+#[derive(Clone, Debug)]
+pub struct Models(Vec<(PathBuf, ModelFile)>);
+
+impl Models {
+    /// Reads model files, and those of folders (files ending in `.ron`), in path order.
+    ///
+    /// # Errors
+    /// A file that is no model, a folder without one, or two models that claim the same tail or, both without a tail,
+    /// the same type.
+    pub fn read(arguments: &[PathBuf]) -> Result<Self, Failure> {
+        let mut models: Vec<(PathBuf, ModelFile)> = Vec::new();
+        for argument in arguments {
+            for path in files_of(argument)? {
+                let model = ModelFile::read(&path)?;
+                if let Some((other, _)) = models.iter().find(|(_, known)| same_claim(known, &model))
+                {
+                    return Err(Failure::bad_file(
+                        &path,
+                        format!("claims {}, as {} does", claim(&model), other.display()),
+                    ));
+                }
+                models.push((path, model));
+            }
+        }
+        Ok(Self(models))
+    }
+
+    /// The model for a flight: that of its tail, else that of its type; with as many engines as the report speaks of.
+    ///
+    /// # Errors
+    /// Why there is none, in words for a refusal.
+    pub fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, String> {
+        let model = self.for_report(&flight.identity.tail, &flight.aircraft_type)?;
+        let engines = model.initial.aircraft().engines();
+        match flight.engines {
+            Some(found) if found != engines => Err(format!(
+                "found {found} engines, expected {engines} as the model's aircraft has"
+            )),
+            _ => Ok(model),
+        }
+    }
+
+    /// The model for a report of this tail and type.
+    ///
+    /// # Errors
+    /// Why there is none, in words for a refusal.
+    fn for_report(&self, tail: &str, aircraft_type: &str) -> Result<&ModelFile, String> {
+        let of_type = |model: &&ModelFile| model.initial.aircraft().type_code() == aircraft_type;
+        let all = || self.0.iter().map(|(_, model)| model);
+        if let Some(model) = all().find(|model| tail_of(model) == Some(tail)) {
+            return if of_type(&model) {
+                Ok(model)
+            } else {
+                Err(format!(
+                    "found aircraft type {aircraft_type:?}, expected {:?}, the type of tail {tail}'s model",
+                    model.initial.aircraft().type_code()
+                ))
+            };
+        }
+        if let Some(model) = all().filter(of_type).find(|model| tail_of(model).is_none()) {
+            return Ok(model);
+        }
+        // The only model of its type serves a tail that it has not learnt from: that is what it is compared with.
+        let mut others = all().filter(of_type);
+        if let Some(model) = others.next() {
+            return match others.next() {
+                None => Ok(model),
+                Some(_) => Err(format!(
+                    "found tail {tail:?}, expected a tail that one of the models has learnt, or one model of type \
+                     {aircraft_type:?} for all others"
+                )),
+            };
+        }
+        let mut types: Vec<&str> = all().map(|m| m.initial.aircraft().type_code()).collect();
+        types.sort_unstable();
+        types.dedup();
+        Err(format!(
+            "found aircraft type {aircraft_type:?}, expected {}",
+            types.iter().map(|t| format!("{t:?}")).collect::<Vec<_>>().join(" or ")
+        ))
+    }
+}
+
+fn files_of(argument: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if !argument.is_dir() {
+        return Ok(vec![argument.to_owned()]);
+    }
+    let entries =
+        std::fs::read_dir(argument).map_err(|error| Failure::unreadable(argument, error))?;
+    let mut paths = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(|error| Failure::unreadable(argument, error))?.path();
+        if path.extension().is_some_and(|ending| ending == "ron") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    if paths.is_empty() {
+        return Err(Failure::bad_file(argument, "a folder without a model file (.ron)"));
+    }
+    Ok(paths)
+}
+
+fn tail_of(model: &ModelFile) -> Option<&str> {
+    model.learnt.as_ref().map(|learnt| learnt.tail.as_str())
+}
+
+fn same_claim(one: &ModelFile, other: &ModelFile) -> bool {
+    match (tail_of(one), tail_of(other)) {
+        (Some(one), Some(other)) => one == other,
+        (None, None) => one.initial.aircraft().type_code() == other.initial.aircraft().type_code(),
+        _ => false,
+    }
+}
+
+fn claim(model: &ModelFile) -> String {
+    match tail_of(model) {
+        Some(tail) => format!("tail {tail}"),
+        None => format!("type {}", model.initial.aircraft().type_code()),
+    }
+}

@@ -1,0 +1,99 @@
+//! The section of one tail.
+
+use maud::{Markup, html};
+
+use super::text::{counted, plain, signed};
+use super::view::TailView;
+use super::{Place, envelope, errors, polars};
+use crate::results::TailResult;
+use crate::statistics::ErrorStatistics;
+
+/// A tail's section, folded unless `open`.
+pub(super) fn section(result: &TailResult, place: &Place<'_>, open: bool) -> Markup {
+    let view = TailView::of(result);
+    html! {
+        details.tail open[open] {
+            summary { h3 { (result.tail) } " " span { (headline(result)) } }
+            // The anchor is inside: following a link to it unfolds the section.
+            div id=(place.id) {
+                p { (about(result)) }
+                (figures(&view, place))
+                (notes(result, &view))
+            }
+        }
+    }
+}
+
+/// All charts and tables of a tail.
+pub(super) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
+    let bins = errors::bins(view);
+    html! {
+        div.figures {
+            (errors::histogram(view, &bins, place))
+            (errors::over_time(view, &bins, place))
+        }
+        (errors::furthest_flights(view))
+        (polars::polars(view, place))
+        (envelope::envelope(view))
+    }
+}
+
+fn headline(result: &TailResult) -> String {
+    let summary = &result.summary;
+    let errors = &summary.fuel_flow_error_percent;
+    let told = |statistics: &ErrorStatistics| {
+        format!("mean {} %, std {} %", signed(statistics.mean), plain(statistics.std))
+    };
+    let counts = format!(
+        "{}, {}; error ",
+        counted(summary.flights, "flight"),
+        counted(summary.segments, "segment")
+    );
+    match &errors.after {
+        Some(after) => format!("{counts}before {}; after {}", told(&errors.before), told(after)),
+        None => format!("{counts}{}", told(&errors.before)),
+    }
+}
+
+fn about(result: &TailResult) -> String {
+    let aircraft = result.model.initial.aircraft();
+    let guide = &result.model.guide;
+    format!(
+        "{}, type {}. The initial model's guide has {} rows from lift coefficient {:.3} to {:.3} and Mach number \
+         {:.3} to {:.3}.",
+        aircraft.name(),
+        aircraft.type_code(),
+        guide.points,
+        guide.lift_coefficient.0,
+        guide.lift_coefficient.1,
+        guide.mach.0,
+        guide.mach.1
+    )
+}
+
+fn notes(result: &TailResult, view: &TailView) -> Markup {
+    let mut notes = Vec::new();
+    notes.extend(envelope::outside(view));
+    let not_reduced = result.rows.len() - view.points.len();
+    if not_reduced > 0 {
+        notes.push(format!(
+            "{} could not be reduced to a drag coefficient: the state is outside what the model is defined for.",
+            counted(not_reduced, "segment")
+        ));
+    }
+    let assumed = result.rows.iter().filter(|row| row.segment.temperature_assumed).count();
+    if assumed > 0 {
+        notes.push(format!(
+            "Static air temperature is an assumption, not a recording, in {}.",
+            counted(assumed, "segment")
+        ));
+    }
+    html! {
+        @if !(notes.is_empty() && result.notes.is_empty()) {
+            h4 { "Notes on the data" }
+            ul {
+                @for note in notes.iter().chain(&result.notes) { li { (note) } }
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! A tail as plain numbers: what the charts draw, taken out of the results once.
+
+use std::collections::BTreeMap;
+
+use flight::Timestamp;
+
+use crate::model_file::{LawState, Learnt, ModelFile};
+use crate::results::TailResult;
+use crate::statistics::ErrorStatistics;
+
+/// A tail as plain numbers.
+#[derive(Clone, Debug)]
+pub(super) struct TailView {
+    /// Segments that could be reduced to a lift and a drag coefficient, in the results' order.
+    pub(super) points: Vec<Point>,
+    /// Flights with segments, by START.
+    pub(super) flights: Vec<Flight>,
+    /// Its drag tables.
+    pub(super) polars: Polars,
+    /// Whether there is an "after".
+    pub(super) adapted: bool,
+}
+
+/// A segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Point {
+    /// START of its flight, seconds since 1970-01-01 UTC.
+    pub(super) start_s: f64,
+    pub(super) lift_coefficient: f64,
+    pub(super) mach: f64,
+    /// Observed.
+    pub(super) drag_coefficient: f64,
+    /// Error of the initial (or given) table, %; `None` outside it.
+    pub(super) before: Option<f64>,
+    /// Error of the final table, %; `None` outside it, or where nothing is adapted.
+    pub(super) after: Option<f64>,
+}
+
+/// A flight's errors.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Flight {
+    pub(super) flight: String,
+    pub(super) start: Timestamp,
+    /// START, seconds since 1970-01-01 UTC.
+    pub(super) start_s: f64,
+    /// Of its segments inside the table.
+    pub(super) before: ErrorStatistics,
+    /// Of its segments inside the table.
+    pub(super) after: ErrorStatistics,
+}
+
+/// The drag tables, lift coefficient outer and Mach number inner.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Polars {
+    pub(super) lift_coefficient: Vec<f64>,
+    pub(super) mach: Vec<f64>,
+    /// Drag coefficient of the initial table.
+    pub(super) initial: Vec<f64>,
+    /// Drag coefficient as it stands.
+    pub(super) current: Vec<f64>,
+    /// Nodes that a segment ever adapted.
+    pub(super) informed: Vec<bool>,
+    /// Nodes outside the range of the guide.
+    pub(super) extrapolated: Vec<bool>,
+}
+
+impl TailView {
+    pub(super) fn of(result: &TailResult) -> Self {
+        let adapted = result.summary.fuel_flow_error_percent.after.is_some();
+        let after = result.errors_after();
+        let mut points = Vec::new();
+        let mut flights: BTreeMap<(Timestamp, &str), Errors> = BTreeMap::new();
+        for (k, row) in result.rows.iter().enumerate() {
+            let identity = &row.segment.identity;
+            let errors = flights.entry((identity.start, &identity.flight)).or_default();
+            let Some(evaluated) = row.evaluated else {
+                continue;
+            };
+            let point = Point {
+                start_s: identity.start.as_second() as f64,
+                lift_coefficient: evaluated.lift_coefficient,
+                mach: row.segment.means.mach,
+                drag_coefficient: evaluated.drag_coefficient,
+                before: evaluated.error_percent,
+                after: after.get(k).copied().flatten(),
+            };
+            errors.before.extend(point.before);
+            errors.after.extend(point.after);
+            points.push(point);
+        }
+        let flights = flights.into_iter().map(|((start, flight), errors)| Flight {
+            flight: flight.to_owned(),
+            start,
+            start_s: start.as_second() as f64,
+            before: ErrorStatistics::of(&errors.before),
+            after: ErrorStatistics::of(&errors.after),
+        });
+        Self { points, flights: flights.collect(), polars: Polars::of(&result.model), adapted }
+    }
+
+    /// What "before" is called: there is one only where there is an "after".
+    pub(super) fn before_label(&self) -> &'static str {
+        if self.adapted { "before" } else { "model as given" }
+    }
+
+    /// Errors of the initial (or given) table.
+    pub(super) fn before(&self) -> Vec<f64> {
+        self.points.iter().filter_map(|point| point.before).collect()
+    }
+
+    /// Errors of the final table; none where nothing is adapted.
+    pub(super) fn after(&self) -> Vec<f64> {
+        self.points.iter().filter_map(|point| point.after).collect()
+    }
+}
+
+#[derive(Default)]
+struct Errors {
+    before: Vec<f64>,
+    after: Vec<f64>,
+}
+
+impl Polars {
+    fn of(model: &ModelFile) -> Self {
+        let grid = model.grid();
+        let initial = model.initial.drag_table().values().to_vec();
+        let informed = match &model.learnt {
+            Some(Learnt { law: LawState::Paper { ever_adapted, .. }, .. }) => ever_adapted.clone(),
+            None => vec![false; initial.len()],
+        };
+        Self {
+            lift_coefficient: grid.x().breakpoints().to_vec(),
+            mach: grid.y().breakpoints().to_vec(),
+            initial,
+            current: model.drag_coefficient().values().to_vec(),
+            informed,
+            extrapolated: model.initial.extrapolated().to_vec(),
+        }
+    }
+
+    /// Node of two breakpoints.
+    pub(super) fn node(&self, lift_coefficient: usize, mach: usize) -> usize {
+        lift_coefficient * self.mach.len() + mach
+    }
+}

@@ -1,0 +1,191 @@
+//! Report files in, stabilised segments out: in parallel, file by file, nothing of a file kept but its segments.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::mapping_stub::Mapping;
+use flight::{FlightIdentity, Report, Segment, Severity};
+use rayon::prelude::*;
+use report::{Parsed, Reader};
+use segmenter::{Tally, TrimCriteria};
+use sha2::{Digest, Sha256};
+
+use crate::failure::RefusedReport;
+use crate::model_file::hex;
+use crate::progress::Progress;
+
+/// One flight, reduced to its segments.
+#[derive(Clone, Debug)]
+pub struct FlightRead {
+    /// File it came from.
+    pub path: PathBuf,
+    /// Who and when.
+    pub identity: Arc<FlightIdentity>,
+    /// Type code of the aircraft.
+    pub aircraft_type: String,
+    /// Engines recorded apart.
+    pub engines: Option<usize>,
+    /// SHA-256 of the uncompressed content, hexadecimal.
+    pub content: String,
+    /// Samples as sent.
+    pub samples: usize,
+    /// Segments in time order.
+    pub segments: Vec<Segment>,
+    /// What became of every sample, counted.
+    pub tally: Tally,
+    /// What is worth knowing, each a sentence.
+    pub notes: Vec<String>,
+}
+
+impl FlightRead {
+    /// Adds this flight's notes to those of its tail, each sentence once.
+    pub fn add_notes(&self, notes: &mut Vec<String>) {
+        for note in &self.notes {
+            if !notes.contains(note) {
+                notes.push(note.clone());
+            }
+        }
+    }
+}
+
+/// Everything that came of a set of files, in the order of the files.
+#[derive(Clone, Debug, Default)]
+pub struct Reading {
+    /// Flights.
+    pub flights: Vec<FlightRead>,
+    /// Files, or parts of them, that were refused.
+    pub refused: Vec<RefusedReport>,
+}
+
+impl Reading {
+    /// Reports that were met, used or refused.
+    pub fn files(&self) -> usize {
+        self.flights.len() + self.refused.len()
+    }
+}
+
+/// Reads files and finds their segments; file by file in parallel, results in the order of the files.
+pub fn read_all(
+    files: &[PathBuf],
+    mapping: Option<&Mapping>,
+    criteria: &TrimCriteria,
+    progress: &Progress,
+) -> Reading {
+    let read: Vec<(Vec<FlightRead>, Vec<RefusedReport>)> = files
+        .par_iter()
+        .map_init(Buffers::default, |buffers, path| {
+            let result = read_file(path, mapping, criteria, buffers);
+            progress.step();
+            result
+        })
+        .collect();
+    let mut reading = Reading::default();
+    for (flights, refused) in read {
+        reading.flights.extend(flights);
+        reading.refused.extend(refused);
+    }
+    reading
+}
+
+/// Buffers that a worker uses for one file after the other.
+#[derive(Default)]
+struct Buffers {
+    raw: Vec<u8>,
+    unpacked: Vec<u8>,
+    reader: Reader,
+}
+
+fn read_file(
+    path: &Path,
+    mapping: Option<&Mapping>,
+    criteria: &TrimCriteria,
+    buffers: &mut Buffers,
+) -> (Vec<FlightRead>, Vec<RefusedReport>) {
+    let refuse = |line, column, reason: String| RefusedReport {
+        path: path.to_owned(),
+        line,
+        column,
+        reason,
+    };
+    buffers.raw.clear();
+    let opened = std::fs::File::open(path).and_then(|mut file| file.read_to_end(&mut buffers.raw));
+    if let Err(error) = opened {
+        return (Vec::new(), vec![refuse(None, None, error.to_string())]);
+    }
+    // The content is known by its uncompressed bytes: a report that was packed later is the same report.
+    let bytes = match unpack(&buffers.raw, &mut buffers.unpacked) {
+        true => buffers.unpacked.as_slice(),
+        false => buffers.raw.as_slice(),
+    };
+    let parsed = match mapping {
+        None => buffers.reader.read(bytes).map(|parsed| vec![parsed]),
+        Some(mapping) => mapping.read(bytes),
+    };
+    let parsed = match parsed {
+        Ok(parsed) => parsed,
+        Err(refusal) => {
+            let reason = format!("found {}, expected {}", refusal.found, refusal.kind);
+            return (Vec::new(), vec![refuse(Some(refusal.line), Some(refusal.column), reason)]);
+        }
+    };
+    let content = hex(&Sha256::digest(bytes));
+    let mut flights = Vec::new();
+    let mut refused = Vec::new();
+    for Parsed { report, findings } in parsed {
+        let mut notes = Vec::new();
+        for finding in findings {
+            if finding.severity >= Severity::Warning {
+                tracing::warn!(file = %path.display(), line = finding.line, "{}", finding.message);
+            }
+            notes.push(finding.message);
+        }
+        match reduce(path, report, &content, criteria, notes) {
+            Ok(flight) => flights.push(flight),
+            Err(error) => refused.push(refuse(None, None, error.to_string())),
+        }
+    }
+    (flights, refused)
+}
+
+/// Unpacks gzip into `unpacked`; false for what is no gzip, or a damaged one (whose refusal is the reader's).
+fn unpack(raw: &[u8], unpacked: &mut Vec<u8>) -> bool {
+    unpacked.clear();
+    raw.starts_with(&[0x1f, 0x8b])
+        && flate2::read::MultiGzDecoder::new(raw).read_to_end(unpacked).is_ok()
+}
+
+fn reduce(
+    path: &Path,
+    report: Report,
+    content: &str,
+    criteria: &TrimCriteria,
+    mut notes: Vec<String>,
+) -> Result<FlightRead, track::TrackError> {
+    let samples = report.len();
+    let engines = report.engines();
+    let header = report.header();
+    let aircraft_type = header.aircraft_type.clone();
+    let identity = Arc::new(header.identity.clone());
+    let track = track::derive(report)?;
+    if let flight::TemperatureSource::AssumedIsa { isa_deviation_k } = track.temperature_source() {
+        notes.push(format!("static air temperature assumed: ISA {isa_deviation_k:+} K"));
+    }
+    let segmentation = segmenter::segment(&track, criteria);
+    let not_evaluated = segmentation.not_evaluated();
+    if !not_evaluated.is_empty() {
+        notes
+            .push(format!("trim criteria not evaluated, for want of a recording: {not_evaluated}"));
+    }
+    Ok(FlightRead {
+        path: path.to_owned(),
+        identity,
+        aircraft_type,
+        engines,
+        content: content.to_owned(),
+        samples,
+        segments: segmentation.segments,
+        tally: segmentation.tally,
+        notes,
+    })
+}

@@ -1,0 +1,168 @@
+//! Each command once on real input.
+
+use crate::support::{
+    adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers, root, shared,
+};
+
+#[test]
+fn segment_needs_no_model_and_explains() {
+    let scratch = tempfile::tempdir().unwrap();
+    let csv = scratch.path().join("segments.csv");
+    let reports = fixture("reports");
+    let ran = cruisefit(&[
+        "segment".as_ref(),
+        reports.as_os_str(),
+        "-o".as_ref(),
+        csv.as_os_str(),
+        "--explain".as_ref(),
+    ])
+    .expect(0);
+    let columns = csv_columns(&csv);
+    assert!(ran.stdout.contains("SIM-01 0012:"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("GSPD"), "{}", ran.stdout);
+    assert!(!columns.contains_key("error_percent"));
+    // Without -o the table, and nothing else, goes to standard output.
+    let plain = cruisefit(&["segment".as_ref(), reports.as_os_str()]).expect(0);
+    assert_eq!(plain.stdout.as_bytes(), bytes_below(scratch.path())["segments.csv"]);
+    // Parquet holds the same segments.
+    let parquet = scratch.path().join("segments.parquet");
+    cruisefit(&["segment".as_ref(), reports.as_os_str(), "-o".as_ref(), parquet.as_os_str()])
+        .expect(0);
+    let file = std::fs::File::open(&parquet).unwrap();
+    let reader = parquet::file::reader::SerializedFileReader::new(file).unwrap();
+    let rows = parquet::file::reader::FileReader::metadata(&reader).file_metadata().num_rows();
+    assert_eq!(rows, i64::try_from(columns["tail"].len()).unwrap());
+}
+
+#[test]
+fn predict_meets_the_static_points_after_adaptation_better_than_before() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    adapt(&model, &output, &[fixture("reports")], &["--threshold", "1"]).expect(0);
+    let error_of = |model: &std::path::Path| {
+        let csv = scratch.path().join("predicted.csv");
+        cruisefit(&[
+            "predict".as_ref(),
+            "--model".as_ref(),
+            model.as_os_str(),
+            fixture("static.csv").as_os_str(),
+            "-o".as_ref(),
+            csv.as_os_str(),
+        ])
+        .expect(0);
+        let columns = csv_columns(&csv);
+        for name in ["fuel_flow_kg_s", "specific_range_m_kg", "lift_coefficient", "extrapolated"] {
+            assert_eq!(columns[name].len(), 45, "{name}");
+        }
+        let errors = numbers(&columns, "error_percent");
+        errors.iter().sum::<f64>() / errors.len() as f64
+    };
+    let (before, after) = (error_of(&model), error_of(&output.join("models/SIM-01.ron")));
+    assert!(before > 2.0 && after.abs() < before.abs(), "{before} {after}");
+}
+
+#[test]
+fn a_point_outside_the_table_keeps_its_row_and_is_told() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let points = scratch.path().join("points.csv");
+    std::fs::write(
+        &points,
+        "weight_lb,pressure_altitude_ft,mach\n68000,41000,0.80\n68000,41000,0.98\n",
+    )
+    .unwrap();
+    let ran =
+        cruisefit(&["predict".as_ref(), "--model".as_ref(), model.as_os_str(), points.as_os_str()])
+            .expect(1);
+    ran.says("points.csv:3: ");
+    let lines: Vec<&str> = ran.stdout.lines().collect();
+    assert_eq!(lines.len(), 3);
+    assert!(lines[2].starts_with("68000,41000,0.98,,"), "{}", lines[2]);
+}
+
+#[test]
+fn evaluate_changes_nothing_and_tells_the_error() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let json = scratch.path().join("summary.json");
+    let before = std::fs::read(&model).unwrap();
+    let ran = cruisefit(&[
+        "evaluate".as_ref(),
+        fixture("reports").as_os_str(),
+        "--model".as_ref(),
+        model.as_os_str(),
+        "--json".as_ref(),
+        json.as_os_str(),
+    ])
+    .expect(0);
+    assert!(ran.stdout.contains("SIM-01"), "{}", ran.stdout);
+    assert_eq!(std::fs::read(&model).unwrap(), before);
+    let summary: serde_json::Value = serde_json::from_slice(&std::fs::read(json).unwrap()).unwrap();
+    assert_eq!(summary["schema"], "cruisefit.summary/1");
+    let errors = &summary["tails"][0]["fuel_flow_error_percent"];
+    assert!(errors["before"]["mean"].as_f64().unwrap() > 3.0);
+    assert!(errors["after"].is_null());
+}
+
+#[test]
+fn show_and_export_tell_what_the_model_holds() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let shown = cruisefit(&["show".as_ref(), model.as_os_str()]).expect(0);
+    assert!(shown.stdout.contains("Global 5000"), "{}", shown.stdout);
+    assert!(shown.stdout.contains("It has learnt nothing yet."));
+    let exported = cruisefit(&["export".as_ref(), model.as_os_str()]).expect(0);
+    assert_eq!(exported.stdout.lines().count(), 1 + 15 * 10);
+}
+
+#[test]
+fn golden_check_finds_a_changed_value() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("golden");
+    for (name, bytes) in bytes_below(&root().join("fixtures/global5000")) {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    cruisefit(&["golden".as_ref(), "check".as_ref(), folder.as_os_str()]).expect(0);
+    let table = folder.join("expected/SIM-01_table.csv");
+    let text = std::fs::read_to_string(&table).unwrap();
+    let line = text.lines().nth(40).unwrap().to_owned();
+    let changed = line.replacen("0.0", "0.1", 1);
+    assert_ne!(line, changed);
+    std::fs::write(&table, text.replace(&line, &changed)).unwrap();
+    let ran = cruisefit(&["golden".as_ref(), "check".as_ref(), folder.as_os_str()]).expect(2);
+    assert!(ran.stdout.contains("SIM-01_table.csv:41: value"), "{}", ran.stdout);
+    ran.says("1 values out of tolerance");
+    // Blessing is on purpose, and makes it right again.
+    cruisefit(&["golden".as_ref(), "bless".as_ref(), folder.as_os_str()]).expect(0);
+    assert_eq!(std::fs::read_to_string(&table).unwrap(), text);
+}
+
+#[test]
+fn the_real_a320_recording() {
+    let Some(recording) = shared("data/real/traffic_fuelflow_a320/fuelflow_a320.csv.gz") else {
+        return;
+    };
+    let scratch = tempfile::tempdir().unwrap();
+    let csv = scratch.path().join("segments.csv");
+    let ran = cruisefit(&[
+        "segment".as_ref(),
+        recording.as_os_str(),
+        "--mapping".as_ref(),
+        "traffic-a320".as_ref(),
+        "-o".as_ref(),
+        csv.as_os_str(),
+        "--explain".as_ref(),
+    ])
+    .expect(0);
+    assert!(ran.stdout.contains("not evaluated"), "{}", ran.stdout);
+    let columns = csv_columns(&csv);
+    assert!(!columns["tail"].is_empty());
+    for mach in numbers(&columns, "mach") {
+        // What is public about this flight: its level cruise at FL360 lies between Mach 0.750 and 0.780.
+        assert!((0.745..0.785).contains(&mach), "{mach}");
+    }
+    assert!(columns["temperature_assumed"].iter().all(|assumed| assumed == "1"));
+}

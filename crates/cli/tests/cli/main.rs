@@ -1,0 +1,10 @@
+//! Black-box tests of the binary: what it writes, what it says, how it ends.
+
+#![expect(clippy::disallowed_methods, reason = "tests of a program that reads and writes files")]
+
+mod bad_input;
+mod commands;
+mod reference;
+mod same_bytes;
+mod state;
+mod support;

@@ -1,0 +1,136 @@
+//! Running the binary, and the fixtures it runs on.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The repository's root.
+pub(crate) fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The twelve reports of tail SIM-01 with aircraft file, guide and static points.
+pub(crate) fn fixture(name: &str) -> PathBuf {
+    root().join("fixtures/global5000").join(name)
+}
+
+/// Material beside the repository that a clone does not have; `None`, said aloud, where it is absent.
+pub(crate) fn shared(path: &str) -> Option<PathBuf> {
+    let path = root().join("../shared").join(path);
+    if path.exists() {
+        Some(path)
+    } else {
+        eprintln!("skipped: {} is not there", path.display());
+        None
+    }
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub(crate) struct Ran {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+/// Runs the binary.
+pub(crate) fn cruisefit<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Ran {
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_cruisefit"))
+        .args(arguments)
+        .env_remove("RUST_LOG")
+        .env("NO_COLOR", "1")
+        .output()
+        .unwrap();
+    Ran {
+        status: status.code().unwrap_or(-1),
+        stdout: String::from_utf8(stdout).unwrap(),
+        stderr: String::from_utf8(stderr).unwrap(),
+    }
+}
+
+impl Ran {
+    /// Asserts the exit status, showing what was said if it is another.
+    pub(crate) fn expect(self, status: i32) -> Self {
+        assert_eq!(self.status, status, "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);
+        self
+    }
+
+    /// Asserts that standard error says this, whatever its line breaks.
+    pub(crate) fn says(&self, words: &str) -> &Self {
+        let flat = flatten(&self.stderr);
+        assert!(flat.contains(&flatten(words)), "{words:?} is not in:\n{}", self.stderr);
+        self
+    }
+}
+
+/// Text without line breaks, frames of the terminal's error printer, or doubled blanks.
+fn flatten(text: &str) -> String {
+    let words: Vec<&str> = text
+        .split(|c: char| c.is_whitespace() || c == '│')
+        .filter(|word| !word.is_empty())
+        .collect();
+    words.join(" ")
+}
+
+/// An initial model of the fixture's aircraft, written to a folder.
+pub(crate) fn initial_model(folder: &Path) -> PathBuf {
+    let model = folder.join("MODEL.ron");
+    cruisefit(&[
+        "init".as_ref(),
+        "--aircraft".as_ref(),
+        fixture("AIRCRAFT.ron").as_os_str(),
+        "--guide".as_ref(),
+        fixture("guide.csv").as_os_str(),
+        "-o".as_ref(),
+        model.as_os_str(),
+    ])
+    .expect(0);
+    model
+}
+
+/// Adapts a model to reports, with further arguments.
+pub(crate) fn adapt(model: &Path, output: &Path, reports: &[PathBuf], more: &[&str]) -> Ran {
+    let mut arguments: Vec<std::ffi::OsString> = vec!["adapt".into()];
+    arguments.extend(reports.iter().map(|path| path.as_os_str().to_owned()));
+    arguments.extend(["--model".into(), model.as_os_str().to_owned()]);
+    arguments.extend(["-o".into(), output.as_os_str().to_owned()]);
+    arguments.extend(more.iter().map(Into::into));
+    cruisefit(&arguments)
+}
+
+/// Every file below a folder with its bytes, by relative path.
+pub(crate) fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().to_string_lossy().into_owned();
+                all.insert(name, std::fs::read(&path).unwrap());
+            }
+        }
+    }
+    all
+}
+
+/// A CSV file's columns by name.
+pub(crate) fn csv_columns(path: &Path) -> BTreeMap<String, Vec<String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let names: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    let mut columns: BTreeMap<String, Vec<String>> =
+        names.iter().map(|name| (name.clone(), Vec::new())).collect();
+    for record in reader.records() {
+        for (name, field) in names.iter().zip(record.unwrap().iter()) {
+            columns.get_mut(name).unwrap().push(field.to_owned());
+        }
+    }
+    columns
+}
+
+/// The numbers of a CSV column.
+pub(crate) fn numbers(columns: &BTreeMap<String, Vec<String>>, name: &str) -> Vec<f64> {
+    columns[name].iter().map(|field| field.parse().unwrap()).collect()
+}
