@@ -1,5 +1,4 @@
 //! What is an axis, what is none, and the decimals of even axes.
-#![expect(clippy::unwrap_used, reason = "a test")]
 #![expect(clippy::float_cmp, reason = "breakpoints are these doubles or they are wrong")]
 
 use lut::{Axis, AxisError};

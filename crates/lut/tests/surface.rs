@@ -1,5 +1,5 @@
 //! Surfaces: the bases term by term, fits against known coefficients, and points that do not determine one.
-#![expect(clippy::unwrap_used, reason = "a test")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test")]
 #![expect(clippy::float_cmp, reason = "what is exact is tested to be exact")]
 
 use lut::surface::{Basis, FitError, Surface, Undetermined, fit};
@@ -125,12 +125,9 @@ fn residuals_are_orthogonal_to_the_basis() {
     }
 }
 
-/// x = ±1, y = 0 or ±√(3/2), each pair once: columns 1, y, y² of an orthogonal-ish design, condition number by hand.
-///
-/// With x² = 1 the last three columns repeat the first three, so x = 0 is added with all three y: the design is two
-/// blocks [A 0; A A] with A = the 3 × 3 of (1, y, y²). Its condition number is that of A times that of [1 0; 1 1], for a
-/// Kronecker product. [1 0; 1 1] has the golden ratio squared, 2.618…; A of y = −1, 0, 1 has AᵀA = [3 0 2; 0 2 0; 2 0 2]
-/// with eigenvalues (5 ± √17)/2 and 2: condition number √((5 + √17)/(5 − √17)).
+/// With x = 0 and 1, y = −1, 0 and 1 the design is the Kronecker product of `[1 0; 1 1]` and A, the rows (1, y, y²); its
+/// condition number is the product of theirs. The first's is the golden ratio squared. `AᵀA = [3 0 2; 0 2 0; 2 0 2]` has
+/// the eigenvalues (5 ± √17)/2 and 2.
 #[test]
 fn condition_number_by_hand() {
     let mut points = vec![];
