@@ -3,7 +3,7 @@
 //! A guide may have rank enough for arithmetic and still say nothing: rows of one weight at one altitude lie on one
 //! curve of lift coefficient over Mach number, and beside that curve the polynomial is free. The condition number does
 //! not tell this from a good guide with a narrow band of Mach numbers (both are near 1e5). So what is judged is the
-//! thing itself: how much an error of the rows grows at a node within the guide's own range ([`amplification`]).
+//! thing itself: how much an error of the rows grows at a node within the guide's own range.
 
 use std::sync::Arc;
 

@@ -1,4 +1,44 @@
-//! Aircraft, drag, TSFC, fuel flow both ways, initial model from a flight-planning guide.
+//! The performance model of one aircraft type in level cruise: what drag a recorded fuel flow stands for, what fuel
+//! flow a drag table predicts, and the first table, from a flight-planning guide.
+//!
+//! What it is: equations as small free functions ([`forces`], [`mod@tsfc`], [`fuel_flow`], [`mod@specific_range`]); the
+//! [`Aircraft`] with its file; the [`Guide`] and [`FlightPoints`] files; [`initial_model`]; and [`PerformanceModel`],
+//! which turns a segment into an observation with its [`variance`] and a flight point into a prediction.
+//! What it is not: it adapts nothing and diagnoses nothing, and it opens no file: text comes in, text goes out.
+//!
+//! The one design decision: everything that fuel flow and model disagree in is charged to the drag coefficient. One
+//! table over lift coefficient and Mach number is then all there is to learn, and an observation needs neither engine
+//! nor atmosphere any more. The price: a worn engine and a dirty airframe look alike here; telling them apart is the
+//! diagnosis' business, with more than fuel flow.
+//!
+//! Limits:
+//! - Level flight at standard gravity. Along-path acceleration is in the balance; climb, turn and the turning earth are
+//!   not.
+//! - The TSFC law knows temperature and Mach number, no throttle and no altitude.
+//! - Outside the table there is an error and no value. Inside the table but outside the guide a value is marked as
+//!   extrapolated.
+//! - A guide that does not determine the polynomial within its own range is refused, with the reason in words.
+//!
+//! ```
+//! use perf_model::{Aircraft, FlightPoint, Guide, initial_model};
+//! use units::{Mach, Mass, PressureAltitude};
+//!
+//! let aircraft = Aircraft::from_ron(
+//!     r#"(
+//!         name: "JSBSim global5000", type_code: "GL5T", engines: 2, wing_area_m2: 94.94690688,
+//!         tsfc: (static_lb_per_lbf_h: 0.657, mach_exponent: 0),
+//!         table: (lift_coefficient: (0.30, 0.60, 0.05), mach: (0.76, 0.88, 0.02)),
+//!     )"#,
+//! )?;
+//! let guide = Guide::from_csv(include_bytes!("../tests/golden/guide.csv"))?;
+//! let initial = initial_model(&aircraft, &guide)?;
+//!
+//! let cruise = FlightPoint::new(Mass::pounds(66_000.0), PressureAltitude::feet(41_000.0), Mach::new(0.80));
+//! let prediction = initial.model.predict(&cruise)?;
+//! assert!((prediction.fuel_flow_total.to_pounds_per_hour() - 3585.0).abs() < 50.0);
+//! assert!(!prediction.extrapolated);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod aircraft;
 mod columns;
@@ -18,6 +58,9 @@ pub use aircraft::{Aircraft, AircraftError};
 pub use csv_text::{CsvColumn, CsvError, CsvErrorReason};
 pub use guide::{Guide, GuidePoint};
 pub use initial::{InitialModel, InitialModelError, initial_model};
-pub use model::{ModelError, ObserveError, PerformanceModel, PredictError, Prediction};
+pub use model::{
+    ModelError, ObserveError, OutsideTable, PerformanceModel, PredictError, Prediction,
+    SegmentPrediction,
+};
 pub use points::{FlightPoint, FlightPointRow, FlightPoints};
 pub use state::SegmentState;

@@ -129,7 +129,7 @@ pub fn observation_variance(
         + square(sensitivity.static_air_temperature_per_k * sensors.static_air_temperature_k)
         + square(
             sensitivity.acceleration_s2_per_m
-                * mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, &segment.rows),
+                * mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, segment.samples()),
         )
         + square(sensitivity.pressure_altitude_per_m * sensors.pressure_altitude_m);
     let mass = sensors.mass.relative_to(Mass::kilograms(means.mass_kg));
@@ -160,21 +160,16 @@ pub fn total_fuel_flow_relative_variance(
 
 /// Standard deviation of a segment's mean acceleration, m/s².
 ///
-/// Accelerations are forward differences of ground speed: over neighboring samples they telescope to
-/// (V_end − V_start)/(N·Δt), whose errors are those of two speeds and not of N accelerations. With σa = √2·σV/Δt the
-/// standard deviation of one sample, and B unbroken series of samples among the N kept ones,
-///
 /// ```text
-/// σ(mean) = σa·√B/N                                                                      [uncertainty.11]
+/// σ(mean) = σa/√N                                                                        [uncertainty.11]
 /// ```
 ///
-/// and not σa/√N. The last sample of a recording has an extrapolated acceleration, which errs about 1.5 times as much;
-/// that is not counted.
+/// for N samples whose errors are independent. Forward differences of ground speed alone would telescope, and their
+/// mean would err as 1/N; but what errs in turbulence is not the speed: fuel flow is read at N moments and does not see
+/// what thrust did between them. On simulated fleets in turbulence the mean erred as 1/√N (book, page on uncertainty).
 #[must_use]
-pub fn mean_acceleration_deviation_m_s2(sample_deviation_m_s2: f64, rows: &[u32]) -> f64 {
-    let breaks = rows.windows(2).filter(|pair| pair[1] > pair[0] + 1).count();
-    let series = (breaks + 1) as f64;
-    sample_deviation_m_s2 * series.sqrt() / rows.len().max(1) as f64
+pub fn mean_acceleration_deviation_m_s2(sample_deviation_m_s2: f64, samples: usize) -> f64 {
+    sample_deviation_m_s2 / (samples.max(1) as f64).sqrt()
 }
 
 #[cfg(test)]

@@ -23,8 +23,8 @@ pub struct SensorDeviations {
     /// Static air temperature, K; true airspeed errs with it. Default 0.3: a total-temperature probe.
     #[serde(deserialize_with = "limits::static_air_temperature_k::deserialize")]
     pub static_air_temperature_k: f64,
-    /// Along-path acceleration of one *sample* of 60 s, m/s². Default 0.0045: the middle of 0.003 to 0.006, seen in
-    /// simulated turbulence with ground speed rounded to 0.5 kt.
+    /// Along-path acceleration of one *sample* of 60 s, m/s², independent from sample to sample. Default 0.0045: the
+    /// middle of 0.003 to 0.006, seen in simulated turbulence with ground speed rounded to 0.5 kt.
     #[serde(deserialize_with = "limits::acceleration_m_s2::deserialize")]
     pub acceleration_m_s2: f64,
     /// Gross mass from *flight to flight*: loading, standard passenger weights. Default 0.7 %: 80 kg of an 11 t

@@ -36,11 +36,15 @@ fn triangle(mut rows: Vec<[f64; COEFFICIENTS]>) -> [[f64; COEFFICIENTS]; COEFFIC
     for k in 0..COEFFICIENTS {
         let length = rows.iter().map(|row| row[k] * row[k]).sum::<f64>().sqrt();
         triangle[k][k] = length;
-        rows.iter_mut().for_each(|row| row[k] /= length);
+        for row in &mut rows {
+            row[k] /= length;
+        }
         for j in k + 1..COEFFICIENTS {
             let projection: f64 = rows.iter().map(|row| row[k] * row[j]).sum();
             triangle[k][j] = projection;
-            rows.iter_mut().for_each(|row| row[j] -= projection * row[k]);
+            for row in &mut rows {
+                row[j] -= projection * row[k];
+            }
         }
     }
     triangle

@@ -15,7 +15,7 @@ fn polar(lift_coefficient: f64, mach: f64) -> f64 {
 
 /// A guide of the polar, written by hand-made formulas apart from the crate's.
 fn guide(aircraft: &Aircraft, weights_lb: &[f64], altitudes_ft: &[f64], machs: &[f64]) -> Guide {
-    let mut text = "weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n".to_owned();
+    let mut rows = Vec::new();
     for &weight_lb in weights_lb {
         for &altitude_ft in altitudes_ft {
             let height_m = altitude_ft * 0.3048;
@@ -35,11 +35,39 @@ fn guide(aircraft: &Aircraft, weights_lb: &[f64], altitudes_ft: &[f64], machs: &
                 let flow_lb_h =
                     force_n * polar(lift_coefficient, mach) * tsfc / 0.45359237 * 3600.0;
                 let airspeed_kt = mach * (1.4 * 287.05287 * temperature_k).sqrt() * 3600.0 / 1852.0;
-                text += &format!("{weight_lb},{altitude_ft},{airspeed_kt},{flow_lb_h}\n");
+                rows.push([weight_lb, altitude_ft, airspeed_kt, flow_lb_h]);
             }
         }
     }
+    guide_of(&rows)
+}
+
+/// A guide of these rows: weight in lb, pressure altitude in ft, true airspeed in kt, fuel flow in lb/h.
+fn guide_of(rows: &[[f64; 4]]) -> Guide {
+    let mut text = "weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h".to_owned();
+    for row in rows {
+        let fields = row.map(|number| number.to_string());
+        text.push('\n');
+        text.push_str(&fields.join(","));
+    }
     Guide::from_csv(text.as_bytes()).unwrap()
+}
+
+/// The same guide with every fuel flow times a factor.
+fn scaled(guide: &Guide, factor: impl Fn(&GuidePoint) -> f64) -> Guide {
+    let rows: Vec<[f64; 4]> = guide
+        .points()
+        .iter()
+        .map(|point| {
+            [
+                point.mass.to_pounds(),
+                point.pressure_altitude.to_feet(),
+                point.true_airspeed.to_knots(),
+                point.fuel_flow_total.to_pounds_per_hour() * factor(point),
+            ]
+        })
+        .collect();
+    guide_of(&rows)
 }
 
 fn aircraft(polynomial: &str) -> Aircraft {
@@ -175,26 +203,9 @@ fn guides_that_leave_a_direction_open_are_refused_in_words() {
 fn a_table_far_outside_the_guide_has_no_negative_drag() {
     // A guide whose drag falls towards low Mach numbers as 1 − 8 (M − 0.82)²: at Mach 0.25 that is −1.6.
     let aircraft = Aircraft::from_ron(&AIRCRAFT.replace("mach: (0.50,", "mach: (0.25,")).unwrap();
-    let text = {
-        let healthy = guide(&aircraft, &WEIGHTS_LB, &[41_000.0, 45_000.0], &MACHS);
-        let rows: String = healthy
-            .points()
-            .iter()
-            .map(|point| {
-                let mach = point.mach().unwrap().value();
-                format!(
-                    "{},{},{},{}\n",
-                    point.mass.to_pounds(),
-                    point.pressure_altitude.to_feet(),
-                    point.true_airspeed.to_knots(),
-                    point.fuel_flow_total.to_pounds_per_hour()
-                        * (1.0 - 8.0 * (mach - 0.82).powi(2))
-                )
-            })
-            .collect();
-        format!("weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n{rows}")
-    };
-    let error = initial_model(&aircraft, &Guide::from_csv(text.as_bytes()).unwrap()).unwrap_err();
+    let healthy = guide(&aircraft, &WEIGHTS_LB, &[41_000.0, 45_000.0], &MACHS);
+    let odd = scaled(&healthy, |row| 1.0 - 8.0 * (row.mach().unwrap().value() - 0.82).powi(2));
+    let error = initial_model(&aircraft, &odd).unwrap_err();
     let InitialModelError::DragNotPositive { extrapolated, drag_coefficient, .. } = error else {
         panic!("{error}")
     };
@@ -206,18 +217,8 @@ fn a_table_far_outside_the_guide_has_no_negative_drag() {
 fn a_mistyped_row_is_pointed_at() {
     let aircraft = aircraft("SeparableQuadratic");
     let healthy = guide(&aircraft, &WEIGHTS_LB, &ALTITUDES_FT, &MACHS);
-    let mut text = "weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n".to_owned();
-    for point in healthy.points() {
-        let factor = if point.line == 20 { 1.1 } else { 1.0 };
-        text += &format!(
-            "{},{},{},{}\n",
-            point.mass.to_pounds(),
-            point.pressure_altitude.to_feet(),
-            point.true_airspeed.to_knots(),
-            point.fuel_flow_total.to_pounds_per_hour() * factor
-        );
-    }
-    let initial = initial_model(&aircraft, &Guide::from_csv(text.as_bytes()).unwrap()).unwrap();
+    let typo = scaled(&healthy, |row| if row.line == 20 { 1.1 } else { 1.0 });
+    let initial = initial_model(&aircraft, &typo).unwrap();
     let odd = initial.findings.iter().find(|finding| finding.code == "guide-odd-row").unwrap();
     assert_eq!(odd.line, Some(20));
 }
