@@ -1,5 +1,4 @@
 //! Reading back what was written gives the same bits; what was edited into nonsense is refused.
-#![expect(clippy::unwrap_used, reason = "a test")]
 
 use std::sync::Arc;
 
