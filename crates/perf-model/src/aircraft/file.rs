@@ -144,7 +144,7 @@ impl<'de> Deserialize<'de> for AxisFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         // To serde a RON tuple and a RON list are the same sequence: only the text tells one from the other.
         let raw = Box::<RawValue>::deserialize(deserializer)?;
-        let text = raw.trim().get_ron();
+        let text = limits::without_leading_comments(raw.get_ron());
         if text.starts_with('[') {
             return limits::from_text(text).map(Self::Breakpoints);
         }

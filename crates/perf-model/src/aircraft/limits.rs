@@ -69,7 +69,7 @@ pub(super) fn optional<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<f64>, D::Error> {
     let raw = Box::<RawValue>::deserialize(deserializer)?;
-    let text = raw.trim().get_ron();
+    let text = without_leading_comments(raw.get_ron());
     if text.starts_with("Some") || text.starts_with("None") {
         from_text(text)
     } else {
@@ -94,6 +94,58 @@ pub(super) fn from_text<T: DeserializeOwned, E: Error>(text: &str) -> Result<T, 
     ron::from_str(text).map_err(|error| custom(error.code))
 }
 
+/// RON text from its first character that is neither blank nor comment. What is left may still end in comments.
+///
+/// `RawValue::trim` does the same but panics on what it cannot read again.
+pub(super) fn without_leading_comments(text: &str) -> &str {
+    let mut rest = text.trim_start();
+    loop {
+        if let Some(comment) = rest.strip_prefix("//") {
+            rest = comment.split_once('\n').map_or("", |(_, after)| after).trim_start();
+        } else if let Some(comment) = rest.strip_prefix("/*") {
+            rest = after_block_comment(comment).trim_start();
+        } else {
+            return rest;
+        }
+    }
+}
+
+/// What follows a block comment whose opening has been read; block comments nest in RON.
+fn after_block_comment(mut rest: &str) -> &str {
+    let mut depth = 1_usize;
+    while depth > 0 {
+        let Some(at) = rest.find(['*', '/']) else { return "" };
+        let pair = rest.get(at..at + 2);
+        depth = match pair {
+            Some("*/") => depth - 1,
+            Some("/*") => depth + 1,
+            _ => depth,
+        };
+        let length = if matches!(pair, Some("*/" | "/*")) { 2 } else { 1 };
+        rest = &rest[at + length..];
+    }
+    rest
+}
+
 fn custom<E: Error>(message: impl Display) -> E {
     E::custom(message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leading_comments_are_skipped() {
+        for (text, rest) in [
+            ("(1, 2)", "(1, 2)"),
+            (" \n// a [comment]\n // another\n [1]", "[1]"),
+            ("/* a /* nested [ */ comment ** / */ [1] /* after */", "[1] /* after */"),
+            ("/* open", ""),
+            ("// to the end", ""),
+            ("/*é*/Some(1)", "Some(1)"),
+        ] {
+            assert_eq!(without_leading_comments(text), rest);
+        }
+    }
 }

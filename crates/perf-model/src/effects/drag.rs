@@ -1,0 +1,161 @@
+//! Effects on drag, on the weight that lift carries, and on the force along the path.
+
+use atmos::gravity;
+use units::convert::{
+    DAYS_PER_YEAR, RADIANS_PER_DEGREE, SECONDS_PER_DAY, STANDARD_GRAVITY_M_S2,
+};
+use units::{Angle, GeometricAltitude};
+
+use super::recorded::AsFlown;
+use super::terms::Terms;
+use super::{EffectModel, EffectPoint};
+
+/// Height of the parabola of fourth degree by which drag rises, per Mach⁴: Lock's.
+const LOCK_FACTOR: f64 = 20.0;
+/// Mach number by which drag divergence (∂CD/∂M = 0.1) lies above the beginning of the rise: (0.1/80)^(1/3).
+const LOCK_OFFSET_MACH: f64 = 0.1077;
+/// Fall of the drag-divergence Mach number per unit of lift coefficient.
+const DIVERGENCE_FALL_PER_LIFT_COEFFICIENT: f64 = 0.085;
+/// Lift coefficient that drag-divergence Mach numbers are stated at.
+const DIVERGENCE_LIFT_COEFFICIENT: f64 = 0.35;
+/// Lift coefficient that trim drag is stated at.
+const TRIM_LIFT_COEFFICIENT: f64 = 0.4;
+/// Roll angle up to which a segment counts as wings level, degrees.
+const WINGS_LEVEL_DEG: f64 = 5.0;
+
+/// Rise of drag with Mach number.
+///
+/// ```text
+/// w = 20·max(0, M − Mdd(CL) + 0.1077)⁴,   Mdd(CL) = Mdd − 0.085·(CL − 0.35)      [diagnosis.5]
+/// ```
+///
+/// # Source
+/// Lock's fourth-power law with the drag-divergence condition ∂CD/∂M = 0.1; the contract's constants.
+pub(super) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
+    let divergence = divergence_mach
+        - DIVERGENCE_FALL_PER_LIFT_COEFFICIENT * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);
+    let beyond = (mach - divergence + LOCK_OFFSET_MACH).max(0.0);
+    LOCK_FACTOR * beyond.powi(4)
+}
+
+/// Years from the reference date to a segment.
+pub(super) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
+    (point.date_s - terms.references.date_s) / (DAYS_PER_YEAR * SECONDS_PER_DAY)
+}
+
+/// Weight over mass that lift carries.
+///
+/// ```text
+/// g = (g0 + θg·(g(φ, h) − g0) − θr·(2Ω V_east cos φ + V²/R))·(1 + θn·(1/cos ϕ − 1))   [diagnosis.6]
+/// ```
+///
+/// Pressure altitude stands for height (1 km of difference is 0.03 % of gravity). Track is heading plus drift; heading
+/// where drift is not recorded. ϕ is the root of the mean squared roll angle.
+pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, flown: &AsFlown, terms: &Terms) -> f64 {
+    let mut gravity_m_s2 = STANDARD_GRAVITY_M_S2;
+    if let Some(latitude_deg) = point.latitude_deg {
+        let latitude = Angle::degrees(latitude_deg);
+        let height = GeometricAltitude::meters(point.pressure_altitude_m);
+        if terms.local_gravity != 0.0 {
+            let local = gravity::gravity(latitude, height).to_meters_per_second_squared();
+            gravity_m_s2 += terms.local_gravity * (local - STANDARD_GRAVITY_M_S2);
+        }
+        if terms.rotating_earth != 0.0
+            && let Some(heading_deg) = point.true_heading_deg
+        {
+            let track = (heading_deg + point.drift_deg.unwrap_or(0.0)) * RADIANS_PER_DEGREE;
+            let lighter = gravity::earth_motion_acceleration(
+                latitude,
+                point.ground_speed_m_s * track.sin(),
+                point.ground_speed_m_s * track.cos(),
+                height,
+            );
+            gravity_m_s2 -= terms.rotating_earth * lighter.to_meters_per_second_squared();
+        }
+    }
+    if terms.load_factor != 0.0
+        && let Some(roll_squared_deg2) = point.roll_squared_deg2
+    {
+        let roll = roll_squared_deg2.max(0.0).sqrt() * RADIANS_PER_DEGREE;
+        gravity_m_s2 *= 1.0 + terms.load_factor * (1.0 / roll.cos() - 1.0);
+    }
+    debug_assert!(flown.mass_kg > 0.0);
+    gravity_m_s2
+}
+
+/// Force along the path beyond drag: inertia, and the climb along a sloping pressure surface.
+///
+/// ```text
+/// m·V̇G + θ·m·f·V_cross,  f = 2Ω sin φ,  V_cross = −V·sin(drift)                  [diagnosis.7]
+/// ```
+///
+/// `V_cross` is positive when the wind blows to the left of the track: in the north, high pressure is then ahead and a
+/// surface of constant pressure climbs. In geostrophic flow the Coriolis force on the cross-wind takes exactly as much.
+pub(super) fn path_force_n(point: &EffectPoint, flown: &AsFlown, terms: &Terms) -> f64 {
+    let mut force_n = flown.mass_kg * point.acceleration_m_s2;
+    if terms.isobaric_slope != 0.0
+        && let (Some(latitude_deg), Some(drift_deg)) = (point.latitude_deg, point.drift_deg)
+    {
+        let coriolis = gravity::coriolis_parameter(Angle::degrees(latitude_deg));
+        let cross_m_s = -flown.true_airspeed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin();
+        force_n += terms.isobaric_slope * flown.mass_kg * coriolis * cross_m_s;
+    }
+    force_n
+}
+
+impl EffectModel<'_> {
+    /// The drag coefficient with effects.
+    ///
+    /// ```text
+    /// CD = (CD_table + θ0·1e-4 + θi K(M) CL² + w(Mdd − θw) − w(Mdd) + CD0(M)·((Re/Re_ref)^−θR − 1 + θa t)
+    ///       + θc·1e-4·(CG_ref − CG)/10·CL/0.4 + θϕ·1e-4·ϕ²)·(1 + θD)·(1 + θs from the date on)   [diagnosis.8]
+    /// ```
+    pub(super) fn drag_coefficient(
+        &self,
+        table: f64,
+        lift_coefficient: f64,
+        point: &EffectPoint,
+        flown: &AsFlown,
+        terms: &Terms,
+    ) -> f64 {
+        let references = &terms.references;
+        let mach = flown.mach;
+        let mut drag = table + terms.zero_lift_drag;
+        if terms.induced_drag != 0.0 {
+            let [_, _, _, k0, k1, k2] = self.polar.coefficients;
+            let factor = k0 + k1 * mach + k2 * mach * mach;
+            drag += terms.induced_drag * factor * lift_coefficient * lift_coefficient;
+        }
+        if terms.wave_drag_mach != 0.0 {
+            let divergence = terms.hidden.drag_divergence_mach;
+            drag += drag_rise(mach, lift_coefficient, divergence - terms.wave_drag_mach)
+                - drag_rise(mach, lift_coefficient, divergence);
+        }
+        if terms.reynolds_exponent != 0.0 || terms.airframe_ageing_per_year != 0.0 {
+            let zero_lift = self.polar.value(0.0, mach);
+            let ratio = flown.unit_reynolds_number_per_m / references.unit_reynolds_number_per_m;
+            drag += zero_lift
+                * (ratio.powf(-terms.reynolds_exponent) - 1.0
+                    + terms.airframe_ageing_per_year * years_since_reference(point, terms));
+        }
+        if terms.trim_drag_per_10_percent_mac != 0.0
+            && let (Some(center), Some(reference)) =
+                (point.center_of_gravity_percent_mac, references.center_of_gravity_percent_mac)
+        {
+            drag += terms.trim_drag_per_10_percent_mac * (reference - center) / 10.0
+                * lift_coefficient
+                / TRIM_LIFT_COEFFICIENT;
+        }
+        if terms.asymmetry_drag_per_deg2 != 0.0
+            && let Some(roll_squared_deg2) = point.roll_squared_deg2
+            && roll_squared_deg2 < WINGS_LEVEL_DEG * WINGS_LEVEL_DEG
+        {
+            drag += terms.asymmetry_drag_per_deg2 * roll_squared_deg2;
+        }
+        drag *= 1.0 + terms.drag_factor;
+        if terms.step_drag != 0.0 && point.date_s >= terms.hidden.step_from_s {
+            drag *= 1.0 + terms.step_drag;
+        }
+        drag
+    }
+}

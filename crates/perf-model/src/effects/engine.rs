@@ -1,0 +1,85 @@
+//! Effects on TSFC and fuel flow, and on what the flow meters say.
+
+use flight::MAXIMUM_ENGINES;
+use units::Mach;
+
+use super::drag::years_since_reference;
+use super::recorded::AsFlown;
+use super::terms::Terms;
+use super::{EffectModel, EffectPoint};
+use crate::tsfc::tsfc;
+
+/// Static air temperature above which anti-ice bleed is taken as on where it is not recorded, K: −40 °C.
+pub const ANTI_ICE_PROXY_K: f64 = 233.15;
+/// Width of the throttle effect's parabola, of corrected thrust over its reference.
+const THROTTLE_WIDTH: f64 = 0.25;
+
+impl EffectModel<'_> {
+    /// Fuel flow that would be recorded: of all engines, and of each.
+    ///
+    /// ```text
+    /// e = (1 + θf)·((1 + M)/(1 + M_ref))^θM·(θT/θT,ref)^θt·(1 + θx((x − xp)/0.25)²)·(1 + θa t)    [diagnosis.9]
+    /// Wf_k = (F/n·TSFC·e·(1 + θ_k) + θo·W̄f/n)·(1 + θb·on)·(1 + θs from the date on)               [diagnosis.10]
+    /// recorded Wf_k = Wf_k·(1 + θWF,k)                                                             [diagnosis.11]
+    /// ```
+    ///
+    /// x is corrected thrust over its reference. Engines give equal thrust.
+    pub(super) fn recorded_fuel_flow(
+        &self,
+        net_thrust_n: f64,
+        corrected_thrust_n: f64,
+        point: &EffectPoint,
+        flown: &AsFlown,
+        terms: &Terms,
+    ) -> (f64, [f64; MAXIMUM_ENGINES]) {
+        let references = &terms.references;
+        let mut factor = 1.0 + terms.tsfc_factor;
+        if terms.tsfc_mach_exponent != 0.0 {
+            factor *=
+                ((1.0 + flown.mach) / (1.0 + references.mach)).powf(terms.tsfc_mach_exponent);
+        }
+        if terms.tsfc_temperature_exponent != 0.0 {
+            factor *= (flown.temperature_ratio / references.temperature_ratio)
+                .powf(terms.tsfc_temperature_exponent);
+        }
+        if terms.tsfc_throttle != 0.0 {
+            let x = corrected_thrust_n / references.corrected_thrust_n;
+            let distance = (x - terms.hidden.throttle_pivot) / THROTTLE_WIDTH;
+            factor *= 1.0 + terms.tsfc_throttle * distance * distance;
+        }
+        if terms.engine_ageing_per_year != 0.0 {
+            factor *= 1.0 + terms.engine_ageing_per_year * years_since_reference(point, terms);
+        }
+        let mut all = 1.0;
+        if terms.anti_ice_bleed != 0.0 {
+            all *= 1.0 + terms.anti_ice_bleed * anti_ice_on(point, flown);
+        }
+        if terms.step_fuel_flow != 0.0 && point.date_s >= terms.hidden.step_from_s {
+            all *= 1.0 + terms.step_fuel_flow;
+        }
+        let engines = self.aircraft.engines();
+        let share = 1.0 / engines as f64;
+        let law = tsfc(self.aircraft.tsfc_law(), flown.temperature_ratio, Mach::new(flown.mach));
+        let thrust_flow_kg_s =
+            net_thrust_n * law.to_kilograms_per_newton_second() * factor * share;
+        let aside_kg_s = terms.power_offtake * references.fuel_flow_total_kg_s * share;
+        let mut each = [f64::NAN; MAXIMUM_ENGINES];
+        let mut total = 0.0;
+        for (engine, flow) in each.iter_mut().enumerate().take(engines) {
+            *flow = (thrust_flow_kg_s * (1.0 + terms.tsfc_engine[engine]) + aside_kg_s)
+                * all
+                * (1.0 + terms.fuel_flow_gain[engine]);
+            total += *flow;
+        }
+        (total, each)
+    }
+}
+
+/// Share of a segment with anti-ice bleed on: recorded, else all of it above −40 °C.
+fn anti_ice_on(point: &EffectPoint, flown: &AsFlown) -> f64 {
+    point.anti_ice.unwrap_or(if flown.static_air_temperature_k > ANTI_ICE_PROXY_K {
+        1.0
+    } else {
+        0.0
+    })
+}

@@ -1,0 +1,91 @@
+//! From what was recorded to what was flown: sensor, mass and fuel-quantity effects undone.
+
+use atmos::{airspeed, isa, viscosity};
+use units::{
+    Mach, PressureAltitude, Temperature, TrueAirspeed, check_within,
+};
+
+use super::{EffectError, EffectPoint};
+use crate::effects::terms::Terms;
+
+/// The state that was flown if the recording erred as the effects say.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AsFlown {
+    pub(super) mach: f64,
+    pub(super) static_air_temperature_k: f64,
+    pub(super) true_airspeed_m_s: f64,
+    pub(super) temperature_ratio: f64,
+    pub(super) pressure_ratio: f64,
+    pub(super) dynamic_pressure_pa: f64,
+    pub(super) mass_kg: f64,
+    pub(super) unit_reynolds_number_per_m: f64,
+}
+
+/// Undoes the errors of Mach number, static pressure, SAT, zero-fuel mass and fuel used, without linearising.
+///
+/// ```text
+/// p = p_rec/(1 + θp)                                                  [diagnosis.1]
+/// 1 + 0.2 M² = (1 + 0.2 (M_rec − θM)²)·(1 + θp)^(2/7)                 [diagnosis.2]
+/// SAT = SAT_rec − θT,   V = V_rec·(M/M_rec)·√(SAT/SAT_rec)            [diagnosis.3]
+/// m = m_rec + θZFM + FU_rec·(θFQ + Σ_k s_k θWF,k/(1 + θWF,k))         [diagnosis.4]
+/// ```
+///
+/// [diagnosis.2] holds total pressure, which a static source does not touch. s_k is engine k's share of the recorded fuel
+/// flow; a meter that reads θWF high has counted FU·θWF/(1 + θWF) of fuel too much.
+pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, EffectError> {
+    let recorded_mach = positive("Mach number", "Mach", point.mach)?;
+    let recorded_sat_k = positive("static air temperature", "K", point.static_air_temperature_k)?;
+    let recorded_tas_m_s = positive("true airspeed", "m/s", point.true_airspeed_m_s)?;
+    let pressure_factor = 1.0 + terms.static_pressure_bias;
+    let static_pressure_pa = positive("static pressure factor", "", pressure_factor).and(Ok(
+        isa::pressure(PressureAltitude::meters(point.pressure_altitude_m))?.to_pascals()
+            / pressure_factor,
+    ))?;
+    let unbiased = recorded_mach - terms.mach_bias;
+    let mach = if terms.static_pressure_bias == 0.0 {
+        unbiased
+    } else {
+        let total = (1.0 + 0.2 * unbiased * unbiased) * pressure_factor.powf(2.0 / 7.0);
+        ((total - 1.0) / 0.2).max(0.0).sqrt()
+    };
+    positive("Mach number less its error", "Mach", mach)?;
+    let sat_k = recorded_sat_k - terms.temperature_bias_k;
+    positive("static air temperature less its error", "K", sat_k)?;
+    let true_airspeed_m_s =
+        recorded_tas_m_s * (mach / recorded_mach) * (sat_k / recorded_sat_k).sqrt();
+    let counted_too_much: f64 = point
+        .fuel_flow_share
+        .iter()
+        .zip(terms.fuel_flow_gain)
+        .map(|(share, gain)| share * gain / (1.0 + gain))
+        .sum();
+    let mass_kg = point.mass_kg
+        + terms.zero_fuel_mass_kg
+        + point.fuel_used_kg * (terms.fuel_quantity_gain + counted_too_much);
+    positive("gross mass", "kg", mass_kg)?;
+
+    let sat = Temperature::kelvin(sat_k);
+    let tas = TrueAirspeed::meters_per_second(true_airspeed_m_s);
+    let static_pressure = units::Pressure::pascals(static_pressure_pa);
+    let density = isa::density(static_pressure, sat);
+    debug_assert!(Mach::new(mach).value() > 0.0);
+    Ok(AsFlown {
+        mach,
+        static_air_temperature_k: sat_k,
+        true_airspeed_m_s,
+        temperature_ratio: isa::temperature_ratio(sat),
+        pressure_ratio: isa::pressure_ratio(static_pressure),
+        dynamic_pressure_pa: airspeed::dynamic_pressure(density, tas).to_pascals(),
+        mass_kg,
+        unit_reynolds_number_per_m: viscosity::reynolds_number(
+            density,
+            tas,
+            1.0,
+            viscosity::dynamic_viscosity(sat),
+        ),
+    })
+}
+
+fn positive(quantity: &'static str, unit: &'static str, value: f64) -> Result<f64, EffectError> {
+    Ok(check_within(quantity, unit, value, f64::MIN_POSITIVE, f64::MAX)?)
+}
