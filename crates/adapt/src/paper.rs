@@ -17,7 +17,7 @@ pub use gains::{Gains, gains};
 pub use state::{State, StateError};
 
 /// A node of at most this bilinear weight is left alone: the point lies on a grid line or a node, and the node took
-/// no part in the prediction. Our one deviation from the printed law, which would overwrite it.
+/// no part in the prediction. Our one deviation from the printed law, which would overwrite it. Book `[adaptation.3]`.
 pub const WEIGHT_OF_NO_PART: f64 = 1e-9;
 
 /// The law and its one setting.

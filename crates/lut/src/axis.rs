@@ -7,7 +7,7 @@ use buckets::Buckets;
 mod buckets;
 mod decimal;
 
-/// A coordinate this near to a breakpoint is that breakpoint. The specification's width, in the axis' own unit.
+/// A coordinate this near to a breakpoint is that breakpoint. In the axis' own unit; book `[tables.1]`.
 pub const SNAP: f64 = 1e-9;
 
 /// Largest magnitude of a breakpoint: squares of distances stay far from overflow.

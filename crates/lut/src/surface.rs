@@ -15,7 +15,7 @@ pub const COEFFICIENTS: usize = 6;
 
 /// Smallest singular value, relative to the largest, that still counts as determined. Taken of the design whose
 /// columns are scaled to length 1, so that the units of x and y do not matter. At 1e-10 the worst direction keeps about
-/// six of a double's sixteen digits.
+/// six of a double's sixteen digits. Book `[tables.9]`.
 const RANK_TOLERANCE: f64 = 1e-10;
 
 /// The six functions of x and y that a surface is a sum of.
