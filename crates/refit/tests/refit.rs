@@ -167,6 +167,7 @@ fn nodes_that_were_not_adapted_dilute() {
             (0.1..0.6).contains(&recovered) && recovered > recovered_before,
             "{lambda}: {recovered}"
         );
+        recovered_before = recovered;
     }
 }
 
