@@ -13,6 +13,7 @@ use crate::decode;
 use crate::line::Lines;
 use crate::refusal::{Found, Refusal, RefusalKind};
 use columns::Field;
+pub(crate) use header::parse_instant;
 
 /// Name of the format, first word of its first line.
 pub(crate) const FORMAT_NAME: &str = "CRUISE-REPORT";

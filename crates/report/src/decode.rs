@@ -13,22 +13,32 @@ pub const MAXIMUM_TEXT_BYTES: usize = 512 << 20;
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// The text that `bytes` holds, plain or gzip; `unpacked` is the place for decompressed text.
-pub(crate) fn text<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a str, Refusal> {
-    if bytes.starts_with(&GZIP_MAGIC) {
-        unpacked.clear();
-        read_to_limit(MultiGzDecoder::new(bytes), unpacked).map_err(|error| {
+/// The uncompressed content of `bytes`: themselves, or what they unpack to when they begin as gzip does. For callers
+/// that need the content beside the report, to hash it for example.
+///
+/// # Errors
+/// [`Refusal`] for gzip that is truncated, corrupt, or holds more than [`MAXIMUM_TEXT_BYTES`].
+pub fn unpack<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a [u8], Refusal> {
+    if !bytes.starts_with(&GZIP_MAGIC) {
+        return Ok(bytes);
+    }
+    unpacked.clear();
+    match read_to_limit(MultiGzDecoder::new(bytes), unpacked) {
+        Ok(()) => Ok(unpacked),
+        Err(error) => {
             let kind = match error {
                 LimitedReadError::TooLarge => too_large(),
                 LimitedReadError::Io(io::ErrorKind::UnexpectedEof) => RefusalKind::GzipTruncated,
                 LimitedReadError::Io(_) => RefusalKind::GzipCorrupt,
             };
-            refuse_at(unpacked, unpacked.len(), Found::EndOfText, kind)
-        })?;
-        plain(unpacked)
-    } else {
-        plain(bytes)
+            Err(refuse_at(unpacked, unpacked.len(), Found::EndOfText, kind))
+        }
     }
+}
+
+/// The text that `bytes` holds, plain or gzip; `unpacked` is the place for decompressed text.
+pub(crate) fn text<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a str, Refusal> {
+    plain(unpack(bytes, unpacked)?)
 }
 
 /// All bytes of a stream.

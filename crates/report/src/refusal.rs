@@ -213,6 +213,42 @@ pub enum RefusalKind {
     },
     /// Columns that are readable one by one and do not make a report.
     Inconsistent(ReportDataError),
+    /// A recording of another layout without a line of column names.
+    SourceNamesMissing,
+    /// A column that the mapping names and the recording does not have.
+    SourceColumnMissing {
+        /// Its name.
+        name: String,
+    },
+    /// A column that the mapping names and the recording has twice.
+    SourceColumnDoubled {
+        /// Its name.
+        name: String,
+    },
+    /// A text that the header needs and the recording leaves empty.
+    SourceTextMissing {
+        /// The header key.
+        key: &'static str,
+    },
+    /// A field of a recording that is no number.
+    SourceNotANumber {
+        /// The recording's name of the column.
+        name: String,
+    },
+    /// An instant of a recording that is not of the form that the mapping says.
+    SourceInstantMalformed,
+    /// Gross mass that rises by more than the mapping admits.
+    GrossMassRises {
+        /// Its smallest value so far, kg.
+        smallest_kg: f64,
+        /// What the mapping admits, kg.
+        admissible_rise_kg: f64,
+    },
+    /// A recording without a level part that is long enough.
+    NoLevelPart {
+        /// How long it must be, s.
+        needed_s: f64,
+    },
 }
 
 impl RefusalKind {
@@ -251,6 +287,14 @@ impl RefusalKind {
             Self::TooLarge { .. } => "too-large",
             Self::Unreadable { .. } => "unreadable",
             Self::Inconsistent(_) => "inconsistent",
+            Self::SourceNamesMissing => "source-names-missing",
+            Self::SourceColumnMissing { .. } => "source-column-missing",
+            Self::SourceColumnDoubled { .. } => "source-column-doubled",
+            Self::SourceTextMissing { .. } => "source-text-missing",
+            Self::SourceNotANumber { .. } => "source-not-a-number",
+            Self::SourceInstantMalformed => "source-instant-malformed",
+            Self::GrossMassRises { .. } => "gross-mass-rises",
+            Self::NoLevelPart { .. } => "no-level-part",
         }
     }
 }
@@ -319,6 +363,21 @@ impl fmt::Display for RefusalKind {
             Self::TooLarge { limit_bytes } => write!(f, "at most {limit_bytes} bytes of text"),
             Self::Unreadable { error } => write!(f, "readable input: {error}"),
             Self::Inconsistent(error) => write!(f, "columns that make a report: {error}"),
+            Self::SourceNamesMissing => f.write_str("a line of column names"),
+            Self::SourceColumnMissing { name } => write!(f, "a column named {name:?}"),
+            Self::SourceColumnDoubled { name } => write!(f, "one column named {name:?}"),
+            Self::SourceTextMissing { key } => write!(f, "text for {key}"),
+            Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
+            Self::SourceInstantMalformed => f.write_str(
+                "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping",
+            ),
+            Self::GrossMassRises { smallest_kg, admissible_rise_kg } => write!(
+                f,
+                "gross mass no more than {admissible_rise_kg} kg above its smallest value so far, {smallest_kg} kg"
+            ),
+            Self::NoLevelPart { needed_s } => {
+                write!(f, "a level part of at least {needed_s} s, as the mapping's cruise says")
+            }
         }
     }
 }

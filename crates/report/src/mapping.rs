@@ -1,0 +1,217 @@
+//! Recordings of other layouts into reports, by a mapping file.
+//!
+//! A mapping file (RON) says which column of a delimited text holds which quantity in which unit, what is to be
+//! derived, and which parts of the recording are level cruise. `docs/src/guides/mapping.md` describes it.
+
+mod derive;
+mod file;
+mod level;
+mod plan;
+mod table;
+
+use flight::column::{COLUMN_NAMES, Column};
+use flight::{Finding, Severity};
+use units::OutOfDomain;
+
+use crate::cruise_text::Parsed;
+use crate::decode;
+use crate::refusal::{Found, Refusal, RefusalKind};
+use plan::Plan;
+use table::{Recording, Table};
+
+/// A mapping file that makes sense.
+#[derive(Clone, Debug)]
+pub struct Mapping {
+    plan: Plan,
+}
+
+/// Why a text is no mapping file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MappingError {
+    /// Not RON, or not of the mapping's form.
+    #[error("line {line}, column {column}")]
+    Form {
+        /// Line from 1.
+        line: usize,
+        /// Character from 1.
+        column: usize,
+        /// What the reader of RON says.
+        source: Box<ron::Error>,
+    },
+    /// A version of the mapping file that this program does not read.
+    #[error("mapping file of format {found}, expected format 1")]
+    VersionUnknown {
+        /// The version.
+        found: u32,
+    },
+    /// A name that is no quantity of the report; time and fuel used have entries of their own.
+    #[error("quantity \"{name}\", expected one of {COLUMN_NAMES}, without TIME and FU")]
+    QuantityUnknown {
+        /// The name.
+        name: String,
+    },
+    /// A quantity that the report cannot do without.
+    #[error("no source for {}", column.name())]
+    QuantityNotMapped {
+        /// The quantity.
+        column: Column,
+    },
+    /// A way of derivation that does not lead to the quantity.
+    #[error("{} does not come by {source_name}", column.name())]
+    SourceNotForQuantity {
+        /// The quantity.
+        column: Column,
+        /// The way.
+        source_name: &'static str,
+    },
+    /// Mach number, temperature and true airspeed that are derived from each other.
+    #[error("MACH, SAT and VTAS are derived from each other")]
+    Circular,
+    /// Fuel flow both of all engines and engine by engine.
+    #[error("WF both of all engines and engine by engine")]
+    FuelFlowTwice,
+    /// A unit that the quantity is not read in.
+    #[error("unit \"{unit}\" for {}, expected one of {}", column.name(), unit_names(*column))]
+    UnitUnknown {
+        /// The quantity.
+        column: Column,
+        /// The unit.
+        unit: String,
+    },
+    /// An instant, or an offset, that is not RFC 3339.
+    #[error("\"{text}\" is no instant or offset of RFC 3339")]
+    InstantMalformed {
+        /// The text.
+        text: String,
+    },
+    /// A separator or comment mark that could be part of a number, or is not ASCII.
+    #[error("{character:?} cannot separate fields or begin comments")]
+    SeparatorUnusable {
+        /// The character.
+        character: char,
+    },
+    /// A number outside its limits.
+    #[error(transparent)]
+    OutOfDomain(#[from] OutOfDomain),
+}
+
+fn unit_names(column: Column) -> String {
+    column.units().iter().map(|unit| unit.name).collect::<Vec<_>>().join(" ")
+}
+
+/// Mapping files that come with the program: name and text.
+pub const PRESETS: [(&str, &str); 1] =
+    [("traffic-a320", include_str!("../presets/traffic_a320.ron"))];
+
+impl Mapping {
+    /// Reads a mapping file.
+    ///
+    /// # Errors
+    /// [`MappingError`] when it does not have the form, or does not lead to a report.
+    pub fn from_ron(text: &str) -> Result<Self, MappingError> {
+        let options = ron::Options::default()
+            .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+        let file = options.from_str(text).map_err(|error| MappingError::Form {
+            line: error.span.start.line,
+            column: error.span.start.col,
+            source: Box::new(error.code),
+        })?;
+        Ok(Self { plan: Plan::new(file)? })
+    }
+
+    /// A mapping that comes with the program, by its name in [`PRESETS`].
+    #[must_use]
+    pub fn preset(name: &str) -> Option<Self> {
+        let (_, text) = PRESETS.iter().find(|(known, _)| *known == name)?;
+        Self::from_ron(text).ok()
+    }
+
+    /// Reads a recording, plain or gzip: one report for each level part of each flight in it.
+    ///
+    /// # Errors
+    /// The first [`Refusal`] in the file; also when no flight in it has a level part.
+    pub fn read(&self, bytes: &[u8]) -> Result<Vec<Parsed>, Refusal> {
+        self.read_with_name(bytes, None)
+    }
+
+    /// The same for a mapping that takes a text of the header from the file's name: its name without folder and ending.
+    ///
+    /// # Errors
+    /// As [`Mapping::read`].
+    pub fn read_named(&self, bytes: &[u8], file_name: &str) -> Result<Vec<Parsed>, Refusal> {
+        self.read_with_name(bytes, Some(file_name))
+    }
+
+    fn read_with_name(
+        &self,
+        bytes: &[u8],
+        file_name: Option<&str>,
+    ) -> Result<Vec<Parsed>, Refusal> {
+        let mut unpacked = Vec::new();
+        let text = decode::text(bytes, &mut unpacked)?;
+        let table = table::read(&self.plan, text, file_name)?;
+        let mut parsed = Vec::new();
+        let mut flights_without = Vec::new();
+        let mut longest_s = 0.0_f64;
+        for recording in &table.recordings {
+            let (parts, longest_part_s) = self.parts(recording);
+            longest_s = longest_s.max(longest_part_s);
+            if parts.is_empty() {
+                flights_without.push(recording.flight.as_str());
+            }
+            for part in parts {
+                parsed.push(derive::report(&self.plan, &table, recording, part)?);
+            }
+        }
+        let Some(first) = parsed.first_mut() else {
+            return Err(self.refuse_without_report(&table, longest_s));
+        };
+        if !flights_without.is_empty() {
+            first.findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-flight-without-cruise",
+                message: format!(
+                    "no level part long enough in flights of the same file: {}",
+                    flights_without.join(", ")
+                ),
+                line: None,
+            });
+        }
+        Ok(parsed)
+    }
+
+    /// The rows that become reports, and the duration of the longest level part before any is judged.
+    fn parts(&self, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f64) {
+        let rows = recording.time_s.len();
+        match &self.plan.cruise {
+            None if rows < 3 => (Vec::new(), 0.0),
+            None => (core::iter::once(0..rows).collect(), 0.0),
+            Some(criteria) => {
+                let altitude = |(column, _): &&(Column, _)| *column == Column::PressureAltitude;
+                let conversion = self.plan.recorded.iter().find(altitude);
+                let pressure_altitude_m: Vec<f64> = conversion
+                    .map(|(_, conversion)| {
+                        (0..rows).map(|row| conversion.apply(&recording.numbers, row)).collect()
+                    })
+                    .unwrap_or_default();
+                level::level_parts(&recording.time_s, &pressure_altitude_m, criteria)
+            }
+        }
+    }
+
+    fn refuse_without_report(&self, table: &Table<'_>, longest_s: f64) -> Refusal {
+        match &self.plan.cruise {
+            None => {
+                let rows = table.recordings.iter().map(|recording| recording.time_s.len()).max();
+                table.refuse_end(Found::Rows(rows.unwrap_or(0)), RefusalKind::TooFewRows)
+            }
+            Some(criteria) => table.refuse_end(
+                Found::Number { value: longest_s, unit: "s of level flight" },
+                RefusalKind::NoLevelPart {
+                    needed_s: criteria.minimum_duration_s + 2.0 * criteria.trim_s,
+                },
+            ),
+        }
+    }
+}

@@ -1,0 +1,570 @@
+//! From rows of a recording to a report: conversion, derivation, ranges.
+
+use core::ops::Range;
+
+use atmos::{airspeed, isa, temperature};
+use flight::column::Column;
+use flight::{
+    Assumption, Finding, FlightIdentity, FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn, Report,
+    ReportColumns, ReportDataError, ReportHeader, Severity, Timestamp,
+};
+use jiff::SignedDuration;
+use units::{CalibratedAirspeed, Mach, Mass, PressureAltitude, Temperature, TrueAirspeed};
+
+use super::file::OutOfRange;
+use super::plan::{Conversion, MachSource, MassPlan, Plan, TemperatureSource, TrueAirspeedSource};
+use super::table::{Recording, Table};
+use crate::Parsed;
+use crate::refusal::{Found, Refusal, RefusalKind};
+
+/// A limit is widened by this share of itself: a number exactly on it must not fall to a conversion's rounding.
+const LIMIT_ROUNDING: f64 = 1e-12;
+/// A counter of fuel used may fall by this much.
+const FUEL_USED_STEP_KG: f64 = 0.5;
+const DIFFERENCE_ROUNDING_KG: f64 = 1e-9;
+const MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD: f64 = 1.02;
+
+/// The report of some rows of a recording.
+pub(super) fn report(
+    plan: &Plan,
+    table: &Table<'_>,
+    recording: &Recording,
+    rows: Range<usize>,
+) -> Result<Parsed, Refusal> {
+    let (first, level_rows) = (rows.start, rows.len());
+    let (rows, surplus) = rows_in_range(plan, recording, rows);
+    let refuse_inconsistent = |error| {
+        let found = Found::Rows(level_rows - surplus.len());
+        table.refuse(recording, first, 0, found, RefusalKind::Inconsistent(error))
+    };
+    if rows.len() < 3 {
+        let error = ReportDataError::TooFewSamples { found: rows.len() };
+        return Err(refuse_inconsistent(error));
+    }
+    let part = Part { plan, table, recording, rows, level_rows };
+    let air = part.air_data()?;
+    let load = part.load()?;
+    let columns = part.columns(&air, &load)?;
+    let mut notes = plan.notes.clone();
+    let derived = part.derived(&load);
+    if !derived.is_empty() {
+        notes.push(("DERIVED".to_owned(), derived.join(", ")));
+    }
+    let header = ReportHeader {
+        aircraft_type: recording.aircraft.clone(),
+        identity: FlightIdentity {
+            tail: recording.tail.clone(),
+            start: part.start()?,
+            flight: recording.flight.clone(),
+        },
+        zero_fuel_mass: load.zero_fuel_mass,
+        fuel_on_board: load.fuel_on_board,
+        lower_heating_value_mj_kg: plan.lower_heating_value_mj_kg,
+        missing: plan.missing(),
+        assumed: match plan.temperature {
+            TemperatureSource::Isa { deviation_k: isa_deviation_k } => {
+                vec![Assumption::StaticAirTemperatureIsa { isa_deviation_k }]
+            }
+            _ => Vec::new(),
+        },
+        notes,
+    };
+    let findings = part.findings(&derived, &load, &surplus);
+    let report = Report::new(header, columns).map_err(refuse_inconsistent)?;
+    Ok(Parsed { report, findings })
+}
+
+/// Numbers in the stored unit of their column, with the input that a refusal points at.
+struct Series {
+    values: Vec<f64>,
+    input: usize,
+}
+
+struct AirData {
+    pressure_altitude_m: Series,
+    mach: Series,
+    static_air_temperature_k: Series,
+    true_airspeed_m_s: Series,
+}
+
+struct Load {
+    zero_fuel_mass: Mass,
+    fuel_on_board: Mass,
+    fuel_used_kg: Vec<f64>,
+    /// How far a recorded gross mass rose above its smallest value before.
+    largest_rise_kg: Option<f64>,
+}
+
+struct Part<'p, 't> {
+    plan: &'p Plan,
+    table: &'p Table<'t>,
+    recording: &'p Recording,
+    /// Rows of the recording, at least three.
+    rows: Vec<usize>,
+    /// As many before any was left out for its range.
+    level_rows: usize,
+}
+
+/// A row that is left out, and the column that is out of range in it.
+type Surplus = (usize, Column);
+
+/// The rows to use, and those with a recorded number out of range where the mapping leaves such rows out.
+fn rows_in_range(
+    plan: &Plan,
+    recording: &Recording,
+    rows: Range<usize>,
+) -> (Vec<usize>, Vec<Surplus>) {
+    if plan.out_of_range == OutOfRange::Refuse {
+        return (rows.collect(), Vec::new());
+    }
+    let (mut kept, mut surplus) = (Vec::new(), Vec::new());
+    for row in rows {
+        let outside = plan.recorded.iter().find(|(column, conversion)| {
+            let value = conversion.apply(&recording.numbers, row);
+            !Limits::of(*column, None).admit(value)
+        });
+        match outside {
+            None => kept.push(row),
+            Some((column, _)) => surplus.push((row, *column)),
+        }
+    }
+    (kept, surplus)
+}
+
+/// The range of a column in its stored unit.
+struct Limits {
+    column: Column,
+    minimum: f64,
+    low: f64,
+    maximum: f64,
+    high: f64,
+}
+
+impl Limits {
+    fn of(column: Column, maximum: Option<f64>) -> Self {
+        let range = column.range();
+        let minimum = range.minimum.unwrap_or(f64::MIN);
+        let maximum = maximum.or(range.maximum).unwrap_or(f64::MAX);
+        let low = if range.minimum_excluded {
+            f64::MIN_POSITIVE
+        } else {
+            minimum - minimum.abs() * LIMIT_ROUNDING
+        };
+        let high = (maximum + maximum.abs() * LIMIT_ROUNDING).min(f64::MAX);
+        Self { column, minimum, low, maximum, high }
+    }
+
+    /// NaN is "not available" in an optional column and outside every range elsewhere.
+    fn admit(&self, value: f64) -> bool {
+        if value.is_nan() {
+            return self.column.is_optional();
+        }
+        (self.low..=self.high).contains(&value)
+            && (self.column != Column::AntiIce || value.fract() == 0.0)
+    }
+}
+
+impl Part<'_, '_> {
+    fn start(&self) -> Result<Timestamp, Refusal> {
+        let seconds = self.recording.time_s[self.rows[0]];
+        SignedDuration::try_from_secs_f64(seconds)
+            .ok()
+            .and_then(|duration| self.recording.origin.checked_add(duration).ok())
+            .ok_or_else(|| {
+                let found = Found::Number { value: seconds, unit: "s" };
+                self.refuse(0, 0, found, RefusalKind::SourceInstantMalformed)
+            })
+    }
+
+    /// `row` counts from the part's first.
+    fn refuse(&self, row: usize, input: usize, found: Found, kind: RefusalKind) -> Refusal {
+        self.table.refuse(self.recording, self.rows[row], input, found, kind)
+    }
+
+    fn convert(&self, conversion: &Conversion) -> Vec<f64> {
+        self.rows.iter().map(|row| conversion.apply(&self.recording.numbers, *row)).collect()
+    }
+
+    fn recorded(&self, wanted: Column) -> Option<Series> {
+        let (_, conversion) = self.plan.recorded.iter().find(|(column, _)| *column == wanted)?;
+        Some(Series { values: self.convert(conversion), input: conversion.input })
+    }
+
+    /// The column, inside its range; empty where it is absent, which the plan has excluded for required ones.
+    fn required(&self, column: Column) -> Result<Series, Refusal> {
+        let series = self.recorded(column).unwrap_or(Series { values: Vec::new(), input: 0 });
+        self.check_range(column, &series, None)?;
+        Ok(series)
+    }
+
+    fn all(&self, column: Column) -> Result<Option<Vec<f64>>, Refusal> {
+        match self.recorded(column) {
+            None => Ok(None),
+            Some(series) => {
+                self.check_range(column, &series, None)?;
+                Ok(Some(series.values))
+            }
+        }
+    }
+
+    fn optional(
+        &self,
+        column: Column,
+        maximum: Option<f64>,
+    ) -> Result<Option<OptionalColumn>, Refusal> {
+        let Some(series) = self.recorded(column) else { return Ok(None) };
+        self.check_range(column, &series, maximum)?;
+        Ok(Some(
+            series.values.into_iter().map(|value| (!value.is_nan()).then_some(value)).collect(),
+        ))
+    }
+
+    fn check_range(
+        &self,
+        column: Column,
+        series: &Series,
+        maximum: Option<f64>,
+    ) -> Result<(), Refusal> {
+        let limits = Limits::of(column, maximum);
+        match series.values.iter().position(|value| !limits.admit(*value)) {
+            None => Ok(()),
+            Some(row) => {
+                let value = series.values[row];
+                let unit = column.canonical_unit();
+                let limit = if value < limits.low { limits.minimum } else { limits.maximum };
+                let kind = RefusalKind::OutOfRange { column, limit, unit };
+                Err(self.refuse(row, series.input, Found::Number { value, unit }, kind))
+            }
+        }
+    }
+
+    fn air_data(&self) -> Result<AirData, Refusal> {
+        let pressure_altitude_m = self.required(Column::PressureAltitude)?;
+        // In an order in which each finds what it is derived from: the plan has excluded circles.
+        let mut mach = match &self.plan.mach {
+            MachSource::Recorded => Some(self.required(Column::Mach)?),
+            MachSource::CalibratedAirspeed(conversion) => {
+                Some(self.mach_of_calibrated_airspeed(conversion, &pressure_altitude_m)?)
+            }
+            MachSource::TrueAirspeed => None,
+        };
+        let static_air_temperature_k = match self.plan.temperature {
+            TemperatureSource::Recorded => self.required(Column::StaticAirTemperature)?,
+            TemperatureSource::Isa { deviation_k } => {
+                self.isa_temperature(deviation_k, &pressure_altitude_m)?
+            }
+            TemperatureSource::TotalTemperature { recovery_factor } => {
+                self.temperature_of_total_temperature(recovery_factor, mach.as_ref())?
+            }
+        };
+        let temperatures =
+            || static_air_temperature_k.values.iter().map(|value| Temperature::kelvin(*value));
+        let true_airspeed_m_s = match (self.plan.true_airspeed, &mach) {
+            (TrueAirspeedSource::Mach, Some(mach)) => {
+                let values = mach.values.iter().zip(temperatures()).map(|(mach, sat)| {
+                    airspeed::mach_to_true_airspeed(Mach::new(*mach), sat).to_meters_per_second()
+                });
+                let series = Series { values: values.collect(), input: mach.input };
+                self.check_range(Column::TrueAirspeed, &series, None)?;
+                series
+            }
+            _ => self.required(Column::TrueAirspeed)?,
+        };
+        if mach.is_none() {
+            let values = true_airspeed_m_s.values.iter().zip(temperatures()).map(|(speed, sat)| {
+                airspeed::true_airspeed_to_mach(TrueAirspeed::meters_per_second(*speed), sat)
+                    .value()
+            });
+            let series = Series { values: values.collect(), input: true_airspeed_m_s.input };
+            self.check_range(Column::Mach, &series, None)?;
+            mach = Some(series);
+        }
+        let mach = mach.unwrap_or(Series { values: Vec::new(), input: 0 });
+        Ok(AirData { pressure_altitude_m, mach, static_air_temperature_k, true_airspeed_m_s })
+    }
+
+    fn mach_of_calibrated_airspeed(
+        &self,
+        conversion: &Conversion,
+        pressure_altitude_m: &Series,
+    ) -> Result<Series, Refusal> {
+        let mut values = self.convert(conversion);
+        for (row, (value, altitude)) in
+            values.iter_mut().zip(&pressure_altitude_m.values).enumerate()
+        {
+            let pressure = isa::pressure(PressureAltitude::meters(*altitude))
+                .map_err(|error| self.outside_atmosphere(row, pressure_altitude_m, error))?;
+            let speed = CalibratedAirspeed::meters_per_second(*value);
+            *value = airspeed::calibrated_airspeed_to_mach(speed, pressure).value();
+        }
+        let series = Series { values, input: conversion.input };
+        self.check_range(Column::Mach, &series, None)?;
+        Ok(series)
+    }
+
+    fn isa_temperature(
+        &self,
+        deviation_k: f64,
+        pressure_altitude_m: &Series,
+    ) -> Result<Series, Refusal> {
+        let mut values = Vec::with_capacity(pressure_altitude_m.values.len());
+        for (row, altitude) in pressure_altitude_m.values.iter().enumerate() {
+            let temperature = isa::temperature(PressureAltitude::meters(*altitude))
+                .map_err(|error| self.outside_atmosphere(row, pressure_altitude_m, error))?;
+            values.push(temperature.to_kelvin() + deviation_k);
+        }
+        let series = Series { values, input: pressure_altitude_m.input };
+        self.check_range(Column::StaticAirTemperature, &series, None)?;
+        Ok(series)
+    }
+
+    fn temperature_of_total_temperature(
+        &self,
+        recovery_factor: f64,
+        mach: Option<&Series>,
+    ) -> Result<Series, Refusal> {
+        let mut series = self.required(Column::TotalAirTemperature)?;
+        for (value, mach) in series.values.iter_mut().zip(mach.iter().flat_map(|m| &m.values)) {
+            let total = Temperature::kelvin(*value);
+            *value =
+                temperature::total_to_static(total, Mach::new(*mach), recovery_factor).to_kelvin();
+        }
+        self.check_range(Column::StaticAirTemperature, &series, None)?;
+        Ok(series)
+    }
+
+    fn outside_atmosphere(
+        &self,
+        row: usize,
+        series: &Series,
+        error: units::OutOfDomain,
+    ) -> Refusal {
+        let found = Found::Number { value: error.value, unit: error.unit };
+        let limit = if error.value < error.minimum { error.minimum } else { error.maximum };
+        let column = Column::PressureAltitude;
+        self.refuse(row, series.input, found, RefusalKind::OutOfRange { column, limit, unit: "m" })
+    }
+
+    fn load(&self) -> Result<Load, Refusal> {
+        match &self.plan.mass {
+            MassPlan::GrossMass { mass, zero_fuel_mass, largest_rise_kg } => {
+                self.load_of_gross_mass(mass, *zero_fuel_mass, *largest_rise_kg)
+            }
+            MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
+                let series = Series { values: self.convert(fuel_used), input: fuel_used.input };
+                let maximum = Some(fuel_on_board.to_kilograms());
+                self.check_range(Column::FuelUsed, &series, maximum)?;
+                self.check_fuel_used_series(&series)?;
+                Ok(Load {
+                    zero_fuel_mass: *zero_fuel_mass,
+                    fuel_on_board: *fuel_on_board,
+                    fuel_used_kg: series.values,
+                    largest_rise_kg: None,
+                })
+            }
+        }
+    }
+
+    /// As in the text format: a counter never falls by more than its step.
+    fn check_fuel_used_series(&self, series: &Series) -> Result<(), Refusal> {
+        let mut largest = f64::NEG_INFINITY;
+        for (row, value) in series.values.iter().enumerate() {
+            if *value < largest - FUEL_USED_STEP_KG - DIFFERENCE_ROUNDING_KG {
+                let unit = "kg";
+                let kind =
+                    RefusalKind::FuelUsedFalls { largest, tolerance: FUEL_USED_STEP_KG, unit };
+                let found = Found::Number { value: *value, unit };
+                return Err(self.refuse(row, series.input, found, kind));
+            }
+            largest = largest.max(*value);
+        }
+        Ok(())
+    }
+
+    /// Fuel used is how far gross mass has fallen below its first value: the running maximum of the fall, because
+    /// recorded masses come in steps and flutter between two of them.
+    fn load_of_gross_mass(
+        &self,
+        conversion: &Conversion,
+        zero_fuel_mass: Option<Mass>,
+        admissible_rise_kg: f64,
+    ) -> Result<Load, Refusal> {
+        let masses_kg = self.convert(conversion);
+        let first_kg = masses_kg[0];
+        let mut smallest_kg = first_kg;
+        let mut largest_rise_kg = 0.0_f64;
+        let mut fuel_used_kg = Vec::with_capacity(masses_kg.len());
+        for (row, mass_kg) in masses_kg.iter().enumerate() {
+            let found = Found::Number { value: *mass_kg, unit: "kg" };
+            if *mass_kg <= 0.0 {
+                let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
+                return Err(self.refuse(row, conversion.input, found, kind));
+            }
+            smallest_kg = smallest_kg.min(*mass_kg);
+            let rise_kg = mass_kg - smallest_kg;
+            if rise_kg > admissible_rise_kg {
+                let kind = RefusalKind::GrossMassRises { smallest_kg, admissible_rise_kg };
+                return Err(self.refuse(row, conversion.input, found, kind));
+            }
+            largest_rise_kg = largest_rise_kg.max(rise_kg);
+            fuel_used_kg.push(first_kg - smallest_kg);
+        }
+        let burnt_kg = first_kg - smallest_kg;
+        let zero_fuel_mass = zero_fuel_mass.unwrap_or(Mass::kilograms(smallest_kg));
+        let fuel_on_board = Mass::kilograms(first_kg) - zero_fuel_mass;
+        let fuel_on_board_kg = fuel_on_board.to_kilograms();
+        if fuel_on_board_kg <= 0.0 || fuel_on_board_kg < burnt_kg {
+            let kind = RefusalKind::MassNotPositive { mass: "fuel on board" };
+            let found = Found::Number { value: fuel_on_board_kg - burnt_kg, unit: "kg" };
+            return Err(self.refuse(0, conversion.input, found, kind));
+        }
+        let largest_rise_kg = Some(largest_rise_kg);
+        Ok(Load { zero_fuel_mass, fuel_on_board, fuel_used_kg, largest_rise_kg })
+    }
+
+    fn columns(&self, air: &AirData, load: &Load) -> Result<ReportColumns, Refusal> {
+        let is_temperature_assumed = matches!(self.plan.temperature, TemperatureSource::Isa { .. });
+        let first_s = self.recording.time_s[self.rows[0]];
+        let fuel_quantity_kg =
+            load.fuel_on_board.to_kilograms() * MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD;
+        let n2_percent = self.engines(Column::N2)?;
+        let flows = self.engines(Column::FuelFlowEngine)?;
+        let mut n1_percent = [const { None }; MAXIMUM_ENGINES];
+        let mut exhaust_gas_temperature_k = [const { None }; MAXIMUM_ENGINES];
+        for (engine, (rotor, gas)) in
+            (1..).zip(n1_percent.iter_mut().zip(&mut exhaust_gas_temperature_k))
+        {
+            *rotor = self.optional(Column::N1(engine), None)?;
+            *gas = self.optional(Column::ExhaustGasTemperature(engine), None)?;
+        }
+        Ok(ReportColumns {
+            time_s: self.rows.iter().map(|row| self.recording.time_s[*row] - first_s).collect(),
+            pressure_altitude_m: air.pressure_altitude_m.values.clone(),
+            static_air_temperature_k: (!is_temperature_assumed)
+                .then(|| air.static_air_temperature_k.values.clone()),
+            mach: air.mach.values.clone(),
+            true_airspeed_m_s: air.true_airspeed_m_s.values.clone(),
+            ground_speed_m_s: self.required(Column::GroundSpeed)?.values,
+            roll_deg: self.all(Column::Roll)?,
+            drift_deg: self.all(Column::Drift)?,
+            fuel_flow: if flows.is_empty() {
+                FuelFlowColumns::Total(self.total_fuel_flow(n2_percent.len())?)
+            } else {
+                FuelFlowColumns::PerEngine(flows)
+            },
+            n2_percent: (!n2_percent.is_empty()).then_some(n2_percent),
+            fuel_used_kg: load.fuel_used_kg.clone(),
+            latitude_deg: self.optional(Column::Latitude, None)?,
+            longitude_deg: self.optional(Column::Longitude, None)?,
+            true_heading_deg: self.optional(Column::TrueHeading, None)?,
+            center_of_gravity_percent_mac: self.optional(Column::CenterOfGravity, None)?,
+            total_air_temperature_k: self.optional(Column::TotalAirTemperature, None)?,
+            n1_percent,
+            exhaust_gas_temperature_k,
+            fuel_quantity_kg: self.optional(Column::FuelQuantity, Some(fuel_quantity_kg))?,
+            anti_ice: self.optional(Column::AntiIce, None)?,
+        })
+    }
+
+    fn engines(&self, column: fn(u8) -> Column) -> Result<Vec<Vec<f64>>, Refusal> {
+        let mut engines = Vec::new();
+        for engine in (1..).take(MAXIMUM_ENGINES) {
+            engines.extend(self.all(column(engine))?);
+        }
+        Ok(engines)
+    }
+
+    /// Where nothing tells how many engines there are, the range of four counts.
+    fn total_fuel_flow(&self, engines: usize) -> Result<Vec<f64>, Refusal> {
+        let column = Column::FuelFlowTotal;
+        let engines = if engines == 0 { MAXIMUM_ENGINES } else { engines };
+        let series = self.recorded(column).unwrap_or(Series { values: Vec::new(), input: 0 });
+        let maximum = column.range().maximum.map(|one| one * engines as f64);
+        self.check_range(column, &series, maximum)?;
+        Ok(series.values)
+    }
+
+    /// What was derived from what, for the report's notes.
+    fn derived(&self, load: &Load) -> Vec<&'static str> {
+        let mut derived = Vec::new();
+        match self.plan.mach {
+            MachSource::Recorded => {}
+            MachSource::CalibratedAirspeed(_) => derived.push("MACH from CAS and ALT"),
+            MachSource::TrueAirspeed => derived.push("MACH from VTAS and SAT"),
+        }
+        if matches!(self.plan.temperature, TemperatureSource::TotalTemperature { .. }) {
+            derived.push("SAT from TAT and MACH");
+        }
+        if matches!(self.plan.true_airspeed, TrueAirspeedSource::Mach) {
+            derived.push("VTAS from MACH and SAT");
+        }
+        if self
+            .plan
+            .recorded
+            .iter()
+            .any(|(column, conversion)| *column == Column::Drift && conversion.minus.is_some())
+        {
+            derived.push("DRIFT from track and heading");
+        }
+        if load.largest_rise_kg.is_some() {
+            derived.push("FU from the fall of gross mass");
+        }
+        derived
+    }
+
+    fn findings(&self, derived: &[&'static str], load: &Load, surplus: &[Surplus]) -> Vec<Finding> {
+        let first_line = Some(self.table.line(self.recording, self.rows[0]));
+        let note = |severity, code, message| Finding { severity, code, message, line: first_line };
+        let mut findings = Vec::new();
+        if !derived.is_empty() {
+            let message = format!("derived by the mapping: {}", derived.join(", "));
+            findings.push(note(Severity::Note, "mapped-derived", message));
+        }
+        if let TemperatureSource::Isa { deviation_k } = self.plan.temperature {
+            let message = format!(
+                "static air temperature is not recorded: ISA {deviation_k:+} K stands in for it"
+            );
+            findings.push(note(Severity::Warning, "mapped-temperature-assumed", message));
+        }
+        if let Some(largest_rise_kg) = load.largest_rise_kg {
+            let message = format!(
+                "fuel used is the running maximum of the fall of gross mass, which rose by up to {largest_rise_kg:.1} kg \
+                 on the way"
+            );
+            findings.push(note(Severity::Note, "mapped-fuel-used", message));
+        }
+        if self.recording.left_out > 0 {
+            findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-rows-left-out",
+                message: format!(
+                    "{} rows lack a number that the report needs and are left out",
+                    self.recording.left_out
+                ),
+                line: self.table.first_left_out(self.recording),
+            });
+        }
+        if let Some((row, column)) = surplus.first() {
+            findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-rows-out-of-range",
+                message: format!(
+                    "{} rows hold a number out of range and are left out, the first for its {}",
+                    surplus.len(),
+                    column.name()
+                ),
+                line: Some(self.table.line(self.recording, *row)),
+            });
+        }
+        let rows = self.recording.time_s.len();
+        if let (true, Some(last)) = (self.level_rows < rows, self.rows.last()) {
+            let last_line = self.table.line(self.recording, *last);
+            let message = format!(
+                "level cruise: {} of {rows} rows, to line {last_line}; the rest is climb, descent or too short",
+                self.level_rows
+            );
+            findings.push(note(Severity::Note, "mapped-cruise-cut", message));
+        }
+        findings
+    }
+}

@@ -1,0 +1,183 @@
+//! The level parts of a recording: climb and descent are no cruise.
+
+use core::ops::Range;
+use std::collections::VecDeque;
+
+/// Differences of decimal altitudes in binary: a band of exactly its width is within it.
+const ROUNDING_M: f64 = 1e-9;
+
+/// What counts as a level part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LevelCriteria {
+    /// No sample lies below, m.
+    pub(super) minimum_pressure_altitude_m: f64,
+    /// Highest less lowest pressure altitude, m.
+    pub(super) band_m: f64,
+    /// Shortest part after trimming, s.
+    pub(super) minimum_duration_s: f64,
+    /// What is cut off at either end, where the aircraft still levels off or already leaves, s.
+    pub(super) trim_s: f64,
+}
+
+/// The level parts in the order of time, trimmed, and the duration of the longest untrimmed one.
+///
+/// The longest part is taken first, then the longest of what is left before and after it; of equally long ones the
+/// earliest. So a step climb gives two parts, and a part is never split to please another.
+pub(super) fn level_parts(
+    time_s: &[f64],
+    pressure_altitude_m: &[f64],
+    criteria: &LevelCriteria,
+) -> (Vec<Range<usize>>, f64) {
+    let needed_s = criteria.minimum_duration_s + 2.0 * criteria.trim_s;
+    let mut parts = Vec::new();
+    let mut longest_s = 0.0_f64;
+    let mut open: Vec<Range<usize>> = core::iter::once(0..time_s.len()).collect();
+    while let Some(range) = open.pop() {
+        let Some(part) = longest_level_part(time_s, pressure_altitude_m, criteria, range.clone())
+        else {
+            continue;
+        };
+        let duration_s = time_s[part.end - 1] - time_s[part.start];
+        longest_s = longest_s.max(duration_s);
+        if duration_s < needed_s {
+            continue;
+        }
+        open.push(range.start..part.start);
+        open.push(part.end..range.end);
+        let trimmed = trim(time_s, part, criteria.trim_s);
+        if trimmed.len() >= 3 {
+            parts.push(trimmed);
+        }
+    }
+    parts.sort_by_key(|part| part.start);
+    (parts, longest_s)
+}
+
+fn trim(time_s: &[f64], part: Range<usize>, trim_s: f64) -> Range<usize> {
+    let first_s = time_s[part.start] + trim_s;
+    let last_s = time_s[part.end - 1] - trim_s;
+    let start = part.start + time_s[part.clone()].partition_point(|time| *time < first_s);
+    let end = part.start + time_s[part.clone()].partition_point(|time| *time <= last_s);
+    start..end.max(start)
+}
+
+/// Two indices that move forward alone, with the indices of falling maxima and rising minima between them: each
+/// sample enters and leaves once.
+fn longest_level_part(
+    time_s: &[f64],
+    pressure_altitude_m: &[f64],
+    criteria: &LevelCriteria,
+    range: Range<usize>,
+) -> Option<Range<usize>> {
+    let mut best: Option<Range<usize>> = None;
+    let mut best_s = f64::NEG_INFINITY;
+    let mut start = range.start;
+    let mut highest: VecDeque<usize> = VecDeque::new();
+    let mut lowest: VecDeque<usize> = VecDeque::new();
+    let altitude = |sample: usize| pressure_altitude_m[sample];
+    for sample in range {
+        if altitude(sample) < criteria.minimum_pressure_altitude_m - ROUNDING_M {
+            start = sample + 1;
+            highest.clear();
+            lowest.clear();
+            continue;
+        }
+        while highest.back().is_some_and(|&other| altitude(other) <= altitude(sample)) {
+            highest.pop_back();
+        }
+        highest.push_back(sample);
+        while lowest.back().is_some_and(|&other| altitude(other) >= altitude(sample)) {
+            lowest.pop_back();
+        }
+        lowest.push_back(sample);
+        while let (Some(&high), Some(&low)) = (highest.front(), lowest.front())
+            && altitude(high) - altitude(low) > criteria.band_m + ROUNDING_M
+        {
+            start += 1;
+            if high < start {
+                highest.pop_front();
+            }
+            if low < start {
+                lowest.pop_front();
+            }
+        }
+        let duration_s = time_s[sample] - time_s[start];
+        if duration_s > best_s {
+            best_s = duration_s;
+            best = Some(start..sample + 1);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::single_range_in_vec_init, reason = "one part is one range")]
+    #![expect(clippy::float_cmp, reason = "whole seconds are exact")]
+
+    use super::*;
+
+    const CRITERIA: LevelCriteria = LevelCriteria {
+        minimum_pressure_altitude_m: 9_000.0,
+        band_m: 60.0,
+        minimum_duration_s: 20.0,
+        trim_s: 5.0,
+    };
+
+    fn parts(pressure_altitude_m: &[f64]) -> Vec<Range<usize>> {
+        let time_s: Vec<f64> = (0..pressure_altitude_m.len()).map(|second| second as f64).collect();
+        level_parts(&time_s, pressure_altitude_m, &CRITERIA).0
+    }
+
+    /// Altitudes a second apart: so many seconds at each of the levels.
+    fn levels(pieces: &[(usize, f64)]) -> Vec<f64> {
+        pieces.iter().flat_map(|(seconds, altitude)| vec![*altitude; *seconds]).collect()
+    }
+
+    #[test]
+    fn a_step_climb_gives_two_parts_and_short_levels_none() {
+        let altitudes =
+            levels(&[(50, 8_000.0), (40, 10_000.0), (3, 10_300.0), (31, 10_600.0), (25, 9_500.0)]);
+        // 40 samples last 39 s, from 50 to 89; trimmed 55 to 84. 31 samples last 30 s, just enough, from 93 to 123;
+        // trimmed 98 to 118. 25 samples last 24 s, too short.
+        assert_eq!(parts(&altitudes), [55..85, 98..119]);
+    }
+
+    #[test]
+    fn the_band_counts_from_lowest_to_highest() {
+        let wave = |amplitude: f64| -> Vec<f64> {
+            (0..60)
+                .map(|second| 10_000.0 + if second % 2 == 0 { amplitude } else { -amplitude })
+                .collect()
+        };
+        assert_eq!(parts(&wave(30.0)), [5..55]);
+        assert!(parts(&wave(30.1)).is_empty());
+    }
+
+    #[test]
+    fn low_flight_is_no_cruise() {
+        assert!(parts(&levels(&[(100, 8_999.9)])).is_empty());
+        assert_eq!(parts(&levels(&[(100, 9_000.0)])), [5..95]);
+        assert!(parts(&[]).is_empty());
+    }
+
+    proptest::proptest! {
+        /// Oracle: every stretch tried.
+        #[test]
+        fn no_stretch_is_longer(altitudes in proptest::collection::vec(8_980.0_f64..9_120.0, 0..40)) {
+            let time_s: Vec<f64> = (0..altitudes.len()).map(|second| second as f64).collect();
+            let longest = (0..altitudes.len())
+                .flat_map(|start| (start..altitudes.len()).map(move |end| start..end + 1))
+                .filter(|range| {
+                    let piece = &altitudes[range.clone()];
+                    let high = piece.iter().copied().fold(f64::MIN, f64::max);
+                    let low = piece.iter().copied().fold(f64::MAX, f64::min);
+                    low >= 9_000.0 && high - low <= 60.0
+                })
+                .map(|range| range.len() - 1)
+                .max();
+            let (_, found) = level_parts(&time_s, &altitudes, &CRITERIA);
+            proptest::prop_assert_eq!(found, longest.unwrap_or(0) as f64);
+        }
+    }
+}

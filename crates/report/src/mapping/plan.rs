@@ -1,0 +1,412 @@
+//! A mapping that makes sense: every required quantity has a source, every unit is known.
+
+use flight::column::{Column, ColumnUnit};
+use flight::{MAXIMUM_ENGINES, MissingColumn, Timestamp};
+use units::convert::METERS_PER_FOOT;
+use units::{Mass, OutOfDomain, check_within};
+
+use super::MappingError;
+use super::file::{
+    CruiseFile, FORMAT, MappingFile, MassSource, OutOfRange, QuantitySource, TextSource,
+    TimeSource, WithUnit,
+};
+use super::level::LevelCriteria;
+use crate::cruise_text::parse_instant;
+
+/// What a mapping file says, checked.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub(super) separator: u8,
+    pub(super) comment: Option<u8>,
+    pub(super) not_available: Vec<String>,
+    pub(super) aircraft: TextSource,
+    pub(super) tail: TextSource,
+    pub(super) flight: TextSource,
+    pub(super) lower_heating_value_mj_kg: Option<f64>,
+    pub(super) notes: Vec<(String, String)>,
+    pub(super) time_column: String,
+    pub(super) time: TimeForm,
+    /// Columns of the recording that hold numbers; other fields name them by their place here.
+    pub(super) inputs: Vec<Input>,
+    pub(super) recorded: Vec<(Column, Conversion)>,
+    pub(super) mach: MachSource,
+    pub(super) temperature: TemperatureSource,
+    pub(super) true_airspeed: TrueAirspeedSource,
+    pub(super) mass: MassPlan,
+    pub(super) out_of_range: OutOfRange,
+    pub(super) cruise: Option<LevelCriteria>,
+}
+
+/// A column of numbers in the recording.
+#[derive(Clone, Debug)]
+pub(super) struct Input {
+    pub(super) name: String,
+    /// Whether a row without it is left out.
+    pub(super) is_required: bool,
+}
+
+/// From a number of the recording to the stored unit of a quantity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Conversion {
+    pub(super) input: usize,
+    /// For the angle between two columns.
+    pub(super) minus: Option<usize>,
+    factor: f64,
+    offset: f64,
+}
+
+impl Conversion {
+    pub(super) fn apply(&self, numbers: &[Vec<f64>], row: usize) -> f64 {
+        let value = numbers[self.input][row] * self.factor + self.offset;
+        match self.minus {
+            None => value,
+            Some(minus) => wrap_deg(value - numbers[minus][row] * self.factor),
+        }
+    }
+}
+
+/// An angle in −180 … 180°.
+fn wrap_deg(angle_deg: f64) -> f64 {
+    (angle_deg + 180.0).rem_euclid(360.0) - 180.0
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum MachSource {
+    Recorded,
+    CalibratedAirspeed(Conversion),
+    TrueAirspeed,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum TemperatureSource {
+    Recorded,
+    TotalTemperature { recovery_factor: f64 },
+    Isa { deviation_k: f64 },
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum TrueAirspeedSource {
+    Recorded,
+    Mach,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum MassPlan {
+    GrossMass { mass: Conversion, zero_fuel_mass: Option<Mass>, largest_rise_kg: f64 },
+    FuelUsed { fuel_used: Conversion, zero_fuel_mass: Mass, fuel_on_board: Mass },
+}
+
+/// How the recording writes time.
+#[derive(Clone, Debug)]
+pub(super) enum TimeForm {
+    Timestamp { utc_offset: Option<String> },
+    Seconds { start: Timestamp },
+}
+
+impl Plan {
+    pub(super) fn new(file: MappingFile) -> Result<Self, MappingError> {
+        if file.format != FORMAT {
+            return Err(MappingError::VersionUnknown { found: file.format });
+        }
+        let mut sources = Sources::default();
+        for (name, source) in file.quantities.0 {
+            sources.add(name, source)?;
+        }
+        let Derivations { mach, temperature, true_airspeed } = sources.derivations()?;
+        check_engines(|column| sources.is_recorded(column))?;
+        let mut inputs = sources.inputs;
+        let mass = mass_plan(file.mass, &mut inputs)?;
+        let (time_column, time) = time_plan(file.time)?;
+        Ok(Self {
+            separator: ascii(file.separator)?,
+            comment: file.comment.map(ascii).transpose()?,
+            not_available: file.not_available,
+            aircraft: file.aircraft,
+            tail: file.tail,
+            flight: file.flight,
+            lower_heating_value_mj_kg: file
+                .lower_heating_value_mj_kg
+                .map(|value| check_within("lower heating value", "MJ/kg", value, 1.0, 200.0))
+                .transpose()?,
+            notes: file.notes,
+            time_column,
+            time,
+            inputs: inputs.0,
+            recorded: sources.recorded,
+            mach,
+            temperature,
+            true_airspeed,
+            mass,
+            out_of_range: file.out_of_range,
+            cruise: file.cruise.as_ref().map(level_criteria).transpose()?,
+        })
+    }
+
+    /// The required columns of the report that this layout does not have.
+    pub(super) fn missing(&self) -> Vec<MissingColumn> {
+        let is_recorded = |wanted| self.recorded.iter().any(|(column, _)| *column == wanted);
+        let is_assumed = matches!(self.temperature, TemperatureSource::Isa { .. });
+        MissingColumn::ALL
+            .into_iter()
+            .filter(|column| match column {
+                MissingColumn::StaticAirTemperature => is_assumed,
+                MissingColumn::N2 => !is_recorded(Column::N2(1)),
+                MissingColumn::Roll => !is_recorded(Column::Roll),
+                MissingColumn::Drift => !is_recorded(Column::Drift),
+            })
+            .collect()
+    }
+}
+
+/// Where quantities come from, as far as the file has been read.
+#[derive(Default)]
+struct Sources {
+    inputs: Inputs,
+    recorded: Vec<(Column, Conversion)>,
+    mach: Option<MachSource>,
+    temperature: Option<TemperatureSource>,
+    true_airspeed: Option<TrueAirspeedSource>,
+}
+
+struct Derivations {
+    mach: MachSource,
+    temperature: TemperatureSource,
+    true_airspeed: TrueAirspeedSource,
+}
+
+impl Sources {
+    fn add(&mut self, name: String, source: QuantitySource) -> Result<(), MappingError> {
+        let quantity = match Column::from_name(&name) {
+            // Time and fuel used have entries of their own.
+            None | Some(Column::Time | Column::FuelUsed) => {
+                return Err(MappingError::QuantityUnknown { name });
+            }
+            Some(quantity) => quantity,
+        };
+        match (quantity, source) {
+            (_, QuantitySource::Recorded { column, unit, scale }) => {
+                let conversion = self.inputs.conversion(quantity, column, &unit, scale)?;
+                self.recorded.push((quantity, conversion));
+            }
+            (Column::Drift, QuantitySource::Difference { column, minus, unit }) => {
+                let mut conversion = self.inputs.conversion(quantity, column, &unit, 1.0)?;
+                conversion.minus = Some(self.inputs.place(minus, true));
+                self.recorded.push((quantity, conversion));
+            }
+            (Column::Mach, QuantitySource::FromCalibratedAirspeed { column, unit, scale }) => {
+                // Calibrated airspeed is no column of the report, but comes in the units of true airspeed.
+                let conversion =
+                    self.inputs.conversion(Column::TrueAirspeed, column, &unit, scale)?;
+                self.mach = Some(MachSource::CalibratedAirspeed(conversion));
+            }
+            (Column::Mach, QuantitySource::FromTrueAirspeed) => {
+                self.mach = Some(MachSource::TrueAirspeed);
+            }
+            (Column::TrueAirspeed, QuantitySource::FromMach) => {
+                self.true_airspeed = Some(TrueAirspeedSource::Mach);
+            }
+            (
+                Column::StaticAirTemperature,
+                QuantitySource::FromTotalTemperature { recovery_factor },
+            ) => {
+                check_within("recovery factor", "-", recovery_factor, 0.5, 1.0)?;
+                self.temperature = Some(TemperatureSource::TotalTemperature { recovery_factor });
+            }
+            (Column::StaticAirTemperature, QuantitySource::Isa { deviation_k }) => {
+                check_within("deviation from the ISA", "K", deviation_k, -100.0, 100.0)?;
+                self.temperature = Some(TemperatureSource::Isa { deviation_k });
+            }
+            (column, source) => {
+                return Err(MappingError::SourceNotForQuantity {
+                    column,
+                    source_name: source.name(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn is_recorded(&self, wanted: Column) -> bool {
+        self.recorded.iter().any(|(column, _)| *column == wanted)
+    }
+
+    fn require(&self, column: Column) -> Result<(), MappingError> {
+        if self.is_recorded(column) {
+            Ok(())
+        } else {
+            Err(MappingError::QuantityNotMapped { column })
+        }
+    }
+
+    /// Every required quantity is recorded or derived, and none from itself.
+    fn derivations(&mut self) -> Result<Derivations, MappingError> {
+        self.require(Column::PressureAltitude)?;
+        self.require(Column::GroundSpeed)?;
+        if self.mach.is_none() {
+            self.require(Column::Mach)?;
+        }
+        if self.temperature.is_none() {
+            self.require(Column::StaticAirTemperature)?;
+        }
+        if self.true_airspeed.is_none() {
+            self.require(Column::TrueAirspeed)?;
+        }
+        let derivations = Derivations {
+            mach: self.mach.unwrap_or(MachSource::Recorded),
+            temperature: self.temperature.unwrap_or(TemperatureSource::Recorded),
+            true_airspeed: self.true_airspeed.unwrap_or(TrueAirspeedSource::Recorded),
+        };
+        let is_temperature_of_mach =
+            matches!(derivations.temperature, TemperatureSource::TotalTemperature { .. });
+        if is_temperature_of_mach {
+            self.require(Column::TotalAirTemperature)?;
+            for (column, conversion) in &self.recorded {
+                if *column == Column::TotalAirTemperature {
+                    self.inputs.0[conversion.input].is_required = true;
+                }
+            }
+        }
+        let is_airspeed_of_mach = matches!(derivations.true_airspeed, TrueAirspeedSource::Mach);
+        if matches!(derivations.mach, MachSource::TrueAirspeed)
+            && (is_airspeed_of_mach || is_temperature_of_mach)
+        {
+            return Err(MappingError::Circular);
+        }
+        Ok(derivations)
+    }
+}
+
+#[derive(Default)]
+struct Inputs(Vec<Input>);
+
+impl Inputs {
+    fn place(&mut self, name: String, is_required: bool) -> usize {
+        if let Some(place) = self.0.iter().position(|input| input.name == name) {
+            self.0[place].is_required |= is_required;
+            return place;
+        }
+        self.0.push(Input { name, is_required });
+        self.0.len() - 1
+    }
+
+    fn conversion(
+        &mut self,
+        column: Column,
+        input: String,
+        unit: &str,
+        scale: f64,
+    ) -> Result<Conversion, MappingError> {
+        let unit = known_unit(column, unit)?;
+        check_within("scale", "-", scale, -1e12, 1e12)?;
+        let input = self.place(input, !column.is_optional());
+        Ok(Conversion { input, minus: None, factor: scale * unit.factor, offset: unit.offset })
+    }
+}
+
+fn known_unit(column: Column, unit: &str) -> Result<ColumnUnit, MappingError> {
+    let known = column.units().iter().find(|known| known.name == unit);
+    known.copied().ok_or_else(|| MappingError::UnitUnknown { column, unit: unit.to_owned() })
+}
+
+fn mass(WithUnit(value, unit): &WithUnit, what: &'static str) -> Result<Mass, MappingError> {
+    let unit = known_unit(Column::FuelUsed, unit)?;
+    let mass_kg = check_within(what, "kg", value * unit.factor, f64::MIN_POSITIVE, 1e7)?;
+    Ok(Mass::kilograms(mass_kg))
+}
+
+fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassPlan, MappingError> {
+    Ok(match source {
+        MassSource::GrossMass { column, unit, scale, zero_fuel_weight, largest_rise_kg } => {
+            MassPlan::GrossMass {
+                mass: inputs.conversion(Column::FuelUsed, column, &unit, scale)?,
+                zero_fuel_mass: zero_fuel_weight
+                    .map(|value| mass(&value, "zero-fuel mass"))
+                    .transpose()?,
+                largest_rise_kg: check_within(
+                    "largest rise of gross mass",
+                    "kg",
+                    largest_rise_kg,
+                    0.0,
+                    1e5,
+                )?,
+            }
+        }
+        MassSource::FuelUsed { column, unit, scale, zero_fuel_weight, fuel_on_board } => {
+            MassPlan::FuelUsed {
+                fuel_used: inputs.conversion(Column::FuelUsed, column, &unit, scale)?,
+                zero_fuel_mass: mass(&zero_fuel_weight, "zero-fuel mass")?,
+                fuel_on_board: mass(&fuel_on_board, "fuel on board")?,
+            }
+        }
+    })
+}
+
+fn time_plan(source: TimeSource) -> Result<(String, TimeForm), MappingError> {
+    let any_day = "2000-01-01T00:00:00";
+    match source {
+        TimeSource::Timestamp { column, utc_offset } => {
+            if let Some(offset) = &utc_offset
+                && parse_instant(&format!("{any_day}{offset}")).is_none()
+            {
+                return Err(MappingError::InstantMalformed { text: offset.clone() });
+            }
+            Ok((column, TimeForm::Timestamp { utc_offset }))
+        }
+        TimeSource::Seconds { column, start } => {
+            let start: Timestamp =
+                parse_instant(&start).ok_or(MappingError::InstantMalformed { text: start })?;
+            Ok((column, TimeForm::Seconds { start }))
+        }
+    }
+}
+
+/// Engines count from 1 without a gap; rotor speed and fuel flow are of the same engines.
+fn check_engines(is_recorded: impl Fn(Column) -> bool) -> Result<(), MappingError> {
+    let count = |column: fn(u8) -> Column| -> Result<u8, MappingError> {
+        let engines: Vec<u8> =
+            (1..).take(MAXIMUM_ENGINES).filter(|k| is_recorded(column(*k))).collect();
+        match (1..).zip(&engines).find(|(expected, engine)| expected != *engine) {
+            Some((expected, _)) => {
+                Err(MappingError::QuantityNotMapped { column: column(expected) })
+            }
+            None => Ok((1..).take(engines.len()).last().unwrap_or(0)),
+        }
+    };
+    let flows = count(Column::FuelFlowEngine)?;
+    let rotor_speeds = count(Column::N2)?;
+    let is_total = is_recorded(Column::FuelFlowTotal);
+    if flows == 0 && !is_total {
+        return Err(MappingError::QuantityNotMapped { column: Column::FuelFlowTotal });
+    }
+    if flows > 0 && is_total {
+        return Err(MappingError::FuelFlowTwice);
+    }
+    if flows > 0 && rotor_speeds > 0 && flows != rotor_speeds {
+        let column = if flows > rotor_speeds {
+            Column::N2(flows)
+        } else {
+            Column::FuelFlowEngine(rotor_speeds)
+        };
+        return Err(MappingError::QuantityNotMapped { column });
+    }
+    Ok(())
+}
+
+fn level_criteria(file: &CruiseFile) -> Result<LevelCriteria, OutOfDomain> {
+    let altitude_ft =
+        check_within("pressure altitude", "ft", file.minimum_pressure_altitude_ft, -2e3, 6e4)?;
+    let band_ft = check_within("band of pressure altitude", "ft", file.band_ft, 0.0, 6e4)?;
+    Ok(LevelCriteria {
+        minimum_pressure_altitude_m: altitude_ft * METERS_PER_FOOT,
+        band_m: band_ft * METERS_PER_FOOT,
+        minimum_duration_s: check_within("duration", "s", file.minimum_duration_s, 0.0, 1e6)?,
+        trim_s: check_within("trimmed time", "s", file.trim_s, 0.0, 1e6)?,
+    })
+}
+
+fn ascii(character: char) -> Result<u8, MappingError> {
+    match u8::try_from(character) {
+        Ok(byte) if byte.is_ascii() && !byte.is_ascii_alphanumeric() && byte != b'"' => Ok(byte),
+        _ => Err(MappingError::SeparatorUnusable { character }),
+    }
+}
