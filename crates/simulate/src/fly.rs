@@ -1,0 +1,466 @@
+//! One flight, step by step.
+//!
+//! A difficult file. The state is airspeed against the mean wind, pressure altitude, vertical speed, pitch, thrust, mass
+//! and a place with a direction on the sphere. Along the airspeed the equation of motion is `[flow.7]`. Airspeed and mass
+//! are predicted by the two-step Adams–Bashforth rule, the forces evaluated once there, and both corrected by the
+//! trapezoidal rule: second order for one evaluation a step. The fast heave mode goes implicitly, wind by the exact
+//! difference between the two ends of a step. The books in `state.rs` check all that.
+
+mod air_ahead;
+mod controls;
+mod forces;
+mod steering;
+
+use units::{OutOfDomain, PressureAltitude};
+
+use crate::aircraft::AircraftTruth;
+use crate::random::{Purpose, Streams};
+use crate::route::{Autopilot, Earth, FlightPlan};
+use crate::smooth::SmoothErrors;
+use crate::state::{EnergyBook, FUEL_TEMPERATURE_AT_START_K, MassBook, TrueState};
+use crate::terms::{FuelShares, MAXIMUM_ENGINES, Terms};
+use crate::weather::{AirMass, DrydenFilters, Gusts, Patch, Turbulence, intensity_m_s};
+
+use air_ahead::AirAhead;
+use controls::Controls;
+use forces::{EarthHere, Forces, Motion};
+use steering::Steering;
+
+/// Time constant with which fuel in the wings takes on TAT, s.
+const FUEL_TEMPERATURE_TIME_S: f64 = 7200.0;
+
+/// Why a flight cannot be flown as planned.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FlightError {
+    /// Outside the atmosphere.
+    #[error(transparent)]
+    Atmosphere(#[from] OutOfDomain),
+    /// The engines do not hold the speed.
+    #[error("at {time_s} s Mach number {mach} falls away from {target}: not enough thrust")]
+    Thrust {
+        /// Time since the start of the recording, s.
+        time_s: f64,
+        /// Mach number.
+        mach: f64,
+        /// What the autopilot wants.
+        target: f64,
+    },
+    /// More lift than the wing gives.
+    #[error("at {time_s} s lift coefficient {lift_coefficient} above {maximum}")]
+    LiftCoefficient {
+        /// Time since the start of the recording, s.
+        time_s: f64,
+        /// Needed.
+        lift_coefficient: f64,
+        /// Largest.
+        maximum: f64,
+    },
+    /// No fuel left.
+    #[error("at {time_s} s no fuel is left of {fuel_on_board_kg} kg")]
+    Fuel {
+        /// Time since the start of the recording, s.
+        time_s: f64,
+        /// At engine start, kg.
+        fuel_on_board_kg: f64,
+    },
+}
+
+/// Everything one flight is flown with.
+#[derive(Clone, Debug)]
+pub(crate) struct FlightSetup<'a> {
+    pub(crate) aircraft: &'a AircraftTruth,
+    pub(crate) terms: Terms,
+    pub(crate) earth: &'a Earth,
+    pub(crate) autopilot: &'a Autopilot,
+    pub(crate) plan: &'a FlightPlan,
+    pub(crate) air: AirMass,
+    pub(crate) turbulence: &'a Turbulence,
+    pub(crate) patches: Vec<Patch>,
+    pub(crate) smooth_errors: Option<&'a SmoothErrors>,
+    pub(crate) streams: Streams,
+    pub(crate) shares: FuelShares,
+    /// Roll held in straight flight: at the start, and its drift per hour, degrees.
+    pub(crate) roll_trim_deg: (f64, f64),
+    /// Gross mass where the simulation starts, kg.
+    pub(crate) start_mass_kg: f64,
+    /// Fuel used until there, kg.
+    pub(crate) start_fuel_used_kg: f64,
+    /// Flown before the recording, s.
+    pub(crate) settle_s: f64,
+    /// Recording interval, s.
+    pub(crate) interval_s: f64,
+    /// Steps in an interval.
+    pub(crate) steps_per_interval: u32,
+}
+
+/// What the sensors see at every step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instant {
+    pub(crate) static_pressure_pa: f64,
+    pub(crate) mach: f64,
+    pub(crate) total_air_temperature_k: f64,
+    pub(crate) ground_speed_m_s: f64,
+    pub(crate) roll_deg: f64,
+    pub(crate) drift_deg: f64,
+    pub(crate) fuel_flow_kg_s: [f64; MAXIMUM_ENGINES],
+}
+
+/// The books of a flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Books {
+    pub(crate) energy: EnergyBook,
+    pub(crate) mass: MassBook,
+}
+
+/// Flies. `observe` is called at every step of the recording, with the step's length and, where a sample falls, the whole
+/// true state.
+pub(crate) fn fly(
+    setup: &FlightSetup<'_>,
+    mut observe: impl FnMut(&Instant, f64, Option<&TrueState>),
+) -> Result<Books, FlightError> {
+    let step_s = setup.interval_s / f64::from(setup.steps_per_interval);
+    let settle_steps = (setup.settle_s / step_s).round();
+    let intervals = (setup.plan.duration_s / setup.interval_s + 1e-9).floor();
+    let mut flying = Flying::start(setup, -settle_steps * step_s, step_s)?;
+    let mut steps_left = settle_steps;
+    while steps_left > 0.0 {
+        flying.evaluate()?;
+        flying.advance();
+        steps_left -= 1.0;
+    }
+    flying.time_s = 0.0;
+
+    let mut interval = 0.0;
+    loop {
+        flying.evaluate()?;
+        if interval == 0.0 {
+            flying.open_books();
+        }
+        flying.keep_books(interval >= intervals);
+        let state = flying.true_state();
+        flying.check_limits()?;
+        observe(&flying.instant(), step_s, Some(&state));
+        if interval >= intervals {
+            return Ok(flying.books);
+        }
+        flying.advance();
+        for _ in 1..setup.steps_per_interval {
+            flying.evaluate()?;
+            flying.keep_books(false);
+            observe(&flying.instant(), step_s, None);
+            flying.advance();
+        }
+        interval += 1.0;
+        // By multiplication: a sum of steps would carry rounding into TIME.
+        flying.time_s = interval * setup.interval_s;
+    }
+}
+
+/// The flight in flight.
+struct Flying<'a> {
+    setup: &'a FlightSetup<'a>,
+    step_s: f64,
+    time_s: f64,
+    motion: Motion,
+    steering: Steering,
+    air: AirAhead,
+    here: EarthHere,
+    controls: Controls,
+    gusts: Gusts,
+    gust_filters: Option<DrydenFilters>,
+    gust_random: crate::random::Stream,
+    gust_sigma_m_s: f64,
+    drift_wobble_rad: f64,
+    forces: Forces,
+    /// Acceleration without wind change and fuel flow of the step before, for the prediction.
+    before: Option<(f64, f64)>,
+    /// Where the last step began, for the correction.
+    begun: Option<Begun>,
+    wind_change_m_s2: f64,
+    books: Books,
+    opened_speed_m_s: f64,
+    opened_mass_kg: f64,
+}
+
+/// The state from which a step was made.
+#[derive(Clone, Copy, Debug)]
+struct Begun {
+    smooth_airspeed_m_s: f64,
+    mass_kg: f64,
+    fuel_used_kg: f64,
+    acceleration_m_s2: f64,
+    fuel_flow_kg_s: f64,
+}
+
+impl<'a> Flying<'a> {
+    fn start(setup: &'a FlightSetup<'a>, time_s: f64, step_s: f64) -> Result<Self, FlightError> {
+        let plan = setup.plan;
+        let steering = Steering::start(&plan.waypoints);
+        let air = AirAhead::start(&setup.air, steering.place());
+        let pressure_altitude_m = PressureAltitude::feet(plan.pressure_altitude_ft).to_meters();
+        let deviation_k = air.now().isa_deviation_k;
+        let standard_k =
+            atmos::isa::temperature(PressureAltitude::meters(pressure_altitude_m))?.to_kelvin();
+        let speed_of_sound_m_s = forces::speed_of_sound_m_s(standard_k + deviation_k);
+        let motion = Motion {
+            smooth_airspeed_m_s: plan.mach * speed_of_sound_m_s,
+            pressure_altitude_m,
+            // A warm column is a tall one; the mean temperature below is about 250 K.
+            geometric_altitude_m: pressure_altitude_m * (1.0 + deviation_k / 250.0),
+            vertical_speed_m_s: 0.0,
+            pitch_rad: 0.0,
+            mass_kg: setup.start_mass_kg,
+            thrust_n: 0.0,
+            fuel_used_kg: setup.start_fuel_used_kg,
+            fuel_temperature_k: FUEL_TEMPERATURE_AT_START_K,
+        };
+        let mut flying = Self {
+            setup,
+            step_s,
+            time_s,
+            motion,
+            here: EarthHere::default(),
+            controls: Controls::start(setup.autopilot, plan, step_s),
+            steering,
+            air,
+            gusts: Gusts::default(),
+            gust_filters: None,
+            gust_random: setup.streams.stream(Purpose::Gusts),
+            gust_sigma_m_s: 0.0,
+            drift_wobble_rad: 0.0,
+            forces: Forces::default(),
+            before: None,
+            begun: None,
+            wind_change_m_s2: 0.0,
+            books: Books::default(),
+            opened_speed_m_s: 0.0,
+            opened_mass_kg: 0.0,
+        };
+        flying.renew_here();
+        // In trim to begin with: thrust is drag.
+        flying.evaluate()?;
+        flying.motion.thrust_n = flying.forces.drag_n;
+        flying.controls.trim(flying.forces.drag_n / flying.motion.mass_kg, plan.mach);
+        Ok(flying)
+    }
+
+    /// Forces and fuel flow at the present state.
+    fn evaluate(&mut self) -> Result<(), FlightError> {
+        self.forces = forces::evaluate(&forces::Circumstances {
+            setup: self.setup,
+            time_s: self.time_s,
+            motion: &self.motion,
+            place: self.steering.place(),
+            air: self.air.now(),
+            here: &self.here,
+            gusts: &self.gusts,
+            roll_trim_deg: self.roll_trim_deg(),
+            bank_deg: self.steering.roll_deg(),
+            lift_acceleration_m_s2: self.controls.lift_acceleration_m_s2(),
+        })?;
+        if let Some(begun) = self.begun.take() {
+            let half_s = 0.5 * self.step_s;
+            let motion = &mut self.motion;
+            motion.smooth_airspeed_m_s = begun.smooth_airspeed_m_s
+                + half_s * (begun.acceleration_m_s2 + self.forces.acceleration_m_s2)
+                + self.step_s * self.wind_change_m_s2;
+            let burnt_kg = half_s * (begun.fuel_flow_kg_s + self.forces.fuel_flow_total_kg_s);
+            motion.mass_kg = begun.mass_kg - burnt_kg;
+            motion.fuel_used_kg = begun.fuel_used_kg + burnt_kg;
+            let mean_speed = 0.5 * (begun.smooth_airspeed_m_s + motion.smooth_airspeed_m_s);
+            self.books.energy.wind_change_j_kg += self.wind_change_m_s2 * mean_speed * self.step_s;
+        }
+        Ok(())
+    }
+
+    /// From this step to the next.
+    fn advance(&mut self) {
+        let step_s = self.step_s;
+        let forces = self.forces;
+
+        // Place and air at the end of the step first: the wind's change over it is then exact.
+        let turning = self.steering.advance(
+            forces.ground_speed_m_s,
+            forces.smooth_airspeed_m_s,
+            self.setup.autopilot,
+            step_s,
+        );
+        let wind_before = self.air.now().wind_m_s;
+        let renewed = self.air.advance(
+            &self.setup.air,
+            self.steering.place(),
+            forces.ground_speed_m_s * step_s,
+            turning,
+        );
+        let change = crate::vector::subtract(self.air.now().wind_m_s, wind_before);
+        self.wind_change_m_s2 = -crate::vector::dot(change, forces.air_direction) / step_s;
+
+        let (acceleration_before, fuel_flow_before) =
+            self.before.unwrap_or((forces.acceleration_m_s2, forces.fuel_flow_total_kg_s));
+        let acceleration =
+            1.5 * forces.acceleration_m_s2 - 0.5 * acceleration_before + self.wind_change_m_s2;
+        let fuel_flow = 1.5 * forces.fuel_flow_total_kg_s - 0.5 * fuel_flow_before;
+        self.before = Some((forces.acceleration_m_s2, forces.fuel_flow_total_kg_s));
+
+        let motion = &mut self.motion;
+        self.begun = Some(Begun {
+            smooth_airspeed_m_s: motion.smooth_airspeed_m_s,
+            mass_kg: motion.mass_kg,
+            fuel_used_kg: motion.fuel_used_kg,
+            acceleration_m_s2: forces.acceleration_m_s2,
+            fuel_flow_kg_s: forces.fuel_flow_total_kg_s,
+        });
+        motion.smooth_airspeed_m_s += acceleration * step_s;
+        motion.mass_kg -= fuel_flow * step_s;
+        motion.fuel_used_kg += fuel_flow * step_s;
+        motion.fuel_temperature_k += (forces.total_air_temperature_k - motion.fuel_temperature_k)
+            * step_s
+            / FUEL_TEMPERATURE_TIME_S;
+        self.controls.advance(motion, &forces, self.setup.aircraft, self.time_s, step_s);
+        motion.geometric_altitude_m += forces.geometric_climb_m_s * step_s;
+
+        if renewed {
+            self.renew_here();
+        }
+        self.advance_gusts();
+        self.time_s += step_s;
+    }
+
+    fn renew_here(&mut self) {
+        self.here = EarthHere::at(
+            self.steering.place(),
+            self.motion.geometric_altitude_m,
+            self.forces.ground_speed_m_s,
+            self.setup,
+        );
+    }
+
+    fn advance_gusts(&mut self) {
+        let sigma =
+            intensity_m_s(&self.setup.patches, self.setup.turbulence.elsewhere_m_s, self.time_s);
+        self.gust_sigma_m_s = sigma;
+        if sigma <= 0.0 {
+            self.gust_filters = None;
+            self.gusts = Gusts::default();
+            self.drift_wobble_rad *= (-self.step_s / 3.0).exp();
+            return;
+        }
+        let (speed, step_s) = (self.motion.smooth_airspeed_m_s, self.step_s);
+        let random = &mut self.gust_random;
+        let filters =
+            self.gust_filters.get_or_insert_with(|| DrydenFilters::new(speed, step_s, random));
+        let unit = filters.advance(&mut self.gust_random);
+        self.gusts = Gusts {
+            head_on_m_s: sigma * unit.head_on_m_s,
+            from_left_m_s: sigma * unit.from_left_m_s,
+            upward_m_s: sigma * unit.upward_m_s,
+        };
+        // The fin turns the nose into the gust within some seconds.
+        let share = 1.0 - (-step_s / 3.0).exp();
+        self.drift_wobble_rad += (self.gusts.from_left_m_s / speed - self.drift_wobble_rad) * share;
+    }
+
+    fn roll_trim_deg(&self) -> f64 {
+        let (start, per_h) = self.setup.roll_trim_deg;
+        start + per_h * self.time_s / 3600.0
+    }
+
+    fn open_books(&mut self) {
+        self.books = Books::default();
+        self.opened_speed_m_s = self.motion.smooth_airspeed_m_s;
+        self.opened_mass_kg = self.motion.mass_kg;
+    }
+
+    /// Trapezoids: half a step's weight at both ends.
+    fn keep_books(&mut self, last: bool) {
+        let first = self.books.mass.fuel_flow_integral_kg == 0.0;
+        let weight_s = if first || last { 0.5 * self.step_s } else { self.step_s };
+        let forces = &self.forces;
+        let power = weight_s * self.motion.smooth_airspeed_m_s;
+        let energy = &mut self.books.energy;
+        energy.thrust_j_kg += power * self.motion.thrust_n / self.motion.mass_kg;
+        energy.drag_j_kg -= power * forces.drag_n / self.motion.mass_kg;
+        energy.gravity_j_kg += power * forces.gravity_along_m_s2;
+        energy.coriolis_j_kg += power * forces.coriolis_along_m_s2;
+        self.books.mass.fuel_flow_integral_kg += weight_s * forces.fuel_flow_total_kg_s;
+        let speed = self.motion.smooth_airspeed_m_s;
+        energy.kinetic_gain_j_kg =
+            0.5 * (speed * speed - self.opened_speed_m_s * self.opened_speed_m_s);
+        self.books.mass.mass_lost_kg = self.opened_mass_kg - self.motion.mass_kg;
+    }
+
+    fn check_limits(&self) -> Result<(), FlightError> {
+        let time_s = self.time_s;
+        let target = self.controls.mach_target();
+        if self.forces.mach < target - 0.04 {
+            return Err(FlightError::Thrust { time_s, mach: self.forces.mach, target });
+        }
+        let maximum = self.setup.aircraft.envelope.maximum_lift_coefficient;
+        let lift_coefficient = self.forces.level_lift_coefficient;
+        if lift_coefficient > maximum {
+            return Err(FlightError::LiftCoefficient { time_s, lift_coefficient, maximum });
+        }
+        let fuel_on_board_kg = self.setup.plan.loading.fuel_on_board_kg();
+        if self.motion.fuel_used_kg >= fuel_on_board_kg {
+            return Err(FlightError::Fuel { time_s, fuel_on_board_kg });
+        }
+        Ok(())
+    }
+
+    fn instant(&self) -> Instant {
+        let forces = &self.forces;
+        Instant {
+            static_pressure_pa: forces.static_pressure_pa,
+            mach: forces.mach,
+            total_air_temperature_k: forces.total_air_temperature_k,
+            ground_speed_m_s: forces.ground_speed_m_s,
+            roll_deg: self.roll_trim_deg() + self.steering.roll_deg(),
+            drift_deg: (forces.drift_rad + self.drift_wobble_rad).to_degrees(),
+            fuel_flow_kg_s: forces.fuel_flow_kg_s,
+        }
+    }
+
+    fn true_state(&self) -> TrueState {
+        let forces = &self.forces;
+        let place = self.steering.place();
+        let drift_rad = forces.drift_rad + self.drift_wobble_rad;
+        let rotors = forces::rotors(self.setup, &self.motion, forces);
+        TrueState {
+            time_s: self.time_s,
+            pressure_altitude_m: self.motion.pressure_altitude_m,
+            geometric_altitude_m: self.motion.geometric_altitude_m,
+            static_pressure_pa: forces.static_pressure_pa,
+            static_air_temperature_k: forces.static_air_temperature_k,
+            mach: forces.mach,
+            true_airspeed_m_s: forces.true_airspeed_m_s,
+            smooth_airspeed_m_s: self.motion.smooth_airspeed_m_s,
+            ground_speed_m_s: forces.ground_speed_m_s,
+            acceleration_m_s2: forces.acceleration_m_s2 + self.wind_change_m_s2,
+            vertical_speed_m_s: self.motion.vertical_speed_m_s,
+            climb_angle_rad: forces.climb_angle_rad,
+            roll_deg: self.roll_trim_deg() + self.steering.roll_deg(),
+            drift_deg: drift_rad.to_degrees(),
+            true_heading_deg: (place.track_rad() - drift_rad).to_degrees().rem_euclid(360.0),
+            latitude_deg: place.latitude_rad().to_degrees(),
+            longitude_deg: place.longitude_rad().to_degrees(),
+            tail_wind_m_s: forces.tail_wind_m_s,
+            wind_from_left_m_s: forces.wind_from_left_m_s,
+            turbulence_m_s: self.gust_sigma_m_s,
+            mass_kg: self.motion.mass_kg,
+            fuel_used_kg: self.motion.fuel_used_kg,
+            center_of_gravity_percent_mac: forces.center_of_gravity_percent_mac,
+            effective_gravity_m_s2: self.here.effective_gravity_m_s2,
+            lift_coefficient: forces.lift_coefficient,
+            drag_coefficient: forces.drag_coefficient,
+            drag_n: forces.drag_n,
+            thrust_n: self.motion.thrust_n,
+            fuel_flow_kg_s: forces.fuel_flow_kg_s,
+            n1_percent: rotors.n1_percent,
+            n2_percent: rotors.n2_percent,
+            exhaust_gas_temperature_k: rotors.exhaust_gas_temperature_k,
+            anti_ice: forces.anti_ice,
+            fuel_temperature_k: self.motion.fuel_temperature_k,
+        }
+    }
+}

@@ -1,0 +1,361 @@
+//! Fleets drawn from ranges, wide enough that what a diagnosis looks for can be told apart.
+//!
+//! Two thirds of the flights are at cruise altitude, a third lower and slower; masses, centers of gravity, dates, latitudes,
+//! tracks, changes of level and speed and anti-ice are spread independently of each other.
+
+use flight::Timestamp;
+use serde::{Deserialize, Serialize};
+use units::{CalibratedAirspeed, Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
+
+use super::PlanError;
+use crate::aircraft::{AircraftTruth, Richness};
+use crate::random::{Purpose, Stream, Streams};
+use crate::route::{Change, FlightPlan, Loading};
+use crate::terms::Terms;
+use crate::trim::{TrimPoint, trim_with};
+use crate::vector::Place;
+
+/// A fleet's ranges. What is left out follows from the aircraft.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct FleetDesign {
+    /// How many flights.
+    pub flights: usize,
+    /// First and last date.
+    #[serde(with = "dates")]
+    pub dates: (Timestamp, Timestamp),
+    /// Length of a recording, h.
+    pub duration_h: (f64, f64),
+    /// Share of low and slow flights.
+    pub low_share: f64,
+    /// Pressure altitudes of the others, ft.
+    pub high_ft: Option<(f64, f64)>,
+    /// Pressure altitudes of low flights, ft.
+    pub low_ft: Option<(f64, f64)>,
+    /// Mach numbers of the others.
+    pub high_mach: Option<(f64, f64)>,
+    /// Mach numbers of low flights.
+    pub low_mach: Option<(f64, f64)>,
+    /// Fuel on board at engine start over maximum fuel.
+    pub fuel_share: (f64, f64),
+    /// Centers of gravity, %MAC.
+    pub center_of_gravity_percent_mac: Option<(f64, f64)>,
+    /// Latitudes of the start, degrees.
+    pub latitude_deg: (f64, f64),
+    /// Step climbs and descents per hour.
+    pub level_changes_per_h: f64,
+    /// Size of one, ft.
+    pub level_change_ft: f64,
+    /// Speed changes per hour.
+    pub speed_changes_per_h: f64,
+    /// Standard deviation of one, Mach.
+    pub speed_change_mach: f64,
+    /// Turns per hour.
+    pub turns_per_h: f64,
+    /// Share of flights in air warm enough for ice that use anti-ice.
+    pub anti_ice_share: f64,
+}
+
+impl Default for FleetDesign {
+    /// Sixty flights of two hours within 1.6 years, spread as the gap diagnosis' prototype spreads them.
+    fn default() -> Self {
+        Self {
+            flights: 60,
+            dates: (Timestamp::constant(1_515_153_600, 0), Timestamp::constant(1_565_870_400, 0)),
+            duration_h: (2.0, 2.0),
+            low_share: 0.30,
+            high_ft: None,
+            low_ft: None,
+            high_mach: None,
+            low_mach: None,
+            fuel_share: (0.62, 0.98),
+            center_of_gravity_percent_mac: None,
+            latitude_deg: (25.0, 58.0),
+            level_changes_per_h: 0.4,
+            level_change_ft: 2000.0,
+            speed_changes_per_h: 0.6,
+            speed_change_mach: 0.02,
+            turns_per_h: 0.3,
+            anti_ice_share: 0.8,
+        }
+    }
+}
+
+/// Draws for one flight before the ranges are called infeasible.
+const TRIES: usize = 500;
+/// Part of the maximum lift coefficient and thrust that a planned point may need: the day may be warm.
+const LIFT_MARGIN: f64 = 0.85;
+const THRUST_MARGIN: f64 = 0.90;
+/// Warmest air in which the margin must hold, above the ISA, K.
+const WARM_DAY_K: f64 = 10.0;
+/// Anti-ice is used in air warmer than this at the start, K: −45 °C of the standard day.
+const ICE_K: f64 = 228.15;
+
+struct Ranges {
+    feet: (f64, f64),
+    mach: (f64, f64),
+}
+
+impl FleetDesign {
+    /// The flights of a tail.
+    pub(crate) fn draw(
+        &self,
+        aircraft: &AircraftTruth,
+        seed: u64,
+        tail: &str,
+    ) -> Result<Vec<FlightPlan>, PlanError> {
+        let first_s = self.dates.0.as_second();
+        let last_s = self.dates.1.as_second().max(first_s);
+        let mut starts: Vec<i64> = {
+            let mut random = Streams::of_tail(seed, tail).stream(Purpose::Design);
+            let span = (last_s - first_s) as f64;
+            (0..self.flights).map(|_| first_s + (random.unit() * span) as i64 / 60 * 60).collect()
+        };
+        starts.sort_unstable();
+        starts
+            .into_iter()
+            .enumerate()
+            .map(|(index, start_s)| {
+                let mut random = Streams::of_flight(seed, tail, index).stream(Purpose::Design);
+                for _ in 0..TRIES {
+                    if let Some(mut plan) = self.draw_flight(aircraft, &mut random)? {
+                        plan.flight = format!("{:04}", index + 1);
+                        plan.start = Timestamp::from_second(start_s).unwrap_or(self.dates.0);
+                        return Ok(plan);
+                    }
+                }
+                Err(PlanError::Infeasible { tail: tail.to_owned(), tries: TRIES })
+            })
+            .collect()
+    }
+
+    fn draw_flight(
+        &self,
+        aircraft: &AircraftTruth,
+        random: &mut Stream,
+    ) -> Result<Option<FlightPlan>, OutOfDomain> {
+        let low = random.chance(self.low_share);
+        let ranges = self.ranges(aircraft, low);
+        // Levels are multiples of 1 000 ft.
+        let feet = (random.uniform(ranges.feet.0, ranges.feet.1) / 1000.0).round() * 1000.0;
+        let mach = (random.uniform(ranges.mach.0, ranges.mach.1) * 1000.0).round() / 1000.0;
+        let duration_s =
+            (3600.0 * random.uniform(self.duration_h.0, self.duration_h.1) / 60.0).round() * 60.0;
+        let masses = &aircraft.masses;
+        let zero_fuel_mass_kg =
+            random.uniform(masses.operating_empty_kg, masses.maximum_zero_fuel_kg);
+        let fuel_on_board_kg = (masses.maximum_fuel_kg
+            * random.uniform(self.fuel_share.0, self.fuel_share.1))
+        .min(masses.maximum_take_off_kg - zero_fuel_mass_kg);
+        let center = self.center_of_gravity_percent_mac.unwrap_or((
+            aircraft.airframe.trim.reference_percent_mac - 8.0,
+            aircraft.airframe.trim.reference_percent_mac + 6.0,
+        ));
+        let mut plan = FlightPlan {
+            flight: String::new(),
+            start: self.dates.0,
+            duration_s,
+            waypoints: self.draw_route(duration_s, random),
+            pressure_altitude_ft: feet,
+            mach,
+            loading: Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg },
+            center_of_gravity_percent_mac: random.uniform(center.0, center.1),
+            center_of_gravity_travel_percent_mac_h: random.uniform(-1.0, 1.0),
+            changes: Vec::new(),
+            anti_ice: Vec::new(),
+        };
+        plan.changes = self.draw_changes(aircraft, &plan, &ranges, random);
+        plan.anti_ice = self.draw_anti_ice(&plan, random)?;
+        Ok(can_be_flown(aircraft, &plan)?.then_some(plan))
+    }
+
+    fn ranges(&self, aircraft: &AircraftTruth, low: bool) -> Ranges {
+        let ceiling_ft = aircraft.envelope.ceiling_ft;
+        let fastest = aircraft.envelope.maximum_operating_mach;
+        let divide_ft = 0.725 * ceiling_ft;
+        if low {
+            Ranges {
+                feet: self.low_ft.unwrap_or((0.49 * ceiling_ft, divide_ft)),
+                mach: self.low_mach.unwrap_or((fastest - 0.36, fastest - 0.14)),
+            }
+        } else {
+            Ranges {
+                feet: self.high_ft.unwrap_or((divide_ft, (0.97 * ceiling_ft).min(45_000.0))),
+                mach: self.high_mach.unwrap_or((fastest - 0.14, fastest - 0.025)),
+            }
+        }
+    }
+
+    fn draw_route(&self, duration_s: f64, random: &mut Stream) -> Vec<(f64, f64)> {
+        // At 250 m/s, the quarter of an hour before the recording and some reserve.
+        let length_m = 250.0 * (duration_s + 1500.0);
+        let turns = count(self.turns_per_h * duration_s / 3600.0, random);
+        let legs = turns + 1;
+        let latitude_deg = random.uniform(self.latitude_deg.0, self.latitude_deg.1);
+        let longitude_deg = random.uniform(-120.0, 40.0);
+        let mut track_deg = random.uniform(0.0, 360.0);
+        let mut waypoints = vec![(latitude_deg, longitude_deg)];
+        let mut place = Place::at(latitude_deg, longitude_deg, track_deg);
+        for leg in 0..legs {
+            if leg > 0 {
+                track_deg = place.track_rad().to_degrees() + 35.0 * random.normal();
+                place = Place::at(
+                    place.latitude_rad().to_degrees(),
+                    place.longitude_rad().to_degrees(),
+                    track_deg,
+                );
+            }
+            let leg_m = length_m / legs as f64;
+            // Away from the poles and the equator, where there is no geostrophic wind.
+            let end_deg = place.ahead(leg_m).latitude_rad().to_degrees();
+            if !(12.0..68.0).contains(&end_deg) {
+                place = place.turned(core::f64::consts::PI);
+            }
+            place = place.ahead(leg_m);
+            waypoints.push((place.latitude_rad().to_degrees(), place.longitude_rad().to_degrees()));
+        }
+        waypoints
+    }
+
+    fn draw_changes(
+        &self,
+        aircraft: &AircraftTruth,
+        plan: &FlightPlan,
+        ranges: &Ranges,
+        random: &mut Stream,
+    ) -> Vec<Change> {
+        let hours = plan.duration_s / 3600.0;
+        let mut changes = Vec::new();
+        let mut feet = plan.pressure_altitude_ft;
+        for _ in 0..count(self.level_changes_per_h * hours, random) {
+            let at_s = random.uniform(0.1, 0.9) * plan.duration_s;
+            // Mostly up; down where there is no room.
+            let up = random.chance(0.8);
+            let next = feet + if up { self.level_change_ft } else { -self.level_change_ft };
+            if (0.4 * aircraft.envelope.ceiling_ft..=0.97 * aircraft.envelope.ceiling_ft)
+                .contains(&next)
+            {
+                changes.push((at_s, next));
+                feet = next;
+            }
+        }
+        // Levels in the order of time.
+        let mut times: Vec<f64> = changes.iter().map(|(at_s, _)| *at_s).collect();
+        times.sort_by(f64::total_cmp);
+        let mut all: Vec<Change> = times
+            .into_iter()
+            .zip(changes)
+            .map(|(at_s, (_, feet))| Change::PressureAltitude { at_s: at_s.round(), feet })
+            .collect();
+        for _ in 0..count(self.speed_changes_per_h * hours, random) {
+            let at_s = random.uniform(0.1, 0.9) * plan.duration_s;
+            let mach = (plan.mach + self.speed_change_mach * random.normal())
+                .clamp(ranges.mach.0 - 0.03, aircraft.envelope.maximum_operating_mach - 0.015);
+            all.push(Change::Mach { at_s: at_s.round(), mach: (mach * 1000.0).round() / 1000.0 });
+        }
+        all.sort_by(|a, b| a.at_s().total_cmp(&b.at_s()));
+        all
+    }
+
+    fn draw_anti_ice(
+        &self,
+        plan: &FlightPlan,
+        random: &mut Stream,
+    ) -> Result<Vec<(f64, f64)>, OutOfDomain> {
+        let sat =
+            atmos::isa::temperature(PressureAltitude::feet(plan.pressure_altitude_ft))?.to_kelvin();
+        let uses = random.chance(self.anti_ice_share);
+        let from_s = random.uniform(0.0, 0.5) * plan.duration_s;
+        let length_s = random.uniform(0.2, 0.5) * plan.duration_s;
+        Ok(if uses && sat > ICE_K {
+            vec![(from_s.round(), (from_s + length_s).round())]
+        } else {
+            Vec::new()
+        })
+    }
+}
+
+/// A whole number about a mean: its whole part, and one more with the probability of the rest, give or take one.
+fn count(mean: f64, random: &mut Stream) -> usize {
+    let whole = mean.floor();
+    let more = usize::from(random.chance(mean - whole));
+    whole as usize + more
+}
+
+/// Levels and speeds of a flight one after the other, with the time from which each holds.
+pub(crate) fn legs(plan: &FlightPlan) -> Vec<(f64, f64, f64)> {
+    let mut legs = vec![(0.0, plan.pressure_altitude_ft, plan.mach)];
+    let mut changes = plan.changes.clone();
+    changes.sort_by(|a, b| a.at_s().total_cmp(&b.at_s()));
+    for change in changes {
+        let (_, feet, mach) = legs[legs.len() - 1];
+        legs.push(match change {
+            Change::PressureAltitude { at_s, feet } => (at_s, feet, mach),
+            Change::Mach { at_s, mach } => (at_s, feet, mach),
+        });
+    }
+    legs
+}
+
+/// Whether the heaviest aircraft flies every leg on a warm day with a margin, and the fuel is enough.
+fn can_be_flown(aircraft: &AircraftTruth, plan: &FlightPlan) -> Result<bool, OutOfDomain> {
+    let Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } = plan.loading else {
+        return Ok(true);
+    };
+    let terms = Terms::of(aircraft, &Richness::full());
+    let mass = Mass::kilograms(zero_fuel_mass_kg + fuel_on_board_kg);
+    let envelope = &aircraft.envelope;
+    let mut flow_kg_s: f64 = 0.0;
+    for (_, feet, mach) in legs(plan) {
+        let pressure_altitude = PressureAltitude::feet(feet);
+        let sat =
+            atmos::isa::temperature(pressure_altitude)? + TemperatureDifference::kelvin(WARM_DAY_K);
+        let trimmed = trim_with(
+            aircraft,
+            &terms,
+            &TrimPoint {
+                mass,
+                pressure_altitude,
+                mach: Mach::new(mach),
+                sat,
+                center_of_gravity_percent_mac: plan.center_of_gravity_percent_mac,
+            },
+        )?;
+        let airspeed: CalibratedAirspeed = atmos::airspeed::mach_to_calibrated_airspeed(
+            Mach::new(mach),
+            atmos::isa::pressure(pressure_altitude)?,
+        );
+        if trimmed.lift_coefficient > LIFT_MARGIN * envelope.maximum_lift_coefficient
+            || trimmed.thrust_n > THRUST_MARGIN * trimmed.maximum_thrust_n
+            || airspeed.to_knots() > envelope.maximum_operating_calibrated_airspeed_kt
+        {
+            return Ok(false);
+        }
+        flow_kg_s = flow_kg_s.max(trimmed.fuel_flow_kg_s);
+    }
+    // An hour more than recorded for climb and settling, and a tenth left.
+    Ok(flow_kg_s * (plan.duration_s + 3600.0) < 0.9 * fuel_on_board_kg)
+}
+
+/// Two instants as RFC 3339 texts.
+mod dates {
+    use flight::Timestamp;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(
+        value: &(Timestamp, Timestamp),
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        (value.0.to_string(), value.1.to_string()).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<(Timestamp, Timestamp), D::Error> {
+        let (first, last) = <(String, String)>::deserialize(deserializer)?;
+        Ok((
+            first.parse().map_err(serde::de::Error::custom)?,
+            last.parse().map_err(serde::de::Error::custom)?,
+        ))
+    }
+}

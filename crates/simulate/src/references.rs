@@ -1,0 +1,102 @@
+//! Where effects are nothing: means over what a tail is planned to fly.
+
+use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
+
+use crate::aircraft::{AircraftTruth, Richness};
+use crate::plan::{legs, seconds};
+use crate::route::{FlightPlan, Loading};
+use crate::terms::{References, Terms};
+use crate::trim::{TrimPoint, Trimmed, trim_with};
+use crate::weather::Weather;
+
+/// Means over the planned legs, each weighed by its time, on the plan's mean day. An estimate before flight: fuel burnt is
+/// that of trimmed points.
+pub(crate) fn references_of(
+    aircraft: &AircraftTruth,
+    richness: &Richness,
+    weather: &Weather,
+    flights: &[FlightPlan],
+) -> Result<References, OutOfDomain> {
+    let terms = Terms::of(aircraft, richness);
+    let deviation = TemperatureDifference::kelvin(weather.isa_deviation_k.mean);
+    let mut sums = Sums::default();
+    let mut dates_s: Vec<f64> = Vec::with_capacity(flights.len());
+    for flight in flights {
+        dates_s.push(seconds(flight.start));
+        let mut mass_kg = match flight.loading {
+            // A tenth of the fuel is gone when the recording starts, about.
+            Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } => {
+                zero_fuel_mass_kg + 0.9 * fuel_on_board_kg
+            }
+            Loading::AtRecording { gross_mass_kg, .. } => gross_mass_kg,
+        };
+        let legs = legs(flight);
+        for (index, (from_s, feet, mach)) in legs.iter().enumerate() {
+            let to_s = legs.get(index + 1).map_or(flight.duration_s, |next| next.0);
+            let length_s = (to_s.min(flight.duration_s) - from_s).max(0.0);
+            let pressure_altitude = PressureAltitude::feet(*feet);
+            let sat = atmos::isa::temperature(pressure_altitude)? + deviation;
+            let middle_s = from_s + 0.5 * length_s;
+            let center = flight.center_of_gravity_percent_mac
+                + flight.center_of_gravity_travel_percent_mac_h * middle_s / 3600.0;
+            let point = TrimPoint {
+                mass: Mass::kilograms(mass_kg),
+                pressure_altitude,
+                mach: Mach::new(*mach),
+                sat,
+                center_of_gravity_percent_mac: center,
+            };
+            let trimmed = trim_with(aircraft, &terms, &point)?;
+            sums.add(length_s, &point, &trimmed);
+            mass_kg -= length_s * trimmed.fuel_flow_kg_s;
+        }
+    }
+    let date_s = dates_s.iter().sum::<f64>() / dates_s.len() as f64;
+    let first_date_s = dates_s.iter().copied().fold(f64::INFINITY, f64::min);
+    let last_date_s = dates_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Ok(sums.means(date_s, first_date_s, last_date_s))
+}
+
+#[derive(Default)]
+struct Sums {
+    weight: f64,
+    mach: f64,
+    lift_coefficient: f64,
+    reynolds_number: f64,
+    temperature_ratio: f64,
+    corrected_thrust: f64,
+    fuel_flow: f64,
+    mass: f64,
+    center_of_gravity: f64,
+}
+
+impl Sums {
+    fn add(&mut self, weight: f64, point: &TrimPoint, trimmed: &Trimmed) {
+        self.weight += weight;
+        self.mach += weight * point.mach.value();
+        self.lift_coefficient += weight * trimmed.lift_coefficient;
+        self.reynolds_number += weight * trimmed.reynolds_number;
+        self.temperature_ratio += weight * atmos::isa::temperature_ratio(point.sat);
+        self.corrected_thrust += weight * trimmed.thrust_n / trimmed.pressure_ratio;
+        self.fuel_flow += weight * trimmed.fuel_flow_kg_s;
+        self.mass += weight * point.mass.to_kilograms();
+        self.center_of_gravity += weight * point.center_of_gravity_percent_mac;
+    }
+
+    fn means(&self, date_s: f64, first_date_s: f64, last_date_s: f64) -> References {
+        let mean = |sum: f64| sum / self.weight;
+        References {
+            mach: mean(self.mach),
+            lift_coefficient: mean(self.lift_coefficient),
+            reynolds_number: mean(self.reynolds_number),
+            temperature_ratio: mean(self.temperature_ratio),
+            corrected_thrust_n: mean(self.corrected_thrust),
+            fuel_flow_kg_s: mean(self.fuel_flow),
+            mass_kg: mean(self.mass),
+            center_of_gravity_percent_mac: mean(self.center_of_gravity),
+            date_s,
+            first_date_s,
+            last_date_s,
+        }
+    }
+}

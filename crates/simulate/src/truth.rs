@@ -1,0 +1,87 @@
+//! `TRUTH.json`: what was true, for whoever scores a diagnosis. Never an input of one.
+
+use flight::Timestamp;
+use serde::{Deserialize, Serialize};
+
+use crate::effect::{StepTarget, TruthEffect, optional_timestamp, timestamp};
+use crate::state::{EnergyBook, MassBook};
+use crate::terms::{MAXIMUM_ENGINES, References};
+
+/// Name and version of this document.
+pub const TRUTH_SCHEMA: &str = "cruisefit.truth/1";
+
+/// What was true in a simulation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Truth {
+    /// Always [`TRUTH_SCHEMA`].
+    pub schema: String,
+    /// The plan's seed.
+    pub seed: u64,
+    /// Type code of the aircraft.
+    pub aircraft: String,
+    /// The tails, in the plan's order.
+    pub tails: Vec<TailTruth>,
+}
+
+/// What was true of a tail.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TailTruth {
+    /// Registration.
+    pub tail: String,
+    /// Its effects.
+    pub effects: Vec<EffectTruth>,
+    /// Where effects are nothing.
+    pub references: References,
+    /// Its flights, in order.
+    pub flights: Vec<FlightTruth>,
+}
+
+/// An effect as it truly was.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EffectTruth {
+    /// Which.
+    pub id: TruthEffect,
+    /// Size in its unit.
+    pub size: f64,
+    /// `step_change`: from when.
+    #[serde(default, with = "optional_timestamp")]
+    pub from: Option<Timestamp>,
+    /// `step_change`: of what.
+    #[serde(default)]
+    pub target: Option<StepTarget>,
+    /// Where it sits, if the plan said so.
+    #[serde(default)]
+    pub at: Option<f64>,
+}
+
+/// What was true of a flight.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FlightTruth {
+    /// Tail.
+    pub tail: String,
+    /// Flight.
+    pub flight: String,
+    /// Start of the recording.
+    #[serde(with = "timestamp")]
+    pub start: Timestamp,
+    /// Lower heating value of the fuel, MJ/kg.
+    pub lower_heating_value_mj_kg: f64,
+    /// Zero-fuel mass, kg.
+    pub zero_fuel_mass_kg: f64,
+    /// Zero-fuel mass on the load sheet, kg.
+    pub recorded_zero_fuel_mass_kg: f64,
+    /// Fuel on board at engine start, kg.
+    pub fuel_on_board_kg: f64,
+    /// Share of each engine in the thrust.
+    pub thrust_shares: [f64; MAXIMUM_ENGINES],
+    /// Roll held in straight flight when the recording starts, degrees.
+    pub roll_trim_deg: f64,
+    /// Mean ISA deviation that the flight's air was drawn with, K.
+    pub isa_deviation_k: f64,
+    /// Minutes in turbulence.
+    pub turbulence_min: f64,
+    /// Books of energy.
+    pub energy: EnergyBook,
+    /// Books of fuel.
+    pub mass: MassBook,
+}
