@@ -22,6 +22,7 @@ mod engine;
 mod recorded;
 mod terms;
 
+pub use engine::ANTI_ICE_PROXY_K;
 pub use terms::{Effects, HiddenParameters, StepTarget};
 
 use terms::Terms;
@@ -99,7 +100,7 @@ pub struct EffectModel<'a> {
 pub struct Response {
     /// Natural logarithm of the fuel flow of all engines that would be recorded, kg/s.
     pub ln_fuel_flow_total: f64,
-    /// The same of each engine; equal thrust is assumed. NaN beyond the aircraft's engines.
+    /// The same of each engine; equal thrust is assumed. −∞ beyond the aircraft's engines.
     pub ln_fuel_flow_engine: [f64; MAXIMUM_ENGINES],
     /// ln(F/δ), F the net thrust of all engines in N, δ the pressure ratio.
     pub ln_corrected_thrust: f64,
@@ -396,15 +397,34 @@ impl<'a> EffectModel<'a> {
                 return Err(EffectError::NotRecorded { effect, needs });
             }
         }
-        self.evaluate(point, &Terms::of(effects, &self.references))
+        let terms = Terms::of(effects, &self.references);
+        self.evaluate(point, &terms, terms.moves_the_point())
     }
 
-    fn evaluate(&self, point: &EffectPoint, terms: &Terms) -> Result<Response, EffectError> {
+    /// As [`response`](Self::response), at a point beside a recorded one: the table is continued in a straight line for
+    /// it too. For derivatives with respect to what is recorded.
+    ///
+    /// # Errors
+    /// As for [`response`](Self::response), but for a point outside the table.
+    pub fn response_beside(
+        &self,
+        point: &EffectPoint,
+        effects: &Effects,
+    ) -> Result<Response, EffectError> {
+        self.evaluate(point, &Terms::of(effects, &self.references), true)
+    }
+
+    fn evaluate(
+        &self,
+        point: &EffectPoint,
+        terms: &Terms,
+        may_leave: bool,
+    ) -> Result<Response, EffectError> {
         let flown = recorded::as_flown(point, terms)?;
-        let weight_n = flown.mass_kg * drag::apparent_gravity_m_s2(point, &flown, terms);
+        let weight_n = flown.mass_kg * drag::apparent_gravity_m_s2(point, terms);
         let surface_n = flown.dynamic_pressure_pa * self.aircraft.wing_area().to_square_meters();
         let lift_coefficient = weight_n / surface_n;
-        let table = self.table_value(lift_coefficient, flown.mach, terms.moves_the_point())?;
+        let table = self.table_value(lift_coefficient, flown.mach, may_leave)?;
         let drag_coefficient = self.drag_coefficient(table, lift_coefficient, point, &flown, terms);
         let drag_n = surface_n * drag_coefficient;
         let net_thrust_n = drag_n + drag::path_force_n(point, &flown, terms);

@@ -43,6 +43,7 @@
 pub mod aircraft;
 mod columns;
 mod csv_text;
+pub mod effects;
 pub mod forces;
 pub mod fuel_flow;
 mod guide;

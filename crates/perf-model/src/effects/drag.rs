@@ -1,9 +1,7 @@
 //! Effects on drag, on the weight that lift carries, and on the force along the path.
 
 use atmos::gravity;
-use units::convert::{
-    DAYS_PER_YEAR, RADIANS_PER_DEGREE, SECONDS_PER_DAY, STANDARD_GRAVITY_M_S2,
-};
+use units::convert::{DAYS_PER_YEAR, RADIANS_PER_DEGREE, SECONDS_PER_DAY, STANDARD_GRAVITY_M_S2};
 use units::{Angle, GeometricAltitude};
 
 use super::recorded::AsFlown;
@@ -51,7 +49,7 @@ pub(super) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
 ///
 /// Pressure altitude stands for height (1 km of difference is 0.03 % of gravity). Track is heading plus drift; heading
 /// where drift is not recorded. ϕ is the root of the mean squared roll angle.
-pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, flown: &AsFlown, terms: &Terms) -> f64 {
+pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, terms: &Terms) -> f64 {
     let mut gravity_m_s2 = STANDARD_GRAVITY_M_S2;
     if let Some(latitude_deg) = point.latitude_deg {
         let latitude = Angle::degrees(latitude_deg);
@@ -79,7 +77,6 @@ pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, flown: &AsFlown, terms:
         let roll = roll_squared_deg2.max(0.0).sqrt() * RADIANS_PER_DEGREE;
         gravity_m_s2 *= 1.0 + terms.load_factor * (1.0 / roll.cos() - 1.0);
     }
-    debug_assert!(flown.mass_kg > 0.0);
     gravity_m_s2
 }
 

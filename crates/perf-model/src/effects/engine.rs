@@ -35,8 +35,7 @@ impl EffectModel<'_> {
         let references = &terms.references;
         let mut factor = 1.0 + terms.tsfc_factor;
         if terms.tsfc_mach_exponent != 0.0 {
-            factor *=
-                ((1.0 + flown.mach) / (1.0 + references.mach)).powf(terms.tsfc_mach_exponent);
+            factor *= ((1.0 + flown.mach) / (1.0 + references.mach)).powf(terms.tsfc_mach_exponent);
         }
         if terms.tsfc_temperature_exponent != 0.0 {
             factor *= (flown.temperature_ratio / references.temperature_ratio)
@@ -60,10 +59,9 @@ impl EffectModel<'_> {
         let engines = self.aircraft.engines();
         let share = 1.0 / engines as f64;
         let law = tsfc(self.aircraft.tsfc_law(), flown.temperature_ratio, Mach::new(flown.mach));
-        let thrust_flow_kg_s =
-            net_thrust_n * law.to_kilograms_per_newton_second() * factor * share;
+        let thrust_flow_kg_s = net_thrust_n * law.to_kilograms_per_newton_second() * factor * share;
         let aside_kg_s = terms.power_offtake * references.fuel_flow_total_kg_s * share;
-        let mut each = [f64::NAN; MAXIMUM_ENGINES];
+        let mut each = [0.0; MAXIMUM_ENGINES];
         let mut total = 0.0;
         for (engine, flow) in each.iter_mut().enumerate().take(engines) {
             *flow = (thrust_flow_kg_s * (1.0 + terms.tsfc_engine[engine]) + aside_kg_s)

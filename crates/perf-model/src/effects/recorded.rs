@@ -1,9 +1,7 @@
 //! From what was recorded to what was flown: sensor, mass and fuel-quantity effects undone.
 
 use atmos::{airspeed, isa, viscosity};
-use units::{
-    Mach, PressureAltitude, Temperature, TrueAirspeed, check_within,
-};
+use units::{Pressure, PressureAltitude, Temperature, TrueAirspeed, check_within};
 
 use super::{EffectError, EffectPoint};
 use crate::effects::terms::Terms;
@@ -37,10 +35,9 @@ pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
     let recorded_sat_k = positive("static air temperature", "K", point.static_air_temperature_k)?;
     let recorded_tas_m_s = positive("true airspeed", "m/s", point.true_airspeed_m_s)?;
     let pressure_factor = 1.0 + terms.static_pressure_bias;
-    let static_pressure_pa = positive("static pressure factor", "", pressure_factor).and(Ok(
-        isa::pressure(PressureAltitude::meters(point.pressure_altitude_m))?.to_pascals()
-            / pressure_factor,
-    ))?;
+    positive("static pressure's recorded over true value", "1", pressure_factor)?;
+    let recorded_pressure = isa::pressure(PressureAltitude::meters(point.pressure_altitude_m))?;
+    let static_pressure = Pressure::pascals(recorded_pressure.to_pascals() / pressure_factor);
     let unbiased = recorded_mach - terms.mach_bias;
     let mach = if terms.static_pressure_bias == 0.0 {
         unbiased
@@ -66,9 +63,7 @@ pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
 
     let sat = Temperature::kelvin(sat_k);
     let tas = TrueAirspeed::meters_per_second(true_airspeed_m_s);
-    let static_pressure = units::Pressure::pascals(static_pressure_pa);
     let density = isa::density(static_pressure, sat);
-    debug_assert!(Mach::new(mach).value() > 0.0);
     Ok(AsFlown {
         mach,
         static_air_temperature_k: sat_k,

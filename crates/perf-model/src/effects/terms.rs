@@ -1,7 +1,7 @@
 //! A set of effects with their sizes, and the same in the kernels' units.
 
-use flight::effect::EffectId;
 use flight::MAXIMUM_ENGINES;
+use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
 
 use super::EffectReferences;
