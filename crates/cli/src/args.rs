@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use segmenter::TrimCriteria;
 
 /// Aircraft performance monitoring from cruise reports.
 ///
@@ -67,6 +68,9 @@ pub struct ReportsArgs {
     /// Mapping file (RON), or the name of a preset, for recordings of another layout
     #[arg(long, value_name = "MAPPING")]
     pub mapping: Option<String>,
+    /// Trim criteria by which samples are steady
+    #[arg(long, value_name = "NAME", default_value = TrimCriteria::PRESETS[0], value_parser = TrimCriteria::PRESETS)]
+    pub criteria: String,
     /// A refused report stops the batch before anything is written
     #[arg(long)]
     pub strict: bool,

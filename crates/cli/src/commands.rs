@@ -9,7 +9,7 @@ pub mod predict;
 pub mod segment;
 pub mod show;
 
-use crate::mapping_stub::Mapping;
+use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
 use crate::args::ReportsArgs;
@@ -43,7 +43,15 @@ fn prepare(arguments: &ReportsArgs, progress: bool) -> Result<Reading, Failure> 
         tracing::info!(skipped = inputs.skipped, "files that are no reports by their ending");
     }
     let bar = Progress::new(inputs.files.len(), "reading reports", progress);
-    let criteria = TrimCriteria::ghazi_2020_table_4();
+    let criteria =
+        TrimCriteria::preset(&arguments.criteria).ok_or_else(|| Failure::BadArgument {
+            argument: "--criteria",
+            reason: format!(
+                "found {:?}, expected one of {:?}",
+                arguments.criteria,
+                TrimCriteria::PRESETS
+            ),
+        })?;
     let reading = reading::read_all(&inputs.files, mapping.as_ref(), &criteria, &bar);
     bar.finish();
     Ok(reading)
@@ -58,10 +66,22 @@ fn read_mapping(name: &str) -> Result<Mapping, Failure> {
     Mapping::from_ron(&text).map_err(|error| Failure::bad_file(path, error))
 }
 
-/// Tells each refusal, then that nothing was written.
-fn refuse_all(refused: &[RefusedReport], files: usize) -> Failure {
+/// Ends a command before anything is written: where a report was refused under `--strict`, or where none is left.
+fn check_refused(
+    refused: &[RefusedReport],
+    files: usize,
+    strict: bool,
+    nothing_left: bool,
+) -> Result<(), Failure> {
+    let ends = nothing_left || (strict && !refused.is_empty());
+    if !ends {
+        return Ok(());
+    }
     for one in refused {
         eprintln!("refused: {one}");
     }
-    Failure::Strict { refused: refused.len(), files }
+    match refused.first() {
+        Some(first) if nothing_left => Err(Failure::AllRefused { files, first: first.to_string() }),
+        _ => Err(Failure::Strict { refused: refused.len(), files }),
+    }
 }

@@ -1,5 +1,6 @@
 //! What ends a command with nothing done, told so that a person can mend it, and the exit statuses.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// Exit status 0: everything asked for was done.
@@ -99,19 +100,20 @@ pub enum Failure {
     },
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "made for map_err, which hands errors over")]
 impl Failure {
     /// An unreadable path.
-    pub fn unreadable(path: &Path, reason: impl ToString) -> Self {
+    pub fn unreadable(path: &Path, reason: impl Display) -> Self {
         Self::Unreadable { path: show(path), reason: reason.to_string() }
     }
 
     /// An unwritable path.
-    pub fn unwritable(path: &Path, reason: impl ToString) -> Self {
+    pub fn unwritable(path: &Path, reason: impl Display) -> Self {
         Self::Unwritable { path: show(path), reason: reason.to_string() }
     }
 
     /// A file with wrong content.
-    pub fn bad_file(path: &Path, reason: impl ToString) -> Self {
+    pub fn bad_file(path: &Path, reason: impl Display) -> Self {
         Self::BadFile { path: show(path), reason: reason.to_string(), help: None }
     }
 }
@@ -134,7 +136,15 @@ pub struct RefusedReport {
     pub reason: String,
 }
 
-impl std::fmt::Display for RefusedReport {
+#[expect(clippy::needless_pass_by_value, reason = "made for map_err, which hands errors over")]
+impl RefusedReport {
+    /// A report refused as a whole: no place in it is to blame.
+    pub fn whole(path: PathBuf, reason: impl Display) -> Self {
+        Self { path, line: None, column: None, reason: reason.to_string() }
+    }
+}
+
+impl Display for RefusedReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}", self.path.display())?;
         if let Some(line) = self.line {

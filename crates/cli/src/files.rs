@@ -1,6 +1,7 @@
 //! Writing files so that a reader, or a crash, never meets half of one.
 
-use std::io::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::Path;
 
 use crate::failure::Failure;
@@ -68,7 +69,7 @@ pub fn file_stem_of_tail(tail: &str) -> String {
         if byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_' {
             stem.push(char::from(byte));
         } else {
-            stem.push_str(&format!("%{byte:02X}"));
+            let _ = write!(stem, "%{byte:02X}");
         }
     }
     stem

@@ -33,11 +33,17 @@ pub struct FlightLearnt {
 }
 
 /// The state in which a tail begins: the initial table, nothing learnt.
-pub fn begin(initial: &PerformanceModel, tail: &str, settings: PaperSettings) -> Learnt {
+pub fn begin(
+    initial: &PerformanceModel,
+    tail: &str,
+    criteria: &str,
+    settings: PaperSettings,
+) -> Learnt {
     let table = initial.drag_table().clone();
     let nodes = table.values().len();
     Learnt {
         tail: tail.to_owned(),
+        criteria: criteria.to_owned(),
         law: LawState::Paper {
             settings,
             state: PaperState::new(table),
@@ -105,11 +111,6 @@ pub enum LearningError {
     Refit(#[from] refit::RefitError),
 }
 
-/// A segment reduced to an observation; `None` where its state is outside what the model is defined for.
-pub fn observe(model: &PerformanceModel, segments: &[Segment]) -> Vec<Option<Observation>> {
-    segments.iter().map(|segment| model.observe(segment).ok()).collect()
-}
-
 /// What a table says of an observation; `None` outside its grid.
 pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
     let cell =
@@ -117,21 +118,32 @@ pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
     Some(paper::error_percent(table, &cell, observation))
 }
 
-/// What a table says of each observation.
-pub fn evaluate(table: &Table, observations: &[Option<Observation>]) -> Vec<Option<Evaluated>> {
-    observations
+/// What a table on the model's grid says of each segment; `None` for a state that the model is not defined for. A
+/// segment outside the grid keeps its coefficients and has no error.
+pub fn evaluate(
+    model: &PerformanceModel,
+    table: &Table,
+    segments: &[Segment],
+) -> Vec<Option<Evaluated>> {
+    segments
         .iter()
-        .map(|observation| {
-            observation.as_ref().map(|observation| {
-                let error = error_percent(table, observation);
-                Evaluated {
+        .map(|segment| match model.observe(segment) {
+            Ok(observation) => {
+                let error = error_percent(table, &observation);
+                Some(Evaluated {
                     lift_coefficient: observation.lift_coefficient,
                     drag_coefficient: observation.drag_coefficient,
                     predicted_fuel_flow_kg_s: error
                         .map(|error| observation.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
                     error_percent: error,
-                }
-            })
+                })
+            }
+            Err(_) => model.state_of(segment).ok().map(|state| Evaluated {
+                lift_coefficient: state.lift_coefficient,
+                drag_coefficient: state.drag_coefficient,
+                predicted_fuel_flow_kg_s: None,
+                error_percent: None,
+            }),
         })
         .collect()
 }

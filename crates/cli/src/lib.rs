@@ -19,7 +19,6 @@ pub mod files;
 pub mod folder;
 pub mod inputs;
 pub mod learning;
-pub mod mapping_stub;
 pub mod model_file;
 pub mod models;
 pub mod page;
@@ -31,7 +30,7 @@ pub mod segments_table;
 pub mod statistics;
 pub mod summary;
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -92,6 +91,7 @@ fn start_logging(verbose: u8) {
     let _ = tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
         .try_init();

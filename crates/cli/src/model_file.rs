@@ -85,6 +85,8 @@ pub struct PaperSettings {
 pub struct Learnt {
     /// Whose flights.
     pub tail: String,
+    /// Name of the trim criteria by which its segments were found.
+    pub criteria: String,
     /// The law and its state.
     pub law: LawState,
     /// Mean conditions.
@@ -183,10 +185,10 @@ impl ModelFile {
 
     /// Global refits, where the law makes them.
     pub fn refits(&self) -> Option<u32> {
-        match &self.learnt {
-            Some(Learnt { law: LawState::Paper { refits, .. }, .. }) => Some(*refits),
-            None => None,
-        }
+        self.learnt.as_ref().map(|learnt| {
+            let LawState::Paper { refits, .. } = &learnt.law;
+            *refits
+        })
     }
 
     /// Share of nodes ever adapted.
@@ -232,9 +234,10 @@ impl ModelFile {
     pub fn difference_of_law(&self, other: &Self) -> Option<String> {
         let told = |model: &Self| {
             model.learnt.as_ref().map(|learnt| match &learnt.law {
-                LawState::Paper { settings, .. } => {
-                    format!("law paper, threshold {} %", settings.threshold_percent)
-                }
+                LawState::Paper { settings, .. } => format!(
+                    "law paper, threshold {} %, criteria {}",
+                    settings.threshold_percent, learnt.criteria
+                ),
             })
         };
         let (one, other) = (told(self)?, told(other)?);

@@ -22,6 +22,8 @@ mod polars;
 mod samples;
 mod style;
 mod tail;
+#[cfg(test)]
+mod tests;
 mod text;
 mod view;
 

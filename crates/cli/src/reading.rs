@@ -4,9 +4,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::mapping_stub::Mapping;
 use flight::{FlightIdentity, Report, Segment, Severity};
 use rayon::prelude::*;
+use report::mapping::Mapping;
 use report::{Parsed, Reader};
 use segmenter::{Tally, TrimCriteria};
 use sha2::{Digest, Sha256};
@@ -39,6 +39,11 @@ pub struct FlightRead {
 }
 
 impl FlightRead {
+    /// The order of flying; of two reports of one flight, the order of their paths.
+    pub fn order(&self, other: &Self) -> std::cmp::Ordering {
+        (&self.identity, &self.path).cmp(&(&other.identity, &other.path))
+    }
+
     /// Adds this flight's notes to those of its tail, each sentence once.
     pub fn add_notes(&self, notes: &mut Vec<String>) {
         for note in &self.notes {
@@ -114,13 +119,15 @@ fn read_file(
         return (Vec::new(), vec![refuse(None, None, error.to_string())]);
     }
     // The content is known by its uncompressed bytes: a report that was packed later is the same report.
-    let bytes = match unpack(&buffers.raw, &mut buffers.unpacked) {
-        true => buffers.unpacked.as_slice(),
-        false => buffers.raw.as_slice(),
+    let bytes = if unpack(&buffers.raw, &mut buffers.unpacked) {
+        buffers.unpacked.as_slice()
+    } else {
+        buffers.raw.as_slice()
     };
+    let file_name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
     let parsed = match mapping {
         None => buffers.reader.read(bytes).map(|parsed| vec![parsed]),
-        Some(mapping) => mapping.read(bytes),
+        Some(mapping) => mapping.read_named(bytes, &file_name),
     };
     let parsed = match parsed {
         Ok(parsed) => parsed,

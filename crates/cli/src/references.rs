@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use flight::Segment;
 use serde::{Deserialize, Serialize};
-use units::{PressureAltitude, Temperature};
+use units::{PressureAltitude, Temperature, TemperatureDifference};
 
 /// A running mean.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,10 +33,7 @@ impl References {
             PressureAltitude::meters(means.pressure_altitude_m),
             Temperature::kelvin(means.static_air_temperature_k),
         );
-        self.add_value(
-            "isa_deviation_k",
-            isa_deviation.ok().map(|difference| difference.to_kelvin()),
-        );
+        self.add_value("isa_deviation_k", isa_deviation.ok().map(TemperatureDifference::to_kelvin));
         self.add_value("mass_kg", Some(means.mass_kg));
         self.add_value("fuel_used_kg", Some(means.fuel_used_kg));
         self.add_value("unix_days", Some(unix_days(segment)));

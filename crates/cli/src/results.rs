@@ -1,7 +1,5 @@
 //! What a run knows of each tail at its end: the material of summary, tables and pages.
 
-use flight::Observation;
-
 use crate::learning;
 use crate::model_file::ModelFile;
 use crate::segments_table::{Evaluated, SegmentRow};
@@ -39,9 +37,6 @@ pub struct TailCounts {
 impl TailResult {
     /// Puts together what is known of a tail. `rows` get what the model's initial table says, or, where nothing is
     /// adapted, its current table.
-    ///
-    /// # Panics
-    /// Never: `rows` and observations are of one length by construction.
     pub fn new(
         tail: String,
         model: ModelFile,
@@ -50,12 +45,11 @@ impl TailResult {
         adapted: bool,
         notes: Vec<String>,
     ) -> Self {
-        let observations: Vec<Option<Observation>> = learning::observe(&model.initial, &segments);
         let before_table =
             if adapted { model.initial.drag_table() } else { model.drag_coefficient() };
-        let before = learning::evaluate(before_table, &observations);
+        let before = learning::evaluate(&model.initial, before_table, &segments);
         let after = if adapted {
-            learning::evaluate(model.drag_coefficient(), &observations)
+            learning::evaluate(&model.initial, model.drag_coefficient(), &segments)
         } else {
             Vec::new()
         };

@@ -30,11 +30,13 @@ pub struct SegmentRow {
     pub evaluated: Option<Evaluated>,
 }
 
+type RequiredGetter = fn(&SegmentMeans) -> f64;
+type RequiredSetter = fn(&mut SegmentMeans, f64);
 type Getter = fn(&SegmentMeans) -> Option<f64>;
 type Setter = fn(&mut SegmentMeans, Option<f64>);
 
 /// Columns of the mean state that are one number a segment and always there, in file order.
-const REQUIRED: [(&str, fn(&SegmentMeans) -> f64, fn(&mut SegmentMeans, f64)); 9] = [
+const REQUIRED: [(&str, RequiredGetter, RequiredSetter); 9] = [
     ("time_s", |m| m.time_s, |m, v| m.time_s = v),
     ("pressure_altitude_m", |m| m.pressure_altitude_m, |m, v| m.pressure_altitude_m = v),
     (

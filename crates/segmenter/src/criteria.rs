@@ -64,6 +64,44 @@ impl TrimCriteria {
         }
     }
 
+    /// The stability limits of an Airbus aircraft condition monitoring unit's cruise performance report, for recordings
+    /// that table 4 leaves no segment of: real aircraft wander by tens of feet and by knots from minute to minute, and
+    /// fly in cross-winds.
+    ///
+    /// The unit takes largest less smallest over 100 s; here the limits are between neighbors 60 s apart. Drift has no
+    /// limit (the isobaric slope that comes with a cross-wind is then in the error, some tenths of a per cent), vertical
+    /// speed that of table 4; pieces, segments and filter too.
+    ///
+    /// # Source
+    /// Limits of report 02 as remembered in the field (150 ft, 6 kt, 0.8°, 1.1 °C, N2 0.9 %, Mach 0.008): not checked
+    /// against the manufacturer's document.
+    #[must_use]
+    pub const fn airbus_report_02() -> Self {
+        Self {
+            pressure_altitude_ft: 150.0,
+            mach: 0.008,
+            ground_speed_kt: 6.0,
+            static_air_temperature_c: 1.1,
+            n2_percent: 0.9,
+            drift_deg: f64::INFINITY,
+            roll_deg: 0.8,
+            ..Self::ghazi_2020_table_4()
+        }
+    }
+
+    /// The names of all presets, for arguments and files.
+    pub const PRESETS: [&str; 2] = ["ghazi-2020-table-4", "airbus-report-02"];
+
+    /// The preset of this name.
+    #[must_use]
+    pub fn preset(name: &str) -> Option<Self> {
+        match name {
+            "ghazi-2020-table-4" => Some(Self::ghazi_2020_table_4()),
+            "airbus-report-02" => Some(Self::airbus_report_02()),
+            _ => None,
+        }
+    }
+
     /// The limit of a criterion, in [`Criterion::unit`].
     #[must_use]
     pub const fn limit(&self, criterion: Criterion) -> f64 {
@@ -127,6 +165,14 @@ mod tests {
             assert_eq!(criteria.piece_samples_maximum(interval_s), maximum, "{interval_s}");
             assert_eq!(criteria.segment_samples_minimum(interval_s), minimum, "{interval_s}");
         }
+    }
+
+    #[test]
+    fn every_name_of_a_preset_is_one() {
+        for name in TrimCriteria::PRESETS {
+            assert!(TrimCriteria::preset(name).is_some(), "{name}");
+        }
+        assert_eq!(TrimCriteria::preset("loose"), None);
     }
 
     #[test]

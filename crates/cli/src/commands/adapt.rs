@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::args::AdaptArgs;
-use crate::commands::{Outcome, prepare, refuse_all};
+use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::folder::{Folder, StoredTail};
 use crate::learning::{self, FlightToLearn};
@@ -27,13 +27,9 @@ pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
     }
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
-    let chosen = choose_models(&models, &mut reading, arguments.threshold);
-    if arguments.reports.strict && !reading.refused.is_empty() {
-        return Err(refuse_all(&reading.refused, files));
-    }
-    if reading.flights.is_empty() {
-        return Err(Failure::AllRefused { files, first: first_refusal(&reading.refused) });
-    }
+    let chosen = choose_models(&models, &mut reading, arguments);
+    let nothing_left = reading.flights.is_empty();
+    check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
     let folder = Folder::open(&arguments.output, arguments.restart)?;
     let mut stored = folder.load()?;
     for (tail, start) in &chosen {
@@ -62,9 +58,7 @@ pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
             warnings: sorted.warnings,
         });
     }
-    if arguments.reports.strict && !refused.is_empty() {
-        return Err(refuse_all(&refused, files));
-    }
+    check_refused(&refused, files, arguments.reports.strict, false)?;
     // A tail's flights are learnt in order; tails do not know of each other.
     let mut learnt: Vec<(TailResult, Vec<RefusedReport>)> =
         jobs.into_par_iter().map(Job::learn).collect();
@@ -110,10 +104,6 @@ pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
     Ok(Outcome { text, refused })
 }
 
-fn first_refusal(refused: &[RefusedReport]) -> String {
-    refused.first().map_or_else(String::new, ToString::to_string)
-}
-
 fn check_threshold(threshold: f64) -> Result<(), Failure> {
     adapt::paper::PaperLaw::new(threshold).map(|_| ()).map_err(|error| Failure::BadArgument {
         argument: "--threshold",
@@ -125,7 +115,7 @@ fn check_threshold(threshold: f64) -> Result<(), Failure> {
 fn choose_models(
     models: &Models,
     reading: &mut Reading,
-    threshold: Option<f64>,
+    arguments: &AdaptArgs,
 ) -> BTreeMap<String, ModelFile> {
     let mut chosen = BTreeMap::new();
     let flights = std::mem::take(&mut reading.flights);
@@ -134,22 +124,17 @@ fn choose_models(
             Ok(model) => {
                 chosen
                     .entry(flight.identity.tail.clone())
-                    .or_insert_with(|| beginning(model, &flight.identity.tail, threshold));
+                    .or_insert_with(|| beginning(model, &flight.identity.tail, arguments));
                 reading.flights.push(flight);
             }
-            Err(reason) => reading.refused.push(RefusedReport {
-                path: flight.path,
-                line: None,
-                column: None,
-                reason,
-            }),
+            Err(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
         }
     }
     chosen
 }
 
 /// A model's initial part with nothing learnt yet.
-fn beginning(model: &ModelFile, tail: &str, threshold: Option<f64>) -> ModelFile {
+fn beginning(model: &ModelFile, tail: &str, arguments: &AdaptArgs) -> ModelFile {
     if let Some(learnt) = &model.learnt {
         tracing::warn!(
             tail,
@@ -159,9 +144,12 @@ fn beginning(model: &ModelFile, tail: &str, threshold: Option<f64>) -> ModelFile
         );
     }
     let settings = PaperSettings {
-        threshold_percent: threshold.unwrap_or(model.settings.paper.threshold_percent),
+        threshold_percent: arguments.threshold.unwrap_or(model.settings.paper.threshold_percent),
     };
-    ModelFile { learnt: Some(learning::begin(&model.initial, tail, settings)), ..model.clone() }
+    ModelFile {
+        learnt: Some(learning::begin(&model.initial, tail, &arguments.reports.criteria, settings)),
+        ..model.clone()
+    }
 }
 
 fn check_begun_alike(
@@ -209,7 +197,7 @@ fn sort_out(
     begun: Option<&StoredTail>,
     strict: bool,
 ) -> Sorted {
-    flights.sort_by(|one, other| (&one.identity, &one.path).cmp(&(&other.identity, &other.path)));
+    flights.sort_by(FlightRead::order);
     let ledger = begun
         .and_then(|begun| begun.model.learnt.as_ref())
         .map_or(&[][..], |learnt| learnt.ledger.as_slice());
@@ -223,12 +211,7 @@ fn sort_out(
         Sorted { new: Vec::new(), refused: Vec::new(), already_known: 0, warnings: Vec::new() };
     for flight in flights {
         let key = (flight.identity.start.to_string(), flight.identity.flight.clone());
-        let refuse = |reason: String| RefusedReport {
-            path: flight.path.clone(),
-            line: None,
-            column: None,
-            reason,
-        };
+        let refuse = |reason: String| RefusedReport::whole(flight.path.clone(), reason);
         match known.get(&key) {
             Some(content) if *content == flight.content => {
                 sorted.already_known += 1;
@@ -286,12 +269,7 @@ impl Job {
                     flight.add_notes(&mut notes);
                     segments.extend(flight.segments);
                 }
-                Err(error) => refused.push(RefusedReport {
-                    path: flight.path,
-                    line: None,
-                    column: None,
-                    reason: error.to_string(),
-                }),
+                Err(error) => refused.push(RefusedReport::whole(flight.path, error)),
             }
         }
         let counts = counts_of(&model, flights_new);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::args::EvaluateArgs;
-use crate::commands::{Outcome, prepare, refuse_all};
+use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport};
 use crate::files::write_atomically;
 use crate::model_file::ModelFile;
@@ -29,19 +29,11 @@ pub fn run(arguments: &EvaluateArgs, progress: bool) -> Result<Outcome, Failure>
                 .or_insert_with(|| (model.clone(), Vec::new()))
                 .1
                 .push(flight),
-            Err(reason) => {
-                refused.push(RefusedReport { path: flight.path, line: None, column: None, reason })
-            }
+            Err(reason) => refused.push(RefusedReport::whole(flight.path, reason)),
         }
     }
     refused.sort_by(|one, other| one.path.cmp(&other.path));
-    if arguments.reports.strict && !refused.is_empty() {
-        return Err(refuse_all(&refused, files));
-    }
-    if by_tail.is_empty() {
-        let first = refused.first().map_or_else(String::new, ToString::to_string);
-        return Err(Failure::AllRefused { files, first });
-    }
+    check_refused(&refused, files, arguments.reports.strict, by_tail.is_empty())?;
     let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
     let tails = by_tail
         .into_iter()
@@ -63,7 +55,7 @@ pub fn run(arguments: &EvaluateArgs, progress: bool) -> Result<Outcome, Failure>
 }
 
 fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -> TailResult {
-    flights.sort_by(|one, other| (&one.identity, &one.path).cmp(&(&other.identity, &other.path)));
+    flights.sort_by(FlightRead::order);
     let counts = TailCounts {
         flights: flights.len(),
         flights_new: flights.len(),

@@ -66,7 +66,8 @@ fn check_all(folders: &[PathBuf]) -> Result<Outcome, Failure> {
             checked += 1;
             let path = folder.join("expected").join(name);
             let expected = read_text(&path)?;
-            for difference in differences(&expected, found, result.tolerances) {
+            let (expected, found) = (without_checksum(&expected), without_checksum(found));
+            for difference in differences(&expected, &found, result.tolerances) {
                 count += 1;
                 let _ = writeln!(
                     text,
@@ -136,6 +137,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             reports: ReportsArgs {
                 reports: golden.reports.iter().map(|report| folder.join(report)).collect(),
                 mapping: None,
+                criteria: segmenter::TrimCriteria::PRESETS[0].to_owned(),
                 strict: true,
             },
             models: ModelArgs { models: vec![model_path.clone()] },
@@ -157,7 +159,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
         let model = ModelFile::read(&path)?;
         let stem = name.trim_end_matches(".ron");
         files.push((format!("{stem}_table.csv"), text_of(&export::table(&model).to_csv())));
-        files.push((format!("{stem}.ron"), without_checksum(&read_text(&path)?)));
+        files.push((format!("{stem}.ron"), read_text(&path)?));
         let segments = output.join("segments").join(format!("{stem}.csv"));
         files.push((format!("{stem}_segments.csv"), read_text(&segments)?));
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use segmenter::{Criterion, Tally};
 
 use crate::args::SegmentArgs;
-use crate::commands::{Outcome, prepare, refuse_all};
+use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
 use crate::reading::FlightRead;
 use crate::segments_table::{self, SegmentRow};
@@ -18,20 +18,10 @@ use crate::summary::aligned;
 pub fn run(arguments: &SegmentArgs, progress: bool) -> Result<Outcome, Failure> {
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
-    if arguments.reports.strict && !reading.refused.is_empty() {
-        return Err(refuse_all(&reading.refused, files));
-    }
-    if reading.flights.is_empty() {
-        let first = reading.refused.first().map_or_else(String::new, ToString::to_string);
-        return Err(Failure::AllRefused { files, first });
-    }
+    let nothing_left = reading.flights.is_empty();
+    check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
     // The order of flying, whatever the files are called.
-    reading.flights.sort_by(|one, other| {
-        let key = |flight: &FlightRead| {
-            (flight.identity.tail.clone(), flight.identity.start, flight.identity.flight.clone())
-        };
-        (key(one), &one.path).cmp(&(key(other), &other.path))
-    });
+    reading.flights.sort_by(FlightRead::order);
     let explained = if arguments.explain { explain(&reading.flights) } else { String::new() };
     let flights = reading.flights.len();
     let rows: Vec<SegmentRow> = reading
@@ -42,22 +32,19 @@ pub fn run(arguments: &SegmentArgs, progress: bool) -> Result<Outcome, Failure> 
         .collect();
     let table = segments_table::table(&rows, segments_table::engines_of(&rows));
     let mut text = String::new();
-    match &arguments.output {
-        Some(path) => {
-            table.write(Some(path))?;
-            text.push_str(&explained);
-            let _ = writeln!(
-                text,
-                "{} segments of {flights} flights written to {}",
-                rows.len(),
-                show(path)
-            );
-        }
+    if let Some(path) = &arguments.output {
+        table.write(Some(path))?;
+        text.push_str(&explained);
+        let _ = writeln!(
+            text,
+            "{} segments of {flights} flights written to {}",
+            rows.len(),
+            show(path)
+        );
+    } else {
         // Standard output carries the table; the explanation goes where it does not get into it.
-        None => {
-            eprint!("{explained}");
-            table.write(None)?;
-        }
+        eprint!("{explained}");
+        table.write(None)?;
     }
     Ok(Outcome { text, refused: reading.refused })
 }

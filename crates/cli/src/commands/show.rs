@@ -66,10 +66,11 @@ fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
     let segments: u64 = learnt.ledger.iter().map(|entry| entry.segments).sum();
     let _ = writeln!(
         text,
-        "Learnt from {} flights of tail {} ({segments} segments) by law paper, threshold {} %; {:.0} % of the nodes ever adapted, {} global refits",
+        "Learnt from {} flights of tail {} ({segments} segments) by law paper, threshold {} %, criteria {}; {:.0} % of the nodes ever adapted, {} global refits",
         learnt.ledger.len(),
         learnt.tail,
         settings.threshold_percent,
+        learnt.criteria,
         100.0 * model.informed_nodes(),
         model.refits().unwrap_or(0)
     );

@@ -1,5 +1,6 @@
 //! The text of `MODEL.ron`, both ways.
 
+use std::fmt::{Display, Write};
 use std::sync::Arc;
 
 use lut::Table;
@@ -22,7 +23,7 @@ const CHECKSUM: &str = "\n    checksum: \"";
 /// Why a text is no model.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum ModelTextError {
+pub(super) enum ModelTextError {
     /// Some other file.
     #[error("not a model file: it has no `format:` field")]
     NoModel,
@@ -60,7 +61,7 @@ pub enum ModelTextError {
 
 impl ModelTextError {
     /// What may be done about it.
-    pub fn help(&self) -> Option<String> {
+    pub(super) fn help(&self) -> Option<String> {
         match self {
             Self::Newer { .. } => Some("use a newer cruisefit".to_owned()),
             Self::CutOff | Self::Damaged { .. } => {
@@ -106,6 +107,7 @@ struct InitialText {
 #[serde(deny_unknown_fields)]
 struct LearntText {
     tail: String,
+    criteria: String,
     law: LawText,
     references: References,
     ledger: Vec<LedgerEntry>,
@@ -167,7 +169,10 @@ fn checksum_of(body: &str) -> String {
 
 /// Bytes in hexadecimal.
 pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    })
 }
 
 fn document_of(model: &ModelFile) -> Document {
@@ -195,6 +200,7 @@ fn learnt_to_text(learnt: &Learnt) -> LearntText {
     let LawState::Paper { settings, state, ever_adapted, refits } = &learnt.law;
     LearntText {
         tail: learnt.tail.clone(),
+        criteria: learnt.criteria.clone(),
         law: LawText::Paper {
             settings: *settings,
             refits: *refits,
@@ -230,7 +236,7 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
     .map_err(|error| value("initial", error))?;
     let learnt = match document.learnt {
         None => None,
-        Some(LearntText { tail, law, references, ledger }) => {
+        Some(LearntText { tail, criteria, law, references, ledger }) => {
             let LawText::Paper { settings, refits, drag_coefficient, confidence, ever_adapted } =
                 law;
             let state = PaperState::from_tables(
@@ -240,7 +246,7 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
             .map_err(|error| value("learnt.law", error))?;
             let ever_adapted = flags_from_text("learnt.law.ever_adapted", &ever_adapted, nodes)?;
             let law = LawState::Paper { settings, state, ever_adapted, refits };
-            Some(Learnt { tail, law, references, ledger })
+            Some(Learnt { tail, criteria, law, references, ledger })
         }
     };
     Ok(ModelFile { initial, guide: document.guide, settings: document.settings, learnt })
@@ -268,6 +274,7 @@ fn flags_from_text(
         .collect()
 }
 
-fn value(field: &'static str, reason: impl ToString) -> ModelTextError {
+#[expect(clippy::needless_pass_by_value, reason = "made for map_err, which hands errors over")]
+fn value(field: &'static str, reason: impl Display) -> ModelTextError {
     ModelTextError::Value { field, reason: reason.to_string() }
 }

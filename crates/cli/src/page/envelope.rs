@@ -40,15 +40,16 @@ pub(super) fn envelope(view: &TailView) -> Markup {
     let which = if view.adapted { "after" } else { view.before_label() };
     let columns = envelope.mach.len() - 1;
     html! {
-        figure.wide {
+        figure {
+            figcaption {
+                b { "Where it flew." }
+                " Mean error " (which)
+                ", %, and number n of segments in each cell of lift coefficient CL and Mach number. Blue burns less than \
+                 the model says, orange more; full color from "
+                (FULL_COLOR_PERCENT) " %."
+            }
             div.scroll {
                 table.heat {
-                    caption {
-                        b { "Where it flew." }
-                        " In each cell of lift coefficient and Mach number the mean error " (which)
-                        ", %, and the number of segments. Blue burns less than the model says, orange more; full color from "
-                        (FULL_COLOR_PERCENT) " %."
-                    }
                     thead {
                         tr {
                             td {}
@@ -74,7 +75,7 @@ pub(super) fn envelope(view: &TailView) -> Markup {
                 }
             }
             p.note {
-                "Cells without a segment are empty; rows and columns that would be empty throughout at the edges are left out."
+                "Empty cells: no segment. The table goes on beyond the outer cells, where nobody flew."
                 @if envelope.merged != (1, 1) {
                     " A cell here is " (envelope.merged.0) " by " (envelope.merged.1) " cells of the table."
                 }
@@ -173,23 +174,22 @@ fn edges(first: usize, last: usize, step: usize) -> Vec<usize> {
 
 /// What lies outside the table, in words.
 pub(super) fn outside(view: &TailView) -> Option<String> {
-    let outside: Vec<&Point> = view.points.iter().filter(|point| point.before.is_none()).collect();
-    if outside.is_empty() {
+    if view.outside.is_empty() {
         return None;
     }
-    let range = |of: fn(&Point) -> f64| {
-        let low = outside.iter().map(|point| of(point)).fold(f64::INFINITY, f64::min);
-        let high = outside.iter().map(|point| of(point)).fold(f64::NEG_INFINITY, f64::max);
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        let low = view.outside.iter().map(of).fold(f64::INFINITY, f64::min);
+        let high = view.outside.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
         format!("{low:.3} to {high:.3}")
     };
     let ends =
         |axis: &[f64]| format!("{} to {}", breakpoint(axis[0]), breakpoint(axis[axis.len() - 1]));
     Some(format!(
         "{} outside the table, so without an error and in no figure: lift coefficient {}, Mach number {}. The table \
-         goes from lift coefficient {} and from Mach number {}.",
-        counted(outside.len(), "segment"),
-        range(|point| point.lift_coefficient),
-        range(|point| point.mach),
+         holds lift coefficient {} and Mach number {}.",
+        counted(view.outside.len(), "segment"),
+        range(|(lift_coefficient, _)| *lift_coefficient),
+        range(|(_, mach)| *mach),
         ends(&view.polars.lift_coefficient),
         ends(&view.polars.mach)
     ))

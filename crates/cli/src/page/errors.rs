@@ -1,5 +1,7 @@
 //! Errors of a tail's segments: how they are distributed, and how they went over time.
 
+use std::fmt::Write;
+
 use maud::{Markup, html};
 
 use super::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
@@ -31,10 +33,10 @@ pub(super) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     let mut description = format!("Number of segments by error. {words_before}.");
     let mut entries = vec![(Key::Area, BEFORE, words_before.as_str())];
     if view.adapted {
-        description.push_str(&format!(" {words_after}."));
+        let _ = write!(description, " {words_after}.");
         entries.push((Key::Area, "after", words_after.as_str()));
     }
-    entries.push((Key::Line, "mean", "mean of each"));
+    entries.push((Key::Line, "mean", "means"));
     let chart = Chart {
         id: place.id("histogram"),
         title: format!("{}: distribution of segment errors", place.tail),
@@ -44,7 +46,7 @@ pub(super) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
         x: Axis::within(bins.low(), bins.high(), 8),
         y: Axis::of_counts(counted_before.largest().max(counted_after.largest()), 5),
         x_label: "error of predicted total fuel flow, %".to_owned(),
-        y_label: format!("segments in {} %", bins.width()),
+        y_label: format!("segments per bin of {} %", bins.width()),
     };
     let marks = html! {
         (chart.bars(bins, &counted_before, BEFORE))
@@ -140,7 +142,7 @@ pub(super) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     }
     html! {
         figure {
-            figcaption { b { "Error over time." } " A step or a slope is an event or wear; a lone flight, its load sheet." }
+            figcaption { b { "Error over time." } " A step may be an event, a slope wear, a flight apart from all others its load sheet." }
             (legend(&entries))
             (chart.draw(&marks))
             @if shown.len() < view.points.len() {
@@ -168,8 +170,9 @@ pub(super) fn furthest_flights(view: &TailView) -> Markup {
     flights.truncate(FLIGHTS_NAMED);
     html! {
         @if !flights.is_empty() {
+            figure {
+            figcaption { b { "Flights furthest from zero" } @if view.adapted { " after" } ", by mean error." }
             table.small {
-                caption { "Flights whose mean error " @if view.adapted { "after " } "is furthest from zero" }
                 thead { tr {
                     th scope="col" { "flight" }
                     th scope="col" { "START, UTC" }
@@ -180,7 +183,7 @@ pub(super) fn furthest_flights(view: &TailView) -> Markup {
                 tbody {
                     @for flight in flights {
                         tr {
-                            th scope="row" { (flight.flight) }
+                            th scope="row" { (flight.name) }
                             td { (dates::day(flight.start)) }
                             td { (of(flight).n) }
                             td { (signed(flight.before.mean)) }
@@ -188,6 +191,7 @@ pub(super) fn furthest_flights(view: &TailView) -> Markup {
                         }
                     }
                 }
+            }
             }
         }
     }

@@ -1,5 +1,7 @@
 //! The fleet: a row a tail, and the reports that were refused.
 
+use std::fmt::Write;
+
 use maud::{Markup, html};
 
 use super::text::{count, percent, plain, signed};
@@ -131,7 +133,7 @@ pub(super) fn refused(reports: &ReportsSummary) -> Markup {
 fn position(refused: &RefusedSummary) -> String {
     let mut position = refused.path.clone();
     for number in [refused.line, refused.line.and(refused.column)].into_iter().flatten() {
-        position.push_str(&format!(":{number}"));
+        let _ = write!(position, ":{number}");
     }
     position
 }

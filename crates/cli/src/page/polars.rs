@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::Place;
 use super::chart::{Axis, Chart, Key, Mark, legend, thinned};
 use super::text::{breakpoint, counted};
-use super::view::{Point, Polars, TailView};
+use super::view::{Point, TailView};
 
 /// Panels at most.
 const PANELS: usize = 4;

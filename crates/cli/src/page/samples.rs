@@ -5,19 +5,16 @@ use flight::Timestamp;
 use super::view::{Flight, Point, Polars, TailView};
 use crate::statistics::ErrorStatistics;
 
-/// Ordinary, with wild values, a single segment, nothing inside the table, nothing at all; adapted and not.
+/// Ordinary, with wild values, all alike, a single segment, nothing at all; each adapted and not.
 pub(super) fn views() -> Vec<TailView> {
     let ordinary: Vec<Point> = (0..240).map(|k| point(k, 4.0, Some(1.0))).collect();
     let mut wild = ordinary.clone();
     wild[7].before = Some(420.0);
     wild[8].after = Some(-75.0);
     wild[9].drag_coefficient = 0.9;
-    let outside: Vec<Point> = (0..5)
-        .map(|k| Point { before: None, after: None, mach: 0.96, ..point(k, 0.0, None) })
-        .collect();
     let alike = vec![point(0, 4.0, Some(1.0)); 3];
     let mut views = Vec::new();
-    for points in [ordinary, wild, alike, vec![point(0, 4.0, Some(1.0))], outside, Vec::new()] {
+    for points in [ordinary, wild, alike, vec![point(0, 4.0, Some(1.0))], Vec::new()] {
         views.push(view(points.clone(), true));
         let given = points.into_iter().map(|point| Point { after: None, ..point }).collect();
         views.push(view(given, false));
@@ -55,15 +52,16 @@ fn view(points: Vec<Point>, adapted: bool) -> TailView {
         #[expect(clippy::cast_possible_truncation, reason = "whole seconds")]
         let start = Timestamp::from_second(start_s as i64).unwrap();
         let (before, after) = (of(|point| point.before), of(|point| point.after));
-        flights.push(Flight {
-            flight: format!("F{}", flights.len()),
-            start,
-            start_s,
-            before,
-            after,
-        });
+        flights.push(Flight { name: format!("F{}", flights.len()), start, start_s, before, after });
     }
-    TailView { points, flights, polars: polars(), adapted }
+    TailView {
+        points,
+        outside: vec![(0.45, 0.96), (0.83, 0.81)],
+        not_observed: Vec::new(),
+        flights,
+        polars: polars(),
+        adapted,
+    }
 }
 
 /// Lift coefficient 0.1 … 0.8 by 0.05, Mach number 0.50 … 0.95 by 0.05; two Mach numbers informed.

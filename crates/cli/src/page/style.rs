@@ -33,7 +33,9 @@ th[scope=colgroup] { text-align: center; }
 .group { border-left: 1px solid var(--line); }
 .refused td { text-align: left; }
 .refused th { text-align: left; }
-.small { margin: .6rem 0 0; }
+.small { margin: .4rem 0 0; }
+.row { display: flex; flex-wrap: wrap; gap: 0 2.5rem; }
+.row figcaption { max-width: 34rem; }
 .scroll { overflow-x: auto; }
 .heat { font-size: .82rem; }
 .heat td { border: 1px solid var(--line); text-align: center; padding: .15rem .3rem; min-width: 4.6rem; height: 2.1rem; }

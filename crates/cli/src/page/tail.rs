@@ -32,9 +32,11 @@ pub(super) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
             (errors::histogram(view, &bins, place))
             (errors::over_time(view, &bins, place))
         }
-        (errors::furthest_flights(view))
         (polars::polars(view, place))
-        (envelope::envelope(view))
+        div.row {
+            (envelope::envelope(view))
+            (errors::furthest_flights(view))
+        }
     }
 }
 
@@ -74,11 +76,10 @@ fn about(result: &TailResult) -> String {
 fn notes(result: &TailResult, view: &TailView) -> Markup {
     let mut notes = Vec::new();
     notes.extend(envelope::outside(view));
-    let not_reduced = result.rows.len() - view.points.len();
-    if not_reduced > 0 {
+    if let Some(first) = view.not_observed.first() {
         notes.push(format!(
-            "{} could not be reduced to a drag coefficient: the state is outside what the model is defined for.",
-            counted(not_reduced, "segment")
+            "{} say nothing about drag, so without an error and in no figure; the first: {first}.",
+            counted(view.not_observed.len(), "segment")
         ));
     }
     let assumed = result.rows.iter().filter(|row| row.segment.temperature_assumed).count();

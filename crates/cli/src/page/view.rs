@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use flight::Timestamp;
+use perf_model::ObserveError;
 
 use crate::model_file::{LawState, Learnt, ModelFile};
 use crate::results::TailResult;
@@ -13,6 +14,10 @@ use crate::statistics::ErrorStatistics;
 pub(super) struct TailView {
     /// Segments that could be reduced to a lift and a drag coefficient, in the results' order.
     pub(super) points: Vec<Point>,
+    /// Lift coefficients and Mach numbers of segments outside the table.
+    pub(super) outside: Vec<(f64, f64)>,
+    /// Why other segments say nothing about drag, one reason a segment.
+    pub(super) not_observed: Vec<String>,
     /// Flights with segments, by START.
     pub(super) flights: Vec<Flight>,
     /// Its drag tables.
@@ -39,7 +44,8 @@ pub(super) struct Point {
 /// A flight's errors.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Flight {
-    pub(super) flight: String,
+    /// As sent.
+    pub(super) name: String,
     pub(super) start: Timestamp,
     /// START, seconds since 1970-01-01 UTC.
     pub(super) start_s: f64,
@@ -68,12 +74,19 @@ impl TailView {
     pub(super) fn of(result: &TailResult) -> Self {
         let adapted = result.summary.fuel_flow_error_percent.after.is_some();
         let after = result.errors_after();
-        let mut points = Vec::new();
+        let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
         let mut flights: BTreeMap<(Timestamp, &str), Errors> = BTreeMap::new();
         for (k, row) in result.rows.iter().enumerate() {
             let identity = &row.segment.identity;
             let errors = flights.entry((identity.start, &identity.flight)).or_default();
             let Some(evaluated) = row.evaluated else {
+                match result.model.initial.observe(&row.segment) {
+                    Err(ObserveError::OutsideTable(at)) => {
+                        outside.push((at.lift_coefficient, at.mach));
+                    }
+                    Err(other) => not_observed.push(other.to_string()),
+                    Ok(_) => {}
+                }
                 continue;
             };
             let point = Point {
@@ -89,13 +102,20 @@ impl TailView {
             points.push(point);
         }
         let flights = flights.into_iter().map(|((start, flight), errors)| Flight {
-            flight: flight.to_owned(),
+            name: flight.to_owned(),
             start,
             start_s: start.as_second() as f64,
             before: ErrorStatistics::of(&errors.before),
             after: ErrorStatistics::of(&errors.after),
         });
-        Self { points, flights: flights.collect(), polars: Polars::of(&result.model), adapted }
+        Self {
+            points,
+            outside,
+            not_observed,
+            flights: flights.collect(),
+            polars: Polars::of(&result.model),
+            adapted,
+        }
     }
 
     /// What "before" is called: there is one only where there is an "after".

@@ -110,7 +110,7 @@ fn wrong_unit() {
 #[test]
 fn not_a_number() {
     let bytes = with_line(12, |line| line.replacen("0.7665", "NaN", 1));
-    refused_beside_a_good_one("nan.txt", &bytes, ":12:19: found \"NaN\"");
+    refused_beside_a_good_one("nan.txt", &bytes, ":12:23: found \"NaN\"");
 }
 
 #[test]

@@ -147,19 +147,27 @@ fn the_real_a320_recording() {
     };
     let scratch = tempfile::tempdir().unwrap();
     let csv = scratch.path().join("segments.csv");
-    let ran = cruisefit(&[
-        "segment".as_ref(),
-        recording.as_os_str(),
-        "--mapping".as_ref(),
-        "traffic-a320".as_ref(),
-        "-o".as_ref(),
-        csv.as_os_str(),
-        "--explain".as_ref(),
-    ])
-    .expect(0);
-    assert!(ran.stdout.contains("not evaluated"), "{}", ran.stdout);
+    let segment = |criteria: &str| {
+        cruisefit(&[
+            "segment".as_ref(),
+            recording.as_os_str(),
+            "--mapping".as_ref(),
+            "traffic-a320".as_ref(),
+            "--criteria".as_ref(),
+            criteria.as_ref(),
+            "-o".as_ref(),
+            csv.as_os_str(),
+            "--explain".as_ref(),
+        ])
+        .expect(0)
+    };
+    // Drift of 5 degrees and more, and a pressure altitude that swings by 20 ft: table 4 leaves nothing, and says so.
+    let strict = segment("ghazi-2020-table-4");
+    assert!(strict.stdout.contains("0 kept in 0 segments"), "{}", strict.stdout);
+    assert!(strict.stdout.contains("not evaluated: SAT, N2"), "{}", strict.stdout);
+    segment("airbus-report-02");
     let columns = csv_columns(&csv);
-    assert!(!columns["tail"].is_empty());
+    assert!(columns["tail"].len() > 10, "{}", columns["tail"].len());
     for mach in numbers(&columns, "mach") {
         // What is public about this flight: its level cruise at FL360 lies between Mach 0.750 and 0.780.
         assert!((0.745..0.785).contains(&mach), "{mach}");

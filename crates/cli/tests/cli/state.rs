@@ -91,7 +91,7 @@ fn another_setting_or_initial_model_is_refused_unless_restarted() {
     let before = bytes_below(&output);
     adapt(&model, &output, &[report(2)], &["--threshold", "1"])
         .expect(2)
-        .says("was begun with another law or setting: law paper, threshold 5 % against law paper, threshold 1 %");
+        .says("was begun with another law or setting: law paper, threshold 5 %, criteria ghazi-2020-table-4 against law paper, threshold 1 %, criteria ghazi-2020-table-4");
     assert_eq!(bytes_below(&output), before);
     adapt(&model, &output, &[report(2)], &["--threshold", "1", "--restart"]).expect(0);
     assert_eq!(summary(&output)["tails"][0]["flights"], 1);
