@@ -55,6 +55,8 @@ pub enum Command {
     /// Compare a whole run with expected files, or accept it as expected
     #[command(subcommand)]
     Golden(GoldenCommand),
+    /// Cruise reports of a virtual aircraft, with any effects switched on
+    Simulate(SimulateArgs),
     /// The whole chain on embedded data, nothing to prepare
     Demo(DemoArgs),
 }
@@ -205,6 +207,20 @@ pub enum GoldenCommand {
         #[arg(required = true, value_name = "DIR")]
         folders: Vec<PathBuf>,
     },
+}
+
+/// `simulate`
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// Plan file (RON): aircraft, fleet, dates, effects, sensors, seed
+    #[arg(value_name = "PLAN.ron")]
+    pub plan: PathBuf,
+    /// Folder to write to: TAIL/FLIGHT.txt and TRUTH.json
+    #[arg(long, short, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Write the true state of each sample too: TAIL/FLIGHT-states.csv
+    #[arg(long)]
+    pub states: bool,
 }
 
 /// `demo`

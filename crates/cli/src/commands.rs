@@ -8,6 +8,7 @@ pub mod init;
 pub mod predict;
 pub mod segment;
 pub mod show;
+pub mod simulate;
 
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;

@@ -58,6 +58,7 @@ fn run_command(command: &Command, progress: bool) -> Result<Outcome, Failure> {
         Command::Show(arguments) => commands::show::run(arguments),
         Command::Export(arguments) => commands::export::run(arguments),
         Command::Golden(command) => commands::golden::run(command),
+        Command::Simulate(arguments) => commands::simulate::run(arguments, progress),
         Command::Demo(_) => {
             Err(Failure::BadArgument { argument: "demo", reason: "being built".to_owned() })
         }

@@ -95,7 +95,7 @@ pub(super) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
         ),
         width: WIDTH,
         height: HEIGHT,
-        x: dates::axis(first, last, 5),
+        x: dates::axis(first, last, 6),
         y: Axis::within(bins.low(), bins.high(), 8),
         x_label: "START of the flight, UTC".to_owned(),
         y_label: "error, %".to_owned(),

@@ -30,8 +30,12 @@ pub(super) fn polars(view: &TailView, place: &Place<'_>) -> Markup {
     let shown = thinned(view.points.len(), place.most_points);
     let frame = Frame::of(view, &machs);
     let mut entries = vec![(Key::Line, "initial", "initial table")];
-    if view.adapted {
-        entries.push((Key::Line, "final", "final table"));
+    if view.polars.learnt {
+        entries.push((
+            Key::Line,
+            "final",
+            if view.adapted { "final table" } else { "table as given" },
+        ));
         entries.push((Key::Mark(Mark::Disc), "final", "node that a segment has adapted"));
     }
     entries.push((Key::Mark(Mark::Ring), "final", "node that no segment has adapted"));
@@ -46,9 +50,9 @@ pub(super) fn polars(view: &TailView, place: &Place<'_>) -> Markup {
         figure.wide {
             figcaption {
                 b { "Drag polars." }
-                " Drag coefficient over lift coefficient at the Mach numbers of the table nearest to most segments. A \
-                 segment is drawn in the panel whose Mach number is nearest to its own; that is up to half a step away, \
-                 so points scatter about the curve for that reason too."
+                " Drag coefficient over lift coefficient at the Mach numbers of the table nearest to most segments. Each \
+                 segment is drawn at the Mach number nearest to its own, up to half a step away: points lie off a curve \
+                 for that reason too."
             }
             (legend(&entries))
             div.panels {
@@ -109,7 +113,7 @@ fn panel(
         id: place.id(&format!("polar-{mach}")),
         title: format!("{}: drag polar at Mach {}", place.tail, breakpoint(polars.mach[mach])),
         description: format!(
-            "Drag coefficient over lift coefficient, initial and final table, and {} observed nearest to this Mach \
+            "Drag coefficient over lift coefficient in the tables, and {} observed nearest to this Mach \
              number. {} of {} drawn nodes were adapted.",
             counted(segments, "segment"),
             informed.len(),
@@ -126,7 +130,7 @@ fn panel(
     let marks = html! {
         (chart.marks(&observed, Mark::Dot, "observed"))
         (chart.polyline(&initial, "initial"))
-        @if view.adapted { (chart.polyline(&current, "final")) }
+        @if polars.learnt { (chart.polyline(&current, "final")) }
         (chart.marks(&nodes(|informed, extrapolated| !informed && !extrapolated), Mark::Ring, "final"))
         (chart.marks(&nodes(|informed, extrapolated| !informed && extrapolated), Mark::Diamond, "final"))
         (chart.marks(&informed, Mark::Disc, "final"))

@@ -76,5 +76,5 @@ fn polars() -> Polars {
     let current =
         initial.iter().zip(&informed).map(|(cd, i)| if *i { 1.04 * cd } else { *cd }).collect();
     let extrapolated = nodes.iter().map(|(cl, m)| !(0.3..0.6).contains(cl) || *m < 0.7).collect();
-    Polars { lift_coefficient, mach, initial, current, informed, extrapolated }
+    Polars { lift_coefficient, mach, initial, current, learnt: true, informed, extrapolated }
 }

@@ -64,6 +64,8 @@ pub(super) struct Polars {
     pub(super) initial: Vec<f64>,
     /// Drag coefficient as it stands.
     pub(super) current: Vec<f64>,
+    /// Whether anything was learnt; if not, both are the same.
+    pub(super) learnt: bool,
     /// Nodes that a segment ever adapted.
     pub(super) informed: Vec<bool>,
     /// Nodes outside the range of the guide.
@@ -153,6 +155,7 @@ impl Polars {
             mach: grid.y().breakpoints().to_vec(),
             initial,
             current: model.drag_coefficient().values().to_vec(),
+            learnt: model.learnt.is_some(),
             informed,
             extrapolated: model.initial.extrapolated().to_vec(),
         }

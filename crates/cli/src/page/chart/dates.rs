@@ -14,12 +14,11 @@ enum Step {
     Years(i16),
 }
 
-const STEPS: [Step; 16] = [
+const STEPS: [Step; 15] = [
     Step::Days(1),
     Step::Days(2),
     Step::Days(5),
     Step::Days(10),
-    Step::Days(20),
     Step::Months(1),
     Step::Months(2),
     Step::Months(3),
