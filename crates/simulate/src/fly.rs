@@ -80,8 +80,7 @@ pub(crate) struct FlightSetup<'a> {
     pub(crate) smooth_errors: Option<&'a SmoothErrors>,
     pub(crate) streams: Streams,
     pub(crate) shares: FuelShares,
-    /// Roll held in straight flight: at the start, and its drift per hour, degrees.
-    pub(crate) roll_trim_deg: (f64, f64),
+    pub(crate) roll_trim: RollTrim,
     /// Gross mass where the simulation starts, kg.
     pub(crate) start_mass_kg: f64,
     /// Fuel used until there, kg.
@@ -92,6 +91,14 @@ pub(crate) struct FlightSetup<'a> {
     pub(crate) interval_s: f64,
     /// Steps in an interval.
     pub(crate) steps_per_interval: u32,
+}
+
+/// Roll held in straight flight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RollTrim {
+    pub(crate) start_deg: f64,
+    pub(crate) per_h_deg: f64,
+    pub(crate) limit_deg: f64,
 }
 
 /// What the sensors see at every step.
@@ -362,8 +369,9 @@ impl<'a> Flying<'a> {
     }
 
     fn roll_trim_deg(&self) -> f64 {
-        let (start, per_h) = self.setup.roll_trim_deg;
-        start + per_h * self.time_s / 3600.0
+        let trim = &self.setup.roll_trim;
+        (trim.start_deg + trim.per_h_deg * self.time_s / 3600.0)
+            .clamp(-trim.limit_deg, trim.limit_deg)
     }
 
     fn open_books(&mut self) {

@@ -10,6 +10,7 @@ mod sensor;
 mod simulation;
 mod smooth;
 mod state;
+pub mod study;
 mod terms;
 mod trim;
 mod truth;

@@ -110,10 +110,12 @@ pub struct Scatter {
     pub zero_fuel_mass_percent: f64,
     /// Standard deviation of an engine's thrust about the mean, %.
     pub throttle_split_percent: f64,
-    /// Standard deviation of the roll held in straight flight, degrees; twice it is the largest.
+    /// Standard deviation of the roll held in straight flight, degrees.
     pub roll_trim_deg: f64,
     /// Standard deviation of its drift, degrees per hour.
     pub roll_trim_drift_deg_h: f64,
+    /// Roll at which a crew trims, degrees: no more than this is held.
+    pub roll_trim_limit_deg: f64,
 }
 
 impl Default for Scatter {
@@ -123,8 +125,9 @@ impl Default for Scatter {
             heating_value_percent: 0.3,
             zero_fuel_mass_percent: 0.7,
             throttle_split_percent: 0.7,
-            roll_trim_deg: 0.3,
+            roll_trim_deg: 0.45,
             roll_trim_drift_deg_h: 0.1,
+            roll_trim_limit_deg: 0.65,
         }
     }
 }
@@ -139,6 +142,7 @@ impl Scatter {
             throttle_split_percent: 0.0,
             roll_trim_deg: 0.0,
             roll_trim_drift_deg_h: 0.0,
+            roll_trim_limit_deg: 0.65,
         }
     }
 }

@@ -5,7 +5,7 @@ use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference, ch
 
 use crate::aircraft::AircraftTruth;
 use crate::effect::{PlannedEffect, TruthEffect};
-use crate::fly::{FlightError, FlightSetup, fly};
+use crate::fly::{FlightError, FlightSetup, RollTrim, fly};
 use crate::plan::{AircraftChoice, Flights, Plan, PlanError, seconds};
 use crate::random::{Purpose, Streams};
 use crate::references::references_of;
@@ -328,11 +328,12 @@ impl Simulation {
         for share in &mut shares {
             *share /= total;
         }
-        let limit = 2.0 * scatter.roll_trim_deg;
-        let roll_trim_deg = (
-            (scatter.roll_trim_deg * airframe.normal()).clamp(-limit, limit),
-            scatter.roll_trim_drift_deg_h * airframe.normal(),
-        );
+        let limit_deg = scatter.roll_trim_limit_deg;
+        let roll_trim = RollTrim {
+            start_deg: (scatter.roll_trim_deg * airframe.normal()).clamp(-limit_deg, limit_deg),
+            per_h_deg: scatter.roll_trim_drift_deg_h * airframe.normal(),
+            limit_deg,
+        };
 
         let middle = middle_of(plan);
         let air = AirMass::draw(&self.plan.weather, middle, &mut streams.stream(Purpose::Weather));
@@ -371,7 +372,7 @@ impl Simulation {
                 recorded_zero_fuel_mass_kg,
                 fuel_on_board_kg,
                 thrust_shares: shares,
-                roll_trim_deg: roll_trim_deg.0,
+                roll_trim_deg: roll_trim.start_deg,
                 isa_deviation_k: air.mean_isa_deviation_k(),
                 turbulence_min: 0.0,
                 energy: Default::default(),
@@ -389,7 +390,7 @@ impl Simulation {
                 smooth_errors: tail.smooth_errors.as_ref(),
                 streams,
                 shares,
-                roll_trim_deg,
+                roll_trim,
                 start_mass_kg: masses.start_kg,
                 start_fuel_used_kg: masses.climb_fuel_kg,
                 settle_s,
@@ -530,6 +531,7 @@ fn check_plan(plan: &Plan) -> Result<(), PlanError> {
         ("gusts elsewhere", "m/s", weather.turbulence.elsewhere_m_s, 0.0, 10.0),
         ("heating value scatter", "%", plan.scatter.heating_value_percent, 0.0, 10.0),
         ("zero-fuel mass scatter", "%", plan.scatter.zero_fuel_mass_percent, 0.0, 10.0),
+        ("roll trim limit", "deg", plan.scatter.roll_trim_limit_deg, 0.0, 10.0),
         ("throttle split", "%", plan.scatter.throttle_split_percent, 0.0, 20.0),
         ("autopilot Mach frequency", "rad/s", plan.autopilot.mach_frequency_rad_s, 0.001, 0.3),
         ("autopilot altitude gain", "1/s", plan.autopilot.altitude_gain_s, 0.001, 0.3),

@@ -58,8 +58,8 @@ impl Default for Weather {
         Self {
             isa_deviation_k: Spread { mean: 0.0, sd: 5.0 },
             isa_deviation_field_k: 2.0,
-            wind_east_m_s: Spread { mean: 8.0, sd: 8.0 },
-            wind_north_m_s: Spread { mean: 0.0, sd: 6.0 },
+            wind_east_m_s: Spread { mean: 12.0, sd: 9.0 },
+            wind_north_m_s: Spread { mean: 0.0, sd: 8.0 },
             wind_field_m_s: 6.0,
             ageostrophic_share: 0.08,
             vertical_wind_m_s: 0.02,
@@ -297,8 +297,8 @@ mod tests {
         // Asked for: spread between flights and field along them add as variances.
         let expected = [
             (0.0, (25.0_f64 + 4.0).sqrt()),
-            (8.0, (64.0_f64 + 36.0).sqrt()),
-            (0.0, (36.0_f64 + 36.0).sqrt()),
+            (12.0, (81.0_f64 + 36.0).sqrt()),
+            (0.0, (64.0_f64 + 36.0).sqrt()),
             (0.0, 0.02),
             (0.0, 0.08 * 6.0),
             (0.0, 0.0),
