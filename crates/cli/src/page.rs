@@ -135,8 +135,9 @@ fn what_was_run(summary: &Summary, tails: &[TailResult]) -> String {
     let mut laws: Vec<String> = Vec::new();
     for tail in tails {
         let law = match &tail.model.learnt {
-            Some(Learnt { law: LawState::Paper { settings, .. }, .. }) => {
-                format!("law paper, threshold {} %", settings.threshold_percent)
+            Some(Learnt { criteria, law: LawState::Paper { settings, .. }, .. }) => {
+                let threshold = settings.threshold_percent;
+                format!("law paper, threshold {threshold} %, trim criteria {criteria}")
             }
             None => "initial model, nothing learnt".to_owned(),
         };
@@ -168,7 +169,7 @@ fn how_to_read(adapted: bool) -> Markup {
                  Positive: the aircraft burns more than the model says."
             }
             dt { "segment" }
-            dd { "A stabilised piece of cruise of at most 10 min, and the mean state over it." }
+            dd { "A stabilised piece of cruise, and the mean state over it." }
             @if adapted {
                 dt { "before, after" }
                 dd {

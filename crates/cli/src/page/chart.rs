@@ -15,11 +15,13 @@ pub(crate) use axis::{Axis, Tick};
 pub(crate) use bins::{Bins, Histogram, thinned};
 
 /// Room for labels around the frame.
-const LEFT: f64 = 58.0;
+const LEFT: f64 = 64.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 8.0;
 const BOTTOM: f64 = 40.0;
 const TICK: f64 = 4.0;
+/// Half the width of a character of a label, amply.
+const HALF_CHARACTER: f64 = 3.8;
 
 /// A chart. Sizes are those of the drawing's own pixels; the page scales it as a whole.
 #[derive(Clone, Debug)]
@@ -84,7 +86,7 @@ impl Chart {
                 path class="frame" d=(self.tick_lines()) {}
                 @for tick in self.x.ticks() {
                     text class="tick" text-anchor="middle"
-                        x=(coordinate(self.x_at(tick.at))) y=(coordinate(bottom + 16.0)) { (tick.label) }
+                        x=(coordinate(self.label_at(tick))) y=(coordinate(bottom + 16.0)) { (tick.label) }
                 }
                 @for tick in self.y.ticks() {
                     text class="tick" text-anchor="end"
@@ -159,6 +161,12 @@ impl Chart {
 
     fn y_at(&self, value: f64) -> f64 {
         self.height - BOTTOM - self.y.share(value) * (self.height - TOP - BOTTOM)
+    }
+
+    /// Middle of a label below the frame: at its tick, or as near as the drawing's right edge allows.
+    fn label_at(&self, tick: &Tick) -> f64 {
+        let half = HALF_CHARACTER * tick.label.len() as f64;
+        self.x_at(tick.at).min(self.width - half)
     }
 
     fn grid_lines(&self) -> String {
@@ -260,7 +268,7 @@ mod tests {
             id: "c".to_owned(),
             title: "A <title>".to_owned(),
             description: "Words".to_owned(),
-            width: 170.0,
+            width: 176.0,
             height: 148.0,
             x,
             y,
@@ -269,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Frame of 100 by 100 pixels from (58, 8) to (158, 108).
+    /// Frame of 100 by 100 pixels from (64, 8) to (164, 108).
     fn unit() -> Chart {
         chart(Axis::within(0.0, 1.0, 2), Axis::within(0.0, 1.0, 2))
     }
@@ -277,9 +285,9 @@ mod tests {
     #[test]
     fn places_computed_by_hand() {
         let line = unit().polyline(&[(0.0, 0.0), (0.5, 1.0)], "a").into_string();
-        assert_eq!(line, r#"<path class="line a" d="M58 108L108 8"></path>"#);
+        assert_eq!(line, r#"<path class="line a" d="M64 108L114 8"></path>"#);
         let dots = unit().marks(&[(1.0, 0.25), (2.0, 0.0)], Mark::Dot, "b").into_string();
-        assert_eq!(dots, r#"<path class="dot b" d="M158 83h0"></path>"#);
+        assert_eq!(dots, r#"<path class="dot b" d="M164 83h0"></path>"#);
         assert_eq!(unit().beyond(&[(1.0, 0.25), (2.0, 0.0), (f64::NAN, 0.0)]), 2);
     }
 
@@ -287,7 +295,7 @@ mod tests {
     fn a_point_off_the_scales_breaks_the_line() {
         let points = [(0.0, 0.0), (0.1, 7.0), (0.2, 0.0), (0.3, 0.0)];
         let line = unit().polyline(&points, "a").into_string();
-        assert!(line.contains("M58 108M78 108L88 108"), "{line}");
+        assert!(line.contains("M64 108M84 108L94 108"), "{line}");
     }
 
     #[test]
@@ -295,7 +303,7 @@ mod tests {
         let bins = Bins::of(&[0.1, 0.6, 0.7], 0.5);
         let chart = chart(Axis::within(0.0, 1.0, 2), Axis::within(0.0, 2.0, 2));
         let bars = chart.bars(&bins, &bins.histogram(&[0.1, 0.6, 0.7]), "a").into_string();
-        assert!(bars.contains("M58 108V58H108V8H158V108Z"), "{bars}");
+        assert!(bars.contains("M64 108V58H114V8H164V108Z"), "{bars}");
     }
 
     #[test]

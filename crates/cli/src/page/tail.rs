@@ -35,7 +35,7 @@ pub(super) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
         (polars::polars(view, place))
         div.row {
             (envelope::envelope(view))
-            (errors::furthest_flights(view))
+            (errors::flights_apart(view))
         }
     }
 }
@@ -44,7 +44,11 @@ fn headline(result: &TailResult) -> String {
     let summary = &result.summary;
     let errors = &summary.fuel_flow_error_percent;
     let told = |statistics: &ErrorStatistics| {
-        format!("mean {} %, std {} %", signed(statistics.mean), plain(statistics.std))
+        format!(
+            "mean\u{a0}{}\u{a0}%, std\u{a0}{}\u{a0}%",
+            signed(statistics.mean),
+            plain(statistics.std)
+        )
     };
     let counts = format!(
         "{}, {}; error ",

@@ -81,7 +81,7 @@ impl TailView {
         for (k, row) in result.rows.iter().enumerate() {
             let identity = &row.segment.identity;
             let errors = flights.entry((identity.start, &identity.flight)).or_default();
-            let Some(evaluated) = row.evaluated else {
+            if row.evaluated.is_none_or(|evaluated| evaluated.error_percent.is_none()) {
                 match result.model.initial.observe(&row.segment) {
                     Err(ObserveError::OutsideTable(at)) => {
                         outside.push((at.lift_coefficient, at.mach));
@@ -89,8 +89,8 @@ impl TailView {
                     Err(other) => not_observed.push(other.to_string()),
                     Ok(_) => {}
                 }
-                continue;
-            };
+            }
+            let Some(evaluated) = row.evaluated else { continue };
             let point = Point {
                 start_s: identity.start.as_second() as f64,
                 lift_coefficient: evaluated.lift_coefficient,
