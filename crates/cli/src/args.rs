@@ -212,7 +212,8 @@ pub enum GoldenCommand {
 /// `simulate`
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
-    /// Plan file (RON): aircraft, fleet, dates, effects, sensors, seed
+    /// Plan file (RON): aircraft, fleet, dates, effects, sensors, seed; or `ghazi-2020`: the study of the paper, with
+    /// aircraft file, guide and static points
     #[arg(value_name = "PLAN.ron")]
     pub plan: PathBuf,
     /// Folder to write to: TAIL/FLIGHT.txt and TRUTH.json

@@ -1,6 +1,7 @@
 //! The commands: each turns its arguments into an [`Outcome`], or says why nothing was done.
 
 pub mod adapt;
+pub mod demo;
 pub mod evaluate;
 pub mod export;
 pub mod golden;

@@ -28,6 +28,7 @@ pub mod references;
 pub mod results;
 pub mod segments_table;
 pub mod statistics;
+pub mod studies;
 pub mod summary;
 
 use std::io::{IsTerminal, Write};
@@ -59,9 +60,7 @@ fn run_command(command: &Command, progress: bool) -> Result<Outcome, Failure> {
         Command::Export(arguments) => commands::export::run(arguments),
         Command::Golden(command) => commands::golden::run(command),
         Command::Simulate(arguments) => commands::simulate::run(arguments, progress),
-        Command::Demo(_) => {
-            Err(Failure::BadArgument { argument: "demo", reason: "being built".to_owned() })
-        }
+        Command::Demo(arguments) => commands::demo::run(arguments, progress),
     }
 }
 

@@ -17,6 +17,21 @@ use crate::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 /// # Errors
 /// What leaves nothing done.
 pub fn run(arguments: &EvaluateArgs, progress: bool) -> Result<Outcome, Failure> {
+    let (summary, refused) = evaluate(arguments, progress)?;
+    if let Some(path) = &arguments.json {
+        write_atomically(path, &summary.to_json())?;
+    }
+    Ok(Outcome { text: summary.to_text(), refused })
+}
+
+/// The error of the models over the reports, and what was refused.
+///
+/// # Errors
+/// What leaves nothing to evaluate.
+pub fn evaluate(
+    arguments: &EvaluateArgs,
+    progress: bool,
+) -> Result<(Summary, Vec<RefusedReport>), Failure> {
     let models = Models::read(&arguments.models.models)?;
     let reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
@@ -48,10 +63,7 @@ pub fn run(arguments: &EvaluateArgs, progress: bool) -> Result<Outcome, Failure>
         },
         tails,
     };
-    if let Some(path) = &arguments.json {
-        write_atomically(path, &summary.to_json())?;
-    }
-    Ok(Outcome { text: summary.to_text(), refused })
+    Ok((summary, refused))
 }
 
 fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -> TailResult {

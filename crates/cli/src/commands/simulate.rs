@@ -4,13 +4,16 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use report::TextLayout;
-use simulate::{Flown, Plan, Simulation, Switch};
+use serde_json::Value;
+use simulate::{Flown, Plan, Simulation, Switch, TrueState};
 
 use crate::args::SimulateArgs;
+use crate::columns::Columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::{file_stem_of_tail, make_folder, read_text, write_atomically};
 use crate::progress::Progress;
+use crate::studies;
 
 /// First comment of every report: nobody shall take it for a recording.
 const COMMENT: &str = "simulated with cruisefit, not a real aircraft";
@@ -20,6 +23,13 @@ const COMMENT: &str = "simulated with cruisefit, not a real aircraft";
 /// # Errors
 /// What leaves nothing done.
 pub fn run(arguments: &SimulateArgs, progress: bool) -> Result<Outcome, Failure> {
+    if arguments.plan.as_os_str() == "ghazi-2020" {
+        let flights = studies::ghazi_2020()?.write(&arguments.output, progress)?;
+        return Ok(Outcome::text(format!(
+            "the study of Ghazi et al. 2020 written to {}: {flights} flights, AIRCRAFT.ron, guide.csv, static.csv\n",
+            show(&arguments.output)
+        )));
+    }
     let mut plan = Plan::from_ron(&read_text(&arguments.plan)?)
         .map_err(|error| Failure::bad_file(&arguments.plan, error))?;
     if arguments.states {
@@ -62,12 +72,8 @@ pub fn write(simulation: &Simulation, folder: &Path, progress: bool) -> Result<u
             let stem = file_stem_of_tail(&identity.flight);
             write_atomically(&base.join(format!("{stem}.txt")), text.as_bytes())?;
             if !states.is_empty() {
-                let mut writer = csv::Writer::from_writer(Vec::new());
-                for state in &states {
-                    writer.serialize(state).map_err(|error| failed(&error))?;
-                }
-                let bytes = writer.into_inner().map_err(|error| failed(&error))?;
-                write_atomically(&base.join(format!("{stem}-states.csv")), &bytes)?;
+                let table = states_table(&states).map_err(|error| failed(&error))?;
+                write_atomically(&base.join(format!("{stem}-states.csv")), &table.to_csv())?;
             }
             bar.step();
             Ok(truth)
@@ -82,4 +88,33 @@ pub fn write(simulation: &Simulation, folder: &Path, progress: bool) -> Result<u
     text.push('\n');
     write_atomically(&path, text.as_bytes())?;
     Ok(flights)
+}
+
+/// True states as columns; what is one number an engine becomes a column an engine.
+fn states_table(states: &[TrueState]) -> Result<Columns, serde_json::Error> {
+    let rows = states.iter().map(flattened).collect::<Result<Vec<_>, _>>()?;
+    let mut columns = Columns::default();
+    let names: Vec<String> =
+        rows.first().into_iter().flatten().map(|(name, _)| name.clone()).collect();
+    for (column, name) in names.into_iter().enumerate() {
+        columns.number(name, rows.iter().map(|row| row.get(column).and_then(|(_, value)| *value)));
+    }
+    Ok(columns)
+}
+
+fn flattened(state: &TrueState) -> Result<Vec<(String, Option<f64>)>, serde_json::Error> {
+    let mut flat = Vec::new();
+    if let Value::Object(fields) = serde_json::to_value(state)? {
+        for (name, value) in fields {
+            match value {
+                Value::Array(engines) => {
+                    for (engine, value) in engines.iter().enumerate() {
+                        flat.push((format!("{name}_{}", engine + 1), value.as_f64()));
+                    }
+                }
+                value => flat.push((name, value.as_f64())),
+            }
+        }
+    }
+    Ok(flat)
 }

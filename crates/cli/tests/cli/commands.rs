@@ -1,7 +1,7 @@
 //! Each command once on real input.
 
 use crate::support::{
-    adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers, root, shared,
+    adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers, root,
 };
 
 #[test]
@@ -142,9 +142,7 @@ fn golden_check_finds_a_changed_value() {
 
 #[test]
 fn the_real_a320_recording() {
-    let Some(recording) = shared("data/real/traffic_fuelflow_a320/fuelflow_a320.csv.gz") else {
-        return;
-    };
+    let recording = root().join("fixtures/a320-traffic/fuelflow_a320.csv.gz");
     let scratch = tempfile::tempdir().unwrap();
     let csv = scratch.path().join("segments.csv");
     let segment = |criteria: &str| {
@@ -173,4 +171,66 @@ fn the_real_a320_recording() {
         assert!((0.745..0.785).contains(&mach), "{mach}");
     }
     assert!(columns["temperature_assumed"].iter().all(|assumed| assumed == "1"));
+}
+
+#[test]
+fn demo_does_the_whole_chain_on_embedded_data() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("demo");
+    let ran = cruisefit(&["demo".as_ref(), "-o".as_ref(), folder.as_os_str()]).expect(0);
+    assert!(ran.stdout.contains("Flights that the model has not seen:"), "{}", ran.stdout);
+    for file in
+        ["MODEL.ron", "adapted/models/N750CF.ron", "adapted/report.html", "reports/TRUTH.json"]
+    {
+        assert!(folder.join(file).exists(), "{file}");
+    }
+    // Again into the same folder: the same words.
+    let again = cruisefit(&["demo".as_ref(), "-o".as_ref(), folder.as_os_str()]).expect(0);
+    assert_eq!(again.stdout, ran.stdout);
+}
+
+#[test]
+fn the_study_is_simulated_as_it_is_kept() {
+    // Our own output: detects change. Numbers are compared loosely, for the mathematical library of another machine
+    // may round a sample the other way.
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("study");
+    cruisefit(&["simulate".as_ref(), "ghazi-2020".as_ref(), "-o".as_ref(), folder.as_os_str()])
+        .expect(0);
+    let kept = bytes_below(&root().join("fixtures/ghazi-2020"));
+    let tolerance = cli::difference::Tolerance { relative: 1e-3, absolute: 1.0 };
+    for (name, bytes) in bytes_below(&folder) {
+        let (expected, found) =
+            (String::from_utf8_lossy(&kept[&name]), String::from_utf8_lossy(&bytes));
+        let differences = cli::difference::differences(&expected, &found, tolerance);
+        assert!(differences.is_empty(), "{name}: {:?}", differences.first());
+    }
+}
+
+#[test]
+fn simulated_reports_do_not_depend_on_threads() {
+    let scratch = tempfile::tempdir().unwrap();
+    let plan = scratch.path().join("PLAN.ron");
+    std::fs::write(
+        &plan,
+        "(seed: 3, aircraft: Preset(a320), tails: [(tail: \"X\", flights: Designed((flights: 6)))])",
+    )
+    .unwrap();
+    let run = |threads: &str| {
+        let folder = scratch.path().join(threads);
+        cruisefit(&[
+            "simulate".as_ref(),
+            plan.as_os_str(),
+            "--states".as_ref(),
+            "--threads".as_ref(),
+            threads.as_ref(),
+            "-o".as_ref(),
+            folder.as_os_str(),
+        ])
+        .expect(0);
+        bytes_below(&folder)
+    };
+    let one = run("1");
+    assert_eq!(one.len(), 6 + 6 + 1, "{:?}", one.keys());
+    assert_eq!(run("3"), one);
 }

@@ -1,0 +1,141 @@
+//! `cruisefit demo`: the whole chain on data that comes with the program.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::args::{
+    AdaptArgs, DemoArgs, EvaluateArgs, InitArgs, LawName, ModelArgs, PredictArgs, ReportsArgs,
+};
+use crate::commands::{Outcome, adapt, evaluate, init, predict};
+use crate::failure::{Failure, show};
+use crate::statistics::ErrorStatistics;
+use crate::studies;
+
+/// Flights that teach; the later ones judge.
+const TEACHING_FLIGHTS: usize = 30;
+
+/// Runs the command.
+///
+/// # Errors
+/// A place that cannot be written.
+pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
+    let folder = &arguments.output;
+    let mut text = String::new();
+    let flights = studies::demonstration()?.write(folder, progress)?;
+    let _ = writeln!(
+        text,
+        "A virtual Citation X, tail N750CF: {flights} cruise reports, a flight-planning guide whose drag is wrong, and \
+         static points written to {}.\nThe first {TEACHING_FLIGHTS} flights teach the model, the others judge it.\n",
+        show(folder)
+    );
+    let model = folder.join("MODEL.ron");
+    let initial = init::run(&InitArgs {
+        aircraft: folder.join("AIRCRAFT.ron"),
+        guide: folder.join("guide.csv"),
+        output: model.clone(),
+    })?;
+    let _ = writeln!(
+        text,
+        "$ cruisefit init --aircraft AIRCRAFT.ron --guide guide.csv -o MODEL.ron\n{}",
+        initial.text
+    );
+    let reports = reports_below(&folder.join("reports/N750CF"))?;
+    let (teaching, judging) = reports.split_at(TEACHING_FLIGHTS.min(reports.len()));
+    let adapted = folder.join("adapted");
+    let learnt = adapt::run(
+        &AdaptArgs {
+            reports: reports_arguments(teaching),
+            models: ModelArgs { models: vec![model.clone()] },
+            output: adapted.clone(),
+            law: LawName::Paper,
+            threshold: Some(1.0),
+            restart: adapted.exists(),
+        },
+        progress,
+    )?;
+    let _ = writeln!(
+        text,
+        "$ cruisefit adapt … --model MODEL.ron --law paper --threshold 1 -o adapted\n{}",
+        learnt.text
+    );
+    let _ = writeln!(text, "Flights that the model has not seen:");
+    for (name, path) in [("initial", &model), ("adapted", &adapted.join("models"))] {
+        let errors = unseen_errors(path, judging)?;
+        let _ = writeln!(text, "  {name:<8} {}", told(&errors));
+    }
+    let _ = writeln!(text, "\n45 static points at three masses, between FL300 and FL450:");
+    for (name, path) in [("initial", model), ("adapted", adapted.join("models/N750CF.ron"))] {
+        let predicted = folder.join(format!("static-{name}.csv"));
+        let outcome = predict::run(&PredictArgs {
+            model: path,
+            points: folder.join("static.csv"),
+            output: Some(predicted.clone()),
+        })?;
+        let errors = errors_of(&predicted)?;
+        let _ = writeln!(
+            text,
+            "  {name:<8} {}; {} outside the table",
+            told(&ErrorStatistics::of(&errors)),
+            outcome.refused.len()
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\nLook at {}; everything above can be run again by hand from {}.",
+        show(&adapted.join("report.html")),
+        show(folder)
+    );
+    Ok(Outcome::text(text))
+}
+
+fn reports_arguments(reports: &[PathBuf]) -> ReportsArgs {
+    ReportsArgs {
+        reports: reports.to_vec(),
+        mapping: None,
+        criteria: segmenter::TrimCriteria::PRESETS[0].to_owned(),
+        strict: true,
+    }
+}
+
+fn reports_below(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    Ok(crate::inputs::collect(&[folder.to_owned()], false)?.files)
+}
+
+fn unseen_errors(model: &Path, reports: &[PathBuf]) -> Result<ErrorStatistics, Failure> {
+    let arguments = EvaluateArgs {
+        reports: reports_arguments(reports),
+        models: ModelArgs { models: vec![model.to_owned()] },
+        json: None,
+    };
+    let (summary, _) = evaluate::evaluate(&arguments, false)?;
+    Ok(summary
+        .tails
+        .first()
+        .map_or(ErrorStatistics::of(&[]), |tail| tail.fuel_flow_error_percent.before))
+}
+
+fn told(errors: &ErrorStatistics) -> String {
+    let figure = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:+.2}"));
+    let plain = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.2}"));
+    format!(
+        "mean error {} %, standard deviation {} %, largest {} % (n {})",
+        figure(errors.mean),
+        plain(errors.std),
+        plain(errors.max_abs),
+        errors.n
+    )
+}
+
+/// The errors that `predict` wrote beside measured fuel flows.
+fn errors_of(path: &Path) -> Result<Vec<f64>, Failure> {
+    let wrong = |error: csv::Error| Failure::bad_file(path, error);
+    let mut reader = csv::Reader::from_path(path).map_err(wrong)?;
+    let place = reader.headers().map_err(wrong)?.iter().position(|name| name == "error_percent");
+    let mut errors = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(wrong)?;
+        let field = place.and_then(|place| record.get(place)).unwrap_or_default();
+        errors.extend(field.parse::<f64>().ok());
+    }
+    Ok(errors)
+}
