@@ -280,7 +280,7 @@ impl AircraftTruth {
         lift_coefficient: f64,
         mach: Mach,
         at: &DragConditions,
-        richness: &Richness,
+        richness: Richness,
     ) -> f64 {
         Terms::of(self, richness).drag_coefficient(
             &self.airframe,
@@ -301,7 +301,7 @@ impl AircraftTruth {
         mach: Mach,
         sat: Temperature,
         corrected_thrust: Force,
-        richness: &Richness,
+        richness: Richness,
     ) -> Tsfc {
         let mach = mach.value();
         let temperature_ratio = atmos::isa::temperature_ratio(sat);
@@ -373,17 +373,17 @@ mod tests {
         };
         let drag = |at, richness| aircraft.drag_coefficient(0.35, Mach::new(0.8), at, richness);
         let plain = Richness::plain();
-        assert_eq!(drag(&reference, &plain).to_bits(), drag(&other, &plain).to_bits());
-        assert!(drag(&other, &Richness::full()) > drag(&reference, &Richness::full()));
+        assert_eq!(drag(&reference, plain).to_bits(), drag(&other, plain).to_bits());
+        assert!(drag(&other, Richness::full()) > drag(&reference, Richness::full()));
         let sat = Temperature::kelvin(216.65);
         let tsfc = |newtons, richness| {
             aircraft
                 .tsfc(Mach::new(0.8), sat, Force::newtons(newtons), richness)
                 .to_pounds_per_pound_force_hour()
         };
-        assert_eq!(tsfc(40e3, &plain).to_bits(), tsfc(70e3, &plain).to_bits());
+        assert_eq!(tsfc(40e3, plain).to_bits(), tsfc(70e3, plain).to_bits());
         // Ghazi et al. reconstruction, n = 1.25 at M 0.80, θ 0.7519: 0.654 lb/(lbf h).
-        assert!((tsfc(60e3, &plain) - 0.654).abs() < 6e-4, "{}", tsfc(60e3, &plain));
-        assert!(tsfc(20e3, &Richness::full()) > tsfc(60e3, &Richness::full()));
+        assert!((tsfc(60e3, plain) - 0.654).abs() < 6e-4, "{}", tsfc(60e3, plain));
+        assert!(tsfc(20e3, Richness::full()) > tsfc(60e3, Richness::full()));
     }
 }

@@ -97,7 +97,7 @@ pub(crate) struct FlightSetup<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RollTrim {
     pub(crate) start_deg: f64,
-    pub(crate) per_h_deg: f64,
+    pub(crate) drift_deg_h: f64,
     pub(crate) limit_deg: f64,
 }
 
@@ -146,7 +146,6 @@ pub(crate) fn fly(
         }
         flying.keep_books(interval >= intervals);
         let state = flying.true_state();
-        flying.check_limits()?;
         observe(&flying.instant(), step_s, Some(&state));
         if interval >= intervals {
             return Ok(flying.books);
@@ -278,7 +277,7 @@ impl<'a> Flying<'a> {
             let mean_speed = 0.5 * (begun.smooth_airspeed_m_s + motion.smooth_airspeed_m_s);
             self.books.energy.wind_change_j_kg += self.wind_change_m_s2 * mean_speed * self.step_s;
         }
-        Ok(())
+        self.check_limits()
     }
 
     /// From this step to the next.
@@ -370,7 +369,7 @@ impl<'a> Flying<'a> {
 
     fn roll_trim_deg(&self) -> f64 {
         let trim = &self.setup.roll_trim;
-        (trim.start_deg + trim.per_h_deg * self.time_s / 3600.0)
+        (trim.start_deg + trim.drift_deg_h * self.time_s / 3600.0)
             .clamp(-trim.limit_deg, trim.limit_deg)
     }
 
@@ -401,7 +400,8 @@ impl<'a> Flying<'a> {
     fn check_limits(&self) -> Result<(), FlightError> {
         let time_s = self.time_s;
         let target = self.controls.mach_target();
-        if self.forces.mach < target - 0.04 {
+        // Written so that NaN is refused too.
+        if self.forces.mach.is_nan() || self.forces.mach < target - 0.04 {
             return Err(FlightError::Thrust { time_s, mach: self.forces.mach, target });
         }
         let maximum = self.setup.aircraft.envelope.maximum_lift_coefficient;

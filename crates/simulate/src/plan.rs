@@ -208,7 +208,7 @@ pub enum Flights {
     /// One by one.
     Listed(Vec<FlightPlan>),
     /// Drawn from ranges.
-    Designed(FleetDesign),
+    Designed(Box<FleetDesign>),
 }
 
 /// Why a plan cannot be simulated.
@@ -306,7 +306,7 @@ impl Plan {
                 effects: Vec::new(),
                 engine_deterioration_percent: Vec::new(),
                 references: None,
-                flights: Flights::Designed(design),
+                flights: Flights::Designed(Box::new(design)),
             }],
         }
     }

@@ -78,6 +78,17 @@ impl Stream {
         self.unit() < probability
     }
 
+    /// A whole number from 0 up to a count, which must not be 0.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a product of a share and a count"
+        )]
+        let drawn = (self.unit() * count as f64) as usize;
+        drawn.min(count - 1)
+    }
+
     /// Exponentially distributed.
     pub(crate) fn exponential(&mut self, mean: f64) -> f64 {
         -mean * (1.0 - self.unit()).ln()

@@ -13,7 +13,7 @@ use crate::weather::Weather;
 /// that of trimmed points.
 pub(crate) fn references_of(
     aircraft: &AircraftTruth,
-    richness: &Richness,
+    richness: Richness,
     weather: &Weather,
     flights: &[FlightPlan],
 ) -> Result<References, OutOfDomain> {

@@ -1,23 +1,26 @@
 //! From a plan to reports and truth.
 
-use flight::{FlightIdentity, Report, ReportDataError};
-use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference, check_within};
+mod check;
+mod draw;
+
+use flight::{Report, ReportDataError};
+use units::{OutOfDomain, check_within};
 
 use crate::aircraft::AircraftTruth;
 use crate::effect::{PlannedEffect, TruthEffect};
-use crate::fly::{FlightError, FlightSetup, RollTrim, fly};
-use crate::plan::{AircraftChoice, Flights, Plan, PlanError, seconds};
+use crate::fly::{FlightError, fly};
+use crate::plan::{AircraftChoice, Flights, Plan, PlanError};
 use crate::random::{Purpose, Streams};
 use crate::references::references_of;
-use crate::route::{FlightPlan, Loading};
-use crate::sensor::{RecordedLoading, SensorBank, Sensors};
+use crate::route::FlightPlan;
+use crate::sensor::{SensorBank, Sensors};
 use crate::smooth::SmoothErrors;
 use crate::state::TrueState;
-use crate::terms::{EffectContext, MAXIMUM_ENGINES, References, Terms};
-use crate::trim::{TrimPoint, trim_with};
+use crate::terms::References;
 use crate::truth::{EffectTruth, FlightTruth, TRUTH_SCHEMA, TailTruth, Truth};
-use crate::vector::Place;
-use crate::weather::{AirMass, draw_patches};
+
+use check::{check_flights, check_plan};
+use draw::Drawn;
 
 /// A plan, checked and drawn: every flight can now be flown, in any order and on any thread.
 #[derive(Clone, Debug)]
@@ -125,7 +128,7 @@ impl Simulation {
             check_flights(&tail_plan.tail, &flights)?;
             let references = match tail_plan.references {
                 Some(references) => references,
-                None => references_of(&aircraft, &plan.richness, &plan.weather, &flights)?,
+                None => references_of(&aircraft, plan.richness, &plan.weather, &flights)?,
             };
             let effects = plan
                 .effects
@@ -287,195 +290,6 @@ impl Simulation {
             tails,
         }
     }
-
-    /// Draws everything of one flight that is random, but for gusts and sensors.
-    fn draw<'a>(
-        &'a self,
-        tail: &'a Tail,
-        plan: &'a FlightPlan,
-        flight_index: usize,
-    ) -> Result<Drawn<'a>, OutOfDomain> {
-        let streams = Streams::of_flight(self.plan.seed, &tail.name, flight_index);
-        let engines = self.aircraft.engines();
-        let mut terms = Terms::of(&self.aircraft, &self.plan.richness);
-        for (factor, percent) in
-            terms.fuel.engine_factor.iter_mut().zip(&tail.deterioration_percent)
-        {
-            *factor *= 1.0 + 0.01 * percent;
-        }
-        let context =
-            EffectContext { references: &tail.references, date_s: seconds(plan.start), engines };
-        for (effect, size) in &tail.effects {
-            terms.add(effect, *size, &context);
-        }
-
-        let scatter = &self.plan.scatter;
-        let mut loading = streams.stream(Purpose::Loading);
-        let heating_value = 0.01 * scatter.heating_value_percent * loading.normal()
-            + terms.recorded.heating_value_scatter * loading.normal();
-        terms.fuel.heating_value_factor = 1.0 / (1.0 + heating_value);
-        let load_sheet_kg = 0.01
-            * scatter.zero_fuel_mass_percent
-            * self.aircraft.masses.maximum_zero_fuel_kg
-            * loading.normal();
-
-        let mut airframe = streams.stream(Purpose::Airframe);
-        let mut shares = [0.0; MAXIMUM_ENGINES];
-        for share in shares.iter_mut().take(engines) {
-            *share = 1.0 + 0.01 * scatter.throttle_split_percent * airframe.normal();
-        }
-        let total: f64 = shares.iter().sum();
-        for share in &mut shares {
-            *share /= total;
-        }
-        let limit_deg = scatter.roll_trim_limit_deg;
-        let roll_trim = RollTrim {
-            start_deg: (scatter.roll_trim_deg * airframe.normal()).clamp(-limit_deg, limit_deg),
-            per_h_deg: scatter.roll_trim_drift_deg_h * airframe.normal(),
-            limit_deg,
-        };
-
-        let middle = middle_of(plan);
-        let air = AirMass::draw(&self.plan.weather, middle, &mut streams.stream(Purpose::Weather));
-        let settle_s = 60.0 * self.plan.recording.after_top_of_climb_min;
-        let turbulence = &self.plan.weather.turbulence;
-        let patches =
-            draw_patches(turbulence, plan.duration_s, &mut streams.stream(Purpose::Patches));
-
-        let masses = self.masses(plan, &terms, air.mean_isa_deviation_k(), settle_s)?;
-        let recorded_zero_fuel_mass_kg =
-            masses.zero_fuel_kg - terms.recorded.zero_fuel_mass_kg - load_sheet_kg;
-        let fuel_on_board_kg = plan.loading.fuel_on_board_kg();
-        let lower_heating_value_mj_kg =
-            self.aircraft.engine.reference_lower_heating_value_mj_kg * (1.0 + heating_value);
-        let interval_s = self.plan.recording.interval_s;
-        let steps = (interval_s / self.plan.recording.longest_step_s - 1e-9).ceil().max(1.0);
-        Ok(Drawn {
-            loading: RecordedLoading {
-                aircraft_type: self.aircraft.type_code.clone(),
-                identity: FlightIdentity {
-                    tail: tail.name.clone(),
-                    start: plan.start,
-                    flight: plan.flight.clone(),
-                },
-                zero_fuel_mass_kg: recorded_zero_fuel_mass_kg,
-                fuel_on_board_kg,
-                lower_heating_value_mj_kg,
-                notes: vec![("SOURCE".to_owned(), "simulated, not a real aircraft".to_owned())],
-            },
-            truth: FlightTruth {
-                tail: tail.name.clone(),
-                flight: plan.flight.clone(),
-                start: plan.start,
-                lower_heating_value_mj_kg,
-                zero_fuel_mass_kg: masses.zero_fuel_kg,
-                recorded_zero_fuel_mass_kg,
-                fuel_on_board_kg,
-                thrust_shares: shares,
-                roll_trim_deg: roll_trim.start_deg,
-                isa_deviation_k: air.mean_isa_deviation_k(),
-                turbulence_min: 0.0,
-                energy: Default::default(),
-                mass: Default::default(),
-            },
-            setup: FlightSetup {
-                aircraft: &self.aircraft,
-                terms,
-                earth: &self.plan.earth,
-                autopilot: &self.plan.autopilot,
-                plan,
-                air,
-                turbulence,
-                patches,
-                smooth_errors: tail.smooth_errors.as_ref(),
-                streams,
-                shares,
-                roll_trim,
-                start_mass_kg: masses.start_kg,
-                start_fuel_used_kg: masses.climb_fuel_kg,
-                settle_s,
-                interval_s,
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "checked to be 1 to 36 million when the plan was"
-                )]
-                steps_per_interval: steps as u32,
-            },
-            streams,
-        })
-    }
-
-    /// Masses at top of climb.
-    fn masses(
-        &self,
-        plan: &FlightPlan,
-        terms: &Terms,
-        isa_deviation_k: f64,
-        settle_s: f64,
-    ) -> Result<Masses, OutOfDomain> {
-        let pressure_altitude = PressureAltitude::feet(plan.pressure_altitude_ft);
-        let point = |mass_kg: f64| -> Result<TrimPoint, OutOfDomain> {
-            Ok(TrimPoint {
-                mass: Mass::kilograms(mass_kg),
-                pressure_altitude,
-                mach: Mach::new(plan.mach),
-                sat: atmos::isa::temperature(pressure_altitude)?
-                    + TemperatureDifference::kelvin(isa_deviation_k),
-                center_of_gravity_percent_mac: plan.center_of_gravity_percent_mac,
-            })
-        };
-        let climb_fuel_kg = |mass_kg: f64| -> Result<(f64, f64), OutOfDomain> {
-            let trimmed = trim_with(&self.aircraft, terms, &point(mass_kg)?)?;
-            let speed = trimmed.true_airspeed_m_s;
-            let energy_j = mass_kg
-                * (units::convert::STANDARD_GRAVITY_M_S2 * pressure_altitude.to_meters()
-                    + 0.5 * speed * speed);
-            let fuel_per_work = trimmed.fuel_flow_kg_s / (trimmed.thrust_n * speed);
-            Ok((self.aircraft.climb_fuel_factor * energy_j * fuel_per_work, trimmed.fuel_flow_kg_s))
-        };
-        match plan.loading {
-            Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } => {
-                let ramp_kg = zero_fuel_mass_kg + fuel_on_board_kg;
-                let (climb_fuel_kg, _) = climb_fuel_kg(ramp_kg)?;
-                Ok(Masses {
-                    zero_fuel_kg: zero_fuel_mass_kg,
-                    start_kg: ramp_kg - climb_fuel_kg,
-                    climb_fuel_kg,
-                })
-            }
-            Loading::AtRecording { gross_mass_kg, fuel_on_board_kg } => {
-                let (climb_fuel_kg, flow_kg_s) = climb_fuel_kg(gross_mass_kg)?;
-                let start_kg = gross_mass_kg + flow_kg_s * settle_s;
-                Ok(Masses {
-                    zero_fuel_kg: start_kg + climb_fuel_kg - fuel_on_board_kg,
-                    start_kg,
-                    climb_fuel_kg,
-                })
-            }
-        }
-    }
-}
-
-struct Drawn<'a> {
-    setup: FlightSetup<'a>,
-    streams: Streams,
-    loading: RecordedLoading,
-    truth: FlightTruth,
-}
-
-struct Masses {
-    zero_fuel_kg: f64,
-    start_kg: f64,
-    climb_fuel_kg: f64,
-}
-
-fn middle_of(plan: &FlightPlan) -> crate::vector::Vector {
-    let (latitude_deg, longitude_deg) = plan.waypoints[0];
-    let start = Place::at(latitude_deg, longitude_deg, 0.0);
-    let (latitude_deg, longitude_deg) = plan.waypoints[plan.waypoints.len() - 1];
-    let target = crate::vector::point(latitude_deg, longitude_deg);
-    start.turned(start.angle_to(target)).ahead(0.5 * start.distance_to_m(target)).position
 }
 
 fn sized(
@@ -506,67 +320,4 @@ fn effect_truth(effect: &PlannedEffect, size: f64) -> EffectTruth {
         target: step.then_some(effect.target),
         at: effect.at,
     }
-}
-
-fn check_plan(plan: &Plan) -> Result<(), PlanError> {
-    let recording = &plan.recording;
-    let weather = &plan.weather;
-    let checks = [
-        ("recording interval", "s", recording.interval_s, 0.1, 3600.0),
-        ("simulation step", "s", recording.longest_step_s, 0.01, 1.0),
-        ("time after top of climb", "min", recording.after_top_of_climb_min, 0.0, 600.0),
-        ("wind field", "m/s", weather.wind_field_m_s, 0.0, 40.0),
-        ("ISA deviation field", "K", weather.isa_deviation_field_k, 0.0, 15.0),
-        ("ageostrophic share", "-", weather.ageostrophic_share, 0.0, 1.0),
-        ("vertical wind", "m/s", weather.vertical_wind_m_s, 0.0, 2.0),
-        ("shortest wave", "km", weather.wavelengths_km.0, 100.0, weather.wavelengths_km.1),
-        ("longest wave", "km", weather.wavelengths_km.1, weather.wavelengths_km.0, 20_000.0),
-        (
-            "shortest vertical wave",
-            "km",
-            weather.vertical_wavelengths_km.0,
-            20.0,
-            weather.vertical_wavelengths_km.1,
-        ),
-        ("gusts elsewhere", "m/s", weather.turbulence.elsewhere_m_s, 0.0, 10.0),
-        ("heating value scatter", "%", plan.scatter.heating_value_percent, 0.0, 10.0),
-        ("zero-fuel mass scatter", "%", plan.scatter.zero_fuel_mass_percent, 0.0, 10.0),
-        ("roll trim limit", "deg", plan.scatter.roll_trim_limit_deg, 0.0, 10.0),
-        ("throttle split", "%", plan.scatter.throttle_split_percent, 0.0, 20.0),
-        ("autopilot Mach frequency", "rad/s", plan.autopilot.mach_frequency_rad_s, 0.001, 0.3),
-        ("autopilot altitude gain", "1/s", plan.autopilot.altitude_gain_s, 0.001, 0.3),
-        ("engine time constant", "s", plan.autopilot.engine_time_s, 0.1, 30.0),
-        ("bank in turns", "deg", plan.autopilot.bank_deg, 5.0, 35.0),
-        ("roll time constant", "s", plan.autopilot.roll_time_s, 2.0, 30.0),
-    ];
-    for (quantity, unit, value, minimum, maximum) in checks {
-        check_within(quantity, unit, value, minimum, maximum)?;
-    }
-    Ok(())
-}
-
-fn check_flights(tail: &str, flights: &[FlightPlan]) -> Result<(), PlanError> {
-    if flights.is_empty() {
-        return Err(PlanError::NoFlights { tail: tail.to_owned() });
-    }
-    for flight in flights {
-        if flight.waypoints.len() < 2 {
-            return Err(PlanError::Waypoints {
-                tail: tail.to_owned(),
-                flight: flight.flight.clone(),
-                found: flight.waypoints.len(),
-            });
-        }
-        for (latitude_deg, longitude_deg) in &flight.waypoints {
-            check_within("latitude", "deg", *latitude_deg, -80.0, 80.0)?;
-            check_within("longitude", "deg", *longitude_deg, -360.0, 360.0)?;
-        }
-        check_within("duration", "s", flight.duration_s, 1.0, 86_400.0)?;
-        check_within("fuel on board", "kg", flight.loading.fuel_on_board_kg(), 1.0, 3e5)?;
-        for (_, feet, mach) in crate::plan::legs(flight) {
-            check_within("pressure altitude", "ft", feet, 1_000.0, 60_000.0)?;
-            check_within("Mach number", "-", mach, 0.2, 0.98)?;
-        }
-    }
-    Ok(())
 }

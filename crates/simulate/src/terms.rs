@@ -71,7 +71,7 @@ impl Default for RecordedTerms {
 
 impl Terms {
     /// The terms of an aircraft without effects.
-    pub(crate) fn of(aircraft: &AircraftTruth, richness: &Richness) -> Self {
+    pub(crate) fn of(aircraft: &AircraftTruth, richness: Richness) -> Self {
         Self {
             drag: drag::DragTerms::of(aircraft, richness),
             fuel: fuel::FuelTerms::of(aircraft, richness),

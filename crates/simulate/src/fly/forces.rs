@@ -130,146 +130,140 @@ pub(crate) fn speed_of_sound_m_s(static_air_temperature_k: f64) -> f64 {
     atmos::isa::speed_of_sound(Temperature::kelvin(static_air_temperature_k)).to_meters_per_second()
 }
 
-/// Evaluates them.
+/// Evaluates them: air, then wind triangle and slopes, then drag, then fuel.
 pub(crate) fn evaluate(of: &Circumstances<'_>) -> Result<Forces, FlightError> {
-    let Circumstances { setup, motion, place, air, here, gusts, .. } = *of;
-    let airframe = &setup.aircraft.airframe;
-    let engine = &setup.aircraft.engine;
+    let mut forces = Forces::default();
+    let standard_k = air(of, &mut forces)?;
+    wind_and_slope(of, standard_k, &mut forces);
+    let (drag_error, fuel_error) = lift_and_drag(of, &mut forces);
+    forces.drag_coefficient *= 1.0 + drag_error;
+    forces.drag_n = forces.drag_coefficient
+        * forces.dynamic_pressure_pa
+        * of.setup.aircraft.airframe.wing_area_m2;
+    fuel(of, fuel_error, &mut forces);
+    forces.acceleration_m_s2 = (of.motion.thrust_n - forces.drag_n) / of.motion.mass_kg
+        + forces.gravity_along_m_s2
+        + forces.coriolis_along_m_s2;
+    Ok(forces)
+}
 
+/// State of the air and speed in it; returns the temperature of the standard day, K.
+fn air(of: &Circumstances<'_>, forces: &mut Forces) -> Result<f64, FlightError> {
+    let motion = of.motion;
     let pressure_altitude = PressureAltitude::meters(motion.pressure_altitude_m);
     let static_pressure = atmos::isa::pressure(pressure_altitude)?;
     let standard_k = atmos::isa::temperature(pressure_altitude)?.to_kelvin();
-    let static_air_temperature_k = standard_k + air.isa_deviation_k;
-    let sat = Temperature::kelvin(static_air_temperature_k);
-    let static_pressure_pa = static_pressure.to_pascals();
-    let speed_of_sound = speed_of_sound_m_s(static_air_temperature_k);
+    let sat_k = standard_k + of.air.isa_deviation_k;
+    forces.static_pressure_pa = static_pressure.to_pascals();
+    forces.pressure_ratio = atmos::isa::pressure_ratio(static_pressure);
+    forces.static_air_temperature_k = sat_k;
+    forces.temperature_ratio = atmos::isa::temperature_ratio(Temperature::kelvin(sat_k));
+    forces.speed_of_sound_m_s = speed_of_sound_m_s(sat_k);
+    forces.smooth_airspeed_m_s = motion.smooth_airspeed_m_s;
+    forces.true_airspeed_m_s = motion.smooth_airspeed_m_s + of.gusts.head_on_m_s;
+    let mach = forces.true_airspeed_m_s / forces.speed_of_sound_m_s;
+    forces.mach = mach;
+    forces.dynamic_pressure_pa =
+        0.5 * RATIO_OF_SPECIFIC_HEATS * forces.static_pressure_pa * mach * mach;
+    forces.total_air_temperature_k = sat_k * (1.0 + HEATING_FACTOR * mach * mach);
+    Ok(standard_k)
+}
 
-    let smooth_airspeed_m_s = motion.smooth_airspeed_m_s;
-    let true_airspeed_m_s = smooth_airspeed_m_s + gusts.head_on_m_s;
-    let mach = true_airspeed_m_s / speed_of_sound;
-    let dynamic_pressure_pa = 0.5 * RATIO_OF_SPECIFIC_HEATS * static_pressure_pa * mach * mach;
-    let heating = 1.0 + HEATING_FACTOR * mach * mach;
-
-    // The wind triangle: the track is given, the nose finds its angle.
+/// The wind triangle, and what slope, vertical air and Coriolis force do along the airspeed.
+fn wind_and_slope(of: &Circumstances<'_>, standard_k: f64, forces: &mut Forces) {
+    let Circumstances { motion, place, air, here, gusts, .. } = *of;
+    let speed_m_s = forces.smooth_airspeed_m_s;
+    // The track is given, the nose finds its angle.
     let right = place.right();
-    let tail_wind_m_s = dot(air.wind_m_s, place.along);
-    let wind_from_left_m_s = dot(air.wind_m_s, right);
-    let sine = wind_from_left_m_s / smooth_airspeed_m_s;
+    forces.tail_wind_m_s = dot(air.wind_m_s, place.along);
+    forces.wind_from_left_m_s = dot(air.wind_m_s, right);
+    let sine = forces.wind_from_left_m_s / speed_m_s;
     let cosine = (1.0 - sine * sine).max(0.0).sqrt();
-    let ground_speed_m_s = smooth_airspeed_m_s * cosine + tail_wind_m_s;
-    let air_direction = combine(cosine, place.along, -sine, right);
+    forces.drift_rad = sine.asin();
+    forces.ground_speed_m_s = speed_m_s * cosine + forces.tail_wind_m_s;
+    forces.air_direction = combine(cosine, place.along, -sine, right);
     let air_right = combine(sine, place.along, cosine, right);
 
     // [flow.4]: the surface falls ahead where geostrophic wind comes from the left, in the north.
     let gravity = here.effective_gravity_m_s2;
     let surface_slope = -here.slope_s * dot(air.geostrophic_m_s, air_right) / gravity;
-    let upward_air_m_s = air.vertical_wind_m_s + gusts.upward_m_s;
-    let geometric_climb_m_s = motion.vertical_speed_m_s * static_air_temperature_k / standard_k
-        + smooth_airspeed_m_s * surface_slope;
-    let climb_angle_rad = (geometric_climb_m_s - upward_air_m_s) / smooth_airspeed_m_s;
-    let gravity_along_m_s2 = -gravity * climb_angle_rad;
-    let coriolis_along_m_s2 = -here.coriolis_s * dot(air.wind_m_s, air_right);
+    forces.upward_air_m_s = air.vertical_wind_m_s + gusts.upward_m_s;
+    forces.geometric_climb_m_s = motion.vertical_speed_m_s * forces.static_air_temperature_k
+        / standard_k
+        + speed_m_s * surface_slope;
+    forces.climb_angle_rad = (forces.geometric_climb_m_s - forces.upward_air_m_s) / speed_m_s;
+    forces.gravity_along_m_s2 = -gravity * forces.climb_angle_rad;
+    forces.coriolis_along_m_s2 = -here.coriolis_s * dot(air.wind_m_s, air_right);
+}
 
+/// Lift and drag coefficient; returns the smooth errors of drag and fuel flow there.
+fn lift_and_drag(of: &Circumstances<'_>, forces: &mut Forces) -> (f64, f64) {
+    let Circumstances { setup, motion, here, .. } = *of;
+    let airframe = &setup.aircraft.airframe;
     let turned = setup.earth.load_factor.is_on() || setup.terms.earth.load_factor;
     let load_factor =
         if turned { 1.0 / (of.roll_trim_deg + of.bank_deg).to_radians().cos() } else { 1.0 };
-    let area_pa_m2 = dynamic_pressure_pa * airframe.wing_area_m2;
-    let level_lift_coefficient = motion.mass_kg * gravity * load_factor / area_pa_m2;
-    let lift_coefficient =
-        level_lift_coefficient + motion.mass_kg * of.lift_acceleration_m_s2 / area_pa_m2;
-    let center_of_gravity_percent_mac = setup.plan.center_of_gravity_percent_mac
+    let area_pa_m2 = forces.dynamic_pressure_pa * airframe.wing_area_m2;
+    forces.level_lift_coefficient =
+        motion.mass_kg * here.effective_gravity_m_s2 * load_factor / area_pa_m2;
+    forces.lift_coefficient =
+        forces.level_lift_coefficient + motion.mass_kg * of.lift_acceleration_m_s2 / area_pa_m2;
+    forces.center_of_gravity_percent_mac = setup.plan.center_of_gravity_percent_mac
         + setup.plan.center_of_gravity_travel_percent_mac_h * of.time_s / 3600.0;
-    let density = Density::kilograms_per_cubic_meter(
-        static_pressure_pa / (SPECIFIC_GAS_CONSTANT_J_KG_K * static_air_temperature_k),
-    );
+    let sat_k = forces.static_air_temperature_k;
     let reynolds_number = atmos::viscosity::reynolds_number(
-        density,
-        TrueAirspeed::meters_per_second(true_airspeed_m_s),
+        Density::kilograms_per_cubic_meter(
+            forces.static_pressure_pa / (SPECIFIC_GAS_CONSTANT_J_KG_K * sat_k),
+        ),
+        TrueAirspeed::meters_per_second(forces.true_airspeed_m_s),
         airframe.mean_aerodynamic_chord_m,
-        atmos::viscosity::dynamic_viscosity(sat),
+        atmos::viscosity::dynamic_viscosity(Temperature::kelvin(sat_k)),
     );
-    let mut drag_coefficient = setup.terms.drag_coefficient(
+    forces.drag_coefficient = setup.terms.drag_coefficient(
         airframe,
         &DragInputs {
-            lift_coefficient,
-            mach,
+            lift_coefficient: forces.lift_coefficient,
+            mach: forces.mach,
             reynolds_number,
-            center_of_gravity_percent_mac,
+            center_of_gravity_percent_mac: forces.center_of_gravity_percent_mac,
             // A wing held low makes drag; a coordinated turn makes lift.
             roll_deg: of.roll_trim_deg,
         },
     );
-    let (mut drag_error, mut fuel_error) = (0.0, 0.0);
-    if let Some(errors) = setup.smooth_errors {
-        (drag_error, fuel_error) =
-            errors.at(mach, level_lift_coefficient, motion.pressure_altitude_m);
-    }
-    drag_coefficient *= 1.0 + drag_error;
-    let drag_n = drag_coefficient * area_pa_m2;
+    setup.smooth_errors.map_or((0.0, 0.0), |errors| {
+        errors.at(forces.mach, forces.level_lift_coefficient, motion.pressure_altitude_m)
+    })
+}
 
-    let temperature_ratio = atmos::isa::temperature_ratio(sat);
-    let pressure_ratio = atmos::isa::pressure_ratio(static_pressure);
-    let maximum = f64::from(engine.count)
+/// Thrust limit and fuel flow.
+fn fuel(of: &Circumstances<'_>, error: f64, forces: &mut Forces) {
+    let Circumstances { setup, motion, .. } = *of;
+    let engine = &setup.aircraft.engine;
+    let heating = 1.0 + HEATING_FACTOR * forces.mach * forces.mach;
+    forces.maximum_thrust_n = f64::from(engine.count)
         * maximum_thrust_n(
             engine,
-            mach,
-            temperature_ratio * heating,
-            pressure_ratio * pressure_rise(heating),
+            forces.mach,
+            forces.temperature_ratio * heating,
+            forces.pressure_ratio * pressure_rise(heating),
         );
-    let anti_ice =
+    forces.anti_ice =
         setup.plan.anti_ice.iter().any(|(from_s, to_s)| (*from_s..*to_s).contains(&of.time_s));
-    let mut fuel_flow_kg_s = setup.terms.fuel_flow_kg_s(
-        engine,
-        &FuelInputs {
-            mach,
-            temperature_ratio,
-            static_pressure_pa,
-            pressure_ratio,
-            thrust_n: motion.thrust_n,
-            maximum_thrust_n: maximum,
-            anti_ice,
-            fuel_temperature_k: motion.fuel_temperature_k,
-        },
-        &setup.shares,
-    );
-    for flow in &mut fuel_flow_kg_s {
-        *flow *= 1.0 + fuel_error;
+    let inputs = FuelInputs {
+        mach: forces.mach,
+        temperature_ratio: forces.temperature_ratio,
+        static_pressure_pa: forces.static_pressure_pa,
+        pressure_ratio: forces.pressure_ratio,
+        thrust_n: motion.thrust_n,
+        maximum_thrust_n: forces.maximum_thrust_n,
+        anti_ice: forces.anti_ice,
+        fuel_temperature_k: motion.fuel_temperature_k,
+    };
+    forces.fuel_flow_kg_s = setup.terms.fuel_flow_kg_s(engine, &inputs, &setup.shares);
+    for flow in &mut forces.fuel_flow_kg_s {
+        *flow *= 1.0 + error;
     }
-
-    Ok(Forces {
-        static_pressure_pa,
-        pressure_ratio,
-        static_air_temperature_k,
-        temperature_ratio,
-        total_air_temperature_k: static_air_temperature_k * heating,
-        speed_of_sound_m_s: speed_of_sound,
-        smooth_airspeed_m_s,
-        true_airspeed_m_s,
-        mach,
-        dynamic_pressure_pa,
-        drift_rad: sine.asin(),
-        ground_speed_m_s,
-        tail_wind_m_s,
-        wind_from_left_m_s,
-        air_direction,
-        upward_air_m_s,
-        geometric_climb_m_s,
-        climb_angle_rad,
-        center_of_gravity_percent_mac,
-        lift_coefficient,
-        level_lift_coefficient,
-        drag_coefficient,
-        drag_n,
-        maximum_thrust_n: maximum,
-        gravity_along_m_s2,
-        coriolis_along_m_s2,
-        acceleration_m_s2: (motion.thrust_n - drag_n) / motion.mass_kg
-            + gravity_along_m_s2
-            + coriolis_along_m_s2,
-        anti_ice,
-        fuel_flow_total_kg_s: fuel_flow_kg_s.iter().sum(),
-        fuel_flow_kg_s,
-    })
+    forces.fuel_flow_total_kg_s = forces.fuel_flow_kg_s.iter().sum();
 }
 
 /// Rotor speeds and exhaust temperatures, engine by engine.

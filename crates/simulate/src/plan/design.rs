@@ -109,6 +109,7 @@ impl FleetDesign {
         let mut starts: Vec<i64> = {
             let mut random = Streams::of_tail(seed, tail).stream(Purpose::Design);
             let span = (last_s - first_s) as f64;
+            #[expect(clippy::cast_possible_truncation, reason = "seconds, far below 2^53")]
             (0..self.flights).map(|_| first_s + (random.unit() * span) as i64 / 60 * 60).collect()
         };
         starts.sort_unstable();
@@ -275,11 +276,15 @@ impl FleetDesign {
     }
 }
 
-/// A whole number about a mean: its whole part, and one more with the probability of the rest, give or take one.
+/// A Poisson number, by counting exponential waits; 20 at most.
 fn count(mean: f64, random: &mut Stream) -> usize {
-    let whole = mean.floor();
-    let more = usize::from(random.chance(mean - whole));
-    whole as usize + more
+    let mut waited = 0.0;
+    (0..20)
+        .take_while(|_| {
+            waited += random.exponential(1.0);
+            waited < mean
+        })
+        .count()
 }
 
 /// Levels and speeds of a flight one after the other, with the time from which each holds.
@@ -302,7 +307,7 @@ fn can_be_flown(aircraft: &AircraftTruth, plan: &FlightPlan) -> Result<bool, Out
     let Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } = plan.loading else {
         return Ok(true);
     };
-    let terms = Terms::of(aircraft, &Richness::full());
+    let terms = Terms::of(aircraft, Richness::full());
     let mass = Mass::kilograms(zero_fuel_mass_kg + fuel_on_board_kg);
     let envelope = &aircraft.envelope;
     let mut flow_kg_s: f64 = 0.0;

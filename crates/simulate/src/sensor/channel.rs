@@ -127,6 +127,7 @@ pub(crate) fn round_to(value: f64, resolution: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {
     use super::*;
     use crate::random::{Purpose, Streams};
@@ -177,7 +178,8 @@ mod tests {
             .collect();
         let n = series.len() as f64;
         let variance = series.iter().map(|v| v * v).sum::<f64>() / n;
-        let lag = (SLOW_TIME_S / 60.0) as usize;
+        let lag = 20;
+        assert_eq!(SLOW_TIME_S, 60.0 * 20.0);
         let covariance = series.windows(lag + 1).map(|w| w[0] * w[lag]).sum::<f64>() / n;
         assert!((variance - 1.0).abs() < 0.05, "{variance}");
         // e⁻¹ after one time constant.

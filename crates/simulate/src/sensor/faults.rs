@@ -53,7 +53,7 @@ fn stick(rows: &mut ReportColumns, faults: &Faults, random: &mut Stream) {
         // Fuel used does not stick: a totalizer that stands still is another fault.
         let mut columns = full_columns(rows);
         columns.remove(FUEL_USED);
-        let which = ((random.unit() * columns.len() as f64) as usize).min(columns.len() - 1);
+        let which = random.below(columns.len());
         let mut held = None;
         for (time_s, value) in times.iter().zip(columns[which].iter_mut()) {
             if (from_s..to_s).contains(time_s) {

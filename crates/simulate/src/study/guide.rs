@@ -107,7 +107,7 @@ pub struct GuideRow {
 /// [`OutOfDomain`] for a pressure altitude outside the atmosphere.
 pub fn flight_planning_guide(
     aircraft: &AircraftTruth,
-    richness: &Richness,
+    richness: Richness,
     grid: &GuideGrid,
     error: &DragError,
 ) -> Result<(Vec<GuideRow>, usize), OutOfDomain> {
@@ -165,10 +165,10 @@ pub fn flight_planning_guide(
 pub fn guide_csv(rows: &[GuideRow]) -> String {
     let mut text = String::from("weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n");
     for row in rows {
-        text.push_str(&format!(
-            "{},{},{},{}\n",
-            row.weight_lb, row.pressure_altitude_ft, row.true_airspeed_kt, row.fuel_flow_lb_h
-        ));
+        let numbers =
+            [row.weight_lb, row.pressure_altitude_ft, row.true_airspeed_kt, row.fuel_flow_lb_h];
+        text.push_str(&numbers.map(|number| number.to_string()).join(","));
+        text.push('\n');
     }
     text
 }
@@ -185,7 +185,7 @@ mod tests {
         let plain = Richness::plain();
         let error = DragError::study();
         let (rows, blank) =
-            flight_planning_guide(&aircraft, &plain, &GuideGrid::paper(), &error).unwrap();
+            flight_planning_guide(&aircraft, plain, &GuideGrid::paper(), &error).unwrap();
         assert!(rows.len() > 400, "{}", rows.len());
         assert_eq!(rows.len() + blank, 6 * 23 * 7);
         for row in &rows {
@@ -202,7 +202,7 @@ mod tests {
                 lift_coefficient,
                 Mach::new(mach),
                 &aircraft.reference_conditions(),
-                &plain,
+                plain,
             );
             let expected =
                 truth * (1.0 - 0.05 - 0.30 * (mach - 0.70) + 0.25 * (lift_coefficient - 0.32));

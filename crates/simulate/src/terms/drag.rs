@@ -32,7 +32,7 @@ pub(crate) struct DragTerms {
     pub(crate) zero_lift_mach: f64,
     /// Factor of the airframe's own zero-lift drag: ageing.
     pub(crate) zero_lift_factor: f64,
-    /// Friction terms: weight of (cf/cf_ref − 1) and 1/cf_ref.
+    /// Friction terms.
     pub(crate) friction: Vec<FrictionTerm>,
     /// Relative growth of K.
     pub(crate) induced: f64,
@@ -51,7 +51,7 @@ pub(crate) struct DragTerms {
     pub(crate) spoiler_float: Option<(f64, f64)>,
 }
 
-/// One friction term.
+/// One friction term: weight of the relative change of the skin friction from a reference, and one over that reference.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrictionTerm {
     weight: f64,
@@ -77,7 +77,7 @@ impl FrictionTerm {
 }
 
 impl DragTerms {
-    pub(super) fn of(aircraft: &AircraftTruth, richness: &Richness) -> Self {
+    pub(super) fn of(aircraft: &AircraftTruth, richness: Richness) -> Self {
         let airframe = &aircraft.airframe;
         let mut friction = Vec::new();
         if richness.reynolds_number.is_on() {

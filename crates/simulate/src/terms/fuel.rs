@@ -63,7 +63,7 @@ pub(crate) struct FuelTerms {
 }
 
 impl FuelTerms {
-    pub(super) fn of(aircraft: &AircraftTruth, richness: &Richness) -> Self {
+    pub(super) fn of(aircraft: &AircraftTruth, richness: Richness) -> Self {
         let engine = &aircraft.engine;
         Self {
             engine_factor: [1.0; MAXIMUM_ENGINES],

@@ -155,7 +155,7 @@ impl Terms {
                 self.fuel.anti_ice = Some((size * PERCENT, references.corrected_thrust_n));
             }
             EffectId::EngineAgeing => {
-                self.scale_engines(1.0 + size * PERCENT * aged_years(context))
+                self.scale_engines(1.0 + size * PERCENT * aged_years(context));
             }
             _ => {}
         }

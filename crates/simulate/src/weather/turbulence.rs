@@ -55,6 +55,7 @@ impl Turbulence {
 
 /// Gusts, m/s: head-on (raises the airspeed), from the left (pushes to the right), and upwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit is in the name")]
 pub(crate) struct Gusts {
     pub(crate) head_on_m_s: f64,
     pub(crate) from_left_m_s: f64,
@@ -155,6 +156,7 @@ impl DrydenFilters {
 
 /// A stretch of time with turbulence.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "the unit is in the name")]
 pub(crate) struct Patch {
     pub(crate) from_s: f64,
     pub(crate) to_s: f64,
@@ -202,6 +204,7 @@ pub(crate) fn intensity_m_s(patches: &[Patch], elsewhere_m_s: f64, time_s: f64) 
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "exact by construction")]
 mod tests {
     use core::f64::consts::PI;
 
@@ -246,13 +249,11 @@ mod tests {
         let gusts: Vec<Gusts> = (0..400_000).map(|_| filters.advance(&mut random)).collect();
         let spacing_m = airspeed_m_s * step_s;
         let piece = 1000;
-        type Pick = fn(&Gusts) -> f64;
-        let channels: [(Pick, fn(f64) -> f64); 3] = [
-            (|g| g.head_on_m_s, longitudinal_spectrum),
-            (|g| g.from_left_m_s, transverse_spectrum),
-            (|g| g.upward_m_s, transverse_spectrum),
-        ];
-        for (channel, (pick, spectrum)) in channels.into_iter().enumerate() {
+        for channel in 0..3 {
+            let pick = |g: &Gusts| [g.head_on_m_s, g.from_left_m_s, g.upward_m_s][channel];
+            let spectrum = |omega: f64| {
+                if channel == 0 { longitudinal_spectrum(omega) } else { transverse_spectrum(omega) }
+            };
             let series: Vec<f64> = gusts.iter().map(pick).collect();
             let variance = series.iter().map(|g| g * g).sum::<f64>() / series.len() as f64;
             assert!((variance - 1.0).abs() < 0.05, "channel {channel}: variance {variance}");

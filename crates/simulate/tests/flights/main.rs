@@ -1,0 +1,8 @@
+//! The crate as its users see it: flights, effects, plans.
+#![allow(clippy::unwrap_used, reason = "helpers of tests, which clippy does not take for tests")]
+#![allow(clippy::float_cmp, reason = "same input, same bits")]
+
+mod common;
+mod effects;
+mod motion;
+mod plans;
