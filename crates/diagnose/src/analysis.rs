@@ -1,0 +1,182 @@
+//! One pass over the data, one search, the leading models refined: the posterior that the verdict reads.
+
+use faer::Mat;
+use perf_model::effects::EffectModel;
+
+use crate::data::Data;
+use crate::design::Design;
+use crate::evidence::{
+    Background, HEATING_SIZES_PERCENT, Scored, Scorer, backgrounds, ln_sum, without_nuisance,
+};
+use crate::gram::{Folds, Gram, Reduced};
+use crate::library::Library;
+use crate::refine::{Relinearised, refine};
+
+/// Models that are refined.
+const REFINED: usize = 5;
+/// Models less probable than this are not worth refining.
+const WORTH_REFINING: f64 = 1e-4;
+/// Whitened rows are kept in memory up to this many numbers (64 MB); beyond they are made again.
+const KEPT_NUMBERS: usize = 8_000_000;
+
+/// Data, columns, Gram matrices.
+pub(crate) struct Stacked<'a> {
+    pub(crate) data: &'a Data,
+    pub(crate) design: &'a Design<'a>,
+    pub(crate) folds: Folds,
+    pub(crate) weights: Option<Vec<f64>>,
+    kept: Option<Vec<Mat<f64>>>,
+    /// Of each flight: products of all columns with its own fuel-flow level, for flight-to-flight scatter.
+    levels: Vec<Vec<f64>>,
+}
+
+/// The posterior over models.
+pub(crate) struct Analysis {
+    pub(crate) scorer: Scorer,
+    pub(crate) backgrounds: Vec<Background>,
+    pub(crate) reduced: Reduced,
+    /// Models, most probable first, with their probabilities.
+    pub(crate) models: Vec<(Scored, f64)>,
+    pub(crate) refined: Vec<Relinearised>,
+    /// Probability that there is neither an effect nor a background.
+    pub(crate) clean: f64,
+    /// Probability of no named effect.
+    pub(crate) none: f64,
+}
+
+impl<'a> Stacked<'a> {
+    pub(crate) fn of(data: &'a Data, design: &'a Design<'a>, weights: Option<Vec<f64>>) -> Self {
+        let rows = data.segments.len() * data.channels.count() + data.flights.len();
+        let keep = rows * design.columns <= KEPT_NUMBERS;
+        let kept = keep.then(|| {
+            data.flights
+                .iter()
+                .map(|flight| design.whitened(data, flight, weights.as_deref()))
+                .collect::<Vec<_>>()
+        });
+        let mut stacked =
+            Self { data, design, folds: Folds::empty(design), weights, kept, levels: Vec::new() };
+        for index in 0..data.flights.len() {
+            let rows = stacked.whitened(index).into_owned();
+            stacked.folds.add(index, &rows);
+            let level = rows.col(design.smooth.start).to_owned();
+            let products = rows.transpose() * &level;
+            stacked.levels.push(products.iter().copied().collect());
+        }
+        stacked.folds.finish();
+        stacked
+    }
+
+    /// Whitened rows of a flight.
+    pub(crate) fn whitened(&self, flight: usize) -> std::borrow::Cow<'_, Mat<f64>> {
+        match &self.kept {
+            Some(kept) => std::borrow::Cow::Borrowed(&kept[flight]),
+            None => std::borrow::Cow::Owned(self.design.whitened(
+                self.data,
+                &self.data.flights[flight],
+                self.weights.as_deref(),
+            )),
+        }
+    }
+
+    /// Applies the robust weights to rows of a flight.
+    pub(crate) fn weigh(&self, flight: usize, rows: &mut Mat<f64>) {
+        let Some(weights) = &self.weights else { return };
+        let channels = self.data.channels.count();
+        let range = self.data.flights[flight].segments.clone();
+        for (place, weight) in weights[range].iter().enumerate() {
+            for row in place * channels..(place + 1) * channels {
+                for column in 0..rows.ncols() {
+                    rows[(row, column)] *= weight;
+                }
+            }
+        }
+    }
+
+    /// The Gram if every flight's fuel flow had this much common scatter more.
+    ///
+    /// ```text
+    /// G' = G − Σ_f w_f z_f z_fᵀ,  w_f = θ²/(1 + θ² v_fᵀv_f),  ln det = Σ_f ln(1 + θ² v_fᵀv_f)     [diagnosis.20]
+    /// ```
+    fn with_scatter(&self, gram: &Gram, relative: f64) -> (Gram, f64) {
+        let design = self.design;
+        let mut scaled = Mat::<f64>::zeros(self.levels.len(), design.columns);
+        let mut ln_determinant = 0.0;
+        for (flight, level) in self.levels.iter().enumerate() {
+            let own = level[design.smooth.start];
+            let grown = 1.0 + relative * relative * own;
+            ln_determinant += grown.ln();
+            let root = relative / grown.sqrt();
+            for (column, value) in level.iter().enumerate() {
+                scaled[(flight, column)] = root * value;
+            }
+        }
+        let mut changed = gram.clone();
+        crate::linear::subtract_product(&mut changed.matrix, &scaled, &scaled);
+        (changed, ln_determinant)
+    }
+}
+
+/// Searches. `without` leaves a fold of flights out; `refining` says whether the leading models are refined.
+pub(crate) fn analyse(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    without: Option<usize>,
+    refining: bool,
+) -> Option<Analysis> {
+    let design = stacked.design;
+    let gram = stacked.folds.without(without);
+    let reduced = without_nuisance(&gram, design, refining)?;
+    let effects = library.columns.len();
+    let all = backgrounds(&reduced, effects, design.smooth.len(), library, |_, _| true);
+    let scorer = Scorer::of(library, gram.rows);
+    let search = scorer.search(&all, 2);
+    let mut models = search.models;
+    if library.heating_value && without.is_none() {
+        for percent in HEATING_SIZES_PERCENT {
+            let (changed, ln_determinant) = stacked.with_scatter(&gram, percent / 100.0);
+            let mut reduced = without_nuisance(&changed, design, false)?;
+            reduced.ln_determinant += ln_determinant;
+            let under =
+                backgrounds(&reduced, effects, design.smooth.len(), library, |_, _| true);
+            models.extend(scorer.search_heating(&under, percent));
+        }
+    }
+    models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
+    let mut refined = Vec::new();
+    if refining {
+        let total = ln_sum(models.iter().map(|m| m.ln_weight));
+        for scored in models
+            .iter_mut()
+            .filter(|m| !m.model.columns.is_empty() && m.model.heating_percent.is_none())
+            .take(REFINED)
+        {
+            if (scored.ln_weight - total).exp() < WORTH_REFINING {
+                break;
+            }
+            let at = &all[scored.background];
+            let Some(found) = refine(stacked, model, library, &scorer, scored, at, without) else {
+                continue;
+            };
+            *scored = found.scored.clone();
+            refined.push(found);
+        }
+        models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
+    }
+    let total = ln_sum(models.iter().map(|m| m.ln_weight));
+    let none = models
+        .iter()
+        .filter(|m| m.model.columns.is_empty() && m.model.heating_percent.is_none())
+        .map(|m| (m.ln_weight - total).exp())
+        .sum();
+    let clean = (search.ln_clean - total).exp();
+    let models = models
+        .into_iter()
+        .map(|m| {
+            let probability = (m.ln_weight - total).exp();
+            (m, probability)
+        })
+        .collect();
+    Some(Analysis { scorer, backgrounds: all, reduced, models, refined, clean, none })
+}

@@ -1,0 +1,200 @@
+//! What this data can tell apart, before any residual is looked at, and which measurement would tell more apart.
+
+use faer::Mat;
+
+use crate::evidence::TAUS;
+use crate::gram::Gram;
+use crate::design::Design;
+use crate::gram::integrate_out;
+use crate::library::Library;
+
+/// Squared distance, in noise standard deviations, below which two effects cannot be told apart.
+pub(crate) const CONFUSED: f64 = 9.0;
+/// Factor on 1/√G of the smallest size that would just be seen.
+const DETECTION: f64 = 4.0;
+/// A member of a class must not be larger than this many typical sizes to pass for another effect.
+const PLAUSIBLE: f64 = 6.0;
+/// Factor on the deck's uncertainty when an N2 deck is measured: from 2 % to 0.1 %.
+const DECK_MEASURED: f64 = 0.05;
+
+/// Distances between effects in the data at hand, nuisance integrated out.
+#[derive(Clone, Debug)]
+pub(crate) struct Distances {
+    /// Gram over columns, without residual.
+    gram: Mat<f64>,
+    /// The same if an N2 deck were known.
+    with_deck: Mat<f64>,
+}
+
+/// A measurement that separates two effects, with the distance before and after.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Measurement {
+    pub(crate) words: &'static str,
+    pub(crate) before: f64,
+    pub(crate) after: f64,
+}
+
+impl Distances {
+    pub(crate) fn of(gram: &Gram, design: &Design<'_>) -> Option<Self> {
+        let kept: Vec<usize> = (0..design.effects).collect();
+        let out: Vec<usize> = design.nuisance.clone().collect();
+        let plain = integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])?;
+        let deck = integrate_out(&gram.matrix, &kept, &out, &vec![DECK_MEASURED; out.len()])?;
+        debug_assert!(TAUS[0] == 0.0);
+        Some(Self { gram: plain.matrix, with_deck: deck.matrix })
+    }
+
+    /// Information on a column: 1/√ is the standard deviation of its size.
+    pub(crate) fn information(&self, column: usize) -> f64 {
+        self.gram[(column, column)].max(0.0)
+    }
+
+    /// The size of an effect that would just be detected, in its unit; infinite where the data say nothing.
+    pub(crate) fn smallest_detectable(&self, library: &Library, effect: usize) -> f64 {
+        let entry = &library.effects[effect];
+        let best = (entry.first_column..entry.first_column + entry.columns)
+            .map(|column| self.information(column))
+            .fold(0.0, f64::max);
+        DETECTION / best.sqrt()
+    }
+
+    /// Squared distance of column `k` at a size from the best-fitting multiple of column `l`, and that multiple.
+    ///
+    /// ```text
+    /// d²(k|l) = θ²·(G_kk − G_kl²/G_ll)                                    [diagnosis.22]
+    /// ```
+    pub(crate) fn squared(&self, k: usize, l: usize, size: f64) -> (f64, f64) {
+        squared(&self.gram, k, l, size)
+    }
+
+    /// Squared distance of a column at a size from the best-fitting pair of two others.
+    pub(crate) fn squared_from_pair(&self, k: usize, pair: [usize; 2], size: f64) -> f64 {
+        let g = &self.gram;
+        let [a, b] = pair;
+        let determinant = g[(a, a)] * g[(b, b)] - g[(a, b)] * g[(a, b)];
+        if determinant <= 1e-9 * g[(a, a)] * g[(b, b)] {
+            return self.squared(k, a, size).0.min(self.squared(k, b, size).0);
+        }
+        let (ka, kb) = (g[(k, a)], g[(k, b)]);
+        let explained =
+            (ka * ka * g[(b, b)] - 2.0 * ka * kb * g[(a, b)] + kb * kb * g[(a, a)]) / determinant;
+        (size * size * (g[(k, k)] - explained)).max(0.0)
+    }
+
+    /// Classes at typical sizes: complete linkage of effects whose squared distance, the smaller of both directions, is
+    /// below 9.
+    pub(crate) fn classes(&self, library: &Library) -> Vec<Vec<usize>> {
+        let effects = library.effects.len();
+        let distance = |a: usize, b: usize| {
+            let (ea, eb) = (&library.effects[a], &library.effects[b]);
+            let from = |e: &crate::library::Testable, f: &crate::library::Testable| {
+                (f.first_column..f.first_column + f.columns)
+                    .map(|l| self.squared(e.representative, l, e.typical).0)
+                    .fold(f64::INFINITY, f64::min)
+            };
+            from(ea, eb).min(from(eb, ea))
+        };
+        let mut classes: Vec<Vec<usize>> = (0..effects).map(|k| vec![k]).collect();
+        loop {
+            let mut best: Option<(f64, usize, usize)> = None;
+            for a in 0..classes.len() {
+                for b in a + 1..classes.len() {
+                    let linkage = classes[a]
+                        .iter()
+                        .flat_map(|&i| classes[b].iter().map(move |&j| (i, j)))
+                        .map(|(i, j)| distance(i, j))
+                        .fold(0.0, f64::max);
+                    if linkage < CONFUSED && best.is_none_or(|(d, _, _)| linkage < d) {
+                        best = Some((linkage, a, b));
+                    }
+                }
+            }
+            let Some((_, a, b)) = best else { break };
+            let moved = classes.remove(b);
+            classes[a].extend(moved);
+            classes[a].sort_unstable();
+        }
+        classes
+    }
+
+    /// Effects that this data cannot tell from one at a size, itself first.
+    pub(crate) fn confused_with(&self, library: &Library, column: usize, size: f64) -> Vec<usize> {
+        let own = library.columns[column].effect;
+        let mut class = vec![own];
+        for (index, effect) in library.effects.iter().enumerate() {
+            if index == own {
+                continue;
+            }
+            let confused = (effect.first_column..effect.first_column + effect.columns).any(|l| {
+                let (squared, implied) = self.squared(column, l, size);
+                let plausible = if effect.known {
+                    (implied - 1.0).abs() < 0.5
+                } else {
+                    implied.abs() < PLAUSIBLE * effect.typical
+                };
+                squared < CONFUSED && plausible
+            });
+            if confused {
+                class.push(index);
+            }
+        }
+        class
+    }
+
+    /// Measurements by the distance that they would put between two effects, the best first; those that gain less than a
+    /// tenth are left out.
+    pub(crate) fn measurements(
+        &self,
+        library: &Library,
+        k: usize,
+        l: usize,
+        size: f64,
+    ) -> Vec<Measurement> {
+        use flight::effect::EffectId;
+        let before = self.squared(k, l, size).0.sqrt();
+        let mut found = Vec::new();
+        let mass_kg = library
+            .effects
+            .iter()
+            .find(|e| e.id == EffectId::ZeroFuelMassBias)
+            .map_or(f64::INFINITY, |e| e.typical / 0.015 * 0.003);
+        let offers = [
+            (EffectId::ZeroFuelMassBias, mass_kg, "weigh the aircraft (to 0.3 % of its mass)"),
+            (EffectId::FuelFlowGain, 0.15, "compare with tank gauges (to 0.15 %)"),
+            (EffectId::TemperatureBias, 0.5, "compare SAT with a reanalysis (to 0.5 K)"),
+            (EffectId::MachBias, 0.0015, "compare true airspeed with GPS and wind (to Mach 0.0015)"),
+            (
+                EffectId::StaticPressureBias,
+                0.05,
+                "compare pressure altitude with GPS height and a reanalysis (to 0.05 % of p)",
+            ),
+        ];
+        for (id, deviation, words) in offers {
+            let mut gram = self.gram.clone();
+            let mut touched = false;
+            for column in [k, l] {
+                if library.effects[library.columns[column].effect].id == id {
+                    gram[(column, column)] += 1.0 / (deviation * deviation);
+                    touched = true;
+                }
+            }
+            if touched {
+                let after = squared(&gram, k, l, size).0.sqrt();
+                found.push(Measurement { words, before, after });
+            }
+        }
+        let after = squared(&self.with_deck, k, l, size).0.sqrt();
+        found.push(Measurement { words: "measure an N2 deck (to 0.1 %)", before, after });
+        found.retain(|m| m.after > 1.1 * m.before + 0.1);
+        found.sort_by(|a, b| b.after.total_cmp(&a.after));
+        found
+    }
+}
+
+fn squared(g: &Mat<f64>, k: usize, l: usize, size: f64) -> (f64, f64) {
+    if g[(l, l)] <= 0.0 {
+        return (size * size * g[(k, k)], 0.0);
+    }
+    let slope = g[(k, l)] / g[(l, l)];
+    ((size * size * (g[(k, k)] - slope * g[(k, l)])).max(0.0), size * slope)
+}

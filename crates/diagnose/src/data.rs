@@ -1,0 +1,485 @@
+//! Segments made ready for the search: residuals of every channel, signatures of every column, noise.
+//!
+//! Everything is linear in the number of segments and lies segment by segment.
+
+use std::collections::BTreeMap;
+
+use flight::{MAXIMUM_ENGINES, Segment};
+use perf_model::effects::{EffectModel, EffectPoint, Effects, HiddenParameters, Response};
+
+use crate::baseline::Baseline;
+use crate::library::Library;
+use crate::noise::{
+    ByChannel, Channels, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise, segment_noise,
+};
+use crate::record::FlightRecord;
+
+/// Coefficients of the N2 deck: a full quadratic in four variables.
+pub(crate) const DECK_TERMS: usize = 15;
+/// Scales that make the deck's variables dimensionless: ln F/δ, Mach number, ln δ, ln θ.
+const DECK_SCALES: [f64; 4] = [0.2, 0.05, 0.3, 0.04];
+
+/// One segment.
+#[derive(Clone, Debug)]
+pub(crate) struct SegmentRow {
+    pub(crate) point: EffectPoint,
+    /// Prediction without any effect.
+    pub(crate) response: Response,
+    /// What was recorded, channel by channel; 0 where not recorded.
+    pub(crate) recorded: ByChannel,
+    pub(crate) is_recorded: [bool; MAXIMUM_CHANNELS],
+    /// Recorded less predicted.
+    pub(crate) residual: ByChannel,
+    /// ∂channel/∂θ of each column.
+    pub(crate) signatures: Vec<ByChannel>,
+    pub(crate) noise: SegmentNoise,
+    /// Deck terms at the prediction.
+    pub(crate) deck: [f64; DECK_TERMS],
+    /// ∂(N2 channel)/∂(ln F).
+    pub(crate) n2_slope: f64,
+    /// Drag over thrust.
+    pub(crate) drag_over_thrust: f64,
+    /// Chord errors of the drag table along lift coefficient and Mach number, relative to drag.
+    pub(crate) chords: [f64; 2],
+}
+
+/// Gauges against meters, of one flight: residual, standard deviation, signature of each column.
+#[derive(Clone, Debug)]
+pub(crate) struct GaugeRow {
+    pub(crate) residual: f64,
+    pub(crate) deviation: f64,
+    pub(crate) signatures: Vec<f64>,
+}
+
+/// Flights in order, with the range of their segments.
+#[derive(Clone, Debug)]
+pub(crate) struct FlightRows {
+    pub(crate) segments: core::ops::Range<usize>,
+    pub(crate) gauge: Option<GaugeRow>,
+}
+
+/// Everything ready.
+#[derive(Clone, Debug)]
+pub(crate) struct Data {
+    pub(crate) channels: Channels,
+    pub(crate) flights: Vec<FlightRows>,
+    pub(crate) segments: Vec<SegmentRow>,
+    pub(crate) deck: Deck,
+    /// Segments that were left out, by reason.
+    pub(crate) left_out: BTreeMap<String, usize>,
+}
+
+/// The N2 deck: ln(N2/√θt) as a full quadratic.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Deck {
+    pub(crate) centers: [f64; 4],
+    pub(crate) coefficients: [f64; DECK_TERMS],
+}
+
+impl Deck {
+    fn scaled(&self, response: &Response) -> [f64; 4] {
+        let variables = deck_variables(response);
+        core::array::from_fn(|k| (variables[k] - self.centers[k]) / DECK_SCALES[k])
+    }
+
+    pub(crate) fn terms(&self, response: &Response) -> [f64; DECK_TERMS] {
+        let v = self.scaled(response);
+        let mut terms = [1.0; DECK_TERMS];
+        terms[1..5].copy_from_slice(&v);
+        let mut at = 5;
+        for a in 0..4 {
+            for b in a..4 {
+                terms[at] = v[a] * v[b];
+                at += 1;
+            }
+        }
+        terms
+    }
+
+    /// ln N2 that the deck predicts.
+    fn value(&self, response: &Response) -> f64 {
+        let terms = self.terms(response);
+        let deck: f64 = terms.iter().zip(&self.coefficients).map(|(t, c)| t * c).sum();
+        deck + half_ln_total_temperature_ratio(response)
+    }
+
+    fn slope(&self, response: &Response) -> f64 {
+        let v = self.scaled(response);
+        let c = &self.coefficients;
+        (c[1] + 2.0 * c[5] * v[0] + c[6] * v[1] + c[7] * v[2] + c[8] * v[3]) / DECK_SCALES[0]
+    }
+}
+
+fn deck_variables(response: &Response) -> [f64; 4] {
+    [
+        response.ln_corrected_thrust,
+        response.mach,
+        response.ln_pressure_ratio,
+        response.ln_temperature_ratio,
+    ]
+}
+
+/// ½ ln θt, θt = θ(1 + 0.2 M²).
+fn half_ln_total_temperature_ratio(response: &Response) -> f64 {
+    0.5 * (response.ln_temperature_ratio + (0.2 * response.mach * response.mach).ln_1p())
+}
+
+/// Contrasts between engines, normalized like ln(Wf1/Wf2): the mean of the first k engines less engine k + 1.
+fn contrasts(ln_flows: &[f64], into: &mut [f64]) {
+    for (k, slot) in into.iter_mut().enumerate() {
+        let first = (k + 1) as f64;
+        let mean = ln_flows[..=k].iter().sum::<f64>() / first;
+        *slot = (mean - ln_flows[k + 1]) * (2.0 * first / (first + 1.0)).sqrt();
+    }
+}
+
+/// Every channel's prediction.
+pub(crate) fn predict_channels(response: &Response, channels: Channels, deck: &Deck) -> ByChannel {
+    let mut predicted = [0.0; MAXIMUM_CHANNELS];
+    predicted[0] = response.ln_fuel_flow_total;
+    contrasts(&response.ln_fuel_flow_engine, &mut predicted[1..=channels.contrasts]);
+    if channels.n2 {
+        predicted[channels.n2_row()] = deck.value(response);
+    }
+    predicted
+}
+
+/// A segment that the model can predict, before signatures.
+struct Inside<'a> {
+    segment: &'a Segment,
+    point: EffectPoint,
+    response: Response,
+}
+
+/// Collects what the model can predict, flight by flight.
+fn inside<'a>(
+    model: &EffectModel<'_>,
+    flights: &[FlightRecord<'a>],
+    left_out: &mut BTreeMap<String, usize>,
+) -> Vec<(Vec<Inside<'a>>, Option<crate::GaugeBurn>)> {
+    let engines = model.aircraft().engines();
+    let mut all = Vec::with_capacity(flights.len());
+    for flight in flights {
+        let mut kept = Vec::with_capacity(flight.segments.len());
+        for segment in flight.segments {
+            #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
+            let start_s = segment.identity.start.as_second() as f64;
+            let point = EffectPoint::of_means(&segment.means, start_s, engines);
+            let flow_kg_s = segment.means.fuel_flow_total_kg_s;
+            match model.response(&point, &Effects::none()) {
+                Ok(response) if flow_kg_s.is_finite() && flow_kg_s > 0.0 => {
+                    kept.push(Inside { segment, point, response });
+                }
+                Ok(_) => *left_out.entry("fuel flow not positive".to_owned()).or_default() += 1,
+                Err(error) => *left_out.entry(reason(&error).to_owned()).or_default() += 1,
+            }
+        }
+        if !kept.is_empty() {
+            all.push((kept, flight.gauges));
+        }
+    }
+    all
+}
+
+fn reason(error: &perf_model::effects::EffectError) -> &'static str {
+    use perf_model::effects::EffectError;
+    match error {
+        EffectError::OutsideTable { .. } => "outside the drag table",
+        EffectError::OutOfDomain(_) => "a mean outside its domain",
+        EffectError::ThrustNotPositive { .. } => "no thrust left",
+        _ => "not predictable",
+    }
+}
+
+fn recorded_channels(
+    means: &flight::SegmentMeans,
+    channels: Channels,
+) -> (ByChannel, [bool; MAXIMUM_CHANNELS]) {
+    let mut values = [0.0; MAXIMUM_CHANNELS];
+    let mut present = [false; MAXIMUM_CHANNELS];
+    values[0] = means.fuel_flow_total_kg_s.ln();
+    present[0] = true;
+    let flows = &means.fuel_flow_engine_kg_s;
+    if channels.contrasts > 0
+        && flows.len() == channels.contrasts + 1
+        && flows.iter().all(|flow| flow.is_finite() && *flow > 0.0)
+    {
+        let mut ln = [0.0; MAXIMUM_ENGINES];
+        for (slot, flow) in ln.iter_mut().zip(flows) {
+            *slot = flow.ln();
+        }
+        contrasts(&ln, &mut values[1..=channels.contrasts]);
+        present[1..=channels.contrasts].fill(true);
+    }
+    if channels.n2 && has_n2(means) {
+        let mean = means.n2_percent.iter().sum::<f64>() / means.n2_percent.len() as f64;
+        values[channels.n2_row()] = (mean / 100.0).ln();
+        present[channels.n2_row()] = true;
+    }
+    (values, present)
+}
+
+fn has_n2(means: &flight::SegmentMeans) -> bool {
+    !means.n2_percent.is_empty() && means.n2_percent.iter().all(|n2| n2.is_finite() && *n2 > 1.0)
+}
+
+impl Data {
+    /// Prepares the flights against a model. `effects` are already part of the model (none, as a rule).
+    pub(crate) fn prepare(
+        model: &EffectModel<'_>,
+        flights: &[FlightRecord<'_>],
+        baseline: Option<&Baseline>,
+        library_of: impl FnOnce(&[EffectPoint], bool, &[f64]) -> Library,
+    ) -> (Self, Library) {
+        let mut left_out = BTreeMap::new();
+        let inside = inside(model, flights, &mut left_out);
+        let points: Vec<EffectPoint> =
+            inside.iter().flat_map(|(segments, _)| segments).map(|kept| kept.point).collect();
+        let starts: Vec<f64> = inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
+        let channels = channels_of(model, &inside);
+        let library = library_of(&points, channels.contrasts > 0, &starts);
+        let factors = baseline.map_or_else(NoiseFactors::default, |b| *b.noise());
+        let deck = deck_of(&inside, channels, baseline);
+
+        let mut data = Self {
+            channels,
+            flights: Vec::with_capacity(inside.len()),
+            segments: Vec::with_capacity(points.len()),
+            deck,
+            left_out,
+        };
+        for (segments, gauges) in inside {
+            let first = data.segments.len();
+            for kept in segments {
+                match data.row(model, &kept, &library, &factors) {
+                    Ok(row) => data.segments.push(row),
+                    Err(error) => {
+                        *data.left_out.entry(reason(&error).to_owned()).or_default() += 1;
+                    }
+                }
+            }
+            if data.segments.len() > first {
+                let gauge = gauges.map(|burn| gauge_row(burn, &library, &data.segments[first..]));
+                data.flights.push(FlightRows { segments: first..data.segments.len(), gauge });
+            }
+        }
+        (data, library)
+    }
+
+    fn row(
+        &self,
+        model: &EffectModel<'_>,
+        kept: &Inside<'_>,
+        library: &Library,
+        factors: &NoiseFactors,
+    ) -> Result<SegmentRow, perf_model::effects::EffectError> {
+        let (channels, deck) = (self.channels, &self.deck);
+        let predict = |response: &Response| predict_channels(response, channels, deck);
+        let (recorded, is_recorded) = recorded_channels(&kept.segment.means, channels);
+        let predicted = predict(&kept.response);
+        let mut residual = [0.0; MAXIMUM_CHANNELS];
+        for channel in 0..channels.count() {
+            if is_recorded[channel] {
+                residual[channel] = recorded[channel] - predicted[channel];
+            }
+        }
+        let noise = segment_noise(
+            model,
+            &kept.point,
+            &Effects::none(),
+            &kept.segment.rows,
+            0.0,
+            &is_recorded,
+            channels,
+            factors,
+            &predict,
+        )?;
+        let mut row = SegmentRow {
+            point: kept.point,
+            response: kept.response,
+            recorded,
+            is_recorded,
+            residual,
+            signatures: Vec::with_capacity(library.columns.len()),
+            noise,
+            deck: deck.terms(&kept.response),
+            n2_slope: if channels.n2 { deck.slope(&kept.response) } else { 0.0 },
+            drag_over_thrust: kept.response.drag_over_thrust,
+            chords: chord_errors(model, &kept.response),
+        };
+        for column in &library.columns {
+            let effect = &library.effects[column.effect];
+            let signature = signature(
+                model,
+                &row.point,
+                &Effects::none(),
+                effect.id,
+                column.hidden,
+                0.5 * effect.typical,
+                &row.is_recorded,
+                channels,
+                deck,
+            );
+            // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
+            row.signatures.push(signature.unwrap_or([0.0; MAXIMUM_CHANNELS]));
+        }
+        Ok(row)
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        self.segments.first().map_or(0, |row| row.signatures.len())
+    }
+}
+
+/// Central difference of every channel with an effect about `at`; `step` in the effect's unit.
+#[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
+pub(crate) fn signature(
+    model: &EffectModel<'_>,
+    point: &EffectPoint,
+    at: &Effects,
+    id: flight::effect::EffectId,
+    hidden: HiddenParameters,
+    step: f64,
+    is_recorded: &[bool; MAXIMUM_CHANNELS],
+    channels: Channels,
+    deck: &Deck,
+) -> Result<ByChannel, perf_model::effects::EffectError> {
+    let size = at.size(id);
+    let predict = |size: f64| {
+        let effects = at.clone().with(id, size).with_hidden(hidden);
+        Ok::<_, perf_model::effects::EffectError>(predict_channels(
+            &model.response(point, &effects)?,
+            channels,
+            deck,
+        ))
+    };
+    let (up, down) = (predict(size + step)?, predict(size - step)?);
+    let mut slope = [0.0; MAXIMUM_CHANNELS];
+    for channel in 0..channels.count() {
+        if is_recorded[channel] {
+            slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
+        }
+    }
+    Ok(slope)
+}
+
+fn channels_of(
+    model: &EffectModel<'_>,
+    inside: &[(Vec<Inside<'_>>, Option<crate::GaugeBurn>)],
+) -> Channels {
+    let engines = model.aircraft().engines();
+    let segments = || inside.iter().flat_map(|(segments, _)| segments);
+    let total = segments().count();
+    let half = |count: usize| 2 * count > total;
+    let split =
+        segments().filter(|kept| kept.segment.means.fuel_flow_engine_kg_s.len() == engines).count();
+    let n2 = segments().filter(|kept| has_n2(&kept.segment.means)).count();
+    Channels { contrasts: if engines > 1 && half(split) { engines - 1 } else { 0 }, n2: half(n2) }
+}
+
+/// The deck that a baseline learnt, else least squares over the data at hand.
+fn deck_of(
+    inside: &[(Vec<Inside<'_>>, Option<crate::GaugeBurn>)],
+    channels: Channels,
+    baseline: Option<&Baseline>,
+) -> Deck {
+    if let Some(deck) = baseline.and_then(Baseline::deck) {
+        return deck;
+    }
+    let mut deck = Deck { centers: [0.0; 4], coefficients: [0.0; DECK_TERMS] };
+    let segments: Vec<&Inside<'_>> =
+        inside.iter().flat_map(|(segments, _)| segments).filter(|k| has_n2(&k.segment.means)).collect();
+    if !channels.n2 || segments.is_empty() {
+        return deck;
+    }
+    for kept in &segments {
+        let variables = deck_variables(&kept.response);
+        for (center, variable) in deck.centers.iter_mut().zip(variables) {
+            *center += variable / segments.len() as f64;
+        }
+    }
+    // Ridge of a millionth: with fewer directions flown than the deck has, the rest stays at zero.
+    let mut normal = faer::Mat::<f64>::zeros(DECK_TERMS, DECK_TERMS);
+    let mut right = faer::Mat::<f64>::zeros(DECK_TERMS, 1);
+    for kept in &segments {
+        let terms = deck.terms(&kept.response);
+        let (values, _) = recorded_channels(&kept.segment.means, channels);
+        let target = values[channels.n2_row()] - half_ln_total_temperature_ratio(&kept.response);
+        for a in 0..DECK_TERMS {
+            right[(a, 0)] += terms[a] * target;
+            for b in 0..DECK_TERMS {
+                normal[(a, b)] += terms[a] * terms[b];
+            }
+        }
+    }
+    for a in 0..DECK_TERMS {
+        normal[(a, a)] += 1e-6 * segments.len() as f64;
+    }
+    if let Some(factor) = crate::linear::Factor::of(normal) {
+        factor.solve(&mut right);
+        for a in 0..DECK_TERMS {
+            deck.coefficients[a] = right[(a, 0)];
+        }
+    }
+    deck
+}
+
+fn gauge_row(burn: crate::GaugeBurn, library: &Library, segments: &[SegmentRow]) -> GaugeRow {
+    use flight::effect::EffectId;
+    let count = segments.len().max(1) as f64;
+    let share = |engine: u8| {
+        let index = usize::from(engine).wrapping_sub(1);
+        segments
+            .iter()
+            .map(|row| row.point.fuel_flow_share.get(index).copied().unwrap_or(0.0))
+            .sum::<f64>()
+            / count
+    };
+    let signatures = library
+        .columns
+        .iter()
+        .map(|column| match library.effects[column.effect].id {
+            EffectId::FuelFlowGain => -0.01,
+            EffectId::FuelFlowGainEngine(engine) => -0.01 * share(engine),
+            _ => 0.0,
+        })
+        .collect();
+    GaugeRow {
+        residual: (burn.gauged_kg / burn.metered_kg).ln(),
+        deviation: (burn.deviation_kg / burn.metered_kg).max(1e-6),
+        signatures,
+    }
+}
+
+/// How far a chord of the drag table may be off, relative to drag: ½·u(1 − u)·Δ², Δ² the mean of the second differences
+/// at the cell's ends, along each axis. `[diagnosis.15]`
+fn chord_errors(model: &EffectModel<'_>, response: &Response) -> [f64; 2] {
+    let table = model.drag_table();
+    let grid = table.grid();
+    let Ok(cell) = grid.locate(response.lift_coefficient, response.mach, lut::Outside::Hold) else {
+        return [0.0; 2];
+    };
+    let drag = table.interpolate(&cell);
+    let [low, _, _, _] = cell.nodes();
+    let (columns, rows) = (grid.y().len(), grid.x().len());
+    let (i, j) = (low / columns, low % columns);
+    let value = |i: usize, j: usize| table.value_at_node(i * columns + j);
+    let second = |at: usize, of: usize, get: &dyn Fn(usize) -> f64| {
+        if at == 0 || at + 1 >= of { None } else { Some(get(at - 1) - 2.0 * get(at) + get(at + 1)) }
+    };
+    let mean = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => 0.5 * (a + b),
+        (Some(one), None) | (None, Some(one)) => one,
+        (None, None) => 0.0,
+    };
+    let (u, v) = cell.local();
+    let along_lift = mean(
+        second(i, rows, &|k| value(k, j) * (1.0 - v) + value(k, j + 1) * v),
+        second(i + 1, rows, &|k| value(k, j) * (1.0 - v) + value(k, j + 1) * v),
+    );
+    let along_mach = mean(
+        second(j, columns, &|k| value(i, k) * (1.0 - u) + value(i + 1, k) * u),
+        second(j + 1, columns, &|k| value(i, k) * (1.0 - u) + value(i + 1, k) * u),
+    );
+    [-0.5 * u * (1.0 - u) * along_lift / drag, -0.5 * v * (1.0 - v) * along_mach / drag]
+}

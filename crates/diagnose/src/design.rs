@@ -1,0 +1,455 @@
+//! The stacked, whitened linear model of a flight: which columns there are, and their rows.
+//!
+//! Difficult: the covariance of a flight is block diagonal by segment plus a few common errors. Segments are whitened
+//! by their own small Cholesky factor, then the flight by (1 + UUᵀ)^(−1/2), which differs from 1 only in the span of the
+//! few columns of U. That is exact, and linear in segments.
+
+use faer::{Mat, Side};
+use perf_model::effects::EffectReferences;
+
+use crate::TableUncertainty;
+use crate::baseline::Baseline;
+use crate::data::{DECK_TERMS, Data, FlightRows, SegmentRow};
+use crate::noise::{ByChannel, MAXIMUM_CHANNELS};
+use crate::variables::{Hats, Scaled, Variable};
+
+/// Prior standard deviation of a deck coefficient about its least-squares value where no deck was taught.
+const DECK_DEVIATION: f64 = 0.02;
+/// Split of the fuel flow between engines that an agnostic level is scaled to, against 1 for fuel flow.
+const SPLIT_SCALE: f64 = 2.0;
+/// Quantiles at which the smooth background has its knots.
+const SMOOTH_QUANTILES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+/// Quantiles at which agnostic functions have theirs.
+const AGNOSTIC_QUANTILES: [f64; 7] = [0.0, 0.17, 0.33, 0.5, 0.67, 0.83, 1.0];
+/// Amplitude of a product of two scaled variables in the smooth background.
+const PRODUCT_SCALE: f64 = 0.5;
+
+const SMOOTH_VARIABLES: [Variable; 15] = [
+    Variable::Mach,
+    Variable::LiftCoefficient,
+    Variable::PressureAltitude,
+    Variable::CorrectedThrust,
+    Variable::IsaDeviation,
+    Variable::StaticAirTemperature,
+    Variable::Date,
+    Variable::FuelUsed,
+    Variable::Roll,
+    Variable::Acceleration,
+    Variable::CrossWind,
+    Variable::Latitude,
+    Variable::EastwardSpeed,
+    Variable::CenterOfGravity,
+    Variable::Mass,
+];
+
+const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
+    (Variable::Mach, Variable::LiftCoefficient),
+    (Variable::Mach, Variable::PressureAltitude),
+    (Variable::LiftCoefficient, Variable::PressureAltitude),
+    (Variable::Mach, Variable::IsaDeviation),
+    (Variable::PressureAltitude, Variable::IsaDeviation),
+    (Variable::CorrectedThrust, Variable::Mach),
+    (Variable::CrossWind, Variable::Latitude),
+    (Variable::EastwardSpeed, Variable::Latitude),
+    (Variable::CenterOfGravity, Variable::LiftCoefficient),
+    (Variable::Mach, Variable::Date),
+];
+
+const AGNOSTIC_VARIABLES: [Variable; 19] = [
+    Variable::Mach,
+    Variable::LiftCoefficient,
+    Variable::PressureAltitude,
+    Variable::CorrectedThrust,
+    Variable::IsaDeviation,
+    Variable::StaticAirTemperature,
+    Variable::FuelUsed,
+    Variable::Mass,
+    Variable::Date,
+    Variable::Roll,
+    Variable::Acceleration,
+    Variable::CrossWind,
+    Variable::Latitude,
+    Variable::EastwardSpeed,
+    Variable::CenterOfGravity,
+    Variable::LatitudeCrossWind,
+    Variable::CenterOfGravityLift,
+    Variable::MachLift,
+    Variable::MachExcess,
+];
+
+/// How a smooth function acts: on fuel flow alone, or on thrust, so that N2 sees it too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Acts {
+    OnFuelFlow,
+    OnThrust,
+    OnSplit,
+}
+
+/// An agnostic function of one variable.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    pub(crate) variable: Variable,
+    pub(crate) acts: Acts,
+    pub(crate) columns: core::ops::Range<usize>,
+    hats: Option<Hats>,
+}
+
+/// Which column is what: effects, nuisance, smooth background, agnostic functions, residual last.
+#[derive(Clone, Debug)]
+pub(crate) struct Design<'a> {
+    pub(crate) effects: usize,
+    pub(crate) nuisance: core::ops::Range<usize>,
+    pub(crate) smooth: core::ops::Range<usize>,
+    pub(crate) blocks: Vec<Block>,
+    pub(crate) columns: usize,
+    references: EffectReferences,
+    smooth_hats: Vec<(Variable, Hats)>,
+    smooth_products: Vec<(Variable, Scaled, Variable, Scaled)>,
+    nuisance_parts: Nuisance<'a>,
+}
+
+/// What is uncertain about the model, as columns of unit prior variance.
+#[derive(Clone, Debug)]
+struct Nuisance<'a> {
+    baseline: Option<&'a Baseline>,
+    deck: bool,
+    chords: bool,
+    table: Option<&'a TableUncertainty>,
+}
+
+impl<'a> Design<'a> {
+    pub(crate) fn of(
+        data: &Data,
+        references: &EffectReferences,
+        baseline: Option<&'a Baseline>,
+        table: Option<&'a TableUncertainty>,
+    ) -> Self {
+        let values = |variable: Variable| -> Option<Vec<f64>> {
+            data.segments
+                .iter()
+                .map(|row| variable.value(&row.point, &row.response, references))
+                .collect()
+        };
+        let effects = data.columns();
+        let parts = Nuisance { baseline, deck: data.channels.n2, chords: true, table };
+        let nuisance = effects..effects + parts.columns();
+
+        let smooth_hats: Vec<(Variable, Hats)> = SMOOTH_VARIABLES
+            .into_iter()
+            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &SMOOTH_QUANTILES)?)))
+            .collect();
+        let smooth_products: Vec<_> = SMOOTH_PRODUCTS
+            .into_iter()
+            .filter_map(|(a, b)| Some((a, Scaled::of(&values(a)?), b, Scaled::of(&values(b)?))))
+            .collect();
+        let once =
+            1 + smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>() + smooth_products.len();
+        let kinds = if data.channels.n2 { 2 } else { 1 };
+        let smooth = nuisance.end..nuisance.end + kinds * once;
+
+        let mut blocks = Vec::new();
+        let mut at = smooth.end;
+        for variable in AGNOSTIC_VARIABLES {
+            let Some(hats) =
+                values(variable).and_then(|v| Hats::at_quantiles(&v, &AGNOSTIC_QUANTILES))
+            else {
+                continue;
+            };
+            for acts in [Acts::OnFuelFlow, Acts::OnThrust] {
+                if acts == Acts::OnThrust && !data.channels.n2 {
+                    continue;
+                }
+                let columns = at..at + hats.len();
+                at = columns.end;
+                blocks.push(Block { variable, acts, columns, hats: Some(hats.clone()) });
+            }
+        }
+        if data.channels.contrasts > 0 {
+            let columns = at..at + data.channels.contrasts;
+            at = columns.end;
+            blocks.push(Block {
+                variable: Variable::Engine,
+                acts: Acts::OnSplit,
+                columns,
+                hats: None,
+            });
+        }
+        Self {
+            effects,
+            nuisance,
+            smooth,
+            blocks,
+            columns: at + 1,
+            references: *references,
+            smooth_hats,
+            smooth_products,
+            nuisance_parts: parts,
+        }
+    }
+
+    pub(crate) const fn residual(&self) -> usize {
+        self.columns - 1
+    }
+
+    /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
+    pub(crate) fn whitened(&self, data: &Data, flight: &FlightRows, weights: Option<&[f64]>) -> Mat<f64> {
+        let channels = data.channels.count();
+        let segments = &data.segments[flight.segments.clone()];
+        let rows = segments.len() * channels + usize::from(flight.gauge.is_some());
+        let mut matrix = Mat::<f64>::zeros(rows, self.columns);
+        let mut scratch = vec![0.0; self.columns];
+        for (index, row) in segments.iter().enumerate() {
+            self.write_segment(data, row, index * channels, &mut matrix, &mut scratch);
+        }
+        if let Some(gauge) = &flight.gauge {
+            for (column, signature) in gauge.signatures.iter().enumerate() {
+                matrix[(rows - 1, column)] = signature / gauge.deviation;
+            }
+            matrix[(rows - 1, self.columns - 1)] = gauge.residual / gauge.deviation;
+        }
+        self.scale_nuisance(&mut matrix);
+        whiten_flight(data, segments, &mut matrix);
+        if let Some(weights) = weights {
+            for (index, weight) in weights[flight.segments.clone()].iter().enumerate() {
+                for row in index * channels..(index + 1) * channels {
+                    for column in 0..self.columns {
+                        matrix[(row, column)] *= weight;
+                    }
+                }
+            }
+        }
+        matrix
+    }
+
+    fn write_segment(
+        &self,
+        data: &Data,
+        row: &SegmentRow,
+        first: usize,
+        matrix: &mut Mat<f64>,
+        scratch: &mut [f64],
+    ) {
+        let channels = data.channels.count();
+        let put = |matrix: &mut Mat<f64>, column: usize, values: &ByChannel| {
+            let white = half_whitened(row, values, channels);
+            for channel in 0..channels {
+                matrix[(first + channel, column)] = white[channel];
+            }
+        };
+        for (column, signature) in row.signatures.iter().enumerate() {
+            put(matrix, column, signature);
+        }
+        let mut on_fuel = [0.0; MAXIMUM_CHANNELS];
+        on_fuel[0] = 1.0;
+        let mut on_thrust = on_fuel;
+        on_thrust[0] = row.drag_over_thrust;
+        if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
+            on_thrust[data.channels.n2_row()] = row.n2_slope * row.drag_over_thrust;
+        }
+        let fuel = half_whitened(row, &on_fuel, channels);
+        let thrust = half_whitened(row, &on_thrust, channels);
+        let scaled = |matrix: &mut Mat<f64>, column: usize, unit: &ByChannel, by: f64| {
+            for channel in 0..channels {
+                matrix[(first + channel, column)] = unit[channel] * by;
+            }
+        };
+
+        let mut residual = row.residual;
+        let mut at = self.nuisance.start;
+        let parts = &self.nuisance_parts;
+        if let Some(baseline) = parts.baseline {
+            let terms = &mut scratch[..baseline.remainder_terms()];
+            baseline.write_remainder(&row.point, &row.response, &self.references, terms);
+            let terms = &*terms;
+            residual[0] -= baseline.remainder_mean(terms);
+            for value in terms {
+                scaled(matrix, at, &fuel, *value);
+                at += 1;
+            }
+            for contrast in 1..=baseline.contrasts() {
+                let mut values = [0.0; MAXIMUM_CHANNELS];
+                if contrast <= data.channels.contrasts && row.is_recorded[contrast] {
+                    values[contrast] = 1.0;
+                    residual[contrast] -= baseline.split_mean(contrast);
+                }
+                put(matrix, at, &values);
+                at += 1;
+            }
+        }
+        let deck_columns = if parts.baseline.is_some_and(Baseline::knows_deck) || parts.deck {
+            DECK_TERMS
+        } else {
+            0
+        };
+        if deck_columns > 0 {
+            for term in row.deck {
+                let mut values = [0.0; MAXIMUM_CHANNELS];
+                if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
+                    values[data.channels.n2_row()] = term;
+                }
+                put(matrix, at, &values);
+                at += 1;
+            }
+        }
+        if parts.chords {
+            for chord in row.chords {
+                scaled(matrix, at, &thrust, chord);
+                at += 1;
+            }
+        }
+        if let Some(table) = parts.table {
+            let loadings = &mut scratch[..table.rank()];
+            table.write(&row.response, loadings);
+            for loading in &*loadings {
+                scaled(matrix, at, &thrust, *loading);
+                at += 1;
+            }
+        }
+        debug_assert_eq!(at, self.nuisance.end);
+        put(matrix, self.columns - 1, &residual);
+
+        let once = self.smooth.len() / if data.channels.n2 { 2 } else { 1 };
+        self.write_smooth(row, &mut scratch[..once]);
+        for (k, value) in scratch[..once].iter().enumerate() {
+            scaled(matrix, self.smooth.start + k, &fuel, *value);
+            if data.channels.n2 {
+                scaled(matrix, self.smooth.start + once + k, &thrust, *value);
+            }
+        }
+        for block in &self.blocks {
+            match (&block.hats, block.acts) {
+                (Some(hats), acts) => {
+                    let value = block
+                        .variable
+                        .value(&row.point, &row.response, &self.references)
+                        .unwrap_or(0.0);
+                    hats.write(value, &mut scratch[..hats.len()]);
+                    let unit = if acts == Acts::OnThrust { &thrust } else { &fuel };
+                    for (k, value) in scratch[..hats.len()].iter().enumerate() {
+                        scaled(matrix, block.columns.start + k, unit, *value);
+                    }
+                }
+                (None, _) => {
+                    for (k, column) in block.columns.clone().enumerate() {
+                        let mut values = [0.0; MAXIMUM_CHANNELS];
+                        if row.is_recorded[1 + k] {
+                            values[1 + k] = SPLIT_SCALE;
+                        }
+                        put(matrix, column, &values);
+                    }
+                }
+            }
+        }
+    }
+
+    fn write_smooth(&self, row: &SegmentRow, into: &mut [f64]) {
+        let value = |variable: Variable| {
+            variable.value(&row.point, &row.response, &self.references).unwrap_or(0.0)
+        };
+        into[0] = 1.0;
+        let mut at = 1;
+        for (variable, hats) in &self.smooth_hats {
+            hats.write(value(*variable), &mut into[at..at + hats.len()]);
+            at += hats.len();
+        }
+        for (a, scaled_a, b, scaled_b) in &self.smooth_products {
+            into[at] = PRODUCT_SCALE * scaled_a.at(value(*a)) * scaled_b.at(value(*b));
+            at += 1;
+        }
+    }
+
+    /// Turns the raw nuisance columns into columns of unit prior variance.
+    fn scale_nuisance(&self, matrix: &mut Mat<f64>) {
+        let parts = &self.nuisance_parts;
+        if let Some(baseline) = parts.baseline {
+            let factor = baseline.factor();
+            let width = factor.nrows();
+            let range = self.nuisance.start..self.nuisance.start + width;
+            let raw = matrix.subcols(range.start, width).to_owned();
+            let mut scaled = Mat::<f64>::zeros(raw.nrows(), width);
+            faer::linalg::matmul::matmul(
+                scaled.as_mut(),
+                faer::Accum::Replace,
+                raw.as_ref(),
+                factor.as_ref(),
+                1.0,
+                faer::Par::Seq,
+            );
+            for column in 0..width {
+                for row in 0..raw.nrows() {
+                    matrix[(row, range.start + column)] = scaled[(row, column)];
+                }
+            }
+        } else if parts.deck {
+            for column in self.nuisance.start..self.nuisance.start + DECK_TERMS {
+                for row in 0..matrix.nrows() {
+                    matrix[(row, column)] *= DECK_DEVIATION;
+                }
+            }
+        }
+    }
+}
+
+impl Nuisance<'_> {
+    fn columns(&self) -> usize {
+        let taught = self.baseline.map_or(0, |baseline| baseline.factor().nrows());
+        let deck = if self.baseline.is_none() && self.deck { DECK_TERMS } else { 0 };
+        taught + deck + if self.chords { 2 } else { 0 } + self.table.map_or(0, TableUncertainty::rank)
+    }
+}
+
+/// L⁻¹·values with the segment's own Cholesky factor.
+pub(crate) fn half_whitened(row: &SegmentRow, values: &ByChannel, channels: usize) -> ByChannel {
+    let mut white = [0.0; MAXIMUM_CHANNELS];
+    for channel in 0..channels {
+        let inner: f64 =
+            (0..channel).map(|k| row.noise.factor[channel][k] * white[k]).sum();
+        white[channel] = (values[channel] - inner) / row.noise.factor[channel][channel];
+    }
+    white
+}
+
+/// Whitens what the segments of a flight have in common: rows ← (1 + UUᵀ)^(−1/2)·rows.
+///
+/// ```text
+/// UᵀU = QΛQᵀ,  V = UQΛ^(−1/2),  (1 + UUᵀ)^(−1/2) = 1 − V·diag(1 − (1 + λ)^(−1/2))·Vᵀ        [diagnosis.16]
+/// ```
+pub(crate) fn whiten_flight(data: &Data, segments: &[SegmentRow], matrix: &mut Mat<f64>) {
+    let channels = data.channels.count();
+    let Some(rank) = segments.first().map(|row| row.noise.common.len()) else { return };
+    let mut common = Mat::<f64>::zeros(matrix.nrows(), rank);
+    for (index, row) in segments.iter().enumerate() {
+        for (column, loading) in row.noise.common.iter().enumerate() {
+            let white = half_whitened(row, loading, channels);
+            for channel in 0..channels {
+                common[(index * channels + channel, column)] = white[channel];
+            }
+        }
+    }
+    let inner = common.transpose() * &common;
+    let Ok(eigen) = inner.self_adjoint_eigen(Side::Lower) else { return };
+    let rotated = &common * eigen.U();
+    let values = eigen.S().column_vector();
+    let mut basis = Mat::<f64>::zeros(matrix.nrows(), rank);
+    let mut shrunk = Mat::<f64>::zeros(matrix.nrows(), rank);
+    for column in 0..rank {
+        let value = values[column];
+        if value <= 1e-12 {
+            continue;
+        }
+        let shrink = 1.0 - 1.0 / (1.0 + value).sqrt();
+        for row in 0..matrix.nrows() {
+            basis[(row, column)] = rotated[(row, column)] / value.sqrt();
+            shrunk[(row, column)] = shrink * basis[(row, column)];
+        }
+    }
+    let projected = basis.transpose() * &*matrix;
+    faer::linalg::matmul::matmul(
+        matrix.as_mut(),
+        faer::Accum::Add,
+        shrunk.as_ref(),
+        projected.as_ref(),
+        -1.0,
+        faer::Par::Seq,
+    );
+}

@@ -1,0 +1,664 @@
+//! From flights to a verdict.
+
+use flight::effect::EffectId;
+use perf_model::PerformanceModel;
+use perf_model::effects::{
+    EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects, StepTarget,
+};
+use statrs::function::erf::erfc;
+
+use crate::TableUncertainty;
+use crate::analysis::{Analysis, Stacked, analyse};
+use crate::baseline::Baseline;
+use crate::classes::Distances;
+use crate::closure::{Shrinkage, gaps, in_sample, nested};
+use crate::data::Data;
+use crate::design::{Acts, Design};
+use crate::evidence::{NOISE_FREEDOM, Scored};
+use crate::library::Library;
+use crate::outside::{Outside, compete};
+use crate::output::{
+    Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Separation, Verdict,
+    VerdictKind,
+};
+use crate::record::FlightRecord;
+
+/// Fewest flights and segments that a name is given on.
+const FEWEST_FLIGHTS: usize = 6;
+const FEWEST_SEGMENTS: usize = 30;
+/// A gap counts as real when nothing at all is less probable than this.
+const CLEAN_PROBABILITY: f64 = 0.05;
+/// Probability of a cause outside the library above which it is said.
+const OUTSIDE_PROBABILITY: f64 = 0.5;
+/// Share of the explainable gap that a named set must close where an agnostic function does better.
+const NAMED_CLOSURE: f64 = 0.9;
+/// Probability that the credible set of effects holds.
+const CREDIBLE: f64 = 0.9;
+/// Half width of a 95 % interval in standard deviations.
+const NORMAL_95: f64 = 1.96;
+
+/// What is diagnosed, and against what.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// The performance model.
+    pub model: &'a PerformanceModel,
+    /// Its drag table: its own, or the adapted one.
+    pub drag_table: &'a lut::Table,
+    /// Flights in order of flying, none of which the table has learnt.
+    pub flights: &'a [FlightRecord<'a>],
+    /// What the model remembers of clean flights; `None` against a table alone.
+    pub baseline: Option<&'a Baseline>,
+    /// What the table does not know; `None` where every node counts as known.
+    pub table: Option<&'a TableUncertainty>,
+    /// Conditions that effects are zero at; else the baseline's, else the means of the data at hand.
+    pub references: Option<EffectReferences>,
+}
+
+/// What to look for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Only these effects; empty for all.
+    pub effects: Vec<EffectId>,
+    /// Not these.
+    pub without: Vec<EffectId>,
+    /// Leave closure out: choice and fit on folds cost as much again as the search.
+    pub skip_closure: bool,
+}
+
+/// Why there is no diagnosis.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiagnoseError {
+    /// The model takes no effects.
+    #[error(transparent)]
+    Model(#[from] EffectModelError),
+    /// Too few flights to learn a baseline from.
+    #[error("{found} flights inside the drag table, at least {needed} are needed")]
+    TooFewFlights {
+        /// Flights found.
+        found: usize,
+        /// Flights needed.
+        needed: usize,
+    },
+    /// A matrix that is not positive definite: columns beyond what doubles hold.
+    #[error("the linear model is degenerate")]
+    Degenerate,
+}
+
+/// References of the data at hand.
+///
+/// # Errors
+/// [`DiagnoseError::Model`] where nothing is inside the drag table.
+pub fn references_of(
+    model: &PerformanceModel,
+    drag_table: &lut::Table,
+    flights: &[FlightRecord<'_>],
+) -> Result<EffectReferences, DiagnoseError> {
+    let engines = model.aircraft().engines();
+    #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
+    let points: Vec<EffectPoint> = flights
+        .iter()
+        .flat_map(|flight| flight.segments)
+        .map(|s| EffectPoint::of_means(&s.means, s.identity.start.as_second() as f64, engines))
+        .collect();
+    Ok(EffectReferences::mean_of(model.aircraft(), drag_table, &points)?)
+}
+
+/// Diagnoses one set of flights.
+///
+/// # Errors
+/// [`DiagnoseError`] where the model takes no effects or the numbers are degenerate. Too little data is a verdict, not
+/// an error.
+pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, DiagnoseError> {
+    let references = match (input.references, input.baseline) {
+        (Some(given), _) => given,
+        (None, Some(baseline)) => *baseline.references(),
+        (None, None) => match references_of(input.model, input.drag_table, input.flights) {
+            Ok(found) => found,
+            Err(DiagnoseError::Model(EffectModelError::NothingInside { segments })) => {
+                return Ok(insufficient(0, 0, &format!(
+                    "none of {segments} segments is inside the drag table"
+                )));
+            }
+            Err(error) => return Err(error),
+        },
+    };
+    let model = EffectModel::new(input.model, input.drag_table, references)?;
+    let chosen = |id: EffectId| {
+        (options.effects.is_empty() || options.effects.contains(&id))
+            && !options.without.contains(&id)
+    };
+    let (data, library) = Data::prepare(&model, input.flights, input.baseline, |points, engines, starts| {
+        Library::of(&model, points, engines, starts, chosen)
+    });
+    let not_testable = library
+        .not_testable
+        .iter()
+        .map(|(id, needs)| NotTestable {
+            effect: id.to_string(),
+            needs: needs.iter().map(|&name| name.to_owned()).collect(),
+        })
+        .collect();
+    if let Some(reason) = too_little(&data, &library) {
+        let mut found = insufficient(data.flights.len(), data.segments.len(), &reason);
+        found.not_testable = not_testable;
+        found.left_out = data.left_out;
+        return Ok(found);
+    }
+    let design = Design::of(&data, &references, input.baseline, input.table);
+    let stacked = Stacked::of(&data, &design, None);
+    let mut notes = Vec::new();
+    if input.references.is_none() && input.baseline.is_none() {
+        notes.push("references of effects are the means of these flights".to_owned());
+    }
+    let mut result =
+        conclude(&stacked, &model, &library, input, options, &mut notes)?;
+    // Heavy tails show only beside the best model; then everything is done again with weights.
+    if let Some(weights) = crate::robust::weights(&stacked, &result.1, &library) {
+        notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
+        drop(result);
+        let stacked = Stacked::of(&data, &design, Some(weights));
+        result = conclude(&stacked, &model, &library, input, options, &mut notes)?;
+    }
+    let mut diagnosis = result.0;
+    diagnosis.not_testable = not_testable;
+    diagnosis.left_out.clone_from(&data.left_out);
+    diagnosis.notes = notes;
+    Ok(diagnosis)
+}
+
+/// Why the data is too little for any name.
+fn too_little(data: &Data, library: &Library) -> Option<String> {
+    let (flights, segments) = (data.flights.len(), data.segments.len());
+    if flights < FEWEST_FLIGHTS {
+        return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS} are needed"));
+    }
+    if segments < FEWEST_SEGMENTS {
+        return Some(format!("{segments} segments, at least {FEWEST_SEGMENTS} are needed"));
+    }
+    if library.effects.is_empty() {
+        return Some("no effect of the library can be tested".to_owned());
+    }
+    let spread = |of: &dyn Fn(&EffectPoint) -> f64| {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for row in &data.segments {
+            low = low.min(of(&row.point));
+            high = high.max(of(&row.point));
+        }
+        high - low
+    };
+    let conditions = [
+        spread(&|p| p.mach) > 1e-3,
+        spread(&|p| p.pressure_altitude_m) > 30.0,
+        spread(&|p| p.mass_kg / p.mass_kg.max(1.0)) > 0.0 || spread(&|p| p.mass_kg) > 1.0,
+        spread(&|p| p.static_air_temperature_k) > 0.1,
+    ];
+    if conditions.iter().filter(|varied| **varied).count() < 2 {
+        return Some("all segments were flown at the same conditions".to_owned());
+    }
+    let first = data.segments[0].residual[0];
+    if data.segments.iter().all(|row| (row.residual[0] - first).abs() < 1e-12) {
+        return Some("the residuals of all segments are equal: fuel flow was computed, not measured".to_owned());
+    }
+    None
+}
+
+fn insufficient(flights: usize, segments: usize, reason: &str) -> Diagnosis {
+    Diagnosis {
+        tail: String::new(),
+        flights,
+        segments,
+        gap: Gap {
+            mean_percent: 0.0,
+            rms_percent: 0.0,
+            rms_ci95: [0.0; 2],
+            noise_floor_rms_percent: 0.0,
+            detected: false,
+            p_value: 1.0,
+        },
+        r#where: vec![],
+        causes: vec![],
+        not_testable: vec![],
+        verdict: Verdict {
+            kind: VerdictKind::InsufficientData,
+            effects: vec![],
+            class: vec![],
+            probability: 0.0,
+            closure: None,
+            closure_ci95: None,
+            advice: format!("Too little data: {reason}."),
+            separations: vec![],
+        },
+        detectable: vec![],
+        outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None },
+        left_out: std::collections::BTreeMap::new(),
+        notes: vec![],
+    }
+}
+
+/// An effect with its posterior.
+#[derive(Clone, Debug)]
+struct Posterior {
+    /// Index in the library; `None` for flight-to-flight scatter.
+    effect: Option<usize>,
+    probability: f64,
+    /// The most probable model in which it is the larger effect.
+    model: Scored,
+    /// Its place in that model.
+    place: usize,
+}
+
+fn conclude(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    input: &Input<'_>,
+    options: &Options,
+    notes: &mut Vec<String>,
+) -> Result<(Diagnosis, Analysis), DiagnoseError> {
+    let analysis =
+        analyse(stacked, model, library, None, true).ok_or(DiagnoseError::Degenerate)?;
+    let outside = compete(stacked, &analysis, library);
+    let gram = stacked.folds.without(None);
+    let distances = Distances::of(&gram, stacked.design).ok_or(DiagnoseError::Degenerate)?;
+    let remainder: Vec<f64> = stacked
+        .data
+        .segments
+        .iter()
+        .map(|row| input.baseline.map_or(0.0, |b| b.remainder(&row.point, &row.response).0))
+        .collect();
+    let best = &analysis.models[0].0;
+    let scale = noise_scale(&analysis, best, gram.rows);
+    let posteriors = dominant(stacked, &analysis, library);
+    let own = in_sample(stacked, model, library, &best.model.columns, &best.sizes, &remainder, scale);
+    let unseen = (!options.skip_closure && analysis.clean <= CLEAN_PROBABILITY)
+        .then(|| nested(stacked, model, library, &remainder, scale));
+    let gap = gap_of(stacked, &analysis, &remainder, &own, scale);
+    let verdict = verdict(
+        &analysis, &outside, &distances, library, &posteriors, &own, unseen.as_ref(), notes,
+    );
+    let causes = causes(&analysis, &outside, &distances, library, &posteriors, unseen.as_ref());
+    let classes = distances.classes(library);
+    let name = |effect: usize| library.effects[effect].id.to_string();
+    let detectable = (0..library.effects.len())
+        .map(|effect| {
+            let smallest = distances.smallest_detectable(library, effect);
+            Detectable {
+                effect: name(effect),
+                smallest: smallest.is_finite().then_some(smallest),
+                unit: library.effects[effect].id.entry().unit.to_owned(),
+                class: classes
+                    .iter()
+                    .find(|class| class.contains(&effect))
+                    .map_or_else(Vec::new, |class| class.iter().map(|&e| name(e)).collect()),
+            }
+        })
+        .collect();
+    let diagnosis = Diagnosis {
+        tail: String::new(),
+        flights: stacked.data.flights.len(),
+        segments: stacked.data.segments.len(),
+        gap,
+        r#where: vec![],
+        causes,
+        not_testable: vec![],
+        verdict,
+        detectable,
+        outside: OutsideLibrary {
+            probability: outside.probability,
+            variable: outside.variable.map(|(variable, _)| variable.words().to_owned()),
+            acts_on: outside.variable.map(|(_, acts)| acts_words(acts).to_owned()),
+        },
+        left_out: std::collections::BTreeMap::new(),
+        notes: vec![],
+    };
+    Ok((diagnosis, analysis))
+}
+
+const fn acts_words(acts: Acts) -> &'static str {
+    match acts {
+        Acts::OnFuelFlow => "fuel flow",
+        Acts::OnThrust => "thrust",
+        Acts::OnSplit => "one engine",
+    }
+}
+
+/// Noise variance over what the sensors announce, of the best model.
+fn noise_scale(analysis: &Analysis, best: &Scored, rows: usize) -> f64 {
+    let at = &analysis.backgrounds[best.background.min(analysis.backgrounds.len() - 1)];
+    let explained: f64 = best
+        .model
+        .columns
+        .iter()
+        .zip(&best.sizes)
+        .map(|(&column, size)| at.product(column) * size)
+        .sum();
+    let square = (at.square - explained).max(0.0);
+    (NOISE_FREEDOM + square) / (NOISE_FREEDOM + rows as f64)
+}
+
+/// Probability of each effect to be the larger one of what acts, over models.
+fn dominant(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Vec<Posterior> {
+    let count = stacked.data.segments.len() as f64;
+    let mean_squares: Vec<f64> = (0..library.columns.len())
+        .map(|column| {
+            stacked.data.segments.iter().map(|row| row.signatures[column][0].powi(2)).sum::<f64>()
+                / count
+        })
+        .collect();
+    // One entry an effect, flight-to-flight scatter last.
+    let mut found: Vec<Option<Posterior>> = vec![None; library.effects.len() + 1];
+    for (scored, probability) in &analysis.models {
+        let mut shares: Vec<(f64, Option<usize>, usize)> = scored
+            .model
+            .columns
+            .iter()
+            .zip(&scored.sizes)
+            .enumerate()
+            .map(|(place, (&column, size))| {
+                (size * size * mean_squares[column], Some(library.columns[column].effect), place)
+            })
+            .collect();
+        if let Some(percent) = scored.model.heating_percent {
+            shares.push(((percent / 100.0).powi(2), None, 0));
+        }
+        let Some(&(_, effect, place)) = shares.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            continue;
+        };
+        let slot = &mut found[effect.unwrap_or(library.effects.len())];
+        match slot {
+            Some(posterior) => posterior.probability += probability,
+            None => {
+                *slot = Some(Posterior {
+                    effect,
+                    probability: *probability,
+                    model: scored.clone(),
+                    place,
+                });
+            }
+        }
+    }
+    let mut all: Vec<Posterior> = found.into_iter().flatten().collect();
+    all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    all
+}
+
+fn gap_of(
+    stacked: &Stacked<'_>,
+    analysis: &Analysis,
+    remainder: &[f64],
+    own: &Shrinkage,
+    scale: f64,
+) -> Gap {
+    let gaps = gaps(stacked, remainder);
+    let count = gaps.len() as f64;
+    let mean = gaps.iter().sum::<f64>() / count;
+    let square = own.before();
+    // Interval of the mean square by flight, then its root.
+    let flights = own.before.len() as f64;
+    let spread: f64 = own
+        .before
+        .iter()
+        .zip(&own.segments)
+        .map(|(sum, n)| (sum - square * n).powi(2))
+        .sum::<f64>()
+        * flights
+        / (flights - 1.0).max(1.0);
+    let half = NORMAL_95 * spread.sqrt() / count;
+    // The largest deviation any effect makes of noise alone, with as many looks as columns (Bonferroni).
+    let plain = analysis.backgrounds.iter().find(|b| b.spike == 0.0 && b.tau == 0.0);
+    let p_value = plain.map_or(1.0, |at| {
+        let columns = analysis.scorer.columns();
+        let largest = (0..columns)
+            .filter(|&column| at.gram(column, column) > 0.0)
+            .map(|column| at.product(column).powi(2) / at.gram(column, column))
+            .fold(0.0, f64::max);
+        (columns as f64 * erfc((largest / scale / 2.0).sqrt())).min(1.0)
+    });
+    Gap {
+        mean_percent: 100.0 * mean,
+        rms_percent: 100.0 * square.sqrt(),
+        rms_ci95: [100.0 * (square - half).max(0.0).sqrt(), 100.0 * (square + half).sqrt()],
+        noise_floor_rms_percent: 100.0 * own.floor().sqrt(),
+        detected: analysis.clean <= CLEAN_PROBABILITY,
+        p_value,
+    }
+}
+
+fn causes(
+    analysis: &Analysis,
+    outside: &Outside,
+    distances: &Distances,
+    library: &Library,
+    posteriors: &[Posterior],
+    unseen: Option<&Shrinkage>,
+) -> Vec<Cause> {
+    let inside = 1.0 - outside.probability;
+    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
+    let best = &analysis.models[0].0;
+    let mut sum = 0.0;
+    let mut causes = Vec::new();
+    for posterior in posteriors {
+        if sum > 0.995 * named && causes.len() >= 3 {
+            break;
+        }
+        sum += posterior.probability;
+        let is_best = posterior.model.model == best.model;
+        let closure = unseen.filter(|_| is_best).and_then(Shrinkage::closure);
+        causes.push(Cause {
+            effect: name_of(library, posterior.effect),
+            probability: posterior.probability * inside,
+            class: class_of(distances, library, posterior),
+            magnitude: magnitude(library, posterior),
+            rms_after_percent: unseen.filter(|_| is_best).map(|s| 100.0 * s.after().sqrt()),
+            closure: closure.map(|c| c.0),
+            closure_ci95: closure.map(|c| c.1),
+            hidden: hidden_words(library, posterior),
+        });
+    }
+    causes
+}
+
+fn name_of(library: &Library, effect: Option<usize>) -> String {
+    effect.map_or(EffectId::FuelHeatingValue, |e| library.effects[e].id).to_string()
+}
+
+fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
+    let Some(effect) = posterior.effect else {
+        let percent = posterior.model.model.heating_percent.unwrap_or(0.0);
+        return Magnitude {
+            value: percent,
+            unit: EffectId::FuelHeatingValue.entry().unit.to_owned(),
+            ci95: [0.5 * percent, 2.0 * percent],
+        };
+    };
+    let value = posterior.model.sizes[posterior.place];
+    let half = NORMAL_95 * posterior.model.deviations[posterior.place];
+    Magnitude {
+        value,
+        unit: library.effects[effect].id.entry().unit.to_owned(),
+        ci95: [value - half, value + half],
+    }
+}
+
+fn class_of(distances: &Distances, library: &Library, posterior: &Posterior) -> Vec<String> {
+    let Some(_) = posterior.effect else {
+        return vec![EffectId::FuelHeatingValue.to_string()];
+    };
+    let column = posterior.model.model.columns[posterior.place];
+    let size = posterior.model.sizes[posterior.place];
+    distances
+        .confused_with(library, column, size)
+        .into_iter()
+        .map(|effect| library.effects[effect].id.to_string())
+        .collect()
+}
+
+fn hidden_words(library: &Library, posterior: &Posterior) -> String {
+    let Some(effect) = posterior.effect else { return String::new() };
+    let column = &library.columns[posterior.model.model.columns[posterior.place]];
+    match library.effects[effect].id {
+        EffectId::StepChange => {
+            let target = match column.hidden.step_target {
+                StepTarget::FuelFlow => "fuel flow",
+                StepTarget::Drag => "drag",
+            };
+            #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
+            let from = flight::Timestamp::from_second(column.hidden.step_from_s as i64)
+                .map_or_else(|_| String::new(), |instant| instant.to_string());
+            format!("{target} from {from}")
+        }
+        EffectId::TsfcThrottle => format!("pivot {}", column.hidden.throttle_pivot),
+        EffectId::WaveDrag => format!("Mdd {}", column.hidden.drag_divergence_mach),
+        _ => String::new(),
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "the verdict reads all that was found")]
+fn verdict(
+    analysis: &Analysis,
+    outside: &Outside,
+    distances: &Distances,
+    library: &Library,
+    posteriors: &[Posterior],
+    own: &Shrinkage,
+    unseen: Option<&Shrinkage>,
+    notes: &mut Vec<String>,
+) -> Verdict {
+    let closure = unseen.and_then(Shrinkage::closure);
+    let mut verdict = Verdict {
+        kind: VerdictKind::NoGap,
+        effects: vec![],
+        class: vec![],
+        probability: 0.0,
+        closure: closure.map(|c| c.0),
+        closure_ci95: closure.map(|c| c.1),
+        advice: String::new(),
+        separations: vec![],
+    };
+    let Some(top) = posteriors.first().filter(|_| analysis.clean <= CLEAN_PROBABILITY) else {
+        verdict.closure = None;
+        verdict.closure_ci95 = None;
+        "Nothing beyond the noise. `detectable` says how large each effect would have to be.".clone_into(&mut verdict.advice);
+        return verdict;
+    };
+    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
+    let variable = outside.variable.map_or("no variable", |(variable, _)| variable.words());
+    // Where the gap is too small to measure closure on unseen flights, the same flights must do.
+    let closed = closure.or_else(|| own.closure()).map_or(1.0, |c| c.0);
+    let elsewhere = outside.probability > OUTSIDE_PROBABILITY;
+    if (elsewhere && closed < NAMED_CLOSURE) || named < 0.5 {
+        verdict.kind = VerdictKind::OutsideLibrary;
+        verdict.probability = outside.probability.max(1.0 - named);
+        verdict.advice = format!(
+            "A gap that no effect of the library explains; it hangs on {variable}. The nearest, {}, closes {:.0} % of it.",
+            name_of(library, top.effect),
+            100.0 * closed.clamp(0.0, 1.0)
+        );
+        return verdict;
+    }
+    verdict.kind = VerdictKind::Effects;
+    verdict.probability = top.probability * (1.0 - outside.probability);
+    verdict.effects = set_of(analysis, library, top);
+    verdict.class = class_of(distances, library, top);
+    // What the evidence leaves open belongs to the class too, however far apart sizes typical of it would be.
+    let mut sum = 0.0;
+    for posterior in posteriors {
+        if sum >= CREDIBLE * named {
+            break;
+        }
+        sum += posterior.probability;
+        let name = name_of(library, posterior.effect);
+        if !verdict.class.contains(&name) {
+            verdict.class.push(name);
+        }
+    }
+    if elsewhere {
+        notes.push(format!("the form of the effect differs in {variable}"));
+    }
+    verdict.separations = separations(distances, library, top, &verdict.class);
+    verdict.advice = advice(&verdict, elsewhere.then_some(variable));
+    verdict
+}
+
+/// The effects that act together, where a pair is more probable than not; else the top effect.
+fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String> {
+    let (best, probability) = &analysis.models[0];
+    let mut names = vec![name_of(library, top.effect)];
+    if *probability > 0.5 {
+        let members =
+            best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
+        let scatter = best.model.heating_percent.map(|_| None);
+        for member in members.chain(scatter) {
+            let name = name_of(library, member);
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    names
+}
+
+fn separations(
+    distances: &Distances,
+    library: &Library,
+    top: &Posterior,
+    class: &[String],
+) -> Vec<Separation> {
+    if top.effect.is_none() {
+        return vec![];
+    }
+    let column = top.model.model.columns[top.place];
+    let size = top.model.sizes[top.place];
+    let mut all = Vec::new();
+    for (index, effect) in library.effects.iter().enumerate() {
+        let name = effect.id.to_string();
+        if Some(index) == top.effect || !class.contains(&name) {
+            continue;
+        }
+        for found in distances.measurements(library, column, effect.representative, size) {
+            all.push(Separation {
+                from: name.clone(),
+                measurement: found.words.to_owned(),
+                distance_now: found.before,
+                distance_then: found.after,
+            });
+        }
+    }
+    all.sort_by(|a, b| b.distance_then.total_cmp(&a.distance_then));
+    all
+}
+
+fn advice(verdict: &Verdict, differs: Option<&str>) -> String {
+    let mut words = if verdict.class.len() > 1 {
+        format!("One of {}: these flights cannot tell them apart.", verdict.class.join(", "))
+    } else {
+        format!("{}.", verdict.effects.join(" and "))
+    };
+    if let Some(variable) = differs {
+        words.push_str(&format!(" Its form differs from the library's in {variable}."));
+    }
+    if let Some(best) = verdict.separations.first() {
+        words.push_str(&format!(
+            " To be sure: {} ({:.1} to {:.1} standard deviations from {}).",
+            best.measurement, best.distance_now, best.distance_then, best.from
+        ));
+    }
+    words
+}
+
+/// Effects of a verdict as they are switched on in a model.
+impl Diagnosis {
+    /// The sizes of the verdict's effects, for applying them; empty where the verdict names none.
+    #[must_use]
+    pub fn effects(&self) -> Effects {
+        let mut effects = Effects::none();
+        for name in &self.verdict.effects {
+            let cause = self.causes.iter().find(|cause| &cause.effect == name);
+            if let (Some(id), Some(cause)) = (EffectId::from_name(name), cause) {
+                effects = effects.with(id, cause.magnitude.value);
+            }
+        }
+        effects
+    }
+}

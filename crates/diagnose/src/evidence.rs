@@ -1,0 +1,588 @@
+//! The search: every single effect and every pair, scored by closed-form Gaussian evidence over backgrounds.
+//!
+//! Difficult: everything happens on small matrices from which all that no hypothesis names (nuisance, smooth discrepancy,
+//! a spike of every other effect) was integrated out before. A model is a choice of columns; an effect with a hidden
+//! parameter has several columns that share its prior mass.
+
+use statrs::function::erf::erfc;
+
+use crate::design::Design;
+use crate::gram::{Gram, Reduced, integrate_out};
+use crate::library::Library;
+
+/// Sizes of the spike that every effect may have in the background, of its typical size.
+pub(crate) const SPIKES: [f64; 4] = [0.0, 0.05, 0.15, 0.30];
+/// Amplitudes of the smooth discrepancy, shares of fuel flow.
+pub(crate) const TAUS: [f64; 4] = [0.0, 0.0015, 0.004, 0.010];
+/// Degrees of freedom of the prior of the noise scale.
+pub(crate) const NOISE_FREEDOM: f64 = 40.0;
+/// Prior probability of no effect, one, two.
+const PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25];
+/// Prior standard deviations of a free effect, of its typical size, and how probable each is.
+const PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)];
+/// Prior probability of the sign that physics expects.
+const EXPECTED_SIGN: f64 = 0.95;
+/// Sizes of flight-to-flight scatter that are tried, per cent of fuel flow.
+pub(crate) const HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4];
+
+/// A background: Gram of the effects' columns, product with the residual, square of the residual.
+#[derive(Clone, Debug)]
+pub(crate) struct Background {
+    pub(crate) spike: f64,
+    pub(crate) tau: f64,
+    /// Where each column of the library lies in `gram`.
+    places: Vec<usize>,
+    width: usize,
+    gram: Vec<f64>,
+    product: Vec<f64>,
+    pub(crate) square: f64,
+    pub(crate) ln_determinant: f64,
+}
+
+/// What a model is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Model {
+    /// Columns, at most two.
+    pub(crate) columns: Vec<usize>,
+    /// Flight-to-flight scatter, per cent.
+    pub(crate) heating_percent: Option<f64>,
+}
+
+/// A scored model.
+#[derive(Clone, Debug)]
+pub(crate) struct Scored {
+    pub(crate) model: Model,
+    /// ln of evidence times prior, summed over backgrounds.
+    pub(crate) ln_weight: f64,
+    /// Posterior means and standard deviations of the sizes.
+    pub(crate) sizes: Vec<f64>,
+    pub(crate) deviations: Vec<f64>,
+    /// The background under which the model is most probable.
+    pub(crate) background: usize,
+}
+
+/// All models with their scores.
+#[derive(Clone, Debug)]
+pub(crate) struct Search {
+    pub(crate) models: Vec<Scored>,
+    /// ln weight of no effect in no background at all.
+    pub(crate) ln_clean: f64,
+}
+
+/// Prior of a column.
+#[derive(Clone, Copy, Debug)]
+struct Prior {
+    mean: f64,
+    /// Standard deviations and ln probabilities.
+    scales: [(f64, f64); 2],
+    count: usize,
+    positive: bool,
+}
+
+/// The evidence of one model in one background.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Evidence<const K: usize> {
+    pub(crate) ln: f64,
+    pub(crate) sizes: [f64; K],
+    pub(crate) deviations: [f64; K],
+}
+
+/// Everything the scoring of models needs.
+#[derive(Clone, Debug)]
+pub(crate) struct Scorer {
+    priors: Vec<Prior>,
+    /// Effect of each column.
+    pub(crate) effect_of: Vec<usize>,
+    ln_columns: Vec<f64>,
+    effects: usize,
+    rows: f64,
+}
+
+impl Background {
+    /// A background in which only some columns are known: those of `own`, with the residual last in `matrix`.
+    pub(crate) fn small(
+        matrix: &faer::Mat<f64>,
+        own: &[usize],
+        columns: usize,
+        ln_determinant: f64,
+    ) -> Self {
+        let last = own.len();
+        let mut at = Self {
+            spike: 0.0,
+            tau: 0.0,
+            places: vec![usize::MAX; columns],
+            width: last,
+            gram: Vec::with_capacity(last * last),
+            product: Vec::with_capacity(last),
+            square: matrix[(last, last)],
+            ln_determinant,
+        };
+        for (place, &column) in own.iter().enumerate() {
+            at.places[column] = place;
+            at.product.push(matrix[(place, last)]);
+            for other in 0..last {
+                at.gram.push(matrix[(place, other)]);
+            }
+        }
+        at
+    }
+
+    pub(crate) fn gram(&self, a: usize, b: usize) -> f64 {
+        self.gram[self.places[a] * self.width + self.places[b]]
+    }
+
+    pub(crate) fn product(&self, column: usize) -> f64 {
+        self.product[self.places[column]]
+    }
+}
+
+/// Integrates nuisance out: what is left are effects, smooth background, agnostic functions and residual.
+pub(crate) fn without_nuisance(gram: &Gram, design: &Design<'_>, agnostic: bool) -> Option<Reduced> {
+    let mut kept: Vec<usize> = (0..design.effects).chain(design.smooth.clone()).collect();
+    if agnostic {
+        kept.extend(design.blocks.iter().flat_map(|block| block.columns.clone()));
+    }
+    kept.push(design.residual());
+    let out: Vec<usize> = design.nuisance.clone().collect();
+    integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])
+}
+
+/// Every background, from a Gram without nuisance whose columns are effects, smooth background, …, residual.
+pub(crate) fn backgrounds(
+    reduced: &Reduced,
+    effects: usize,
+    smooth: usize,
+    library: &Library,
+    choose: impl Fn(f64, f64) -> bool,
+) -> Vec<Background> {
+    let residual = reduced.matrix.ncols() - 1;
+    let kept: Vec<usize> = (0..effects).chain([residual]).collect();
+    let smooth_columns: Vec<usize> = (effects..effects + smooth).collect();
+    let representatives: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
+    let mut all = Vec::new();
+    for tau in TAUS {
+        if !SPIKES.iter().any(|&spike| choose(spike, tau)) {
+            continue;
+        }
+        let out: &[usize] = if tau > 0.0 { &smooth_columns } else { &[] };
+        let Some(smoothed) =
+            integrate_out(&reduced.matrix, &kept, out, &vec![tau; out.len()])
+        else {
+            continue;
+        };
+        for spike in SPIKES.into_iter().filter(|&spike| choose(spike, tau)) {
+            let out: &[usize] = if spike > 0.0 { &representatives } else { &[] };
+            let deviations: Vec<f64> =
+                library.effects.iter().map(|effect| spike * effect.typical).collect();
+            let inner: Vec<usize> = (0..=effects).collect();
+            let Some(spiked) = integrate_out(&smoothed.matrix, &inner, out, &deviations) else {
+                continue;
+            };
+            let m = &spiked.matrix;
+            all.push(Background {
+                spike,
+                tau,
+                places: (0..effects).collect(),
+                width: effects,
+                gram: (0..effects).flat_map(|a| (0..effects).map(move |b| (a, b))).map(|ab| m[ab]).collect(),
+                product: (0..effects).map(|a| m[(a, effects)]).collect(),
+                square: m[(effects, effects)],
+                ln_determinant: reduced.ln_determinant
+                    + smoothed.ln_determinant
+                    + spiked.ln_determinant,
+            });
+        }
+    }
+    all
+}
+
+impl Scorer {
+    pub(crate) fn of(library: &Library, rows: usize) -> Self {
+        let priors = library
+            .columns
+            .iter()
+            .map(|column| {
+                let effect = &library.effects[column.effect];
+                let free = PRIOR_SCALES
+                    .map(|(scale, share)| (scale * effect.prior_deviation, share.ln()));
+                Prior {
+                    mean: effect.prior_mean,
+                    scales: if effect.known {
+                        [(effect.prior_deviation, 0.0), (effect.prior_deviation, 0.0)]
+                    } else {
+                        free
+                    },
+                    count: if effect.known { 1 } else { 2 },
+                    positive: effect.positive,
+                }
+            })
+            .collect();
+        Self {
+            priors,
+            effect_of: library.columns.iter().map(|column| column.effect).collect(),
+            ln_columns: library.effects.iter().map(|e| (e.columns as f64).ln()).collect(),
+            effects: library.effects.len() + usize::from(library.heating_value),
+            rows: rows as f64,
+        }
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        self.priors.len()
+    }
+
+    fn power(&self) -> f64 {
+        0.5 * (NOISE_FREEDOM + self.rows)
+    }
+
+    /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters.
+    pub(crate) fn ln_prior(&self, model: &Model) -> f64 {
+        let size = model.columns.len() + usize::from(model.heating_percent.is_some());
+        let count = self.effects as f64;
+        let choices = match size {
+            0 => 1.0,
+            1 => count,
+            _ => 0.5 * count * (count - 1.0),
+        };
+        let hidden: f64 =
+            model.columns.iter().map(|&column| self.ln_columns[self.effect_of[column]]).sum();
+        let heating = if model.heating_percent.is_some() {
+            (HEATING_SIZES_PERCENT.len() as f64).ln()
+        } else {
+            0.0
+        };
+        PRIOR_BY_SIZE[size.min(2)].ln() - f64::ln(choices) - hidden - heating
+    }
+
+    pub(crate) fn none(&self, at: &Background) -> f64 {
+        -0.5 * at.ln_determinant - self.power() * (NOISE_FREEDOM + at.square).ln()
+    }
+
+    /// One effect; `shift` is the size at which the model was linearised.
+    ///
+    /// ```text
+    /// ln p = −½ ln|1 + Z'Z| − ½ ln(M/λ) − ½(ν0 + n) ln(ν0 + q + λμ² − r²/M) + ln 2P(sign)     [diagnosis.19]
+    /// M = G + λ,  r = b + λμ,  λ = 1/s²
+    /// ```
+    pub(crate) fn one(&self, at: &Background, column: usize, shift: f64) -> Evidence<1> {
+        let prior = self.priors[column];
+        let (gram, product) = (at.gram(column, column), at.product(column));
+        let mut sum = Mixture::<1>::new();
+        for &(deviation, ln_share) in &prior.scales[..prior.count] {
+            let precision = 1.0 / (deviation * deviation);
+            let mean = prior.mean - shift;
+            let posterior = gram + precision;
+            let right = product + precision * mean;
+            let size = right / posterior;
+            let square = at.square + precision * mean * mean - right * size;
+            let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
+            let spread = (scale / posterior).sqrt();
+            let ln = -0.5 * at.ln_determinant - 0.5 * (posterior / precision).ln()
+                - self.power() * (NOISE_FREEDOM + square).ln()
+                + ln_share
+                + ln_sign(prior.positive, (size + shift) / spread);
+            sum.add(ln, [size + shift], [spread]);
+        }
+        sum.mean()
+    }
+
+    /// Two effects, `shifts` as above.
+    pub(crate) fn two(&self, at: &Background, columns: [usize; 2], shifts: [f64; 2]) -> Evidence<2> {
+        let [a, b] = columns;
+        let (prior_a, prior_b) = (self.priors[a], self.priors[b]);
+        let cross = at.gram(a, b);
+        let mut sum = Mixture::<2>::new();
+        for &(deviation_a, ln_a) in &prior_a.scales[..prior_a.count] {
+            for &(deviation_b, ln_b) in &prior_b.scales[..prior_b.count] {
+                let precision = [1.0 / (deviation_a * deviation_a), 1.0 / (deviation_b * deviation_b)];
+                let mean = [prior_a.mean - shifts[0], prior_b.mean - shifts[1]];
+                let posterior =
+                    [at.gram(a, a) + precision[0], at.gram(b, b) + precision[1]];
+                let right = [
+                    at.product(a) + precision[0] * mean[0],
+                    at.product(b) + precision[1] * mean[1],
+                ];
+                let determinant = posterior[0] * posterior[1] - cross * cross;
+                if determinant <= 0.0 {
+                    continue; // rounding: exactly confounded and hardly any prior
+                }
+                let size_a = (posterior[1] * right[0] - cross * right[1]) / determinant;
+                let size_b = (posterior[0] * right[1] - cross * right[0]) / determinant;
+                let square = at.square
+                    + precision[0] * mean[0] * mean[0]
+                    + precision[1] * mean[1] * mean[1]
+                    - right[0] * size_a
+                    - right[1] * size_b;
+                let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
+                let spread_a = (scale * posterior[1] / determinant).sqrt();
+                let spread_b = (scale * posterior[0] / determinant).sqrt();
+                let ln = -0.5 * at.ln_determinant
+                    - 0.5 * (determinant / (precision[0] * precision[1])).ln()
+                    - self.power() * (NOISE_FREEDOM + square).ln()
+                    + ln_a
+                    + ln_b
+                    + ln_sign(prior_a.positive, (size_a + shifts[0]) / spread_a)
+                    + ln_sign(prior_b.positive, (size_b + shifts[1]) / spread_b);
+                sum.add(ln, [size_a + shifts[0], size_b + shifts[1]], [spread_a, spread_b]);
+            }
+        }
+        sum.mean()
+    }
+
+    /// Every model of at most `largest` effects.
+    pub(crate) fn search(&self, backgrounds: &[Background], largest: usize) -> Search {
+        let ln_background = -(backgrounds.len() as f64).ln();
+        let columns = self.priors.len();
+        let mut models = Vec::new();
+        let mut ln_clean = f64::NEG_INFINITY;
+
+        let none = Model { columns: vec![], heating_percent: None };
+        let prior = self.ln_prior(&none) + ln_background;
+        let mut sum = Mixture::<0>::new();
+        let mut best = (f64::NEG_INFINITY, 0);
+        for (k, at) in backgrounds.iter().enumerate() {
+            let ln = self.none(at) + prior;
+            if at.spike == 0.0 && at.tau == 0.0 {
+                ln_clean = ln;
+            }
+            best = if ln > best.0 { (ln, k) } else { best };
+            sum.add(ln, [], []);
+        }
+        models.push(scored(none, &sum, best.1));
+
+        for column in 0..columns {
+            let model = Model { columns: vec![column], heating_percent: None };
+            let prior = self.ln_prior(&model) + ln_background;
+            models.push(over(backgrounds, model, |at| {
+                let mut evidence = self.one(at, column, 0.0);
+                evidence.ln += prior;
+                evidence
+            }));
+        }
+        if largest >= 2 {
+            for a in 0..columns {
+                for b in a + 1..columns {
+                    if self.effect_of[a] == self.effect_of[b] {
+                        continue;
+                    }
+                    let model = Model { columns: vec![a, b], heating_percent: None };
+                    let prior = self.ln_prior(&model) + ln_background;
+                    models.push(over(backgrounds, model, |at| {
+                        let mut evidence = self.two(at, [a, b], [0.0; 2]);
+                        evidence.ln += prior;
+                        evidence
+                    }));
+                }
+            }
+        }
+        Search { models, ln_clean }
+    }
+
+    /// Models with flight-to-flight scatter: alone and with one effect.
+    pub(crate) fn search_heating(&self, backgrounds: &[Background], percent: f64) -> Vec<Scored> {
+        let ln_background = -(backgrounds.len() as f64).ln();
+        let mut models = Vec::new();
+        let alone = Model { columns: vec![], heating_percent: Some(percent) };
+        let prior = self.ln_prior(&alone) + ln_background;
+        models.push(over(backgrounds, alone, |at| Evidence {
+            ln: self.none(at) + prior,
+            sizes: [],
+            deviations: [],
+        }));
+        for column in 0..self.priors.len() {
+            let model = Model { columns: vec![column], heating_percent: Some(percent) };
+            let prior = self.ln_prior(&model) + ln_background;
+            models.push(over(backgrounds, model, |at| {
+                let mut evidence = self.one(at, column, 0.0);
+                evidence.ln += prior;
+                evidence
+            }));
+        }
+        models
+    }
+}
+
+fn over<const K: usize>(
+    backgrounds: &[Background],
+    model: Model,
+    evidence: impl Fn(&Background) -> Evidence<K>,
+) -> Scored {
+    let mut sum = Mixture::<K>::new();
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (k, at) in backgrounds.iter().enumerate() {
+        let one = evidence(at);
+        if one.ln > best.0 {
+            best = (one.ln, k);
+        }
+        sum.add(one.ln, one.sizes, one.deviations);
+    }
+    scored(model, &sum, best.1)
+}
+
+fn scored<const K: usize>(model: Model, sum: &Mixture<K>, background: usize) -> Scored {
+    let mean = sum.mean();
+    Scored {
+        model,
+        ln_weight: mean.ln,
+        sizes: mean.sizes.to_vec(),
+        deviations: mean.deviations.to_vec(),
+        background,
+    }
+}
+
+/// ln of how much more probable the data are when the sign is the expected one: 2·(p Φ(t) + (1 − p) Φ(−t)).
+fn ln_sign(positive: bool, t: f64) -> f64 {
+    if !positive {
+        return 0.0;
+    }
+    if t > 8.0 {
+        return (2.0 * EXPECTED_SIGN).ln();
+    }
+    if t < -8.0 {
+        return (2.0 * (1.0 - EXPECTED_SIGN)).ln();
+    }
+    let above = 0.5 * erfc(-t / core::f64::consts::SQRT_2);
+    (2.0 * (EXPECTED_SIGN * above + (1.0 - EXPECTED_SIGN) * (1.0 - above))).ln()
+}
+
+/// A sum of weighted normals in logarithms: total weight, mean and standard deviation of the mixture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mixture<const K: usize> {
+    largest: f64,
+    total: f64,
+    first: [f64; K],
+    second: [f64; K],
+}
+
+impl<const K: usize> Mixture<K> {
+    pub(crate) const fn new() -> Self {
+        Self { largest: f64::NEG_INFINITY, total: 0.0, first: [0.0; K], second: [0.0; K] }
+    }
+
+    pub(crate) fn add(&mut self, ln: f64, sizes: [f64; K], deviations: [f64; K]) {
+        if ln.is_nan() || ln == f64::NEG_INFINITY {
+            return;
+        }
+        if ln > self.largest {
+            let shrink = (self.largest - ln).exp();
+            self.total *= shrink;
+            for k in 0..K {
+                self.first[k] *= shrink;
+                self.second[k] *= shrink;
+            }
+            self.largest = ln;
+        }
+        let weight = (ln - self.largest).exp();
+        self.total += weight;
+        for k in 0..K {
+            self.first[k] += weight * sizes[k];
+            self.second[k] += weight * (sizes[k] * sizes[k] + deviations[k] * deviations[k]);
+        }
+    }
+
+    pub(crate) fn ln(&self) -> f64 {
+        if self.total > 0.0 { self.largest + self.total.ln() } else { f64::NEG_INFINITY }
+    }
+
+    pub(crate) fn mean(&self) -> Evidence<K> {
+        let mut sizes = [0.0; K];
+        let mut deviations = [0.0; K];
+        if self.total > 0.0 {
+            for k in 0..K {
+                sizes[k] = self.first[k] / self.total;
+                deviations[k] =
+                    (self.second[k] / self.total - sizes[k] * sizes[k]).max(0.0).sqrt();
+            }
+        }
+        Evidence { ln: self.ln(), sizes, deviations }
+    }
+}
+
+/// ln Σ exp, in order.
+pub(crate) fn ln_sum(values: impl IntoIterator<Item = f64>) -> f64 {
+    let mut sum = Mixture::<0>::new();
+    for value in values {
+        sum.add(value, [], []);
+    }
+    sum.ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mixture_by_hand() {
+        // Weights 1 and 3 on sizes 2 and 6, each with deviation 1: mean 5, variance 1 + (9 + 3)/4 = 4.
+        let mut sum = Mixture::<1>::new();
+        sum.add(0.0, [2.0], [1.0]);
+        sum.add(3.0_f64.ln(), [6.0], [1.0]);
+        let mean = sum.mean();
+        assert!((mean.sizes[0] - 5.0).abs() < 1e-14);
+        assert!((mean.deviations[0] - 2.0).abs() < 1e-14);
+        assert!((mean.ln - 4.0_f64.ln()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn signs_by_the_normal_table() {
+        // Φ(1.96) = 0.975 002: 2·(0.95·0.975002 + 0.05·0.024998) = 1.855 004.
+        assert!((ln_sign(true, 1.96).exp() - 1.855_004).abs() < 1e-5);
+        assert!(ln_sign(false, -5.0).abs() < 1e-300);
+    }
+
+    /// The closed form against the marginal likelihood integrated on a grid of θ and of ln of the noise scale.
+    #[test]
+    fn evidence_against_numerical_integration() {
+        let (gram, product, square, rows) = (7.0, 5.0, 12.0, 9.0);
+        let at = Background {
+            spike: 0.0,
+            tau: 0.0,
+            places: vec![0],
+            width: 1,
+            gram: vec![gram],
+            product: vec![product],
+            square,
+            ln_determinant: 0.0,
+        };
+        let prior = Prior {
+            mean: 0.3,
+            scales: [(0.8, 0.0), (0.8, 0.0)],
+            count: 1,
+            positive: false,
+        };
+        let scorer = Scorer {
+            priors: vec![prior],
+            effect_of: vec![0],
+            ln_columns: vec![0.0],
+            effects: 1,
+            rows,
+        };
+        // p(y|θ, v) ∝ v^(−n/2) exp(−|y − Xθ|²/2v), θ ~ N(μ, s² v), v ~ inverse gamma(ν0/2, ν0/2).
+        let integral = |with: bool| {
+            let mut sum = 0.0;
+            for i in 0..400 {
+                let v = (f64::from(i - 200) * 0.015).exp();
+                let weight_v = v.powf(-0.5 * NOISE_FREEDOM) * (-0.5 * NOISE_FREEDOM / v).exp();
+                if !with {
+                    sum += weight_v * v.powf(-0.5 * rows) * (-0.5 * square / v).exp() * 0.015;
+                    continue;
+                }
+                for j in 0..800 {
+                    let theta = -3.0 + f64::from(j) * 0.0075;
+                    let rest = square - 2.0 * product * theta + gram * theta * theta;
+                    let z2 = (theta - 0.3_f64).powi(2) / (0.64 * v);
+                    let density = (-0.5 * z2).exp() / (0.8 * (2.0 * core::f64::consts::PI * v).sqrt());
+                    sum += weight_v
+                        * v.powf(-0.5 * rows)
+                        * (-0.5 * rest / v).exp()
+                        * density
+                        * 0.0075
+                        * 0.015;
+                }
+            }
+            sum.ln()
+        };
+        let expected = integral(true) - integral(false);
+        let found = scorer.one(&at, 0, 0.0).ln - scorer.none(&at);
+        assert!((found - expected).abs() < 2e-3, "{found} {expected}");
+    }
+}

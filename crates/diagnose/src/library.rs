@@ -1,0 +1,187 @@
+//! The columns of the search: every testable effect, one column for each value of a hidden parameter.
+
+use flight::effect::{EffectId, TypicalSize};
+use perf_model::effects::{EffectModel, EffectPoint, HiddenParameters, StepTarget};
+
+/// Share of the segments that must have an effect's input.
+const RECORDED_SHARE: f64 = 0.9;
+/// Corrected thrusts over their reference that the throttle effect may pivot about.
+const THROTTLE_PIVOTS: [f64; 5] = [0.6, 0.8, 1.0, 1.2, 1.5];
+/// Drag-divergence Mach numbers of the contract's range, where the aircraft file does not say one.
+const DIVERGENCE_MACHS: [f64; 6] = [0.74, 0.78, 0.82, 0.86, 0.90, 0.94];
+/// Dates of a step that are tried, each in the middle of as many flights.
+const STEP_DATES: usize = 9;
+/// Standard deviation of a coefficient that physics says is 1.
+const KNOWN_DEVIATION: f64 = 0.15;
+
+/// One column: an effect at one value of its hidden parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) effect: usize,
+    pub(crate) hidden: HiddenParameters,
+}
+
+/// One testable effect with its prior.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Testable {
+    pub(crate) id: EffectId,
+    /// Typical size in the effect's unit.
+    pub(crate) typical: f64,
+    /// Prior mean and standard deviation of θ; the standard deviation is mixed at once and three times where free.
+    pub(crate) prior_mean: f64,
+    pub(crate) prior_deviation: f64,
+    pub(crate) known: bool,
+    /// Whether physics says which sign to expect.
+    pub(crate) positive: bool,
+    /// First column and number of columns.
+    pub(crate) first_column: usize,
+    pub(crate) columns: usize,
+    /// The column that stands for the effect where one must do.
+    pub(crate) representative: usize,
+}
+
+/// Testable effects, their columns, and what cannot be tested.
+#[derive(Clone, Debug)]
+pub(crate) struct Library {
+    pub(crate) effects: Vec<Testable>,
+    pub(crate) columns: Vec<Column>,
+    pub(crate) not_testable: Vec<(EffectId, Vec<&'static str>)>,
+    /// `fuel_heating_value`, a variance: not among the columns.
+    pub(crate) heating_value: bool,
+}
+
+impl Library {
+    /// The library for these points. `only` and `without` are the caller's choice.
+    pub(crate) fn of(
+        model: &EffectModel<'_>,
+        points: &[EffectPoint],
+        engines_recorded: bool,
+        flight_starts_s: &[f64],
+        chosen: impl Fn(EffectId) -> bool,
+    ) -> Self {
+        let mut library = Self {
+            effects: Vec::new(),
+            columns: Vec::new(),
+            not_testable: Vec::new(),
+            heating_value: false,
+        };
+        for id in EffectId::library(model.aircraft().engines()) {
+            if !chosen(id) {
+                continue;
+            }
+            if let Some(needs) = lacking(id, points, engines_recorded) {
+                library.not_testable.push((id, needs));
+            } else if id == EffectId::FuelHeatingValue {
+                library.heating_value = true;
+            } else {
+                library.add(id, model, flight_starts_s);
+            }
+        }
+        library
+    }
+
+    fn add(&mut self, id: EffectId, model: &EffectModel<'_>, flight_starts_s: &[f64]) {
+        let grid = hidden_grid(id, model, flight_starts_s);
+        if grid.is_empty() {
+            return; // a step needs flights on both sides of a date
+        }
+        let typical = model.references().typical_size(id);
+        let known = matches!(id.entry().typical, TypicalSize::Known);
+        let first_column = self.columns.len();
+        let effect = self.effects.len();
+        self.columns.extend(grid.iter().map(|&hidden| Column { effect, hidden }));
+        self.effects.push(Testable {
+            id,
+            typical,
+            prior_mean: if known { 1.0 } else { 0.0 },
+            prior_deviation: if known { KNOWN_DEVIATION } else { typical },
+            known,
+            positive: expects_positive(id),
+            first_column,
+            columns: grid.len(),
+            representative: first_column + grid.len() / 2,
+        });
+    }
+}
+
+/// Which of an effect's inputs are missing in too many segments; `None` where it can be tested.
+fn lacking(
+    id: EffectId,
+    points: &[EffectPoint],
+    engines_recorded: bool,
+) -> Option<Vec<&'static str>> {
+    if matches!(id, EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_)) && !engines_recorded {
+        return Some(vec!["WF(k)"]);
+    }
+    let missing = points.iter().filter(|point| EffectModel::lacks(id, point).is_some()).count();
+    if (missing as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64 {
+        return None;
+    }
+    Some(id.entry().needs.iter().map(|needed| needed.name()).collect())
+}
+
+/// Effects whose physics has one sign: friction falls with Reynolds number, age and offtakes cost fuel.
+const fn expects_positive(id: EffectId) -> bool {
+    matches!(
+        id,
+        EffectId::ZeroLiftDrag
+            | EffectId::ReynoldsNumber
+            | EffectId::TrimDragCg
+            | EffectId::AsymmetryDrag
+            | EffectId::AirframeAgeing
+            | EffectId::TsfcThrottle
+            | EffectId::PowerOfftake
+            | EffectId::AntiIceBleed
+            | EffectId::EngineAgeing
+    )
+}
+
+fn hidden_grid(
+    id: EffectId,
+    model: &EffectModel<'_>,
+    flight_starts_s: &[f64],
+) -> Vec<HiddenParameters> {
+    let hidden = HiddenParameters::default();
+    match id {
+        EffectId::TsfcThrottle => THROTTLE_PIVOTS
+            .into_iter()
+            .map(|throttle_pivot| HiddenParameters { throttle_pivot, ..hidden })
+            .collect(),
+        EffectId::WaveDrag => match model.aircraft().drag_divergence_mach() {
+            Some(mach) => vec![HiddenParameters { drag_divergence_mach: mach.value(), ..hidden }],
+            None => DIVERGENCE_MACHS
+                .into_iter()
+                .map(|mach| HiddenParameters { drag_divergence_mach: mach, ..hidden })
+                .collect(),
+        },
+        EffectId::StepChange => step_dates_s(flight_starts_s)
+            .into_iter()
+            .flat_map(|step_from_s| {
+                [StepTarget::FuelFlow, StepTarget::Drag].map(|step_target| HiddenParameters {
+                    step_from_s,
+                    step_target,
+                    ..hidden
+                })
+            })
+            .collect(),
+        _ => vec![hidden],
+    }
+}
+
+/// Dates between flights, evenly by number of flights; none at the very ends.
+fn step_dates_s(flight_starts_s: &[f64]) -> Vec<f64> {
+    let mut starts = flight_starts_s.to_vec();
+    starts.sort_by(f64::total_cmp);
+    let mut dates = Vec::new();
+    for k in 1..=STEP_DATES {
+        let at = k * starts.len() / (STEP_DATES + 1);
+        if at == 0 || at >= starts.len() || starts[at] <= starts[at - 1] {
+            continue;
+        }
+        let between = f64::midpoint(starts[at - 1], starts[at]);
+        if dates.last() != Some(&between) {
+            dates.push(between);
+        }
+    }
+    dates
+}

@@ -1,0 +1,213 @@
+//! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
+
+use perf_model::effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
+use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
+use serde::{Deserialize, Serialize};
+
+/// Most channels a segment has: fuel flow, three contrasts of four engines, N2.
+pub(crate) const MAXIMUM_CHANNELS: usize = flight::MAXIMUM_ENGINES + 1;
+/// One number a channel.
+pub(crate) type ByChannel = [f64; MAXIMUM_CHANNELS];
+
+/// Flight-to-flight standard deviation of the split of thrust between engines, of ln(Wf1/Wf2): 1 %.
+const SPLIT_DEVIATION: f64 = 0.01;
+
+/// Factors on the sensors' standard deviations, learnt from clean flights; 1 before.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseFactors {
+    /// Of what differs from segment to segment: fuel flow, engine against engine, N2.
+    pub within: [f64; 3],
+    /// Of what all segments of one flight have in common, in the same order.
+    pub between: [f64; 3],
+}
+
+impl Default for NoiseFactors {
+    fn default() -> Self {
+        Self { within: [1.0; 3], between: [1.0; 3] }
+    }
+}
+
+/// Which channels there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Channels {
+    /// Contrasts between engines: engines − 1, or 0.
+    pub(crate) contrasts: usize,
+    pub(crate) n2: bool,
+}
+
+impl Channels {
+    pub(crate) const fn count(self) -> usize {
+        1 + self.contrasts + if self.n2 { 1 } else { 0 }
+    }
+
+    pub(crate) const fn n2_row(self) -> usize {
+        1 + self.contrasts
+    }
+
+    /// Kind of a channel, for noise factors: 0 fuel flow, 1 contrast, 2 N2.
+    pub(crate) const fn kind(self, channel: usize) -> usize {
+        if channel == 0 {
+            0
+        } else if channel <= self.contrasts {
+            1
+        } else {
+            2
+        }
+    }
+}
+
+/// Covariance of one segment's residuals: its own part, and its loadings on what the flight has in common.
+#[derive(Clone, Debug)]
+pub(crate) struct SegmentNoise {
+    /// Lower triangle, row by row, of the Cholesky factor of the segment's own covariance.
+    pub(crate) factor: [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
+    /// Loadings: mass, heating value, one split a contrast.
+    pub(crate) common: Vec<ByChannel>,
+}
+
+/// The prediction of every channel from a response.
+pub(crate) trait PredictChannels: Fn(&Response) -> ByChannel {}
+impl<F: Fn(&Response) -> ByChannel> PredictChannels for F {}
+
+/// Propagates the sensors' standard deviations.
+///
+/// ```text
+/// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
+/// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split        [diagnosis.14]
+/// ```
+pub(crate) fn segment_noise(
+    model: &EffectModel<'_>,
+    point: &EffectPoint,
+    effects: &Effects,
+    rows: &[u32],
+    extra_variance: f64,
+    recorded: &[bool; MAXIMUM_CHANNELS],
+    channels: Channels,
+    factors: &NoiseFactors,
+    predict: &impl PredictChannels,
+) -> Result<SegmentNoise, EffectError> {
+    let sensors = model.aircraft().sensors();
+    let count = channels.count();
+    let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
+        let up = predict(&model.response_beside(&moved(step), effects)?);
+        let down = predict(&model.response_beside(&moved(-step), effects)?);
+        let mut slope = [0.0; MAXIMUM_CHANNELS];
+        for channel in 0..count {
+            slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
+        }
+        Ok::<ByChannel, EffectError>(slope)
+    };
+    let by_mach = difference(sensors.mach.max(1e-6), &|step| EffectPoint {
+        mach: point.mach + step,
+        true_airspeed_m_s: point.true_airspeed_m_s * (1.0 + step / point.mach),
+        ..*point
+    })?;
+    let by_temperature = difference(sensors.static_air_temperature_k.max(1e-3), &|step| {
+        let sat_k = point.static_air_temperature_k + step;
+        EffectPoint {
+            static_air_temperature_k: sat_k,
+            true_airspeed_m_s: point.true_airspeed_m_s
+                * (sat_k / point.static_air_temperature_k).sqrt(),
+            ..*point
+        }
+    })?;
+    let by_altitude = difference(sensors.pressure_altitude_m.max(0.1), &|step| EffectPoint {
+        pressure_altitude_m: point.pressure_altitude_m + step,
+        ..*point
+    })?;
+    let by_acceleration = difference(1e-4, &|step| EffectPoint {
+        acceleration_m_s2: point.acceleration_m_s2 + step,
+        ..*point
+    })?;
+    let relative_mass = sensors.mass.relative_to(units::Mass::kilograms(point.mass_kg));
+    let by_mass =
+        difference(1e-3, &|step| EffectPoint { mass_kg: point.mass_kg * (1.0 + step), ..*point })?;
+    let acceleration = mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, rows.len());
+
+    let meter = sensors.fuel_flow_percent / 100.0;
+    let engines = model.aircraft().engines();
+    let mut covariance = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+    covariance[0][0] = total_fuel_flow_relative_variance(meter, &[], engines);
+    for contrast in 1..=channels.contrasts {
+        // Contrasts are normalized like ln(Wf1/Wf2): squares of the weights sum to 2.
+        covariance[contrast][contrast] = 2.0 * meter * meter;
+    }
+    if channels.n2 {
+        let n2 = sensors.n2_percent / 100.0;
+        covariance[channels.n2_row()][channels.n2_row()] = n2 * n2;
+    }
+    for (slope, deviation) in [
+        (&by_mach, sensors.mach),
+        (&by_temperature, sensors.static_air_temperature_k),
+        (&by_altitude, sensors.pressure_altitude_m),
+        (&by_acceleration, acceleration),
+    ] {
+        for a in 0..count {
+            for b in 0..count {
+                covariance[a][b] += slope[a] * slope[b] * deviation * deviation;
+            }
+        }
+    }
+    covariance[0][0] += extra_variance;
+    for a in 0..count {
+        for b in 0..count {
+            covariance[a][b] *=
+                factors.within[channels.kind(a)] * factors.within[channels.kind(b)];
+        }
+    }
+    for channel in 0..count {
+        if !recorded[channel] {
+            for other in 0..count {
+                covariance[channel][other] = 0.0;
+                covariance[other][channel] = 0.0;
+            }
+            covariance[channel][channel] = 1.0; // the row is zero
+        }
+    }
+
+    let mut common = Vec::with_capacity(2 + channels.contrasts);
+    let mut mass = [0.0; MAXIMUM_CHANNELS];
+    for channel in 0..count {
+        mass[channel] =
+            by_mass[channel] * relative_mass * factors.between[channels.kind(channel)];
+    }
+    common.push(mass);
+    let mut heating = [0.0; MAXIMUM_CHANNELS];
+    heating[0] = sensors.lower_heating_value_percent / 100.0 * factors.between[0];
+    common.push(heating);
+    for contrast in 1..=channels.contrasts {
+        let mut split = [0.0; MAXIMUM_CHANNELS];
+        split[contrast] = SPLIT_DEVIATION * factors.between[1];
+        common.push(split);
+    }
+    for loading in &mut common {
+        for channel in 0..count {
+            if !recorded[channel] {
+                loading[channel] = 0.0;
+            }
+        }
+    }
+    Ok(SegmentNoise { factor: cholesky(&covariance, count), common })
+}
+
+/// Cholesky factor of a small covariance whose diagonal is positive.
+fn cholesky(
+    covariance: &[[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
+    count: usize,
+) -> [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS] {
+    let mut factor = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+    for row in 0..count {
+        for column in 0..=row {
+            let inner: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
+            let left = covariance[row][column] - inner;
+            factor[row][column] = if row == column {
+                // Every channel has its own meter noise; the floor only guards against a sensor declared perfect.
+                left.max(1e-14).sqrt()
+            } else {
+                left / factor[column][column]
+            };
+        }
+    }
+    factor
+}

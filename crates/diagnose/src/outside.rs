@@ -1,0 +1,158 @@
+//! Outside the library: agnostic functions of one variable compete with the named effects.
+
+use crate::analysis::{Analysis, Stacked};
+use crate::design::Acts;
+use crate::evidence::{Background, Model, Scored, Scorer, ln_sum};
+use crate::gram::{Reduced, integrate_out};
+use crate::library::Library;
+use crate::variables::Variable;
+
+/// Prior probability that something outside the library acts.
+const PRIOR_OUTSIDE: f64 = 0.20;
+/// Amplitudes of an agnostic function, shares of fuel flow.
+const AMPLITUDES: [f64; 3] = [0.002, 0.005, 0.015];
+/// Spikes of every library effect behind it.
+const SPIKES: [f64; 2] = [0.0, 0.10];
+/// Named sets that agnostic functions are added to.
+const SETS: usize = 10;
+
+/// What the competition says.
+#[derive(Clone, Debug)]
+pub(crate) struct Outside {
+    /// Probability that an agnostic function is needed.
+    pub(crate) probability: f64,
+    /// The variable that it hangs on, and how it acts.
+    pub(crate) variable: Option<(Variable, Acts)>,
+    /// The library effects that act beside it, where the best explanation has one.
+    pub(crate) beside: Vec<usize>,
+}
+
+/// Lets agnostic functions compete with the most probable named sets.
+pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Outside {
+    let scorer = &analysis.scorer;
+    let empty = Model { columns: vec![], heating_percent: None };
+    let none = Scored {
+        model: empty,
+        ln_weight: 0.0,
+        sizes: vec![],
+        deviations: vec![],
+        background: 0,
+    };
+    let sets: Vec<&Scored> = core::iter::once(&none)
+        .chain(
+            analysis
+                .models
+                .iter()
+                .map(|(scored, _)| scored)
+                .filter(|s| !s.model.columns.is_empty() && s.model.heating_percent.is_none())
+                .take(SETS),
+        )
+        .collect();
+    let mut named = Vec::new();
+    let mut agnostic: Vec<(f64, usize, usize)> = Vec::new(); // weight, set, block
+    for (place, set) in sets.iter().enumerate() {
+        let refined = analysis
+            .refined
+            .iter()
+            .find(|found| found.scored.model == set.model && !set.model.columns.is_empty());
+        let reduced = refined.map_or(&analysis.reduced, |found| &found.reduced);
+        let shifts = refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
+        for spike in SPIKES {
+            let Some(under) = spiked(stacked, library, reduced, set, spike) else { continue };
+            let prior = scorer.ln_prior(&set.model);
+            named.push(prior + (1.0 - PRIOR_OUTSIDE).ln() + under.evidence(scorer, None, &shifts));
+            if set.model.columns.len() > 1 {
+                continue;
+            }
+            let share = (AMPLITUDES.len() * stacked.design.blocks.len()).max(1) as f64;
+            for block in 0..stacked.design.blocks.len() {
+                for amplitude in AMPLITUDES {
+                    let ln = under.evidence(scorer, Some((block, amplitude)), &shifts);
+                    agnostic.push((prior + PRIOR_OUTSIDE.ln() - share.ln() + ln, place, block));
+                }
+            }
+        }
+    }
+    let inside = ln_sum(named);
+    let outside = ln_sum(agnostic.iter().map(|a| a.0));
+    let probability = 1.0 / (1.0 + (inside - outside).clamp(-500.0, 500.0).exp());
+    // The variable: weights summed over sets and amplitudes.
+    let blocks = &stacked.design.blocks;
+    let best = (0..blocks.len())
+        .map(|block| {
+            let ln = ln_sum(agnostic.iter().filter(|a| a.2 == block).map(|a| a.0));
+            (ln, block)
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let strongest = agnostic.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    Outside {
+        probability: if probability.is_finite() { probability } else { 0.0 },
+        variable: best.map(|(_, block)| (blocks[block].variable, blocks[block].acts)),
+        beside: strongest.map_or_else(Vec::new, |&(_, set, _)| {
+            sets[set].model.columns.iter().map(|&column| scorer.effect_of[column]).collect()
+        }),
+    }
+}
+
+/// A named set over a spike of every effect: Gram of its columns, all blocks, and the residual.
+struct Under<'a> {
+    reduced: Reduced,
+    columns: &'a [usize],
+    blocks: Vec<core::ops::Range<usize>>,
+}
+
+fn spiked<'a>(
+    stacked: &Stacked<'_>,
+    library: &Library,
+    reduced: &Reduced,
+    set: &'a Scored,
+    spike: f64,
+) -> Option<Under<'a>> {
+    let design = stacked.design;
+    // Columns of `reduced`: effects, smooth, blocks one after the other, residual.
+    let first_block = design.effects + design.smooth.len();
+    let columns = &set.model.columns;
+    let mut kept: Vec<usize> = columns.clone();
+    let mut blocks = Vec::with_capacity(design.blocks.len());
+    let mut at = first_block;
+    for block in &design.blocks {
+        let start = kept.len();
+        kept.extend(at..at + block.columns.len());
+        at += block.columns.len();
+        blocks.push(start..kept.len());
+    }
+    kept.push(reduced.matrix.ncols() - 1);
+    let (out, deviations): (Vec<usize>, Vec<f64>) = if spike > 0.0 {
+        library.effects.iter().map(|e| (e.representative, spike * e.typical)).unzip()
+    } else {
+        (vec![], vec![])
+    };
+    let mut spiked = integrate_out(&reduced.matrix, &kept, &out, &deviations)?;
+    spiked.ln_determinant += reduced.ln_determinant;
+    Some(Under { reduced: spiked, columns, blocks })
+}
+
+impl Under<'_> {
+    fn evidence(&self, scorer: &Scorer, block: Option<(usize, f64)>, shifts: &[f64]) -> f64 {
+        let own = self.columns.len();
+        let residual = self.reduced.matrix.ncols() - 1;
+        let kept: Vec<usize> = (0..own).chain([residual]).collect();
+        let (out, deviations) = match block {
+            Some((block, amplitude)) => {
+                let range = self.blocks[block].clone();
+                (range.clone().collect::<Vec<_>>(), vec![amplitude; range.len()])
+            }
+            None => (vec![], vec![]),
+        };
+        let Some(left) = integrate_out(&self.reduced.matrix, &kept, &out, &deviations) else {
+            return f64::NEG_INFINITY;
+        };
+        let ln_determinant = self.reduced.ln_determinant + left.ln_determinant;
+        let at = Background::small(&left.matrix, self.columns, scorer.columns(), ln_determinant);
+        match self.columns[..] {
+            [] => scorer.none(&at),
+            [a] => scorer.one(&at, a, shifts[0]).ln,
+            [a, b, ..] => scorer.two(&at, [a, b], [shifts[0], shifts[1]]).ln,
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Outliers: whitened residuals with heavy tails weigh segments down.
+
+use faer::Mat;
+
+use crate::analysis::{Analysis, Stacked};
+use crate::linear::Factor;
+use crate::library::Library;
+
+/// Kurtosis of whitened residuals above which weights are used; 3 for normal ones.
+const HEAVY: f64 = 4.0;
+/// Degrees of freedom of the Student distribution behind the weights.
+const STUDENT: f64 = 4.0;
+/// Median of |x| over the standard deviation of a normal distribution, inverted.
+const MEDIAN_TO_DEVIATION: f64 = 1.4826;
+
+/// Weights of segments, where the residuals of the best model have heavy tails.
+///
+/// ```text
+/// w = min(1, √(5/(4 + e²/s²))),  e the largest whitened residual of the segment, s their robust scale   [diagnosis.21]
+/// ```
+pub(crate) fn weights(
+    stacked: &Stacked<'_>,
+    analysis: &Analysis,
+    library: &Library,
+) -> Option<Vec<f64>> {
+    let best = analysis.models.first().map_or(&[][..], |(scored, _)| &scored.model.columns);
+    let design = stacked.design;
+    let columns: Vec<usize> =
+        best.iter().copied().chain(design.nuisance.clone()).chain(design.smooth.clone()).collect();
+    let gram = stacked.folds.without(None);
+    let mut normal =
+        Mat::from_fn(columns.len(), columns.len(), |i, j| gram.matrix[(columns[i], columns[j])]);
+    for (k, &column) in columns.iter().enumerate() {
+        let deviation = if k < best.len() {
+            3.0 * library.effects[library.columns[column].effect].typical
+        } else if design.nuisance.contains(&column) {
+            1.0
+        } else {
+            0.0015
+        };
+        normal[(k, k)] += 1.0 / (deviation * deviation);
+    }
+    let mut solution =
+        Mat::from_fn(columns.len(), 1, |i, _| gram.matrix[(columns[i], design.residual())]);
+    Factor::of(normal)?.solve(&mut solution);
+
+    let data = stacked.data;
+    let channels = data.channels.count();
+    let mut worst = Vec::with_capacity(data.segments.len());
+    let mut all = Vec::with_capacity(data.segments.len() * channels);
+    for (index, flight) in data.flights.iter().enumerate() {
+        let rows = stacked.whitened(index);
+        for place in 0..flight.segments.len() {
+            let mut largest: f64 = 0.0;
+            for row in place * channels..(place + 1) * channels {
+                let fitted: f64 = columns
+                    .iter()
+                    .enumerate()
+                    .map(|(k, &column)| rows[(row, column)] * solution[(k, 0)])
+                    .sum();
+                let left = rows[(row, design.residual())] - fitted;
+                largest = largest.max(left.abs());
+                all.push(left);
+            }
+            worst.push(largest);
+        }
+    }
+    let count = all.len() as f64;
+    let second = all.iter().map(|e| e * e).sum::<f64>() / count;
+    let fourth = all.iter().map(|e| e.powi(4)).sum::<f64>() / count;
+    let kurtosis = fourth / (second * second);
+    if !kurtosis.is_finite() || kurtosis <= HEAVY {
+        return None;
+    }
+    let mut sizes: Vec<f64> = all.iter().map(|e| e.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let scale = (MEDIAN_TO_DEVIATION * sizes[sizes.len() / 2]).max(0.3);
+    Some(
+        worst
+            .into_iter()
+            .map(|e| {
+                let z = e / scale;
+                ((STUDENT + 1.0) / (STUDENT + z * z)).sqrt().min(1.0)
+            })
+            .collect(),
+    )
+}

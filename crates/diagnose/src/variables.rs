@@ -1,0 +1,268 @@
+//! The physical variables that a gap may hang on, and hat functions over them.
+
+use perf_model::effects::{EffectPoint, EffectReferences, Response};
+use serde::{Deserialize, Serialize};
+use units::convert::RADIANS_PER_DEGREE;
+
+/// A variable of a segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Variable {
+    /// Mach number.
+    Mach,
+    /// Lift coefficient.
+    LiftCoefficient,
+    /// Pressure altitude, m.
+    PressureAltitude,
+    /// Corrected thrust over its reference.
+    CorrectedThrust,
+    /// Deviation from the standard day, K.
+    IsaDeviation,
+    /// Static air temperature, K.
+    StaticAirTemperature,
+    /// Date, years since the reference.
+    Date,
+    /// Fuel used, kg.
+    FuelUsed,
+    /// Root of the mean squared roll angle, degrees.
+    Roll,
+    /// Along-path acceleration, m/s².
+    Acceleration,
+    /// Cross-wind to the left, m/s.
+    CrossWind,
+    /// Latitude, degrees.
+    Latitude,
+    /// Speed over the ground towards east, m/s.
+    EastwardSpeed,
+    /// Center of gravity, %MAC.
+    CenterOfGravity,
+    /// Gross mass, kg.
+    Mass,
+    /// Latitude's sine times cross-wind.
+    LatitudeCrossWind,
+    /// Center of gravity times lift coefficient.
+    CenterOfGravityLift,
+    /// Mach number times lift coefficient.
+    MachLift,
+    /// Squared excess of Mach number over its reference.
+    MachExcess,
+    /// Which engine.
+    Engine,
+}
+
+impl Variable {
+    /// In words, as the specification calls it.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Mach => "Mach number",
+            Self::LiftCoefficient => "lift coefficient",
+            Self::PressureAltitude => "pressure altitude",
+            Self::CorrectedThrust => "corrected thrust",
+            Self::IsaDeviation => "ISA deviation",
+            Self::StaticAirTemperature => "SAT",
+            Self::Date => "date",
+            Self::FuelUsed => "fuel used",
+            Self::Roll => "roll",
+            Self::Acceleration => "acceleration",
+            Self::CrossWind => "cross-wind",
+            Self::Latitude => "latitude",
+            Self::EastwardSpeed => "eastward speed",
+            Self::CenterOfGravity => "CG",
+            Self::Mass => "mass",
+            Self::LatitudeCrossWind => "latitude with cross-wind",
+            Self::CenterOfGravityLift => "CG with lift coefficient",
+            Self::MachLift => "Mach number with lift coefficient",
+            Self::MachExcess => "high Mach number",
+            Self::Engine => "engine",
+        }
+    }
+
+    /// The value at a segment; `None` where an input is not recorded.
+    pub(crate) fn value(
+        self,
+        point: &EffectPoint,
+        response: &Response,
+        references: &EffectReferences,
+    ) -> Option<f64> {
+        let cross_wind = || {
+            point.drift_deg.map(|drift_deg| {
+                -point.true_airspeed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin()
+            })
+        };
+        Some(match self {
+            Self::Mach => point.mach,
+            Self::LiftCoefficient => response.lift_coefficient,
+            Self::PressureAltitude => point.pressure_altitude_m,
+            Self::CorrectedThrust => {
+                response.ln_corrected_thrust.exp() / references.corrected_thrust_n
+            }
+            Self::IsaDeviation => {
+                let isa =
+                    atmos::isa::temperature(units::PressureAltitude::meters(point.pressure_altitude_m))
+                        .ok()?;
+                point.static_air_temperature_k - isa.to_kelvin()
+            }
+            Self::StaticAirTemperature => point.static_air_temperature_k,
+            Self::Date => {
+                (point.date_s - references.date_s)
+                    / (units::convert::DAYS_PER_YEAR * units::convert::SECONDS_PER_DAY)
+            }
+            Self::FuelUsed => point.fuel_used_kg,
+            Self::Roll => point.roll_squared_deg2?.max(0.0).sqrt(),
+            Self::Acceleration => point.acceleration_m_s2,
+            Self::CrossWind => cross_wind()?,
+            Self::Latitude => point.latitude_deg?,
+            Self::EastwardSpeed => {
+                let track_deg = point.true_heading_deg? + point.drift_deg.unwrap_or(0.0);
+                point.ground_speed_m_s * (track_deg * RADIANS_PER_DEGREE).sin()
+            }
+            Self::CenterOfGravity => point.center_of_gravity_percent_mac?,
+            Self::Mass => point.mass_kg,
+            Self::LatitudeCrossWind => {
+                (point.latitude_deg? * RADIANS_PER_DEGREE).sin() * cross_wind()?
+            }
+            Self::CenterOfGravityLift => {
+                (point.center_of_gravity_percent_mac?
+                    - references.center_of_gravity_percent_mac?)
+                    * response.lift_coefficient
+            }
+            Self::MachLift => (point.mach - references.mach) * response.lift_coefficient,
+            Self::MachExcess => (point.mach - references.mach + 0.02).max(0.0).powi(2),
+            Self::Engine => return None,
+        })
+    }
+}
+
+/// Hat functions over one variable: piecewise linear, 1 at one knot and 0 at the others, held beyond the ends; each less
+/// its mean over the data it was made from, so that a sum of them is no level.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Hats {
+    pub(crate) knots: Vec<f64>,
+    pub(crate) means: Vec<f64>,
+}
+
+impl Hats {
+    /// Knots at quantiles of the values; `None` where they do not spread over at least three knots.
+    pub(crate) fn at_quantiles(values: &[f64], quantiles: &[f64]) -> Option<Self> {
+        let mut sorted: Vec<f64> = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let (first, last) = (*sorted.first()?, *sorted.last()?);
+        let span = last - first;
+        if !span.is_finite() || span <= 1e-9 * first.abs().max(last.abs()) {
+            return None;
+        }
+        let mut knots: Vec<f64> = Vec::new();
+        for &share in quantiles {
+            let at = share * (sorted.len() - 1) as f64;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a share of a length"
+            )]
+            let low = at.floor() as usize;
+            let high = (low + 1).min(sorted.len() - 1);
+            let knot = sorted[low] + (at - low as f64) * (sorted[high] - sorted[low]);
+            if knots.last().is_none_or(|&before| knot > before + 1e-3 * span) {
+                knots.push(knot);
+            }
+        }
+        if knots.len() < 3 {
+            return None;
+        }
+        let mut hats = Self { means: vec![0.0; knots.len()], knots };
+        let mut means = vec![0.0; hats.knots.len()];
+        for &value in values {
+            let (index, upper) = hats.place(value);
+            means[index] += 1.0 - upper;
+            means[index + 1] += upper;
+        }
+        for mean in &mut means {
+            *mean /= values.len() as f64;
+        }
+        hats.means = means;
+        Some(hats)
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.knots.len()
+    }
+
+    /// Writes every hat's value.
+    pub(crate) fn write(&self, value: f64, into: &mut [f64]) {
+        let (index, upper) = self.place(value);
+        for (slot, mean) in into.iter_mut().zip(&self.means) {
+            *slot = -mean;
+        }
+        into[index] += 1.0 - upper;
+        into[index + 1] += upper;
+    }
+
+    /// Interval that holds a value, and how far up in it the value lies; held at the ends.
+    fn place(&self, value: f64) -> (usize, f64) {
+        let last = self.knots.len() - 1;
+        let index = self.knots[1..last].partition_point(|&knot| knot <= value);
+        let (low, high) = (self.knots[index], self.knots[index + 1]);
+        (index, ((value - low) / (high - low)).clamp(0.0, 1.0))
+    }
+}
+
+/// A variable made dimensionless: (v − mean)/standard deviation, held within ±2.5.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Scaled {
+    mean: f64,
+    deviation: f64,
+}
+
+impl Scaled {
+    pub(crate) fn of(values: &[f64]) -> Self {
+        let count = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / count;
+        let deviation = variance.sqrt();
+        let spread = deviation > 1e-9 * mean.abs().max(1e-9);
+        Self { mean, deviation: if spread { deviation } else { f64::INFINITY } }
+    }
+
+    pub(crate) fn at(self, value: f64) -> f64 {
+        ((value - self.mean) / self.deviation).clamp(-2.5, 2.5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hats_sum_to_zero_and_interpolate() {
+        let values: Vec<f64> = (0..=10).map(f64::from).collect();
+        let hats = Hats::at_quantiles(&values, &[0.0, 0.5, 1.0]).unwrap();
+        assert_eq!(hats.knots, [0.0, 5.0, 10.0]);
+        let mut row = [0.0; 3];
+        let mut sums = [0.0; 3];
+        for &value in &values {
+            hats.write(value, &mut row);
+            // A partition of unity less its means, which sum to one.
+            assert!(row.iter().sum::<f64>().abs() < 1e-15);
+            for (sum, value) in sums.iter_mut().zip(row) {
+                *sum += value;
+            }
+        }
+        assert!(sums.iter().all(|sum| sum.abs() < 1e-14));
+        hats.write(6.0, &mut row);
+        assert!((row[1] + hats.means[1] - 0.8).abs() < 1e-15);
+        let mut beyond = [0.0; 3];
+        hats.write(1e9, &mut beyond);
+        assert!((beyond[2] + hats.means[2] - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_does_not_spread_has_no_hats() {
+        assert!(Hats::at_quantiles(&[3.0; 20], &[0.0, 0.5, 1.0]).is_none());
+        assert!(Hats::at_quantiles(&[], &[0.0, 0.5, 1.0]).is_none());
+        assert_eq!(Scaled::of(&[2.0; 5]).at(7.0), 0.0);
+    }
+}
