@@ -138,6 +138,23 @@ impl<'de> Deserialize<'de> for TruthEffect {
     }
 }
 
+/// Whether an effect only ever makes the aircraft worse, or its size is no signed number.
+pub(crate) const fn is_one_sided(id: EffectId) -> bool {
+    matches!(
+        id,
+        EffectId::ZeroLiftDrag
+            | EffectId::ReynoldsNumber
+            | EffectId::TrimDragCg
+            | EffectId::AsymmetryDrag
+            | EffectId::AirframeAgeing
+            | EffectId::TsfcThrottle
+            | EffectId::PowerOfftake
+            | EffectId::AntiIceBleed
+            | EffectId::EngineAgeing
+            | EffectId::FuelHeatingValue
+    )
+}
+
 /// What a dated step multiplies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -55,6 +55,10 @@ pub struct Plan {
     /// Effects of every tail.
     #[serde(default)]
     pub effects: Vec<PlannedEffect>,
+    /// Clutter: every other effect of the library too, of a size drawn with this share of the typical one as standard
+    /// deviation; positive where an effect only ever is. Effects whose coefficient is known are not cluttered.
+    #[serde(default)]
+    pub clutter_share: f64,
     /// The tails.
     pub tails: Vec<TailPlan>,
 }
@@ -230,6 +234,14 @@ pub enum PlanError {
         /// The name.
         tail: String,
     },
+    /// An effect that a tail carries twice.
+    #[error("plan: tail {tail} has the effect {effect} twice")]
+    DoubledEffect {
+        /// The tail.
+        tail: String,
+        /// The effect's name.
+        effect: String,
+    },
     /// A tail without flights.
     #[error("plan: tail {tail} has no flight")]
     NoFlights {
@@ -301,6 +313,7 @@ impl Plan {
             recording: Recording::default(),
             smooth_errors: SmoothErrorSizes::default(),
             effects: Vec::new(),
+            clutter_share: 0.0,
             tails: vec![TailPlan {
                 tail: tail.to_owned(),
                 effects: Vec::new(),

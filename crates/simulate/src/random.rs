@@ -21,6 +21,7 @@ pub(crate) enum Purpose {
     Faults = 8,
     SmoothErrors = 9,
     SensorsOfTail = 10,
+    Clutter = 11,
 }
 
 /// A key of streams.

@@ -3,11 +3,12 @@
 mod check;
 mod draw;
 
+use flight::effect::{EffectId, TypicalSize};
 use flight::{Report, ReportDataError};
 use units::{OutOfDomain, check_within};
 
 use crate::aircraft::AircraftTruth;
-use crate::effect::{PlannedEffect, TruthEffect};
+use crate::effect::{PlannedEffect, TruthEffect, is_one_sided};
 use crate::fly::{FlightError, fly};
 use crate::plan::{AircraftChoice, Flights, Plan, PlanError};
 use crate::random::{Purpose, Streams};
@@ -37,6 +38,7 @@ pub struct Simulation {
 struct Tail {
     name: String,
     effects: Vec<(PlannedEffect, f64)>,
+    clutter: Vec<(PlannedEffect, f64)>,
     deterioration_percent: Vec<f64>,
     references: References,
     flights: Vec<FlightPlan>,
@@ -136,6 +138,8 @@ impl Simulation {
                 .chain(&tail_plan.effects)
                 .map(|effect| sized(effect, &references, &aircraft))
                 .collect::<Result<Vec<_>, _>>()?;
+            check_effects(&tail_plan.tail, &effects)?;
+            let clutter = draw_clutter(&plan, &tail_plan.tail, &effects, &references, &aircraft);
             let sizes = &plan.smooth_errors;
             let smooth_errors =
                 (sizes.drag_percent > 0.0 || sizes.fuel_flow_percent > 0.0).then(|| {
@@ -150,6 +154,7 @@ impl Simulation {
             tails.push(Tail {
                 name: tail_plan.tail.clone(),
                 effects,
+                clutter,
                 deterioration_percent: tail_plan.engine_deterioration_percent.clone(),
                 references,
                 flights,
@@ -267,11 +272,8 @@ impl Simulation {
             .iter()
             .map(|tail| TailTruth {
                 tail: tail.name.clone(),
-                effects: tail
-                    .effects
-                    .iter()
-                    .map(|(effect, size)| effect_truth(effect, *size))
-                    .collect(),
+                effects: effect_truths(&tail.effects),
+                clutter: effect_truths(&tail.clutter),
                 references: tail.references,
                 flights: Vec::new(),
             })
@@ -297,7 +299,6 @@ fn sized(
     references: &References,
     aircraft: &AircraftTruth,
 ) -> Result<(PlannedEffect, f64), PlanError> {
-    use flight::effect::EffectId;
     if let TruthEffect::Library(EffectId::TsfcEngine(k) | EffectId::FuelFlowGainEngine(k)) =
         effect.id
         && usize::from(k) > aircraft.engines()
@@ -311,8 +312,51 @@ fn sized(
     Ok((*effect, check_within("effect size", effect.id.unit(), size, -1e6, 1e6)?))
 }
 
+fn check_effects(tail: &str, effects: &[(PlannedEffect, f64)]) -> Result<(), PlanError> {
+    for (index, (effect, _)) in effects.iter().enumerate() {
+        if effects[..index].iter().any(|(other, _)| other.id == effect.id) {
+            return Err(PlanError::DoubledEffect {
+                tail: tail.to_owned(),
+                effect: effect.id.to_string(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Every effect of the library that the tail does not carry, small.
+fn draw_clutter(
+    plan: &Plan,
+    tail: &str,
+    effects: &[(PlannedEffect, f64)],
+    references: &References,
+    aircraft: &AircraftTruth,
+) -> Vec<(PlannedEffect, f64)> {
+    if plan.clutter_share <= 0.0 {
+        return Vec::new();
+    }
+    let mut random = Streams::of_tail(plan.seed, tail).stream(Purpose::Clutter);
+    EffectId::library(aircraft.engines())
+        .into_iter()
+        .filter_map(|id| {
+            // Drawn whether used or not: what is planted moves no other draw.
+            let drawn = plan.clutter_share * random.normal();
+            let effect = TruthEffect::Library(id);
+            let size = effect.typical_size(references.mass_kg)
+                * if is_one_sided(id) { drawn.abs() } else { drawn };
+            let planted = effects.iter().any(|(other, _)| other.id == effect);
+            let known = id.entry().typical == TypicalSize::Known;
+            (!planted && !known).then(|| (PlannedEffect::sized(effect, size), size))
+        })
+        .collect()
+}
+
+fn effect_truths(effects: &[(PlannedEffect, f64)]) -> Vec<EffectTruth> {
+    effects.iter().map(|(effect, size)| effect_truth(effect, *size)).collect()
+}
+
 fn effect_truth(effect: &PlannedEffect, size: f64) -> EffectTruth {
-    let step = effect.id == TruthEffect::Library(flight::effect::EffectId::StepChange);
+    let step = effect.id == TruthEffect::Library(EffectId::StepChange);
     EffectTruth {
         id: effect.id,
         size,

@@ -30,6 +30,8 @@ pub struct TailTruth {
     pub tail: String,
     /// Its effects.
     pub effects: Vec<EffectTruth>,
+    /// Small effects that clutter it.
+    pub clutter: Vec<EffectTruth>,
     /// Where effects are nothing.
     pub references: References,
     /// Its flights, in order.

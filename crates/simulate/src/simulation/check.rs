@@ -29,6 +29,7 @@ pub(super) fn check_plan(plan: &Plan) -> Result<(), PlanError> {
         ("gusts elsewhere", "m/s", weather.turbulence.elsewhere_m_s, 0.0, 10.0),
         ("heating value scatter", "%", plan.scatter.heating_value_percent, 0.0, 10.0),
         ("zero-fuel mass scatter", "%", plan.scatter.zero_fuel_mass_percent, 0.0, 10.0),
+        ("clutter share", "-", plan.clutter_share, 0.0, 1.0),
         ("roll trim limit", "deg", plan.scatter.roll_trim_limit_deg, 0.0, 10.0),
         ("throttle split", "%", plan.scatter.throttle_split_percent, 0.0, 20.0),
         ("autopilot Mach frequency", "rad/s", plan.autopilot.mach_frequency_rad_s, 0.001, 0.3),

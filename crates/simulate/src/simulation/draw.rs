@@ -129,7 +129,7 @@ impl Simulation {
             date_s: seconds(plan.start),
             engines: self.aircraft.engines(),
         };
-        for (effect, size) in &tail.effects {
+        for (effect, size) in tail.effects.iter().chain(&tail.clutter) {
             terms.add(effect, *size, &context);
         }
         terms

@@ -233,6 +233,8 @@ fn wrong_plans_are_refused_by_name() {
     );
     let twice = "(seed: 1, tails: [(tail: \"T\", flights: Designed((flights: 1))), (tail: \"T\", flights: Designed((flights: 1)))])";
     assert!(refused(twice).contains("tail T occurs twice"));
+    let doubled = r#"effects: [(id: "drag_factor"), (id: "drag_factor", size: 1.0)],"#;
+    assert!(with(doubled).contains("tail T has the effect drag_factor twice"));
     let impossible = "(seed: 1, tails: [(tail: \"T\", flights: Designed((flights: 1, high_mach: (0.3, 0.31), low_share: 0.0)))])";
     assert!(refused(impossible).contains("no flight within the ranges"), "{}", refused(impossible));
 }
@@ -287,6 +289,45 @@ fn quiet_cruise_meets_the_trim_criteria_most_of_the_time() {
     }
     let share = steady as f64 / f64::from(all);
     assert!((0.65..0.97).contains(&share), "{share}");
+}
+
+#[test]
+fn clutter_is_every_other_effect_at_a_tenth() {
+    let mut plan = Plan::of_one_tail(4, "T-001", small_design());
+    plan.clutter_share = 0.1;
+    plan.smooth_errors = simulate::SmoothErrorSizes { drag_percent: 0.25, fuel_flow_percent: 0.25 };
+    plan.effects = vec![PlannedEffect::typical("wave_drag".parse().unwrap())];
+    let simulation = Simulation::new(plan.clone()).unwrap();
+    let clutter = simulation.truth(Vec::new()).tails.remove(0).clutter;
+    // Of the library's 31 effects for two engines: not the planted one, not the three with a known coefficient.
+    assert_eq!(clutter.len(), 27);
+    let mean_mass_kg = simulation.truth(Vec::new()).tails[0].references.mass_kg;
+    let shares: Vec<f64> =
+        clutter.iter().map(|e| e.size / e.id.typical_size(mean_mass_kg)).collect();
+    let rms = (shares.iter().map(|s| s * s).sum::<f64>() / 27.0).sqrt();
+    assert!((0.06..0.14).contains(&rms), "{rms}");
+    assert!(simulation.fly(0).is_ok());
+    // What is planted moves no size of the clutter.
+    plan.effects = Vec::new();
+    let without = Simulation::new(plan).unwrap().truth(Vec::new()).tails.remove(0).clutter;
+    assert!(clutter.iter().all(|effect| without.contains(effect)));
+}
+
+#[test]
+fn one_engine_and_four_engines_fly_on_the_same_fuel() {
+    let fly = |count: u8| {
+        let mut aircraft = simulate::AircraftTruth::preset(Preset::CitationX).unwrap();
+        aircraft.engine.rated_thrust_n *= 2.0 / f64::from(count);
+        aircraft.engine.count = count;
+        let mut plan = quiet_plan(vec![northbound()]);
+        plan.aircraft = AircraftChoice::Custom(Box::new(aircraft));
+        fly_first(plan).report
+    };
+    let total = |report: &Report| report.columns().fuel_flow.total_kg_s(30);
+    let (one, two, four) = (fly(1), fly(2), fly(4));
+    assert_eq!([one.engines(), two.engines(), four.engines()], [Some(1), Some(2), Some(4)]);
+    assert!((total(&one) / total(&two) - 1.0).abs() < 1e-9);
+    assert!((total(&four) / total(&two) - 1.0).abs() < 1e-9);
 }
 
 #[test]
