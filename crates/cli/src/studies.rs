@@ -53,7 +53,7 @@ fn study_with(plan: Plan) -> Result<Study, Failure> {
     let richness = Richness::full();
     let (rows, _) = study::flight_planning_guide(
         &aircraft,
-        &richness,
+        richness,
         &study::GuideGrid::paper(),
         &study::DragError::study(),
     )
@@ -61,7 +61,7 @@ fn study_with(plan: Plan) -> Result<Study, Failure> {
     Ok(Study {
         aircraft: CITATION_X,
         guide: study::guide_csv(&rows),
-        static_points: static_points(&aircraft, &richness)?,
+        static_points: static_points(&aircraft, richness)?,
         plan,
     })
 }
@@ -82,7 +82,7 @@ impl Study {
 }
 
 /// The static points that the aircraft can fly, as flight points with measured fuel flow.
-fn static_points(aircraft: &AircraftTruth, richness: &Richness) -> Result<String, Failure> {
+fn static_points(aircraft: &AircraftTruth, richness: Richness) -> Result<String, Failure> {
     let mut text =
         String::from("weight_lb,pressure_altitude_ft,mach,isa_deviation_c,fuel_flow_lb_h\n");
     for condition in study::static_conditions() {
