@@ -34,4 +34,5 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod bayes;
 pub mod paper;

@@ -1,0 +1,435 @@
+//! Law `bayes`: a smooth Gaussian correction of the initial table, with its uncertainty.
+//!
+//! The table is the initial one times (1 + x), x one number a node. A prior says that x is smooth and about 10 % in
+//! size; every segment observes four neighbors of x; the solution says what is known where, nodes never visited
+//! included. The book's page on law `bayes` has equations, sources and measured figures.
+//!
+//! What is fixed: [`BayesSettings`] belong to the initial model and learning never changes them; [`tune`] finds better
+//! ones on past flights. What grows: [`BayesState`] holds sums over the nodes of the flown region, whatever the number
+//! of flights. What costs: a flight is learnt by its own segments alone; the one solve is [`BayesState::solve`].
+//!
+//! Limits: what is no function of lift coefficient and Mach number (altitude, temperature, the engine) is taken for an
+//! error common to a flight. Structure finer than about half a cell cannot be held by a bilinear table, and an initial
+//! table's own chords are part of what is learnt. Outlier weights depend on what was learnt before; all else does not
+//! depend on the order.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use adapt::bayes::{BayesSettings, BayesState};
+//! use flight::{Observation, ObservationVariance, Timestamp};
+//! use lut::{Axis, Grid, Outside, Table};
+//!
+//! let grid = Arc::new(Grid::new(Axis::from_step(0.2, 0.6, 0.05)?, Axis::from_step(0.7, 0.9, 0.05)?));
+//! let initial = Table::new(Arc::clone(&grid), vec![0.030; grid.nodes()])?;
+//! let mut state = BayesState::new(&initial, BayesSettings::physical_2026())?;
+//! let observation = Observation {
+//!     time: Timestamp::UNIX_EPOCH,
+//!     lift_coefficient: 0.42,
+//!     mach: 0.78,
+//!     drag_coefficient: 0.0315, // 5 % more
+//!     fuel_flow_total_kg_s: 0.33,
+//!     fuel_flow_per_drag_coefficient_kg_s: 10.0,
+//!     variance: ObservationVariance { segment: 2.5e-5, flight: 2e-5 },
+//! };
+//! state.learn_flight(&[observation; 5]);
+//! let posterior = state.solve()?;
+//! let cell = grid.locate(0.42, 0.78, Outside::Error)?;
+//! assert!((posterior.drag().interpolate(&cell) / 0.030 - 1.05).abs() < 0.002);
+//! assert!(posterior.relative_variance(&cell).sqrt() < 0.02);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use std::sync::Arc;
+
+use flight::{Observation, ObservationVariance, Timestamp};
+use lut::{Cell, Grid, Outside, OutsideGrid, Table};
+
+mod blocks;
+mod data;
+mod evidence;
+mod guard;
+mod information;
+mod judge;
+mod polynomial;
+mod posterior;
+mod prior;
+mod settings;
+
+pub use data::{BayesStateData, StateDataError};
+pub use evidence::{Search, TuneError, TuneStep, Tuned, log_evidence, tune};
+pub use guard::{GuardReason, GuardReport, GuardedNode};
+pub use polynomial::{PolynomialError, PolynomialExport, polynomial_export};
+pub use posterior::{Posterior, SolveError};
+pub use settings::{BayesSettings, SettingValues, SettingsError};
+
+use information::{Information, Row};
+use judge::{Case, Judge, Rules};
+
+/// Drag of more than this many times the initial table's is no observation of drag.
+pub const MAXIMUM_DRAG_RATIO: f64 = 10.0;
+
+const SECONDS_A_DAY: f64 = 86_400.0;
+
+/// What law `bayes` has learnt, without the prior: sums that add up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BayesState {
+    initial: Table,
+    settings: BayesSettings,
+    rules: Rules,
+    information: Information,
+    judge: Judge,
+    /// The newest observation learnt; with a half-life, the instant that the sums are for.
+    newest: Option<Timestamp>,
+    flights: u64,
+    segments: u64,
+}
+
+/// Why a table cannot be corrected by a relative amount.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("initial drag coefficient of node {node} is {value}, not above 0")]
+#[non_exhaustive]
+pub struct InitialError {
+    /// The node.
+    pub node: usize,
+    /// Its drag coefficient.
+    pub value: f64,
+}
+
+/// Why two states do not add.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    /// They are not on one grid.
+    #[error("the grids differ")]
+    GridsDiffer,
+    /// They correct different initial tables.
+    #[error("initial drag coefficient of node {node} is {ours} here and {theirs} there")]
+    InitialsDiffer {
+        /// The first node that differs.
+        node: usize,
+        /// Drag coefficient here.
+        ours: f64,
+        /// Drag coefficient there.
+        theirs: f64,
+    },
+    /// They were learnt with different settings. A half-life that is off counts as infinite.
+    #[error("setting {setting} is {ours} here and {theirs} there")]
+    SettingsDiffer {
+        /// The first setting that differs.
+        setting: &'static str,
+        /// Its value here.
+        ours: f64,
+        /// Its value there.
+        theirs: f64,
+    },
+}
+
+/// What learning a flight did.
+#[derive(Clone, Debug, PartialEq)]
+#[must_use]
+pub struct FlightUpdate {
+    /// Of each observation, in the order given.
+    pub observations: Vec<ObservationUpdate>,
+    /// Outlier weight of the flight's common error: 1 for an ordinary flight, towards 0 for one that is off as a whole
+    /// (a wrong load sheet). It divides the flight's common variance. `None` where nothing was learnt.
+    pub flight_weight: Option<f64>,
+}
+
+/// What learning an observation did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ObservationUpdate {
+    /// A number of the observation cannot be used; nothing was learnt from it.
+    Unusable {
+        /// Which, in the field's words and with its unit.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The point lies outside the grid; nothing was learnt from it.
+    OutsideGrid(OutsideGrid),
+    /// It was learnt.
+    Learnt {
+        /// Observed drag over the initial table's, minus 1.
+        residual: f64,
+        /// That minus what a quadratic through all earlier flights expects.
+        surprise: f64,
+        /// Outlier weight: around 1 for an ordinary segment, towards 0 for an outlier. It divides the segment's
+        /// variance.
+        weight: f64,
+    },
+}
+
+impl BayesState {
+    /// Nothing learnt yet.
+    ///
+    /// # Errors
+    /// [`InitialError`] where a drag coefficient is not above 0: there is no relative correction of it.
+    pub fn new(initial: &Table, settings: BayesSettings) -> Result<Self, InitialError> {
+        let not_positive = initial.values().iter().enumerate().find(|(_, value)| **value <= 0.0);
+        if let Some((node, &value)) = not_positive {
+            return Err(InitialError { node, value });
+        }
+        let (x, y) = (initial.grid().x(), initial.grid().y());
+        let middle = (x.first().midpoint(x.last()), y.first().midpoint(y.last()));
+        Ok(Self {
+            rules: Rules::new(&settings, middle),
+            information: Information::new(initial.grid().nodes()),
+            judge: Judge::new(),
+            initial: initial.clone(), // shares the grid
+            settings,
+            newest: None,
+            flights: 0,
+            segments: 0,
+        })
+    }
+
+    /// Learns one flight: all its observations at once, because they share an error.
+    ///
+    /// With a half-life, an observation older than the newest learnt is worth less from the start: the order of flights
+    /// does not matter, up to outlier weights.
+    ///
+    /// # Source
+    /// Book `[bayes.3]`–`[bayes.8]`.
+    pub fn learn_flight(&mut self, observations: &[Observation]) -> FlightUpdate {
+        let flight = self.read(observations);
+        let verdict = self.judge.weigh(&self.rules, &flight.cases, flight.common_variance);
+        self.learn_judged(&flight, &verdict);
+        let mut learnt = verdict.weights.iter().zip(&verdict.surprises).zip(&flight.cases);
+        let updates = flight
+            .refused
+            .iter()
+            .map(|refusal| {
+                refusal.or_else(|| {
+                    let ((&weight, &surprise), case) = learnt.next()?;
+                    Some(ObservationUpdate::Learnt { residual: case.residual, surprise, weight })
+                })
+            })
+            .collect::<Option<Vec<_>>>();
+        FlightUpdate {
+            observations: updates.unwrap_or_default(),
+            flight_weight: (!flight.cases.is_empty()).then_some(verdict.flight_weight),
+        }
+    }
+
+    /// Solves for all nodes: the one expensive call.
+    ///
+    /// # Errors
+    /// [`SolveError`] where the sums are no information (a damaged file).
+    pub fn solve(&self) -> Result<Posterior, SolveError> {
+        Posterior::new(&self.initial, self.settings, &self.information)
+    }
+
+    /// Adds what another state has learnt. Both orders give the same to rounding.
+    ///
+    /// # Errors
+    /// [`MergeError`] where grid, initial table or settings differ; nothing was added then.
+    pub fn merge(&mut self, other: &Self) -> Result<(), MergeError> {
+        if self.grid() != other.grid() {
+            return Err(MergeError::GridsDiffer);
+        }
+        let pairs = self.initial.values().iter().zip(other.initial.values());
+        if let Some((node, (&ours, &theirs))) =
+            pairs.enumerate().find(|(_, (ours, theirs))| ours.to_bits() != theirs.to_bits())
+        {
+            return Err(MergeError::InitialsDiffer { node, ours, theirs });
+        }
+        if let Some((setting, ours, theirs)) = self.settings.first_difference(&other.settings) {
+            return Err(MergeError::SettingsDiffer { setting, ours, theirs });
+        }
+        let mut other = other.clone();
+        if let Some(newest) = self.newest {
+            other.decay_to(newest);
+        }
+        if let Some(newest) = other.newest {
+            self.decay_to(newest);
+        }
+        self.information.merge(&other.information);
+        self.judge.merge(&other.judge);
+        self.flights += other.flights;
+        self.segments += other.segments;
+        Ok(())
+    }
+
+    /// Lets knowledge age to an instant; one that is not after the newest observation changes nothing.
+    ///
+    /// # Source
+    /// Book `[bayes.8]`.
+    pub fn decay_to(&mut self, instant: Timestamp) {
+        let Some(newest) = self.newest else { return };
+        if instant <= newest {
+            return;
+        }
+        let share = self.settings.decay(days_between(newest, instant));
+        if share < 1.0 {
+            self.information.scale(share);
+            self.judge.scale(share);
+        }
+        self.newest = Some(instant);
+    }
+
+    /// The grid: x is the lift coefficient, y the Mach number.
+    #[must_use]
+    pub const fn grid(&self) -> &Arc<Grid> {
+        self.initial.grid()
+    }
+
+    /// The table that is corrected.
+    #[must_use]
+    pub const fn initial(&self) -> &Table {
+        &self.initial
+    }
+
+    /// The settings.
+    #[must_use]
+    pub const fn settings(&self) -> &BayesSettings {
+        &self.settings
+    }
+
+    /// Flights learnt; ageing does not change the count.
+    #[must_use]
+    pub const fn flights(&self) -> u64 {
+        self.flights
+    }
+
+    /// Segments learnt, outliers included; ageing does not change the count.
+    #[must_use]
+    pub const fn segments(&self) -> u64 {
+        self.segments
+    }
+
+    /// Nodes that were ever touched: the size of the state.
+    #[must_use]
+    pub fn touched_nodes(&self) -> usize {
+        self.information.touched().len()
+    }
+
+    /// The newest observation, or the instant that knowledge was aged to.
+    #[must_use]
+    pub const fn newest(&self) -> Option<Timestamp> {
+        self.newest
+    }
+
+    /// Locates and checks a flight's observations; adds this law's own noise to theirs.
+    fn read(&self, observations: &[Observation]) -> Flight {
+        let mut flight = Flight::with_capacity(observations.len());
+        let mut common_variance = 0.0;
+        for observation in observations {
+            match located(&self.initial, observation) {
+                Ok((cell, residual)) => {
+                    let values = self.settings.values();
+                    let extra = values.extra_segment_std;
+                    flight.cases.push(Case {
+                        lift_coefficient: observation.lift_coefficient,
+                        mach: observation.mach,
+                        residual,
+                        variance: observation.variance.segment + extra * extra,
+                    });
+                    flight.rows.push(Row {
+                        nodes: cell.nodes(),
+                        coefficients: coefficients(&self.initial, &cell),
+                        bilinear: cell.weights(),
+                        residual,
+                        precision: 0.0,
+                        count: 0.0,
+                    });
+                    let extra = values.extra_flight_std;
+                    common_variance += observation.variance.flight + extra * extra;
+                    flight.newest = flight.newest.max(Some(observation.time));
+                    flight.refused.push(None);
+                }
+                Err(refusal) => flight.refused.push(Some(refusal)),
+            }
+        }
+        // Segments of a flight may differ a little in what they say about their common error.
+        flight.common_variance = common_variance / flight.cases.len().max(1) as f64;
+        flight
+    }
+
+    fn learn_judged(&mut self, flight: &Flight, verdict: &judge::Verdict) {
+        let Some(time) = flight.newest else { return };
+        self.decay_to(time);
+        let newest = self.newest.unwrap_or(time);
+        self.newest = Some(newest);
+        let share = self.settings.decay(days_between(time, newest));
+
+        let weighted = flight.rows.iter().zip(&flight.cases).zip(&verdict.weights);
+        let rows: Vec<Row> = weighted
+            .map(|((row, case), weight)| Row {
+                precision: weight / case.variance,
+                count: weight.min(1.0),
+                ..*row
+            })
+            .collect();
+        let common = flight.common_variance / verdict.flight_weight;
+        self.information.add_flight(&rows, common, share);
+        self.judge.learn(&self.rules, &flight.cases, verdict, flight.common_variance, share);
+        self.flights += 1;
+        self.segments += flight.cases.len() as u64;
+    }
+}
+
+/// A flight that was read: what can be learnt, and what cannot.
+#[derive(Clone, Debug)]
+struct Flight {
+    /// One an observation; `None` for those that can be learnt, which follow in the same order.
+    refused: Vec<Option<ObservationUpdate>>,
+    cases: Vec<Case>,
+    rows: Vec<Row>,
+    common_variance: f64,
+    newest: Option<Timestamp>,
+}
+
+impl Flight {
+    fn with_capacity(observations: usize) -> Self {
+        Self {
+            refused: Vec::with_capacity(observations),
+            cases: Vec::with_capacity(observations),
+            rows: Vec::with_capacity(observations),
+            common_variance: 0.0,
+            newest: None,
+        }
+    }
+}
+
+/// What multiplies the corrections of a cell's nodes in the correction at the point: bilinear weight times the node's
+/// initial drag over the point's. They sum to 1.
+///
+/// # Source
+/// Book `[bayes.3]`.
+fn coefficients(initial: &Table, cell: &Cell) -> [f64; 4] {
+    let drag = initial.interpolate(cell);
+    let (nodes, weights) = (cell.nodes(), cell.weights());
+    [0, 1, 2, 3].map(|k| weights[k] * initial.value_at_node(nodes[k]) / drag)
+}
+
+/// Cell and relative excess of drag of an observation that can be learnt.
+fn located(initial: &Table, observation: &Observation) -> Result<(Cell, f64), ObservationUpdate> {
+    let refuse = |quantity, value| Err(ObservationUpdate::Unusable { quantity, value });
+    let Observation { lift_coefficient, mach, drag_coefficient, variance, .. } = *observation;
+    for (quantity, value) in [("lift coefficient", lift_coefficient), ("Mach number", mach)] {
+        if !value.is_finite() {
+            return refuse(quantity, value);
+        }
+    }
+    let ObservationVariance { segment, flight } = variance;
+    for (quantity, value) in
+        [("variance of the segment", segment), ("variance of the flight", flight)]
+    {
+        if !(value.is_finite() && value >= 0.0) {
+            return refuse(quantity, value);
+        }
+    }
+    let cell = initial
+        .grid()
+        .locate(lift_coefficient, mach, Outside::Error)
+        .map_err(ObservationUpdate::OutsideGrid)?;
+    let ratio = drag_coefficient / initial.interpolate(&cell);
+    if !(ratio > 0.0 && ratio <= MAXIMUM_DRAG_RATIO) {
+        return refuse("observed drag coefficient", drag_coefficient);
+    }
+    Ok((cell, ratio - 1.0))
+}
+
+fn days_between(earlier: Timestamp, later: Timestamp) -> f64 {
+    later.duration_since(earlier).as_secs_f64() / SECONDS_A_DAY
+}

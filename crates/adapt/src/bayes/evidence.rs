@@ -1,0 +1,249 @@
+//! Settings from past flights: marginal likelihood, and a search for its maximum.
+
+use std::f64::consts::TAU;
+
+use flight::Observation;
+use lut::Table;
+
+use super::information::Information;
+use super::judge::Verdict;
+use super::posterior::precision;
+use super::settings::SettingValues;
+use super::{BayesSettings, BayesState, InitialError, SolveError};
+
+/// How far and how fine [`tune`] searches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Search {
+    /// No setting is changed by more than this factor, up or down.
+    pub largest_factor: f64,
+    /// The search ends when a factor this small improves nothing.
+    pub smallest_factor: f64,
+    /// The search ends after so many evaluations.
+    pub maximum_evaluations: usize,
+}
+
+/// The settings found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tuned {
+    /// The settings of the largest evidence found.
+    pub settings: BayesSettings,
+    /// Its natural logarithm.
+    pub log_evidence: f64,
+    /// The way there; the first step is the start.
+    pub path: Vec<TuneStep>,
+    /// Evaluations of the evidence.
+    pub evaluations: usize,
+    /// Settings that ended where the search may not go further: the flights say little about them, or the limit is
+    /// too narrow.
+    pub at_limit: Vec<&'static str>,
+}
+
+/// An improvement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TuneStep {
+    /// What was changed; "outlier weights" where the flights were judged anew, after which evidences compare no longer
+    /// with those before.
+    pub changed: &'static str,
+    /// The settings after it.
+    pub settings: BayesSettings,
+    /// Natural logarithm of the evidence.
+    pub log_evidence: f64,
+}
+
+/// Why nothing can be tuned.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TuneError {
+    /// The initial table is no base.
+    #[error(transparent)]
+    Initial(#[from] InitialError),
+    /// Prior and information are no precision matrix together.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+}
+
+/// What the search changes, as one: the flights cannot tell two slopes or three bends apart.
+type Change = fn(&mut SettingValues, f64);
+const CHANGES: [(&str, Change); 5] = [
+    ("correction_std", |values, factor| values.correction_std *= factor),
+    ("slopes", |values, factor| {
+        values.slope_std_per_lift_coefficient *= factor;
+        values.slope_std_per_mach *= factor;
+    }),
+    ("bends", |values, factor| {
+        values.bend_std_per_lift_coefficient_squared *= factor;
+        values.bend_std_per_lift_coefficient_mach *= factor;
+        values.bend_std_per_mach_squared *= factor;
+    }),
+    ("extra_flight_std", |values, factor| values.extra_flight_std *= factor),
+    ("extra_segment_std", |values, factor| values.extra_segment_std *= factor),
+];
+
+/// Outlier weights belong to settings: how often they are renewed with the settings found.
+const ROUNDS: usize = 2;
+
+impl Search {
+    /// Factors of 2 down to 2^¼, up to 8 in all, at most 400 evaluations.
+    #[must_use]
+    pub const fn standard() -> Self {
+        Self { largest_factor: 8.0, smallest_factor: 1.19, maximum_evaluations: 400 }
+    }
+}
+
+/// Natural logarithm of the marginal likelihood of flights in the order learnt, with the outlier weights of these
+/// settings. Constants included, so that settings compare; knowledge does not age in it.
+///
+/// # Errors
+/// [`TuneError`] where the initial table is no base.
+///
+/// # Source
+/// Book `[bayes.10]`.
+pub fn log_evidence(
+    initial: &Table,
+    settings: BayesSettings,
+    flights: &[Vec<Observation>],
+) -> Result<f64, TuneError> {
+    let verdicts = judge(initial, settings, flights)?;
+    evidence(initial, settings, flights, &verdicts)
+}
+
+/// Searches for the settings of the largest evidence, one after the other by factors: deterministic, and never far.
+///
+/// Changed are the correction's size, its slopes and its bends (each by one factor), and the extra noise of flights
+/// and segments. Degrees of freedom and half-life stay: outliers are too few, and ageing is no matter of likelihood
+/// here. With fewer than some tens of flights expect little more than noise.
+///
+/// # Errors
+/// [`TuneError`] where the initial table is no base.
+pub fn tune(
+    initial: &Table,
+    start: BayesSettings,
+    flights: &[Vec<Observation>],
+    search: &Search,
+) -> Result<Tuned, TuneError> {
+    let mut verdicts = judge(initial, start, flights)?;
+    let mut best = (start, evidence(initial, start, flights, &verdicts)?);
+    let mut factors = [1.0; CHANGES.len()];
+    let mut evaluations = 1;
+    let mut path = vec![TuneStep { changed: "start", settings: start, log_evidence: best.1 }];
+    for round in 0..ROUNDS {
+        if round > 0 {
+            verdicts = judge(initial, best.0, flights)?;
+            best.1 = evidence(initial, best.0, flights, &verdicts)?;
+            evaluations += 1;
+            path.push(TuneStep {
+                changed: "outlier weights",
+                settings: best.0,
+                log_evidence: best.1,
+            });
+        }
+        let mut step = 2.0_f64;
+        while step >= search.smallest_factor {
+            let mut improved = false;
+            for (k, &(changed, _)) in CHANGES.iter().enumerate() {
+                for factor in [step, 1.0 / step] {
+                    let mut candidate = factors;
+                    candidate[k] *= factor;
+                    let within = candidate[k].max(1.0 / candidate[k]) <= search.largest_factor;
+                    if !within || evaluations >= search.maximum_evaluations {
+                        continue;
+                    }
+                    let Some(settings) = changed_by(&start, &candidate) else { continue };
+                    evaluations += 1;
+                    let log_evidence = evidence(initial, settings, flights, &verdicts)?;
+                    if log_evidence > best.1 {
+                        best = (settings, log_evidence);
+                        factors = candidate;
+                        improved = true;
+                        path.push(TuneStep { changed, settings, log_evidence });
+                        break;
+                    }
+                }
+            }
+            if !improved {
+                step = step.sqrt();
+            }
+        }
+    }
+    // One more smallest step would leave the limit.
+    let limit = search.largest_factor / search.smallest_factor;
+    let at_limit = CHANGES
+        .iter()
+        .zip(&factors)
+        .filter(|(_, factor)| factor.max(1.0 / **factor) > limit)
+        .map(|((name, _), _)| *name)
+        .collect();
+    Ok(Tuned { settings: best.0, log_evidence: best.1, path, evaluations, at_limit })
+}
+
+/// The start with every change applied; `None` out of a setting's limits.
+fn changed_by(start: &BayesSettings, factors: &[f64; CHANGES.len()]) -> Option<BayesSettings> {
+    let mut values = *start.values();
+    for ((_, change), factor) in CHANGES.iter().zip(factors) {
+        change(&mut values, *factor);
+    }
+    BayesSettings::new(values).ok()
+}
+
+/// Settings without ageing, which is no likelihood.
+fn ageless(settings: BayesSettings) -> BayesSettings {
+    let values = SettingValues { half_life_days: None, ..*settings.values() };
+    BayesSettings::new(values).unwrap_or(settings)
+}
+
+/// Outlier weights of all flights, learnt one after the other.
+fn judge(
+    initial: &Table,
+    settings: BayesSettings,
+    flights: &[Vec<Observation>],
+) -> Result<Vec<Verdict>, TuneError> {
+    let mut state = BayesState::new(initial, ageless(settings))?;
+    let verdicts = flights.iter().map(|observations| {
+        let flight = state.read(observations);
+        let verdict = state.judge.weigh(&state.rules, &flight.cases, flight.common_variance);
+        state.learn_judged(&flight, &verdict);
+        verdict
+    });
+    Ok(verdicts.collect())
+}
+
+/// Natural logarithm of the evidence with given weights:
+///
+/// ```text
+/// −½ [Σ_flights (ln|V| + yᵀ·V⁻¹·y) + ln|Q + Λ| − ln|Q| − ηᵀ·(Q + Λ)⁻¹·η + n·ln 2π]
+/// ```
+fn evidence(
+    initial: &Table,
+    settings: BayesSettings,
+    flights: &[Vec<Observation>],
+    verdicts: &[Verdict],
+) -> Result<f64, TuneError> {
+    let mut state = BayesState::new(initial, ageless(settings))?;
+    let mut sum = 0.0;
+    for (observations, verdict) in flights.iter().zip(verdicts) {
+        let flight = state.read(observations);
+        let common = flight.common_variance / verdict.flight_weight;
+        let (mut precisions, mut residuals) = (0.0, 0.0);
+        for (case, weight) in flight.cases.iter().zip(&verdict.weights) {
+            let precision = weight / case.variance;
+            precisions += precision;
+            residuals += precision * case.residual;
+            sum += precision * case.residual * case.residual - precision.ln() + TAU.ln();
+        }
+        if !flight.cases.is_empty() {
+            sum += (common * precisions).ln_1p();
+            sum -= residuals * residuals / (1.0 / common + precisions);
+        }
+        state.learn_judged(&flight, verdict);
+    }
+    let solve = |information: &Information| {
+        let matrix = precision(initial, &settings, information);
+        matrix.factor().ok_or(SolveError::NotPositiveDefinite)
+    };
+    let prior = solve(&Information::new(initial.grid().nodes()))?;
+    let posterior = solve(&state.information)?;
+    let vector = state.information.vector();
+    let explained: f64 = vector.iter().zip(posterior.solve(&vector)).map(|(a, b)| a * b).sum();
+    sum += posterior.log_determinant() - prior.log_determinant() - explained;
+    Ok(-0.5 * sum)
+}

@@ -1,0 +1,195 @@
+//! What is known after a solve: corrections, their standard deviations, the corrected table.
+
+use flight::ObservationVariance;
+use lut::{Cell, Table};
+
+use super::blocks::{BlockFactor, BlockMatrix, Layout, SelectedInverse};
+use super::guard::{GuardReport, project};
+use super::information::Information;
+use super::{BayesSettings, coefficients, prior};
+
+/// The solution: every node's correction and drag with their uncertainty, informed or not.
+///
+/// Standard deviations and variances are relative to the initial drag: 0.01 is 1 % of it. They are of the table; what a
+/// new flight and a new segment add to that, [`segment_variance`](Self::segment_variance) includes.
+#[derive(Clone, Debug)]
+pub struct Posterior {
+    initial: Table,
+    settings: BayesSettings,
+    drag: Table,
+    correction: Vec<f64>,
+    standard_deviation: Vec<f64>,
+    observations: Vec<f64>,
+    guard: Option<GuardReport>,
+    factor: BlockFactor,
+    inverse: SelectedInverse,
+}
+
+/// Why there is no solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// Prior and information are no precision matrix together.
+    #[error("what was learnt is no positive definite information: the state is damaged")]
+    NotPositiveDefinite,
+}
+
+impl Posterior {
+    pub(super) fn new(
+        initial: &Table,
+        settings: BayesSettings,
+        information: &Information,
+    ) -> Result<Self, SolveError> {
+        let factor = precision(initial, &settings, information)
+            .factor()
+            .ok_or(SolveError::NotPositiveDefinite)?;
+        let inverse = factor.selected_inverse();
+        let correction = factor.solve(&information.vector());
+        let variances: Vec<f64> =
+            (0..correction.len()).map(|node| inverse.entry(node, node)).collect();
+        if !correction.iter().chain(&variances).all(|value| value.is_finite()) {
+            return Err(SolveError::NotPositiveDefinite);
+        }
+        let mut drag = initial.clone();
+        let mut precisions = variances.clone();
+        for (node, value) in drag.values_mut().iter_mut().enumerate() {
+            precisions[node] = 1.0 / (*value * *value * variances[node]);
+            *value *= 1.0 + correction[node];
+        }
+        let guard = project(initial, drag.values_mut(), &precisions);
+        Ok(Self {
+            initial: initial.clone(),
+            settings,
+            drag,
+            correction,
+            standard_deviation: variances.into_iter().map(f64::sqrt).collect(),
+            observations: information.observations(),
+            guard,
+            factor,
+            inverse,
+        })
+    }
+
+    /// The corrected table, physical.
+    #[must_use]
+    pub const fn drag(&self) -> &Table {
+        &self.drag
+    }
+
+    /// What the guard had to change to keep drag physical; `None` where it did not act.
+    #[must_use]
+    pub const fn guard(&self) -> Option<&GuardReport> {
+        self.guard.as_ref()
+    }
+
+    /// Every node's correction x: drag is the initial times 1 + x. Before the guard.
+    #[must_use]
+    pub fn correction(&self) -> &[f64] {
+        &self.correction
+    }
+
+    /// Standard deviation of every node's correction.
+    #[must_use]
+    pub fn standard_deviation(&self) -> &[f64] {
+        &self.standard_deviation
+    }
+
+    /// Effective number of observations at every node: each counts with its bilinear weight, its outlier weight (1 at
+    /// most) and its decay.
+    #[must_use]
+    pub fn observations(&self) -> &[f64] {
+        &self.observations
+    }
+
+    /// Nodes that no observation ever touched.
+    pub fn never_informed(&self) -> impl Iterator<Item = usize> {
+        let empty = self.observations.iter().enumerate().filter(|(_, count)| **count <= 0.0);
+        empty.map(|(node, _)| node)
+    }
+
+    /// Share of nodes with at least one effective observation.
+    #[must_use]
+    pub fn informed_share(&self) -> f64 {
+        let informed = self.observations.iter().filter(|count| **count >= 1.0).count();
+        informed as f64 / self.observations.len() as f64
+    }
+
+    /// The table that was corrected.
+    #[must_use]
+    pub const fn initial(&self) -> &Table {
+        &self.initial
+    }
+
+    /// The correction at a located point; before the guard.
+    #[must_use]
+    pub fn correction_at(&self, cell: &Cell) -> f64 {
+        let (nodes, weights) = (cell.nodes(), coefficients(&self.initial, cell));
+        nodes.iter().zip(&weights).map(|(&node, weight)| weight * self.correction[node]).sum()
+    }
+
+    /// Relative variance of the table's drag at a located point, of the initial drag there.
+    ///
+    /// # Source
+    /// Book `[bayes.9]`.
+    #[must_use]
+    pub fn relative_variance(&self, cell: &Cell) -> f64 {
+        let (nodes, weights) = (cell.nodes(), coefficients(&self.initial, cell));
+        let mut variance = 0.0;
+        for k in 0..4 {
+            for other in 0..4 {
+                let covariance = self.inverse.entry(nodes[k], nodes[other]);
+                variance += weights[k] * weights[other] * covariance;
+            }
+        }
+        variance
+    }
+
+    /// Relative variance of what a segment of a new flight will show at a located point: the table's, the flight's
+    /// common error, the segment's own.
+    #[must_use]
+    pub fn segment_variance(&self, cell: &Cell, of_sensors: &ObservationVariance) -> f64 {
+        let values = self.settings.values();
+        let flight = of_sensors.flight + values.extra_flight_std * values.extra_flight_std;
+        let segment = of_sensors.segment + values.extra_segment_std * values.extra_segment_std;
+        self.relative_variance(cell) + flight + segment
+    }
+
+    /// Relative covariances of the table's drag at several located points, row by row: what the table does not know is
+    /// common to points near each other.
+    #[must_use]
+    pub fn relative_covariances(&self, cells: &[Cell]) -> Vec<Vec<f64>> {
+        let columns: Vec<Vec<(usize, f64)>> = cells
+            .iter()
+            .map(|cell| cell.nodes().into_iter().zip(coefficients(&self.initial, cell)).collect())
+            .collect();
+        self.covariances_of(&columns)
+    }
+
+    /// Covariances of linear combinations of corrections.
+    pub(super) fn covariances_of(&self, columns: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
+        let forms = self.factor.quadratic_forms(columns);
+        (0..forms.nrows())
+            .map(|row| (0..forms.ncols()).map(|column| forms[(row, column)]).collect())
+            .collect()
+    }
+}
+
+/// The precision matrix: prior and information.
+pub(super) fn precision(
+    initial: &Table,
+    settings: &BayesSettings,
+    information: &Information,
+) -> BlockMatrix {
+    let grid = initial.grid();
+    let (reach_x, reach_y) = information.reach(grid);
+    let reach_x = reach_x.max(prior::reach(grid.x()));
+    let reach_y = reach_y.max(prior::reach(grid.y()));
+    let mut matrix = BlockMatrix::zeros(Layout::new(grid, reach_x, reach_y));
+    prior::visit(grid, settings, |node, other, value| matrix.add(node, other, value));
+    for (node, other, value) in information.entries() {
+        if value != 0.0 {
+            matrix.add(node, other, value);
+        }
+    }
+    matrix
+}
