@@ -1,4 +1,36 @@
-//! A virtual aircraft (in work).
+//! A virtual aircraft: cruise reports with a truth that is known.
+//!
+//! What it is: a point-mass aircraft with an autopilot, flown second by second through wind, temperature and turbulence over
+//! a round and turning Earth, recorded by sensors that err, with any effect of the library switched on in the truth's own
+//! form, and some that no library has. It stands in for a level-D simulator and is the ground under blind trials.
+//! What it is not: a flight simulator (no climb, no stick, no pitch dynamics), and no performance model: it shares the
+//! atmosphere with the rest and none of the equations that are fitted to it.
+//!
+//! The one design decision: everything random has its own stream, keyed by seed, tail, flight and purpose. So a flight is
+//! the same bytes whatever the order and the threads, and an effect changes what it should and no weather, no load sheet.
+//!
+//! Limits: the presets are synthetic; weather is frozen, the same at all levels, and each flight's own; the autopilot flies
+//! on the truth, not on its sensors. Equations `[virtual.N]` and `[flow.N]` are in the book, pages "The virtual aircraft"
+//! and "Level flight in geostrophic wind". No files, threads or clock: text in, data out.
+//!
+//! ```
+//! use simulate::{Plan, Simulation};
+//!
+//! let plan = Plan::from_ron(
+//!     r#"(
+//!         seed: 2020,
+//!         effects: [(id: "wave_drag", size: 0.006)],
+//!         tails: [(tail: "T-001", flights: Designed((flights: 2, duration_h: (0.5, 0.5))))],
+//!     )"#,
+//! )?;
+//! let simulation = Simulation::new(plan)?;
+//! let flown = simulation.fly(1)?;
+//! assert_eq!(flown.report.len(), 31);
+//! assert!(flown.truth.energy.residual().abs() < 1e-6);
+//! assert_eq!(simulation.fly(1)?.report, flown.report);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
 mod aircraft;
 mod effect;
 mod fly;
