@@ -15,6 +15,8 @@ pub(crate) struct Line<'a> {
     pub(crate) number: usize,
     /// Comment included, line end not.
     pub(crate) text: &'a str,
+    /// From the start of this line to the end of the whole text: several bytes at a time can be looked at there.
+    pub(crate) onward: &'a str,
     /// Whether a line feed ends it.
     pub(crate) is_ended: bool,
 }
@@ -102,7 +104,11 @@ pub(crate) struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     pub(crate) const fn new(text: &'a str) -> Self {
-        Self { rest: text, number: 0, last: Line { number: 1, text: "", is_ended: false } }
+        Self {
+            rest: text,
+            number: 0,
+            last: Line { number: 1, text: "", onward: "", is_ended: false },
+        }
     }
 
     /// The next line that means something: neither blank nor comment alone.
@@ -125,6 +131,7 @@ impl<'a> Iterator for Lines<'a> {
             return None;
         }
         self.number += 1;
+        let onward = self.rest;
         let (text, is_ended) = match memchr::memchr(b'\n', self.rest.as_bytes()) {
             Some(end) => {
                 let text = &self.rest[..end];
@@ -135,7 +142,7 @@ impl<'a> Iterator for Lines<'a> {
         };
         // Half of a line end at the end of a cut file is no part of the line either.
         let text = text.strip_suffix('\r').unwrap_or(text);
-        self.last = Line { number: self.number, text, is_ended };
+        self.last = Line { number: self.number, text, onward, is_ended };
         Some(self.last)
     }
 }

@@ -11,23 +11,63 @@ const POWERS_OF_TEN: [f64; 16] =
 /// Digits of an integer that a double surely holds exactly.
 const EXACT_DIGITS: usize = 15;
 
+/// A number of at most 15 digits without plus sign and exponent at the start of `bytes`, and what follows it: nearly
+/// every field of a report. `None` for whatever else stands there, also at the end of `bytes`; [`leading`] judges it.
+#[inline]
+pub(crate) fn short(bytes: &[u8]) -> Option<(f64, &[u8])> {
+    let mut rest = bytes.iter();
+    let mut byte = *rest.next()?;
+    let is_negative = byte == b'-';
+    if is_negative {
+        byte = *rest.next()?;
+    }
+    let mut mantissa = 0_u64;
+    let mut digit = byte.wrapping_sub(b'0');
+    let after_sign = rest.len();
+    while digit <= 9 {
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        byte = *rest.next()?;
+        digit = byte.wrapping_sub(b'0');
+    }
+    let mut digits = after_sign - rest.len();
+    let mut fraction_digits = 0;
+    if byte == b'.' {
+        let after_point = rest.len();
+        loop {
+            byte = *rest.next()?;
+            digit = byte.wrapping_sub(b'0');
+            if digit > 9 {
+                break;
+            }
+            mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        }
+        fraction_digits = after_point - rest.len() - 1;
+        digits += fraction_digits;
+    }
+    if digits == 0 || digits > EXACT_DIGITS || byte == b'e' {
+        return None;
+    }
+    // Both operands are exact, so that the quotient is the nearest double (Clinger 1990).
+    let magnitude = mantissa as f64 / POWERS_OF_TEN[fraction_digits];
+    let number = if is_negative { -magnitude } else { magnitude };
+    Some((number, &bytes[bytes.len() - rest.len() - 1..]))
+}
+
 /// The number at the start of `bytes` and its length; `None` if there is none or it is too large for a double.
 /// What follows the number is the caller's to judge.
-#[inline]
 pub(crate) fn leading(bytes: &[u8]) -> Option<(f64, usize)> {
-    let mut at = 0;
-    let negative = match bytes.first() {
-        Some(b'-') => {
-            at = 1;
-            true
-        }
-        Some(b'+') => {
-            at = 1;
-            false
-        }
-        _ => false,
+    let (is_negative, sign) = match bytes.first() {
+        Some(b'-') => (true, 1),
+        Some(b'+') => (false, 1),
+        _ => (false, 0),
     };
-    let unsigned = at;
+    let (magnitude, length) = unsigned(&bytes[sign..])?;
+    Some((if is_negative { -magnitude } else { magnitude }, sign + length))
+}
+
+/// Numbers without sign of any length.
+fn unsigned(bytes: &[u8]) -> Option<(f64, usize)> {
+    let mut at = 0;
     let mut mantissa = 0_u64;
     let mut digits = take_digits(bytes, &mut at, &mut mantissa);
     let mut fraction_digits = 0;
@@ -39,13 +79,20 @@ pub(crate) fn leading(bytes: &[u8]) -> Option<(f64, usize)> {
     if digits == 0 {
         return None;
     }
-    let magnitude = if digits <= EXACT_DIGITS && bytes.get(at) != Some(&b'e') {
-        // Both operands are exact, so that the quotient is the nearest double (Clinger 1990).
-        mantissa as f64 / POWERS_OF_TEN[fraction_digits]
-    } else {
-        general(bytes, unsigned, &mut at)?
-    };
-    Some((if negative { -magnitude } else { magnitude }, at))
+    if digits <= EXACT_DIGITS && bytes.get(at) != Some(&b'e') {
+        return Some((mantissa as f64 / POWERS_OF_TEN[fraction_digits], at));
+    }
+    if bytes.get(at) == Some(&b'e') {
+        at += 1;
+        if matches!(bytes.get(at), Some(b'+' | b'-')) {
+            at += 1;
+        }
+        if take_digits(bytes, &mut at, &mut 0) == 0 {
+            return None;
+        }
+    }
+    let magnitude = fast_float2::parse::<f64, _>(&bytes[..at]).ok()?;
+    magnitude.is_finite().then_some((magnitude, at))
 }
 
 /// The number that `bytes` is from start to end.
@@ -76,21 +123,6 @@ fn take_digits(bytes: &[u8], at: &mut usize, mantissa: &mut u64) -> usize {
     *at - start
 }
 
-/// Exponents and long mantissas; `at` is past the mantissa and moves past the exponent.
-#[cold]
-fn general(bytes: &[u8], unsigned: usize, at: &mut usize) -> Option<f64> {
-    if bytes.get(*at) == Some(&b'e') {
-        *at += 1;
-        if matches!(bytes.get(*at), Some(b'+' | b'-')) {
-            *at += 1;
-        }
-        if take_digits(bytes, at, &mut 0) == 0 {
-            return None;
-        }
-    }
-    fast_float2::parse::<f64, _>(&bytes[unsigned..*at]).ok().filter(|value| value.is_finite())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,6 +151,20 @@ mod tests {
     }
 
     proptest::proptest! {
+        /// The short way finds the same as the long way, or leaves it to it.
+        #[test]
+        fn short_numbers_are_numbers(line in "[+-]?[0-9.]{0,18}[e\\-:/x§ \\t]?[ -~§]{0,9}") {
+            let long = leading(line.as_bytes()).map(|(value, length)| (value.to_bits(), length));
+            let found = short(line.as_bytes())
+                .map(|(value, rest)| (value.to_bits(), line.len() - rest.len()));
+            let is_short = long.is_some_and(|(_, length)| {
+                length <= 15 && length < line.len() && !line[..length].contains(['e', '+'])
+            });
+            if found.is_some() || is_short {
+                proptest::prop_assert_eq!(found, long);
+            }
+        }
+
         /// Oracle: the standard library's correctly rounding parser.
         #[test]
         fn value_is_the_nearest_double(text in "[+-]?([0-9]{1,22}\\.?[0-9]{0,12}|\\.[0-9]{1,18})(e[+-]?[0-9]{1,3})?") {

@@ -10,14 +10,14 @@ use super::columns::Field;
 use crate::line::Lines;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
-/// The report of these rows; `values` holds one row after the other, in the units of the file.
+/// The report of these rows; `columns` holds one column a field, in the units of the file.
 pub(super) fn report(
     header: ReportHeader,
     fields: &[Field],
     engines: Option<u8>,
-    values: &[f64],
+    columns: &[Vec<f64>],
 ) -> Result<Report, ReportDataError> {
-    let table = Table { fields, values };
+    let table = Table { fields, columns };
     let engine_count = engines.unwrap_or(0);
     let n2_percent: Vec<_> =
         (1..=engine_count).map_while(|engine| table.required(Column::N2(engine))).collect();
@@ -85,7 +85,7 @@ pub(super) fn refusal(error: ReportDataError, mut lines: Lines<'_>) -> Refusal {
 
 struct Table<'a> {
     fields: &'a [Field],
-    values: &'a [f64],
+    columns: &'a [Vec<f64>],
 }
 
 impl Table<'_> {
@@ -108,6 +108,6 @@ impl Table<'_> {
             .iter()
             .position(|field| field.column == Some(column) && field.is_handed_on)?;
         let field = self.fields[index];
-        Some(self.values[index..].iter().step_by(self.fields.len()).map(move |v| field.convert(*v)))
+        Some(self.columns[index].iter().map(move |value| field.convert(*value)))
     }
 }

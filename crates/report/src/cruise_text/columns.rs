@@ -23,8 +23,6 @@ pub(crate) struct Field {
     pub(crate) is_handed_on: bool,
     /// Whether `-` may stand in it.
     pub(crate) is_optional: bool,
-    /// Whether only whole numbers may stand in it.
-    pub(crate) is_whole: bool,
     /// Unit of the file, whose factor and offset lead to the stored unit.
     pub(crate) unit: ColumnUnit,
     /// Smallest value in the unit of the file, and the same less rounding.
@@ -76,16 +74,16 @@ pub(super) fn read(
     Ok(engines)
 }
 
+/// An empty range: no number is read as one of this column.
 const KEPT_OUT: Field = Field {
     column: None,
     is_handed_on: false,
     is_optional: true,
-    is_whole: false,
     unit: ColumnUnit { name: "-", factor: 1.0, offset: 0.0 },
     minimum: f64::MIN,
-    low: f64::MIN,
+    low: f64::INFINITY,
     maximum: f64::MAX,
-    high: f64::MAX,
+    high: f64::NEG_INFINITY,
 };
 
 type NamedColumn<'a> = (Word<'a>, Option<Column>);
@@ -268,7 +266,6 @@ fn field_of(
         column: Some(column),
         is_handed_on: !is_declared_missing(column, header),
         is_optional: column.is_optional(),
-        is_whole: column == Column::AntiIce,
         unit: *unit,
         minimum: minimum.unwrap_or(f64::MIN),
         low: match minimum {

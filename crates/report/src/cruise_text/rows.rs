@@ -15,33 +15,28 @@ const FUEL_USED_STEP_KG: f64 = 0.5;
 /// Decimal differences in binary: a fall of exactly one step is no more than a step.
 const DIFFERENCE_ROUNDING: f64 = 1e-9;
 
-/// Reads all rows into `values`, one row after the other, in the units of the file (NaN for "not available"), and
-/// returns their number.
+/// Reads all rows into `columns`, one a field, in the units of the file (NaN for "not available"), and returns the
+/// number of rows.
 pub(super) fn read(
     lines: &mut Lines<'_>,
     fields: &[Field],
-    values: &mut Vec<f64>,
+    columns: &mut Vec<Vec<f64>>,
     findings: &mut Vec<Finding>,
 ) -> Result<usize, Refusal> {
-    values.clear();
+    columns.iter_mut().for_each(Vec::clear);
+    columns.resize_with(fields.len(), Vec::new);
     let mut rows = 0;
     let mut series = Series::new(fields);
     for line in lines.by_ref() {
-        let start = values.len();
-        values.resize(start + fields.len(), 0.0);
-        let row = &mut values[start..];
-        match read_row(line.text.as_bytes(), fields, row) {
+        match read_row(line, fields, columns) {
             Ok(true) => {}
-            Ok(false) => {
-                values.truncate(start);
-                continue;
-            }
+            Ok(false) => continue,
             Err(problem) => return Err(refusal(problem, line, fields)),
         }
         if !line.is_ended {
             findings.push(accept_last_row(line, fields)?);
         }
-        series.check(row, line, fields)?;
+        series.check(rows, columns, line, fields)?;
         rows += 1;
     }
     Ok(rows)
@@ -55,62 +50,86 @@ enum RowProblem {
     OutOfRange { offset: usize, column: Column, field: usize, value: f64 },
 }
 
-/// Reads one line into `row`; `false` for a line that means nothing.
-#[inline]
-fn read_row(bytes: &[u8], fields: &[Field], row: &mut [f64]) -> Result<bool, RowProblem> {
-    let mut at = 0;
-    for (index, (field, value)) in fields.iter().zip(row).enumerate() {
-        at = skip_blanks(bytes, at);
-        if is_end_of_meaning(bytes, at) {
+/// Appends the numbers of one line to `columns`; `false` for a line that means nothing. After a problem the columns
+/// are of different lengths and of no use.
+///
+/// Not inlined: among the refusals of its caller the loop would not keep its values in registers.
+#[inline(never)]
+fn read_row(
+    line: Line<'_>,
+    fields: &[Field],
+    columns: &mut [Vec<f64>],
+) -> Result<bool, RowProblem> {
+    let bytes = line.text.as_bytes();
+    // Onward from the line, a number ends at the line end at the latest: nothing has to be compared with the line's
+    // length until something else than a number in its range turns up.
+    let onward = line.onward.as_bytes();
+    let beyond = onward.len() - bytes.len();
+    let mut rest = onward;
+    for (index, (field, column)) in fields.iter().zip(columns).enumerate() {
+        rest = skip_blanks(rest);
+        // No number is inside the range of a column that is kept out: it is empty.
+        if let Some((number, tail)) = number::short(rest)
+            && field.low <= number
+            && number <= field.high
+            && (tail.first().is_some_and(|byte| is_blank(*byte)) || tail.len() == beyond)
+        {
+            column.push(number);
+            rest = tail;
+            continue;
+        }
+        if is_end_of_meaning(rest, beyond) {
             return if index == 0 { Ok(false) } else { Err(RowProblem::WrongLength) };
         }
-        let Some(column) = field.column else {
-            at = end_of_word(bytes, at);
-            continue;
-        };
-        match number::leading(&bytes[at..]) {
-            Some((number, length)) if is_end_of_word(bytes, at + length) => {
-                if !(field.low <= number && number <= field.high)
-                    || (field.is_whole && number.fract() != 0.0)
-                {
-                    return Err(RowProblem::OutOfRange {
-                        offset: at,
-                        column,
-                        field: index,
-                        value: number,
-                    });
-                }
-                *value = number;
-                at += length;
-            }
-            _ if field.is_optional && bytes[at] == b'-' && is_end_of_word(bytes, at + 1) => {
-                *value = f64::NAN;
-                at += 1;
-            }
-            _ => return Err(RowProblem::NotANumber { offset: at, column }),
-        }
+        let (number, end) = read_field(bytes, onward.len() - rest.len(), index, field)?;
+        column.push(number);
+        rest = &onward[end..];
     }
-    at = skip_blanks(bytes, at);
-    if is_end_of_meaning(bytes, at) { Ok(true) } else { Err(RowProblem::WrongLength) }
+    if is_end_of_meaning(skip_blanks(rest), beyond) {
+        Ok(true)
+    } else {
+        Err(RowProblem::WrongLength)
+    }
+}
+
+/// Whatever is no short number inside its range; returns its value and its end.
+fn read_field(
+    bytes: &[u8],
+    at: usize,
+    index: usize,
+    field: &Field,
+) -> Result<(f64, usize), RowProblem> {
+    let end = end_of_word(bytes, at);
+    let word = &bytes[at..end];
+    let column = match field.column {
+        Some(column) if word != b"-" || !field.is_optional => column,
+        _ => return Ok((f64::NAN, end)),
+    };
+    let number = number::whole(word).ok_or(RowProblem::NotANumber { offset: at, column })?;
+    if field.low <= number && number <= field.high {
+        Ok((number, end))
+    } else {
+        Err(RowProblem::OutOfRange { offset: at, column, field: index, value: number })
+    }
 }
 
 #[inline]
-fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
-    while bytes.get(at).is_some_and(|byte| is_blank(*byte)) {
-        at += 1;
+fn skip_blanks(mut rest: &[u8]) -> &[u8] {
+    while let [byte, tail @ ..] = rest
+        && is_blank(*byte)
+    {
+        rest = tail;
     }
-    at
+    rest
 }
 
-#[inline]
+/// The line's end, behind which `beyond` bytes lie, or a comment: `rest` begins with a word.
+fn is_end_of_meaning(rest: &[u8], beyond: usize) -> bool {
+    rest.len() <= beyond || rest[0] == b'#'
+}
+
 fn is_end_of_word(bytes: &[u8], at: usize) -> bool {
     bytes.get(at).is_none_or(|byte| is_blank(*byte))
-}
-
-/// The line's end, or a comment: `at` is the start of a word.
-#[inline]
-fn is_end_of_meaning(bytes: &[u8], at: usize) -> bool {
-    bytes.get(at).is_none_or(|byte| *byte == b'#')
 }
 
 fn end_of_word(bytes: &[u8], mut at: usize) -> usize {
@@ -120,18 +139,20 @@ fn end_of_word(bytes: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// What holds from row to row.
+/// What holds from row to row, and of whole rows.
 struct Series {
     previous_time_s: f64,
     previous_time: f64,
     fuel_used: Option<usize>,
     fuel_used_step: f64,
     largest_fuel_used: f64,
+    anti_ice: Option<usize>,
 }
 
 impl Series {
     fn new(fields: &[Field]) -> Self {
-        let fuel_used = fields.iter().position(|field| field.column == Some(Column::FuelUsed));
+        let place = |wanted| fields.iter().position(|field: &Field| field.column == Some(wanted));
+        let fuel_used = place(Column::FuelUsed);
         let is_in_pounds = fuel_used.is_some_and(|index| fields[index].unit.name == "lb");
         Self {
             previous_time_s: f64::NEG_INFINITY,
@@ -139,12 +160,20 @@ impl Series {
             fuel_used,
             fuel_used_step: if is_in_pounds { FUEL_USED_STEP_LB } else { FUEL_USED_STEP_KG },
             largest_fuel_used: f64::NEG_INFINITY,
+            anti_ice: place(Column::AntiIce),
         }
     }
 
     #[inline]
-    fn check(&mut self, row: &[f64], line: Line<'_>, fields: &[Field]) -> Result<(), Refusal> {
-        let time_s = fields[0].convert(row[0]);
+    fn check(
+        &mut self,
+        row: usize,
+        columns: &[Vec<f64>],
+        line: Line<'_>,
+        fields: &[Field],
+    ) -> Result<(), Refusal> {
+        let time = columns[0][row];
+        let time_s = fields[0].convert(time);
         if time_s <= self.previous_time_s {
             let kind = RefusalKind::TimeNotIncreasing {
                 previous: self.previous_time,
@@ -153,9 +182,18 @@ impl Series {
             return Err(refuse_field(line, 0, kind));
         }
         self.previous_time_s = time_s;
-        self.previous_time = row[0];
+        self.previous_time = time;
+        if let Some(index) = self.anti_ice {
+            let value = columns[index][row];
+            // A difference of doubles is zero only for equal ones; NaN is "not available".
+            if !(value == 0.0 || value - 1.0 == 0.0 || value.is_nan()) {
+                let column = Column::AntiIce;
+                let kind = RefusalKind::OutOfRange { column, limit: 1.0, unit: "-" };
+                return Err(refuse_field(line, index, kind));
+            }
+        }
         let Some(index) = self.fuel_used else { return Ok(()) };
-        let fuel_used = row[index];
+        let fuel_used = columns[index][row];
         if fuel_used < self.largest_fuel_used - self.fuel_used_step - DIFFERENCE_ROUNDING {
             let kind = RefusalKind::FuelUsedFalls {
                 largest: self.largest_fuel_used,
