@@ -21,7 +21,7 @@ const KEPT_NUMBERS: usize = 8_000_000;
 
 /// Data, columns, Gram matrices.
 pub(crate) struct Stacked<'a> {
-    pub(crate) data: &'a Data,
+    pub(crate) data: &'a Data<'a>,
     pub(crate) design: &'a Design<'a>,
     pub(crate) folds: Folds,
     pub(crate) weights: Option<Vec<f64>>,
@@ -45,7 +45,7 @@ pub(crate) struct Analysis {
 }
 
 impl<'a> Stacked<'a> {
-    pub(crate) fn of(data: &'a Data, design: &'a Design<'a>, weights: Option<Vec<f64>>) -> Self {
+    pub(crate) fn of(data: &'a Data<'a>, design: &'a Design<'a>, weights: Option<Vec<f64>>) -> Self {
         let rows = data.segments.len() * data.channels.count() + data.flights.len();
         let keep = rows * design.columns <= KEPT_NUMBERS;
         let kept = keep.then(|| {

@@ -3,12 +3,13 @@
 
 use faer::Mat;
 use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModel, EffectPoint, EffectReferences, Response};
+use perf_model::effects::{EffectModel, EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 
 use crate::data::{DECK_TERMS, Data, Deck};
 use crate::design::{half_whitened, whiten_flight};
 use crate::library::Library;
+use crate::gram::integrate_out;
 use crate::linear::{Factor, add_gram, symmetrize};
 use crate::noise::{MAXIMUM_CHANNELS, NoiseFactors};
 use crate::record::FlightRecord;
@@ -24,7 +25,7 @@ const VARIABLES: [Variable; 6] = [
     Variable::IsaDeviation,
     Variable::Mass,
 ];
-const QUANTILES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+const QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 /// Prior standard deviation of the remainder's level, of a hat function and of a product: shares of fuel flow.
 const LEVEL_DEVIATION: f64 = 0.10;
 const HAT_DEVIATION: f64 = 0.02;
@@ -33,10 +34,15 @@ const PRODUCT_DEVIATION: f64 = 0.005;
 const SPLIT_DEVIATION: f64 = 0.03;
 /// Prior standard deviation of a deck coefficient about its least-squares value.
 const DECK_DEVIATION: f64 = 0.02;
-/// Rounds of learning coefficients and noise levels in turn.
-const ROUNDS: usize = 4;
-/// Limits of a noise factor: what a few flights say is not believed beyond them.
-const NOISE_LIMITS: (f64, f64) = (0.1, 10.0);
+/// Rounds over all dials, the first of them coarse.
+const ROUNDS: usize = 12;
+const COARSE_ROUNDS: usize = 4;
+const COARSE_STEP: f64 = 1.6;
+const FINE_STEP: f64 = 1.1;
+/// Dials: noise within flights and between flights of three kinds of channels, sizes of hat functions and of products.
+const DIALS: usize = 8;
+/// Limits of every dial: what a few flights say is not believed beyond them.
+const NOISE_LIMITS: (f64, f64) = (0.03, 10.0);
 /// Fewest flights that teach a remainder.
 const FEWEST_FLIGHTS: usize = 5;
 
@@ -56,6 +62,8 @@ struct Parts {
     segments: usize,
     references: EffectReferences,
     noise: NoiseFactors,
+    /// Factors on the prior standard deviations of hat functions and products.
+    scales: [f64; 2],
     hats: Vec<(Variable, Hats)>,
     products: Vec<(Variable, Scaled, Variable, Scaled)>,
     contrasts: usize,
@@ -99,12 +107,7 @@ impl Baseline {
             return Err(DiagnoseError::TooFewFlights { found, needed: FEWEST_FLIGHTS });
         }
         let mut baseline = Self::prior(&data, &references);
-        for _ in 0..ROUNDS {
-            let effective = baseline.fit(&data)?;
-            let before = baseline.parts.noise;
-            baseline.measure_noise(&data, &effective);
-            rescale(&mut data, &before, &baseline.parts.noise);
-        }
+        baseline.tune(&mut data);
         baseline.fit(&data)?;
         Ok(baseline)
     }
@@ -135,9 +138,9 @@ impl Baseline {
 
     /// Mean and standard deviation of the remainder of ln fuel flow at a point: what `predict` adds to ln Wf.
     #[must_use]
-    pub fn remainder(&self, point: &EffectPoint, response: &Response) -> (f64, f64) {
+    pub fn remainder(&self, response: &Response) -> (f64, f64) {
         let mut terms = vec![0.0; self.remainder_terms()];
-        self.write_remainder(point, response, &self.parts.references, &mut terms);
+        self.write_remainder(response, &mut terms);
         let variance: f64 = (0..self.factor.ncols())
             .map(|column| {
                 let loading: f64 = terms
@@ -151,8 +154,11 @@ impl Baseline {
         (self.remainder_mean(&terms), variance.sqrt())
     }
 
-    pub(crate) const fn knows_deck(&self) -> bool {
-        true
+    /// Mean of the remainder at a point.
+    pub(crate) fn mean_at(&self, response: &Response) -> f64 {
+        let mut terms = vec![0.0; self.remainder_terms()];
+        self.write_remainder(response, &mut terms);
+        self.remainder_mean(&terms)
     }
 
     pub(crate) const fn contrasts(&self) -> usize {
@@ -174,7 +180,7 @@ impl Baseline {
     }
 
     pub(crate) fn remainder_terms(&self) -> usize {
-        1 + self.parts.hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
+        1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>()
             + self.parts.products.len()
     }
 
@@ -182,22 +188,17 @@ impl Baseline {
         terms.iter().zip(&self.parts.mean).map(|(term, mean)| term * mean).sum()
     }
 
-    /// Writes the remainder's terms. The baseline's own references hold, whatever the caller's are.
-    pub(crate) fn write_remainder(
-        &self,
-        point: &EffectPoint,
-        response: &Response,
-        _references: &EffectReferences,
-        into: &mut [f64],
-    ) {
-        let value = |variable: Variable| {
-            variable.value(point, response, &self.parts.references).unwrap_or(0.0)
-        };
+    /// Writes the remainder's terms at the state that was flown. The baseline's own references hold.
+    pub(crate) fn write_remainder(&self, response: &Response, into: &mut [f64]) {
+        let value = |variable: Variable| variable.flown(response, &self.parts.references);
         into[0] = 1.0;
         let mut at = 1;
         for (variable, hats) in &self.parts.hats {
-            hats.write(value(*variable), &mut into[at..at + hats.len()]);
+            let value = value(*variable);
+            hats.write(value, &mut into[at..at + hats.len()]);
             at += hats.len();
+            into[at..at + 2].copy_from_slice(&hats.beyond(value));
+            at += 2;
         }
         for (a, scaled_a, b, scaled_b) in &self.parts.products {
             into[at] = scaled_a.at(value(*a)) * scaled_b.at(value(*b));
@@ -206,11 +207,12 @@ impl Baseline {
     }
 
     /// The baseline before it has learnt.
-    fn prior(data: &Data, references: &EffectReferences) -> Self {
+    fn prior(data: &Data<'_>, references: &EffectReferences) -> Self {
         let values = |variable: Variable| -> Option<Vec<f64>> {
             data.segments
                 .iter()
-                .map(|row| variable.value(&row.point, &row.response, references))
+                .map(|row| variable.flown(&row.response, references))
+                .map(Some)
                 .collect()
         };
         let hats: Vec<_> = VARIABLES
@@ -225,19 +227,20 @@ impl Baseline {
                 }
             }
         }
-        let terms = 1 + hats.iter().map(|(_, h): &(_, Hats)| h.len()).sum::<usize>() + products.len();
+        let terms = 1 + hats.iter().map(|(_, h): &(_, Hats)| h.len() + 2).sum::<usize>() + products.len();
         let width = terms + data.channels.contrasts + DECK_TERMS;
         let parts = Parts {
             flights: data.flights.len(),
             segments: data.segments.len(),
             references: *references,
             noise: NoiseFactors::default(),
+            scales: [1.0; 2],
             hats,
             products,
             contrasts: data.channels.contrasts,
             deck_known: data.channels.n2,
-            deck_centers: data.deck.centers,
-            deck_coefficients: data.deck.coefficients.to_vec(),
+            deck_centers: data.predictor.deck.centers,
+            deck_coefficients: data.predictor.deck.coefficients.to_vec(),
             mean: vec![0.0; terms + data.channels.contrasts],
             factor: Vec::new(),
             rms: f64::NAN,
@@ -251,9 +254,9 @@ impl Baseline {
         if index == 0 {
             LEVEL_DEVIATION
         } else if index < products {
-            HAT_DEVIATION
+            HAT_DEVIATION * self.parts.scales[0]
         } else if index < terms {
-            PRODUCT_DEVIATION
+            PRODUCT_DEVIATION * self.parts.scales[1]
         } else if index < terms + self.parts.contrasts {
             SPLIT_DEVIATION
         } else {
@@ -261,27 +264,10 @@ impl Baseline {
         }
     }
 
-    /// Posterior of all coefficients at the present noise; returns how many coefficients each channel kind spent.
-    fn fit(&mut self, data: &Data) -> Result<[f64; 3], DiagnoseError> {
+    /// Posterior of all coefficients at the present noise.
+    fn fit(&mut self, data: &Data<'_>) -> Result<(), DiagnoseError> {
         let width = self.factor.nrows();
-        let mut gram = Mat::<f64>::zeros(width + 1, width + 1);
-        for flight in &data.flights {
-            let segments = &data.segments[flight.segments.clone()];
-            let channels = data.channels.count();
-            let mut matrix = Mat::<f64>::zeros(segments.len() * channels, width + 1);
-            for (index, row) in segments.iter().enumerate() {
-                let raw = self.raw_row(data, row);
-                for (column, values) in raw.iter().enumerate() {
-                    let white = half_whitened(row, values, channels);
-                    for channel in 0..channels {
-                        matrix[(index * channels + channel, column)] = white[channel];
-                    }
-                }
-            }
-            whiten_flight(data, segments, &mut matrix);
-            add_gram(&mut gram, &matrix);
-        }
-        symmetrize(&mut gram);
+        let (gram, _) = self.gram(data);
         let mut precision = Mat::from_fn(width, width, |i, j| gram[(i, j)]);
         for k in 0..width {
             let deviation = self.prior_deviation(k);
@@ -297,14 +283,8 @@ impl Baseline {
             self.parts.mean[k] = solution[(k, 0)];
         }
         for k in 0..DECK_TERMS {
-            self.parts.deck_coefficients[k] = data.deck.coefficients[k] + solution[(terms + k, 0)];
-        }
-        let mut spent = [0.0; 3];
-        let remainder = self.remainder_terms();
-        for k in 0..width {
-            let deviation = self.prior_deviation(k);
-            let kind = if k < remainder { 0 } else if k < terms { 1 } else { 2 };
-            spent[kind] += (1.0 - covariance[(k, k)] / (deviation * deviation)).clamp(0.0, 1.0);
+            self.parts.deck_coefficients[k] =
+                data.predictor.deck.coefficients[k] + solution[(terms + k, 0)];
         }
         // A covariance inverted in floating point may miss definiteness by rounding; a hair on the diagonal mends it.
         for k in 0..width {
@@ -312,20 +292,28 @@ impl Baseline {
         }
         let lower = Factor::of(covariance).ok_or(DiagnoseError::Degenerate)?;
         self.factor = lower.lower().to_owned();
-        self.parts.factor =
-            (0..width).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|ij| self.factor[ij]).collect();
-        Ok(spent)
+        self.parts.factor = (0..width)
+            .flat_map(|i| (0..=i).map(move |j| (i, j)))
+            .map(|ij| self.factor[ij])
+            .collect();
+        let squares: f64 = data
+            .segments
+            .iter()
+            .map(|row| (row.residual[0] - self.mean_at(&row.response)).powi(2))
+            .sum();
+        self.parts.rms = (squares / data.segments.len().max(1) as f64).sqrt();
+        Ok(())
     }
 
     /// Raw values of every column and, last, the residual.
     fn raw_row(
         &self,
-        data: &Data,
+        data: &Data<'_>,
         row: &crate::data::SegmentRow,
     ) -> Vec<[f64; MAXIMUM_CHANNELS]> {
         let terms = self.remainder_terms();
         let mut remainder = vec![0.0; terms];
-        self.write_remainder(&row.point, &row.response, &self.parts.references, &mut remainder);
+        self.write_remainder(&row.response, &mut remainder);
         let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; self.factor.nrows() + 1];
         for (slot, value) in raw.iter_mut().zip(&remainder) {
             slot[0] = *value;
@@ -349,90 +337,109 @@ impl Baseline {
         raw
     }
 
-    /// Compares what is left with what the sensors announce, within and between flights, channel kind by channel kind.
-    fn measure_noise(&mut self, data: &Data, spent: &[f64; 3]) {
-        let width = self.factor.nrows();
-        let coefficients: Vec<f64> = self
-            .parts
-            .mean
-            .iter()
-            .copied()
-            .chain(
-                (0..DECK_TERMS)
-                    .map(|k| self.parts.deck_coefficients[k] - data.deck.coefficients[k]),
-            )
-            .collect();
-        debug_assert_eq!(coefficients.len(), width);
-        let channels = data.channels.count();
-        let (mut within, mut announced_within) = ([0.0; 3], [0.0; 3]);
-        let (mut between, mut announced_between) = ([0.0; 3], [0.0; 3]);
-        let (mut rows, mut squares) = ([0.0; 3], 0.0);
-        for flight in &data.flights {
-            let segments = &data.segments[flight.segments.clone()];
-            let left: Vec<[f64; MAXIMUM_CHANNELS]> = segments
-                .iter()
-                .map(|row| {
-                    let raw = self.raw_row(data, row);
-                    let mut left = row.residual;
-                    for (coefficient, values) in coefficients.iter().zip(&raw) {
-                        for channel in 0..channels {
-                            left[channel] -= coefficient * values[channel];
-                        }
-                    }
-                    left
-                })
-                .collect();
-            let count = segments.len() as f64;
-            for channel in 0..channels {
-                if !segments.iter().all(|row| row.is_recorded[channel]) {
+    /// Noise factors and sizes of the remainder by marginal likelihood: what is left of a flexible remainder is no measure
+    /// of the noise, because the remainder has eaten part of it.
+    fn tune(&mut self, data: &mut Data<'_>) {
+        let mut best = self.ln_marginal(data);
+        for round in 0..ROUNDS {
+            let step = if round < COARSE_ROUNDS { COARSE_STEP } else { FINE_STEP };
+            let mut moved = false;
+            for dial in 0..DIALS {
+                if !self.is_live(dial, data) {
                     continue;
                 }
-                let kind = data.channels.kind(channel);
-                let mean = left.iter().map(|e| e[channel]).sum::<f64>() / count;
-                let own = |row: &crate::data::SegmentRow| -> f64 {
-                    row.noise.factor[channel][..=channel].iter().map(|l| l * l).sum()
-                };
-                let announced: f64 = segments.iter().map(own).sum();
-                within[kind] += left.iter().map(|e| (e[channel] - mean).powi(2)).sum::<f64>();
-                announced_within[kind] += announced * (1.0 - 1.0 / count);
-                between[kind] += mean * mean;
-                // What the segments' own noise leaves in the mean is taken off below.
-                between[kind] -= announced / (count * count);
-                announced_between[kind] += segments
-                    .iter()
-                    .map(|row| row.noise.common.iter().map(|u| u[channel] * u[channel]).sum::<f64>())
-                    .sum::<f64>()
-                    / count;
-                rows[kind] += count;
-                if channel == 0 {
-                    squares += left.iter().map(|e| e[0] * e[0]).sum::<f64>();
+                for by in [step, 1.0 / step] {
+                    while let Some(found) = self.try_dial(dial, by, best, data) {
+                        best = found;
+                        moved = true;
+                    }
                 }
             }
+            if !moved && round >= COARSE_ROUNDS {
+                break;
+            }
         }
-        self.parts.rms = (squares / rows[0].max(1.0)).sqrt();
+    }
+
+    const fn is_live(&self, dial: usize, data: &Data<'_>) -> bool {
+        match dial {
+            0 | 3 | 6 | 7 => true,
+            1 | 4 => data.channels.contrasts > 0,
+            _ => data.channels.n2,
+        }
+    }
+
+    /// Turns a dial; the better marginal likelihood, or `None` where it is not better, and the dial is turned back.
+    fn try_dial(&mut self, dial: usize, by: f64, best: f64, data: &mut Data<'_>) -> Option<f64> {
+        let before = (self.parts.noise, self.parts.scales);
+        let value = match dial {
+            0..3 => &mut self.parts.noise.within[dial],
+            3..6 => &mut self.parts.noise.between[dial - 3],
+            _ => &mut self.parts.scales[dial - 6],
+        };
+        let turned = *value * by;
         let (low, high) = NOISE_LIMITS;
-        for kind in 0..3 {
-            if rows[kind] == 0.0 || announced_within[kind] <= 0.0 {
-                continue;
-            }
-            // Coefficients that were fitted ate some of the scatter.
-            let share = (1.0 - spent[kind] / rows[kind]).max(0.2);
-            let ratio = (within[kind] / announced_within[kind] / share).sqrt();
-            if ratio.is_finite() {
-                let factor = &mut self.parts.noise.within[kind];
-                *factor = (*factor * ratio).clamp(low, high);
-            }
-            if announced_between[kind] > 0.0 {
-                let ratio = (between[kind] / announced_between[kind] / share).max(0.01).sqrt();
-                let factor = &mut self.parts.noise.between[kind];
-                *factor = (*factor * ratio).clamp(low, high);
-            }
+        if turned < low || turned > high {
+            return None;
         }
+        *value = turned;
+        rescale(data, &before.0, &self.parts.noise);
+        let found = self.ln_marginal(data);
+        if found > best + 1e-3 {
+            return Some(found);
+        }
+        rescale(data, &self.parts.noise, &before.0);
+        (self.parts.noise, self.parts.scales) = before;
+        None
+    }
+
+    /// ln of the marginal likelihood, up to a constant.
+    ///
+    /// ```text
+    /// −½ Σ_f ln|C_f| − ½ ln|1 + S G S| − ½ (y² − bᵀ S (1 + S G S)⁻¹ S b)                  [diagnosis.17]
+    /// ```
+    fn ln_marginal(&self, data: &Data<'_>) -> f64 {
+        let width = self.factor.nrows();
+        let (gram, ln_noise) = self.gram(data);
+        let kept = [width];
+        let out: Vec<usize> = (0..width).collect();
+        let deviations: Vec<f64> = out.iter().map(|&k| self.prior_deviation(k)).collect();
+        integrate_out(&gram, &kept, &out, &deviations).map_or(f64::NEG_INFINITY, |left| {
+            -0.5 * (ln_noise + left.ln_determinant + left.matrix[(0, 0)])
+        })
+    }
+
+    /// Whitened Gram of raw columns and residual, and Σ ln|C_f|.
+    fn gram(&self, data: &Data<'_>) -> (Mat<f64>, f64) {
+        let width = self.factor.nrows();
+        let mut gram = Mat::<f64>::zeros(width + 1, width + 1);
+        let mut ln_noise = 0.0;
+        let channels = data.channels.count();
+        for flight in &data.flights {
+            let segments = &data.segments[flight.segments.clone()];
+            let mut matrix = Mat::<f64>::zeros(segments.len() * channels, width + 1);
+            for (index, row) in segments.iter().enumerate() {
+                for channel in 0..channels {
+                    ln_noise += 2.0 * row.noise.factor[channel][channel].ln();
+                }
+                let raw = self.raw_row(data, row);
+                for (column, values) in raw.iter().enumerate() {
+                    let white = half_whitened(row, values, channels);
+                    for channel in 0..channels {
+                        matrix[(index * channels + channel, column)] = white[channel];
+                    }
+                }
+            }
+            ln_noise += whiten_flight(data, segments, &mut matrix);
+            add_gram(&mut gram, &matrix);
+        }
+        symmetrize(&mut gram);
+        (gram, ln_noise)
     }
 }
 
 /// Rescales the noise of prepared segments from one set of factors to another.
-fn rescale(data: &mut Data, from: &NoiseFactors, to: &NoiseFactors) {
+fn rescale(data: &mut Data<'_>, from: &NoiseFactors, to: &NoiseFactors) {
     let channels = data.channels;
     for row in &mut data.segments {
         for channel in 0..channels.count() {

@@ -121,6 +121,9 @@ impl Distances {
     pub(crate) fn confused_with(&self, library: &Library, column: usize, size: f64) -> Vec<usize> {
         let own = library.columns[column].effect;
         let mut class = vec![own];
+        if size * size * self.information(column) < CONFUSED {
+            return class; // what is hardly seen at all is not like anything
+        }
         for (index, effect) in library.effects.iter().enumerate() {
             if index == own {
                 continue;

@@ -65,11 +65,6 @@ impl Shrinkage {
     }
 }
 
-/// The gap of a segment: ln recorded less ln predicted, the taught remainder taken off.
-pub(crate) fn gaps(stacked: &Stacked<'_>, remainder: &[f64]) -> Vec<f64> {
-    stacked.data.segments.iter().zip(remainder).map(|(row, r)| row.residual[0] - r).collect()
-}
-
 /// Before and after with a model that is given: not judged on unseen flights.
 pub(crate) fn in_sample(
     stacked: &Stacked<'_>,
@@ -77,10 +72,9 @@ pub(crate) fn in_sample(
     library: &Library,
     columns: &[usize],
     sizes: &[f64],
-    remainder: &[f64],
     noise_scale: f64,
 ) -> Shrinkage {
-    shrinkage(stacked, model, library, remainder, noise_scale, |_| (columns.to_vec(), sizes.to_vec()))
+    shrinkage(stacked, model, library, noise_scale, |_| (columns.to_vec(), sizes.to_vec()))
 }
 
 /// Before and after on flights that neither choice nor fit has seen.
@@ -88,13 +82,12 @@ pub(crate) fn nested(
     stacked: &Stacked<'_>,
     model: &EffectModel<'_>,
     library: &Library,
-    remainder: &[f64],
     noise_scale: f64,
 ) -> Shrinkage {
     let choices: Vec<(Vec<usize>, Vec<f64>)> = (0..FOLDS)
         .map(|fold| chosen(stacked, model, library, fold).unwrap_or_default())
         .collect();
-    shrinkage(stacked, model, library, remainder, noise_scale, |fold| choices[fold].clone())
+    shrinkage(stacked, model, library, noise_scale, |fold| choices[fold].clone())
 }
 
 fn chosen(
@@ -119,7 +112,6 @@ fn shrinkage(
     stacked: &Stacked<'_>,
     model: &EffectModel<'_>,
     library: &Library,
-    remainder: &[f64],
     noise_scale: f64,
     choice: impl Fn(usize) -> (Vec<usize>, Vec<f64>),
 ) -> Shrinkage {
@@ -130,13 +122,11 @@ fn shrinkage(
         let (columns, sizes) = choice(fold_of(index));
         let effects = effects_of(library, &columns, &sizes);
         let (mut before, mut after, mut floor) = (0.0, 0.0, 0.0);
-        for (row, remainder) in
-            data.segments[flight.segments.clone()].iter().zip(&remainder[flight.segments.clone()])
-        {
-            let gap = row.residual[0] - remainder;
-            let closed = model
-                .response(&row.point, &effects)
-                .map_or(0.0, |with| with.ln_fuel_flow_total - row.response.ln_fuel_flow_total);
+        for row in &data.segments[flight.segments.clone()] {
+            let gap = row.residual[0];
+            let closed = model.response(&row.point, &effects).map_or(0.0, |with| {
+                data.predictor.predict(&with)[0] - data.predictor.predict(&row.response)[0]
+            });
             before += gap * gap;
             after += (gap - closed) * (gap - closed);
             let own = row.noise.factor[0][0] * row.noise.factor[0][0];

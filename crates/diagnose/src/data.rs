@@ -25,8 +25,6 @@ pub(crate) struct SegmentRow {
     pub(crate) point: EffectPoint,
     /// Prediction without any effect.
     pub(crate) response: Response,
-    /// What was recorded, channel by channel; 0 where not recorded.
-    pub(crate) recorded: ByChannel,
     pub(crate) is_recorded: [bool; MAXIMUM_CHANNELS],
     /// Recorded less predicted.
     pub(crate) residual: ByChannel,
@@ -60,11 +58,11 @@ pub(crate) struct FlightRows {
 
 /// Everything ready.
 #[derive(Clone, Debug)]
-pub(crate) struct Data {
+pub(crate) struct Data<'a> {
     pub(crate) channels: Channels,
+    pub(crate) predictor: Predictor<'a>,
     pub(crate) flights: Vec<FlightRows>,
     pub(crate) segments: Vec<SegmentRow>,
-    pub(crate) deck: Deck,
     /// Segments that were left out, by reason.
     pub(crate) left_out: BTreeMap<String, usize>,
 }
@@ -133,15 +131,31 @@ fn contrasts(ln_flows: &[f64], into: &mut [f64]) {
     }
 }
 
-/// Every channel's prediction.
-pub(crate) fn predict_channels(response: &Response, channels: Channels, deck: &Deck) -> ByChannel {
-    let mut predicted = [0.0; MAXIMUM_CHANNELS];
-    predicted[0] = response.ln_fuel_flow_total;
-    contrasts(&response.ln_fuel_flow_engine, &mut predicted[1..=channels.contrasts]);
-    if channels.n2 {
-        predicted[channels.n2_row()] = deck.value(response);
+/// What turns a response into the prediction of every channel: deck, and what a baseline was taught.
+#[derive(Clone, Debug)]
+pub(crate) struct Predictor<'a> {
+    pub(crate) channels: Channels,
+    pub(crate) deck: Deck,
+    pub(crate) baseline: Option<&'a Baseline>,
+}
+
+impl Predictor<'_> {
+    pub(crate) fn predict(&self, response: &Response) -> ByChannel {
+        let channels = self.channels;
+        let mut predicted = [0.0; MAXIMUM_CHANNELS];
+        predicted[0] = response.ln_fuel_flow_total;
+        contrasts(&response.ln_fuel_flow_engine, &mut predicted[1..=channels.contrasts]);
+        if channels.n2 {
+            predicted[channels.n2_row()] = self.deck.value(response);
+        }
+        if let Some(baseline) = self.baseline {
+            predicted[0] += baseline.mean_at(response);
+            for contrast in 1..=channels.contrasts.min(baseline.contrasts()) {
+                predicted[contrast] += baseline.split_mean(contrast);
+            }
+        }
+        predicted
     }
-    predicted
 }
 
 /// A segment that the model can predict, before signatures.
@@ -223,12 +237,12 @@ fn has_n2(means: &flight::SegmentMeans) -> bool {
     !means.n2_percent.is_empty() && means.n2_percent.iter().all(|n2| n2.is_finite() && *n2 > 1.0)
 }
 
-impl Data {
+impl<'a> Data<'a> {
     /// Prepares the flights against a model. `effects` are already part of the model (none, as a rule).
     pub(crate) fn prepare(
         model: &EffectModel<'_>,
         flights: &[FlightRecord<'_>],
-        baseline: Option<&Baseline>,
+        baseline: Option<&'a Baseline>,
         library_of: impl FnOnce(&[EffectPoint], bool, &[f64]) -> Library,
     ) -> (Self, Library) {
         let mut left_out = BTreeMap::new();
@@ -243,9 +257,9 @@ impl Data {
 
         let mut data = Self {
             channels,
+            predictor: Predictor { channels, deck, baseline },
             flights: Vec::with_capacity(inside.len()),
             segments: Vec::with_capacity(points.len()),
-            deck,
             left_out,
         };
         for (segments, gauges) in inside {
@@ -273,8 +287,9 @@ impl Data {
         library: &Library,
         factors: &NoiseFactors,
     ) -> Result<SegmentRow, perf_model::effects::EffectError> {
-        let (channels, deck) = (self.channels, &self.deck);
-        let predict = |response: &Response| predict_channels(response, channels, deck);
+        let channels = self.channels;
+        let deck = &self.predictor.deck;
+        let predict = |response: &Response| self.predictor.predict(response);
         let (recorded, is_recorded) = recorded_channels(&kept.segment.means, channels);
         let predicted = predict(&kept.response);
         let mut residual = [0.0; MAXIMUM_CHANNELS];
@@ -297,7 +312,6 @@ impl Data {
         let mut row = SegmentRow {
             point: kept.point,
             response: kept.response,
-            recorded,
             is_recorded,
             residual,
             signatures: Vec::with_capacity(library.columns.len()),
@@ -317,8 +331,7 @@ impl Data {
                 column.hidden,
                 0.5 * effect.typical,
                 &row.is_recorded,
-                channels,
-                deck,
+                &self.predictor,
             );
             // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
             row.signatures.push(signature.unwrap_or([0.0; MAXIMUM_CHANNELS]));
@@ -341,21 +354,18 @@ pub(crate) fn signature(
     hidden: HiddenParameters,
     step: f64,
     is_recorded: &[bool; MAXIMUM_CHANNELS],
-    channels: Channels,
-    deck: &Deck,
+    predictor: &Predictor<'_>,
 ) -> Result<ByChannel, perf_model::effects::EffectError> {
     let size = at.size(id);
     let predict = |size: f64| {
         let effects = at.clone().with(id, size).with_hidden(hidden);
-        Ok::<_, perf_model::effects::EffectError>(predict_channels(
-            &model.response(point, &effects)?,
-            channels,
-            deck,
-        ))
+        Ok::<_, perf_model::effects::EffectError>(
+            predictor.predict(&model.response(point, &effects)?),
+        )
     };
     let (up, down) = (predict(size + step)?, predict(size - step)?);
     let mut slope = [0.0; MAXIMUM_CHANNELS];
-    for channel in 0..channels.count() {
+    for channel in 0..predictor.channels.count() {
         if is_recorded[channel] {
             slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
         }

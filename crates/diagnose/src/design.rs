@@ -119,7 +119,7 @@ struct Nuisance<'a> {
 
 impl<'a> Design<'a> {
     pub(crate) fn of(
-        data: &Data,
+        data: &Data<'_>,
         references: &EffectReferences,
         baseline: Option<&'a Baseline>,
         table: Option<&'a TableUncertainty>,
@@ -192,7 +192,7 @@ impl<'a> Design<'a> {
     }
 
     /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
-    pub(crate) fn whitened(&self, data: &Data, flight: &FlightRows, weights: Option<&[f64]>) -> Mat<f64> {
+    pub(crate) fn whitened(&self, data: &Data<'_>, flight: &FlightRows, weights: Option<&[f64]>) -> Mat<f64> {
         let channels = data.channels.count();
         let segments = &data.segments[flight.segments.clone()];
         let rows = segments.len() * channels + usize::from(flight.gauge.is_some());
@@ -223,7 +223,7 @@ impl<'a> Design<'a> {
 
     fn write_segment(
         &self,
-        data: &Data,
+        data: &Data<'_>,
         row: &SegmentRow,
         first: usize,
         matrix: &mut Mat<f64>,
@@ -254,15 +254,12 @@ impl<'a> Design<'a> {
             }
         };
 
-        let mut residual = row.residual;
         let mut at = self.nuisance.start;
         let parts = &self.nuisance_parts;
         if let Some(baseline) = parts.baseline {
             let terms = &mut scratch[..baseline.remainder_terms()];
-            baseline.write_remainder(&row.point, &row.response, &self.references, terms);
-            let terms = &*terms;
-            residual[0] -= baseline.remainder_mean(terms);
-            for value in terms {
+            baseline.write_remainder(&row.response, terms);
+            for value in &*terms {
                 scaled(matrix, at, &fuel, *value);
                 at += 1;
             }
@@ -270,13 +267,12 @@ impl<'a> Design<'a> {
                 let mut values = [0.0; MAXIMUM_CHANNELS];
                 if contrast <= data.channels.contrasts && row.is_recorded[contrast] {
                     values[contrast] = 1.0;
-                    residual[contrast] -= baseline.split_mean(contrast);
                 }
                 put(matrix, at, &values);
                 at += 1;
             }
         }
-        let deck_columns = if parts.baseline.is_some_and(Baseline::knows_deck) || parts.deck {
+        let deck_columns = if parts.baseline.is_some() || parts.deck {
             DECK_TERMS
         } else {
             0
@@ -306,7 +302,7 @@ impl<'a> Design<'a> {
             }
         }
         debug_assert_eq!(at, self.nuisance.end);
-        put(matrix, self.columns - 1, &residual);
+        put(matrix, self.columns - 1, &row.residual);
 
         let once = self.smooth.len() / if data.channels.n2 { 2 } else { 1 };
         self.write_smooth(row, &mut scratch[..once]);
@@ -414,9 +410,15 @@ pub(crate) fn half_whitened(row: &SegmentRow, values: &ByChannel, channels: usiz
 /// ```text
 /// UᵀU = QΛQᵀ,  V = UQΛ^(−1/2),  (1 + UUᵀ)^(−1/2) = 1 − V·diag(1 − (1 + λ)^(−1/2))·Vᵀ        [diagnosis.16]
 /// ```
-pub(crate) fn whiten_flight(data: &Data, segments: &[SegmentRow], matrix: &mut Mat<f64>) {
+///
+/// Returns ln|1 + UᵀU|, what the common errors add to the ln of the covariance's determinant.
+pub(crate) fn whiten_flight(
+    data: &Data<'_>,
+    segments: &[SegmentRow],
+    matrix: &mut Mat<f64>,
+) -> f64 {
     let channels = data.channels.count();
-    let Some(rank) = segments.first().map(|row| row.noise.common.len()) else { return };
+    let Some(rank) = segments.first().map(|row| row.noise.common.len()) else { return 0.0 };
     let mut common = Mat::<f64>::zeros(matrix.nrows(), rank);
     for (index, row) in segments.iter().enumerate() {
         for (column, loading) in row.noise.common.iter().enumerate() {
@@ -427,13 +429,15 @@ pub(crate) fn whiten_flight(data: &Data, segments: &[SegmentRow], matrix: &mut M
         }
     }
     let inner = common.transpose() * &common;
-    let Ok(eigen) = inner.self_adjoint_eigen(Side::Lower) else { return };
+    let Ok(eigen) = inner.self_adjoint_eigen(Side::Lower) else { return 0.0 };
     let rotated = &common * eigen.U();
     let values = eigen.S().column_vector();
     let mut basis = Mat::<f64>::zeros(matrix.nrows(), rank);
     let mut shrunk = Mat::<f64>::zeros(matrix.nrows(), rank);
+    let mut ln_determinant = 0.0;
     for column in 0..rank {
         let value = values[column];
+        ln_determinant += value.max(0.0).ln_1p();
         if value <= 1e-12 {
             continue;
         }
@@ -452,4 +456,5 @@ pub(crate) fn whiten_flight(data: &Data, segments: &[SegmentRow], matrix: &mut M
         -1.0,
         faer::Par::Seq,
     );
+    ln_determinant
 }

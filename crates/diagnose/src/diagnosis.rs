@@ -11,7 +11,7 @@ use crate::TableUncertainty;
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
 use crate::classes::Distances;
-use crate::closure::{Shrinkage, gaps, in_sample, nested};
+use crate::closure::{Shrinkage, in_sample, nested};
 use crate::data::Data;
 use crate::design::{Acts, Design};
 use crate::evidence::{NOISE_FREEDOM, Scored};
@@ -152,13 +152,13 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         notes.push("references of effects are the means of these flights".to_owned());
     }
     let mut result =
-        conclude(&stacked, &model, &library, input, options, &mut notes)?;
+        conclude(&stacked, &model, &library, options, &mut notes)?;
     // Heavy tails show only beside the best model; then everything is done again with weights.
     if let Some(weights) = crate::robust::weights(&stacked, &result.1, &library) {
         notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
         drop(result);
         let stacked = Stacked::of(&data, &design, Some(weights));
-        result = conclude(&stacked, &model, &library, input, options, &mut notes)?;
+        result = conclude(&stacked, &model, &library, options, &mut notes)?;
     }
     let mut diagnosis = result.0;
     diagnosis.not_testable = not_testable;
@@ -168,7 +168,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
 }
 
 /// Why the data is too little for any name.
-fn too_little(data: &Data, library: &Library) -> Option<String> {
+fn too_little(data: &Data<'_>, library: &Library) -> Option<String> {
     let (flights, segments) = (data.flights.len(), data.segments.len());
     if flights < FEWEST_FLIGHTS {
         return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS} are needed"));
@@ -252,7 +252,6 @@ fn conclude(
     stacked: &Stacked<'_>,
     model: &EffectModel<'_>,
     library: &Library,
-    input: &Input<'_>,
     options: &Options,
     notes: &mut Vec<String>,
 ) -> Result<(Diagnosis, Analysis), DiagnoseError> {
@@ -261,19 +260,13 @@ fn conclude(
     let outside = compete(stacked, &analysis, library);
     let gram = stacked.folds.without(None);
     let distances = Distances::of(&gram, stacked.design).ok_or(DiagnoseError::Degenerate)?;
-    let remainder: Vec<f64> = stacked
-        .data
-        .segments
-        .iter()
-        .map(|row| input.baseline.map_or(0.0, |b| b.remainder(&row.point, &row.response).0))
-        .collect();
     let best = &analysis.models[0].0;
     let scale = noise_scale(&analysis, best, gram.rows);
     let posteriors = dominant(stacked, &analysis, library);
-    let own = in_sample(stacked, model, library, &best.model.columns, &best.sizes, &remainder, scale);
-    let unseen = (!options.skip_closure && analysis.clean <= CLEAN_PROBABILITY)
-        .then(|| nested(stacked, model, library, &remainder, scale));
-    let gap = gap_of(stacked, &analysis, &remainder, &own, scale);
+    let own = in_sample(stacked, model, library, &best.model.columns, &best.sizes, scale);
+    let unseen = (!options.skip_closure && is_real(&analysis, &outside))
+        .then(|| nested(stacked, model, library, scale));
+    let gap = gap_of(stacked, &analysis, &outside, &own, scale);
     let verdict = verdict(
         &analysis, &outside, &distances, library, &posteriors, &own, unseen.as_ref(), notes,
     );
@@ -313,6 +306,11 @@ fn conclude(
         notes: vec![],
     };
     Ok((diagnosis, analysis))
+}
+
+/// Whether there is more than noise: nothing at all, inside the library or outside, is improbable.
+fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
+    analysis.clean * (1.0 - outside.probability) <= CLEAN_PROBABILITY
 }
 
 const fn acts_words(acts: Acts) -> &'static str {
@@ -386,13 +384,12 @@ fn dominant(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Ve
 fn gap_of(
     stacked: &Stacked<'_>,
     analysis: &Analysis,
-    remainder: &[f64],
+    outside: &Outside,
     own: &Shrinkage,
     scale: f64,
 ) -> Gap {
-    let gaps = gaps(stacked, remainder);
-    let count = gaps.len() as f64;
-    let mean = gaps.iter().sum::<f64>() / count;
+    let count = stacked.data.segments.len() as f64;
+    let mean = stacked.data.segments.iter().map(|row| row.residual[0]).sum::<f64>() / count;
     let square = own.before();
     // Interval of the mean square by flight, then its root.
     let flights = own.before.len() as f64;
@@ -420,7 +417,7 @@ fn gap_of(
         rms_percent: 100.0 * square.sqrt(),
         rms_ci95: [100.0 * (square - half).max(0.0).sqrt(), 100.0 * (square + half).sqrt()],
         noise_floor_rms_percent: 100.0 * own.floor().sqrt(),
-        detected: analysis.clean <= CLEAN_PROBABILITY,
+        detected: is_real(analysis, outside),
         p_value,
     }
 }
@@ -439,7 +436,7 @@ fn causes(
     let mut sum = 0.0;
     let mut causes = Vec::new();
     for posterior in posteriors {
-        if sum > 0.995 * named && causes.len() >= 3 {
+        if causes.len() >= 3 && (sum > 0.995 * named || posterior.probability < 1e-3) {
             break;
         }
         sum += posterior.probability;
@@ -536,7 +533,7 @@ fn verdict(
         advice: String::new(),
         separations: vec![],
     };
-    let Some(top) = posteriors.first().filter(|_| analysis.clean <= CLEAN_PROBABILITY) else {
+    let Some(top) = posteriors.first().filter(|_| is_real(analysis, outside)) else {
         verdict.closure = None;
         verdict.closure_ci95 = None;
         "Nothing beyond the noise. `detectable` says how large each effect would have to be.".clone_into(&mut verdict.advice);

@@ -4,7 +4,7 @@ use faer::Mat;
 use perf_model::effects::{EffectModel, Effects, HiddenParameters};
 
 use crate::analysis::Stacked;
-use crate::data::{predict_channels, signature};
+use crate::data::signature;
 use crate::design::{half_whitened, whiten_flight};
 use crate::evidence::{Background, Mixture, Scored, Scorer, backgrounds, without_nuisance};
 use crate::gram::{Gram, Reduced, fold_of};
@@ -191,18 +191,15 @@ fn relinearise(
                     *effects.hidden(),
                     0.5 * effect.typical,
                     &row.is_recorded,
-                    data.channels,
-                    &data.deck,
+                    &data.predictor,
                 )
                 .unwrap_or([0.0; MAXIMUM_CHANNELS]);
                 put(&mut fresh, k, &slope);
             }
-            let with = predict_channels(
-                &model.response(&row.point, &effects).unwrap_or(row.response),
-                data.channels,
-                &data.deck,
-            );
-            let plain = predict_channels(&row.response, data.channels, &data.deck);
+            let with = data
+                .predictor
+                .predict(&model.response(&row.point, &effects).unwrap_or(row.response));
+            let plain = data.predictor.predict(&row.response);
             let mut change = [0.0; MAXIMUM_CHANNELS];
             for channel in 0..channels {
                 if row.is_recorded[channel] {

@@ -135,6 +135,35 @@ impl Variable {
     }
 }
 
+impl Variable {
+    /// The value as it was flown, effects of sensors and mass undone; only for variables of state.
+    pub(crate) fn flown(self, response: &Response, references: &EffectReferences) -> f64 {
+        let altitude = || {
+            let pressure = units::Pressure::pascals(
+                response.ln_pressure_ratio.exp() * atmos::constants::SEA_LEVEL_PRESSURE_PA,
+            );
+            // A response exists only inside the atmosphere's domain.
+            atmos::isa::pressure_altitude(pressure).map_or(0.0, units::PressureAltitude::to_meters)
+        };
+        match self {
+            Self::Mach => response.mach,
+            Self::LiftCoefficient => response.lift_coefficient,
+            Self::PressureAltitude => altitude(),
+            Self::CorrectedThrust => {
+                response.ln_corrected_thrust.exp() / references.corrected_thrust_n
+            }
+            Self::IsaDeviation => {
+                let isa_k = atmos::isa::temperature(units::PressureAltitude::meters(altitude()))
+                    .map_or(0.0, units::Temperature::to_kelvin);
+                response.ln_temperature_ratio.exp() * atmos::constants::SEA_LEVEL_TEMPERATURE_K
+                    - isa_k
+            }
+            Self::Mass => response.mass_kg,
+            _ => 0.0,
+        }
+    }
+}
+
 /// Hat functions over one variable: piecewise linear, 1 at one knot and 0 at the others, held beyond the ends; each less
 /// its mean over the data it was made from, so that a sum of them is no level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -198,6 +227,13 @@ impl Hats {
         }
         into[index] += 1.0 - upper;
         into[index + 1] += upper;
+    }
+
+    /// How far a value lies below the first and above the last knot, in mean knot distances: where nothing was learnt.
+    pub(crate) fn beyond(&self, value: f64) -> [f64; 2] {
+        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
+        let distance = (last - first) / (self.knots.len() - 1) as f64;
+        [((first - value) / distance).max(0.0), ((value - last) / distance).max(0.0)]
     }
 
     /// Interval that holds a value, and how far up in it the value lies; held at the ends.

@@ -118,6 +118,8 @@ pub struct Response {
     pub net_thrust_n: f64,
     /// Reynolds number over one meter.
     pub unit_reynolds_number_per_m: f64,
+    /// Gross mass as it truly was, kg.
+    pub mass_kg: f64,
 }
 
 /// Why there is no model with effects.
@@ -446,6 +448,7 @@ impl<'a> EffectModel<'a> {
             drag_over_thrust: drag_n / net_thrust_n,
             net_thrust_n,
             unit_reynolds_number_per_m: flown.unit_reynolds_number_per_m,
+            mass_kg: flown.mass_kg,
         })
     }
 

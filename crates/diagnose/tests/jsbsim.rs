@@ -1,0 +1,118 @@
+//! Fleets flown in JSBSim (6 degrees of freedom, rotating Earth, own engine law): what was changed is found.
+//!
+//! SIM-02 is SIM-01 with zero-lift drag +3 % (7.2 counts), SIM-05 with an indicated Mach number 0.004 too high. The data
+//! are not in the repository; without them the tests are skipped aloud.
+
+use std::path::{Path, PathBuf};
+
+use diagnose::{Baseline, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
+use flight::Segment;
+use perf_model::{Aircraft, Guide, PerformanceModel, initial_model};
+use report::Reader;
+use segmenter::TrimCriteria;
+
+fn data() -> Option<PathBuf> {
+    let folder =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/jsbsim-global5000");
+    let found = folder.join("SIM-01").is_dir();
+    if !found {
+        eprintln!("skipped: {} is not there", folder.display());
+    }
+    found.then_some(folder)
+}
+
+fn model(folder: &Path) -> PerformanceModel {
+    let aircraft = Aircraft::from_ron(
+        r#"(
+            name: "JSBSim global5000", type_code: "GL5T", engines: 2, wing_area_m2: 94.94690688,
+            tsfc: (static_lb_per_lbf_h: 0.657, mach_exponent: 0),
+            table: (lift_coefficient: (0.10, 0.80, 0.05), mach: (0.50, 0.95, 0.05)),
+        )"#,
+    )
+    .unwrap();
+    let guide = Guide::from_csv(&std::fs::read(folder.join("guide.csv")).unwrap()).unwrap();
+    initial_model(&aircraft, &guide).unwrap().model
+}
+
+/// The fleet's segments, flight by flight in order of START.
+fn fleet(folder: &Path, name: &str) -> Vec<Vec<Segment>> {
+    let mut paths: Vec<PathBuf> =
+        std::fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let mut flights: Vec<Vec<Segment>> = paths
+        .iter()
+        .map(|path| {
+            let mut reader = Reader::new();
+            let parsed = reader.read(&std::fs::read(path).unwrap()).unwrap();
+            let track = track::derive(parsed.report).unwrap();
+            segmenter::segment(&track, &TrimCriteria::ghazi_2020_table_4()).segments
+        })
+        .filter(|segments: &Vec<Segment>| !segments.is_empty())
+        .collect();
+    flights.sort_by_key(|segments| segments[0].identity.start);
+    flights
+}
+
+fn records(flights: &[Vec<Segment>]) -> Vec<FlightRecord<'_>> {
+    flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
+}
+
+fn run(model: &PerformanceModel, baseline: Option<&Baseline>, flights: &[Vec<Segment>]) -> Diagnosis {
+    let records = records(flights);
+    let input = Input {
+        model,
+        drag_table: model.drag_table(),
+        flights: &records,
+        baseline,
+        table: None,
+        references: None,
+    };
+    diagnose(&input, &Options::default()).unwrap()
+}
+
+fn print(name: &str, found: &Diagnosis) {
+    println!("{name}: {:?}\n   {:?}\n   outside {:?}", found.verdict, found.gap, found.outside);
+    for cause in &found.causes {
+        println!(
+            "   {} {:.3} {:+.4} [{:+.4}, {:+.4}] class {:?} closure {:?} {}",
+            cause.effect,
+            cause.probability,
+            cause.magnitude.value,
+            cause.magnitude.ci95[0],
+            cause.magnitude.ci95[1],
+            cause.class,
+            cause.closure,
+            cause.hidden
+        );
+    }
+    println!("   notes {:?} left out {:?}", found.notes, found.left_out);
+}
+
+#[test]
+fn what_was_changed_is_found_and_the_baseline_is_silent() {
+    let Some(folder) = data() else { return };
+    let model = model(&folder);
+    let clean = fleet(&folder, "SIM-01");
+    let taught = Baseline::learn(&model, model.drag_table(), &records(&clean)).unwrap();
+    println!("taught by {:?}: rms {:.4}, noise {:?}", taught.taught_by(), taught.remaining_rms(), taught.noise());
+
+    let drag = run(&model, Some(&taught), &fleet(&folder, "SIM-02"));
+    print("SIM-02", &drag);
+    let mach = run(&model, Some(&taught), &fleet(&folder, "SIM-05"));
+    print("SIM-05", &mach);
+
+    let half = clean.len() / 2;
+    let taught = Baseline::learn(&model, model.drag_table(), &records(&clean[..half])).unwrap();
+    println!("half {:?}: rms {:.4}, noise {:?}", taught.taught_by(), taught.remaining_rms(), taught.noise());
+    let silent = run(&model, Some(&taught), &clean[half..]);
+    print("SIM-01 second half", &silent);
+    let alone = run(&model, None, &clean[half..]);
+    print("SIM-01 table only", &alone);
+
+    assert_eq!(drag.verdict.kind, VerdictKind::Effects);
+    assert!(drag.verdict.class.contains(&"zero_lift_drag".to_owned()), "{:?}", drag.verdict);
+    assert_eq!(mach.verdict.kind, VerdictKind::Effects);
+    assert!(mach.verdict.class.contains(&"mach_bias".to_owned()), "{:?}", mach.verdict);
+    assert_eq!(silent.verdict.kind, VerdictKind::NoGap);
+    assert!(silent.gap.rms_percent <= 0.45, "{:?}", silent.gap);
+}
