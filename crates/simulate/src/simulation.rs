@@ -2,7 +2,9 @@
 
 mod check;
 mod draw;
+mod ranges;
 
+use flight::column::Column;
 use flight::effect::{EffectId, TypicalSize};
 use flight::{Report, ReportDataError};
 use units::{OutOfDomain, check_within};
@@ -22,6 +24,7 @@ use crate::truth::{EffectTruth, FlightTruth, TRUTH_SCHEMA, TailTruth, Truth};
 
 use check::{check_flights, check_plan};
 use draw::Drawn;
+use ranges::check_ranges;
 
 /// A plan, checked and drawn: every flight can now be flown, in any order and on any thread.
 #[derive(Clone, Debug)]
@@ -80,19 +83,22 @@ pub enum SimulationError {
         /// Why.
         source: ReportDataError,
     },
-    /// Recorded fuel used is more than there was, because the plan makes it read high.
+    /// A recorded value that the report's format refuses: the plan makes sensors or effects absurd.
     #[error(
-        "tail {tail} flight {flight}: recorded fuel used {fuel_used_kg} kg exceeds {fuel_on_board_kg} kg on board"
+        "tail {tail} flight {flight}: {column} {value} {unit} outside {range}",
+        column = column.name(), unit = column.canonical_unit()
     )]
-    FuelUsed {
+    Range {
         /// Tail.
         tail: String,
         /// Flight.
         flight: String,
-        /// Recorded, kg.
-        fuel_used_kg: f64,
-        /// Recorded, kg.
-        fuel_on_board_kg: f64,
+        /// Column of the report.
+        column: Column,
+        /// In the column's stored unit.
+        value: f64,
+        /// The range in words.
+        range: &'static str,
     },
     /// No flight of that number.
     #[error("flight {index} of {flights}")]
@@ -254,13 +260,16 @@ impl Simulation {
             let (tail, flight) = name();
             SimulationError::Report { tail, flight, source }
         })?;
-        let fuel_on_board_kg = report.header().fuel_on_board.to_kilograms();
-        if let Some(fuel_used_kg) = report.columns().fuel_used_kg.last().copied()
-            && fuel_used_kg > fuel_on_board_kg
-        {
+        check_ranges(&report).map_err(|found| {
             let (tail, flight) = name();
-            return Err(SimulationError::FuelUsed { tail, flight, fuel_used_kg, fuel_on_board_kg });
-        }
+            SimulationError::Range {
+                tail,
+                flight,
+                column: found.column,
+                value: found.value,
+                range: found.words,
+            }
+        })?;
         Ok(Flown { report, truth, states })
     }
 

@@ -337,3 +337,85 @@ fn true_states_are_kept_only_when_asked_for() {
     plan.recording.true_states = Switch::Off;
     assert!(fly_first(plan).states.is_empty());
 }
+
+#[test]
+fn recordings_that_the_format_refuses_are_refused_here() {
+    let refused = |name: &str, size: f64| {
+        let mut plan = quiet_plan(vec![northbound()]);
+        plan.effects = vec![PlannedEffect::sized(name.parse().unwrap(), size)];
+        Simulation::new(plan).unwrap().fly(0).unwrap_err().to_string()
+    };
+    let message = refused("mach_bias", 0.5);
+    assert!(
+        message.contains("flight 0001: MACH 1.3") && message.contains("outside 0.1 to 0.99"),
+        "{message}"
+    );
+    let message = refused("fuel_quantity_gain", 90.0);
+    assert!(message.contains("FU") && message.contains("outside 0 to FOB"), "{message}");
+}
+
+#[test]
+fn the_example_plan_shows_the_defaults_and_flies() {
+    let plan = Plan::from_ron(include_str!("../../examples/plan.ron")).unwrap();
+    let defaults = Plan::of_one_tail(2020, "T-001", FleetDesign::default());
+    assert_eq!(plan.richness, defaults.richness);
+    assert_eq!(plan.earth, defaults.earth);
+    assert_eq!(plan.weather, defaults.weather);
+    assert_eq!(plan.columns, defaults.columns);
+    assert_eq!(plan.scatter, defaults.scatter);
+    assert_eq!(plan.recording, defaults.recording);
+    assert_eq!(plan.tails[0].flights, defaults.tails[0].flights);
+    let simulation = Simulation::new(plan).unwrap();
+    assert_eq!(simulation.len(), 61);
+    assert_eq!(simulation.fly(60).unwrap().report.len(), 121);
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig::with_cases(64))]
+
+    /// Whatever is asked for: a report within the format's ranges, or an error that says why; never a panic.
+    #[test]
+    fn any_flight_flies_or_says_why(
+        seed in proptest::prelude::any::<u64>(),
+        latitude_deg in -75.0..75.0_f64,
+        track_deg in 0.0..360.0_f64,
+        feet in 3_000.0..55_000.0_f64,
+        mach in 0.3..0.97_f64,
+        mass_kg in 9_000.0..18_000.0_f64,
+        wind_field_m_s in 0.0..40.0_f64,
+        light_patches_per_h in 0.0..6.0_f64,
+        size in -30.0..30.0_f64,
+        which in 0..31_usize,
+    ) {
+        let radians = track_deg.to_radians();
+        let mut flight = northbound();
+        flight.waypoints = vec![
+            (latitude_deg, 10.0),
+            ((latitude_deg + radians.cos()).clamp(-80.0, 80.0), 10.0 + radians.sin()),
+            ((latitude_deg - radians.sin()).clamp(-80.0, 80.0), 13.0),
+        ];
+        flight.pressure_altitude_ft = feet;
+        flight.mach = mach;
+        flight.loading = simulate::Loading::AtRecording { gross_mass_kg: mass_kg, fuel_on_board_kg: 3_000.0 };
+        let mut plan = quiet_plan(vec![flight]);
+        plan.seed = seed;
+        plan.sensors = SensorChoice::Transport;
+        plan.weather = Weather {
+            wind_field_m_s,
+            turbulence: simulate::Turbulence { light_patches_per_h, ..simulate::Turbulence::default() },
+            ..Weather::default()
+        };
+        let id = flight::effect::EffectId::library(2)[which];
+        plan.effects = vec![PlannedEffect::sized(simulate::TruthEffect::Library(id), size)];
+        match Simulation::new(plan) {
+            Err(error) => assert!(!error.to_string().is_empty()),
+            Ok(simulation) => match simulation.fly(0) {
+                Err(error) => assert!(error.to_string().contains("T-001")),
+                Ok(flown) => {
+                    let machs = &flown.report.columns().mach;
+                    assert!(machs.iter().all(|mach| (0.1..=0.99).contains(mach)), "{machs:?}");
+                }
+            },
+        }
+    }
+}
