@@ -347,7 +347,7 @@ fn recordings_that_the_format_refuses_are_refused_here() {
     };
     let message = refused("mach_bias", 0.5);
     assert!(
-        message.contains("flight 0001: MACH 1.3") && message.contains("outside 0.1 to 0.99"),
+        message.contains("flight 0001: MACH 1.29997") && message.contains("outside 0.1 to 0.99"),
         "{message}"
     );
     let message = refused("fuel_quantity_gain", 90.0);
