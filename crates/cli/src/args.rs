@@ -44,6 +44,10 @@ pub enum Command {
     Adapt(AdaptArgs),
     /// Stabilised segments only, no model needed
     Segment(SegmentArgs),
+    /// Settings of law `bayes` from past reports, by marginal likelihood
+    Tune(TuneArgs),
+    /// Add what models of the same initial model have learnt (law `bayes`)
+    Merge(MergeArgs),
     /// Predict fuel flow and specific range at flight points
     Predict(PredictArgs),
     /// Fuel-flow error of a model over reports, nothing adapted
@@ -104,6 +108,8 @@ pub struct InitArgs {
 /// The adaptation laws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LawName {
+    /// The Gaussian law: a smooth correction with a standard deviation at every node
+    Bayes,
     /// The local law of Ghazi et al. 2020 with its global refit
     Paper,
 }
@@ -121,7 +127,7 @@ pub struct AdaptArgs {
     #[arg(long, short, value_name = "DIR")]
     pub output: PathBuf,
     /// Adaptation law
-    #[arg(long, value_enum, default_value_t = LawName::Paper)]
+    #[arg(long, value_enum, default_value_t = LawName::Bayes)]
     pub law: LawName,
     /// Law `paper`: adapt where the error exceeds this, in per cent [default: the model's]
     #[arg(long, value_name = "PCT")]
@@ -129,6 +135,31 @@ pub struct AdaptArgs {
     /// Begin anew: an existing folder is kept aside under another name
     #[arg(long)]
     pub restart: bool,
+}
+
+/// `tune`
+#[derive(Debug, Args)]
+pub struct TuneArgs {
+    /// Reports.
+    #[command(flatten)]
+    pub reports: ReportsArgs,
+    /// Initial model
+    #[arg(long, value_name = "MODEL.ron")]
+    pub model: PathBuf,
+    /// Initial model to write, with the settings found
+    #[arg(long, short, value_name = "MODEL2.ron")]
+    pub output: PathBuf,
+}
+
+/// `merge`
+#[derive(Debug, Args)]
+pub struct MergeArgs {
+    /// Models that learnt by law `bayes` from the same initial model with the same settings
+    #[arg(required = true, num_args = 2.., value_name = "MODEL.ron")]
+    pub models: Vec<PathBuf>,
+    /// Model file to write
+    #[arg(long, short, value_name = "MODEL.ron")]
+    pub output: PathBuf,
 }
 
 /// `segment`
@@ -190,6 +221,9 @@ pub struct ExportArgs {
     /// CSV file to write [default: standard output]
     #[arg(long, short, value_name = "TABLE.csv")]
     pub output: Option<PathBuf>,
+    /// Instead of the table, the six-coefficient polynomial nearest to it, with covariance where the law knows it
+    #[arg(long)]
+    pub polynomial: bool,
 }
 
 /// `golden`

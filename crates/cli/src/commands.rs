@@ -6,10 +6,12 @@ pub mod evaluate;
 pub mod export;
 pub mod golden;
 pub mod init;
+pub mod merge;
 pub mod predict;
 pub mod segment;
 pub mod show;
 pub mod simulate;
+pub mod tune;
 
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;

@@ -2,6 +2,7 @@
 //!
 //! Everything here is a function of model and segments: no file, no thread, no clock.
 
+use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
 use adapt::paper::{self, PaperLaw, State as PaperState, Update};
 use flight::{Observation, Segment};
 use lut::{Outside, Table};
@@ -32,30 +33,50 @@ pub struct FlightLearnt {
     pub refitted: bool,
 }
 
+/// The law by which a tail learns, with what the caller may set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LawChoice {
+    /// Law `paper`.
+    Paper(PaperSettings),
+    /// Law `bayes` with the model's settings.
+    Bayes(BayesSettings),
+}
+
 /// The state in which a tail begins: the initial table, nothing learnt.
+///
+/// # Errors
+/// An initial table that the law cannot correct.
 pub fn begin(
     initial: &PerformanceModel,
     tail: &str,
     criteria: &str,
-    settings: PaperSettings,
-) -> Learnt {
-    let table = initial.drag_table().clone();
-    let nodes = table.values().len();
-    Learnt {
-        tail: tail.to_owned(),
-        criteria: criteria.to_owned(),
-        law: LawState::Paper {
+    law: LawChoice,
+) -> Result<Learnt, LearningError> {
+    let table = initial.drag_table();
+    let law = match law {
+        LawChoice::Paper(settings) => LawState::Paper {
             settings,
-            state: PaperState::new(table),
-            ever_adapted: vec![false; nodes],
+            state: PaperState::new(table.clone()),
+            ever_adapted: vec![false; table.values().len()],
             refits: 0,
         },
+        LawChoice::Bayes(settings) => {
+            let state = BayesState::new(table, settings)?;
+            let posterior = Box::new(state.solve()?);
+            LawState::Bayes { state: Box::new(state), posterior }
+        }
+    };
+    Ok(Learnt {
+        tail: tail.to_owned(),
+        criteria: criteria.to_owned(),
+        law,
         references: References::default(),
         ledger: Vec::new(),
-    }
+    })
 }
 
-/// Learns one flight: each segment in time order, then, perhaps, the global refit.
+/// Learns one flight. Law `paper`: each segment in time order, then, perhaps, the global refit. Law `bayes`: all its
+/// segments at once; [`settle`] brings the table up to date.
 ///
 /// # Errors
 /// A threshold that is none, or a table whose nodes no longer determine its polynomial; the flight is then not learnt.
@@ -64,32 +85,39 @@ pub fn learn_flight(
     learnt: &mut Learnt,
     flight: &FlightToLearn<'_>,
 ) -> Result<FlightLearnt, LearningError> {
-    let LawState::Paper { settings, state, ever_adapted, refits } = &mut learnt.law;
-    let law = PaperLaw::new(settings.threshold_percent)?;
+    let mut observations = Vec::with_capacity(flight.segments.len());
     let mut result = FlightLearnt::default();
     for segment in flight.segments {
-        let Ok(observation) = initial.observe(segment) else {
-            result.outside_table += 1;
-            continue;
-        };
-        match law.adapt(state, &observation) {
-            update @ Update::Adapted { .. } => {
-                result.adapted += 1;
-                for change in update.changes() {
-                    ever_adapted[change.node] = true;
+        match initial.observe(segment) {
+            Ok(observation) => {
+                learnt.references.add(segment, observation.lift_coefficient);
+                observations.push(observation);
+            }
+            Err(_) => result.outside_table += 1,
+        }
+    }
+    match &mut learnt.law {
+        LawState::Paper { settings, state, ever_adapted, refits } => {
+            let law = PaperLaw::new(settings.threshold_percent)?;
+            learn_by_paper(&law, state, ever_adapted, &observations, &mut result);
+            let (drag_coefficient, confidence) = state.tables_mut();
+            let basis = initial.polynomial().basis;
+            let report =
+                refit::refit(RefitRule::ghazi_2020(), basis, drag_coefficient, confidence)?;
+            if report.fit.is_some() {
+                result.refitted = true;
+                *refits += 1;
+            }
+        }
+        LawState::Bayes { state, .. } => {
+            let update = state.learn_flight(&observations);
+            for observation in &update.observations {
+                match observation {
+                    ObservationUpdate::Learnt { .. } => result.adapted += 1,
+                    _ => result.outside_table += 1,
                 }
             }
-            Update::WithinDeadBand { .. } => {}
-            Update::OutsideGrid(_) | Update::Unusable { .. } => result.outside_table += 1,
         }
-        learnt.references.add(segment, observation.lift_coefficient);
-    }
-    let (drag_coefficient, confidence) = state.tables_mut();
-    let basis = initial.polynomial().basis;
-    let report = refit::refit(RefitRule::ghazi_2020(), basis, drag_coefficient, confidence)?;
-    if report.fit.is_some() {
-        result.refitted = true;
-        *refits += 1;
     }
     learnt.ledger.push(LedgerEntry {
         segments: flight.segments.len() as u64,
@@ -99,16 +127,61 @@ pub fn learn_flight(
     Ok(result)
 }
 
+/// Brings the table up to date with what was learnt: the one solve of law `bayes`, nothing for law `paper`.
+///
+/// # Errors
+/// A state that is no information (a damaged file).
+pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
+    if let LawState::Bayes { state, posterior } = &mut learnt.law {
+        **posterior = state.solve()?;
+        if let Some(guard) = posterior.guard() {
+            tracing::warn!(
+                tail = learnt.tail,
+                nodes = guard.nodes.len(),
+                "drag was kept physical at nodes where what was learnt was not"
+            );
+        }
+    }
+    Ok(())
+}
+
+fn learn_by_paper(
+    law: &PaperLaw,
+    state: &mut PaperState,
+    ever_adapted: &mut [bool],
+    observations: &[Observation],
+    result: &mut FlightLearnt,
+) {
+    for observation in observations {
+        match law.adapt(state, observation) {
+            update @ Update::Adapted { .. } => {
+                result.adapted += 1;
+                for change in update.changes() {
+                    ever_adapted[change.node] = true;
+                }
+            }
+            Update::WithinDeadBand { .. } => {}
+            Update::OutsideGrid(_) | Update::Unusable { .. } => result.outside_table += 1,
+        }
+    }
+}
+
 /// Why a flight was not learnt.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LearningError {
-    /// The law's threshold.
+    /// The threshold of law `paper`.
     #[error(transparent)]
     Threshold(#[from] paper::ThresholdError),
-    /// The global refit.
+    /// The global refit of law `paper`.
     #[error(transparent)]
     Refit(#[from] refit::RefitError),
+    /// The initial table, for law `bayes`.
+    #[error(transparent)]
+    Initial(#[from] InitialError),
+    /// The solution of law `bayes`.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
 }
 
 /// What a table says of an observation; `None` outside its grid.

@@ -54,6 +54,8 @@ fn run_command(command: &Command, progress: bool) -> Result<Outcome, Failure> {
         Command::Init(arguments) => commands::init::run(arguments),
         Command::Adapt(arguments) => commands::adapt::run(arguments, progress),
         Command::Segment(arguments) => commands::segment::run(arguments, progress),
+        Command::Tune(arguments) => commands::tune::run(arguments, progress),
+        Command::Merge(arguments) => commands::merge::run(arguments),
         Command::Predict(arguments) => commands::predict::run(arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(arguments, progress),
         Command::Show(arguments) => commands::show::run(arguments),

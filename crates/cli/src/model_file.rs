@@ -12,6 +12,7 @@ pub(crate) use text::hex;
 use std::path::Path;
 use std::sync::Arc;
 
+use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use adapt::paper::State as PaperState;
 use lut::Table;
 use perf_model::PerformanceModel;
@@ -25,7 +26,7 @@ use crate::references::References;
 pub const FORMAT: u32 = 1;
 
 /// A model, and what it has learnt.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ModelFile {
     /// The initial model: aircraft, polynomial, drag table, extrapolated nodes.
     pub initial: PerformanceModel,
@@ -59,6 +60,8 @@ pub struct GuideRecord {
 pub struct LawSettings {
     /// Of law `paper`.
     pub paper: PaperSettings,
+    /// Of law `bayes`.
+    pub bayes: BayesSettings,
 }
 
 impl LawSettings {
@@ -68,6 +71,7 @@ impl LawSettings {
             paper: PaperSettings {
                 threshold_percent: adapt::paper::PaperLaw::ghazi_2020().threshold_percent(),
             },
+            bayes: BayesSettings::physical_2026(),
         }
     }
 }
@@ -81,7 +85,7 @@ pub struct PaperSettings {
 }
 
 /// What a model has learnt from one tail.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Learnt {
     /// Whose flights.
     pub tail: String,
@@ -96,7 +100,7 @@ pub struct Learnt {
 }
 
 /// State of the law by which a model learns.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum LawState {
     /// The local law of Ghazi et al. 2020 with its global refit.
     Paper {
@@ -109,12 +113,68 @@ pub enum LawState {
         /// Global refits so far.
         refits: u32,
     },
+    /// The Gaussian law, with the initial model's settings.
+    Bayes {
+        /// What was learnt.
+        state: Box<BayesState>,
+        /// Its solution.
+        posterior: Box<Posterior>,
+    },
+}
+
+impl LawState {
+    /// The law's name in arguments and files.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Paper { .. } => "paper",
+            Self::Bayes { .. } => "bayes",
+        }
+    }
+
+    /// The drag table as it stands.
+    pub const fn drag_coefficient(&self) -> &Table {
+        match self {
+            Self::Paper { state, .. } => state.drag_coefficient(),
+            Self::Bayes { posterior, .. } => posterior.drag(),
+        }
+    }
+
+    /// How much was learnt at each node: the confidence λ of law `paper`, the effective number of observations of law
+    /// `bayes`.
+    pub fn confidence(&self) -> &[f64] {
+        match self {
+            Self::Paper { state, .. } => state.confidence().values(),
+            Self::Bayes { posterior, .. } => posterior.observations(),
+        }
+    }
+
+    /// Which nodes were ever informed by a segment.
+    pub fn informed(&self) -> Vec<bool> {
+        match self {
+            Self::Paper { ever_adapted, .. } => ever_adapted.clone(),
+            Self::Bayes { posterior, .. } => {
+                posterior.observations().iter().map(|count| *count >= 1.0).collect()
+            }
+        }
+    }
+
+    /// The law and its settings in words.
+    pub fn told(&self) -> String {
+        match self {
+            Self::Paper { settings, .. } => {
+                format!("law paper, threshold {} %", settings.threshold_percent)
+            }
+            Self::Bayes { .. } => "law bayes".to_owned(),
+        }
+    }
 }
 
 /// A flight that was learnt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LedgerEntry {
+    /// Tail as sent.
+    pub tail: String,
     /// Flight as sent.
     pub flight: String,
     /// START, an instant.
@@ -161,45 +221,47 @@ impl ModelFile {
 
     /// The drag table as it stands: learnt, or initial.
     pub fn drag_coefficient(&self) -> &Table {
-        match &self.learnt {
-            Some(Learnt { law: LawState::Paper { state, .. }, .. }) => state.drag_coefficient(),
-            None => self.initial.drag_table(),
-        }
+        self.learnt
+            .as_ref()
+            .map_or(self.initial.drag_table(), |learnt| learnt.law.drag_coefficient())
     }
 
-    /// The confidence table, where something was learnt.
-    pub fn confidence(&self) -> Option<&Table> {
+    /// How much was learnt at each node, where something was learnt.
+    pub fn confidence(&self) -> Option<&[f64]> {
+        self.learnt.as_ref().map(|learnt| learnt.law.confidence())
+    }
+
+    /// The solution of law `bayes`, where that is the law.
+    pub fn posterior(&self) -> Option<&Posterior> {
         match &self.learnt {
-            Some(Learnt { law: LawState::Paper { state, .. }, .. }) => Some(state.confidence()),
-            None => None,
+            Some(Learnt { law: LawState::Bayes { posterior, .. }, .. }) => Some(posterior),
+            _ => None,
         }
     }
 
     /// The model that predicts: the initial one with the learnt table in its place.
     ///
     /// # Errors
-    /// None for a model that was read or learnt: both tables are on one grid.
+    /// A learnt table with a drag coefficient that is not positive (law `paper` takes what it is given).
     pub fn current(&self) -> Result<PerformanceModel, perf_model::ModelError> {
         self.initial.with_drag_table(self.drag_coefficient().clone())
     }
 
     /// Global refits, where the law makes them.
     pub fn refits(&self) -> Option<u32> {
-        self.learnt.as_ref().map(|learnt| {
-            let LawState::Paper { refits, .. } = &learnt.law;
-            *refits
-        })
+        match &self.learnt {
+            Some(Learnt { law: LawState::Paper { refits, .. }, .. }) => Some(*refits),
+            _ => None,
+        }
     }
 
-    /// Share of nodes ever adapted.
+    /// Share of nodes ever adapted (law `paper`), or with at least one effective observation (law `bayes`).
     pub fn informed_nodes(&self) -> f64 {
-        match &self.learnt {
-            Some(Learnt { law: LawState::Paper { ever_adapted, .. }, .. }) => {
-                let informed = ever_adapted.iter().filter(|adapted| **adapted).count();
-                informed as f64 / ever_adapted.len() as f64
-            }
-            None => 0.0,
-        }
+        self.learnt.as_ref().map_or(0.0, |learnt| {
+            let informed = learnt.law.informed();
+            let count = informed.iter().filter(|informed| **informed).count();
+            count as f64 / informed.len() as f64
+        })
     }
 
     /// Whether two files hold the same initial model and settings; if not, what differs and how.
@@ -233,12 +295,10 @@ impl ModelFile {
     /// Whether two files learn by the same law with the same settings; if not, how they differ.
     pub fn difference_of_law(&self, other: &Self) -> Option<String> {
         let told = |model: &Self| {
-            model.learnt.as_ref().map(|learnt| match &learnt.law {
-                LawState::Paper { settings, .. } => format!(
-                    "law paper, threshold {} %, criteria {}",
-                    settings.threshold_percent, learnt.criteria
-                ),
-            })
+            model
+                .learnt
+                .as_ref()
+                .map(|learnt| format!("{}, criteria {}", learnt.law.told(), learnt.criteria))
         };
         let (one, other) = (told(self)?, told(other)?);
         (one != other).then(|| format!("{other} against {one}"))

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::model_file::{LawState, Learnt};
+use crate::model_file::Learnt;
 use crate::results::TailResult;
 use crate::summary::Summary;
 
@@ -135,9 +135,8 @@ fn what_was_run(summary: &Summary, tails: &[TailResult]) -> String {
     let mut laws: Vec<String> = Vec::new();
     for tail in tails {
         let law = match &tail.model.learnt {
-            Some(Learnt { criteria, law: LawState::Paper { settings, .. }, .. }) => {
-                let threshold = settings.threshold_percent;
-                format!("law paper, threshold {threshold} %, trim criteria {criteria}")
+            Some(Learnt { criteria, law, .. }) => {
+                format!("{}, trim criteria {criteria}", law.told())
             }
             None => "initial model, nothing learnt".to_owned(),
         };

@@ -51,6 +51,23 @@ impl References {
         self.0.get(signal).map(|reference| reference.mean)
     }
 
+    /// Adds the means of other segments.
+    pub fn merge(&mut self, other: &Self) {
+        for (name, theirs) in &other.0 {
+            match self.0.get_mut(name) {
+                Some(ours) => {
+                    let segments = ours.segments + theirs.segments;
+                    ours.mean +=
+                        (theirs.mean - ours.mean) * theirs.segments as f64 / segments as f64;
+                    ours.segments = segments;
+                }
+                None => {
+                    self.0.insert(name.clone(), *theirs);
+                }
+            }
+        }
+    }
+
     /// All of them, by name.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &Reference)> {
         self.0.iter().map(|(name, reference)| (name.as_str(), reference))

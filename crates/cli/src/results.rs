@@ -62,6 +62,7 @@ impl TailResult {
             outside_table: errors(&before).iter().filter(|error| error.is_none()).count(),
             informed_nodes: adapted.then(|| model.informed_nodes()),
             refits: if adapted { model.refits() } else { None },
+            interval95_coverage: if adapted { None } else { coverage(&model, &segments) },
             fuel_flow_error_percent: ErrorsSummary {
                 before: statistics(&before),
                 after: adapted.then(|| statistics(&after)),
@@ -84,6 +85,32 @@ impl TailResult {
     pub fn errors_after(&self) -> Vec<Option<f64>> {
         errors(&self.after)
     }
+}
+
+/// Two-sided 95 % of a standard normal distribution.
+const STANDARD_DEVIATIONS_OF_95_PERCENT: f64 = 1.959_963_984_540_054;
+
+/// Share of segments whose error lies within the interval that law `bayes` states for them; `None` by another law, or
+/// without a segment inside the table.
+fn coverage(model: &ModelFile, segments: &[flight::Segment]) -> Option<f64> {
+    let posterior = model.posterior()?;
+    let mut inside = 0;
+    let mut all = 0;
+    for segment in segments {
+        let Ok(observation) = model.initial.observe(segment) else { continue };
+        let grid = posterior.drag().grid();
+        let Ok(cell) =
+            grid.locate(observation.lift_coefficient, observation.mach, lut::Outside::Error)
+        else {
+            continue;
+        };
+        let deviation = posterior.segment_variance(&cell, &observation.variance).sqrt();
+        let initial = posterior.initial().interpolate(&cell);
+        let excess = (observation.drag_coefficient - posterior.drag().interpolate(&cell)) / initial;
+        all += 1;
+        inside += usize::from(excess.abs() <= STANDARD_DEVIATIONS_OF_95_PERCENT * deviation);
+    }
+    (all > 0).then(|| inside as f64 / all as f64)
 }
 
 fn errors(evaluated: &[Option<Evaluated>]) -> Vec<Option<f64>> {

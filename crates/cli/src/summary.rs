@@ -79,6 +79,9 @@ pub struct TailSummary {
     pub refits: Option<u32>,
     /// The error, in per cent.
     pub fuel_flow_error_percent: ErrorsSummary,
+    /// Share of errors within the stated 95 % interval of a segment; absent where the law states none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interval95_coverage: Option<f64>,
 }
 
 /// The error of the initial table, and of the final one.
@@ -122,6 +125,16 @@ impl Summary {
             );
         }
         text.push_str(&aligned(&rows));
+        for tail in &self.tails {
+            if let Some(coverage) = tail.interval95_coverage {
+                let _ = writeln!(
+                    text,
+                    "{}: {:.1} % of the segments lie within the stated 95 % interval.",
+                    tail.tail,
+                    100.0 * coverage
+                );
+            }
+        }
         let _ = write!(
             text,
             "Error = 100 (recorded − predicted)/recorded fuel flow, %: positive, the aircraft burns more than the model \

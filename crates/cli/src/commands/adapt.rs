@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::args::AdaptArgs;
+use crate::args::{AdaptArgs, LawName};
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::folder::{Folder, StoredTail};
-use crate::learning::{self, FlightToLearn};
+use crate::learning::{self, FlightToLearn, LawChoice};
 use crate::model_file::{Learnt, LedgerEntry, ModelFile, PaperSettings};
 use crate::models::Models;
 use crate::page;
@@ -22,12 +22,10 @@ use crate::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 /// What leaves nothing done.
 pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
     let models = Models::read(&arguments.models.models)?;
-    if let Some(threshold) = arguments.threshold {
-        check_threshold(threshold)?;
-    }
+    check_threshold(arguments)?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
-    let chosen = choose_models(&models, &mut reading, arguments);
+    let chosen = choose_models(&models, &mut reading, arguments)?;
     let nothing_left = reading.flights.is_empty();
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
     let folder = Folder::open(&arguments.output, arguments.restart)?;
@@ -104,11 +102,17 @@ pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
     Ok(Outcome { text, refused })
 }
 
-fn check_threshold(threshold: f64) -> Result<(), Failure> {
-    adapt::paper::PaperLaw::new(threshold).map(|_| ()).map_err(|error| Failure::BadArgument {
-        argument: "--threshold",
-        reason: error.to_string(),
-    })
+fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {
+    let wrong = |reason: String| Failure::BadArgument { argument: "--threshold", reason };
+    match (arguments.threshold, arguments.law) {
+        (Some(_), LawName::Bayes) => {
+            Err(wrong("law bayes has no threshold; --law paper has".to_owned()))
+        }
+        (Some(threshold), LawName::Paper) => adapt::paper::PaperLaw::new(threshold)
+            .map(|_| ())
+            .map_err(|error| wrong(error.to_string())),
+        (None, _) => Ok(()),
+    }
 }
 
 /// The state from which each tail begins; a report without a model moves to the refused ones.
@@ -116,25 +120,26 @@ fn choose_models(
     models: &Models,
     reading: &mut Reading,
     arguments: &AdaptArgs,
-) -> BTreeMap<String, ModelFile> {
+) -> Result<BTreeMap<String, ModelFile>, Failure> {
     let mut chosen = BTreeMap::new();
     let flights = std::mem::take(&mut reading.flights);
     for flight in flights {
         match models.for_flight(&flight) {
             Ok(model) => {
-                chosen
-                    .entry(flight.identity.tail.clone())
-                    .or_insert_with(|| beginning(model, &flight.identity.tail, arguments));
+                let tail = &flight.identity.tail;
+                if !chosen.contains_key(tail) {
+                    chosen.insert(tail.clone(), beginning(model, tail, arguments)?);
+                }
                 reading.flights.push(flight);
             }
             Err(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
         }
     }
-    chosen
+    Ok(chosen)
 }
 
 /// A model's initial part with nothing learnt yet.
-fn beginning(model: &ModelFile, tail: &str, arguments: &AdaptArgs) -> ModelFile {
+fn beginning(model: &ModelFile, tail: &str, arguments: &AdaptArgs) -> Result<ModelFile, Failure> {
     if let Some(learnt) = &model.learnt {
         tracing::warn!(
             tail,
@@ -143,13 +148,17 @@ fn beginning(model: &ModelFile, tail: &str, arguments: &AdaptArgs) -> ModelFile 
             learnt.tail
         );
     }
-    let settings = PaperSettings {
-        threshold_percent: arguments.threshold.unwrap_or(model.settings.paper.threshold_percent),
+    let law = match arguments.law {
+        LawName::Bayes => LawChoice::Bayes(model.settings.bayes),
+        LawName::Paper => LawChoice::Paper(PaperSettings {
+            threshold_percent: arguments
+                .threshold
+                .unwrap_or(model.settings.paper.threshold_percent),
+        }),
     };
-    ModelFile {
-        learnt: Some(learning::begin(&model.initial, tail, &arguments.reports.criteria, settings)),
-        ..model.clone()
-    }
+    let learnt = learning::begin(&model.initial, tail, &arguments.reports.criteria, law)
+        .map_err(|error| Failure::BadArgument { argument: "--model", reason: error.to_string() })?;
+    Ok(ModelFile { learnt: Some(learnt), ..model.clone() })
 }
 
 fn check_begun_alike(
@@ -272,6 +281,14 @@ impl Job {
                 Err(error) => refused.push(RefusedReport::whole(flight.path, error)),
             }
         }
+        if let Some(learnt) = &mut model.learnt
+            && flights_new > 0
+            && let Err(error) = learning::settle(learnt)
+        {
+            // Cannot happen to a state that was read whole: what was learnt is then not written.
+            tracing::error!(tail = self.tail, "{error}");
+            flights_new = 0;
+        }
         let counts = counts_of(&model, flights_new);
         (TailResult::new(self.tail, model, segments, counts, true, notes), refused)
     }
@@ -283,6 +300,7 @@ fn learn_one(
     flight: &FlightRead,
 ) -> Result<(), learning::LearningError> {
     let entry = LedgerEntry {
+        tail: flight.identity.tail.clone(),
         flight: flight.identity.flight.clone(),
         start: flight.identity.start.to_string(),
         content: flight.content.clone(),

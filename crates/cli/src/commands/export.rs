@@ -1,5 +1,8 @@
 //! `cruisefit export`: a model's table as CSV.
 
+use adapt::bayes::polynomial_export;
+use lut::surface;
+
 use crate::args::ExportArgs;
 use crate::columns::Columns;
 use crate::commands::Outcome;
@@ -12,7 +15,12 @@ use crate::model_file::ModelFile;
 /// What leaves nothing done.
 pub fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
     let model = ModelFile::read(&arguments.model)?;
-    table(&model).write(arguments.output.as_deref())?;
+    let columns = if arguments.polynomial {
+        polynomial(&model).map_err(|reason| Failure::bad_file(&arguments.model, reason))?
+    } else {
+        table(&model)
+    };
+    columns.write(arguments.output.as_deref())?;
     Ok(Outcome::default())
 }
 
@@ -28,7 +36,7 @@ pub fn table(model: &ModelFile) -> Columns {
     let confidence = model.confidence();
     columns.number(
         "confidence",
-        nodes().map(|node| Some(confidence.map_or(1.0, |table| table.value_at_node(node)))),
+        nodes().map(|node| Some(confidence.map_or(1.0, |confidence| confidence[node]))),
     );
     let initial = model.initial.drag_table();
     columns
@@ -36,4 +44,37 @@ pub fn table(model: &ModelFile) -> Columns {
     columns
         .count("extrapolated", nodes().map(|node| u64::from(model.initial.extrapolated()[node])));
     columns
+}
+
+/// One row a coefficient: its value and, where the law knows it, its covariance with each of the six.
+fn polynomial(model: &ModelFile) -> Result<Columns, String> {
+    let basis = model.initial.polynomial().basis;
+    let (surface, covariance) = match model.posterior() {
+        Some(posterior) => {
+            let export = polynomial_export(posterior, basis).map_err(|error| error.to_string())?;
+            (export.surface, Some(export.covariance))
+        }
+        None => {
+            let grid = model.grid();
+            let points: Vec<_> = (0..grid.nodes())
+                .map(|node| {
+                    let (x, y) = grid.coordinates(node);
+                    (x, y, model.drag_coefficient().value_at_node(node), 1.0)
+                })
+                .collect();
+            (surface::fit(basis, &points).map_err(|error| error.to_string())?.surface, None)
+        }
+    };
+    let mut columns = Columns::default();
+    columns.count("coefficient", 0..surface.coefficients.len() as u64);
+    columns.number("value", surface.coefficients.iter().map(|value| Some(*value)));
+    if let Some(covariance) = covariance {
+        for other in 0..surface.coefficients.len() {
+            columns.number(
+                format!("covariance_{other}"),
+                covariance.iter().map(|row| Some(row[other])),
+            );
+        }
+    }
+    Ok(columns)
 }

@@ -32,6 +32,9 @@ struct Golden {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 enum Law {
+    /// Law `bayes` with the default settings.
+    #[serde(rename = "bayes")]
+    Bayes,
     /// Law `paper`.
     #[serde(rename = "paper")]
     Paper {
@@ -122,7 +125,10 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
     let path = folder.join("golden.ron");
     let golden: Golden =
         ron::from_str(&read_text(&path)?).map_err(|error| Failure::bad_file(&path, error))?;
-    let Law::Paper { threshold_percent } = golden.law;
+    let (law, threshold) = match golden.law {
+        Law::Bayes => (LawName::Bayes, None),
+        Law::Paper { threshold_percent } => (LawName::Paper, Some(threshold_percent)),
+    };
     let scratch =
         tempfile::tempdir().map_err(|error| Failure::unwritable(&std::env::temp_dir(), error))?;
     let model_path = scratch.path().join("MODEL.ron");
@@ -142,8 +148,8 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             },
             models: ModelArgs { models: vec![model_path.clone()] },
             output: output.clone(),
-            law: LawName::Paper,
-            threshold: Some(threshold_percent),
+            law,
+            threshold,
             restart: false,
         },
         false,

@@ -1,7 +1,9 @@
 //! `cruisefit predict`: fuel flow and specific range at flight points.
 
 use std::path::Path;
+use std::sync::Arc;
 
+use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans, Timestamp};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use perf_model::{FlightPointRow, FlightPoints};
 
@@ -38,7 +40,9 @@ pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
             }
         }
     }
-    table(points.header(), points.rows(), &predicted).write(arguments.output.as_deref())?;
+    let deviations = deviations(&model, points.rows(), &predicted);
+    table(points.header(), points.rows(), &predicted, &deviations)
+        .write(arguments.output.as_deref())?;
     let text = arguments.output.as_ref().map_or_else(String::new, |path| {
         format!(
             "{} of {} points predicted, written to {}\n",
@@ -55,6 +59,7 @@ fn table(
     header: &[String],
     rows: &[FlightPointRow],
     predicted: &[Option<perf_model::Prediction>],
+    deviations: &[Option<f64>],
 ) -> Columns {
     let mut columns = Columns::default();
     for (column, name) in header.iter().enumerate() {
@@ -65,7 +70,7 @@ fn table(
     };
     columns.number("fuel_flow_kg_s", figure(|p| p.fuel_flow_total.to_kilograms_per_second()));
     // Law `paper` knows no standard deviation: the column is there, and empty.
-    columns.number("fuel_flow_std_kg_s", predicted.iter().map(|_| None));
+    columns.number("fuel_flow_std_kg_s", deviations.iter().copied());
     columns.number("specific_range_m_kg", figure(|p| p.specific_range.to_meters_per_kilogram()));
     columns.number("lift_coefficient", figure(|p| p.lift_coefficient));
     columns.number("drag_coefficient", figure(|p| p.drag_coefficient));
@@ -84,6 +89,77 @@ fn table(
         );
     }
     columns
+}
+
+/// Standard deviation of what a segment recorded there would say, kg/s: what the table does not know, what is common to
+/// a flight, and the segment's own noise by the aircraft's sensors.
+fn deviations(
+    model: &ModelFile,
+    rows: &[FlightPointRow],
+    predicted: &[Option<perf_model::Prediction>],
+) -> Vec<Option<f64>> {
+    let of = |row: &FlightPointRow, prediction: &perf_model::Prediction| {
+        let posterior = model.posterior()?;
+        let segment = imagined_segment(&row.point, prediction, &model.initial);
+        let observation = model.initial.observe(&segment).ok()?;
+        let variance = posterior.segment_variance(&prediction.cell, &observation.variance);
+        let initial = posterior.initial().interpolate(&prediction.cell);
+        Some(variance.sqrt() * initial * prediction.fuel_flow_per_drag_coefficient_kg_s)
+    };
+    rows.iter()
+        .zip(predicted)
+        .map(|(row, prediction)| prediction.as_ref().and_then(|prediction| of(row, prediction)))
+        .collect()
+}
+
+/// The segment of ten samples that the aircraft would record at a flight point if it burnt what is predicted.
+fn imagined_segment(
+    point: &perf_model::FlightPoint,
+    prediction: &perf_model::Prediction,
+    model: &perf_model::PerformanceModel,
+) -> Segment {
+    let total = prediction.fuel_flow_total.to_kilograms_per_second();
+    let engines = model.aircraft().engines();
+    let means = SegmentMeans {
+        time_s: 0.0,
+        pressure_altitude_m: point.pressure_altitude.to_meters(),
+        static_air_temperature_k: point
+            .static_air_temperature()
+            .map_or(f64::NAN, units::Temperature::to_kelvin),
+        mach: point.mach.value(),
+        true_airspeed_m_s: prediction.true_airspeed.to_meters_per_second(),
+        ground_speed_m_s: prediction.true_airspeed.to_meters_per_second(),
+        acceleration_m_s2: 0.0,
+        vertical_speed_m_s: 0.0,
+        mass_kg: point.mass.to_kilograms(),
+        fuel_flow_total_kg_s: total,
+        fuel_flow_engine_kg_s: vec![total / engines as f64; engines],
+        fuel_used_kg: 0.0,
+        drift_deg: None,
+        roll_deg: None,
+        roll_squared_deg2: None,
+        n2_percent: Vec::new(),
+        latitude_deg: None,
+        longitude_deg: None,
+        true_heading_deg: None,
+        center_of_gravity_percent_mac: None,
+        total_air_temperature_k: None,
+        n1_percent: [None; MAXIMUM_ENGINES],
+        exhaust_gas_temperature_k: [None; MAXIMUM_ENGINES],
+        fuel_quantity_kg: None,
+        anti_ice: None,
+    };
+    let identity = FlightIdentity {
+        tail: String::new(),
+        start: point.date.unwrap_or(Timestamp::UNIX_EPOCH),
+        flight: String::new(),
+    };
+    Segment {
+        identity: Arc::new(identity),
+        rows: (0..10).collect(),
+        means,
+        temperature_assumed: false,
+    }
 }
 
 /// Flight points as CSV text; a Parquet file's rows are written as such first.

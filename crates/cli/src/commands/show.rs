@@ -62,17 +62,16 @@ fn describe_initial(model: &ModelFile, text: &mut String) {
 }
 
 fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
-    let LawState::Paper { settings, .. } = &learnt.law;
     let segments: u64 = learnt.ledger.iter().map(|entry| entry.segments).sum();
     let _ = writeln!(
         text,
-        "Learnt from {} flights of tail {} ({segments} segments) by law paper, threshold {} %, criteria {}; {:.0} % of the nodes ever adapted, {} global refits",
+        "Learnt from {} flights of tail {} ({segments} segments) by {}, criteria {}; {:.0} % of the nodes informed{}",
         learnt.ledger.len(),
         learnt.tail,
-        settings.threshold_percent,
+        learnt.law.told(),
         learnt.criteria,
         100.0 * model.informed_nodes(),
-        model.refits().unwrap_or(0)
+        model.refits().map_or_else(String::new, |refits| format!(", {refits} global refits"))
     );
     if let (Some(first), Some(last)) = (
         learnt.ledger.iter().map(|entry| entry.start.as_str()).min(),
@@ -91,11 +90,24 @@ fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
 fn describe_table(model: &ModelFile, text: &mut String) {
     let grid = model.grid();
     let drag = model.drag_coefficient();
-    let confidence = model.confidence();
+    let informed = match &model.learnt {
+        // The refit sets confidences back: what counts is what was adapted since.
+        Some(Learnt { law: law @ LawState::Paper { .. }, .. }) => {
+            law.confidence().iter().map(|confidence| *confidence > 1.0).collect()
+        }
+        Some(learnt) => learnt.law.informed(),
+        None => vec![false; grid.nodes()],
+    };
+    let posterior = model.posterior();
+    let star = match &model.learnt {
+        Some(Learnt { law: LawState::Paper { .. }, .. }) => "* adapted since the last global refit",
+        _ => "* with at least one effective observation",
+    };
     let _ = writeln!(
         text,
-        "\nDrag coefficient in counts (1e-4), lift coefficient down, Mach number across. \
-         ~ extrapolated beyond the guide and not corrected since; * adapted since the last global refit"
+        "\nDrag coefficient in counts (1e-4), lift coefficient down, Mach number across{}. \
+         ~ extrapolated beyond the guide and not informed; {star}",
+        if posterior.is_some() { ", ± its standard deviation" } else { "" }
     );
     let mut rows = Vec::new();
     let mut head = vec!["CL \\ M".to_owned()];
@@ -105,14 +117,16 @@ fn describe_table(model: &ModelFile, text: &mut String) {
         let mut row = vec![format!("{lift_coefficient:.3}")];
         for j in 0..grid.y().len() {
             let node = i * grid.y().len() + j;
-            let mark = if confidence.is_some_and(|table| table.value_at_node(node) > 1.0) {
-                '*'
-            } else if model.initial.extrapolated()[node] {
-                '~'
-            } else {
-                ' '
+            let mark = match (informed[node], model.initial.extrapolated()[node]) {
+                (true, _) => '*',
+                (false, true) => '~',
+                (false, false) => ' ',
             };
-            row.push(format!("{:.1}{mark}", 1e4 * drag.value_at_node(node)));
+            let deviation = posterior.map_or_else(String::new, |posterior| {
+                let relative = posterior.standard_deviation()[node];
+                format!("±{:.1}", 1e4 * relative * posterior.initial().value_at_node(node))
+            });
+            row.push(format!("{:.1}{deviation}{mark}", 1e4 * drag.value_at_node(node)));
         }
         rows.push(row);
     }

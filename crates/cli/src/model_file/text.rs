@@ -3,6 +3,7 @@
 use std::fmt::{Display, Write};
 use std::sync::Arc;
 
+use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
 use lut::Table;
 use lut::surface::Surface;
 use perf_model::aircraft::AircraftFile;
@@ -122,6 +123,14 @@ enum LawText {
         confidence: Vec<f64>,
         ever_adapted: Vec<u8>,
     },
+    /// The first three lists follow from the state and are for readers of the file.
+    Bayes {
+        drag_coefficient: Vec<f64>,
+        /// Relative to the initial drag coefficient.
+        standard_deviation: Vec<f64>,
+        observations: Vec<f64>,
+        state: BayesStateData,
+    },
 }
 
 /// The text of a model file.
@@ -197,17 +206,25 @@ fn document_of(model: &ModelFile) -> Document {
 }
 
 fn learnt_to_text(learnt: &Learnt) -> LearntText {
-    let LawState::Paper { settings, state, ever_adapted, refits } = &learnt.law;
-    LearntText {
-        tail: learnt.tail.clone(),
-        criteria: learnt.criteria.clone(),
-        law: LawText::Paper {
+    let law = match &learnt.law {
+        LawState::Paper { settings, state, ever_adapted, refits } => LawText::Paper {
             settings: *settings,
             refits: *refits,
             drag_coefficient: state.drag_coefficient().values().to_vec(),
             confidence: state.confidence().values().to_vec(),
             ever_adapted: flags_to_text(ever_adapted),
         },
+        LawState::Bayes { state, posterior } => LawText::Bayes {
+            drag_coefficient: posterior.drag().values().to_vec(),
+            standard_deviation: posterior.standard_deviation().to_vec(),
+            observations: posterior.observations().to_vec(),
+            state: state.to_data(),
+        },
+    };
+    LearntText {
+        tail: learnt.tail.clone(),
+        criteria: learnt.criteria.clone(),
+        law,
         references: learnt.references.clone(),
         ledger: learnt.ledger.clone(),
     }
@@ -234,22 +251,44 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
         flags_from_text("initial.extrapolated", &document.initial.extrapolated, nodes)?,
     )
     .map_err(|error| value("initial", error))?;
+    let settings = document.settings;
     let learnt = match document.learnt {
         None => None,
         Some(LearntText { tail, criteria, law, references, ledger }) => {
-            let LawText::Paper { settings, refits, drag_coefficient, confidence, ever_adapted } =
-                law;
+            let law = law_of(law, &initial, settings.bayes)?;
+            Some(Learnt { tail, criteria, law, references, ledger })
+        }
+    };
+    Ok(ModelFile { initial, guide: document.guide, settings, learnt })
+}
+
+fn law_of(
+    law: LawText,
+    initial: &PerformanceModel,
+    bayes: BayesSettings,
+) -> Result<LawState, ModelTextError> {
+    let grid = initial.drag_table().grid();
+    let table = |field, values: Vec<f64>| {
+        Table::new(Arc::clone(grid), values).map_err(|error| value(field, error))
+    };
+    match law {
+        LawText::Paper { settings, refits, drag_coefficient, confidence, ever_adapted } => {
             let state = PaperState::from_tables(
                 table("learnt.law.drag_coefficient", drag_coefficient)?,
                 table("learnt.law.confidence", confidence)?,
             )
             .map_err(|error| value("learnt.law", error))?;
-            let ever_adapted = flags_from_text("learnt.law.ever_adapted", &ever_adapted, nodes)?;
-            let law = LawState::Paper { settings, state, ever_adapted, refits };
-            Some(Learnt { tail, criteria, law, references, ledger })
+            let ever_adapted =
+                flags_from_text("learnt.law.ever_adapted", &ever_adapted, grid.nodes())?;
+            Ok(LawState::Paper { settings, state, ever_adapted, refits })
         }
-    };
-    Ok(ModelFile { initial, guide: document.guide, settings: document.settings, learnt })
+        LawText::Bayes { state, .. } => {
+            let state = BayesState::from_data(initial.drag_table(), bayes, state)
+                .map_err(|error| value("learnt.law.state", error))?;
+            let posterior = state.solve().map_err(|error| value("learnt.law.state", error))?;
+            Ok(LawState::Bayes { state: Box::new(state), posterior: Box::new(posterior) })
+        }
+    }
 }
 
 fn flags_to_text(flags: &[bool]) -> Vec<u8> {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use flight::Timestamp;
 use perf_model::ObserveError;
 
-use crate::model_file::{LawState, Learnt, ModelFile};
+use crate::model_file::ModelFile;
 use crate::results::TailResult;
 use crate::statistics::ErrorStatistics;
 
@@ -146,10 +146,10 @@ impl Polars {
     fn of(model: &ModelFile) -> Self {
         let grid = model.grid();
         let initial = model.initial.drag_table().values().to_vec();
-        let informed = match &model.learnt {
-            Some(Learnt { law: LawState::Paper { ever_adapted, .. }, .. }) => ever_adapted.clone(),
-            None => vec![false; initial.len()],
-        };
+        let informed = model
+            .learnt
+            .as_ref()
+            .map_or_else(|| vec![false; initial.len()], |learnt| learnt.law.informed());
         Self {
             lift_coefficient: grid.x().breakpoints().to_vec(),
             mach: grid.y().breakpoints().to_vec(),
