@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 
+use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, Segment};
 use perf_model::effects::{EffectModel, EffectPoint, Effects, HiddenParameters, Response};
 
@@ -19,6 +20,10 @@ pub(crate) const DECK_TERMS: usize = 15;
 /// Scales that make the deck's variables dimensionless: ln F/δ, Mach number, ln δ, ln θ.
 const DECK_SCALES: [f64; 4] = [0.2, 0.05, 0.3, 0.04];
 
+/// Effects of the Earth and its air: whatever of them a fleet shows, a baseline that was taught on it carries.
+pub(crate) const ENVIRONMENT: [EffectId; 3] =
+    [EffectId::LocalGravity, EffectId::RotatingEarth, EffectId::IsobaricSlope];
+
 /// One segment.
 #[derive(Clone, Debug)]
 pub(crate) struct SegmentRow {
@@ -31,6 +36,8 @@ pub(crate) struct SegmentRow {
     /// ∂channel/∂θ of each column.
     pub(crate) signatures: Vec<ByChannel>,
     pub(crate) noise: SegmentNoise,
+    /// ∂channel/∂θ of the environment's effects, which a baseline carries; 0 where an input is not recorded.
+    pub(crate) environment: [ByChannel; ENVIRONMENT.len()],
     /// Deck terms at the prediction.
     pub(crate) deck: [f64; DECK_TERMS],
     /// ∂(N2 channel)/∂(ln F).
@@ -312,6 +319,7 @@ impl<'a> Data<'a> {
         let mut row = SegmentRow {
             point: kept.point,
             response: kept.response,
+            environment: [[0.0; MAXIMUM_CHANNELS]; ENVIRONMENT.len()],
             is_recorded,
             residual,
             signatures: Vec::with_capacity(library.columns.len()),
@@ -321,6 +329,26 @@ impl<'a> Data<'a> {
             drag_over_thrust: kept.response.drag_over_thrust,
             chords: chord_errors(model, &kept.response),
         };
+        for (slot, id) in row.environment.iter_mut().zip(ENVIRONMENT) {
+            *slot = signature(
+                model,
+                &row.point,
+                &Effects::none(),
+                id,
+                HiddenParameters::default(),
+                0.5,
+                &row.is_recorded,
+                &self.predictor,
+            )
+            .unwrap_or([0.0; MAXIMUM_CHANNELS]);
+        }
+        if let Some(baseline) = self.predictor.baseline {
+            for (slope, carried) in row.environment.iter().zip(baseline.environment()) {
+                for channel in 0..channels.count() {
+                    row.residual[channel] -= carried * slope[channel];
+                }
+            }
+        }
         for column in &library.columns {
             let effect = &library.effects[column.effect];
             let signature = signature(
@@ -435,7 +463,6 @@ fn deck_of(
 }
 
 fn gauge_row(burn: crate::GaugeBurn, library: &Library, segments: &[SegmentRow]) -> GaugeRow {
-    use flight::effect::EffectId;
     let count = segments.len().max(1) as f64;
     let share = |engine: u8| {
         let index = usize::from(engine).wrapping_sub(1);

@@ -287,6 +287,12 @@ impl<'a> Design<'a> {
                 at += 1;
             }
         }
+        if parts.baseline.is_some() {
+            for slope in &row.environment {
+                put(matrix, at, slope);
+                at += 1;
+            }
+        }
         if parts.chords {
             for chord in row.chords {
                 scaled(matrix, at, &thrust, chord);

@@ -103,6 +103,7 @@ fn what_was_changed_is_found_and_the_baseline_is_silent() {
 
     let half = clean.len() / 2;
     let taught = Baseline::learn(&model, model.drag_table(), &records(&clean[..half])).unwrap();
+    println!("env {:?}", taught.environment());
     println!("half {:?}: rms {:.4}, noise {:?}", taught.taught_by(), taught.remaining_rms(), taught.noise());
     let silent = run(&model, Some(&taught), &clean[half..]);
     print("SIM-01 second half", &silent);
