@@ -76,8 +76,8 @@ impl BayesSettings {
     /// - slopes 0.15 per unit lift coefficient and 0.25 per unit Mach number, 4.5 and 2.5 % across a patch: an induced
     ///   drag that is 6 to 18 % off tilts the correction by 0.06 to 0.17; a drag rise 0.006 Mach number early by 0.2 to
     ///   0.4 around the drag-divergence Mach number.
-    /// - bends 1, 1.5 and 2 (along lift coefficient, mixed, along Mach number): a polar that is no parabola departs by
-    ///   about 1 % over half a patch. Along Mach number the grid sets the limit, not the physics: the correction shall
+    /// - bends 1.5, 1.5 and 2 (along lift coefficient, mixed, along Mach number): a polar that is no parabola departs by
+    ///   1 to 2 % over half a patch. Along Mach number the grid sets the limit, not the physics: the correction shall
     ///   be straight to about 0.1 % inside a cell 0.05 wide, because a table cannot hold what is finer.
     /// - extra 1 % a flight: what is no function of lift coefficient and Mach number (Reynolds number with exponent
     ///   0.12 over a spread of 10 %, TSFC with temperature exponent 0.2 over one of 3 %, throttle 0.6 %, heating value
@@ -90,7 +90,7 @@ impl BayesSettings {
             correction_std: 0.10,
             slope_std_per_lift_coefficient: 0.15,
             slope_std_per_mach: 0.25,
-            bend_std_per_lift_coefficient_squared: 1.0,
+            bend_std_per_lift_coefficient_squared: 1.5,
             bend_std_per_lift_coefficient_mach: 1.5,
             bend_std_per_mach_squared: 2.0,
             extra_flight_std: 0.010,

@@ -1,0 +1,12 @@
+//! Law `bayes` as its users see it: on fleets flown in JSBSim, on virtual fleets, and with hostile input.
+#![expect(clippy::unwrap_used, clippy::panic, reason = "tests")]
+#![expect(clippy::disallowed_methods, reason = "golden files are read from the folder beside")]
+
+mod addition;
+mod fleet;
+mod golden;
+mod guard;
+mod outliers;
+mod resolution;
+mod tuning;
+mod virtual_fleets;
