@@ -66,6 +66,17 @@ fn read_mapping(name: &str) -> Result<Mapping, Failure> {
         return Ok(preset);
     }
     let path = std::path::Path::new(name);
+    if !path.exists() {
+        let presets: Vec<&str> =
+            report::mapping::PRESETS.iter().map(|(preset, _)| *preset).collect();
+        return Err(Failure::BadArgument {
+            argument: "--mapping",
+            reason: format!(
+                "{name}: no such file, and no preset (presets: {})",
+                presets.join(", ")
+            ),
+        });
+    }
     let text = read_text(path)?;
     Mapping::from_ron(&text).map_err(|error| Failure::bad_file(path, error))
 }
@@ -84,8 +95,9 @@ fn check_refused(
     for one in refused {
         eprintln!("refused: {one}");
     }
-    match refused.first() {
-        Some(first) if nothing_left => Err(Failure::AllRefused { files, first: first.to_string() }),
-        _ => Err(Failure::Strict { refused: refused.len(), files }),
-    }
+    Err(if nothing_left {
+        Failure::AllRefused { files }
+    } else {
+        Failure::Strict { refused: refused.len(), files }
+    })
 }

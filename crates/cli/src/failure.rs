@@ -54,12 +54,10 @@ pub enum Failure {
         skipped: String,
     },
     /// Every report was refused.
-    #[error("none of {files} reports could be used; the first: {first}")]
+    #[error("no report could be used, {files} refused")]
     AllRefused {
         /// How many files there were.
         files: usize,
-        /// The first refusal.
-        first: String,
     },
     /// A report was refused under `--strict`.
     #[error(

@@ -45,6 +45,10 @@ use failure::{DONE, Failure, NOTHING_DONE, SOME_REFUSED};
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
     start_logging(cli.common.verbose);
+    // Lines as they are: a path that is broken in the middle cannot be copied. Fails only where a hook is set already.
+    let _ = miette::set_hook(Box::new(|_| {
+        Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
+    }));
     let result = in_pool(&cli.common, || run_command(&cli.command, !cli.common.no_progress));
     ExitCode::from(tell(result))
 }

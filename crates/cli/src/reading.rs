@@ -118,11 +118,14 @@ fn read_file(
     if let Err(error) = opened {
         return (Vec::new(), vec![refuse(None, None, error.to_string())]);
     }
+    let of_refusal = |refusal: &report::Refusal| {
+        let reason = format!("found {}, expected {}", refusal.found, refusal.kind);
+        (Vec::new(), vec![refuse(Some(refusal.line), Some(refusal.column), reason)])
+    };
     // The content is known by its uncompressed bytes: a report that was packed later is the same report.
-    let bytes = if unpack(&buffers.raw, &mut buffers.unpacked) {
-        buffers.unpacked.as_slice()
-    } else {
-        buffers.raw.as_slice()
+    let bytes = match report::unpack(&buffers.raw, &mut buffers.unpacked) {
+        Ok(bytes) => bytes,
+        Err(refusal) => return of_refusal(&refusal),
     };
     let file_name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into());
     let parsed = match mapping {
@@ -131,10 +134,7 @@ fn read_file(
     };
     let parsed = match parsed {
         Ok(parsed) => parsed,
-        Err(refusal) => {
-            let reason = format!("found {}, expected {}", refusal.found, refusal.kind);
-            return (Vec::new(), vec![refuse(Some(refusal.line), Some(refusal.column), reason)]);
-        }
+        Err(refusal) => return of_refusal(&refusal),
     };
     let content = hex(&Sha256::digest(bytes));
     let mut flights = Vec::new();
@@ -155,13 +155,6 @@ fn read_file(
     (flights, refused)
 }
 
-/// Unpacks gzip into `unpacked`; false for what is no gzip, or a damaged one (whose refusal is the reader's).
-fn unpack(raw: &[u8], unpacked: &mut Vec<u8>) -> bool {
-    unpacked.clear();
-    raw.starts_with(&[0x1f, 0x8b])
-        && flate2::read::MultiGzDecoder::new(raw).read_to_end(unpacked).is_ok()
-}
-
 fn reduce(
     path: &Path,
     report: Report,
@@ -176,7 +169,10 @@ fn reduce(
     let identity = Arc::new(header.identity.clone());
     let track = track::derive(report)?;
     if let flight::TemperatureSource::AssumedIsa { isa_deviation_k } = track.temperature_source() {
-        notes.push(format!("static air temperature assumed: ISA {isa_deviation_k:+} K"));
+        // A mapping that assumes it has said so already.
+        if !notes.iter().any(|note| note.contains("static air temperature")) {
+            notes.push(format!("static air temperature assumed: ISA {isa_deviation_k:+} K"));
+        }
     }
     let segmentation = segmenter::segment(&track, criteria);
     let not_evaluated = segmentation.not_evaluated();

@@ -110,20 +110,17 @@ impl Summary {
         if adapted {
             head.extend(["nodes", "refits"]);
         }
-        head.extend(["mean", "std", "max"]);
         if adapted {
-            head.extend(["mean", "std", "max"]);
+            head.extend(["before: mean", "std", "max", "after: mean", "std", "max"]);
+        } else {
+            head.extend(["error: mean", "std", "max"]);
         }
         rows.push(head.into_iter().map(str::to_owned).collect());
         for tail in &self.tails {
             rows.push(row_of(tail, adapted));
         }
         let mut text = String::new();
-        if adapted {
-            text.push_str(
-                "Error of predicted fuel flow: the three figures before, the three after.\n",
-            );
-        }
+        text.push_str("Error of predicted fuel flow, %\n");
         text.push_str(&aligned(&rows));
         for tail in &self.tails {
             if let Some(coverage) = tail.interval95_coverage {
@@ -135,12 +132,15 @@ impl Summary {
                 );
             }
         }
+        if self.tails.iter().all(|tail| tail.segments == 0) {
+            text.push_str(NO_SEGMENT);
+        }
         let _ = write!(
             text,
             "Error = 100 (recorded − predicted)/recorded fuel flow, %: positive, the aircraft burns more than the model \
              says.\n\
-             {} reports read, {} already known, {} refused.\n",
-            self.reports.read,
+             {} read, {} already known, {} refused.\n",
+            counted(self.reports.read, "report"),
             self.reports.already_known,
             self.reports.refused.len()
         );
@@ -180,6 +180,15 @@ fn push_statistics(row: &mut Vec<String>, statistics: Option<&ErrorStatistics>) 
     row.push(signed(statistics.and_then(|s| s.mean)));
     row.push(plain(statistics.and_then(|s| s.std)));
     row.push(plain(statistics.and_then(|s| s.max_abs)));
+}
+
+/// What to do about flights without a segment.
+pub const NO_SEGMENT: &str = "No stabilised segment was found: `cruisefit segment REPORTS -o FILE --explain` tells what each \
+     criterion cost, --criteria names other criteria.\n";
+
+/// A number and its noun.
+pub fn counted(number: usize, noun: &str) -> String {
+    if number == 1 { format!("1 {noun}") } else { format!("{number} {noun}s") }
 }
 
 /// Columns aligned: the first to the left, numbers to the right.

@@ -41,31 +41,42 @@ pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
     );
     let reports = reports_below(&folder.join("reports/N750CF"))?;
     let (teaching, judging) = reports.split_at(TEACHING_FLIGHTS.min(reports.len()));
-    let adapted = folder.join("adapted");
-    let learnt = adapt::run(
-        &AdaptArgs {
-            reports: reports_arguments(teaching),
-            models: ModelArgs { models: vec![model.clone()] },
-            output: adapted.clone(),
-            law: LawName::Paper,
-            threshold: Some(1.0),
-            restart: adapted.exists(),
-        },
-        progress,
-    )?;
-    let _ = writeln!(
-        text,
-        "$ cruisefit adapt … --model MODEL.ron --law paper --threshold 1 -o adapted\n{}",
-        learnt.text
-    );
-    let _ = writeln!(text, "Flights that the model has not seen:");
-    for (name, path) in [("initial", &model), ("adapted", &adapted.join("models"))] {
-        let errors = unseen_errors(path, judging)?;
-        let _ = writeln!(text, "  {name:<8} {}", told(&errors));
+    let mut judged = vec![("initial model".to_owned(), model.clone())];
+    for (law, threshold, arguments) in [
+        (LawName::Bayes, None, "--law bayes"),
+        (LawName::Paper, Some(1.0), "--law paper --threshold 1"),
+    ] {
+        let name = if law == LawName::Bayes { "bayes" } else { "paper" };
+        let adapted = folder.join(format!("adapted-{name}"));
+        let learnt = adapt::run(
+            &AdaptArgs {
+                reports: reports_arguments(teaching),
+                models: ModelArgs { models: vec![model.clone()] },
+                output: adapted.clone(),
+                law,
+                threshold,
+                restart: adapted.exists(),
+            },
+            progress,
+        )?;
+        let _ = writeln!(
+            text,
+            "$ cruisefit adapt … --model MODEL.ron {arguments} -o adapted-{name}\n{}",
+            learnt.text
+        );
+        judged.push((format!("law {name}"), adapted.join("models/N750CF.ron")));
+    }
+    let _ = writeln!(text, "{} flights that no model has seen:", judging.len());
+    for (name, path) in &judged {
+        let (errors, coverage) = unseen_errors(path, judging)?;
+        let covered = coverage.map_or_else(String::new, |share| {
+            format!("; {:.0} % of them within the stated 95 % interval", 100.0 * share)
+        });
+        let _ = writeln!(text, "  {name:<14} {}{covered}", told(&errors));
     }
     let _ = writeln!(text, "\n45 static points at three masses, between FL300 and FL450:");
-    for (name, path) in [("initial", model), ("adapted", adapted.join("models/N750CF.ron"))] {
-        let predicted = folder.join(format!("static-{name}.csv"));
+    for (name, path) in judged {
+        let predicted = folder.join(format!("static-{}.csv", name.replace(' ', "-")));
         let outcome = predict::run(&PredictArgs {
             model: path,
             points: folder.join("static.csv"),
@@ -74,15 +85,18 @@ pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
         let errors = errors_of(&predicted)?;
         let _ = writeln!(
             text,
-            "  {name:<8} {}; {} outside the table",
+            "  {name:<14} {}{}",
             told(&ErrorStatistics::of(&errors)),
-            outcome.refused.len()
+            match outcome.refused.len() {
+                0 => String::new(),
+                outside => format!("; {outside} outside the table"),
+            }
         );
     }
     let _ = writeln!(
         text,
         "\nLook at {}; everything above can be run again by hand from {}.",
-        show(&adapted.join("report.html")),
+        show(&folder.join("adapted-bayes/report.html")),
         show(folder)
     );
     Ok(Outcome::text(text))
@@ -101,17 +115,19 @@ fn reports_below(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(crate::inputs::collect(&[folder.to_owned()], false)?.files)
 }
 
-fn unseen_errors(model: &Path, reports: &[PathBuf]) -> Result<ErrorStatistics, Failure> {
+fn unseen_errors(
+    model: &Path,
+    reports: &[PathBuf],
+) -> Result<(ErrorStatistics, Option<f64>), Failure> {
     let arguments = EvaluateArgs {
         reports: reports_arguments(reports),
         models: ModelArgs { models: vec![model.to_owned()] },
         json: None,
     };
     let (summary, _) = evaluate::evaluate(&arguments, false)?;
-    Ok(summary
-        .tails
-        .first()
-        .map_or(ErrorStatistics::of(&[]), |tail| tail.fuel_flow_error_percent.before))
+    Ok(summary.tails.first().map_or((ErrorStatistics::of(&[]), None), |tail| {
+        (tail.fuel_flow_error_percent.before, tail.interval95_coverage)
+    }))
 }
 
 fn told(errors: &ErrorStatistics) -> String {

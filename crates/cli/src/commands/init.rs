@@ -16,8 +16,9 @@ use crate::model_file::{GuideRecord, LawSettings, ModelFile};
 /// # Errors
 /// What leaves nothing done.
 pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
-    let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?)
-        .map_err(|error| Failure::bad_file(&arguments.aircraft, error))?;
+    let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?).map_err(|error| {
+        Failure::bad_file(&arguments.aircraft, format!("not an aircraft file: {error}"))
+    })?;
     let guide = Guide::from_csv(read_text(&arguments.guide)?.as_bytes())
         .map_err(|error| Failure::bad_file(&arguments.guide, error))?;
     let initial = perf_model::initial_model(&aircraft, &guide)
@@ -39,14 +40,14 @@ pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     );
     let _ = writeln!(
         text,
-        "Fit residual {:.2} drag counts rms, condition number of the design {:.1e}.",
+        "Fit residual {:.2} drag counts rms ({:.2} % of drag), condition number of the design {:.1e}.",
         1e4 * model.guide.residual_rms,
+        initial.fit.residual_rms_percent,
         model.guide.condition_number
     );
-    let extrapolated = model.initial.extrapolated().iter().filter(|flag| **flag).count();
     let _ = writeln!(
         text,
-        "Table of {} lift coefficients by {} Mach numbers; {extrapolated} of {} nodes lie outside the guide's range and are extrapolated.",
+        "Table of {} lift coefficients by {} Mach numbers, {} nodes.",
         grid.x().len(),
         grid.y().len(),
         grid.nodes()

@@ -9,7 +9,7 @@ use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
 use crate::reading::FlightRead;
 use crate::segments_table::{self, SegmentRow};
-use crate::summary::aligned;
+use crate::summary::{NO_SEGMENT, aligned, counted};
 
 /// Runs the command.
 ///
@@ -37,10 +37,14 @@ pub fn run(arguments: &SegmentArgs, progress: bool) -> Result<Outcome, Failure> 
         text.push_str(&explained);
         let _ = writeln!(
             text,
-            "{} segments of {flights} flights written to {}",
-            rows.len(),
+            "{} of {} written to {}",
+            counted(rows.len(), "segment"),
+            counted(flights, "flight"),
             show(path)
         );
+        if rows.is_empty() {
+            text.push_str(NO_SEGMENT);
+        }
     } else {
         // Standard output carries the table; the explanation goes where it does not get into it.
         eprint!("{explained}");
@@ -61,8 +65,9 @@ fn explain(flights: &[FlightRead]) -> String {
             let _ = writeln!(text, "    {note}");
         }
     }
-    let _ = writeln!(text, "\nAll {} flights: {total}\n", flights.len());
-    let head = ["criterion", "unsteady", "alone", "outliers", "alone", "not evaluated"];
+    let _ = writeln!(text, "\nAll: {total}\n");
+    let head =
+        ["criterion", "unsteady", "unsteady alone", "outliers", "outliers alone", "not evaluated"];
     let mut rows: Vec<Vec<String>> = vec![head.into_iter().map(str::to_owned).collect()];
     for criterion in Criterion::ALL {
         let cost = total.cost(criterion);

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use lut::surface::Basis;
+
 use crate::args::ShowArgs;
 use crate::commands::Outcome;
 use crate::failure::Failure;
@@ -44,8 +46,11 @@ fn describe_initial(model: &ModelFile, text: &mut String) {
     let polynomial = model.initial.polynomial();
     let _ = writeln!(
         text,
-        "initial polynomial {:?}: {}",
-        polynomial.basis,
+        "initial polynomial {}: {}",
+        match polynomial.basis {
+            Basis::SeparableQuadratic => "p0 + p1 M + p2 M² + (p3 + p4 M + p5 M²) CL²",
+            Basis::FullQuadratic => "p0 + p1 M + p2 CL + p3 M² + p4 M CL + p5 CL²",
+        },
         polynomial.coefficients.map(|c| format!("{c:.6e}")).join(", ")
     );
     let guide = &model.guide;
@@ -84,7 +89,9 @@ fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
         .iter()
         .map(|(name, reference)| format!("{name} {:.4} (n {})", reference.mean, reference.segments))
         .collect();
-    let _ = writeln!(text, "reference means: {}", means.join(", "));
+    if !means.is_empty() {
+        let _ = writeln!(text, "reference means: {}", means.join(", "));
+    }
 }
 
 fn describe_table(model: &ModelFile, text: &mut String) {

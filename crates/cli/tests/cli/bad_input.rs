@@ -215,7 +215,15 @@ fn output_folder_not_writable() {
 fn threshold_that_is_none() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
-    adapt(&model, &scratch.path().join("o"), &[fixture("reports")], &["--threshold=-1"])
+    adapt(
+        &model,
+        &scratch.path().join("o"),
+        &[fixture("reports")],
+        &["--law", "paper", "--threshold=-1"],
+    )
+    .expect(2)
+    .says("--threshold");
+    adapt(&model, &scratch.path().join("o"), &[fixture("reports")], &["--threshold", "5"])
         .expect(2)
-        .says("--threshold");
+        .says("law bayes has no threshold");
 }

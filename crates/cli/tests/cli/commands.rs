@@ -39,7 +39,7 @@ fn predict_meets_the_static_points_after_adaptation_better_than_before() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
     let output = scratch.path().join("out");
-    adapt(&model, &output, &[fixture("reports")], &["--threshold", "1"]).expect(0);
+    adapt(&model, &output, &[fixture("reports")], &[]).expect(0);
     let error_of = |model: &std::path::Path| {
         let csv = scratch.path().join("predicted.csv");
         cruisefit(&[
@@ -178,10 +178,13 @@ fn demo_does_the_whole_chain_on_embedded_data() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("demo");
     let ran = cruisefit(&["demo".as_ref(), "-o".as_ref(), folder.as_os_str()]).expect(0);
-    assert!(ran.stdout.contains("Flights that the model has not seen:"), "{}", ran.stdout);
-    for file in
-        ["MODEL.ron", "adapted/models/N750CF.ron", "adapted/report.html", "reports/TRUTH.json"]
-    {
+    assert!(ran.stdout.contains("flights that no model has seen:"), "{}", ran.stdout);
+    for file in [
+        "MODEL.ron",
+        "adapted-bayes/models/N750CF.ron",
+        "adapted-paper/report.html",
+        "reports/TRUTH.json",
+    ] {
         assert!(folder.join(file).exists(), "{file}");
     }
     // Again into the same folder: the same words.
@@ -233,4 +236,94 @@ fn simulated_reports_do_not_depend_on_threads() {
     let one = run("1");
     assert_eq!(one.len(), 6 + 6 + 1, "{:?}", one.keys());
     assert_eq!(run("3"), one);
+}
+
+#[test]
+fn merged_models_are_the_model_of_all_flights() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let reports: Vec<_> =
+        (1..=12).map(|flight| fixture(&format!("reports/{flight:04}.txt"))).collect();
+    let learn = |name: &str, reports: &[std::path::PathBuf]| {
+        let output = scratch.path().join(name);
+        adapt(&model, &output, reports, &[]).expect(0);
+        output.join("models/SIM-01.ron")
+    };
+    let (whole, first, second) =
+        (learn("whole", &reports), learn("first", &reports[..7]), learn("second", &reports[7..]));
+    let merge = |one: &std::path::Path, other: &std::path::Path, name: &str| {
+        let merged = scratch.path().join(name);
+        let ran = cruisefit(&[
+            "merge".as_ref(),
+            one.as_os_str(),
+            other.as_os_str(),
+            "-o".as_ref(),
+            merged.as_os_str(),
+        ]);
+        (ran, merged)
+    };
+    let table = |model: &std::path::Path| {
+        let csv = scratch.path().join("table.csv");
+        cruisefit(&["export".as_ref(), model.as_os_str(), "-o".as_ref(), csv.as_os_str()])
+            .expect(0);
+        numbers(&csv_columns(&csv), "drag_coefficient")
+    };
+    let (ran, merged) = merge(&first, &second, "merged.ron");
+    ran.expect(0);
+    let (ran, turned) = merge(&second, &first, "turned.ron");
+    ran.expect(0);
+    for (one, other) in table(&merged).iter().zip(table(&turned)) {
+        assert!((one - other).abs() <= 1e-9 * other, "order: {one} {other}");
+    }
+    // Outlier weights are judged against what a model knows: the two halves know less than the whole.
+    for (merged, whole) in table(&merged).iter().zip(table(&whole)) {
+        assert!((merged - whole).abs() <= 3e-3 * whole, "{merged} {whole}");
+    }
+    let (ran, _) = merge(&whole, &first, "twice.ron");
+    ran.expect(2).says("it would count twice");
+}
+
+#[test]
+fn tuned_settings_are_kept_by_the_model() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let tuned = scratch.path().join("TUNED.ron");
+    let ran = cruisefit(&[
+        "tune".as_ref(),
+        fixture("reports").as_os_str(),
+        "--model".as_ref(),
+        model.as_os_str(),
+        "-o".as_ref(),
+        tuned.as_os_str(),
+    ])
+    .expect(0);
+    assert!(ran.stdout.contains("ln evidence"), "{}", ran.stdout);
+    let output = scratch.path().join("out");
+    adapt(&tuned, &output, &[fixture("reports/0001.txt")], &[]).expect(0);
+    // Other settings are another beginning.
+    adapt(&model, &output, &[fixture("reports/0002.txt")], &[])
+        .expect(2)
+        .says("was begun with another setting");
+}
+
+#[test]
+fn polynomial_with_covariance() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    adapt(&model, &output, &[fixture("reports")], &[]).expect(0);
+    let csv = scratch.path().join("polynomial.csv");
+    cruisefit(&[
+        "export".as_ref(),
+        output.join("models/SIM-01.ron").as_os_str(),
+        "--polynomial".as_ref(),
+        "-o".as_ref(),
+        csv.as_os_str(),
+    ])
+    .expect(0);
+    let columns = csv_columns(&csv);
+    assert_eq!(numbers(&columns, "value").len(), 6);
+    for coefficient in 0..6 {
+        assert!(numbers(&columns, &format!("covariance_{coefficient}"))[coefficient] > 0.0);
+    }
 }

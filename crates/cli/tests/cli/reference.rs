@@ -48,7 +48,13 @@ fn three_fleets_two_grids_two_thresholds() {
         for fleet in FLEETS {
             for threshold in THRESHOLDS {
                 let output = scratch.path().join(format!("{fleet}-{grid}-{threshold}"));
-                adapt(&model, &output, &[data.join(fleet)], &["--threshold", threshold]).expect(0);
+                adapt(
+                    &model,
+                    &output,
+                    &[data.join(fleet)],
+                    &["--law", "paper", "--threshold", threshold],
+                )
+                .expect(0);
                 let adapted = output.join(format!("models/{fleet}.ron"));
                 let exported = output.join("table.csv");
                 cruisefit(&[

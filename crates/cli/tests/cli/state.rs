@@ -87,13 +87,17 @@ fn another_setting_or_initial_model_is_refused_unless_restarted() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
     let output = scratch.path().join("out");
-    adapt(&model, &output, &[report(1)], &[]).expect(0);
+    adapt(&model, &output, &[report(1)], &["--law", "paper"]).expect(0);
     let before = bytes_below(&output);
-    adapt(&model, &output, &[report(2)], &["--threshold", "1"])
+    adapt(&model, &output, &[report(2)], &[])
+        .expect(2)
+        .says("was begun with another law or setting: law paper, threshold 5 %");
+    adapt(&model, &output, &[report(2)], &["--law", "paper", "--threshold", "1"])
         .expect(2)
         .says("was begun with another law or setting: law paper, threshold 5 %, criteria ghazi-2020-table-4 against law paper, threshold 1 %, criteria ghazi-2020-table-4");
     assert_eq!(bytes_below(&output), before);
-    adapt(&model, &output, &[report(2)], &["--threshold", "1", "--restart"]).expect(0);
+    adapt(&model, &output, &[report(2)], &["--law", "paper", "--threshold", "1", "--restart"])
+        .expect(0);
     assert_eq!(summary(&output)["tails"][0]["flights"], 1);
     assert_eq!(bytes_below(&scratch.path().join("out.1")), before, "the old folder is kept aside");
 
@@ -113,7 +117,7 @@ fn another_setting_or_initial_model_is_refused_unless_restarted() {
         other.as_os_str(),
     ])
     .expect(0);
-    adapt(&other, &output, &[report(3)], &["--threshold", "1"])
+    adapt(&other, &output, &[report(3)], &["--law", "paper", "--threshold", "1"])
         .expect(2)
         .says("was begun with another initial model");
 }
