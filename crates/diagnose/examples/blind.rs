@@ -3,7 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::{Input, Options, VerdictKind, diagnose};
+use diagnose::trial::{Case, Planted, score};
+use diagnose::{Input, Options, diagnose};
 use flight::effect::EffectId;
 
 #[path = "../tests/fleet/flown.rs"]
@@ -24,10 +25,11 @@ fn main() {
     let model = exact_model();
     let background = Background { clutter, field: if clutter > 0.0 { 0.0025 } else { 0.0 } };
     let setup = Setup::default();
-    let mut lines = Vec::new();
+    let mut cases = Vec::new();
+    let mut distances: BTreeMap<String, f64> = BTreeMap::new();
     let effects: Vec<EffectId> = EffectId::library(2);
     let begin = std::time::Instant::now();
-    let mut count = 0;
+    let mut count = 0_u32;
     for (k, &id) in effects.iter().enumerate() {
         if only.as_ref().is_some_and(|name| *name != id.to_string()) {
             continue;
@@ -56,14 +58,21 @@ fn main() {
             count += 1;
             let top = found.causes.first().map_or(String::new(), |c| c.effect.clone());
             let p = found.causes.first().map_or(0.0, |c| c.probability);
-            let class = found
-                .detectable
-                .iter()
-                .find(|d| d.effect == top)
-                .map_or_else(Vec::new, |d| d.class.clone());
             let size = planted.first().map_or(0.0, |p| p.size);
             let own = found.causes.iter().find(|c| c.effect == id.to_string());
-            lines.push((id, found.verdict.kind, top.clone(), p, class.clone(), found.clone()));
+            if what == "struck" {
+                let whole = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();
+                if let Some(d) = whole.detectable.iter().find(|d| d.effect == id.to_string()) {
+                    distances.entry(id.to_string()).or_insert(d.nearest_pair);
+                }
+            }
+            cases.push(Case::of(
+                Planted {
+                    effects: planted.iter().map(|p| (p.id.to_string(), p.size)).collect(),
+                    struck: options.without.iter().map(ToString::to_string).collect(),
+                },
+                &found,
+            ));
             println!(
                 "{:<26} {:+.4} | {:?} top {:<24} p {:.3} est {:+.4} pout {:.2} {:?} closure {:?} gap {:.2}/{:.2} pval {:.1e} class {:?} | {}",
                 id.to_string(),
@@ -83,21 +92,6 @@ fn main() {
             );
         }
     }
-    let mut sums: BTreeMap<&str, usize> = BTreeMap::new();
-    for (id, kind, top, p, class, _) in &lines {
-        let name = id.to_string();
-        let mut add = |key: &'static str, yes: bool| *sums.entry(key).or_default() += usize::from(yes);
-        add("1 no gap", *kind == VerdictKind::NoGap);
-        add("2 outside", *kind == VerdictKind::OutsideLibrary);
-        let named = *kind == VerdictKind::Effects;
-        add("3 effects", named);
-        add("4 top-1", named && *top == name);
-        add("5 class", named && (*top == name || class.contains(&name)));
-        add("6 sure", named && *p >= 0.9);
-        add("7 sure and wrong", named && *p >= 0.9 && *top != name);
-    }
-    for (key, value) in sums {
-        println!("{key:<20} {value:5} {:.3}", value as f64 / count as f64);
-    }
+    println!("{}", serde_json::to_string_pretty(&score(&cases, |name| distances.get(name).copied())).unwrap());
     println!("{count} cases, {:.3} s a case", begin.elapsed().as_secs_f64() / f64::from(count));
 }

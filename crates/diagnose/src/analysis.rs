@@ -6,12 +6,17 @@ use perf_model::effects::EffectModel;
 use crate::data::Data;
 use crate::design::Design;
 use crate::evidence::{
-    Background, HEATING_SIZES_PERCENT, Scored, Scorer, backgrounds, ln_sum, without_nuisance,
+    Background, HEATING_SIZES_PERCENT, Scored, Scorer, backgrounds, backgrounds_at_levels, ln_sum,
+    without_nuisance,
 };
-use crate::gram::{Folds, Gram, Reduced};
+use crate::gram::{Folds, Gram, Reduced, fold_of};
 use crate::library::Library;
 use crate::refine::{Relinearised, refine};
 
+/// Scatter between flights beyond what a baseline learnt, relative: all integrated over.
+const TAUGHT_SCATTERS: [f64; 2] = [0.0, 0.003];
+/// Smooth discrepancy that a taught remainder may have, the smallest amplitude of the background.
+pub(crate) const TAUGHT_TAU: f64 = 0.0015;
 /// Models that are refined.
 const REFINED: usize = 5;
 /// Models less probable than this are not worth refining.
@@ -26,6 +31,8 @@ pub(crate) struct Stacked<'a> {
     pub(crate) folds: Folds,
     pub(crate) weights: Option<Vec<f64>>,
     kept: Option<Vec<Mat<f64>>>,
+    /// Levels of scatter between flights that are integrated over, relative.
+    scatters: Vec<f64>,
     /// Of each flight: products of all columns with its own fuel-flow level, for flight-to-flight scatter.
     levels: Vec<Vec<f64>>,
 }
@@ -34,18 +41,24 @@ pub(crate) struct Stacked<'a> {
 pub(crate) struct Analysis {
     pub(crate) scorer: Scorer,
     pub(crate) backgrounds: Vec<Background>,
-    pub(crate) reduced: Reduced,
+    /// Without nuisance, at every level of scatter between flights.
+    pub(crate) reduced: Vec<Reduced>,
     /// Models, most probable first, with their probabilities.
     pub(crate) models: Vec<(Scored, f64)>,
     pub(crate) refined: Vec<Relinearised>,
     /// Probability that there is neither an effect nor a background.
     pub(crate) clean: f64,
-    /// Probability of no named effect.
-    pub(crate) none: f64,
 }
 
 impl<'a> Stacked<'a> {
-    pub(crate) fn of(data: &'a Data<'a>, design: &'a Design<'a>, weights: Option<Vec<f64>>) -> Self {
+    pub(crate) fn of(
+        data: &'a Data<'a>,
+        design: &'a Design<'a>,
+        weights: Option<Vec<f64>>,
+    ) -> Self {
+        // What a baseline says of the scatter between flights comes from few flights: it may be more.
+        let scatters =
+            if data.predictor.baseline.is_some() { TAUGHT_SCATTERS.to_vec() } else { vec![0.0] };
         let rows = data.segments.len() * data.channels.count() + data.flights.len();
         let keep = rows * design.columns <= KEPT_NUMBERS;
         let kept = keep.then(|| {
@@ -55,7 +68,7 @@ impl<'a> Stacked<'a> {
                 .collect::<Vec<_>>()
         });
         let mut stacked =
-            Self { data, design, folds: Folds::empty(design), weights, kept, levels: Vec::new() };
+            Self { data, design, folds: Folds::empty(design), weights, kept, scatters, levels: Vec::new() };
         for index in 0..data.flights.len() {
             let rows = stacked.whitened(index).into_owned();
             stacked.folds.add(index, &rows);
@@ -65,6 +78,12 @@ impl<'a> Stacked<'a> {
         }
         stacked.folds.finish();
         stacked
+    }
+
+    /// Largest smooth discrepancy that still counts as nothing: a taught remainder is not exact, a table is taken at its
+    /// word (its uncertainty is given apart).
+    pub(crate) const fn clean_tau(&self) -> f64 {
+        if self.data.predictor.baseline.is_some() { TAUGHT_TAU } else { 0.0 }
     }
 
     /// Whitened rows of a flight.
@@ -98,11 +117,20 @@ impl<'a> Stacked<'a> {
     /// ```text
     /// G' = G − Σ_f w_f z_f z_fᵀ,  w_f = θ²/(1 + θ² v_fᵀv_f),  ln det = Σ_f ln(1 + θ² v_fᵀv_f)     [diagnosis.20]
     /// ```
-    fn with_scatter(&self, gram: &Gram, relative: f64) -> (Gram, f64) {
+    fn with_scatter(
+        &self,
+        gram: &Gram,
+        relative: f64,
+        without: Option<usize>,
+        replaced: &Replaced,
+    ) -> (Gram, f64) {
         let design = self.design;
         let mut scaled = Mat::<f64>::zeros(self.levels.len(), design.columns);
         let mut ln_determinant = 0.0;
         for (flight, level) in self.levels.iter().enumerate() {
+            if Some(fold_of(flight)) == without {
+                continue;
+            }
             let own = level[design.smooth.start];
             let grown = 1.0 + relative * relative * own;
             ln_determinant += grown.ln();
@@ -110,10 +138,47 @@ impl<'a> Stacked<'a> {
             for (column, value) in level.iter().enumerate() {
                 scaled[(flight, column)] = root * value;
             }
+            if let Some(levels) = replaced.levels.get(flight) {
+                for (&column, value) in replaced.columns.iter().zip(levels) {
+                    scaled[(flight, column)] = root * value;
+                }
+            }
         }
         let mut changed = gram.clone();
         crate::linear::subtract_product(&mut changed.matrix, &scaled, &scaled);
         (changed, ln_determinant)
+    }
+}
+
+/// Columns whose rows were made anew, with their products with each flight's level.
+#[derive(Debug, Default)]
+pub(crate) struct Replaced {
+    pub(crate) columns: Vec<usize>,
+    pub(crate) levels: Vec<Vec<f64>>,
+}
+
+impl Stacked<'_> {
+    /// The Gram without nuisance at every level of scatter between flights.
+    pub(crate) fn reduced_at_levels(
+        &self,
+        gram: &Gram,
+        without: Option<usize>,
+        replaced: &Replaced,
+        agnostic: bool,
+    ) -> Option<Vec<Reduced>> {
+        self.scatters
+            .iter()
+            .map(|&relative| {
+                if relative == 0.0 {
+                    return without_nuisance(gram, self.design, agnostic);
+                }
+                let (changed, ln_determinant) =
+                    self.with_scatter(gram, relative, without, replaced);
+                let mut reduced = without_nuisance(&changed, self.design, agnostic)?;
+                reduced.ln_determinant += ln_determinant;
+                Some(reduced)
+            })
+            .collect()
     }
 }
 
@@ -127,15 +192,19 @@ pub(crate) fn analyse(
 ) -> Option<Analysis> {
     let design = stacked.design;
     let gram = stacked.folds.without(without);
-    let reduced = without_nuisance(&gram, design, refining)?;
+    let reduced = stacked.reduced_at_levels(&gram, without, &Replaced::default(), refining)?;
     let effects = library.columns.len();
-    let all = backgrounds(&reduced, effects, design.smooth.len(), library, |_, _| true);
+    let all =
+        backgrounds_at_levels(&reduced, effects, design.smooth.len(), library, |_, _, _| true);
     let scorer = Scorer::of(library, gram.rows);
     let search = scorer.search(&all, 2);
     let mut models = search.models;
     if library.heating_value && without.is_none() {
         for percent in HEATING_SIZES_PERCENT {
-            let (changed, ln_determinant) = stacked.with_scatter(&gram, percent / 100.0);
+            if stacked.scatters.iter().any(|&scatter| scatter >= percent / 100.0) {
+                continue; // part of the noise already
+            }
+            let (changed, ln_determinant) = stacked.with_scatter(&gram, percent / 100.0, None, &Replaced::default());
             let mut reduced = without_nuisance(&changed, design, false)?;
             reduced.ln_determinant += ln_determinant;
             let under =
@@ -165,12 +234,14 @@ pub(crate) fn analyse(
         models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
     }
     let total = ln_sum(models.iter().map(|m| m.ln_weight));
-    let none = models
+    let none: f64 = models
         .iter()
         .filter(|m| m.model.columns.is_empty() && m.model.heating_percent.is_none())
         .map(|m| (m.ln_weight - total).exp())
         .sum();
-    let clean = (search.ln_clean - total).exp();
+    // Against a taught remainder, which is never exact, a smooth discrepancy without a name is no finding.
+    let clean =
+        if stacked.clean_tau() > 0.0 { none } else { (search.ln_clean - total).exp() };
     let models = models
         .into_iter()
         .map(|m| {
@@ -178,5 +249,5 @@ pub(crate) fn analyse(
             (m, probability)
         })
         .collect();
-    Some(Analysis { scorer, backgrounds: all, reduced, models, refined, clean, none })
+    Some(Analysis { scorer, backgrounds: all, reduced, models, refined, clean })
 }

@@ -25,6 +25,9 @@ const VARIABLES: [Variable; 6] = [
     Variable::IsaDeviation,
     Variable::Mass,
 ];
+/// Variables that the remainder may bend along differently at each Mach number: drag rises locally, and so does thrust.
+const LOCAL_VARIABLES: [Variable; 3] =
+    [Variable::LiftCoefficient, Variable::CorrectedThrust, Variable::PressureAltitude];
 const QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 /// Prior standard deviation of the remainder's level, of a hat function and of a product: shares of fuel flow.
 const LEVEL_DEVIATION: f64 = 0.10;
@@ -76,6 +79,8 @@ struct Parts {
     scales: [f64; 2],
     hats: Vec<(Variable, Hats)>,
     products: Vec<(Variable, Scaled, Variable, Scaled)>,
+    /// Variables that the remainder may bend along differently at each Mach number.
+    local: Vec<(Variable, Scaled)>,
     contrasts: usize,
     deck_known: bool,
     deck_centers: [f64; 4],
@@ -204,6 +209,7 @@ impl Baseline {
     pub(crate) fn remainder_terms(&self) -> usize {
         1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>()
             + self.parts.products.len()
+            + self.local_hats().map(|(hats, local)| hats.len() * local.len()).sum::<usize>()
     }
 
     pub(crate) fn remainder_mean(&self, terms: &[f64]) -> f64 {
@@ -226,6 +232,26 @@ impl Baseline {
             into[at] = scaled_a.at(value(*a)) * scaled_b.at(value(*b));
             at += 1;
         }
+        for (hats, local) in self.local_hats() {
+            let mach = value(Variable::Mach);
+            for (variable, scaled) in local {
+                let by = scaled.at(value(*variable));
+                hats.write(mach, &mut into[at..at + hats.len()]);
+                for slot in &mut into[at..at + hats.len()] {
+                    *slot *= by;
+                }
+                at += hats.len();
+            }
+        }
+    }
+
+    /// Mach number's hat functions and the variables that each of them may bend along.
+    fn local_hats(&self) -> impl Iterator<Item = (&Hats, &Vec<(Variable, Scaled)>)> {
+        self.parts
+            .hats
+            .iter()
+            .filter(|(variable, _)| *variable == Variable::Mach)
+            .map(|(_, hats)| (hats, &self.parts.local))
     }
 
     /// The baseline before it has learnt.
@@ -249,8 +275,10 @@ impl Baseline {
                 }
             }
         }
-        let terms = 1 + hats.iter().map(|(_, h): &(_, Hats)| h.len() + 2).sum::<usize>() + products.len();
-        let width = terms + data.channels.contrasts + DECK_TERMS + ENVIRONMENT.len();
+        let local: Vec<(Variable, Scaled)> = LOCAL_VARIABLES
+            .into_iter()
+            .filter_map(|v| Some((v, Scaled::of(&values(v)?))))
+            .collect();
         let parts = Parts {
             flights: data.flights.len(),
             segments: data.segments.len(),
@@ -259,21 +287,28 @@ impl Baseline {
             scales: [1.0; 2],
             hats,
             products,
+            local,
             contrasts: data.channels.contrasts,
             deck_known: data.channels.n2,
             deck_centers: data.predictor.deck.centers,
             deck_coefficients: data.predictor.deck.coefficients.to_vec(),
-            mean: vec![0.0; terms + data.channels.contrasts],
+            mean: Vec::new(),
             factor: Vec::new(),
             environment: [0.0; ENVIRONMENT.len()],
             rms: f64::NAN,
         };
-        Self { parts, factor: Mat::zeros(width, width) }
+        let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
+        let means = baseline.remainder_terms() + baseline.parts.contrasts;
+        let width = means + DECK_TERMS + ENVIRONMENT.len();
+        baseline.parts.mean = vec![0.0; means];
+        baseline.factor = Mat::zeros(width, width);
+        baseline
     }
 
     fn prior_deviation(&self, index: usize) -> f64 {
         let terms = self.remainder_terms();
-        let products = terms - self.parts.products.len();
+        let products =
+            1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
         if index == 0 {
             LEVEL_DEVIATION
         } else if index < products {

@@ -68,7 +68,7 @@ impl Distances {
     }
 
     /// Squared distance of a column at a size from the best-fitting pair of two others.
-    pub(crate) fn squared_from_pair(&self, k: usize, pair: [usize; 2], size: f64) -> f64 {
+    fn squared_from_pair(&self, k: usize, pair: [usize; 2], size: f64) -> f64 {
         let g = &self.gram;
         let [a, b] = pair;
         let determinant = g[(a, a)] * g[(b, b)] - g[(a, b)] * g[(a, b)];
@@ -79,6 +79,34 @@ impl Distances {
         let explained =
             (ka * ka * g[(b, b)] - 2.0 * ka * kb * g[(a, b)] + kb * kb * g[(a, a)]) / determinant;
         (size * size * (g[(k, k)] - explained)).max(0.0)
+    }
+
+    /// Distance of an effect at its typical size from the nearest other one, in noise standard deviations.
+    pub(crate) fn nearest_other(&self, library: &Library, effect: usize) -> f64 {
+        let own = &library.effects[effect];
+        (0..library.columns.len())
+            .filter(|&column| library.columns[column].effect != effect)
+            .map(|column| self.squared(own.representative, column, own.typical).0.sqrt())
+            .fold(own.typical * self.information(own.representative).sqrt(), f64::min)
+    }
+
+    /// Distance of an effect at its typical size from the nearest pair of others, in noise standard deviations: what is
+    /// nearer than about 5 cannot be found missing from the library, because two others imitate it.
+    pub(crate) fn nearest_pair(&self, library: &Library, effect: usize) -> f64 {
+        let own = &library.effects[effect];
+        let others: Vec<usize> = (0..library.columns.len())
+            .filter(|&column| library.columns[column].effect != effect)
+            .collect();
+        let mut nearest = own.typical * self.information(own.representative).sqrt();
+        for (place, &a) in others.iter().enumerate() {
+            for &b in &others[place + 1..] {
+                if library.columns[a].effect != library.columns[b].effect {
+                    let squared = self.squared_from_pair(own.representative, [a, b], own.typical);
+                    nearest = nearest.min(squared.sqrt());
+                }
+            }
+        }
+        nearest
     }
 
     /// Classes at typical sizes: complete linkage of effects whose squared distance, the smaller of both directions, is

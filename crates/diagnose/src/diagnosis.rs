@@ -33,7 +33,7 @@ const OUTSIDE_PROBABILITY: f64 = 0.5;
 /// Share of the explainable gap that a named set must close where an agnostic function does better.
 const NAMED_CLOSURE: f64 = 0.9;
 /// Probability that the credible set of effects holds.
-const CREDIBLE: f64 = 0.9;
+const CREDIBLE: f64 = 0.95;
 /// Half width of a 95 % interval in standard deviations.
 const NORMAL_95: f64 = 1.96;
 
@@ -284,6 +284,8 @@ fn conclude(
                     .iter()
                     .find(|class| class.contains(&effect))
                     .map_or_else(Vec::new, |class| class.iter().map(|&e| name(e)).collect()),
+                nearest_other: distances.nearest_other(library, effect),
+                nearest_pair: distances.nearest_pair(library, effect),
             }
         })
         .collect();
@@ -544,7 +546,7 @@ fn verdict(
     // Where the gap is too small to measure closure on unseen flights, the same flights must do.
     let closed = closure.or_else(|| own.closure()).map_or(1.0, |c| c.0);
     let elsewhere = outside.probability > OUTSIDE_PROBABILITY;
-    if (elsewhere && closed < NAMED_CLOSURE) || named < 0.5 {
+    if elsewhere && (closed < NAMED_CLOSURE || named < 0.5) {
         verdict.kind = VerdictKind::OutsideLibrary;
         verdict.probability = outside.probability.max(1.0 - named);
         verdict.advice = format!(

@@ -30,6 +30,8 @@ pub(crate) const HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4];
 pub(crate) struct Background {
     pub(crate) spike: f64,
     pub(crate) tau: f64,
+    /// Which level of scatter between flights.
+    pub(crate) scatter: usize,
     /// Where each column of the library lies in `gram`.
     places: Vec<usize>,
     width: usize,
@@ -110,6 +112,7 @@ impl Background {
         let mut at = Self {
             spike: 0.0,
             tau: 0.0,
+            scatter: 0,
             places: vec![usize::MAX; columns],
             width: last,
             gram: Vec::with_capacity(last * last),
@@ -182,6 +185,7 @@ pub(crate) fn backgrounds(
             all.push(Background {
                 spike,
                 tau,
+                scatter: 0,
                 places: (0..effects).collect(),
                 width: effects,
                 gram: (0..effects).flat_map(|a| (0..effects).map(move |b| (a, b))).map(|ab| m[ab]).collect(),
@@ -192,6 +196,24 @@ pub(crate) fn backgrounds(
                     + spiked.ln_determinant,
             });
         }
+    }
+    all
+}
+
+/// Backgrounds at every level of scatter between flights.
+pub(crate) fn backgrounds_at_levels(
+    levels: &[Reduced],
+    effects: usize,
+    smooth: usize,
+    library: &Library,
+    choose: impl Fn(f64, f64, usize) -> bool,
+) -> Vec<Background> {
+    let mut all = Vec::new();
+    for (scatter, reduced) in levels.iter().enumerate() {
+        let at = backgrounds(reduced, effects, smooth, library, |spike, tau| {
+            choose(spike, tau, scatter)
+        });
+        all.extend(at.into_iter().map(|background| Background { scatter, ..background }));
     }
     all
 }
@@ -342,7 +364,7 @@ impl Scorer {
         for (k, at) in backgrounds.iter().enumerate() {
             let ln = self.none(at) + prior;
             if at.spike == 0.0 && at.tau == 0.0 {
-                ln_clean = ln;
+                ln_clean = ln_sum([ln_clean, ln]);
             }
             best = if ln > best.0 { (ln, k) } else { best };
             sum.add(ln, [], []);
@@ -536,6 +558,7 @@ mod tests {
         let at = Background {
             spike: 0.0,
             tau: 0.0,
+            scatter: 0,
             places: vec![0],
             width: 1,
             gram: vec![gram],

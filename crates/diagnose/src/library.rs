@@ -10,7 +10,7 @@ const THROTTLE_PIVOTS: [f64; 5] = [0.6, 0.8, 1.0, 1.2, 1.5];
 /// Drag-divergence Mach numbers of the contract's range, where the aircraft file does not say one.
 const DIVERGENCE_MACHS: [f64; 6] = [0.74, 0.78, 0.82, 0.86, 0.90, 0.94];
 /// Dates of a step that are tried, each in the middle of as many flights.
-const STEP_DATES: usize = 9;
+const STEP_DATES: usize = 15;
 /// Standard deviation of a coefficient that physics says is 1.
 const KNOWN_DEVIATION: f64 = 0.15;
 

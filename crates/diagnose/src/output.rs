@@ -169,6 +169,10 @@ pub struct Detectable {
     pub unit: String,
     /// Effects that this data cannot tell from it at typical sizes, itself included.
     pub class: Vec<String>,
+    /// Distance at the typical size from the nearest single other effect, in noise standard deviations.
+    pub nearest_other: f64,
+    /// Distance at the typical size from the nearest pair of others.
+    pub nearest_pair: f64,
 }
 
 /// Probability of a cause outside the library.

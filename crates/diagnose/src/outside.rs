@@ -23,8 +23,6 @@ pub(crate) struct Outside {
     pub(crate) probability: f64,
     /// The variable that it hangs on, and how it acts.
     pub(crate) variable: Option<(Variable, Acts)>,
-    /// The library effects that act beside it, where the best explanation has one.
-    pub(crate) beside: Vec<usize>,
 }
 
 /// Lets agnostic functions compete with the most probable named sets.
@@ -55,9 +53,9 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             .refined
             .iter()
             .find(|found| found.scored.model == set.model && !set.model.columns.is_empty());
-        let reduced = refined.map_or(&analysis.reduced, |found| &found.reduced);
+        let levels = refined.map_or(&analysis.reduced, |found| &found.reduced);
         let shifts = refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
-        for spike in SPIKES {
+        for (reduced, spike) in levels.iter().flat_map(|r| SPIKES.map(|spike| (r, spike))) {
             let Some(under) = spiked(stacked, library, reduced, set, spike) else { continue };
             let prior = scorer.ln_prior(&set.model);
             named.push(prior + (1.0 - PRIOR_OUTSIDE).ln() + under.evidence(scorer, None, &shifts));
@@ -84,13 +82,9 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             (ln, block)
         })
         .max_by(|a, b| a.0.total_cmp(&b.0));
-    let strongest = agnostic.iter().max_by(|a, b| a.0.total_cmp(&b.0));
     Outside {
         probability: if probability.is_finite() { probability } else { 0.0 },
         variable: best.map(|(_, block)| (blocks[block].variable, blocks[block].acts)),
-        beside: strongest.map_or_else(Vec::new, |&(_, set, _)| {
-            sets[set].model.columns.iter().map(|&column| scorer.effect_of[column]).collect()
-        }),
     }
 }
 
@@ -122,11 +116,17 @@ fn spiked<'a>(
         blocks.push(start..kept.len());
     }
     kept.push(reduced.matrix.ncols() - 1);
-    let (out, deviations): (Vec<usize>, Vec<f64>) = if spike > 0.0 {
+    let (mut out, mut deviations): (Vec<usize>, Vec<f64>) = if spike > 0.0 {
         library.effects.iter().map(|e| (e.representative, spike * e.typical)).unzip()
     } else {
         (vec![], vec![])
     };
+    // What a taught remainder may lack is no discovery.
+    let tau = stacked.clean_tau();
+    if tau > 0.0 {
+        out.extend(design.effects..first_block);
+        deviations.extend(vec![tau; design.smooth.len()]);
+    }
     let mut spiked = integrate_out(&reduced.matrix, &kept, &out, &deviations)?;
     spiked.ln_determinant += reduced.ln_determinant;
     Some(Under { reduced: spiked, columns, blocks })

@@ -3,10 +3,10 @@
 use faer::Mat;
 use perf_model::effects::{EffectModel, Effects, HiddenParameters};
 
-use crate::analysis::Stacked;
+use crate::analysis::{Replaced, Stacked};
 use crate::data::signature;
 use crate::design::{half_whitened, whiten_flight};
-use crate::evidence::{Background, Mixture, Scored, Scorer, backgrounds, without_nuisance};
+use crate::evidence::{Background, Mixture, Scored, Scorer, backgrounds_at_levels};
 use crate::gram::{Gram, Reduced, fold_of};
 use crate::library::Library;
 use crate::noise::MAXIMUM_CHANNELS;
@@ -21,7 +21,7 @@ const CONVERGED: f64 = 0.02;
 pub(crate) struct Relinearised {
     pub(crate) scored: Scored,
     /// Gram without nuisance, agnostic functions included, with the model's own columns and residual.
-    pub(crate) reduced: Reduced,
+    pub(crate) reduced: Vec<Reduced>,
     /// Where it was linearised.
     pub(crate) shifts: Vec<f64>,
 }
@@ -69,11 +69,15 @@ pub(crate) fn refine(
     let columns = &start.model.columns;
     let mut sizes = start.sizes.clone();
     for _ in 0..STEPS {
-        let (reduced, grams) = relinearise(stacked, model, library, columns, &sizes, without, without.is_none())?;
-        let chosen = |spike: f64, tau: f64| {
-            spike.total_cmp(&at.spike).is_eq() && tau.total_cmp(&at.tau).is_eq()
+        let reduced = relinearise(stacked, model, library, columns, &sizes, without)?;
+        let chosen = |spike: f64, tau: f64, scatter: usize| {
+            spike.total_cmp(&at.spike).is_eq()
+                && tau.total_cmp(&at.tau).is_eq()
+                && scatter == at.scatter
         };
-        let one = backgrounds(&grams, library.columns.len(), stacked.design.smooth.len(), library, chosen);
+        let smooth = stacked.design.smooth.len();
+        let one =
+            backgrounds_at_levels(&reduced, library.columns.len(), smooth, library, chosen);
         let found = estimate(scorer, one.first()?, columns, &sizes);
         let converged = columns.iter().zip(found.iter().zip(&sizes)).all(|(&column, (new, old))| {
             let typical = library.effects[library.columns[column].effect].typical;
@@ -87,7 +91,7 @@ pub(crate) fn refine(
         }
         sizes = found;
     }
-    let (reduced, _) = relinearise(stacked, model, library, columns, &sizes, without, without.is_none())?;
+    let reduced = relinearise(stacked, model, library, columns, &sizes, without)?;
     Some(score_everywhere(stacked, library, scorer, start, reduced, sizes))
 }
 
@@ -96,15 +100,15 @@ fn score_everywhere(
     library: &Library,
     scorer: &Scorer,
     start: &Scored,
-    reduced: Reduced,
+    reduced: Vec<Reduced>,
     shifts: Vec<f64>,
 ) -> Relinearised {
-    let all = backgrounds(
+    let all = backgrounds_at_levels(
         &reduced,
         library.columns.len(),
         stacked.design.smooth.len(),
         library,
-        |_, _| true,
+        |_, _, _| true,
     );
     let prior = scorer.ln_prior(&start.model) - (all.len() as f64).ln();
     let columns = &start.model.columns;
@@ -146,8 +150,8 @@ fn estimate(scorer: &Scorer, at: &Background, columns: &[usize], shifts: &[f64])
     }
 }
 
-/// The Gram without nuisance in which the model's columns and the residual are those at `sizes`. Twice: with agnostic
-/// functions and without.
+/// The Gram without nuisance, at every level of scatter, in which the model's columns and the residual are those at
+/// `sizes`.
 fn relinearise(
     stacked: &Stacked<'_>,
     model: &EffectModel<'_>,
@@ -155,8 +159,7 @@ fn relinearise(
     columns: &[usize],
     sizes: &[f64],
     without: Option<usize>,
-    agnostic: bool,
-) -> Option<(Reduced, Reduced)> {
+) -> Option<Vec<Reduced>> {
     let data = stacked.data;
     let design = stacked.design;
     let effects = effects_of(library, columns, sizes);
@@ -165,8 +168,11 @@ fn relinearise(
     let mut gram: Gram = stacked.folds.without(without);
     let mut cross = Mat::<f64>::zeros(design.columns, count);
     let mut own = Mat::<f64>::zeros(count, count);
+    let places: Vec<usize> = columns.iter().copied().chain([design.residual()]).collect();
+    let mut replaced = Replaced { columns: places.clone(), levels: Vec::new() };
     for (index, flight) in data.flights.iter().enumerate() {
         if Some(fold_of(index)) == without {
+            replaced.levels.push(vec![]);
             continue;
         }
         let segments = &data.segments[flight.segments.clone()];
@@ -221,10 +227,11 @@ fn relinearise(
         for row in 0..fresh.nrows() {
             fresh[(row, count - 1)] += whitened[(row, design.residual())];
         }
+        let level = whitened.col(design.smooth.start).to_owned();
+        replaced.levels.push((fresh.transpose() * &level).iter().copied().collect());
         cross += whitened.transpose() * &fresh;
         own += fresh.transpose() * &fresh;
     }
-    let places: Vec<usize> = columns.iter().copied().chain([design.residual()]).collect();
     for (k, &place) in places.iter().enumerate() {
         for column in 0..design.columns {
             gram.matrix[(column, place)] = cross[(column, k)];
@@ -236,6 +243,5 @@ fn relinearise(
             gram.matrix[(a, b)] = own[(k, l)];
         }
     }
-    let reduced = without_nuisance(&gram, design, agnostic)?;
-    Some((reduced.clone(), reduced))
+    stacked.reduced_at_levels(&gram, without, &replaced, without.is_none())
 }

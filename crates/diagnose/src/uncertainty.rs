@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
+use faer::Mat;
 use lut::{Grid, Outside};
 use perf_model::effects::Response;
+
+use crate::linear::Factor;
 
 /// Uncertainty of a drag table: a factor of the covariance of its nodes' relative errors, one row a node.
 ///
@@ -29,6 +32,9 @@ pub enum TableUncertaintyError {
         /// Columns of the factor.
         rank: usize,
     },
+    /// A matrix that is no covariance.
+    #[error("the covariance of the table's nodes is not positive definite")]
+    NotPositiveDefinite,
     /// A number that is not finite.
     #[error("number {index} of the factor is not finite")]
     NotFinite {
@@ -55,6 +61,30 @@ impl TableUncertainty {
             return Err(TableUncertaintyError::NotFinite { index });
         }
         Ok(Self { grid, rank, factor })
+    }
+
+    /// From the covariance of the nodes' relative errors, row by row.
+    ///
+    /// # Errors
+    /// [`TableUncertaintyError`] for a wrong length, or numbers that are no covariance.
+    pub fn from_covariance(
+        grid: Arc<Grid>,
+        covariance: &[Vec<f64>],
+    ) -> Result<Self, TableUncertaintyError> {
+        let nodes = grid.nodes();
+        if covariance.len() != nodes || covariance.iter().any(|row| row.len() != nodes) {
+            let found = covariance.iter().map(Vec::len).sum();
+            return Err(TableUncertaintyError::Length { found, nodes, rank: nodes });
+        }
+        let matrix = Mat::from_fn(nodes, nodes, |row, column| covariance[row][column]);
+        let factor = Factor::of(matrix).ok_or(TableUncertaintyError::NotPositiveDefinite)?;
+        let lower = factor.lower();
+        let values = (0..nodes)
+            .flat_map(|row| {
+                (0..nodes).map(move |column| if column <= row { lower[(row, column)] } else { 0.0 })
+            })
+            .collect();
+        Self::new(grid, nodes, values)
     }
 
     /// Number of columns of the factor.
