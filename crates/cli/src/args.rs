@@ -52,6 +52,8 @@ pub enum Command {
     Predict(PredictArgs),
     /// Fuel-flow error of a model over reports, nothing adapted
     Evaluate(EvaluateArgs),
+    /// Which effect a model lacks: reports it has not learnt against the model
+    Diagnose(DiagnoseArgs),
     /// Look at a model
     Show(ShowArgs),
     /// Hand a model's table on as CSV
@@ -202,6 +204,35 @@ pub struct EvaluateArgs {
     /// Write the summary as JSON too
     #[arg(long, value_name = "OUT.json")]
     pub json: Option<PathBuf>,
+}
+
+/// `diagnose`
+#[derive(Debug, Args)]
+pub struct DiagnoseArgs {
+    /// Reports.
+    #[command(flatten)]
+    pub reports: ReportsArgs,
+    /// Models.
+    #[command(flatten)]
+    pub models: ModelArgs,
+    /// Folder to write to: diagnosis.json, diagnosis.html
+    #[arg(long, short, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Look for these effects only
+    #[arg(long, value_name = "ID", value_delimiter = ',')]
+    pub effects: Vec<String>,
+    /// Leave these effects out
+    #[arg(long, value_name = "ID", value_delimiter = ',')]
+    pub without: Vec<String>,
+    /// One diagnosis for all tails together
+    #[arg(long)]
+    pub pool: bool,
+    /// Count what the model's remainder explains as gap
+    #[arg(long)]
+    pub table_only: bool,
+    /// Diagnose flights that the model has learnt, too
+    #[arg(long)]
+    pub allow_learnt: bool,
 }
 
 /// `show`

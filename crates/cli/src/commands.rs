@@ -2,6 +2,7 @@
 
 pub mod adapt;
 pub mod demo;
+pub mod diagnose;
 pub mod evaluate;
 pub mod export;
 pub mod golden;

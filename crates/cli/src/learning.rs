@@ -4,6 +4,7 @@
 
 use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
 use adapt::paper::{self, PaperLaw, State as PaperState, Update};
+use diagnose::{Baseline, FlightRecord};
 use flight::{Observation, Segment};
 use lut::{Outside, Table};
 use perf_model::PerformanceModel;
@@ -71,6 +72,7 @@ pub fn begin(
         criteria: criteria.to_owned(),
         law,
         references: References::default(),
+        baseline: None,
         ledger: Vec::new(),
     })
 }
@@ -143,6 +145,22 @@ pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
         }
     }
     Ok(())
+}
+
+/// Learns, from every segment of a tail, what no table can hold (law `bayes`). Fewer than five flights teach nothing.
+pub fn remember_remainder(initial: &PerformanceModel, learnt: &mut Learnt, segments: &[Segment]) {
+    let LawState::Bayes { posterior, .. } = &learnt.law else { return };
+    let flights: Vec<FlightRecord<'_>> = segments
+        .chunk_by(|one, other| one.identity == other.identity)
+        .map(|segments| FlightRecord { segments, gauges: None })
+        .collect();
+    learnt.baseline = match Baseline::learn(initial, posterior.drag(), &flights) {
+        Ok(baseline) => Some(baseline),
+        Err(reason) => {
+            tracing::info!(tail = learnt.tail, "no remainder is remembered: {reason}");
+            None
+        }
+    };
 }
 
 fn learn_by_paper(

@@ -62,6 +62,7 @@ fn run_command(command: &Command, progress: bool) -> Result<Outcome, Failure> {
         Command::Merge(arguments) => commands::merge::run(arguments),
         Command::Predict(arguments) => commands::predict::run(arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(arguments, progress),
+        Command::Diagnose(arguments) => commands::diagnose::run(arguments, progress),
         Command::Show(arguments) => commands::show::run(arguments),
         Command::Export(arguments) => commands::export::run(arguments),
         Command::Golden(command) => commands::golden::run(command),

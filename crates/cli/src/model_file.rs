@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use adapt::paper::State as PaperState;
+use diagnose::Baseline;
 use lut::Table;
 use perf_model::PerformanceModel;
 use serde::{Deserialize, Serialize};
@@ -95,6 +96,9 @@ pub struct Learnt {
     pub law: LawState,
     /// Mean conditions.
     pub references: References,
+    /// What no table over lift coefficient and Mach number can hold: smooth remainder, rotor-speed deck, noise levels
+    /// (law `bayes`, five flights or more).
+    pub baseline: Option<Baseline>,
     /// Flights, in the order in which they were learnt.
     pub ledger: Vec<LedgerEntry>,
 }

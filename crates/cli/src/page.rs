@@ -14,6 +14,7 @@ use crate::results::TailResult;
 use crate::summary::Summary;
 
 mod chart;
+mod diagnosis;
 mod envelope;
 mod errors;
 mod fleet;
@@ -27,6 +28,7 @@ mod tests;
 mod text;
 mod view;
 
+pub use diagnosis::diagnosis;
 use text::counted;
 
 /// Class of what belongs to the initial (or given) table.

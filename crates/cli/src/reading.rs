@@ -4,6 +4,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use diagnose::GaugeBurn;
 use flight::{FlightIdentity, Report, Segment, Severity};
 use rayon::prelude::*;
 use report::mapping::Mapping;
@@ -32,6 +33,8 @@ pub struct FlightRead {
     pub samples: usize,
     /// Segments in time order.
     pub segments: Vec<Segment>,
+    /// Fuel burned by gauges and by meters, where fuel quantity is recorded.
+    pub gauges: Option<GaugeBurn>,
     /// What became of every sample, counted.
     pub tally: Tally,
     /// What is worth knowing, each a sentence.
@@ -188,6 +191,7 @@ fn reduce(
         content: content.to_owned(),
         samples,
         segments: segmentation.segments,
+        gauges: GaugeBurn::of_track(&track),
         tally: segmentation.tally,
         notes,
     })

@@ -289,6 +289,11 @@ impl Job {
             tracing::error!(tail = self.tail, "{error}");
             flights_new = 0;
         }
+        if let Some(learnt) = &mut model.learnt
+            && flights_new > 0
+        {
+            learning::remember_remainder(&model.initial, learnt, &segments);
+        }
         let counts = counts_of(&model, flights_new);
         (TailResult::new(self.tail, model, segments, counts, true, notes), refused)
     }

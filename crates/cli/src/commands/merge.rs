@@ -75,6 +75,8 @@ fn add_learnt(learnt: &mut Learnt, more: &Learnt) -> Result<(), String> {
         learnt.tail = format!("{}+{}", learnt.tail, more.tail);
     }
     learnt.references.merge(&more.references);
+    // It is learnt from segments, which a model does not keep.
+    learnt.baseline = None;
     learnt.ledger.extend(more.ledger.iter().cloned());
     Ok(())
 }

@@ -4,6 +4,7 @@ use std::fmt::{Display, Write};
 use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
+use diagnose::Baseline;
 use lut::Table;
 use lut::surface::Surface;
 use perf_model::aircraft::AircraftFile;
@@ -111,6 +112,8 @@ struct LearntText {
     criteria: String,
     law: LawText,
     references: References,
+    #[serde(default)]
+    baseline: Option<Baseline>,
     ledger: Vec<LedgerEntry>,
 }
 
@@ -226,6 +229,7 @@ fn learnt_to_text(learnt: &Learnt) -> LearntText {
         criteria: learnt.criteria.clone(),
         law,
         references: learnt.references.clone(),
+        baseline: learnt.baseline.clone(),
         ledger: learnt.ledger.clone(),
     }
 }
@@ -254,9 +258,9 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
     let settings = document.settings;
     let learnt = match document.learnt {
         None => None,
-        Some(LearntText { tail, criteria, law, references, ledger }) => {
+        Some(LearntText { tail, criteria, law, references, baseline, ledger }) => {
             let law = law_of(law, &initial, settings.bayes)?;
-            Some(Learnt { tail, criteria, law, references, ledger })
+            Some(Learnt { tail, criteria, law, references, baseline, ledger })
         }
     };
     Ok(ModelFile { initial, guide: document.guide, settings, learnt })

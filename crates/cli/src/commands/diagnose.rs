@@ -1,0 +1,314 @@
+//! `cruisefit diagnose`: where a model differs from flight and which effect it lacks.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+use diagnose::{Diagnosis, FlightRecord, Input, Options, TableUncertainty, VerdictKind, diagnose};
+use flight::effect::EffectId;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::args::DiagnoseArgs;
+use crate::commands::{Outcome, check_refused, prepare};
+use crate::failure::{Failure, RefusedReport, show};
+use crate::files::{make_folder, write_atomically};
+use crate::model_file::ModelFile;
+use crate::models::Models;
+use crate::page;
+use crate::reading::{FlightRead, Reading};
+use crate::summary::{RefusedSummary, counted};
+
+/// Schema of `diagnosis.json`.
+const SCHEMA: &str = "cruisefit.diagnosis/1";
+/// Most nodes of a table whose full covariance is taken; beyond, the nodes' standard deviations alone.
+const NODES_WITH_COVARIANCE: usize = 700;
+/// Most causes that the terminal lists.
+const CAUSES_TOLD: usize = 4;
+
+/// `diagnosis.json`.
+#[derive(Debug, Serialize)]
+struct Document<'a> {
+    schema: &'static str,
+    reports: DocumentReports,
+    diagnoses: &'a [Diagnosis],
+}
+
+#[derive(Debug, Serialize)]
+struct DocumentReports {
+    read: usize,
+    refused: Vec<RefusedSummary>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// What leaves nothing done.
+pub fn run(arguments: &DiagnoseArgs, progress: bool) -> Result<Outcome, Failure> {
+    let options = Options {
+        effects: effects("--effects", &arguments.effects)?,
+        without: effects("--without", &arguments.without)?,
+        skip_closure: false,
+    };
+    let models = Models::read(&arguments.models.models)?;
+    let mut reading = prepare(&arguments.reports, progress)?;
+    let files = reading.files();
+    let groups = group(&models, &mut reading, arguments);
+    check_refused(&reading.refused, files, arguments.reports.strict, groups.is_empty())?;
+    make_folder(&arguments.output)?;
+    let read = groups.iter().map(|group| group.flights.len()).sum();
+    let diagnoses = groups
+        .par_iter()
+        .map(|group| diagnose_group(group, &options, arguments.table_only))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
+    let document = Document {
+        schema: SCHEMA,
+        reports: DocumentReports {
+            read,
+            refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+        },
+        diagnoses: &diagnoses,
+    };
+    let path = arguments.output.join("diagnosis.json");
+    let mut json = serde_json::to_string_pretty(&document)
+        .map_err(|error| Failure::unwritable(&path, error))?;
+    json.push('\n');
+    write_atomically(&path, json.as_bytes())?;
+    let html = page::diagnosis(read, &reading.refused, &diagnoses);
+    write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
+    let mut text = String::new();
+    for diagnosis in &diagnoses {
+        tell(diagnosis, &mut text);
+    }
+    let _ = writeln!(
+        text,
+        "{} read, {} refused. Written to {}: diagnosis.json, diagnosis.html",
+        counted(read, "report"),
+        reading.refused.len(),
+        show(&arguments.output)
+    );
+    Ok(Outcome { text, refused: reading.refused })
+}
+
+fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Failure> {
+    names
+        .iter()
+        .map(|name| {
+            EffectId::from_name(name).ok_or_else(|| {
+                let known: Vec<String> = EffectId::library(flight::MAXIMUM_ENGINES)
+                    .iter()
+                    .map(ToString::to_string)
+                    .collect();
+                Failure::BadArgument {
+                    argument,
+                    reason: format!("no effect {name:?}; known are {}", known.join(", ")),
+                }
+            })
+        })
+        .collect()
+}
+
+/// Flights that are diagnosed together, and the model that they are held against.
+struct Group<'a> {
+    name: String,
+    model: &'a ModelFile,
+    flights: Vec<FlightRead>,
+}
+
+/// Flights by tail (or all of one model in a pool); those that their model has learnt are refused by name.
+fn group<'a>(
+    models: &'a Models,
+    reading: &mut Reading,
+    arguments: &DiagnoseArgs,
+) -> Vec<Group<'a>> {
+    let mut groups: BTreeMap<String, Group<'a>> = BTreeMap::new();
+    let mut flights = std::mem::take(&mut reading.flights);
+    flights.sort_by(FlightRead::order);
+    for flight in flights {
+        let model = match models.for_flight(&flight) {
+            Ok(model) => model,
+            Err(reason) => {
+                reading.refused.push(RefusedReport::whole(flight.path, reason));
+                continue;
+            }
+        };
+        if has_learnt(model, &flight) {
+            let said = format!(
+                "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",
+                flight.identity.tail, flight.identity.flight, flight.identity.start
+            );
+            if !arguments.allow_learnt {
+                let reason = format!("{said} (--allow-learnt diagnoses it all the same)");
+                reading.refused.push(RefusedReport::whole(flight.path, reason));
+                continue;
+            }
+            tracing::warn!("{said}; diagnosed all the same, as asked");
+        }
+        // A pool is of one model: what differs between models is no gap of either.
+        let (key, name) = if arguments.pool {
+            (model.initial.aircraft().type_code().to_owned(), "*".to_owned())
+        } else {
+            (flight.identity.tail.clone(), flight.identity.tail.clone())
+        };
+        let group = groups.entry(key).or_insert_with(|| Group { name, model, flights: Vec::new() });
+        if std::ptr::eq(group.model, model) {
+            group.flights.push(flight);
+        } else {
+            reading.refused.push(RefusedReport::whole(
+                flight.path,
+                "its tail has a model of its own: a pool is diagnosed against one model",
+            ));
+        }
+    }
+    groups.into_values().collect()
+}
+
+fn has_learnt(model: &ModelFile, flight: &FlightRead) -> bool {
+    let start = flight.identity.start.to_string();
+    model.learnt.as_ref().is_some_and(|learnt| {
+        learnt.ledger.iter().any(|entry| {
+            entry.tail == flight.identity.tail
+                && entry.flight == flight.identity.flight
+                && entry.start == start
+        })
+    })
+}
+
+fn diagnose_group(
+    group: &Group<'_>,
+    options: &Options,
+    table_only: bool,
+) -> Result<Diagnosis, Failure> {
+    let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
+        argument: "--model",
+        reason: format!("tail {}: {reason}", group.name),
+    };
+    let records: Vec<FlightRecord<'_>> = group
+        .flights
+        .iter()
+        .filter(|flight| !flight.segments.is_empty())
+        .map(|flight| FlightRecord { segments: &flight.segments, gauges: flight.gauges })
+        .collect();
+    let table = uncertainty(group.model).map_err(|error| wrong(&error))?;
+    let baseline = group.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
+    let input = Input {
+        model: &group.model.initial,
+        drag_table: group.model.drag_coefficient(),
+        flights: &records,
+        baseline: if table_only { None } else { baseline },
+        table: table.as_ref(),
+        references: baseline.map(|baseline| *baseline.references()),
+    };
+    let mut diagnosis = diagnose(&input, options).map_err(|error| wrong(&error))?;
+    diagnosis.tail.clone_from(&group.name);
+    if baseline.is_none() && !table_only {
+        diagnosis.notes.push(
+            "the model remembers no remainder (five flights by law bayes teach one): everything that a table cannot hold \
+             counts as gap"
+                .to_owned(),
+        );
+    }
+    let mut seen = BTreeSet::new();
+    for note in group.flights.iter().flat_map(|flight| &flight.notes) {
+        if seen.insert(note) {
+            diagnosis.notes.push(note.clone());
+        }
+    }
+    Ok(diagnosis)
+}
+
+/// What the table does not know; `None` by a law that does not say.
+fn uncertainty(
+    model: &ModelFile,
+) -> Result<Option<TableUncertainty>, diagnose::TableUncertaintyError> {
+    let Some(posterior) = model.posterior() else { return Ok(None) };
+    let grid = model.grid();
+    let nodes = grid.nodes();
+    if nodes > NODES_WITH_COVARIANCE {
+        let mut factor = vec![0.0; nodes * nodes];
+        for (node, deviation) in posterior.standard_deviation().iter().enumerate() {
+            factor[node * nodes + node] = *deviation;
+        }
+        return TableUncertainty::new(grid.clone(), nodes, factor).map(Some);
+    }
+    let cells: Vec<lut::Cell> = (0..nodes)
+        .filter_map(|node| {
+            let (x, y) = grid.coordinates(node);
+            grid.locate(x, y, lut::Outside::Hold).ok()
+        })
+        .collect();
+    TableUncertainty::from_covariance(grid.clone(), &posterior.relative_covariances(&cells))
+        .map(Some)
+}
+
+/// The diagnosis in a dozen lines.
+fn tell(diagnosis: &Diagnosis, text: &mut String) {
+    let gap = &diagnosis.gap;
+    let _ = writeln!(
+        text,
+        "{}: {}, {}. Gap {:+.2} % in the mean, {:.2} % rms; noise floor {:.2} %.",
+        if diagnosis.tail == "*" { "All tails" } else { &diagnosis.tail },
+        counted(diagnosis.flights, "flight"),
+        counted(diagnosis.segments, "segment"),
+        gap.mean_percent,
+        gap.rms_percent,
+        gap.noise_floor_rms_percent
+    );
+    let verdict = &diagnosis.verdict;
+    let word = match verdict.kind {
+        VerdictKind::NoGap => "no gap beyond the noise",
+        VerdictKind::Effects => "effect",
+        VerdictKind::OutsideLibrary => "outside the library",
+        VerdictKind::InsufficientData => "insufficient data",
+    };
+    let named = if verdict.effects.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", verdict.effects.join(" and "))
+    };
+    let _ = writeln!(text, "  Verdict: {word}{named}. {}", verdict.advice);
+    if verdict.class.len() > 1 {
+        let _ = writeln!(text, "  This data cannot tell apart: {}", verdict.class.join(", "));
+    }
+    if verdict.kind != VerdictKind::InsufficientData {
+        for cause in diagnosis.causes.iter().take(CAUSES_TOLD) {
+            let size = &cause.magnitude;
+            let closure = cause.closure.map_or_else(String::new, |share| {
+                format!(", closes {:.0} % on unseen flights", 100.0 * share)
+            });
+            let _ = writeln!(
+                text,
+                "    {:<26} probability {:.2}, {:+.4} ({:+.4} to {:+.4}) {}{}{closure}",
+                cause.effect,
+                cause.probability,
+                size.value,
+                size.ci95[0],
+                size.ci95[1],
+                size.unit,
+                if cause.hidden.is_empty() { String::new() } else { format!(", {}", cause.hidden) },
+            );
+        }
+    }
+    for separation in verdict.separations.iter().take(2) {
+        let _ = writeln!(
+            text,
+            "  To be sure: {} (tells it from {}, {:.1} → {:.1} σ)",
+            separation.measurement,
+            separation.from,
+            separation.distance_now,
+            separation.distance_then
+        );
+    }
+    if !diagnosis.not_testable.is_empty() {
+        let names: Vec<String> = diagnosis
+            .not_testable
+            .iter()
+            .map(|entry| format!("{} (needs {})", entry.effect, entry.needs.join(", ")))
+            .collect();
+        let _ = writeln!(text, "  Not testable with this data: {}", names.join("; "));
+    }
+    for note in &diagnosis.notes {
+        let _ = writeln!(text, "  Note: {note}");
+    }
+    text.push('\n');
+}
