@@ -54,6 +54,8 @@ mod polynomial;
 mod posterior;
 mod prior;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 pub use data::{BayesStateData, StateDataError};
 pub use evidence::{Search, TuneError, TuneStep, Tuned, log_evidence, tune};

@@ -20,14 +20,17 @@ pub struct Search {
     pub smallest_factor: f64,
     /// The search ends after so many evaluations.
     pub maximum_evaluations: usize,
+    /// How far a setting may be from its start: a factor of this size is one standard deviation of a log-normal prior.
+    /// Some tens of flights say little about some settings; without it those would wander.
+    pub prior_factor: f64,
 }
 
 /// The settings found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tuned {
-    /// The settings of the largest evidence found.
+    /// The settings of the largest evidence times prior.
     pub settings: BayesSettings,
-    /// Its natural logarithm.
+    /// Natural logarithm of their evidence, without the search's prior.
     pub log_evidence: f64,
     /// The way there; the first step is the start.
     pub path: Vec<TuneStep>,
@@ -83,10 +86,21 @@ const CHANGES: [(&str, Change); 5] = [
 const ROUNDS: usize = 2;
 
 impl Search {
-    /// Factors of 2 down to 2^¼, up to 8 in all, at most 400 evaluations.
+    /// Factors of 2 down to 2^¼, up to 8 in all, at most 400 evaluations, each setting known to a factor of 2.
     #[must_use]
     pub const fn standard() -> Self {
-        Self { largest_factor: 8.0, smallest_factor: 1.19, maximum_evaluations: 400 }
+        Self {
+            largest_factor: 8.0,
+            smallest_factor: 1.19,
+            maximum_evaluations: 400,
+            prior_factor: 2.0,
+        }
+    }
+
+    /// Natural logarithm of the prior density of such factors, 0 at the start.
+    fn log_prior(&self, factors: &[f64]) -> f64 {
+        let deviations = factors.iter().map(|factor| factor.ln() / self.prior_factor.ln());
+        -0.5 * deviations.map(|deviation| deviation * deviation).sum::<f64>()
     }
 }
 
@@ -107,7 +121,8 @@ pub fn log_evidence(
     evidence(initial, settings, flights, &verdicts)
 }
 
-/// Searches for the settings of the largest evidence, one after the other by factors: deterministic, and never far.
+/// Searches for the settings of the largest evidence times [`Search::prior_factor`]'s prior, one after the other by
+/// factors: deterministic, and never far.
 ///
 /// Changed are the correction's size, its slopes and its bends (each by one factor), and the extra noise of flights
 /// and segments. Degrees of freedom and half-life stay: outliers are too few, and ageing is no matter of likelihood
@@ -151,7 +166,9 @@ pub fn tune(
                     let Some(settings) = changed_by(&start, &candidate) else { continue };
                     evaluations += 1;
                     let log_evidence = evidence(initial, settings, flights, &verdicts)?;
-                    if log_evidence > best.1 {
+                    let gain = log_evidence - best.1 + search.log_prior(&candidate)
+                        - search.log_prior(&factors);
+                    if gain > 0.0 {
                         best = (settings, log_evidence);
                         factors = candidate;
                         improved = true;

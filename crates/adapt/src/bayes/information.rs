@@ -61,14 +61,13 @@ impl Information {
         let mut common: Vec<(usize, f64)> = Vec::with_capacity(4 * rows.len().min(16));
         let (mut precision_sum, mut residual_sum) = (0.0, 0.0);
         for row in rows {
-            let slots = row.nodes.map(|node| self.slot(node));
             let precision = share * row.precision;
-            for k in 0..4 {
-                if row.coefficients[k] == 0.0 {
-                    continue;
-                }
+            // A node without weight (the point lies on a grid line) is not touched.
+            let mut slots = [0; 4];
+            for k in (0..4).filter(|&k| row.coefficients[k] != 0.0) {
+                slots[k] = self.slot(row.nodes[k]);
                 let pull = precision * row.coefficients[k];
-                for other in 0..=k {
+                for other in (0..=k).filter(|&other| row.coefficients[other] != 0.0) {
                     self.add(slots[k], slots[other], pull * row.coefficients[other]);
                 }
                 self.vector[slots[k]] += pull * row.residual;

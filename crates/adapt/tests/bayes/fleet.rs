@@ -11,20 +11,24 @@ use rand_distr::{Distribution, StandardNormal};
 
 /// What sensors as in the aircraft files propagate to: fuel flow of two engines 0.5 %/√2, Mach number 0.001,
 /// acceleration; loading 0.3 % and heating value 0.3 %.
-pub const SENSORS: ObservationVariance =
+pub(crate) const SENSORS: ObservationVariance =
     ObservationVariance { segment: 0.005 * 0.005, flight: 0.0045 * 0.0045 };
 
-pub type Flights = Vec<Vec<Observation>>;
+pub(crate) type Flights = Vec<Vec<Observation>>;
 
 /// Mean and standard deviation (n − 1).
-pub fn mean_and_std(values: &[f64]) -> (f64, f64) {
+pub(crate) fn mean_and_std(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (mean, (squares / (n - 1.0)).sqrt())
 }
 
-pub fn learnt(initial: &Table, settings: BayesSettings, flights: &[Vec<Observation>]) -> BayesState {
+pub(crate) fn learnt(
+    initial: &Table,
+    settings: BayesSettings,
+    flights: &[Vec<Observation>],
+) -> BayesState {
     let mut state = BayesState::new(initial, settings).unwrap();
     for flight in flights {
         let _ = state.learn_flight(flight);
@@ -32,12 +36,12 @@ pub fn learnt(initial: &Table, settings: BayesSettings, flights: &[Vec<Observati
     state
 }
 
-pub fn solved(initial: &Table, flights: &[Vec<Observation>]) -> Posterior {
+pub(crate) fn solved(initial: &Table, flights: &[Vec<Observation>]) -> Posterior {
     learnt(initial, BayesSettings::physical_2026(), flights).solve().unwrap()
 }
 
 /// Fuel-flow errors of a table over flights, %.
-pub fn errors_percent(drag: &Table, flights: &[Vec<Observation>]) -> Vec<f64> {
+pub(crate) fn errors_percent(drag: &Table, flights: &[Vec<Observation>]) -> Vec<f64> {
     flights
         .iter()
         .flatten()
@@ -49,12 +53,12 @@ pub fn errors_percent(drag: &Table, flights: &[Vec<Observation>]) -> Vec<f64> {
         .collect()
 }
 
-pub fn grid(step: f64, mach_end: f64) -> Arc<Grid> {
+pub(crate) fn grid(step: f64, mach_end: f64) -> Arc<Grid> {
     let lift_coefficient = Axis::from_step(0.10, 0.80, step).unwrap();
     Arc::new(Grid::new(lift_coefficient, Axis::from_step(0.50, mach_end, step).unwrap()))
 }
 
-pub fn table(grid: &Arc<Grid>, value: impl Fn(f64, f64) -> f64) -> Table {
+pub(crate) fn table(grid: &Arc<Grid>, value: impl Fn(f64, f64) -> f64) -> Table {
     let at = |node| {
         let (lift_coefficient, mach) = grid.coordinates(node);
         value(lift_coefficient, mach)
@@ -63,39 +67,61 @@ pub fn table(grid: &Arc<Grid>, value: impl Fn(f64, f64) -> f64) -> Table {
 }
 
 /// A jet's drag: parabola and drag rise. The model's idea of it.
-pub fn believed_drag(lift_coefficient: f64, mach: f64) -> f64 {
-    drag(lift_coefficient, mach, [0.0180, 0.0500, 0.800])
+pub(crate) fn believed_drag(lift_coefficient: f64, mach: f64) -> f64 {
+    drag(lift_coefficient, mach, BELIEVED)
 }
 
+const BELIEVED: [f64; 3] = [0.0180, 0.0500, 0.860];
+
 /// Zero-lift drag, induced factor, drag-divergence Mach number at CL 0.35; drag rise after Lock, as a fourth power.
-pub fn drag(lift_coefficient: f64, mach: f64, [zero_lift, induced, divergence]: [f64; 3]) -> f64 {
+fn drag(lift_coefficient: f64, mach: f64, [zero_lift, induced, divergence]: [f64; 3]) -> f64 {
     let divergence = divergence - 0.085 * (lift_coefficient - 0.35);
     let rise = 20.0 * (mach - divergence + 0.1077).max(0.0).powi(4);
     zero_lift + induced * lift_coefficient * lift_coefficient + rise
 }
 
+/// A truth that is off from a table by its parameters. It has the table's own chords (up to 2 % of drag at 0.05 Mach
+/// number and the drag-divergence Mach number), so that they are not part of what a test measures.
+pub(crate) fn off_by(
+    table: &Table,
+    parameters: [f64; 3],
+    factor: f64,
+) -> impl Fn(f64, f64) -> f64 + '_ {
+    move |lift_coefficient, mach| {
+        let cell = table.grid().locate(lift_coefficient, mach, Outside::Error).unwrap();
+        let ratio =
+            drag(lift_coefficient, mach, parameters) / believed_drag(lift_coefficient, mach);
+        table.interpolate(&cell) * factor * ratio
+    }
+}
+
+/// A truth that is the table times a factor.
+pub(crate) fn times(table: &Table, factor: f64) -> impl Fn(f64, f64) -> f64 + '_ {
+    off_by(table, BELIEVED, factor)
+}
+
 /// How virtual flights go wrong, as standard deviations relative to drag.
 #[derive(Clone, Copy)]
-pub struct Noise {
-    pub segment: f64,
-    pub flight: f64,
+pub(crate) struct Noise {
+    pub(crate) segment: f64,
+    pub(crate) flight: f64,
 }
 
 /// Noise as the sensors have it, and nothing else.
-pub const SENSOR_NOISE: Noise = Noise { segment: 0.005, flight: 0.0045 };
+pub(crate) const SENSOR_NOISE: Noise = Noise { segment: 0.005, flight: 0.0045 };
 
 /// A virtual fleet: flights of 2 to 11 segments at one or two Mach numbers, burning fuel as they go.
-pub struct Fleet {
+pub(crate) struct Fleet {
     random: ChaCha8Rng,
     day: i64,
 }
 
 impl Fleet {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self { random: ChaCha8Rng::seed_from_u64(seed), day: 0 }
     }
 
-    pub fn flights(
+    pub(crate) fn flights(
         &mut self,
         count: usize,
         noise: Noise,
@@ -134,11 +160,11 @@ impl Fleet {
             .collect()
     }
 
-    pub fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         (self.random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         StandardNormal.sample(&mut self.random)
     }
 

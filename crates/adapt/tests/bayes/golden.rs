@@ -43,7 +43,7 @@ impl Csv {
 }
 
 /// A fleet's flights, and each segment's error against the initial table as the reference has it.
-pub fn fleet(name: &str) -> (Flights, Vec<f64>) {
+pub(crate) fn fleet(name: &str) -> (Flights, Vec<f64>) {
     let csv = Csv::read(&format!("{name}_segments.csv"));
     let mut flights: Flights = Vec::new();
     let mut previous = "";
@@ -78,7 +78,7 @@ pub fn fleet(name: &str) -> (Flights, Vec<f64>) {
     (flights, csv.column("error_percent"))
 }
 
-pub fn initial_table() -> Table {
+pub(crate) fn initial_table() -> Table {
     let csv = Csv::read("initial_wide_table.csv");
     let axis = |name| {
         let mut values = csv.column(name);
@@ -111,7 +111,10 @@ fn ten_flights_teach_the_other_flights_mean_and_spread() {
         let posterior = solved(&initial, learnt);
         let before = mean_and_std(&errors_percent(&initial, unseen));
         let after = mean_and_std(&errors_percent(posterior.drag(), unseen));
-        eprintln!("{name}: before {:.2}/{:.2} after {:.2}/{:.2} %", before.0, before.1, after.0, after.1);
+        eprintln!(
+            "{name}: before {:.2}/{:.2} after {:.2}/{:.2} %",
+            before.0, before.1, after.0, after.1
+        );
         assert!(after.0.abs() <= 0.4, "{name}: {after:?}");
         assert!(after.1 <= 0.85, "{name}: {after:?}");
         assert_eq!(posterior.guard(), None);
@@ -154,7 +157,8 @@ fn going_on_from_a_file_changes_no_bit() {
     for (k, flight) in flights.iter().enumerate() {
         if k == 10 {
             let text = ron::to_string(&first.to_data()).unwrap();
-            first = BayesState::from_data(&initial, settings, ron::from_str(&text).unwrap()).unwrap();
+            first =
+                BayesState::from_data(&initial, settings, ron::from_str(&text).unwrap()).unwrap();
         }
         assert_eq!(whole.learn_flight(flight), first.learn_flight(flight));
     }
