@@ -134,6 +134,10 @@ pub struct AdaptArgs {
     /// Law `paper`: adapt where the error exceeds this, in per cent [default: the model's]
     #[arg(long, value_name = "PCT")]
     pub threshold: Option<f64>,
+    /// Law `bayes`: do not learn what no table can hold (smooth remainder, rotor-speed deck, noise levels); `diagnose`
+    /// then counts it as gap
+    #[arg(long)]
+    pub no_remainder: bool,
     /// Begin anew: an existing folder is kept aside under another name
     #[arg(long)]
     pub restart: bool,

@@ -61,7 +61,8 @@ pub struct GuideRecord {
 pub struct LawSettings {
     /// Of law `paper`.
     pub paper: PaperSettings,
-    /// Of law `bayes`.
+    /// Of law `bayes`; the defaults where the file does not say.
+    #[serde(default = "BayesSettings::physical_2026")]
     pub bayes: BayesSettings,
 }
 

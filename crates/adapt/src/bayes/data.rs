@@ -50,8 +50,8 @@ pub enum StateDataError {
         /// The length it must have.
         expected: usize,
     },
-    /// A row of the information matrix is empty or longer than the triangle.
-    #[error("row {row} of the information has {found} entries, outside 1..={maximum}")]
+    /// A row of the information matrix is longer than the triangle.
+    #[error("row {row} of the information has {found} entries, outside 0..={maximum}")]
     Row {
         /// Which row.
         row: usize,
@@ -150,7 +150,8 @@ fn check(data: &BayesStateData, nodes: usize) -> Result<(), StateDataError> {
         lowest = node + 1;
     }
     for (row, entries) in data.information.iter().enumerate() {
-        if !(1..=row + 1).contains(&entries.len()) {
+        // A row without entries is a node that was touched with weight 0 only: a segment on a grid line.
+        if entries.len() > row + 1 {
             return Err(StateDataError::Row { row, found: entries.len(), maximum: row + 1 });
         }
     }

@@ -59,7 +59,7 @@ pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
     check_refused(&refused, files, arguments.reports.strict, false)?;
     // A tail's flights are learnt in order; tails do not know of each other.
     let mut learnt: Vec<(TailResult, Vec<RefusedReport>)> =
-        jobs.into_par_iter().map(Job::learn).collect();
+        jobs.into_par_iter().map(|job| job.learn(!arguments.no_remainder)).collect();
     let mut read = 0;
     let mut results = Vec::new();
     for (result, not_learnt) in &mut learnt {
@@ -262,7 +262,7 @@ struct Job {
 }
 
 impl Job {
-    fn learn(self) -> (TailResult, Vec<RefusedReport>) {
+    fn learn(self, remember_remainder: bool) -> (TailResult, Vec<RefusedReport>) {
         let (mut model, mut segments) = match self.begun {
             Some(StoredTail { model, segments }) => (model, segments),
             None => (self.start, Vec::new()),
@@ -291,6 +291,7 @@ impl Job {
         }
         if let Some(learnt) = &mut model.learnt
             && flights_new > 0
+            && remember_remainder
         {
             learning::remember_remainder(&model.initial, learnt, &segments);
         }

@@ -55,6 +55,7 @@ pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
                 output: adapted.clone(),
                 law,
                 threshold,
+                no_remainder: false,
                 restart: adapted.exists(),
             },
             progress,

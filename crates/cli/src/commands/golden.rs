@@ -150,6 +150,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             output: output.clone(),
             law,
             threshold,
+            no_remainder: false,
             restart: false,
         },
         false,
