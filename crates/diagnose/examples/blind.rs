@@ -61,7 +61,8 @@ fn main() {
             let size = planted.first().map_or(0.0, |p| p.size);
             let own = found.causes.iter().find(|c| c.effect == id.to_string());
             if what == "struck" {
-                let whole = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();
+                let whole = diagnose(&input, &Options { skip_closure: true, ..Options::default() })
+                    .unwrap();
                 if let Some(d) = whole.detectable.iter().find(|d| d.effect == id.to_string()) {
                     distances.entry(id.to_string()).or_insert(d.nearest_pair);
                 }
@@ -92,6 +93,9 @@ fn main() {
             );
         }
     }
-    println!("{}", serde_json::to_string_pretty(&score(&cases, |name| distances.get(name).copied())).unwrap());
+    println!(
+        "{}",
+        serde_json::to_string_pretty(&score(&cases, |name| distances.get(name).copied())).unwrap()
+    );
     println!("{count} cases, {:.3} s a case", begin.elapsed().as_secs_f64() / f64::from(count));
 }

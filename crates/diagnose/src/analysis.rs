@@ -67,8 +67,15 @@ impl<'a> Stacked<'a> {
                 .map(|flight| design.whitened(data, flight, weights.as_deref()))
                 .collect::<Vec<_>>()
         });
-        let mut stacked =
-            Self { data, design, folds: Folds::empty(design), weights, kept, scatters, levels: Vec::new() };
+        let mut stacked = Self {
+            data,
+            design,
+            folds: Folds::empty(design),
+            weights,
+            kept,
+            scatters,
+            levels: Vec::new(),
+        };
         for index in 0..data.flights.len() {
             let rows = stacked.whitened(index).into_owned();
             stacked.folds.add(index, &rows);
@@ -204,11 +211,11 @@ pub(crate) fn analyse(
             if stacked.scatters.iter().any(|&scatter| scatter >= percent / 100.0) {
                 continue; // part of the noise already
             }
-            let (changed, ln_determinant) = stacked.with_scatter(&gram, percent / 100.0, None, &Replaced::default());
+            let (changed, ln_determinant) =
+                stacked.with_scatter(&gram, percent / 100.0, None, &Replaced::default());
             let mut reduced = without_nuisance(&changed, design, false)?;
             reduced.ln_determinant += ln_determinant;
-            let under =
-                backgrounds(&reduced, effects, design.smooth.len(), library, |_, _| true);
+            let under = backgrounds(&reduced, effects, design.smooth.len(), library, |_, _| true);
             models.extend(scorer.search_heating(&under, percent));
         }
     }
@@ -240,8 +247,7 @@ pub(crate) fn analyse(
         .map(|m| (m.ln_weight - total).exp())
         .sum();
     // Against a taught remainder, which is never exact, a smooth discrepancy without a name is no finding.
-    let clean =
-        if stacked.clean_tau() > 0.0 { none } else { (search.ln_clean - total).exp() };
+    let clean = if stacked.clean_tau() > 0.0 { none } else { (search.ln_clean - total).exp() };
     let models = models
         .into_iter()
         .map(|m| {

@@ -6,15 +6,15 @@ use perf_model::PerformanceModel;
 use perf_model::effects::{EffectModel, EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 
+use crate::DiagnoseError;
 use crate::data::{DECK_TERMS, Data, Deck, ENVIRONMENT};
 use crate::design::{half_whitened, whiten_flight};
-use crate::library::Library;
 use crate::gram::integrate_out;
+use crate::library::Library;
 use crate::linear::{Factor, add_gram, symmetrize};
 use crate::noise::{MAXIMUM_CHANNELS, NoiseFactors};
 use crate::record::FlightRecord;
 use crate::variables::{Hats, Scaled, Variable};
-use crate::DiagnoseError;
 
 /// Variables of the remainder.
 const VARIABLES: [Variable; 6] = [
@@ -116,9 +116,10 @@ impl Baseline {
     ) -> Result<Self, DiagnoseError> {
         let references = crate::references_of(model, drag_table, flights)?;
         let effect_model = EffectModel::new(model, drag_table, references)?;
-        let (mut data, _) = Data::prepare(&effect_model, flights, None, |points, engines, starts| {
-            Library::of(&effect_model, points, engines, starts, |_| false)
-        });
+        let (mut data, _) =
+            Data::prepare(&effect_model, flights, None, |points, engines, starts| {
+                Library::of(&effect_model, points, engines, starts, |_| false)
+            });
         if data.flights.len() < FEWEST_FLIGHTS {
             let found = data.flights.len();
             return Err(DiagnoseError::TooFewFlights { found, needed: FEWEST_FLIGHTS });
@@ -307,8 +308,7 @@ impl Baseline {
 
     fn prior_deviation(&self, index: usize) -> f64 {
         let terms = self.remainder_terms();
-        let products =
-            1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
+        let products = 1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
         if index == 0 {
             LEVEL_DEVIATION
         } else if index < products {
@@ -555,7 +555,8 @@ impl Baseline {
             }
             let own: f64 = row.noise.factor[channel][..=channel].iter().map(|l| l * l).sum();
             known += own / (count * count);
-            between += row.noise.common.iter().map(|u| u[channel] * u[channel]).sum::<f64>() / count;
+            between +=
+                row.noise.common.iter().map(|u| u[channel] * u[channel]).sum::<f64>() / count;
         }
         error -= (0..width).map(|k| loading[(k, 0)] * solution[(k, 0)]).sum::<f64>();
         factor.half_solve(&mut loading);
@@ -592,7 +593,12 @@ impl Baseline {
             .chain(noise.between)
             .map(|factor| of(factor, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION))
             .sum::<f64>()
-            + self.parts.scales.into_iter().map(|scale| of(scale, 1.0, SCALE_LN_DEVIATION)).sum::<f64>()
+            + self
+                .parts
+                .scales
+                .into_iter()
+                .map(|scale| of(scale, 1.0, SCALE_LN_DEVIATION))
+                .sum::<f64>()
     }
 
     /// Whitened Gram of raw columns and residual, and Σ ln|C_f|.
@@ -662,7 +668,11 @@ impl TryFrom<Parts> for Baseline {
     fn try_from(parts: Parts) -> Result<Self, BaselineLengthError> {
         let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
         let check = |quantity, found, expected| {
-            if found == expected { Ok(()) } else { Err(BaselineLengthError { quantity, found, expected }) }
+            if found == expected {
+                Ok(())
+            } else {
+                Err(BaselineLengthError { quantity, found, expected })
+            }
         };
         let means = baseline.remainder_terms() + baseline.parts.contrasts;
         let width = means + DECK_TERMS + ENVIRONMENT.len();

@@ -2,9 +2,9 @@
 
 use faer::Mat;
 
+use crate::design::Design;
 use crate::evidence::TAUS;
 use crate::gram::Gram;
-use crate::design::Design;
 use crate::gram::integrate_out;
 use crate::library::Library;
 
@@ -193,7 +193,11 @@ impl Distances {
             (EffectId::ZeroFuelMassBias, mass_kg, "weigh the aircraft (to 0.3 % of its mass)"),
             (EffectId::FuelFlowGain, 0.15, "compare with tank gauges (to 0.15 %)"),
             (EffectId::TemperatureBias, 0.5, "compare SAT with a reanalysis (to 0.5 K)"),
-            (EffectId::MachBias, 0.0015, "compare true airspeed with GPS and wind (to Mach 0.0015)"),
+            (
+                EffectId::MachBias,
+                0.0015,
+                "compare true airspeed with GPS and wind (to Mach 0.0015)",
+            ),
             (
                 EffectId::StaticPressureBias,
                 0.05,

@@ -49,8 +49,7 @@ impl Shrinkage {
             return None;
         }
         let closure = (before - after) / (before - floor);
-        let denominator: f64 =
-            self.before.iter().zip(&self.floor).map(|(b, f)| b - f).sum();
+        let denominator: f64 = self.before.iter().zip(&self.floor).map(|(b, f)| b - f).sum();
         let flights = self.before.len() as f64;
         let spread: f64 = (0..self.before.len())
             .map(|k| {
@@ -84,9 +83,8 @@ pub(crate) fn nested(
     library: &Library,
     noise_scale: f64,
 ) -> Shrinkage {
-    let choices: Vec<(Vec<usize>, Vec<f64>)> = (0..FOLDS)
-        .map(|fold| chosen(stacked, model, library, fold).unwrap_or_default())
-        .collect();
+    let choices: Vec<(Vec<usize>, Vec<f64>)> =
+        (0..FOLDS).map(|fold| chosen(stacked, model, library, fold).unwrap_or_default()).collect();
     shrinkage(stacked, model, library, noise_scale, |fold| choices[fold].clone())
 }
 
@@ -116,8 +114,7 @@ fn shrinkage(
     choice: impl Fn(usize) -> (Vec<usize>, Vec<f64>),
 ) -> Shrinkage {
     let data = stacked.data;
-    let mut found =
-        Shrinkage { before: vec![], after: vec![], floor: vec![], segments: vec![] };
+    let mut found = Shrinkage { before: vec![], after: vec![], floor: vec![], segments: vec![] };
     for (index, flight) in data.flights.iter().enumerate() {
         let (columns, sizes) = choice(fold_of(index));
         let effects = effects_of(library, &columns, &sizes);

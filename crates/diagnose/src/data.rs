@@ -256,7 +256,8 @@ impl<'a> Data<'a> {
         let inside = inside(model, flights, &mut left_out);
         let points: Vec<EffectPoint> =
             inside.iter().flat_map(|(segments, _)| segments).map(|kept| kept.point).collect();
-        let starts: Vec<f64> = inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
+        let starts: Vec<f64> =
+            inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
         let channels = channels_of(model, &inside);
         let library = library_of(&points, channels.contrasts > 0, &starts);
         let factors = baseline.map_or_else(NoiseFactors::default, |b| *b.noise());
@@ -425,8 +426,11 @@ fn deck_of(
         return deck;
     }
     let mut deck = Deck { centers: [0.0; 4], coefficients: [0.0; DECK_TERMS] };
-    let segments: Vec<&Inside<'_>> =
-        inside.iter().flat_map(|(segments, _)| segments).filter(|k| has_n2(&k.segment.means)).collect();
+    let segments: Vec<&Inside<'_>> = inside
+        .iter()
+        .flat_map(|(segments, _)| segments)
+        .filter(|k| has_n2(&k.segment.means))
+        .collect();
     if !channels.n2 || segments.is_empty() {
         return deck;
     }

@@ -142,8 +142,9 @@ impl<'a> Design<'a> {
             .into_iter()
             .filter_map(|(a, b)| Some((a, Scaled::of(&values(a)?), b, Scaled::of(&values(b)?))))
             .collect();
-        let once =
-            1 + smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>() + smooth_products.len();
+        let once = 1
+            + smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
+            + smooth_products.len();
         let kinds = if data.channels.n2 { 2 } else { 1 };
         let smooth = nuisance.end..nuisance.end + kinds * once;
 
@@ -192,7 +193,12 @@ impl<'a> Design<'a> {
     }
 
     /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
-    pub(crate) fn whitened(&self, data: &Data<'_>, flight: &FlightRows, weights: Option<&[f64]>) -> Mat<f64> {
+    pub(crate) fn whitened(
+        &self,
+        data: &Data<'_>,
+        flight: &FlightRows,
+        weights: Option<&[f64]>,
+    ) -> Mat<f64> {
         let channels = data.channels.count();
         let segments = &data.segments[flight.segments.clone()];
         let rows = segments.len() * channels + usize::from(flight.gauge.is_some());
@@ -272,11 +278,7 @@ impl<'a> Design<'a> {
                 at += 1;
             }
         }
-        let deck_columns = if parts.baseline.is_some() || parts.deck {
-            DECK_TERMS
-        } else {
-            0
-        };
+        let deck_columns = if parts.baseline.is_some() || parts.deck { DECK_TERMS } else { 0 };
         if deck_columns > 0 {
             for term in row.deck {
                 let mut values = [0.0; MAXIMUM_CHANNELS];
@@ -396,7 +398,10 @@ impl Nuisance<'_> {
     fn columns(&self) -> usize {
         let taught = self.baseline.map_or(0, |baseline| baseline.factor().nrows());
         let deck = if self.baseline.is_none() && self.deck { DECK_TERMS } else { 0 };
-        taught + deck + if self.chords { 2 } else { 0 } + self.table.map_or(0, TableUncertainty::rank)
+        taught
+            + deck
+            + if self.chords { 2 } else { 0 }
+            + self.table.map_or(0, TableUncertainty::rank)
     }
 }
 
@@ -404,8 +409,7 @@ impl Nuisance<'_> {
 pub(crate) fn half_whitened(row: &SegmentRow, values: &ByChannel, channels: usize) -> ByChannel {
     let mut white = [0.0; MAXIMUM_CHANNELS];
     for channel in 0..channels {
-        let inner: f64 =
-            (0..channel).map(|k| row.noise.factor[channel][k] * white[k]).sum();
+        let inner: f64 = (0..channel).map(|k| row.noise.factor[channel][k] * white[k]).sum();
         white[channel] = (values[channel] - inner) / row.noise.factor[channel][channel];
     }
     white

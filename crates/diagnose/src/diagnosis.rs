@@ -16,11 +16,11 @@ use crate::data::Data;
 use crate::design::{Acts, Design};
 use crate::evidence::{NOISE_FREEDOM, Scored};
 use crate::library::Library;
-use crate::outside::{Outside, compete};
 use crate::output::{
     Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Separation, Verdict,
     VerdictKind,
 };
+use crate::outside::{Outside, compete};
 use crate::record::FlightRecord;
 
 /// Fewest flights and segments that a name is given on.
@@ -116,9 +116,11 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (None, None) => match references_of(input.model, input.drag_table, input.flights) {
             Ok(found) => found,
             Err(DiagnoseError::Model(EffectModelError::NothingInside { segments })) => {
-                return Ok(insufficient(0, 0, &format!(
-                    "none of {segments} segments is inside the drag table"
-                )));
+                return Ok(insufficient(
+                    0,
+                    0,
+                    &format!("none of {segments} segments is inside the drag table"),
+                ));
             }
             Err(error) => return Err(error),
         },
@@ -128,9 +130,10 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)
     };
-    let (data, library) = Data::prepare(&model, input.flights, input.baseline, |points, engines, starts| {
-        Library::of(&model, points, engines, starts, chosen)
-    });
+    let (data, library) =
+        Data::prepare(&model, input.flights, input.baseline, |points, engines, starts| {
+            Library::of(&model, points, engines, starts, chosen)
+        });
     let not_testable = library
         .not_testable
         .iter()
@@ -151,8 +154,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     if input.references.is_none() && input.baseline.is_none() {
         notes.push("references of effects are the means of these flights".to_owned());
     }
-    let mut result =
-        conclude(&stacked, &model, &library, options, &mut notes)?;
+    let mut result = conclude(&stacked, &model, &library, options, &mut notes)?;
     // Heavy tails show only beside the best model; then everything is done again with weights.
     if let Some(weights) = crate::robust::weights(&stacked, &result.1, &library) {
         notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
@@ -198,7 +200,10 @@ fn too_little(data: &Data<'_>, library: &Library) -> Option<String> {
     }
     let first = data.segments[0].residual[0];
     if data.segments.iter().all(|row| (row.residual[0] - first).abs() < 1e-12) {
-        return Some("the residuals of all segments are equal: fuel flow was computed, not measured".to_owned());
+        return Some(
+            "the residuals of all segments are equal: fuel flow was computed, not measured"
+                .to_owned(),
+        );
     }
     None
 }
@@ -255,8 +260,7 @@ fn conclude(
     options: &Options,
     notes: &mut Vec<String>,
 ) -> Result<(Diagnosis, Analysis), DiagnoseError> {
-    let analysis =
-        analyse(stacked, model, library, None, true).ok_or(DiagnoseError::Degenerate)?;
+    let analysis = analyse(stacked, model, library, None, true).ok_or(DiagnoseError::Degenerate)?;
     let outside = compete(stacked, &analysis, library);
     let gram = stacked.folds.without(None);
     let distances = Distances::of(&gram, stacked.design).ok_or(DiagnoseError::Degenerate)?;
@@ -268,7 +272,14 @@ fn conclude(
         .then(|| nested(stacked, model, library, scale));
     let gap = gap_of(stacked, &analysis, &outside, &own, scale);
     let verdict = verdict(
-        &analysis, &outside, &distances, library, &posteriors, &own, unseen.as_ref(), notes,
+        &analysis,
+        &outside,
+        &distances,
+        library,
+        &posteriors,
+        &own,
+        unseen.as_ref(),
+        notes,
     );
     let causes = causes(&analysis, &outside, &distances, library, &posteriors, unseen.as_ref());
     let classes = distances.classes(library);
@@ -310,9 +321,9 @@ fn conclude(
     Ok((diagnosis, analysis))
 }
 
-/// Whether there is more than noise: nothing at all, inside the library or outside, is improbable.
+/// Whether there is more than noise: either nothing at all is improbable beside the library, or nothing outside it is.
 fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
-    analysis.clean * (1.0 - outside.probability) <= CLEAN_PROBABILITY
+    analysis.clean <= CLEAN_PROBABILITY || 1.0 - outside.probability <= CLEAN_PROBABILITY
 }
 
 const fn acts_words(acts: Acts) -> &'static str {
@@ -538,7 +549,8 @@ fn verdict(
     let Some(top) = posteriors.first().filter(|_| is_real(analysis, outside)) else {
         verdict.closure = None;
         verdict.closure_ci95 = None;
-        "Nothing beyond the noise. `detectable` says how large each effect would have to be.".clone_into(&mut verdict.advice);
+        "Nothing beyond the noise. `detectable` says how large each effect would have to be."
+            .clone_into(&mut verdict.advice);
         return verdict;
     };
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
@@ -585,8 +597,7 @@ fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String
     let (best, probability) = &analysis.models[0];
     let mut names = vec![name_of(library, top.effect)];
     if *probability > 0.5 {
-        let members =
-            best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
+        let members = best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
         let scatter = best.model.heating_percent.map(|_| None);
         for member in members.chain(scatter) {
             let name = name_of(library, member);

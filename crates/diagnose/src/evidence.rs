@@ -140,7 +140,11 @@ impl Background {
 }
 
 /// Integrates nuisance out: what is left are effects, smooth background, agnostic functions and residual.
-pub(crate) fn without_nuisance(gram: &Gram, design: &Design<'_>, agnostic: bool) -> Option<Reduced> {
+pub(crate) fn without_nuisance(
+    gram: &Gram,
+    design: &Design<'_>,
+    agnostic: bool,
+) -> Option<Reduced> {
     let mut kept: Vec<usize> = (0..design.effects).chain(design.smooth.clone()).collect();
     if agnostic {
         kept.extend(design.blocks.iter().flat_map(|block| block.columns.clone()));
@@ -168,8 +172,7 @@ pub(crate) fn backgrounds(
             continue;
         }
         let out: &[usize] = if tau > 0.0 { &smooth_columns } else { &[] };
-        let Some(smoothed) =
-            integrate_out(&reduced.matrix, &kept, out, &vec![tau; out.len()])
+        let Some(smoothed) = integrate_out(&reduced.matrix, &kept, out, &vec![tau; out.len()])
         else {
             continue;
         };
@@ -188,7 +191,10 @@ pub(crate) fn backgrounds(
                 scatter: 0,
                 places: (0..effects).collect(),
                 width: effects,
-                gram: (0..effects).flat_map(|a| (0..effects).map(move |b| (a, b))).map(|ab| m[ab]).collect(),
+                gram: (0..effects)
+                    .flat_map(|a| (0..effects).map(move |b| (a, b)))
+                    .map(|ab| m[ab])
+                    .collect(),
                 product: (0..effects).map(|a| m[(a, effects)]).collect(),
                 square: m[(effects, effects)],
                 ln_determinant: reduced.ln_determinant
@@ -225,8 +231,8 @@ impl Scorer {
             .iter()
             .map(|column| {
                 let effect = &library.effects[column.effect];
-                let free = PRIOR_SCALES
-                    .map(|(scale, share)| (scale * effect.prior_deviation, share.ln()));
+                let free =
+                    PRIOR_SCALES.map(|(scale, share)| (scale * effect.prior_deviation, share.ln()));
                 Prior {
                     mean: effect.prior_mean,
                     scales: if effect.known {
@@ -298,7 +304,8 @@ impl Scorer {
             let square = at.square + precision * mean * mean - right * size;
             let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
             let spread = (scale / posterior).sqrt();
-            let ln = -0.5 * at.ln_determinant - 0.5 * (posterior / precision).ln()
+            let ln = -0.5 * at.ln_determinant
+                - 0.5 * (posterior / precision).ln()
                 - self.power() * (NOISE_FREEDOM + square).ln()
                 + ln_share
                 + ln_sign(prior.positive, (size + shift) / spread);
@@ -308,17 +315,22 @@ impl Scorer {
     }
 
     /// Two effects, `shifts` as above.
-    pub(crate) fn two(&self, at: &Background, columns: [usize; 2], shifts: [f64; 2]) -> Evidence<2> {
+    pub(crate) fn two(
+        &self,
+        at: &Background,
+        columns: [usize; 2],
+        shifts: [f64; 2],
+    ) -> Evidence<2> {
         let [a, b] = columns;
         let (prior_a, prior_b) = (self.priors[a], self.priors[b]);
         let cross = at.gram(a, b);
         let mut sum = Mixture::<2>::new();
         for &(deviation_a, ln_a) in &prior_a.scales[..prior_a.count] {
             for &(deviation_b, ln_b) in &prior_b.scales[..prior_b.count] {
-                let precision = [1.0 / (deviation_a * deviation_a), 1.0 / (deviation_b * deviation_b)];
+                let precision =
+                    [1.0 / (deviation_a * deviation_a), 1.0 / (deviation_b * deviation_b)];
                 let mean = [prior_a.mean - shifts[0], prior_b.mean - shifts[1]];
-                let posterior =
-                    [at.gram(a, a) + precision[0], at.gram(b, b) + precision[1]];
+                let posterior = [at.gram(a, a) + precision[0], at.gram(b, b) + precision[1]];
                 let right = [
                     at.product(a) + precision[0] * mean[0],
                     at.product(b) + precision[1] * mean[1],
@@ -329,11 +341,10 @@ impl Scorer {
                 }
                 let size_a = (posterior[1] * right[0] - cross * right[1]) / determinant;
                 let size_b = (posterior[0] * right[1] - cross * right[0]) / determinant;
-                let square = at.square
-                    + precision[0] * mean[0] * mean[0]
-                    + precision[1] * mean[1] * mean[1]
-                    - right[0] * size_a
-                    - right[1] * size_b;
+                let square =
+                    at.square + precision[0] * mean[0] * mean[0] + precision[1] * mean[1] * mean[1]
+                        - right[0] * size_a
+                        - right[1] * size_b;
                 let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
                 let spread_a = (scale * posterior[1] / determinant).sqrt();
                 let spread_b = (scale * posterior[0] / determinant).sqrt();
@@ -511,8 +522,7 @@ impl<const K: usize> Mixture<K> {
         if self.total > 0.0 {
             for k in 0..K {
                 sizes[k] = self.first[k] / self.total;
-                deviations[k] =
-                    (self.second[k] / self.total - sizes[k] * sizes[k]).max(0.0).sqrt();
+                deviations[k] = (self.second[k] / self.total - sizes[k] * sizes[k]).max(0.0).sqrt();
             }
         }
         Evidence { ln: self.ln(), sizes, deviations }
@@ -566,12 +576,8 @@ mod tests {
             square,
             ln_determinant: 0.0,
         };
-        let prior = Prior {
-            mean: 0.3,
-            scales: [(0.8, 0.0), (0.8, 0.0)],
-            count: 1,
-            positive: false,
-        };
+        let prior =
+            Prior { mean: 0.3, scales: [(0.8, 0.0), (0.8, 0.0)], count: 1, positive: false };
         let scorer = Scorer {
             priors: vec![prior],
             effect_of: vec![0],
@@ -593,7 +599,8 @@ mod tests {
                     let theta = -3.0 + f64::from(j) * 0.0075;
                     let rest = square - 2.0 * product * theta + gram * theta * theta;
                     let z2 = (theta - 0.3_f64).powi(2) / (0.64 * v);
-                    let density = (-0.5 * z2).exp() / (0.8 * (2.0 * core::f64::consts::PI * v).sqrt());
+                    let density =
+                        (-0.5 * z2).exp() / (0.8 * (2.0 * core::f64::consts::PI * v).sqrt());
                     sum += weight_v
                         * v.powf(-0.5 * rows)
                         * (-0.5 * rest / v).exp()

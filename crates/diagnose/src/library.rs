@@ -110,7 +110,8 @@ fn lacking(
     points: &[EffectPoint],
     engines_recorded: bool,
 ) -> Option<Vec<&'static str>> {
-    if matches!(id, EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_)) && !engines_recorded {
+    if matches!(id, EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_)) && !engines_recorded
+    {
         return Some(vec!["WF(k)"]);
     }
     let missing = points.iter().filter(|point| EffectModel::lacks(id, point).is_some()).count();

@@ -152,8 +152,7 @@ pub(crate) fn segment_noise(
     covariance[0][0] += extra_variance;
     for a in 0..count {
         for b in 0..count {
-            covariance[a][b] *=
-                factors.within[channels.kind(a)] * factors.within[channels.kind(b)];
+            covariance[a][b] *= factors.within[channels.kind(a)] * factors.within[channels.kind(b)];
         }
     }
     for channel in 0..count {
@@ -169,8 +168,7 @@ pub(crate) fn segment_noise(
     let mut common = Vec::with_capacity(2 + channels.contrasts);
     let mut mass = [0.0; MAXIMUM_CHANNELS];
     for channel in 0..count {
-        mass[channel] =
-            by_mass[channel] * relative_mass * factors.between[channels.kind(channel)];
+        mass[channel] = by_mass[channel] * relative_mass * factors.between[channels.kind(channel)];
     }
     common.push(mass);
     let mut heating = [0.0; MAXIMUM_CHANNELS];

@@ -29,13 +29,8 @@ pub(crate) struct Outside {
 pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Outside {
     let scorer = &analysis.scorer;
     let empty = Model { columns: vec![], heating_percent: None };
-    let none = Scored {
-        model: empty,
-        ln_weight: 0.0,
-        sizes: vec![],
-        deviations: vec![],
-        background: 0,
-    };
+    let none =
+        Scored { model: empty, ln_weight: 0.0, sizes: vec![], deviations: vec![], background: 0 };
     let sets: Vec<&Scored> = core::iter::once(&none)
         .chain(
             analysis
@@ -54,7 +49,8 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             .iter()
             .find(|found| found.scored.model == set.model && !set.model.columns.is_empty());
         let levels = refined.map_or(&analysis.reduced, |found| &found.reduced);
-        let shifts = refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
+        let shifts =
+            refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
         for (reduced, spike) in levels.iter().flat_map(|r| SPIKES.map(|spike| (r, spike))) {
             let Some(under) = spiked(stacked, library, reduced, set, spike) else { continue };
             let prior = scorer.ln_prior(&set.model);

@@ -52,7 +52,11 @@ fn merged(a: HiddenParameters, b: HiddenParameters) -> HiddenParameters {
             default.drag_divergence_mach,
         ),
         step_from_s: number(a.step_from_s, b.step_from_s, default.step_from_s),
-        step_target: if b.step_target == default.step_target { a.step_target } else { b.step_target },
+        step_target: if b.step_target == default.step_target {
+            a.step_target
+        } else {
+            b.step_target
+        },
     }
 }
 
@@ -76,13 +80,13 @@ pub(crate) fn refine(
                 && scatter == at.scatter
         };
         let smooth = stacked.design.smooth.len();
-        let one =
-            backgrounds_at_levels(&reduced, library.columns.len(), smooth, library, chosen);
+        let one = backgrounds_at_levels(&reduced, library.columns.len(), smooth, library, chosen);
         let found = estimate(scorer, one.first()?, columns, &sizes);
-        let converged = columns.iter().zip(found.iter().zip(&sizes)).all(|(&column, (new, old))| {
-            let typical = library.effects[library.columns[column].effect].typical;
-            (new - old).abs() <= CONVERGED * typical
-        });
+        let converged =
+            columns.iter().zip(found.iter().zip(&sizes)).all(|(&column, (new, old))| {
+                let typical = library.effects[library.columns[column].effect].typical;
+                (new - old).abs() <= CONVERGED * typical
+            });
         if !found.iter().all(|size| size.is_finite()) {
             return None;
         }

@@ -3,8 +3,8 @@
 use faer::Mat;
 
 use crate::analysis::{Analysis, Stacked};
-use crate::linear::Factor;
 use crate::library::Library;
+use crate::linear::Factor;
 
 /// Kurtosis of whitened residuals above which weights are used; 3 for normal ones.
 const HEAVY: f64 = 4.0;

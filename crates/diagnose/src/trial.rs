@@ -178,10 +178,7 @@ impl Share {
         Self { count, of, share: p, ci95: [(center - half).max(0.0), (center + half).min(1.0)] }
     }
 
-    fn among<'a>(
-        cases: impl IntoIterator<Item = &'a Case>,
-        yes: impl Fn(&Case) -> bool,
-    ) -> Self {
+    fn among<'a>(cases: impl IntoIterator<Item = &'a Case>, yes: impl Fn(&Case) -> bool) -> Self {
         let (mut count, mut of) = (0, 0);
         for case in cases {
             of += 1;

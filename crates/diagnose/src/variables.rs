@@ -87,9 +87,9 @@ impl Variable {
         references: &EffectReferences,
     ) -> Option<f64> {
         let cross_wind = || {
-            point.drift_deg.map(|drift_deg| {
-                -point.true_airspeed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin()
-            })
+            point
+                .drift_deg
+                .map(|drift_deg| -point.true_airspeed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin())
         };
         Some(match self {
             Self::Mach => point.mach,
@@ -99,9 +99,10 @@ impl Variable {
                 response.ln_corrected_thrust.exp() / references.corrected_thrust_n
             }
             Self::IsaDeviation => {
-                let isa =
-                    atmos::isa::temperature(units::PressureAltitude::meters(point.pressure_altitude_m))
-                        .ok()?;
+                let isa = atmos::isa::temperature(units::PressureAltitude::meters(
+                    point.pressure_altitude_m,
+                ))
+                .ok()?;
                 point.static_air_temperature_k - isa.to_kelvin()
             }
             Self::StaticAirTemperature => point.static_air_temperature_k,
@@ -124,8 +125,7 @@ impl Variable {
                 (point.latitude_deg? * RADIANS_PER_DEGREE).sin() * cross_wind()?
             }
             Self::CenterOfGravityLift => {
-                (point.center_of_gravity_percent_mac?
-                    - references.center_of_gravity_percent_mac?)
+                (point.center_of_gravity_percent_mac? - references.center_of_gravity_percent_mac?)
                     * response.lift_coefficient
             }
             Self::MachLift => (point.mach - references.mach) * response.lift_coefficient,

@@ -57,7 +57,11 @@ fn records(flights: &[Vec<Segment>]) -> Vec<FlightRecord<'_>> {
     flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
 }
 
-fn run(model: &PerformanceModel, baseline: Option<&Baseline>, flights: &[Vec<Segment>]) -> Diagnosis {
+fn run(
+    model: &PerformanceModel,
+    baseline: Option<&Baseline>,
+    flights: &[Vec<Segment>],
+) -> Diagnosis {
     let records = records(flights);
     let input = Input {
         model,
@@ -94,7 +98,12 @@ fn what_was_changed_is_found_and_the_baseline_is_silent() {
     let model = model(&folder);
     let clean = fleet(&folder, "SIM-01");
     let taught = Baseline::learn(&model, model.drag_table(), &records(&clean)).unwrap();
-    println!("taught by {:?}: rms {:.4}, noise {:?}", taught.taught_by(), taught.remaining_rms(), taught.noise());
+    println!(
+        "taught by {:?}: rms {:.4}, noise {:?}",
+        taught.taught_by(),
+        taught.remaining_rms(),
+        taught.noise()
+    );
 
     let drag = run(&model, Some(&taught), &fleet(&folder, "SIM-02"));
     print("SIM-02", &drag);
@@ -104,7 +113,12 @@ fn what_was_changed_is_found_and_the_baseline_is_silent() {
     let half = clean.len() / 2;
     let taught = Baseline::learn(&model, model.drag_table(), &records(&clean[..half])).unwrap();
     println!("env {:?}", taught.environment());
-    println!("half {:?}: rms {:.4}, noise {:?}", taught.taught_by(), taught.remaining_rms(), taught.noise());
+    println!(
+        "half {:?}: rms {:.4}, noise {:?}",
+        taught.taught_by(),
+        taught.remaining_rms(),
+        taught.noise()
+    );
     let silent = run(&model, Some(&taught), &clean[half..]);
     print("SIM-01 second half", &silent);
     let alone = run(&model, None, &clean[half..]);

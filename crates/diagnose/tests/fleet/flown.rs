@@ -182,7 +182,8 @@ fn known(id: EffectId) -> bool {
 /// An effect at a multiple of its typical size, sign drawn where physics leaves it open.
 pub fn plant(id: EffectId, times: f64, random: &mut Random) -> Planted {
     let size = typical(id) * if known(id) { 1.0 } else { times };
-    let sign = if one_signed(id) || known(id) || random.uniform(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
+    let sign =
+        if one_signed(id) || known(id) || random.uniform(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
     Planted { id, size: sign * size }
 }
 
@@ -192,7 +193,8 @@ fn design(random: &mut Random, setup: &Setup) -> Vec<Row> {
         let low = random.uniform(0.0, 1.0) < 0.30;
         let zfw = random.uniform(9950.0, 11_300.0);
         let ramp = random.uniform(3200.0, 5800.0_f64).min(16_300.0 - zfw);
-        let mut level = if low { random.uniform(250.0, 370.0) } else { random.uniform(370.0, 450.0) };
+        let mut level =
+            if low { random.uniform(250.0, 370.0) } else { random.uniform(370.0, 450.0) };
         let m0 = if low { random.uniform(0.56, 0.78) } else { random.uniform(0.78, 0.895) };
         let deviation = random.normal(0.0, 5.0);
         let years = 1.6 * (flight as f64 + random.uniform(0.0, 1.0)) / setup.flights as f64;
@@ -324,7 +326,8 @@ impl Truth<'_> {
             let east = row.ground_speed * row.track.to_radians().sin();
             g -= 2.0 * 7.292115e-5 * east * lat.cos() + row.ground_speed.powi(2) / 6.371e6;
         }
-        let n = if t(EffectId::LoadFactor) == 0.0 { 1.0 } else { 1.0 / row.roll.to_radians().cos() };
+        let n =
+            if t(EffectId::LoadFactor) == 0.0 { 1.0 } else { 1.0 / row.roll.to_radians().cos() };
         let q = 0.7 * p * row.mach * row.mach;
         let cl = row.mass * g * n / (q * WING_M2);
         let mut cd0 = CD0;
@@ -434,8 +437,8 @@ pub fn fly(seed: u64, setup: &Setup, effects: &[Planted], background: &Backgroun
         let scatter = 0.01 * t(EffectId::FuelHeatingValue);
         let heating = random.normal(0.0, 0.003 * noise) + random.normal(0.0, 1.0) * scatter;
         let split = random.normal(0.0, 0.010 * noise);
-        let start_s = EPOCH_S
-            + rows.iter().find(|r| r.flight == flight).map_or(0.0, |r| r.years) * YEAR_S;
+        let start_s =
+            EPOCH_S + rows.iter().find(|r| r.flight == flight).map_or(0.0, |r| r.years) * YEAR_S;
         let identity = Arc::new(FlightIdentity {
             tail: "V-001".into(),
             start: flight::Timestamp::from_second(start_s as i64).unwrap(),
@@ -450,9 +453,8 @@ pub fn fly(seed: u64, setup: &Setup, effects: &[Planted], background: &Backgroun
                 0.0
             };
             let meter = 0.005 * core::f64::consts::SQRT_2 * noise;
-            let gain = [1_u8, 2].map(|k| {
-                0.01 * (t(EffectId::FuelFlowGain) + t(EffectId::FuelFlowGainEngine(k)))
-            });
+            let gain = [1_u8, 2]
+                .map(|k| 0.01 * (t(EffectId::FuelFlowGain) + t(EffectId::FuelFlowGainEngine(k))));
             let flows: Vec<f64> = (0..2)
                 .map(|k| {
                     let half = if k == 0 { 0.5 } else { -0.5 } * split;
@@ -478,10 +480,8 @@ pub fn fly(seed: u64, setup: &Setup, effects: &[Planted], background: &Backgroun
             let tas = mach * (1.4 * R * sat).sqrt();
             let counted = row.fuel_used * (1.0 + 0.5 * (gain[0] + gain[1]))
                 / (1.0 - 0.01 * t(EffectId::FuelQuantityGain));
-            let mass = row.mass
-                - (counted - row.fuel_used)
-                - t(EffectId::ZeroFuelMassBias)
-                - loading;
+            let mass =
+                row.mass - (counted - row.fuel_used) - t(EffectId::ZeroFuelMassBias) - loading;
             let lx = flown.ln_corrected_thrust - 60e3_f64.ln();
             let theta_t = row.sat / 288.15 * (1.0 + 0.2 * row.mach * row.mach);
             let n2 = 0.16 * lx - 0.05 * lx * lx + 0.04 * (row.mach - 0.8) + 0.5 * theta_t.ln();

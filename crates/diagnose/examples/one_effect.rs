@@ -1,0 +1,40 @@
+//! A fleet that burns 2 % more than its model says, from plain numbers: what could it be?
+
+use std::sync::Arc;
+
+use diagnose::{FlightRecord, Input, Options, VerdictKind, diagnose};
+
+#[path = "../tests/fleet/flown.rs"]
+mod flown;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let model = flown::exact_model();
+    let clean = flown::fly(5, &flown::Setup::default(), &[], &flown::Background::default());
+    let mut flights = clean.flights;
+    for segment in flights.iter_mut().flatten() {
+        segment.means.fuel_flow_total_kg_s *= 1.02;
+        for flow in &mut segment.means.fuel_flow_engine_kg_s {
+            *flow *= 1.02;
+        }
+        segment.identity = Arc::clone(&segment.identity);
+    }
+    let records: Vec<FlightRecord<'_>> =
+        flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
+    let found = diagnose(
+        &Input {
+            model: &model,
+            drag_table: model.drag_table(),
+            flights: &records,
+            baseline: None,
+            table: None,
+            references: None,
+        },
+        &Options::default(),
+    )?;
+    // Fuel flow alone cannot say whether engine or airframe: both are in the class, and neither is sure.
+    assert_eq!(found.verdict.kind, VerdictKind::Effects);
+    assert!(found.verdict.class.contains(&"tsfc_factor".to_owned()));
+    assert!(found.verdict.class.contains(&"drag_factor".to_owned()));
+    assert!(found.verdict.probability < 0.9);
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! What is too little or too odd for a name gets none, and no number is ever NaN.
+
+use diagnose::{Baseline, DiagnoseError, Diagnosis, Input, Options, VerdictKind, diagnose};
+use flight::effect::EffectId;
+use perf_model::PerformanceModel;
+
+#[path = "fleet/flown.rs"]
+mod flown;
+use flown::{Background, Fleet, Planted, Setup, exact_model, fly};
+
+fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
+    let records = fleet.records();
+    let input = Input {
+        model,
+        drag_table: model.drag_table(),
+        flights: &records,
+        baseline: None,
+        table: None,
+        references: None,
+    };
+    let found = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();
+    // serde_json writes a number that is not finite as null; every null must be one that the format knows.
+    let text = serde_json::to_string(&found).unwrap();
+    let nulls = text.matches("null").count();
+    let known = ["closure", "closure_ci95", "rms_after_percent", "smallest", "variable", "acts_on"]
+        .iter()
+        .map(|field| text.matches(&format!("\"{field}\":null")).count())
+        .sum::<usize>();
+    assert_eq!(nulls, known, "{text}");
+    found
+}
+
+fn planted() -> Vec<Planted> {
+    vec![Planted { id: EffectId::ZeroLiftDrag, size: 5.0 }]
+}
+
+fn small(flights: usize, segments: usize) -> Fleet {
+    fly(11, &Setup { flights, segments, ..Setup::default() }, &planted(), &Background::default())
+}
+
+#[test]
+fn too_few_flights_or_segments() {
+    let model = exact_model();
+    for (flights, segments) in [(1, 10), (1, 3), (3, 1), (5, 20), (6, 4)] {
+        let found = run(&model, &small(flights, segments));
+        assert_eq!(found.verdict.kind, VerdictKind::InsufficientData, "{flights} × {segments}");
+        assert!(found.causes.is_empty() && !found.verdict.advice.is_empty());
+    }
+}
+
+#[test]
+fn all_at_one_condition() {
+    let model = exact_model();
+    let mut fleet = small(20, 5);
+    let one = fleet.flights[0][0].means.clone();
+    for segment in fleet.flights.iter_mut().flatten() {
+        segment.means = one.clone();
+    }
+    let found = run(&model, &fleet);
+    assert_eq!(found.verdict.kind, VerdictKind::InsufficientData, "{:?}", found.verdict);
+}
+
+#[test]
+fn outside_the_table_nothing_is_used_and_the_reason_is_kept() {
+    let model = exact_model();
+    let mut fleet = small(20, 5);
+    for segment in fleet.flights.iter_mut().flatten() {
+        segment.means.mass_kg *= 4.0; // the reports of a larger type
+    }
+    assert_eq!(run(&model, &fleet).verdict.kind, VerdictKind::InsufficientData);
+
+    let mut fleet = small(60, 5);
+    for segment in fleet.flights.iter_mut().take(20).flatten() {
+        segment.means.mass_kg *= 4.0;
+    }
+    let found = run(&model, &fleet);
+    assert_eq!(found.left_out.get("outside the drag table"), Some(&100), "{:?}", found.left_out);
+    assert_eq!(found.flights, 40);
+}
+
+#[test]
+fn missing_optional_columns_are_said_and_the_rest_is_found() {
+    let model = exact_model();
+    let mut fleet = small(60, 10);
+    for means in fleet.flights.iter_mut().flatten().map(|segment| &mut segment.means) {
+        means.fuel_flow_engine_kg_s.clear();
+        means.n2_percent.clear();
+        means.roll_deg = None;
+        means.roll_squared_deg2 = None;
+        means.drift_deg = None;
+        means.latitude_deg = None;
+        means.true_heading_deg = None;
+        means.center_of_gravity_percent_mac = None;
+    }
+    let found = run(&model, &fleet);
+    let lacking: Vec<&str> = found.not_testable.iter().map(|n| n.effect.as_str()).collect();
+    for effect in
+        ["trim_drag_cg", "asymmetry_drag", "load_factor", "tsfc_engine_1", "isobaric_slope"]
+    {
+        assert!(lacking.contains(&effect), "{effect} in {lacking:?}");
+    }
+    assert_eq!(found.verdict.kind, VerdictKind::Effects);
+    assert!(found.verdict.class.contains(&"zero_lift_drag".to_owned()), "{:?}", found.verdict);
+}
+
+#[test]
+fn numbers_that_are_none_are_left_out() {
+    let model = exact_model();
+    let mut fleet = small(60, 5);
+    fleet.flights[3][2].means.mach = f64::NAN;
+    fleet.flights[4][1].means.static_air_temperature_k = f64::INFINITY;
+    fleet.flights[5][0].means.fuel_flow_total_kg_s = f64::NAN;
+    fleet.flights[6][0].means.fuel_flow_total_kg_s = 0.0;
+    fleet.flights[7][0].means.mass_kg = -1.0;
+    let found = run(&model, &fleet);
+    assert_eq!(found.segments, 295);
+    assert_eq!(found.left_out.values().sum::<usize>(), 5, "{:?}", found.left_out);
+}
+
+#[test]
+fn a_baseline_wants_flights_and_reads_back_to_the_same_bits() {
+    let model = exact_model();
+    let fleet = fly(12, &Setup { flights: 20, ..Setup::default() }, &[], &Background::default());
+    let records = fleet.records();
+    let error = Baseline::learn(&model, model.drag_table(), &records[..4]).unwrap_err();
+    assert_eq!(error, DiagnoseError::TooFewFlights { found: 4, needed: 5 });
+    let taught = Baseline::learn(&model, model.drag_table(), &records).unwrap();
+    let text = ron::to_string(&taught).unwrap();
+    assert_eq!(ron::from_str::<Baseline>(&text).unwrap(), taught);
+    assert!(ron::from_str::<Baseline>(&text.replacen("mean:[", "mean:[1.0,", 1)).is_err());
+}
+
+#[test]
+fn same_input_same_bytes() {
+    let model = exact_model();
+    let fleet = small(30, 6);
+    let once = serde_json::to_string(&run(&model, &fleet)).unwrap();
+    let twice = serde_json::to_string(&run(&model, &fleet)).unwrap();
+    assert_eq!(once, twice);
+}
