@@ -159,7 +159,7 @@ fn every_signature_against_its_formula_by_hand() {
             (EffectId::TsfcEngine(2), 0.01, 0.5 * percent, 2e-5),
             (EffectId::TsfcMachExponent, 1e-3, ((1.0 + mach) / 1.8).ln(), 1e-6),
             (EffectId::TsfcTemperatureExponent, 1e-3, (theta / 0.765).ln(), 1e-6),
-            (EffectId::TsfcThrottle, 0.01, percent * ((x - 1.0) / 0.25).powi(2), 1e-3),
+            (EffectId::TsfcThrottle, 0.01, percent * ((x - 1.0) / 0.25).powi(2), 8e-3),
             (EffectId::PowerOfftake, 0.01, percent * 0.235 / (thrust * tsfc), 3e-4),
             // 222 K is below −40 °C and no A/I is recorded.
             (EffectId::AntiIceBleed, 0.01, 0.0, 1e-12),
