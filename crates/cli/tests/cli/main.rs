@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod commands;
+mod diagnosis;
 mod reference;
 mod same_bytes;
 mod state;

@@ -1,0 +1,70 @@
+//! `diagnose` from outside: what it refuses, and that too little data gets no name.
+
+use std::path::{Path, PathBuf};
+
+use crate::support::{adapt, cruisefit, fixture, initial_model};
+
+fn reports(flights: std::ops::RangeInclusive<u32>) -> Vec<PathBuf> {
+    flights.map(|flight| fixture(&format!("reports/{flight:04}.txt"))).collect()
+}
+
+fn diagnose(
+    model: &Path,
+    output: &Path,
+    reports: &[PathBuf],
+    more: &[&str],
+) -> crate::support::Ran {
+    let mut arguments: Vec<std::ffi::OsString> = vec!["diagnose".into()];
+    arguments.extend(reports.iter().map(|path| path.as_os_str().to_owned()));
+    arguments.extend(["--model".into(), model.as_os_str().to_owned()]);
+    arguments.extend(["-o".into(), output.as_os_str().to_owned()]);
+    arguments.extend(more.iter().map(Into::into));
+    cruisefit(&arguments)
+}
+
+#[test]
+fn flights_in_the_ledger_are_refused_by_name() {
+    let scratch = tempfile::tempdir().unwrap();
+    let initial = initial_model(scratch.path());
+    let learnt = scratch.path().join("learnt");
+    adapt(&initial, &learnt, &reports(1..=3), &[]).expect(0);
+    let model = learnt.join("models/SIM-01.ron");
+    let output = scratch.path().join("diagnosis");
+    diagnose(&model, &output, &reports(1..=3), &[])
+        .expect(2)
+        .says("tail SIM-01 flight 0001 of 2019-03-14T10:45:00Z is in the model's ledger");
+    assert!(!output.exists());
+    // Asked for, they are used, and it is said.
+    diagnose(&model, &output, &reports(1..=3), &["--allow-learnt"])
+        .expect(0)
+        .says("diagnosed all the same, as asked");
+}
+
+#[test]
+fn too_little_data_gets_no_name() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("diagnosis");
+    let ran = diagnose(&model, &output, &reports(1..=2), &[]).expect(0);
+    assert!(ran.stdout.contains("insufficient data"), "{}", ran.stdout);
+    let text = std::fs::read_to_string(output.join("diagnosis.json")).unwrap();
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    let document: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["schema"], "cruisefit.diagnosis/1");
+    let diagnosis = &document["diagnoses"][0];
+    assert_eq!(diagnosis["tail"], "SIM-01");
+    assert_eq!(diagnosis["verdict"]["kind"], "insufficient_data");
+    assert!(diagnosis["verdict"]["effects"].as_array().unwrap().is_empty());
+    assert!(output.join("diagnosis.html").exists());
+}
+
+#[test]
+fn unknown_effects_are_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("diagnosis");
+    diagnose(&model, &output, &reports(1..=2), &["--without", "drag_faktor"])
+        .expect(2)
+        .says("no effect \"drag_faktor\"")
+        .says("drag_factor");
+}
