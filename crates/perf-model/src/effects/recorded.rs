@@ -28,8 +28,8 @@ pub(super) struct AsFlown {
 /// m = m_rec + θZFM + FU_rec·(θFQ + Σ_k s_k θWF,k/(1 + θWF,k))         [diagnosis.4]
 /// ```
 ///
-/// [diagnosis.2] holds total pressure, which a static source does not touch. s_k is engine k's share of the recorded fuel
-/// flow; a meter that reads θWF high has counted FU·θWF/(1 + θWF) of fuel too much.
+/// [diagnosis.2] holds total pressure, which a static source does not touch. `s_k` is engine k's share of the recorded fuel
+/// flow; a meter that reads `θWF` high has counted `FU·θWF/(1 + θWF)` of fuel too much.
 pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, EffectError> {
     let recorded_mach = positive("Mach number", "Mach", point.mach)?;
     let recorded_sat_k = positive("static air temperature", "K", point.static_air_temperature_k)?;

@@ -142,7 +142,6 @@ mod by_name {
 
 /// Sizes as the kernels use them: shares instead of per cent, coefficients instead of counts.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_field_names, reason = "units end the names")]
 pub(super) struct Terms {
     pub(super) references: EffectReferences,
     pub(super) hidden: HiddenParameters,
