@@ -25,9 +25,10 @@ pub(super) const TRIANGLE: usize = TERMS * (TERMS + 1) / 2;
 /// The coefficients and the flight's common error.
 const UNKNOWNS: usize = TERMS + 1;
 
-/// Iterations end when no weight changes by more than this share of its value: far below what a weight means.
-const WEIGHT_TOLERANCE: f64 = 0.01;
-/// Clean flights need 2 to 4, one with an outlier about 8.
+/// Iterations end when no weight changes by more than this share of its value. Weights between 0.8 and 1.2 mean the
+/// same; what matters is 0.05 for 0.8.
+const WEIGHT_TOLERANCE: f64 = 0.05;
+/// Clean flights need 2 or 3.
 const MAXIMUM_ITERATIONS: usize = 30;
 
 /// What the judge knows: information about the quadratic's coefficients, without prior.

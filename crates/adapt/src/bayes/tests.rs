@@ -302,10 +302,10 @@ fn outlier_weights_are_the_fixed_point() {
         let error = case.residual - row.dot(&mean);
         let square = (error * error + row.dot(&(&covariance * &row))) / case.variance;
         let expected = 5.0 / (4.0 + square);
-        assert!((weight / expected - 1.0).abs() < 0.02, "{weight} {expected}");
+        assert!((weight / expected - 1.0).abs() < 0.06, "{weight} {expected}");
     }
     let expected = 5.0 / (4.0 + (mean[6] * mean[6] + covariance[(6, 6)]) / common);
-    assert!((verdict.flight_weight / expected - 1.0).abs() < 0.02);
+    assert!((verdict.flight_weight / expected - 1.0).abs() < 0.06);
     // The outlier has the least weight by far.
     assert!(verdict.weights[1] < 0.1, "{:?}", verdict.weights);
     let others = verdict.weights.iter().enumerate().filter(|(k, _)| *k != 1);

@@ -157,20 +157,21 @@ fn files_give_back_every_bit() {
     assert_eq!(back, nothing);
 }
 
+type Damage = fn(&mut BayesStateData);
+
 #[test]
 fn damaged_files_are_refused() {
     let initial = initial();
     let settings = BayesSettings::physical_2026();
     let good = learnt(&initial, settings, &forty_flights()).to_data();
-    type Damage = fn(&mut BayesStateData);
     let damages: [(Damage, &str); 7] = [
         (|data| data.vector.truncate(3), "vector of what was learnt has 3 entries, expected"),
         (|data| data.judge.push(0.0), "judge of what was learnt has 28 entries, expected 27"),
         (|data| data.nodes[1] = data.nodes[0], "out of order"),
         (|data| *data.nodes.last_mut().unwrap() = 150, "touched node 150 is out of order or not"),
         (
-            |data| data.information[2].clear(),
-            "row 2 of the information has 0 entries, outside 1..=3",
+            |data| data.information[2] = vec![0.0; 4],
+            "row 2 of the information has 4 entries, outside 0..=3",
         ),
         (|data| data.observations[0] = -1.0, "observations of what was learnt has the value -1"),
         (|data| data.newest = None, "the newest instant"),

@@ -134,7 +134,7 @@ impl Fleet {
         self.day += 1;
         let segments = 2 + self.whole(10);
         let first = 0.27 + 0.19 * self.uniform();
-        let mut mach = 0.78 + 0.01 * self.whole(9) as f64;
+        let mut mach = 0.78 + 0.01 * f64::from(self.whole(9));
         let step = if self.uniform() < 0.3 { 0.02 } else { 0.0 };
         let common = noise.flight * self.normal();
         (0..segments)
@@ -142,7 +142,7 @@ impl Fleet {
                 if k == segments / 2 {
                     mach += step;
                 }
-                let lift_coefficient = first - 0.004 * k as f64 + 0.002 * self.normal();
+                let lift_coefficient = first - 0.004 * f64::from(k) + 0.002 * self.normal();
                 let mach = mach + 0.0007 * self.normal();
                 let error = common + noise.segment * self.normal();
                 let drag_coefficient = truth(lift_coefficient, mach) * (1.0 + error);

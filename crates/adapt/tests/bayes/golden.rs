@@ -138,9 +138,9 @@ fn stated_intervals_hold_on_fleets_that_are_not_in_the_model_class() {
             let std = posterior.segment_variance(&cell, &SENSORS).sqrt();
             let miss = residual - posterior.correction_at(&cell);
             all += 1;
-            inside += usize::from(miss.abs() <= 1.96 * std);
+            inside += i32::from(miss.abs() <= 1.96 * std);
         }
-        let share = inside as f64 / all as f64;
+        let share = f64::from(inside) / f64::from(all);
         eprintln!("{name}: {:.1} % of unseen segments inside 95 %", 100.0 * share);
         assert!(share >= 0.92, "{name}: {share}");
     }

@@ -58,7 +58,7 @@ fn what_cannot_be_used_is_said() {
     let quantity = |update: &ObservationUpdate| match update {
         ObservationUpdate::Unusable { quantity, .. } => *quantity,
         ObservationUpdate::OutsideGrid(_) => "outside",
-        other => panic!("{other:?}"),
+        learnt @ ObservationUpdate::Learnt { .. } => panic!("{learnt:?}"),
     };
     let quantities: Vec<&str> = update.observations.iter().map(quantity).collect();
     assert_eq!(

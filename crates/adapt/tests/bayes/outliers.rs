@@ -74,9 +74,9 @@ fn outliers_and_only_outliers_are_named() {
             let ObservationUpdate::Learnt { weight, .. } = observation else { panic!() };
             let light = *weight < 0.1;
             if segment == original {
-                wrong += usize::from(light)
+                wrong += usize::from(light);
             } else {
-                found += usize::from(light)
+                found += usize::from(light);
             }
         }
     }

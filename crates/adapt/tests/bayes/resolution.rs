@@ -57,7 +57,7 @@ fn a_finer_grid_gives_the_same_correction_of_golden_fleets() {
         -5.871615823818956e-01,
         3.821327392400387e-01,
         1.198478886625741e-01,
-        -2.199960711876870e-01,
+        -2.19996071187687e-01,
         1.963170934800188e-01,
     ];
     let polynomial = |segment: &Observation| {
