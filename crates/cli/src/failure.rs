@@ -98,7 +98,6 @@ pub enum Failure {
     },
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "made for map_err, which hands errors over")]
 impl Failure {
     /// An unreadable path.
     pub fn unreadable(path: &Path, reason: impl Display) -> Self {
@@ -134,7 +133,6 @@ pub struct RefusedReport {
     pub reason: String,
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "made for map_err, which hands errors over")]
 impl RefusedReport {
     /// A report refused as a whole: no place in it is to blame.
     pub fn whole(path: PathBuf, reason: impl Display) -> Self {

@@ -101,7 +101,7 @@ pub fn learn_flight(
     match &mut learnt.law {
         LawState::Paper { settings, state, ever_adapted, refits } => {
             let law = PaperLaw::new(settings.threshold_percent)?;
-            learn_by_paper(&law, state, ever_adapted, &observations, &mut result);
+            learn_by_paper(law, state, ever_adapted, &observations, &mut result);
             let (drag_coefficient, confidence) = state.tables_mut();
             let basis = initial.polynomial().basis;
             let report =
@@ -164,7 +164,7 @@ pub fn remember_remainder(initial: &PerformanceModel, learnt: &mut Learnt, segme
 }
 
 fn learn_by_paper(
-    law: &PaperLaw,
+    law: PaperLaw,
     state: &mut PaperState,
     ever_adapted: &mut [bool],
     observations: &[Observation],

@@ -94,8 +94,8 @@ const STANDARD_DEVIATIONS_OF_95_PERCENT: f64 = 1.959_963_984_540_054;
 /// without a segment inside the table.
 fn coverage(model: &ModelFile, segments: &[flight::Segment]) -> Option<f64> {
     let posterior = model.posterior()?;
-    let mut inside = 0;
-    let mut all = 0;
+    let mut inside = 0_usize;
+    let mut all = 0_usize;
     for segment in segments {
         let Ok(observation) = model.initial.observe(segment) else { continue };
         let grid = posterior.drag().grid();

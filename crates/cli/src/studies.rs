@@ -1,5 +1,6 @@
 //! Simulated data that comes with the program: the paper's study, and the fleet of the demonstration.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use simulate::{AircraftTruth, Plan, Preset, Richness, Simulation, study};
@@ -89,13 +90,14 @@ fn static_points(aircraft: &AircraftTruth, richness: Richness) -> Result<String,
         let point =
             study::static_point(aircraft, richness, &condition).map_err(|error| wrong(&error))?;
         let measured = FuelFlowTotal::kilograms_per_second(point.measured_fuel_flow_kg_s);
-        text.push_str(&format!(
-            "{},{},{},0,{:.1}\n",
+        let _ = writeln!(
+            text,
+            "{},{},{},0,{:.1}",
             condition.weight_lb,
             condition.pressure_altitude_ft,
             condition.mach,
             measured.to_pounds_per_hour()
-        ));
+        );
     }
     Ok(text)
 }

@@ -49,21 +49,18 @@ pub fn table(model: &ModelFile) -> Columns {
 /// One row a coefficient: its value and, where the law knows it, its covariance with each of the six.
 fn polynomial(model: &ModelFile) -> Result<Columns, String> {
     let basis = model.initial.polynomial().basis;
-    let (surface, covariance) = match model.posterior() {
-        Some(posterior) => {
-            let export = polynomial_export(posterior, basis).map_err(|error| error.to_string())?;
-            (export.surface, Some(export.covariance))
-        }
-        None => {
-            let grid = model.grid();
-            let points: Vec<_> = (0..grid.nodes())
-                .map(|node| {
-                    let (x, y) = grid.coordinates(node);
-                    (x, y, model.drag_coefficient().value_at_node(node), 1.0)
-                })
-                .collect();
-            (surface::fit(basis, &points).map_err(|error| error.to_string())?.surface, None)
-        }
+    let (surface, covariance) = if let Some(posterior) = model.posterior() {
+        let export = polynomial_export(posterior, basis).map_err(|error| error.to_string())?;
+        (export.surface, Some(export.covariance))
+    } else {
+        let grid = model.grid();
+        let points: Vec<_> = (0..grid.nodes())
+            .map(|node| {
+                let (x, y) = grid.coordinates(node);
+                (x, y, model.drag_coefficient().value_at_node(node), 1.0)
+            })
+            .collect();
+        (surface::fit(basis, &points).map_err(|error| error.to_string())?.surface, None)
     };
     let mut columns = Columns::default();
     columns.count("coefficient", 0..surface.coefficients.len() as u64);

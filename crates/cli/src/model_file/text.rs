@@ -317,7 +317,6 @@ fn flags_from_text(
         .collect()
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "made for map_err, which hands errors over")]
 fn value(field: &'static str, reason: impl Display) -> ModelTextError {
     ModelTextError::Value { field, reason: reason.to_string() }
 }

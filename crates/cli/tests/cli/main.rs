@@ -1,6 +1,11 @@
 //! Black-box tests of the binary: what it writes, what it says, how it ends.
 
-#![expect(clippy::disallowed_methods, reason = "tests of a program that reads and writes files")]
+#![expect(
+    clippy::disallowed_methods,
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "tests of a program that reads and writes files; a test that cannot go on shall stop"
+)]
 
 mod bad_input;
 mod commands;

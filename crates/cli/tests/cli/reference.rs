@@ -150,8 +150,7 @@ fn compare_summary(golden: &Path, output: &Path, fleet: &str, grid: &str, thresh
         .find(|&row| {
             rows["fleet"][row] == fleet
                 && rows["grid"][row] == grid
-                && rows["threshold_percent"][row].parse::<f64>().unwrap()
-                    == threshold.parse::<f64>().unwrap()
+                && rows["threshold_percent"][row] == format!("{threshold}.0")
         })
         .unwrap();
     let expected = |name: &str| rows[name][row].parse::<f64>().unwrap();
