@@ -112,7 +112,7 @@ struct LearntText {
     criteria: String,
     law: LawText,
     references: References,
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     baseline: Option<Baseline>,
     ledger: Vec<LedgerEntry>,
 }
