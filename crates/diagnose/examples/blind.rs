@@ -11,6 +11,7 @@ use flight::effect::EffectId;
 mod flown;
 use flown::{Background, Random, Setup, exact_model, fly, plant};
 
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts typed by hand")]
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
     let number = |k: usize, default: f64| {

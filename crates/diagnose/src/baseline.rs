@@ -333,7 +333,7 @@ impl Baseline {
             let deviation = self.prior_deviation(k);
             precision[(k, k)] += 1.0 / (deviation * deviation);
         }
-        let factor = Factor::of(precision).ok_or(DiagnoseError::Degenerate)?;
+        let factor = Factor::of(&precision).ok_or(DiagnoseError::Degenerate)?;
         let mut covariance = Mat::<f64>::identity(width, width);
         factor.solve(&mut covariance);
         let mut solution = Mat::from_fn(width, 1, |i, _| gram[(i, width)]);
@@ -353,7 +353,7 @@ impl Baseline {
         for k in 0..width {
             covariance[(k, k)] *= 1.0 + 1e-12;
         }
-        let lower = Factor::of(covariance).ok_or(DiagnoseError::Degenerate)?;
+        let lower = Factor::of(&covariance).ok_or(DiagnoseError::Degenerate)?;
         self.factor = lower.lower().to_owned();
         self.parts.factor = (0..width)
             .flat_map(|i| (0..=i).map(move |j| (i, j)))
@@ -418,7 +418,7 @@ impl Baseline {
             let step = if round < COARSE_ROUNDS { COARSE_STEP } else { FINE_STEP };
             let mut moved = false;
             for dial in 0..DIALS {
-                if !self.is_live(dial, data) {
+                if !Self::is_live(dial, data) {
                     continue;
                 }
                 for by in [step, 1.0 / step] {
@@ -434,7 +434,7 @@ impl Baseline {
         }
     }
 
-    const fn is_live(&self, dial: usize, data: &Data<'_>) -> bool {
+    const fn is_live(dial: usize, data: &Data<'_>) -> bool {
         match dial {
             0 | 3 | 6 | 7 => true,
             1 | 4 => data.channels.contrasts > 0,
@@ -523,7 +523,7 @@ impl Baseline {
             let deviation = self.prior_deviation(k);
             precision[(k, k)] += 1.0 / (deviation * deviation);
         }
-        let factor = Factor::of(precision)?;
+        let factor = Factor::of(&precision)?;
         let mut solution = Mat::from_fn(width, 1, |i, _| gram[(i, width)]);
         factor.solve(&mut solution);
         Some((solution, factor))
@@ -601,7 +601,7 @@ impl Baseline {
                 .sum::<f64>()
     }
 
-    /// Whitened Gram of raw columns and residual, and Σ ln|C_f|.
+    /// Whitened Gram of raw columns and residual, and Σ `ln|C_f|`.
     fn gram(&self, data: &Data<'_>) -> (Mat<f64>, f64) {
         self.gram_of(data, |_| true)
     }

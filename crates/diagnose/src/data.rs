@@ -157,6 +157,10 @@ impl Predictor<'_> {
         }
         if let Some(baseline) = self.baseline {
             predicted[0] += baseline.mean_at(response);
+            #[expect(
+                clippy::needless_range_loop,
+                reason = "a contrast is a channel and a number of the baseline"
+            )]
             for contrast in 1..=channels.contrasts.min(baseline.contrasts()) {
                 predicted[contrast] += baseline.split_mean(contrast);
             }
@@ -312,7 +316,7 @@ impl<'a> Data<'a> {
             &Effects::none(),
             &kept.segment.rows,
             0.0,
-            &is_recorded,
+            is_recorded,
             channels,
             factors,
             &predict,
@@ -338,13 +342,14 @@ impl<'a> Data<'a> {
                 id,
                 HiddenParameters::default(),
                 0.5,
-                &row.is_recorded,
+                row.is_recorded,
                 &self.predictor,
             )
             .unwrap_or([0.0; MAXIMUM_CHANNELS]);
         }
         if let Some(baseline) = self.predictor.baseline {
             for (slope, carried) in row.environment.iter().zip(baseline.environment()) {
+                #[expect(clippy::needless_range_loop, reason = "channels of two vectors")]
                 for channel in 0..channels.count() {
                     row.residual[channel] -= carried * slope[channel];
                 }
@@ -359,7 +364,7 @@ impl<'a> Data<'a> {
                 effect.id,
                 column.hidden,
                 0.5 * effect.typical,
-                &row.is_recorded,
+                row.is_recorded,
                 &self.predictor,
             );
             // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
@@ -382,7 +387,7 @@ pub(crate) fn signature(
     id: flight::effect::EffectId,
     hidden: HiddenParameters,
     step: f64,
-    is_recorded: &[bool; MAXIMUM_CHANNELS],
+    is_recorded: [bool; MAXIMUM_CHANNELS],
     predictor: &Predictor<'_>,
 ) -> Result<ByChannel, perf_model::effects::EffectError> {
     let size = at.size(id);
@@ -457,7 +462,7 @@ fn deck_of(
     for a in 0..DECK_TERMS {
         normal[(a, a)] += 1e-6 * segments.len() as f64;
     }
-    if let Some(factor) = crate::linear::Factor::of(normal) {
+    if let Some(factor) = crate::linear::Factor::of(&normal) {
         factor.solve(&mut right);
         for a in 0..DECK_TERMS {
             deck.coefficients[a] = right[(a, 0)];

@@ -80,9 +80,9 @@ const AGNOSTIC_VARIABLES: [Variable; 18] = [
 /// How a smooth function acts: on fuel flow alone, or on thrust, so that N2 sees it too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Acts {
-    OnFuelFlow,
-    OnThrust,
-    OnSplit,
+    FuelFlow,
+    Thrust,
+    Split,
 }
 
 /// An agnostic function of one variable.
@@ -156,8 +156,8 @@ impl<'a> Design<'a> {
             else {
                 continue;
             };
-            for acts in [Acts::OnFuelFlow, Acts::OnThrust] {
-                if acts == Acts::OnThrust && !data.channels.n2 {
+            for acts in [Acts::FuelFlow, Acts::Thrust] {
+                if acts == Acts::Thrust && !data.channels.n2 {
                     continue;
                 }
                 let columns = at..at + hats.len();
@@ -170,7 +170,7 @@ impl<'a> Design<'a> {
             at = columns.end;
             blocks.push(Block {
                 variable: Variable::Engine,
-                acts: Acts::OnSplit,
+                acts: Acts::Split,
                 columns,
                 hats: None,
             });
@@ -227,6 +227,7 @@ impl<'a> Design<'a> {
         matrix
     }
 
+    #[expect(clippy::too_many_lines, reason = "one block for each kind of column, in their order")]
     fn write_segment(
         &self,
         data: &Data<'_>,
@@ -328,7 +329,7 @@ impl<'a> Design<'a> {
                         .value(&row.point, &row.response, &self.references)
                         .unwrap_or(0.0);
                     hats.write(value, &mut scratch[..hats.len()]);
-                    let unit = if acts == Acts::OnThrust { &thrust } else { &fuel };
+                    let unit = if acts == Acts::Thrust { &thrust } else { &fuel };
                     for (k, value) in scratch[..hats.len()].iter().enumerate() {
                         scaled(matrix, block.columns.start + k, unit, *value);
                     }
@@ -421,7 +422,7 @@ pub(crate) fn half_whitened(row: &SegmentRow, values: &ByChannel, channels: usiz
 /// UᵀU = QΛQᵀ,  V = UQΛ^(−1/2),  (1 + UUᵀ)^(−1/2) = 1 − V·diag(1 − (1 + λ)^(−1/2))·Vᵀ        [diagnosis.16]
 /// ```
 ///
-/// Returns ln|1 + UᵀU|, what the common errors add to the ln of the covariance's determinant.
+/// Returns `ln|1 + UᵀU|`, what the common errors add to the ln of the covariance's determinant.
 pub(crate) fn whiten_flight(
     data: &Data<'_>,
     segments: &[SegmentRow],

@@ -1,5 +1,7 @@
 //! From flights to a verdict.
 
+use core::fmt::Write as _;
+
 use flight::effect::EffectId;
 use perf_model::PerformanceModel;
 use perf_model::effects::{
@@ -328,9 +330,9 @@ fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
 
 const fn acts_words(acts: Acts) -> &'static str {
     match acts {
-        Acts::OnFuelFlow => "fuel flow",
-        Acts::OnThrust => "thrust",
-        Acts::OnSplit => "one engine",
+        Acts::FuelFlow => "fuel flow",
+        Acts::Thrust => "thrust",
+        Acts::Split => "one engine",
     }
 }
 
@@ -646,13 +648,14 @@ fn advice(verdict: &Verdict, differs: Option<&str>) -> String {
         format!("{}.", verdict.effects.join(" and "))
     };
     if let Some(variable) = differs {
-        words.push_str(&format!(" Its form differs from the library's in {variable}."));
+        let _ = write!(words, " Its form differs from the library's in {variable}.");
     }
     if let Some(best) = verdict.separations.first() {
-        words.push_str(&format!(
+        let _ = write!(
+            words,
             " To be sure: {} ({:.1} to {:.1} standard deviations from {}).",
             best.measurement, best.distance_now, best.distance_then, best.from
-        ));
+        );
     }
     words
 }

@@ -90,7 +90,7 @@ pub(crate) fn integrate_out(
     let inner = Mat::from_fn(out.len(), out.len(), |i, j| {
         gram[(out[i], out[j])] * deviations[i] * deviations[j] + if i == j { 1.0 } else { 0.0 }
     });
-    let factor = Factor::of(inner)?;
+    let factor = Factor::of(&inner)?;
     let mut projected =
         Mat::from_fn(out.len(), kept.len(), |i, j| gram[(out[i], kept[j])] * deviations[i]);
     factor.half_solve(&mut projected);

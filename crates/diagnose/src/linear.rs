@@ -12,7 +12,7 @@ pub(crate) struct Factor {
 
 impl Factor {
     /// Factors a matrix by its lower triangle; `None` where it is not positive definite.
-    pub(crate) fn of(matrix: Mat<f64>) -> Option<Self> {
+    pub(crate) fn of(matrix: &Mat<f64>) -> Option<Self> {
         let llt = matrix.llt(Side::Lower).ok()?;
         let lower = llt.L().to_owned();
         (0..lower.nrows()).all(|k| lower[(k, k)].is_finite()).then_some(Self { lower })
@@ -40,7 +40,7 @@ impl Factor {
     }
 }
 
-/// C −= AᵀB, in place.
+/// `C −= AᵀB`, in place.
 pub(crate) fn subtract_product(from: &mut Mat<f64>, a: &Mat<f64>, b: &Mat<f64>) {
     faer::linalg::matmul::matmul(
         from.as_mut(),
@@ -52,7 +52,7 @@ pub(crate) fn subtract_product(from: &mut Mat<f64>, a: &Mat<f64>, b: &Mat<f64>) 
     );
 }
 
-/// C += ZᵀZ, lower triangle only.
+/// `C += ZᵀZ`, lower triangle only.
 pub(crate) fn add_gram(into: &mut Mat<f64>, rows: &Mat<f64>) {
     use faer::linalg::matmul::triangular::{BlockStructure, matmul};
     matmul(
@@ -85,12 +85,12 @@ mod tests {
     fn factor_by_hand() {
         // [[4, 2], [2, 5]]: L = [[2, 0], [1, 2]], determinant 16, solution of [8, 9] is [1.375, 1.25].
         let matrix = Mat::from_fn(2, 2, |i, j| [[4.0, 2.0], [2.0, 5.0]][i][j]);
-        let factor = Factor::of(matrix).unwrap();
+        let factor = Factor::of(&matrix).unwrap();
         assert!((factor.ln_determinant() - 16.0_f64.ln()).abs() < 1e-15);
         let mut right = Mat::from_fn(2, 1, |i, _| [8.0, 9.0][i]);
         factor.solve(&mut right);
         assert!((right[(0, 0)] - 1.375).abs() < 1e-15 && (right[(1, 0)] - 1.25).abs() < 1e-15);
-        assert!(Factor::of(Mat::from_fn(2, 2, |_, _| -1.0)).is_none());
+        assert!(Factor::of(&Mat::from_fn(2, 2, |_, _| -1.0)).is_none());
     }
 
     #[test]

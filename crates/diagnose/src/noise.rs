@@ -76,13 +76,15 @@ impl<F: Fn(&Response) -> ByChannel> PredictChannels for F {}
 /// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
 /// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split        [diagnosis.14]
 /// ```
+#[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
+#[expect(clippy::needless_range_loop, reason = "rows and columns of a covariance")]
 pub(crate) fn segment_noise(
     model: &EffectModel<'_>,
     point: &EffectPoint,
     effects: &Effects,
     rows: &[u32],
     extra_variance: f64,
-    recorded: &[bool; MAXIMUM_CHANNELS],
+    recorded: [bool; MAXIMUM_CHANNELS],
     channels: Channels,
     factors: &NoiseFactors,
     predict: &impl PredictChannels,

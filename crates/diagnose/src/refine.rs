@@ -200,7 +200,7 @@ fn relinearise(
                     effect.id,
                     *effects.hidden(),
                     0.5 * effect.typical,
-                    &row.is_recorded,
+                    row.is_recorded,
                     &data.predictor,
                 )
                 .unwrap_or([0.0; MAXIMUM_CHANNELS]);

@@ -42,7 +42,7 @@ pub(crate) fn weights(
     }
     let mut solution =
         Mat::from_fn(columns.len(), 1, |i, _| gram.matrix[(columns[i], design.residual())]);
-    Factor::of(normal)?.solve(&mut solution);
+    Factor::of(&normal)?.solve(&mut solution);
 
     let data = stacked.data;
     let channels = data.channels.count();

@@ -93,7 +93,7 @@ pub struct Scores {
     pub closure_median: Option<f64>,
     /// Median of |size error|.
     pub size_error_median: Option<f64>,
-    /// Planted → on top ("no_gap", "outside_library" where nothing is named) → count.
+    /// Planted → on top (`no_gap`, `outside_library` where nothing is named) → count.
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
 }
 

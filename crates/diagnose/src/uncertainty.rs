@@ -77,7 +77,7 @@ impl TableUncertainty {
             return Err(TableUncertaintyError::Length { found, nodes, rank: nodes });
         }
         let matrix = Mat::from_fn(nodes, nodes, |row, column| covariance[row][column]);
-        let factor = Factor::of(matrix).ok_or(TableUncertaintyError::NotPositiveDefinite)?;
+        let factor = Factor::of(&matrix).ok_or(TableUncertaintyError::NotPositiveDefinite)?;
         let lower = factor.lower();
         let values = (0..nodes)
             .flat_map(|row| {

@@ -1,4 +1,5 @@
 //! What is too little or too odd for a name gets none, and no number is ever NaN.
+#![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{Baseline, DiagnoseError, Diagnosis, Input, Options, VerdictKind, diagnose};
 use flight::effect::EffectId;

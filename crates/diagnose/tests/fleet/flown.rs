@@ -3,6 +3,7 @@
 //! The truth's forms are not the library's: Prandtl–Schlichting friction for a power law, saturating ageing for a rate,
 //! two half-parabolas for one, bent trim drag, a hidden anti-ice switch, ageostrophic wind, exact sensor errors.
 #![allow(dead_code, reason = "each test uses its part")]
+#![expect(clippy::unwrap_used, reason = "tests and examples only")]
 
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ const K: f64 = 0.056;
 const MASS_KG: f64 = 13_300.0;
 const FUEL_FLOW_KG_S: f64 = 0.235;
 
-pub fn isa(h: f64) -> (f64, f64) {
+pub(crate) fn isa(h: f64) -> (f64, f64) {
     if h < 11_000.0 {
         let t = 288.15 - 0.0065 * h;
         (t, 101_325.0 * (t / 288.15).powf(G0 / (0.0065 * R)))
@@ -40,7 +41,7 @@ fn wave(mach: f64, lift: f64) -> f64 {
 }
 
 /// The model that the diagnosis gets: the truth without any effect on a fine grid ("exact").
-pub fn exact_model() -> PerformanceModel {
+pub(crate) fn exact_model() -> PerformanceModel {
     let aircraft = Aircraft::from_ron(
         r#"(
             name: "virtual", type_code: "VIRT", engines: 2, wing_area_m2: 48.96,
@@ -61,27 +62,32 @@ pub fn exact_model() -> PerformanceModel {
     PerformanceModel::new(aircraft, polynomial, table, marks).unwrap()
 }
 
-pub struct Random(ChaCha8Rng);
+pub(crate) struct Random(ChaCha8Rng);
 
 impl Random {
-    pub fn new(seed: u64, stream: u64) -> Self {
+    pub(crate) fn new(seed: u64, stream: u64) -> Self {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         key[8..16].copy_from_slice(&stream.to_le_bytes());
         Self(ChaCha8Rng::from_seed(key))
     }
 
-    pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
         let unit = (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64);
         low + unit * (high - low)
     }
 
-    pub fn normal(&mut self, mean: f64, deviation: f64) -> f64 {
+    pub(crate) fn normal(&mut self, mean: f64, deviation: f64) -> f64 {
         let z: f64 = StandardNormal.sample(&mut self.0);
         mean + deviation * z
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a number from 0 to n, rounded down"
+    )]
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.uniform(0.0, n as f64) as usize).min(n - 1)
     }
 }
@@ -108,26 +114,26 @@ struct Row {
 
 /// A planted effect with what hides in it.
 #[derive(Clone, Copy, Debug)]
-pub struct Planted {
-    pub id: EffectId,
-    pub size: f64,
+pub(crate) struct Planted {
+    pub(crate) id: EffectId,
+    pub(crate) size: f64,
 }
 
 #[derive(Clone, Debug, Default)]
-pub struct Background {
+pub(crate) struct Background {
     /// Size of every other effect, of its typical size.
-    pub clutter: f64,
+    pub(crate) clutter: f64,
     /// Amplitude of the smooth table errors.
-    pub field: f64,
+    pub(crate) field: f64,
 }
 
 #[derive(Clone, Debug)]
-pub struct Setup {
-    pub flights: usize,
-    pub segments: usize,
-    pub gauges: bool,
-    pub outliers: f64,
-    pub noise: f64,
+pub(crate) struct Setup {
+    pub(crate) flights: usize,
+    pub(crate) segments: usize,
+    pub(crate) gauges: bool,
+    pub(crate) outliers: f64,
+    pub(crate) noise: f64,
 }
 
 impl Default for Setup {
@@ -136,13 +142,13 @@ impl Default for Setup {
     }
 }
 
-pub struct Fleet {
-    pub flights: Vec<Vec<Segment>>,
-    pub gauges: Vec<Option<GaugeBurn>>,
+pub(crate) struct Fleet {
+    pub(crate) flights: Vec<Vec<Segment>>,
+    pub(crate) gauges: Vec<Option<GaugeBurn>>,
 }
 
 impl Fleet {
-    pub fn records(&self) -> Vec<FlightRecord<'_>> {
+    pub(crate) fn records(&self) -> Vec<FlightRecord<'_>> {
         self.flights
             .iter()
             .zip(&self.gauges)
@@ -151,7 +157,7 @@ impl Fleet {
     }
 }
 
-pub fn typical(id: EffectId) -> f64 {
+pub(crate) fn typical(id: EffectId) -> f64 {
     match id.entry().typical {
         TypicalSize::Absolute(size) => size,
         TypicalSize::ShareOfMass(share) => share * MASS_KG,
@@ -159,7 +165,7 @@ pub fn typical(id: EffectId) -> f64 {
     }
 }
 
-pub fn one_signed(id: EffectId) -> bool {
+pub(crate) fn one_signed(id: EffectId) -> bool {
     matches!(
         id,
         EffectId::ZeroLiftDrag
@@ -180,7 +186,7 @@ fn known(id: EffectId) -> bool {
 }
 
 /// An effect at a multiple of its typical size, sign drawn where physics leaves it open.
-pub fn plant(id: EffectId, times: f64, random: &mut Random) -> Planted {
+pub(crate) fn plant(id: EffectId, times: f64, random: &mut Random) -> Planted {
     let size = typical(id) * if known(id) { 1.0 } else { times };
     let sign =
         if one_signed(id) || known(id) || random.uniform(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
@@ -393,7 +399,9 @@ impl Truth<'_> {
 }
 
 /// Flies a fleet with effects.
-pub fn fly(seed: u64, setup: &Setup, effects: &[Planted], background: &Background) -> Fleet {
+#[expect(clippy::too_many_lines, reason = "one row from truth to sensors, step by step")]
+#[expect(clippy::cast_possible_truncation, reason = "whole seconds, and counts of a few")]
+pub(crate) fn fly(seed: u64, setup: &Setup, effects: &[Planted], background: &Background) -> Fleet {
     let mut random = Random::new(seed, 1);
     let rows = design(&mut random, setup);
     let mut random = Random::new(seed, 2);
