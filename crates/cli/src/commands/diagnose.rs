@@ -22,6 +22,8 @@ use crate::summary::{RefusedSummary, counted};
 const SCHEMA: &str = "cruisefit.diagnosis/1";
 /// Most nodes of a table whose full covariance is taken; beyond, the nodes' standard deviations alone.
 const NODES_WITH_COVARIANCE: usize = 700;
+/// Least probability of a cause outside the library that the terminal tells.
+const SHARE_TOLD: f64 = 0.01;
 /// Most causes that the terminal lists.
 const CAUSES_TOLD: usize = 4;
 
@@ -288,6 +290,19 @@ fn tell(diagnosis: &Diagnosis, text: &mut String) {
                 if cause.hidden.is_empty() { String::new() } else { format!(", {}", cause.hidden) },
             );
         }
+    }
+    // The causes' probabilities share one whole with this one.
+    if diagnosis.outside.probability >= SHARE_TOLD {
+        let _ = writeln!(
+            text,
+            "    something that no effect of the library is: probability {:.2}{}",
+            diagnosis.outside.probability,
+            diagnosis
+                .outside
+                .variable
+                .as_ref()
+                .map_or_else(String::new, |variable| format!(", it hangs on {variable}"))
+        );
     }
     for separation in verdict.separations.iter().take(2) {
         let _ = writeln!(

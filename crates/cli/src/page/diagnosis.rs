@@ -62,6 +62,12 @@ fn section(diagnosis: &Diagnosis) -> Markup {
                 p { "This data cannot tell apart: " (diagnosis.verdict.class.join(", ")) "." }
             }
             @if diagnosis.verdict.kind != VerdictKind::InsufficientData { (causes(&diagnosis.causes)) }
+            p {
+                "Something that no effect of the library is: probability "
+                (format!("{:.3}", diagnosis.outside.probability))
+                @if let Some(variable) = &diagnosis.outside.variable { ", it hangs on " (variable) }
+                ". The causes' probabilities share one whole with this one."
+            }
             @if !diagnosis.verdict.separations.is_empty() {
                 h3 { "What would separate them" }
                 table {
