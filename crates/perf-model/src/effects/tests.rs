@@ -112,7 +112,6 @@ fn slope(model: &EffectModel<'_>, at: &EffectPoint, effect: EffectId, step: f64)
 
 /// The table of signatures in the theory page's section on effects, written out: dlnWf/dθ by hand for every effect.
 #[test]
-#[expect(clippy::too_many_lines, reason = "one table: splitting it would hide it")]
 fn every_signature_against_its_formula_by_hand() {
     let performance = model(true);
     let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
