@@ -93,6 +93,11 @@ impl<'a> Stacked<'a> {
         if self.data.predictor.baseline.is_some() { TAUGHT_TAU } else { 0.0 }
     }
 
+    /// A level of scatter between flights, relative.
+    pub(crate) fn scatter(&self, level: usize) -> f64 {
+        self.scatters.get(level).copied().unwrap_or(0.0)
+    }
+
     /// Whitened rows of a flight.
     pub(crate) fn whitened(&self, flight: usize) -> std::borrow::Cow<'_, Mat<f64>> {
         match &self.kept {

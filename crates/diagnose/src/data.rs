@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, Segment};
 use perf_model::effects::{EffectModel, EffectPoint, Effects, HiddenParameters, Response};
+use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
 use crate::library::Library;
@@ -44,6 +45,10 @@ pub(crate) struct SegmentRow {
     pub(crate) n2_slope: f64,
     /// Drag over thrust.
     pub(crate) drag_over_thrust: f64,
+    /// Mean N2 of the engines, %, where it is recorded.
+    pub(crate) n2_percent: Option<f64>,
+    /// Standard deviation of the recorded acceleration, m/s².
+    pub(crate) acceleration_deviation_m_s2: f64,
     /// Chord errors of the drag table along lift coefficient and Mach number, relative to drag.
     pub(crate) chords: [f64; 2],
 }
@@ -236,12 +241,16 @@ fn recorded_channels(
         contrasts(&ln, &mut values[1..=channels.contrasts]);
         present[1..=channels.contrasts].fill(true);
     }
-    if channels.n2 && has_n2(means) {
-        let mean = means.n2_percent.iter().sum::<f64>() / means.n2_percent.len() as f64;
+    if let Some(mean) = mean_n2_percent(means).filter(|_| channels.n2) {
         values[channels.n2_row()] = (mean / 100.0).ln();
         present[channels.n2_row()] = true;
     }
     (values, present)
+}
+
+/// Mean N2 of the engines, %, where all are recorded.
+pub(crate) fn mean_n2_percent(means: &flight::SegmentMeans) -> Option<f64> {
+    has_n2(means).then(|| means.n2_percent.iter().sum::<f64>() / means.n2_percent.len() as f64)
 }
 
 fn has_n2(means: &flight::SegmentMeans) -> bool {
@@ -332,6 +341,12 @@ impl<'a> Data<'a> {
             deck: deck.terms(&kept.response),
             n2_slope: if channels.n2 { deck.slope(&kept.response) } else { 0.0 },
             drag_over_thrust: kept.response.drag_over_thrust,
+            n2_percent: mean_n2_percent(&kept.segment.means),
+            acceleration_deviation_m_s2: factors.within[0]
+                * mean_acceleration_deviation_m_s2(
+                    model.aircraft().sensors().acceleration_m_s2,
+                    kept.segment.rows.len(),
+                ),
             chords: chord_errors(model, &kept.response),
         };
         for (slot, id) in row.environment.iter_mut().zip(ENVIRONMENT) {

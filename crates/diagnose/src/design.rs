@@ -347,7 +347,27 @@ impl<'a> Design<'a> {
         }
     }
 
-    fn write_smooth(&self, row: &SegmentRow, into: &mut [f64]) {
+    /// What a baseline was taught, where there is one.
+    pub(crate) const fn baseline(&self) -> Option<&Baseline> {
+        self.nuisance_parts.baseline
+    }
+
+    /// What the table does not know, where that is given.
+    pub(crate) const fn table(&self) -> Option<&TableUncertainty> {
+        self.nuisance_parts.table
+    }
+
+    pub(crate) const fn references(&self) -> &EffectReferences {
+        &self.references
+    }
+
+    /// Terms of the smooth background, of one kind.
+    pub(crate) fn smooth_terms(&self) -> usize {
+        1 + self.smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
+            + self.smooth_products.len()
+    }
+
+    pub(crate) fn write_smooth(&self, row: &SegmentRow, into: &mut [f64]) {
         let value = |variable: Variable| {
             variable.value(&row.point, &row.response, &self.references).unwrap_or(0.0)
         };

@@ -24,6 +24,7 @@ use crate::output::{
 };
 use crate::outside::{Outside, compete};
 use crate::record::FlightRecord;
+use crate::slices;
 
 /// Fewest flights and segments that a name is given on.
 const FEWEST_FLIGHTS: usize = 6;
@@ -65,6 +66,10 @@ pub struct Options {
     pub without: Vec<EffectId>,
     /// Leave closure out: choice and fit on folds cost as much again as the search.
     pub skip_closure: bool,
+    /// Leave out where the gap lies.
+    pub skip_where: bool,
+    /// Seed of the draws of noise and the resamples of flights behind intervals and `where`.
+    pub seed: u64,
 }
 
 /// Why there is no diagnosis.
@@ -273,6 +278,11 @@ fn conclude(
     let unseen = (!options.skip_closure && is_real(&analysis, &outside))
         .then(|| nested(stacked, model, library, scale));
     let gap = gap_of(stacked, &analysis, &outside, &own, scale);
+    let places = if options.skip_where {
+        vec![]
+    } else {
+        slices::find(stacked, &analysis, scale, gap.detected, options.seed)
+    };
     let verdict = verdict(
         &analysis,
         &outside,
@@ -307,7 +317,7 @@ fn conclude(
         flights: stacked.data.flights.len(),
         segments: stacked.data.segments.len(),
         gap,
-        r#where: vec![],
+        r#where: places,
         causes,
         not_testable: vec![],
         verdict,

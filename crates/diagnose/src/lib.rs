@@ -4,8 +4,8 @@
 //! a [`Diagnosis`]: named effects with probability, size and 95 % interval, the class of effects that this data cannot tell
 //! from the first, the measurement that could, and what the effect leaves on flights it was not fitted to. [`Baseline`]
 //! teaches it what clean flights of the same model look like. [`trial`] scores blind trials.
-//! What it is not: it adapts nothing, opens no file and draws no random number. It does not simulate; whoever runs a trial
-//! plants the effects.
+//! What it is not: it adapts nothing, opens no file. The draws of noise behind `where` come from a seed that is an argument. It does
+//! not simulate; whoever runs a trial plants the effects.
 //!
 //! The one design decision: every effect alone and every pair is scored by closed-form evidence over backgrounds in which
 //! all other effects may be present in small amounts and the model may be smoothly wrong. Nothing is chosen by
@@ -19,7 +19,7 @@
 //!   [`Detectable::nearest_pair`]; below about 5 nothing can be done but to measure something else.
 //! - Against a bare table everything that no table over lift coefficient and Mach number can hold counts as gap. Teach a
 //!   [`Baseline`].
-//! - `where` is empty so far.
+//! - `where` finds places of one or two variables with edges at quintiles; it looks at sums over places, not at causes.
 //! - Stabilised segments are flown wings level: `load_factor` and `asymmetry_drag` are hardly visible in them.
 //!
 //! ```
@@ -66,6 +66,7 @@ mod outside;
 mod record;
 mod refine;
 mod robust;
+mod slices;
 pub mod trial;
 mod uncertainty;
 mod variables;
@@ -78,5 +79,6 @@ pub use output::{
     Verdict, VerdictKind,
 };
 pub use record::{FlightRecord, GaugeBurn};
+pub use slices::members::{SliceError, slice_members};
 pub use uncertainty::{TableUncertainty, TableUncertaintyError};
 pub use variables::Variable;

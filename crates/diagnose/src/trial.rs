@@ -1,5 +1,7 @@
 //! Scores of blind trials: what was planted against what was diagnosed. The planting is the caller's.
 
+pub mod places;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};

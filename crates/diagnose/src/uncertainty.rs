@@ -93,6 +93,15 @@ impl TableUncertainty {
         self.rank
     }
 
+    pub(crate) const fn grid(&self) -> &Arc<Grid> {
+        &self.grid
+    }
+
+    /// A node's row of the factor.
+    pub(crate) fn row(&self, node: usize) -> &[f64] {
+        &self.factor[node * self.rank..(node + 1) * self.rank]
+    }
+
     /// Loadings of the prediction at a point: bilinear weights times the factor. Zero outside the grid.
     pub(crate) fn write(&self, response: &Response, into: &mut [f64]) {
         into.fill(0.0);

@@ -49,6 +49,8 @@ pub enum Variable {
     MachExcess,
     /// Which engine.
     Engine,
+    /// Mean N2 of the engines, %: of a segment, not of a point.
+    N2,
 }
 
 impl Variable {
@@ -76,6 +78,7 @@ impl Variable {
             Self::MachLift => "Mach number with lift coefficient",
             Self::MachExcess => "high Mach number",
             Self::Engine => "engine",
+            Self::N2 => "N2",
         }
     }
 
@@ -130,7 +133,7 @@ impl Variable {
             }
             Self::MachLift => (point.mach - references.mach) * response.lift_coefficient,
             Self::MachExcess => (point.mach - references.mach + 0.02).max(0.0).powi(2),
-            Self::Engine => return None,
+            Self::Engine | Self::N2 => return None,
         })
     }
 }

@@ -49,7 +49,7 @@ pub fn run(arguments: &DiagnoseArgs, progress: bool) -> Result<Outcome, Failure>
     let options = Options {
         effects: effects("--effects", &arguments.effects)?,
         without: effects("--without", &arguments.without)?,
-        skip_closure: false,
+        ..Options::default()
     };
     let models = Models::read(&arguments.models.models)?;
     let mut reading = prepare(&arguments.reports, progress)?;
