@@ -8,13 +8,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::DiagnoseError;
 use crate::data::{DECK_TERMS, Data, Deck, ENVIRONMENT};
-use crate::design::{half_whitened, whiten_flight};
-use crate::gram::integrate_out;
 use crate::library::Library;
-use crate::linear::{Factor, add_gram, symmetrize};
 use crate::noise::{MAXIMUM_CHANNELS, NoiseFactors};
 use crate::record::FlightRecord;
 use crate::variables::{Hats, Scaled, Variable};
+
+mod learning;
+mod moments;
+
+use moments::Moments;
 
 /// Variables of the remainder.
 const VARIABLES: [Variable; 6] = [
@@ -37,25 +39,11 @@ const PRODUCT_DEVIATION: f64 = 0.005;
 const SPLIT_DEVIATION: f64 = 0.03;
 /// Prior standard deviation of a deck coefficient about its least-squares value.
 const DECK_DEVIATION: f64 = 0.02;
-/// Usual noise over the handbook's, and its spread: factors of 0.3 to 0.55 were seen on simulated fleets.
-const USUAL_NOISE: f64 = 0.5;
-const USUAL_NOISE_LN_DEVIATION: f64 = 0.5;
-/// Spread of the sizes of hat functions and products about their defaults.
-const SCALE_LN_DEVIATION: f64 = 1.0;
 /// Folds of flights that the scatter between flights is judged on, and rounds of it.
 const FOLDS: usize = 10;
 const INFLATIONS: usize = 3;
 /// Prior standard deviation of how much of the environment's effects a fleet shows: all of it, or none.
 const ENVIRONMENT_DEVIATION: f64 = 1.0;
-/// Rounds over all dials, the first of them coarse.
-const ROUNDS: usize = 12;
-const COARSE_ROUNDS: usize = 4;
-const COARSE_STEP: f64 = 1.6;
-const FINE_STEP: f64 = 1.1;
-/// Dials: noise within flights and between flights of three kinds of channels, sizes of hat functions and of products.
-const DIALS: usize = 8;
-/// Limits of every dial: what a few flights say is not believed beyond them.
-const NOISE_LIMITS: (f64, f64) = (0.03, 10.0);
 /// Fewest flights that teach a remainder.
 const FEWEST_FLIGHTS: usize = 5;
 
@@ -116,20 +104,20 @@ impl Baseline {
     ) -> Result<Self, DiagnoseError> {
         let references = crate::references_of(model, drag_table, flights)?;
         let effect_model = EffectModel::new(model, drag_table, references)?;
-        let (mut data, _) =
-            Data::prepare(&effect_model, flights, None, |points, engines, starts| {
-                Library::of(&effect_model, points, engines, starts, |_| false)
-            });
+        let (data, _) = Data::prepare(&effect_model, flights, None, |points, engines, starts| {
+            Library::of(&effect_model, points, engines, starts, |_| false)
+        });
         if data.flights.len() < FEWEST_FLIGHTS {
             let found = data.flights.len();
             return Err(DiagnoseError::TooFewFlights { found, needed: FEWEST_FLIGHTS });
         }
         let mut baseline = Self::prior(&data, &references);
-        baseline.tune(&mut data);
+        let moments = Moments::of(&baseline, &data);
+        baseline.tune(&moments);
         for _ in 0..INFLATIONS {
-            baseline.inflate(&mut data);
+            baseline.inflate(&moments);
         }
-        baseline.fit(&data)?;
+        baseline.fit(&data, &moments)?;
         Ok(baseline)
     }
 
@@ -324,58 +312,6 @@ impl Baseline {
         }
     }
 
-    /// Posterior of all coefficients at the present noise.
-    fn fit(&mut self, data: &Data<'_>) -> Result<(), DiagnoseError> {
-        let width = self.factor.nrows();
-        let (gram, _) = self.gram(data);
-        let mut precision = Mat::from_fn(width, width, |i, j| gram[(i, j)]);
-        for k in 0..width {
-            let deviation = self.prior_deviation(k);
-            precision[(k, k)] += 1.0 / (deviation * deviation);
-        }
-        let factor = Factor::of(&precision).ok_or(DiagnoseError::Degenerate)?;
-        let mut covariance = Mat::<f64>::identity(width, width);
-        factor.solve(&mut covariance);
-        let mut solution = Mat::from_fn(width, 1, |i, _| gram[(i, width)]);
-        factor.solve(&mut solution);
-        let terms = self.parts.mean.len();
-        for k in 0..terms {
-            self.parts.mean[k] = solution[(k, 0)];
-        }
-        for k in 0..DECK_TERMS {
-            self.parts.deck_coefficients[k] =
-                data.predictor.deck.coefficients[k] + solution[(terms + k, 0)];
-        }
-        for k in 0..ENVIRONMENT.len() {
-            self.parts.environment[k] = solution[(terms + DECK_TERMS + k, 0)];
-        }
-        // A covariance inverted in floating point may miss definiteness by rounding; a hair on the diagonal mends it.
-        for k in 0..width {
-            covariance[(k, k)] *= 1.0 + 1e-12;
-        }
-        let lower = Factor::of(&covariance).ok_or(DiagnoseError::Degenerate)?;
-        self.factor = lower.lower().to_owned();
-        self.parts.factor = (0..width)
-            .flat_map(|i| (0..=i).map(move |j| (i, j)))
-            .map(|ij| self.factor[ij])
-            .collect();
-        let squares: f64 = data
-            .segments
-            .iter()
-            .map(|row| {
-                let carried: f64 = row
-                    .environment
-                    .iter()
-                    .zip(self.parts.environment)
-                    .map(|(slope, size)| slope[0] * size)
-                    .sum();
-                (row.residual[0] - self.mean_at(&row.response) - carried).powi(2)
-            })
-            .sum();
-        self.parts.rms = (squares / data.segments.len().max(1) as f64).sqrt();
-        Ok(())
-    }
-
     /// Raw values of every column and, last, the residual.
     fn raw_row(
         &self,
@@ -408,252 +344,6 @@ impl Baseline {
             *last = row.residual;
         }
         raw
-    }
-
-    /// Noise factors and sizes of the remainder by marginal likelihood: what is left of a flexible remainder is no measure
-    /// of the noise, because the remainder has eaten part of it.
-    fn tune(&mut self, data: &mut Data<'_>) {
-        let mut best = self.ln_marginal(data);
-        for round in 0..ROUNDS {
-            let step = if round < COARSE_ROUNDS { COARSE_STEP } else { FINE_STEP };
-            let mut moved = false;
-            for dial in 0..DIALS {
-                if !Self::is_live(dial, data) {
-                    continue;
-                }
-                for by in [step, 1.0 / step] {
-                    while let Some(found) = self.try_dial(dial, by, best, data) {
-                        best = found;
-                        moved = true;
-                    }
-                }
-            }
-            if !moved && round >= COARSE_ROUNDS {
-                break;
-            }
-        }
-    }
-
-    const fn is_live(dial: usize, data: &Data<'_>) -> bool {
-        match dial {
-            0 | 3 | 6 | 7 => true,
-            1 | 4 => data.channels.contrasts > 0,
-            _ => data.channels.n2,
-        }
-    }
-
-    /// Turns a dial; the better marginal likelihood, or `None` where it is not better, and the dial is turned back.
-    fn try_dial(&mut self, dial: usize, by: f64, best: f64, data: &mut Data<'_>) -> Option<f64> {
-        let before = (self.parts.noise, self.parts.scales);
-        let value = match dial {
-            0..3 => &mut self.parts.noise.within[dial],
-            3..6 => &mut self.parts.noise.between[dial - 3],
-            _ => &mut self.parts.scales[dial - 6],
-        };
-        let turned = *value * by;
-        let (low, high) = NOISE_LIMITS;
-        if turned < low || turned > high {
-            return None;
-        }
-        *value = turned;
-        rescale(data, &before.0, &self.parts.noise);
-        let found = self.ln_marginal(data);
-        if found > best + 1e-3 {
-            return Some(found);
-        }
-        rescale(data, &self.parts.noise, &before.0);
-        (self.parts.noise, self.parts.scales) = before;
-        None
-    }
-
-    /// Raises the scatter between flights to what flights show that were not learnt from.
-    ///
-    /// A remainder that fits the flights it has seen says too little about the next one. For flights left out by folds, the
-    /// mean residual must be as large as announced:
-    ///
-    /// ```text
-    /// Σ_f e_f²/(v_model + v_within + κ² v_between) = number of flights
-    /// ```
-    fn inflate(&mut self, data: &mut Data<'_>) {
-        let mut errors: [Vec<[f64; 3]>; 3] = [vec![], vec![], vec![]]; // squared error, known variance, between
-        for fold in 0..FOLDS {
-            let Some((solution, factor)) = self.posterior_without(data, fold) else { return };
-            for (_, flight) in data.flights.iter().enumerate().filter(|(k, _)| k % FOLDS == fold) {
-                let segments = &data.segments[flight.segments.clone()];
-                for channel in 0..data.channels.count() {
-                    let kind = data.channels.kind(channel);
-                    let found = self.left_out(data, segments, channel, &solution, &factor);
-                    errors[kind].extend(found);
-                }
-            }
-        }
-        let before = self.parts.noise;
-        let (low, high) = NOISE_LIMITS;
-        for (kind, errors) in errors.iter().enumerate() {
-            if errors.is_empty() {
-                continue;
-            }
-            let excess = |factor: f64| {
-                errors
-                    .iter()
-                    .map(|[square, known, between]| square / (known + factor * factor * between))
-                    .sum::<f64>()
-                    - errors.len() as f64
-            };
-            let now = self.parts.noise.between[kind];
-            if excess(1.0) <= 0.0 {
-                continue;
-            }
-            let (mut below, mut above) = (1.0, high / now);
-            for _ in 0..60 {
-                let middle = f64::midpoint(below, above);
-                if excess(middle) > 0.0 { below = middle } else { above = middle }
-            }
-            self.parts.noise.between[kind] = (now * above).clamp(low, high);
-        }
-        rescale(data, &before, &self.parts.noise);
-    }
-
-    /// Coefficients and precision factor from all flights but a fold's.
-    fn posterior_without(&self, data: &Data<'_>, fold: usize) -> Option<(Mat<f64>, Factor)> {
-        let width = self.factor.nrows();
-        let (gram, _) = self.gram_of(data, |flight| flight % FOLDS != fold);
-        let mut precision = Mat::from_fn(width, width, |i, j| gram[(i, j)]);
-        for k in 0..width {
-            let deviation = self.prior_deviation(k);
-            precision[(k, k)] += 1.0 / (deviation * deviation);
-        }
-        let factor = Factor::of(&precision)?;
-        let mut solution = Mat::from_fn(width, 1, |i, _| gram[(i, width)]);
-        factor.solve(&mut solution);
-        Some((solution, factor))
-    }
-
-    /// Squared mean residual of a flight that was left out, its variance but for what the flight has in common, and that.
-    fn left_out(
-        &self,
-        data: &Data<'_>,
-        segments: &[crate::data::SegmentRow],
-        channel: usize,
-        solution: &Mat<f64>,
-        factor: &Factor,
-    ) -> Option<[f64; 3]> {
-        if !segments.iter().all(|row| row.is_recorded[channel]) {
-            return None;
-        }
-        let width = self.factor.nrows();
-        let count = segments.len() as f64;
-        let mut loading = Mat::<f64>::zeros(width, 1);
-        let mut error = 0.0;
-        let mut known = 0.0;
-        let mut between = 0.0;
-        for row in segments {
-            let raw = self.raw_row(data, row);
-            error += row.residual[channel] / count;
-            for (k, values) in raw.iter().take(width).enumerate() {
-                loading[(k, 0)] += values[channel] / count;
-            }
-            let own: f64 = row.noise.factor[channel][..=channel].iter().map(|l| l * l).sum();
-            known += own / (count * count);
-            between +=
-                row.noise.common.iter().map(|u| u[channel] * u[channel]).sum::<f64>() / count;
-        }
-        error -= (0..width).map(|k| loading[(k, 0)] * solution[(k, 0)]).sum::<f64>();
-        factor.half_solve(&mut loading);
-        known += (0..width).map(|k| loading[(k, 0)] * loading[(k, 0)]).sum::<f64>();
-        Some([error * error, known, between])
-    }
-
-    /// ln of the marginal likelihood, up to a constant.
-    ///
-    /// ```text
-    /// −½ Σ_f ln|C_f| − ½ ln|1 + S G S| − ½ (y² − bᵀ S (1 + S G S)⁻¹ S b)                  [diagnosis.17]
-    /// ```
-    fn ln_marginal(&self, data: &Data<'_>) -> f64 {
-        let width = self.factor.nrows();
-        let (gram, ln_noise) = self.gram(data);
-        let kept = [width];
-        let out: Vec<usize> = (0..width).collect();
-        let deviations: Vec<f64> = out.iter().map(|&k| self.prior_deviation(k)).collect();
-        integrate_out(&gram, &kept, &out, &deviations).map_or(f64::NEG_INFINITY, |left| {
-            self.ln_prior_of_dials() - 0.5 * (ln_noise + left.ln_determinant + left.matrix[(0, 0)])
-        })
-    }
-
-    /// Dials are log-normal about what is usual: a few flights do not make noise vanish.
-    fn ln_prior_of_dials(&self) -> f64 {
-        let noise = self.parts.noise;
-        let of = |value: f64, center: f64, ln_deviation: f64| {
-            let z = (value / center).ln() / ln_deviation;
-            -0.5 * z * z
-        };
-        noise
-            .within
-            .into_iter()
-            .chain(noise.between)
-            .map(|factor| of(factor, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION))
-            .sum::<f64>()
-            + self
-                .parts
-                .scales
-                .into_iter()
-                .map(|scale| of(scale, 1.0, SCALE_LN_DEVIATION))
-                .sum::<f64>()
-    }
-
-    /// Whitened Gram of raw columns and residual, and Σ `ln|C_f|`.
-    fn gram(&self, data: &Data<'_>) -> (Mat<f64>, f64) {
-        self.gram_of(data, |_| true)
-    }
-
-    /// The same of some flights.
-    fn gram_of(&self, data: &Data<'_>, keep: impl Fn(usize) -> bool) -> (Mat<f64>, f64) {
-        let width = self.factor.nrows();
-        let mut gram = Mat::<f64>::zeros(width + 1, width + 1);
-        let mut ln_noise = 0.0;
-        let channels = data.channels.count();
-        for (index, flight) in data.flights.iter().enumerate() {
-            if !keep(index) {
-                continue;
-            }
-            let segments = &data.segments[flight.segments.clone()];
-            let mut matrix = Mat::<f64>::zeros(segments.len() * channels, width + 1);
-            for (index, row) in segments.iter().enumerate() {
-                for channel in 0..channels {
-                    ln_noise += 2.0 * row.noise.factor[channel][channel].ln();
-                }
-                let raw = self.raw_row(data, row);
-                for (column, values) in raw.iter().enumerate() {
-                    let white = half_whitened(row, values, channels);
-                    for channel in 0..channels {
-                        matrix[(index * channels + channel, column)] = white[channel];
-                    }
-                }
-            }
-            ln_noise += whiten_flight(data, segments, &mut matrix);
-            add_gram(&mut gram, &matrix);
-        }
-        symmetrize(&mut gram);
-        (gram, ln_noise)
-    }
-}
-
-/// Rescales the noise of prepared segments from one set of factors to another.
-fn rescale(data: &mut Data<'_>, from: &NoiseFactors, to: &NoiseFactors) {
-    let channels = data.channels;
-    for row in &mut data.segments {
-        for channel in 0..channels.count() {
-            let kind = channels.kind(channel);
-            if !row.is_recorded[channel] {
-                continue;
-            }
-            for value in &mut row.noise.factor[channel] {
-                *value *= to.within[kind] / from.within[kind];
-            }
-            for loading in &mut row.noise.common {
-                loading[channel] *= to.between[kind] / from.between[kind];
-            }
-        }
     }
 }
 

@@ -3,7 +3,7 @@
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::{Mat, Par, Side};
+use faer::{Mat, MatRef, Par, Side};
 
 /// Cholesky factor of a symmetric positive definite matrix.
 pub(crate) struct Factor {
@@ -54,16 +54,26 @@ pub(crate) fn subtract_product(from: &mut Mat<f64>, a: &Mat<f64>, b: &Mat<f64>) 
 
 /// `C += ZᵀZ`, lower triangle only.
 pub(crate) fn add_gram(into: &mut Mat<f64>, rows: &Mat<f64>) {
+    add_symmetric(into, rows.transpose(), 1.0);
+}
+
+/// `C −= ZZᵀ`, lower triangle only.
+pub(crate) fn subtract_gram(from: &mut Mat<f64>, columns: &Mat<f64>) {
+    add_symmetric(from, columns.as_ref(), -1.0);
+}
+
+/// `C += share·AAᵀ`, lower triangle only.
+fn add_symmetric(into: &mut Mat<f64>, left: MatRef<'_, f64>, share: f64) {
     use faer::linalg::matmul::triangular::{BlockStructure, matmul};
     matmul(
         into.as_mut(),
         BlockStructure::TriangularLower,
         faer::Accum::Add,
-        rows.transpose(),
+        left,
         BlockStructure::Rectangular,
-        rows.as_ref(),
+        left.transpose(),
         BlockStructure::Rectangular,
-        1.0,
+        share,
         Par::Seq,
     );
 }
@@ -100,5 +110,8 @@ mod tests {
         add_gram(&mut gram, &rows);
         symmetrize(&mut gram);
         assert!((gram[(0, 1)] - 14.0).abs() < 1e-15 && (gram[(1, 1)] - 20.0).abs() < 1e-15);
+        // Rows instead of columns: [1, 2]·[3, 4] = 11, and 1 + 4 = 5 is taken from 10.
+        subtract_gram(&mut gram, &rows);
+        assert!((gram[(1, 0)] - 3.0).abs() < 1e-15 && (gram[(0, 0)] - 5.0).abs() < 1e-15);
     }
 }
