@@ -65,6 +65,8 @@ impl Layout {
 #[derive(Debug)]
 pub(super) struct BlockMatrix {
     layout: Layout,
+    /// Place of every node: thousands of additions would divide for it again and again.
+    places: Vec<(usize, usize)>,
     diagonal: Vec<Mat<f64>>,
     below: Vec<Mat<f64>>,
 }
@@ -75,6 +77,7 @@ impl BlockMatrix {
         let size = |block: usize| layout.block_size(block);
         Self {
             layout,
+            places: (0..layout.outer * layout.inner).map(|node| layout.place(node)).collect(),
             diagonal: (0..blocks).map(|b| Mat::zeros(size(b), size(b))).collect(),
             below: (1..blocks).map(|b| Mat::zeros(size(b), size(b - 1))).collect(),
         }
@@ -82,7 +85,7 @@ impl BlockMatrix {
 
     /// Adds to the entry of two nodes (and its mirror image).
     pub(super) fn add(&mut self, node: usize, other: usize, value: f64) {
-        let (mut later, mut earlier) = (self.layout.place(node), self.layout.place(other));
+        let (mut later, mut earlier) = (self.places[node], self.places[other]);
         if later < earlier {
             (later, earlier) = (earlier, later);
         }
