@@ -10,7 +10,6 @@ Standard library only.
 
 import argparse
 import csv
-import hashlib
 import json
 import math
 import random
@@ -174,13 +173,9 @@ def exact_aircraft():
     return "Custom(" + text[text.index("\n(") + 1 :].strip() + ")"
 
 
-def with_half_life(model, days):
-    """No command sets the half-life yet: the setting and the file's checksum are written by hand."""
-    text = model.read_text().replace("half_life_days: None", f"half_life_days: Some({float(days)})")
-    body = text[: text.index("    checksum:")]
-    digest = hashlib.sha256("".join(line + "\n" for line in body.splitlines()).encode()).hexdigest()
+def with_half_life(run, model, reports, days):
     changed = model.with_name(model.stem + f"-half-life-{days}.ron")
-    changed.write_text(re.sub(r"sha256:[0-9a-f]{64}", f"sha256:{digest}", text))
+    print(run("tune", *reports, "--model", model, "--half-life", days, "-o", changed, text=True))
     return changed
 
 
@@ -442,7 +437,8 @@ def ageing(run):
     design = 'flights: 120, dates: ("2018-01-05T12:00:00Z", "2022-01-05T12:00:00Z")'
     reports = run.simulate("ageing", plan(7, exact_aircraft(), effects, design, PLAIN))
     cases = {law: (model, options) for law, options in LAWS.items()}
-    cases["bayes, 180 days"] = (with_half_life(model, 180), LAWS["bayes"])
+    cases["bayes, 180 days"] = (with_half_life(run, model, reports, 180), LAWS["bayes"])
+    with_half_life(run, model, reports, "search")
     curves = {"initial": []}
     for start in range(10, 111, 10):
         next_ten = reports[start : start + 10]

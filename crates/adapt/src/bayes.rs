@@ -48,6 +48,7 @@ mod blocks;
 mod data;
 mod evidence;
 mod guard;
+mod half_life;
 mod information;
 mod judge;
 mod polynomial;
@@ -60,6 +61,7 @@ mod tests;
 pub use data::{BayesStateData, StateDataError};
 pub use evidence::{Search, TuneError, TuneStep, Tuned, log_evidence, tune};
 pub use guard::{GuardReason, GuardReport, GuardedNode};
+pub use half_life::{HalfLife, log_predictive_density, search_half_life};
 pub use polynomial::{PolynomialError, PolynomialExport, polynomial_export};
 pub use posterior::{Posterior, SolveError};
 pub use settings::{BayesSettings, SettingValues, SettingsError};
@@ -318,13 +320,11 @@ impl BayesState {
         for observation in observations {
             match located(&self.initial, observation) {
                 Ok((cell, residual)) => {
-                    let values = self.settings.values();
-                    let extra = values.extra_segment_std;
                     flight.cases.push(Case {
                         lift_coefficient: observation.lift_coefficient,
                         mach: observation.mach,
                         residual,
-                        variance: observation.variance.segment + extra * extra,
+                        variance: self.settings.segment_variance(&observation.variance),
                     });
                     flight.rows.push(Row {
                         nodes: cell.nodes(),
@@ -334,8 +334,7 @@ impl BayesState {
                         precision: 0.0,
                         count: 0.0,
                     });
-                    let extra = values.extra_flight_std;
-                    common_variance += observation.variance.flight + extra * extra;
+                    common_variance += self.settings.flight_variance(&observation.variance);
                     flight.newest = flight.newest.max(Some(observation.time));
                     flight.refused.push(None);
                 }

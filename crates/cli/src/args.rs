@@ -155,6 +155,35 @@ pub struct TuneArgs {
     /// Initial model to write, with the settings found
     #[arg(long, short, value_name = "MODEL2.ron")]
     pub output: PathBuf,
+    /// Calendar days after which knowledge counts half; none: it does not age; search: what predicts each report best
+    /// from those before. The model's own without this option. With a half-life, noise is not searched
+    #[arg(long, value_name = "DAYS|none|search")]
+    pub half_life: Option<HalfLifeChoice>,
+}
+
+/// What `tune` does about the half-life.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HalfLifeChoice {
+    /// Knowledge does not age.
+    Never,
+    /// So many calendar days.
+    Days(f64),
+    /// Found on the reports.
+    Search,
+}
+
+impl std::str::FromStr for HalfLifeChoice {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "none" => Ok(Self::Never),
+            "search" => Ok(Self::Search),
+            days => days
+                .parse()
+                .map(Self::Days)
+                .map_err(|_| "neither a number of days nor none nor search".to_owned()),
+        }
+    }
 }
 
 /// `merge`

@@ -148,10 +148,9 @@ impl Posterior {
     /// common error, the segment's own.
     #[must_use]
     pub fn segment_variance(&self, cell: &Cell, of_sensors: &ObservationVariance) -> f64 {
-        let values = self.settings.values();
-        let flight = of_sensors.flight + values.extra_flight_std * values.extra_flight_std;
-        let segment = of_sensors.segment + values.extra_segment_std * values.extra_segment_std;
-        self.relative_variance(cell) + flight + segment
+        self.relative_variance(cell)
+            + self.settings.flight_variance(of_sensors)
+            + self.settings.segment_variance(of_sensors)
     }
 
     /// Relative covariances of the table's drag at several located points, row by row: what the table does not know is

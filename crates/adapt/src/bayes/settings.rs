@@ -1,5 +1,6 @@
 //! What law `bayes` takes for granted: sizes, smoothness and noise. Learning never changes them.
 
+use flight::ObservationVariance;
 use serde::{Deserialize, Serialize};
 
 /// The patch of lift coefficient × Mach number over which slopes and bends have their stated size: 0.3 × 0.1.
@@ -30,10 +31,33 @@ pub struct SettingValues {
     pub extra_flight_std: f64,
     /// Standard deviation of a segment beyond the sensors' propagated part.
     pub extra_segment_std: f64,
+    /// Factor on the standard deviation that the sensors propagate to a segment: a fleet may be quieter or noisier than
+    /// the aircraft file says. Not written where it is 1.
+    #[serde(
+        default = "as_the_aircraft_file_says",
+        skip_serializing_if = "is_as_the_aircraft_file_says"
+    )]
+    pub sensor_segment_factor: f64,
+    /// The same of what is common to a flight: mass and heating value.
+    #[serde(
+        default = "as_the_aircraft_file_says",
+        skip_serializing_if = "is_as_the_aircraft_file_says"
+    )]
+    pub sensor_flight_factor: f64,
     /// Degrees of freedom of the Student distribution of a segment's and of a flight's error.
     pub student_degrees_of_freedom: f64,
     /// Calendar days after which knowledge counts half; `None`: it does not age.
     pub half_life_days: Option<f64>,
+}
+
+const fn as_the_aircraft_file_says() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+#[expect(clippy::float_cmp, reason = "exactly the default is not written")]
+fn is_as_the_aircraft_file_says(factor: &f64) -> bool {
+    *factor == as_the_aircraft_file_says()
 }
 
 /// Checked settings of law `bayes`.
@@ -83,6 +107,7 @@ impl BayesSettings {
     ///   0.12 over a spread of 10 %, TSFC with temperature exponent 0.2 over one of 3 %, throttle 0.6 %, heating value
     ///   0.6 %: about 1.2 % if all act at once).
     /// - extra 0.3 % a segment: the same causes change by about a third of that during a flight.
+    /// - factors of 1 on the sensors' part: the aircraft file is believed.
     /// - 4 degrees of freedom: an error of ten standard deviations keeps a twentieth of its weight.
     #[must_use]
     pub const fn physical_2026() -> Self {
@@ -95,6 +120,8 @@ impl BayesSettings {
             bend_std_per_mach_squared: 2.0,
             extra_flight_std: 0.010,
             extra_segment_std: 0.003,
+            sensor_segment_factor: 1.0,
+            sensor_flight_factor: 1.0,
             student_degrees_of_freedom: 4.0,
             half_life_days: None,
         })
@@ -113,6 +140,18 @@ impl BayesSettings {
             .zip(named(&other.0))
             .map(|((setting, ours, ..), (_, theirs, ..))| (setting, ours, theirs))
             .find(|(_, ours, theirs)| ours.to_bits() != theirs.to_bits())
+    }
+
+    /// Variance of an error common to a flight: the sensors' part and the extra one.
+    pub(super) fn flight_variance(&self, of_sensors: &ObservationVariance) -> f64 {
+        let SettingValues { extra_flight_std: extra, sensor_flight_factor: factor, .. } = self.0;
+        factor * factor * of_sensors.flight + extra * extra
+    }
+
+    /// Variance of a segment alone: the sensors' part and the extra one.
+    pub(super) fn segment_variance(&self, of_sensors: &ObservationVariance) -> f64 {
+        let SettingValues { extra_segment_std: extra, sensor_segment_factor: factor, .. } = self.0;
+        factor * factor * of_sensors.segment + extra * extra
     }
 
     /// What knowledge is multiplied by after so many days; 1 for a negative age.
@@ -138,7 +177,7 @@ impl From<BayesSettings> for SettingValues {
 ///
 /// The lower limits keep the precision matrix far from singular and a segment's variance positive; the upper ones are
 /// beyond any airplane.
-fn named(values: &SettingValues) -> [(&'static str, f64, f64, f64); 10] {
+fn named(values: &SettingValues) -> [(&'static str, f64, f64, f64); 12] {
     let v = values;
     [
         ("correction_std", v.correction_std, 1e-3, 1.0),
@@ -154,6 +193,8 @@ fn named(values: &SettingValues) -> [(&'static str, f64, f64, f64); 10] {
         ("bend_std_per_mach_squared", v.bend_std_per_mach_squared, 1e-2, 1e3),
         ("extra_flight_std", v.extra_flight_std, 1e-5, 1.0),
         ("extra_segment_std", v.extra_segment_std, 1e-5, 1.0),
+        ("sensor_segment_factor", v.sensor_segment_factor, 1e-2, 100.0),
+        ("sensor_flight_factor", v.sensor_flight_factor, 1e-2, 100.0),
         ("student_degrees_of_freedom", v.student_degrees_of_freedom, 1.0, 1e6),
         ("half_life_days", v.half_life_days.unwrap_or(f64::INFINITY), 1.0, f64::INFINITY),
     ]

@@ -7,6 +7,7 @@ mod addition;
 mod fleet;
 mod golden;
 mod guard;
+mod half_life;
 mod outliers;
 mod resolution;
 mod tuning;

@@ -1,6 +1,8 @@
 //! Settings from past flights, and the polynomial handed on.
 
-use adapt::bayes::{BayesSettings, Search, SettingValues, log_evidence, polynomial_export, tune};
+use adapt::bayes::{
+    BayesSettings, Posterior, Search, SettingValues, log_evidence, polynomial_export, tune,
+};
 use lut::surface::{Basis, Surface};
 
 use crate::fleet::{Fleet, Noise, SENSOR_NOISE, believed_drag, grid, solved, table, times};
@@ -55,8 +57,50 @@ fn tuning_on_ten_flights_does_no_harm_to_the_others() {
             tuned.settings.values(),
             tuned.at_limit
         );
-        assert!(after.0.abs() <= 0.4 && after.1 <= 1.0, "{name}: {after:?}");
+        assert!(after.0.abs() <= 0.4 && after.1 <= 0.85, "{name}: {after:?}");
     }
+}
+
+/// Fleets quieter than the aircraft file and the settings say: the truth is in the model class, so the stated 95 %
+/// intervals must cover 92 to 98 % of flights that neither taught nor tuned.
+#[test]
+fn after_tuning_intervals_of_quiet_fleets_cover() {
+    let initial = table(&grid(0.05, 0.95), believed_drag);
+    let start = BayesSettings::physical_2026();
+    let mut inside = [0.0; 4];
+    let mut all = 0.0;
+    for seed in 0..20 {
+        let mut fleet = Fleet::new(5000 + seed);
+        let noise = Noise { segment: 0.0025, flight: 0.004 };
+        let past = fleet.flights(40, noise, times(&initial, 1.0));
+        let unseen = fleet.flights(60, noise, times(&initial, 1.0));
+        let tuned = tune(&initial, start, &past, &Search::standard()).unwrap().settings;
+        let cases = [(start, 40), (tuned, 1), (tuned, 5), (tuned, 40)];
+        for (inside, (settings, taught)) in inside.iter_mut().zip(cases) {
+            let posterior =
+                crate::fleet::learnt(&initial, settings, &past[..taught]).solve().unwrap();
+            *inside += unseen.iter().flatten().filter(|o| is_inside(&posterior, o)).count() as f64;
+        }
+        all += unseen.iter().flatten().count() as f64;
+    }
+    let shares = inside.map(|inside| 100.0 * inside / all);
+    eprintln!(
+        "inside, %: defaults {:.1}, tuned after 1, 5, 40 flights {:.1?}",
+        shares[0],
+        &shares[1..]
+    );
+    assert!(shares[0] > 99.5, "the fleets are quieter than the defaults");
+    assert!(shares[2..].iter().all(|share| (92.0..=98.0).contains(share)), "{shares:?}");
+    // After one flight most of the variance is the table's, and a correction of 0 is the very middle of its prior.
+    assert!(shares[1] >= 92.0, "{shares:?}");
+}
+
+fn is_inside(posterior: &Posterior, observation: &flight::Observation) -> bool {
+    let at = (observation.lift_coefficient, observation.mach);
+    let cell = posterior.drag().grid().locate(at.0, at.1, lut::Outside::Error).unwrap();
+    let excess = observation.drag_coefficient - posterior.drag().interpolate(&cell);
+    let variance = posterior.segment_variance(&cell, &observation.variance);
+    (excess / posterior.initial().interpolate(&cell)).powi(2) <= 1.96 * 1.96 * variance
 }
 
 /// More noise than there is, and less, is less likely.

@@ -150,7 +150,8 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             output: output.clone(),
             law,
             threshold,
-            no_remainder: false,
+            // What no table can hold is the diagnosis' matter; a model with it is ten times as large.
+            no_remainder: true,
             restart: false,
         },
         false,

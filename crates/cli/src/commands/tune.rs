@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use adapt::bayes::{Search, tune};
+use adapt::bayes::{BayesSettings, Search, SettingValues, search_half_life, tune};
+use flight::Observation;
 
-use crate::args::TuneArgs;
+use crate::args::{HalfLifeChoice, TuneArgs};
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
 use crate::model_file::ModelFile;
@@ -40,7 +41,7 @@ pub fn run(arguments: &TuneArgs, progress: bool) -> Result<Outcome, Failure> {
             ),
         });
     }
-    let flights: Vec<Vec<_>> = reading
+    let flights: Vec<Vec<Observation>> = reading
         .flights
         .iter()
         .map(|flight| {
@@ -52,16 +53,63 @@ pub fn run(arguments: &TuneArgs, progress: bool) -> Result<Outcome, Failure> {
         })
         .collect();
     let segments: usize = flights.iter().map(Vec::len).sum();
-    let tuned =
-        tune(model.initial.drag_table(), model.settings.bayes, &flights, &Search::standard())
-            .map_err(|error| Failure::bad_file(&arguments.model, error))?;
-    model.settings.bayes = tuned.settings;
-    model.write(&arguments.output)?;
     let mut text = format!("{} flights, {segments} segments\n", flights.len());
-    for step in &tuned.path {
-        let _ = writeln!(text, "  ln evidence {:.2}  {}", step.log_evidence, step.changed);
+    let initial = model.initial.drag_table();
+    let start = model.settings.bayes;
+    let of_model = |error| Failure::bad_file(&arguments.model, error);
+    let aged = match arguments.half_life {
+        None => start,
+        Some(HalfLifeChoice::Never) => with_half_life(start, None)?,
+        Some(HalfLifeChoice::Days(days)) => with_half_life(start, Some(days))?,
+        Some(HalfLifeChoice::Search) => {
+            let found = search_half_life(initial, start, &flights).map_err(of_model)?;
+            for (days, log_density) in &found.tried {
+                let days = days.map_or_else(|| "none".to_owned(), |days| format!("{days} days"));
+                let _ = writeln!(text, "  ln density {log_density:.2}  half-life {days}");
+            }
+            found.settings
+        }
+    };
+    if aged.values().half_life_days.is_some() {
+        // The evidence is of knowledge that does not age: it would take ageing for noise of flights.
+        model.settings.bayes = aged;
+        text.push_str("Noise stays as it is: with a half-life it is not searched\n");
+    } else {
+        let tuned = tune(initial, aged, &flights, &Search::standard()).map_err(of_model)?;
+        for step in &tuned.path {
+            let _ = writeln!(text, "  ln evidence {:.2}  {}", step.log_evidence, step.changed);
+        }
+        model.settings.bayes = tuned.settings;
+        let span_days = span_days(&flights);
+        if arguments.half_life.is_none() && span_days > DAYS_IN_WHICH_AIRCRAFT_AGE {
+            let _ = writeln!(
+                text,
+                "The reports span {span_days:.0} days and knowledge does not age: see --half-life search"
+            );
+        }
     }
-    let _ = writeln!(text, "Settings: {:#?}", tuned.settings.values());
+    model.write(&arguments.output)?;
+    let _ = writeln!(text, "Settings: {:#?}", model.settings.bayes.values());
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
     Ok(Outcome { text, refused: reading.refused })
+}
+
+/// Over half a year an aircraft's engines lose about what a flight's own errors amount to, 1 %, at 2 % a year.
+const DAYS_IN_WHICH_AIRCRAFT_AGE: f64 = 180.0;
+
+fn with_half_life(settings: BayesSettings, days: Option<f64>) -> Result<BayesSettings, Failure> {
+    BayesSettings::new(SettingValues { half_life_days: days, ..*settings.values() }).map_err(
+        |error| Failure::BadArgument { argument: "--half-life", reason: error.to_string() },
+    )
+}
+
+/// From the first observation to the last, days.
+fn span_days(flights: &[Vec<Observation>]) -> f64 {
+    let times = || flights.iter().flatten().map(|observation| observation.time);
+    match (times().min(), times().max()) {
+        (Some(first), Some(last)) => {
+            last.duration_since(first).as_secs_f64() / units::convert::SECONDS_PER_DAY
+        }
+        _ => 0.0,
+    }
 }

@@ -307,6 +307,30 @@ fn tuned_settings_are_kept_by_the_model() {
 }
 
 #[test]
+fn half_life_is_set_and_searched() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let aged = scratch.path().join("AGED.ron");
+    let reports = fixture("reports");
+    let tune = |half_life: &str| {
+        let arguments = ["tune", reports.to_str().unwrap(), "--model", model.to_str().unwrap()];
+        let option = format!("--half-life={half_life}");
+        cruisefit(&[&arguments[..], &["-o", aged.to_str().unwrap(), &option]].concat())
+    };
+    let ran = tune("365").expect(0);
+    assert!(ran.stdout.contains("Noise stays as it is"), "{}", ran.stdout);
+    assert!(std::fs::read_to_string(&aged).unwrap().contains("half_life_days: Some(365.0)"));
+    adapt(&aged, &scratch.path().join("out"), std::slice::from_ref(&reports), &[]).expect(0);
+    // Twelve flights of an aircraft that does not age: none is found, and noise is searched.
+    let ran = tune("search").expect(0);
+    assert!(ran.stdout.contains("half-life none") && ran.stdout.contains("ln evidence"));
+    assert!(std::fs::read_to_string(&aged).unwrap().contains("half_life_days: None"));
+    for wrong in ["-3", "soon"] {
+        tune(wrong).expect(2).says("half-life");
+    }
+}
+
+#[test]
 fn polynomial_with_covariance() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
