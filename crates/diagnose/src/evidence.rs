@@ -73,12 +73,12 @@ pub(crate) struct Search {
 
 /// Prior of a column.
 #[derive(Clone, Copy, Debug)]
-struct Prior {
-    mean: f64,
+pub(crate) struct Prior {
+    pub(crate) mean: f64,
     /// Standard deviations and ln probabilities.
-    scales: [(f64, f64); 2],
-    count: usize,
-    positive: bool,
+    pub(crate) scales: [(f64, f64); 2],
+    pub(crate) count: usize,
+    pub(crate) positive: bool,
 }
 
 /// The evidence of one model in one background.
@@ -92,12 +92,12 @@ pub(crate) struct Evidence<const K: usize> {
 /// Everything the scoring of models needs.
 #[derive(Clone, Debug)]
 pub(crate) struct Scorer {
-    priors: Vec<Prior>,
+    pub(crate) priors: Vec<Prior>,
     /// Effect of each column.
     pub(crate) effect_of: Vec<usize>,
-    ln_columns: Vec<f64>,
-    effects: usize,
-    rows: f64,
+    pub(crate) ln_columns: Vec<f64>,
+    pub(crate) effects: usize,
+    pub(crate) rows: f64,
 }
 
 impl Background {
@@ -258,7 +258,7 @@ impl Scorer {
         self.priors.len()
     }
 
-    fn power(&self) -> f64 {
+    pub(crate) fn power(&self) -> f64 {
         0.5 * (NOISE_FREEDOM + self.rows)
     }
 
@@ -392,20 +392,8 @@ impl Scorer {
             }));
         }
         if largest >= 2 {
-            for a in 0..columns {
-                for b in a + 1..columns {
-                    if self.effect_of[a] == self.effect_of[b] {
-                        continue;
-                    }
-                    let model = Model { columns: vec![a, b], heating_percent: None };
-                    let prior = self.ln_prior(&model) + ln_background;
-                    models.push(over(backgrounds, model, |at| {
-                        let mut evidence = self.two(at, [a, b], [0.0; 2]);
-                        evidence.ln += prior;
-                        evidence
-                    }));
-                }
-            }
+            let best = models.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
+            models.extend(crate::pairs::search(self, backgrounds, best));
         }
         Search { models, ln_clean }
     }
@@ -462,19 +450,24 @@ fn scored<const K: usize>(model: Model, sum: &Mixture<K>, background: usize) -> 
     }
 }
 
-/// ln of how much more probable the data are when the sign is the expected one: 2·(p Φ(t) + (1 − p) Φ(−t)).
+/// ln of [`sign_factor`].
 fn ln_sign(positive: bool, t: f64) -> f64 {
+    if positive { sign_factor(positive, t).ln() } else { 0.0 }
+}
+
+/// How much more probable the data are when the sign is the expected one: 2·(p Φ(t) + (1 − p) Φ(−t)).
+pub(crate) fn sign_factor(positive: bool, t: f64) -> f64 {
     if !positive {
-        return 0.0;
+        return 1.0;
     }
     if t > 8.0 {
-        return (2.0 * EXPECTED_SIGN).ln();
+        return 2.0 * EXPECTED_SIGN;
     }
     if t < -8.0 {
-        return (2.0 * (1.0 - EXPECTED_SIGN)).ln();
+        return 2.0 * (1.0 - EXPECTED_SIGN);
     }
     let above = 0.5 * erfc(-t / core::f64::consts::SQRT_2);
-    (2.0 * (EXPECTED_SIGN * above + (1.0 - EXPECTED_SIGN) * (1.0 - above))).ln()
+    2.0 * (EXPECTED_SIGN * above + (1.0 - EXPECTED_SIGN) * (1.0 - above))
 }
 
 /// A sum of weighted normals in logarithms: total weight, mean and standard deviation of the mixture.

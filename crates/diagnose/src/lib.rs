@@ -63,6 +63,7 @@ mod linear;
 mod noise;
 mod output;
 mod outside;
+mod pairs;
 mod record;
 mod refine;
 mod robust;
