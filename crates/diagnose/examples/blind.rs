@@ -76,7 +76,7 @@ fn main() {
                 &found,
             ));
             println!(
-                "{:<26} {:+.4} | {:?} top {:<24} p {:.3} est {:+.4} pout {:.2} {:?} closure {:?} gap {:.2}/{:.2} pval {:.1e} class {:?} | {}",
+                "{:<26} {:+.4} | {:?} top {:<24} p {:.3} est {:+.4} pout {:.2} {:?} closure {:?} gap {:.2}/{:.2} pval {:.1e} class {:?} | {} | ci {:?} near {:?} closures {:?}",
                 id.to_string(),
                 size,
                 found.verdict.kind,
@@ -91,6 +91,13 @@ fn main() {
                 found.gap.p_value,
                 found.verdict.class,
                 found.verdict.effects.join("+"),
+                found.verdict.closure_ci95,
+                found
+                    .detectable
+                    .iter()
+                    .find(|d| d.effect == id.to_string())
+                    .map(|d| (d.nearest_other, d.nearest_pair)),
+                distances.get(&id.to_string()),
             );
         }
     }

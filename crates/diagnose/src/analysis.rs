@@ -46,6 +46,8 @@ pub(crate) struct Analysis {
     /// Models, most probable first, with their probabilities.
     pub(crate) models: Vec<(Scored, f64)>,
     pub(crate) refined: Vec<Relinearised>,
+    /// Without nuisance, with this much scatter between flights, per cent: where scatter alone is no hopeless cause.
+    pub(crate) heating: Vec<(f64, Reduced)>,
     /// Probability that there is neither an effect nor a background.
     pub(crate) clean: f64,
 }
@@ -246,6 +248,21 @@ pub(crate) fn analyse(
         models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
     }
     let total = ln_sum(models.iter().map(|m| m.ln_weight));
+    let mut heating = Vec::new();
+    for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| refining) {
+        let scatter_alone = models.iter().any(|m| {
+            m.model.columns.is_empty()
+                && m.model.heating_percent.is_some_and(|p| p.total_cmp(&percent).is_eq())
+                && (m.ln_weight - total).exp() > WORTH_REFINING
+        });
+        if scatter_alone {
+            let (changed, ln_determinant) =
+                stacked.with_scatter(&gram, percent / 100.0, without, &Replaced::default());
+            let mut reduced = without_nuisance(&changed, design, true)?;
+            reduced.ln_determinant += ln_determinant;
+            heating.push((percent, reduced));
+        }
+    }
     let none: f64 = models
         .iter()
         .filter(|m| m.model.columns.is_empty() && m.model.heating_percent.is_none())
@@ -260,5 +277,5 @@ pub(crate) fn analyse(
             (m, probability)
         })
         .collect();
-    Some(Analysis { scorer, backgrounds: all, reduced, models, refined, clean })
+    Some(Analysis { scorer, backgrounds: all, reduced, models, refined, heating, clean })
 }

@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::design::Design;
-use crate::evidence::TAUS;
+use crate::evidence::{Scored, TAUS};
 use crate::gram::Gram;
 use crate::gram::integrate_out;
 use crate::library::Library;
@@ -24,6 +24,8 @@ pub(crate) struct Distances {
     gram: Mat<f64>,
     /// The same if an N2 deck were known.
     with_deck: Mat<f64>,
+    /// Of each effect the column that stands for it: the best supported value of its hidden parameter.
+    leading: Vec<usize>,
 }
 
 /// A measurement that separates two effects, with the distance before and after.
@@ -35,13 +37,19 @@ pub(crate) struct Measurement {
 }
 
 impl Distances {
-    pub(crate) fn of(gram: &Gram, design: &Design<'_>) -> Option<Self> {
+    /// `leading` has one column an effect; see [`leading_columns`].
+    pub(crate) fn of(gram: &Gram, design: &Design<'_>, leading: Vec<usize>) -> Option<Self> {
         let kept: Vec<usize> = (0..design.effects).collect();
         let out: Vec<usize> = design.nuisance.clone().collect();
         let plain = integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])?;
         let deck = integrate_out(&gram.matrix, &kept, &out, &vec![DECK_MEASURED; out.len()])?;
         const { assert!(TAUS[0] == 0.0) };
-        Some(Self { gram: plain.matrix, with_deck: deck.matrix })
+        Some(Self { gram: plain.matrix, with_deck: deck.matrix, leading })
+    }
+
+    /// The column that stands for an effect.
+    pub(crate) fn leading(&self, effect: usize) -> usize {
+        self.leading[effect]
     }
 
     /// Information on a column: 1/√ is the standard deviation of its size.
@@ -84,10 +92,11 @@ impl Distances {
     /// Distance of an effect at its typical size from the nearest other one, in noise standard deviations.
     pub(crate) fn nearest_other(&self, library: &Library, effect: usize) -> f64 {
         let own = &library.effects[effect];
+        let leading = self.leading[effect];
         (0..library.columns.len())
             .filter(|&column| library.columns[column].effect != effect)
-            .map(|column| self.squared(own.representative, column, own.typical).0.sqrt())
-            .fold(own.typical * self.information(own.representative).sqrt(), f64::min)
+            .map(|column| self.squared(leading, column, own.typical).0.sqrt())
+            .fold(own.typical * self.information(leading).sqrt(), f64::min)
     }
 
     /// Distance of an effect at its typical size from the nearest pair of others, in noise standard deviations: what is
@@ -97,11 +106,12 @@ impl Distances {
         let others: Vec<usize> = (0..library.columns.len())
             .filter(|&column| library.columns[column].effect != effect)
             .collect();
-        let mut nearest = own.typical * self.information(own.representative).sqrt();
+        let leading = self.leading[effect];
+        let mut nearest = own.typical * self.information(leading).sqrt();
         for (place, &a) in others.iter().enumerate() {
             for &b in &others[place + 1..] {
                 if library.columns[a].effect != library.columns[b].effect {
-                    let squared = self.squared_from_pair(own.representative, [a, b], own.typical);
+                    let squared = self.squared_from_pair(leading, [a, b], own.typical);
                     nearest = nearest.min(squared.sqrt());
                 }
             }
@@ -115,12 +125,12 @@ impl Distances {
         let effects = library.effects.len();
         let distance = |a: usize, b: usize| {
             let (ea, eb) = (&library.effects[a], &library.effects[b]);
-            let from = |e: &crate::library::Testable, f: &crate::library::Testable| {
+            let from = |k: usize, e: &crate::library::Testable, f: &crate::library::Testable| {
                 (f.first_column..f.first_column + f.columns)
-                    .map(|l| self.squared(e.representative, l, e.typical).0)
+                    .map(|l| self.squared(k, l, e.typical).0)
                     .fold(f64::INFINITY, f64::min)
             };
-            from(ea, eb).min(from(eb, ea))
+            from(self.leading[a], ea, eb).min(from(self.leading[b], eb, ea))
         };
         let mut classes: Vec<Vec<usize>> = (0..effects).map(|k| vec![k]).collect();
         loop {
@@ -224,6 +234,23 @@ impl Distances {
         found.sort_by(|a, b| b.after.total_cmp(&a.after));
         found
     }
+}
+
+/// Of each effect the column of the most probable model that it makes alone. Where an effect has a hidden parameter
+/// (Mdd, pivot, date), its distance from others is that at the value which the data support, not at an arbitrary one.
+pub(crate) fn leading_columns(library: &Library, models: &[(Scored, f64)]) -> Vec<usize> {
+    let mut leading: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
+    let mut found = vec![false; leading.len()];
+    // Most probable first.
+    for (scored, _) in models {
+        if let ([column], None) = (&scored.model.columns[..], scored.model.heating_percent) {
+            let effect = library.columns[*column].effect;
+            if !core::mem::replace(&mut found[effect], true) {
+                leading[effect] = *column;
+            }
+        }
+    }
+    leading
 }
 
 fn squared(g: &Mat<f64>, k: usize, l: usize, size: f64) -> (f64, f64) {

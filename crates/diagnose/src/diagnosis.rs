@@ -12,7 +12,7 @@ use statrs::function::erf::erfc;
 use crate::TableUncertainty;
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
-use crate::classes::Distances;
+use crate::classes::{Distances, leading_columns};
 use crate::closure::{Shrinkage, in_sample, nested};
 use crate::data::Data;
 use crate::design::{Acts, Design};
@@ -33,8 +33,9 @@ const FEWEST_SEGMENTS: usize = 30;
 const CLEAN_PROBABILITY: f64 = 0.05;
 /// Probability of a cause outside the library above which it is said.
 const OUTSIDE_PROBABILITY: f64 = 0.5;
-/// Share of the explainable gap that a named set must close where an agnostic function does better.
-const NAMED_CLOSURE: f64 = 0.9;
+/// Shares of the explainable gap between which a named set that an agnostic function improves upon passes from "something
+/// else" to "this effect in another form". Their middle, nine tenths, is where the verdict turns.
+const OTHER_FORM: [f64; 2] = [0.8, 1.0];
 /// Probability that the credible set of effects holds.
 const CREDIBLE: f64 = 0.95;
 /// Half width of a 95 % interval in standard deviations.
@@ -268,9 +269,11 @@ fn conclude(
     notes: &mut Vec<String>,
 ) -> Result<(Diagnosis, Analysis), DiagnoseError> {
     let analysis = analyse(stacked, model, library, None, true).ok_or(DiagnoseError::Degenerate)?;
-    let outside = compete(stacked, &analysis, library);
+    let mut outside = compete(stacked, &analysis, library);
     let gram = stacked.folds.without(None);
-    let distances = Distances::of(&gram, stacked.design).ok_or(DiagnoseError::Degenerate)?;
+    let leading = leading_columns(library, &analysis.models);
+    let distances =
+        Distances::of(&gram, stacked.design, leading).ok_or(DiagnoseError::Degenerate)?;
     let best = &analysis.models[0].0;
     let scale = noise_scale(&analysis, best, gram.rows);
     let posteriors = dominant(stacked, &analysis, library);
@@ -283,14 +286,18 @@ fn conclude(
     } else {
         slices::find(stacked, &analysis, scale, gap.detected, options.seed)
     };
+    let found_outside = outside.probability;
+    outside.probability *= 1.0 - credit(posteriors.first(), unseen.as_ref(), &own);
     let verdict = verdict(
         &analysis,
         &outside,
+        found_outside,
         &distances,
         library,
         &posteriors,
         &own,
         unseen.as_ref(),
+        gap.detected,
         notes,
     );
     let causes = causes(&analysis, &outside, &distances, library, &posteriors, unseen.as_ref());
@@ -336,6 +343,25 @@ fn conclude(
 /// Whether there is more than noise: either nothing at all is improbable beside the library, or nothing outside it is.
 fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
     analysis.clean <= CLEAN_PROBABILITY || 1.0 - outside.probability <= CLEAN_PROBABILITY
+}
+
+/// Share of the explainable gap that the leading set closes: on unseen flights; on the same ones where the gap is too small
+/// for that; 1 where it is too small for either.
+fn closed(unseen: Option<&Shrinkage>, own: &Shrinkage) -> f64 {
+    unseen.and_then(Shrinkage::closure).or_else(|| own.closure()).map_or(1.0, |c| c.0)
+}
+
+/// How much of the evidence for an agnostic function goes to the leading set in another form, by what the set closes.
+///
+/// Truth never has the library's form exactly, and with enough flights an agnostic function sees it. Effects of the library
+/// in other forms closed 0.94 to 0.98 of the gap on two other simulators, effects that the library lacks 0.25 at most.
+/// Scatter between flights closes nothing and gets no credit.
+fn credit(top: Option<&Posterior>, unseen: Option<&Shrinkage>, own: &Shrinkage) -> f64 {
+    if top.is_some_and(|top| top.effect.is_none()) {
+        return 0.0;
+    }
+    let [none, all] = OTHER_FORM;
+    ((closed(unseen, own) - none) / (all - none)).clamp(0.0, 1.0)
 }
 
 const fn acts_words(acts: Acts) -> &'static str {
@@ -540,11 +566,13 @@ fn hidden_words(library: &Library, posterior: &Posterior) -> String {
 fn verdict(
     analysis: &Analysis,
     outside: &Outside,
+    agnostic: f64,
     distances: &Distances,
     library: &Library,
     posteriors: &[Posterior],
     own: &Shrinkage,
     unseen: Option<&Shrinkage>,
+    detected: bool,
     notes: &mut Vec<String>,
 ) -> Verdict {
     let closure = unseen.and_then(Shrinkage::closure);
@@ -558,7 +586,7 @@ fn verdict(
         advice: String::new(),
         separations: vec![],
     };
-    let Some(top) = posteriors.first().filter(|_| is_real(analysis, outside)) else {
+    let Some(top) = posteriors.first().filter(|_| detected) else {
         verdict.closure = None;
         verdict.closure_ci95 = None;
         "Nothing beyond the noise. `detectable` says how large each effect would have to be."
@@ -567,10 +595,9 @@ fn verdict(
     };
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let variable = outside.variable.map_or("no variable", |(variable, _)| variable.words());
-    // Where the gap is too small to measure closure on unseen flights, the same flights must do.
-    let closed = closure.or_else(|| own.closure()).map_or(1.0, |c| c.0);
-    let elsewhere = outside.probability > OUTSIDE_PROBABILITY;
-    if elsewhere && (closed < NAMED_CLOSURE || named < 0.5) {
+    let closed = closed(unseen, own);
+    if outside.probability > OUTSIDE_PROBABILITY || (agnostic > OUTSIDE_PROBABILITY && named < 0.5)
+    {
         verdict.kind = VerdictKind::OutsideLibrary;
         verdict.probability = outside.probability.max(1.0 - named);
         verdict.advice = format!(
@@ -596,6 +623,7 @@ fn verdict(
             verdict.class.push(name);
         }
     }
+    let elsewhere = agnostic > OUTSIDE_PROBABILITY;
     if elsewhere {
         notes.push(format!("the form of the effect differs in {variable}"));
     }
@@ -638,7 +666,7 @@ fn separations(
         if Some(index) == top.effect || !class.contains(&name) {
             continue;
         }
-        for found in distances.measurements(library, column, effect.representative, size) {
+        for found in distances.measurements(library, column, distances.leading(index), size) {
             all.push(Separation {
                 from: name.clone(),
                 measurement: found.words.to_owned(),

@@ -41,9 +41,8 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
                 .take(SETS),
         )
         .collect();
-    let mut named = Vec::new();
-    let mut agnostic: Vec<(f64, usize, usize)> = Vec::new(); // weight, set, block
-    for (place, set) in sets.iter().enumerate() {
+    let mut weights = Weights { named: Vec::new(), agnostic: Vec::new() };
+    for set in &sets {
         let refined = analysis
             .refined
             .iter()
@@ -51,22 +50,17 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
         let levels = refined.map_or(&analysis.reduced, |found| &found.reduced);
         let shifts =
             refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
-        for (reduced, spike) in levels.iter().flat_map(|r| SPIKES.map(|spike| (r, spike))) {
-            let Some(under) = spiked(stacked, library, reduced, set, spike) else { continue };
-            let prior = scorer.ln_prior(&set.model);
-            named.push(prior + (1.0 - PRIOR_OUTSIDE).ln() + under.evidence(scorer, None, &shifts));
-            if set.model.columns.len() > 1 {
-                continue;
-            }
-            let share = (AMPLITUDES.len() * stacked.design.blocks.len()).max(1) as f64;
-            for block in 0..stacked.design.blocks.len() {
-                for amplitude in AMPLITUDES {
-                    let ln = under.evidence(scorer, Some((block, amplitude)), &shifts);
-                    agnostic.push((prior + PRIOR_OUTSIDE.ln() - share.ln() + ln, place, block));
-                }
-            }
-        }
+        weights.add(stacked, library, scorer, &set.model, levels, &shifts, 0.0);
     }
+    // Scatter between flights is a named cause too, and what hangs on a flight's conditions looks like it until a function
+    // of them competes. The other sets are summed over levels of scatter, which these replace.
+    let levels_ln = (analysis.reduced.len() as f64).ln();
+    for (percent, reduced) in &analysis.heating {
+        let model = Model { columns: vec![], heating_percent: Some(*percent) };
+        let levels = core::slice::from_ref(reduced);
+        weights.add(stacked, library, scorer, &model, levels, &[], levels_ln);
+    }
+    let Weights { named, agnostic } = weights;
     let inside = ln_sum(named);
     let outside = ln_sum(agnostic.iter().map(|a| a.0));
     let probability = 1.0 / (1.0 + (inside - outside).clamp(-500.0, 500.0).exp());
@@ -74,13 +68,54 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
     let blocks = &stacked.design.blocks;
     let best = (0..blocks.len())
         .map(|block| {
-            let ln = ln_sum(agnostic.iter().filter(|a| a.2 == block).map(|a| a.0));
+            let ln = ln_sum(agnostic.iter().filter(|a| a.1 == block).map(|a| a.0));
             (ln, block)
         })
         .max_by(|a, b| a.0.total_cmp(&b.0));
     Outside {
         probability: if probability.is_finite() { probability } else { 0.0 },
         variable: best.map(|(_, block)| (blocks[block].variable, blocks[block].acts)),
+    }
+}
+
+/// ln weights of sets without an agnostic function, and of sets with one: weight and block.
+struct Weights {
+    named: Vec<f64>,
+    agnostic: Vec<(f64, usize)>,
+}
+
+impl Weights {
+    /// Adds a named set at every level of scatter and every spike, alone and with each agnostic function.
+    #[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
+    fn add(
+        &mut self,
+        stacked: &Stacked<'_>,
+        library: &Library,
+        scorer: &Scorer,
+        model: &Model,
+        levels: &[Reduced],
+        shifts: &[f64],
+        ln_share: f64,
+    ) {
+        let prior = scorer.ln_prior(model) + ln_share;
+        for (reduced, spike) in levels.iter().flat_map(|r| SPIKES.map(|spike| (r, spike))) {
+            let Some(under) = spiked(stacked, library, reduced, &model.columns, spike) else {
+                continue;
+            };
+            let alone = under.evidence(scorer, None, shifts);
+            self.named.push(prior + (1.0 - PRIOR_OUTSIDE).ln() + alone);
+            if model.columns.len() > 1 {
+                continue;
+            }
+            let blocks = stacked.design.blocks.len();
+            let share = (AMPLITUDES.len() * blocks).max(1) as f64;
+            for block in 0..blocks {
+                for amplitude in AMPLITUDES {
+                    let ln = under.evidence(scorer, Some((block, amplitude)), shifts);
+                    self.agnostic.push((prior + PRIOR_OUTSIDE.ln() - share.ln() + ln, block));
+                }
+            }
+        }
     }
 }
 
@@ -95,14 +130,13 @@ fn spiked<'a>(
     stacked: &Stacked<'_>,
     library: &Library,
     reduced: &Reduced,
-    set: &'a Scored,
+    columns: &'a [usize],
     spike: f64,
 ) -> Option<Under<'a>> {
     let design = stacked.design;
     // Columns of `reduced`: effects, smooth, blocks one after the other, residual.
     let first_block = design.effects + design.smooth.len();
-    let columns = &set.model.columns;
-    let mut kept: Vec<usize> = columns.clone();
+    let mut kept: Vec<usize> = columns.to_vec();
     let mut blocks = Vec::with_capacity(design.blocks.len());
     let mut at = first_block;
     for block in &design.blocks {

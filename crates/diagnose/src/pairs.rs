@@ -81,7 +81,10 @@ fn lanes(scorer: &Scorer, backgrounds: &[Background], column: usize) -> Vec<Colu
         .map(|&(deviation, ln_share)| {
             let precision = 1.0 / (deviation * deviation);
             Column {
-                posterior: backgrounds.iter().map(|at| at.gram(column, column) + precision).collect(),
+                posterior: backgrounds
+                    .iter()
+                    .map(|at| at.gram(column, column) + precision)
+                    .collect(),
                 right: backgrounds
                     .iter()
                     .map(|at| at.product(column) + precision * prior.mean)
@@ -156,9 +159,8 @@ impl Scratch {
         prior: f64,
     ) {
         for (k, at) in backgrounds.iter().enumerate() {
-            // Written so that NaN goes with what is kept out.
             let square = self.squares[k];
-            if !(square <= self.limits[k] * self.by_prior) {
+            if square.is_nan() || square > self.limits[k] * self.by_prior {
                 continue;
             }
             let cross = self.cross[k];
