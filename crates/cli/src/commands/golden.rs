@@ -150,7 +150,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             output: output.clone(),
             law,
             threshold,
-            // What no table can hold is the diagnosis' matter; a model with it is ten times as large.
+            // What no table can hold is the diagnosis' matter; a model with it is six times as large.
             no_remainder: true,
             restart: false,
         },
