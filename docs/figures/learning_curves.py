@@ -438,7 +438,7 @@ def ageing(run):
     reports = run.simulate("ageing", plan(7, exact_aircraft(), effects, design, PLAIN))
     cases = {law: (model, options) for law, options in LAWS.items()}
     cases["bayes, 180 days"] = (with_half_life(run, model, reports, 180), LAWS["bayes"])
-    with_half_life(run, model, reports, "search")
+    cases["bayes, half-life found"] = (with_half_life(run, model, reports, "search"), LAWS["bayes"])
     curves = {"initial": []}
     for start in range(10, 111, 10):
         next_ten = reports[start : start + 10]
@@ -450,7 +450,7 @@ def ageing(run):
     print("| taught | " + " | ".join(str(start) for start, _ in curves["initial"]) + " |")
     for name, curve in curves.items():
         print(f"| {name} | " + " | ".join(f"{c['mean']:+.2f} ± {c['std']:.2f}" for _, c in curve) + " |")
-    for name in ("bayes", "bayes, 180 days"):
+    for name in ("bayes", "bayes, 180 days", "bayes, half-life found"):
         print(f"| coverage {name} | " + " | ".join(f"{100 * c['coverage']:.0f} %" for _, c in curves[name]) + " |")
     drawing = Drawing(720, 370, "An aircraft that ages 2 % a year")
     legend(drawing, 62, 20, ["initial", "bayes", "bayes, 180 days"])
@@ -460,8 +460,8 @@ def ageing(run):
     panel = drawing.panel(62, 58, 630, 250, (5, 115), (low, high))
     panel.frame(range(10, 111, 10), range(low, high + 1))
     panel.horizontal(0, INK, 1)
-    for name, curve in curves.items():
-        line(panel, [(start, c["mean"]) for start, c in curve], COLORS[name])
+    for name, color in COLORS.items():
+        line(panel, [(start, c["mean"]) for start, c in curves[name]], color)
     drawing.text(377, 350, "flights that taught, of 120 in four years", "middle", SOFT)
     drawing.text(16, 183, "mean error of the next ten, %", "middle", SOFT, turn=-90)
     drawing.write(FIGURES / "learning-ageing.svg")
