@@ -63,6 +63,8 @@ pub enum Command {
     Golden(GoldenCommand),
     /// Cruise reports of a virtual aircraft, with any effects switched on
     Simulate(SimulateArgs),
+    /// Blind trials: fly with an effect that the model is denied, diagnose, score
+    Trial(TrialArgs),
     /// The whole chain on embedded data, nothing to prepare
     Demo(DemoArgs),
 }
@@ -320,6 +322,30 @@ pub struct SimulateArgs {
     /// Write the true state of each sample too: TAIL/FLIGHT-states.csv
     #[arg(long)]
     pub states: bool,
+}
+
+/// `trial`
+#[derive(Debug, Args)]
+pub struct TrialArgs {
+    /// Plan of the trials (RON) [default: a short one that comes with the program]
+    #[arg(value_name = "PLAN.ron")]
+    pub plan: Option<PathBuf>,
+    /// Folder to write to: trials.json, trials.md, truth/, cases/; a folder that was begun with the same plan is gone on
+    /// from
+    #[arg(long, short, value_name = "DIR")]
+    pub output: PathBuf,
+    /// The long plan that comes with the program: hours
+    #[arg(long, conflicts_with = "plan")]
+    pub long: bool,
+    /// Another seed than the plan's
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// End with status 2 where a score is below the plan's floor
+    #[arg(long)]
+    pub check: bool,
+    /// Begin anew: an existing folder is kept aside under another name
+    #[arg(long)]
+    pub restart: bool,
 }
 
 /// `demo`

@@ -12,6 +12,7 @@ pub mod predict;
 pub mod segment;
 pub mod show;
 pub mod simulate;
+pub mod trial;
 pub mod tune;
 
 use report::mapping::Mapping;

@@ -90,6 +90,14 @@ pub enum Failure {
         /// Why.
         reason: String,
     },
+    /// Scores below their floors in `trial --check`.
+    #[error("{missed} scores miss their floor, {failed} cases came to nothing")]
+    TrialFloors {
+        /// Floors missed.
+        missed: usize,
+        /// Cases that came to nothing.
+        failed: usize,
+    },
     /// Values out of tolerance in `golden check`.
     #[error("{count} values out of tolerance")]
     GoldenDiffers {

@@ -31,10 +31,8 @@ impl Folder {
     /// # Errors
     /// A place that cannot be written.
     pub fn open(path: &Path, restart: bool) -> Result<Self, Failure> {
-        if restart && path.exists() {
-            let aside = free_name(path);
-            std::fs::rename(path, &aside).map_err(|error| Failure::unwritable(path, error))?;
-            tracing::info!(from = %path.display(), to = %aside.display(), "kept aside");
+        if restart {
+            keep_aside(path)?;
         }
         for folder in [path.to_owned(), path.join("models"), path.join("segments")] {
             make_folder(&folder)?;
@@ -123,6 +121,19 @@ impl Folder {
     pub fn segments_path(&self, tail: &str) -> PathBuf {
         self.path.join("segments").join(format!("{}.csv", file_stem_of_tail(tail)))
     }
+}
+
+/// Renames a folder, if it is there, so that another can begin in its place.
+///
+/// # Errors
+/// A place that cannot be written.
+pub fn keep_aside(path: &Path) -> Result<(), Failure> {
+    if path.exists() {
+        let aside = free_name(path);
+        std::fs::rename(path, &aside).map_err(|error| Failure::unwritable(path, error))?;
+        tracing::info!(from = %path.display(), to = %aside.display(), "kept aside");
+    }
+    Ok(())
 }
 
 /// `DIR.1`, or the first number that is free.

@@ -30,6 +30,7 @@ pub mod segments_table;
 pub mod statistics;
 pub mod studies;
 pub mod summary;
+pub mod trials;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -67,6 +68,7 @@ fn run_command(command: &Command, progress: bool) -> Result<Outcome, Failure> {
         Command::Export(arguments) => commands::export::run(arguments),
         Command::Golden(command) => commands::golden::run(command),
         Command::Simulate(arguments) => commands::simulate::run(arguments, progress),
+        Command::Trial(arguments) => commands::trial::run(arguments, progress),
         Command::Demo(arguments) => commands::demo::run(arguments, progress),
     }
 }

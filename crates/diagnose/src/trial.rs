@@ -4,12 +4,20 @@ pub mod places;
 
 use std::collections::BTreeMap;
 
+use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
 
 use crate::output::{Diagnosis, VerdictKind};
 
 /// A probability from which a name counts as sure.
 const SURE: f64 = 0.9;
+/// Distance from the nearest pair from which a struck effect cannot be imitated, and from the nearest other from which an
+/// effect can be told apart.
+const INIMITABLE: f64 = 5.0;
+const SEPARABLE: f64 = 4.0;
+/// Gap above which closure is scored, and spread within the data above which a gap has a place, %.
+const CLOSABLE: f64 = 0.5;
+const PLACED: f64 = 0.35;
 /// Bins of stated probability for the calibration error.
 const BINS: usize = 10;
 
@@ -37,16 +45,38 @@ pub struct Case {
     pub class: Vec<String>,
     /// The 90 % credible set.
     pub credible: Vec<String>,
+    /// Effects that the verdict names.
+    pub named: Vec<String>,
     /// Estimated over true size − 1 of the first planted effect, where it is on top.
     pub size_error: Option<f64>,
     /// Whether the 95 % interval holds the true size.
     pub interval_holds: Option<bool>,
-    /// Closure on unseen flights and rms of the gap, %.
+    /// Closure of the whole explainable gap on unseen flights.
     pub closure: Option<f64>,
+    /// Share of the planted effect's own gap that the named effects remove, where the caller knows it: it takes the same
+    /// flights flown without the effect.
+    #[serde(default)]
+    pub planted_closure: Option<f64>,
+    /// Where the gap was said to lie, where the caller knows where it truly lies.
+    #[serde(default)]
+    pub located: Option<Located>,
     /// Rms of the gap before, %.
     pub gap_rms_percent: f64,
     /// Distance of the planted effect from the nearest other one, and from the nearest pair, at typical size.
     pub nearest: Option<(f64, f64)>,
+}
+
+/// Where the gap was said to lie against where it truly lies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Located {
+    /// Standard deviation of the planted gap within the data, %: how much of it has a place at all.
+    pub spread_percent: f64,
+    /// Whether a place was reported that is none by chance (p ≤ 0.05), "everywhere" being no place.
+    pub significant: bool,
+    /// Whether its first place is along the variable that the planted gap follows closest.
+    pub driver_named: bool,
+    /// Overlap of the first place with the truly worst region of equal size: intersection over union.
+    pub overlap: f64,
 }
 
 /// A share with its 95 % interval (Wilson).
@@ -87,12 +117,34 @@ pub struct Scores {
     pub abstained: Share,
     /// Struck effects of that kind that were named surely.
     pub struck_and_sure: Share,
+    /// Nulls on which an effect was named with probability ≥ 0.9.
+    pub null_and_sure: Share,
+    /// Effects that no library has: outside the library.
+    pub outside: Share,
+    /// Effects that no library has and that were named surely.
+    pub outside_and_sure: Share,
+    /// Pairs of which the verdict names both and nothing else.
+    pub pair_exact: Share,
+    /// Pairs of which both are named or in the verdict's class.
+    pub pair_class: Share,
+    /// Pairs of which one is on top.
+    pub pair_top: Share,
+    /// Planted gaps that vary by 0.35 % or more within the data: a place was reported.
+    pub place_significant: Share,
+    /// Of those gaps: the variable that drives the gap was named.
+    pub place_driver: Share,
+    /// Nulls: a place was reported.
+    pub place_alarm: Share,
+    /// Median overlap of the place with the truly worst region, over the gaps that vary.
+    pub place_overlap_median: Option<f64>,
     /// 95 % intervals of size that hold the truth, where the effect is on top.
     pub intervals: Share,
     /// Expected calibration error of the top effect's probability, over the reported.
     pub calibration_error: f64,
     /// Median closure where the gap is above 0.5 %.
     pub closure_median: Option<f64>,
+    /// Median share of the planted effect's own gap that the named effects remove, where the gap is above 0.5 %.
+    pub planted_closure_median: Option<f64>,
     /// Median of |size error|.
     pub size_error_median: Option<f64>,
     /// Planted → on top (`no_gap`, `outside_library` where nothing is named) → count.
@@ -132,6 +184,9 @@ impl Case {
             top_three: found.causes.iter().take(3).map(|cause| cause.effect.clone()).collect(),
             class,
             credible,
+            named: found.verdict.effects.clone(),
+            planted_closure: None,
+            located: None,
             size_error: magnitude.map(|(size, found)| found.value / size - 1.0),
             interval_holds: magnitude
                 .map(|(size, found)| found.ci95[0] <= size && size <= found.ci95[1]),
@@ -142,8 +197,33 @@ impl Case {
         }
     }
 
+    /// Takes the distance of the planted effect from others out of a diagnosis with the whole library: one that was struck
+    /// does not know it.
+    pub fn take_distance(&mut self, whole: &Diagnosis) {
+        let name = self.truth();
+        let own = whole.detectable.iter().find(|d| d.effect == name);
+        self.nearest = own.map(|d| (d.nearest_other, d.nearest_pair));
+    }
+
     fn is_null(&self) -> bool {
         self.planted.effects.is_empty()
+    }
+
+    fn is_pair(&self) -> bool {
+        self.planted.effects.len() > 1
+    }
+
+    /// No library has what was planted.
+    fn is_outside(&self) -> bool {
+        self.planted.effects.iter().any(|(name, _)| EffectId::from_name(name).is_none())
+    }
+
+    fn is_single(&self) -> bool {
+        !self.is_null() && !self.is_pair() && !self.is_outside() && !self.is_struck()
+    }
+
+    fn is_named(&self, name: &str) -> bool {
+        self.verdict == VerdictKind::Effects && self.named.iter().any(|n| n == name)
     }
 
     fn is_struck(&self) -> bool {
@@ -154,8 +234,12 @@ impl Case {
         self.planted.effects.first().map_or("nothing", |(name, _)| name)
     }
 
+    fn top_is(&self, name: &str) -> bool {
+        self.top.as_ref().is_some_and(|(top, _)| top == name)
+    }
+
     fn on_top(&self) -> bool {
-        self.top.as_ref().is_some_and(|(name, _)| name == self.truth())
+        self.top_is(self.truth())
     }
 
     fn is_sure(&self) -> bool {
@@ -190,22 +274,33 @@ impl Share {
     }
 }
 
-/// Scores cases. `struck_distance` tells how far a struck effect is from the nearest pair of others: its own column is not
-/// in the library that was searched, so that the caller takes it from a diagnosis with the whole library.
+/// Scores cases. `struck_distance` tells how far a struck effect is from the nearest pair of others where the case itself
+/// does not ([`Case::take_distance`]): its own column is not in the library that was searched.
 #[must_use]
 pub fn score(cases: &[Case], struck_distance: impl Fn(&str) -> Option<f64>) -> Scores {
-    let planted: Vec<&Case> = cases.iter().filter(|c| !c.is_null() && !c.is_struck()).collect();
+    let planted: Vec<&Case> = cases.iter().filter(|c| c.is_single()).collect();
     let reported: Vec<&Case> =
         planted.iter().copied().filter(|c| c.verdict != VerdictKind::NoGap).collect();
-    let separable = reported.iter().copied().filter(|c| c.nearest.is_some_and(|n| n.0 >= 4.0));
+    let separable =
+        reported.iter().copied().filter(|c| c.nearest.is_some_and(|n| n.0 >= SEPARABLE));
     let nulls = || cases.iter().filter(|c| c.is_null());
     let struck = || {
-        cases
+        cases.iter().filter(|c| {
+            let distance = c.nearest.map(|n| n.1).or_else(|| struck_distance(c.truth()));
+            c.is_struck() && distance.is_some_and(|d| d >= INIMITABLE)
+        })
+    };
+    let outside = || cases.iter().filter(|c| c.is_outside() && !c.is_struck());
+    let pairs = || cases.iter().filter(|c| c.is_pair() && !c.is_struck() && !c.is_outside());
+    let placed = || {
+        planted
             .iter()
-            .filter(|c| c.is_struck() && struck_distance(c.truth()).is_some_and(|d| d >= 5.0))
+            .copied()
+            .filter_map(|c| c.located.as_ref())
+            .filter(|l| l.spread_percent >= PLACED)
     };
     let mut confusion: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
-    for case in cases.iter().filter(|c| !c.is_struck()) {
+    for case in cases.iter().filter(|c| !c.is_struck() && !c.is_pair()) {
         let said = match case.verdict {
             VerdictKind::NoGap => "no_gap".to_owned(),
             VerdictKind::OutsideLibrary => "outside_library".to_owned(),
@@ -233,19 +328,43 @@ pub fn score(cases: &[Case], struck_distance: impl Fn(&str) -> Option<f64>) -> S
         silent: Share::among(nulls(), |c| c.verdict == VerdictKind::NoGap),
         abstained: Share::among(struck(), |c| c.verdict == VerdictKind::OutsideLibrary),
         struck_and_sure: Share::among(struck(), Case::is_sure),
+        null_and_sure: Share::among(nulls(), Case::is_sure),
+        outside: Share::among(outside(), |c| c.verdict == VerdictKind::OutsideLibrary),
+        outside_and_sure: Share::among(outside(), Case::is_sure),
+        pair_exact: Share::among(pairs(), |c| {
+            c.named.len() == 2 && c.planted.effects.iter().all(|(name, _)| c.is_named(name))
+        }),
+        pair_class: Share::among(pairs(), |c| {
+            c.planted.effects.iter().all(|(name, _)| c.is_named(name) || c.class.contains(name))
+        }),
+        pair_top: Share::among(pairs(), |c| {
+            named(&c) && c.planted.effects.iter().any(|(name, _)| c.top_is(name))
+        }),
+        place_significant: Share::of(placed().filter(|l| l.significant).count(), placed().count()),
+        place_driver: Share::of(placed().filter(|l| l.driver_named).count(), placed().count()),
+        place_alarm: {
+            let located = || nulls().filter_map(|c| c.located.as_ref());
+            Share::of(located().filter(|l| l.significant).count(), located().count())
+        },
+        place_overlap_median: median(placed().map(|l| l.overlap).collect()),
         intervals: Share::among(
             reported.iter().copied().filter(|c| c.interval_holds.is_some()),
             |c| c.interval_holds == Some(true),
         ),
         calibration_error: calibration_error(&reported),
-        closure_median: median(
-            reported.iter().filter(|c| c.gap_rms_percent > 0.5).filter_map(|c| c.closure).collect(),
+        closure_median: median(closable(&reported).filter_map(|c| c.closure).collect()),
+        planted_closure_median: median(
+            closable(&reported).filter_map(|c| c.planted_closure).collect(),
         ),
         size_error_median: median(
             reported.iter().filter_map(|c| c.size_error).map(f64::abs).collect(),
         ),
         confusion,
     }
+}
+
+fn closable<'a>(cases: &'a [&'a Case]) -> impl Iterator<Item = &'a Case> {
+    cases.iter().copied().filter(|c| c.gap_rms_percent > CLOSABLE)
 }
 
 /// Σ over bins of stated probability: share of the cases × |mean stated − observed|.
@@ -300,6 +419,9 @@ mod tests {
             top_three: vec![top.to_owned()],
             class: vec![top.to_owned()],
             credible: vec![top.to_owned()],
+            named: vec![top.to_owned()],
+            planted_closure: None,
+            located: None,
             size_error: None,
             interval_holds: None,
             closure: Some(0.9),
@@ -310,13 +432,50 @@ mod tests {
 
     #[test]
     fn scores_by_hand() {
-        let cases = [case("a", "a", 0.95), case("a", "b", 0.95), case("b", "b", 0.55)];
+        let [a, b] = ["drag_factor", "tsfc_factor"];
+        let cases = [case(a, a, 0.95), case(a, b, 0.95), case(b, b, 0.55)];
         let scores = score(&cases, |_| None);
         assert_eq!((scores.top_one.count, scores.top_one.of), (2, 3));
         assert_eq!((scores.sure_and_wrong.count, scores.sure_and_wrong.of), (1, 3));
         // Bins: 0.9…1.0 states 1.9 for one right of two, 0.5…0.6 states 0.55 for one right: (0.9 + 0.45)/3.
         assert!((scores.calibration_error - 0.45).abs() < 1e-12);
-        assert_eq!(scores.confusion["a"]["b"], 1);
+        assert_eq!(scores.confusion[a][b], 1);
         assert_eq!(scores.closure_median, Some(0.9));
+    }
+
+    #[test]
+    fn every_kind_of_case_counts_where_it_belongs() {
+        let [a, b] = ["drag_factor", "tsfc_factor"];
+        let mut pair = case(a, a, 0.95);
+        pair.planted.effects.push((b.to_owned(), 1.0));
+        pair.named = vec![b.to_owned(), a.to_owned()];
+        let half = Case { named: vec![a.to_owned()], ..pair.clone() };
+        let mut null = case(a, a, 0.95);
+        null.planted.effects.clear();
+        let silent = Case { verdict: VerdictKind::NoGap, ..null.clone() };
+        let mut struck = case(a, b, 0.95);
+        struck.planted.struck = vec![a.to_owned()];
+        let imitable = Case { nearest: Some((10.0, 4.9)), ..struck.clone() };
+        let outside =
+            Case { verdict: VerdictKind::OutsideLibrary, ..case("outside_mach_bump", a, 0.3) };
+        let place =
+            Located { spread_percent: 0.4, significant: true, driver_named: false, overlap: 0.7 };
+        let placed = Case { located: Some(place), ..case(a, a, 0.95) };
+        let scores =
+            score(&[pair, half, null, silent, struck, imitable, outside, placed], |_| None);
+        let of = |share: Share| (share.count, share.of);
+        assert_eq!(of(scores.pair_exact), (1, 2));
+        assert_eq!(of(scores.pair_class), (1, 2));
+        assert_eq!(of(scores.pair_top), (2, 2));
+        assert_eq!(of(scores.silent), (1, 2));
+        assert_eq!(of(scores.null_and_sure), (1, 2));
+        // Only one of the struck effects cannot be imitated.
+        assert_eq!(of(scores.abstained), (0, 1));
+        assert_eq!(of(scores.struck_and_sure), (1, 1));
+        assert_eq!(of(scores.outside), (1, 1));
+        assert_eq!(of(scores.top_one), (1, 1));
+        assert_eq!(of(scores.place_significant), (1, 1));
+        assert_eq!(of(scores.place_driver), (0, 1));
+        assert_eq!(scores.place_overlap_median, Some(0.7));
     }
 }

@@ -87,6 +87,15 @@ impl TruthEffect {
         }
     }
 
+    /// Whether it only ever makes the aircraft worse, or its size is no signed number.
+    #[must_use]
+    pub const fn is_one_sided(self) -> bool {
+        match self {
+            Self::Library(id) => is_one_sided(id),
+            Self::Outside(_) => true,
+        }
+    }
+
     /// Its typical size in that unit; a share of the mass needs the fleet's mean mass.
     #[must_use]
     pub fn typical_size(self, mean_mass_kg: f64) -> f64 {

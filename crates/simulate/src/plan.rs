@@ -94,7 +94,9 @@ pub enum SensorChoice {
 }
 
 impl SensorChoice {
-    pub(crate) fn sensors(&self) -> Sensors {
+    /// The sensors themselves.
+    #[must_use]
+    pub fn sensors(&self) -> Sensors {
         match self {
             Self::Perfect => Sensors::perfect(),
             Self::Rounded => Sensors::rounded(),

@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
+use std::sync::Arc;
 
+use adapt::bayes::Posterior;
 use diagnose::{Diagnosis, FlightRecord, Input, Options, TableUncertainty, VerdictKind, diagnose};
 use flight::effect::EffectId;
 use rayon::prelude::*;
@@ -224,14 +226,24 @@ fn uncertainty(
     model: &ModelFile,
 ) -> Result<Option<TableUncertainty>, diagnose::TableUncertaintyError> {
     let Some(posterior) = model.posterior() else { return Ok(None) };
-    let grid = model.grid();
+    table_uncertainty(posterior, model.grid()).map(Some)
+}
+
+/// What a table learnt by law `bayes` does not know.
+///
+/// # Errors
+/// A covariance that is none.
+pub(crate) fn table_uncertainty(
+    posterior: &Posterior,
+    grid: &Arc<lut::Grid>,
+) -> Result<TableUncertainty, diagnose::TableUncertaintyError> {
     let nodes = grid.nodes();
     if nodes > NODES_WITH_COVARIANCE {
         let mut factor = vec![0.0; nodes * nodes];
         for (node, deviation) in posterior.standard_deviation().iter().enumerate() {
             factor[node * nodes + node] = *deviation;
         }
-        return TableUncertainty::new(grid.clone(), nodes, factor).map(Some);
+        return TableUncertainty::new(Arc::clone(grid), nodes, factor);
     }
     let cells: Vec<lut::Cell> = (0..nodes)
         .filter_map(|node| {
@@ -239,8 +251,7 @@ fn uncertainty(
             grid.locate(x, y, lut::Outside::Hold).ok()
         })
         .collect();
-    TableUncertainty::from_covariance(grid.clone(), &posterior.relative_covariances(&cells))
-        .map(Some)
+    TableUncertainty::from_covariance(Arc::clone(grid), &posterior.relative_covariances(&cells))
 }
 
 /// The diagnosis in a dozen lines.

@@ -14,3 +14,4 @@ mod reference;
 mod same_bytes;
 mod state;
 mod support;
+mod trial;

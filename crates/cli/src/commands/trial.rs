@@ -1,0 +1,173 @@
+//! `cruisefit trial`: blind trials of the diagnosis.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use simulate::{AircraftChoice, AircraftTruth};
+
+use crate::args::TrialArgs;
+use crate::commands::Outcome;
+use crate::failure::{Failure, RefusedReport, show};
+use crate::files::{make_folder, read_text, write_atomically};
+use crate::folder::keep_aside;
+use crate::progress::Progress;
+use crate::trials::{
+    CaseSpec, Seal, TrialPlan, Trials, Withheld, floors_missed, markdown, run_case, summarize,
+    terminal,
+};
+
+/// Runs the command.
+///
+/// # Errors
+/// What leaves nothing done; with `--check` a score below its floor.
+pub fn run(arguments: &TrialArgs, progress: bool) -> Result<Outcome, Failure> {
+    let plan = read_plan(arguments)?;
+    let begun = Instant::now();
+    if arguments.restart {
+        keep_aside(&arguments.output)?;
+    }
+    make_folder(&arguments.output.join("cases"))?;
+    begin(&arguments.output, &plan)?;
+    let cases = plan.cases(engines(&plan)?);
+    let seal = seal(&arguments.output, &plan, &cases, progress)?;
+    // Told before the first diagnosis, also where nobody watches the progress.
+    eprintln!("{} cases, truth sealed: sha256 {}", cases.len(), seal.hash());
+    let bar = Progress::new(cases.len(), "trials", progress);
+    let results: Vec<_> = cases
+        .par_iter()
+        .map(|case| {
+            let result = run_case(&arguments.output, &plan, case, &seal);
+            bar.step();
+            result.map_err(|error| (case.number, error.to_string()))
+        })
+        .collect();
+    bar.finish();
+    let (mut done, mut failed) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(case) => done.push(case),
+            Err(reason) => failed.push(reason),
+        }
+    }
+    let trials = summarize(&plan, seal.hash(), done, failed);
+    write(&arguments.output, &trials)?;
+    if arguments.check {
+        check(&plan, &trials)?;
+    }
+    let mut text = terminal(&trials);
+    let _ = writeln!(
+        text,
+        "{} cases in {:.0} s. Written to {}: trials.json, trials.md, truth/, cases/",
+        trials.cases.len(),
+        begun.elapsed().as_secs_f64(),
+        show(&arguments.output)
+    );
+    let refused = trials
+        .failed
+        .iter()
+        .map(|(case, reason)| RefusedReport::whole(format!("case {case}").into(), reason))
+        .collect();
+    Ok(Outcome { text, refused })
+}
+
+fn read_plan(arguments: &TrialArgs) -> Result<TrialPlan, Failure> {
+    let mut plan = match &arguments.plan {
+        Some(path) => TrialPlan::from_ron(&read_text(path)?)
+            .map_err(|reason| Failure::bad_file(path, reason))?,
+        None if arguments.long => TrialPlan::long()?,
+        None => TrialPlan::short()?,
+    };
+    if let Some(seed) = arguments.seed {
+        plan.seed = seed;
+    }
+    Ok(plan)
+}
+
+fn engines(plan: &TrialPlan) -> Result<usize, Failure> {
+    match &plan.aircraft {
+        AircraftChoice::Preset(preset) => AircraftTruth::preset(*preset)
+            .map(|aircraft| aircraft.engines())
+            .map_err(|error| wrong(&error)),
+        AircraftChoice::Custom(aircraft) => Ok(aircraft.engines()),
+    }
+}
+
+/// Writes down what the folder was begun with, or makes sure that it was begun with the same.
+fn begin(folder: &Path, plan: &TrialPlan) -> Result<(), Failure> {
+    let path = folder.join("plan.ron");
+    let mut text = plan.to_ron().map_err(|error| Failure::unwritable(&path, error))?;
+    text.push('\n');
+    if !path.exists() {
+        return write_atomically(&path, text.as_bytes());
+    }
+    let known = read_text(&path)?;
+    let difference = known.lines().zip(text.lines()).find(|(one, other)| one != other);
+    if known == text {
+        return Ok(());
+    }
+    Err(Failure::BegunOtherwise {
+        folder: show(folder),
+        what: "plan",
+        difference: difference.map_or_else(
+            || "one is longer".to_owned(),
+            |(one, other)| format!("{} against {}", one.trim(), other.trim()),
+        ),
+    })
+}
+
+/// Draws every case and seals what is withheld.
+fn seal(
+    folder: &Path,
+    plan: &TrialPlan,
+    cases: &[CaseSpec],
+    progress: bool,
+) -> Result<Seal, Failure> {
+    let bar = Progress::new(cases.len(), "sealing", progress);
+    let truths = cases
+        .par_iter()
+        .map(|case| {
+            let truth = Withheld::draw(plan, case).map_err(|error| wrong(&error))?.truth().clone();
+            bar.step();
+            Ok(truth)
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bar.finish();
+    Seal::write(folder, &truths)
+}
+
+fn write(folder: &Path, trials: &Trials) -> Result<(), Failure> {
+    let path = folder.join("trials.json");
+    let mut json =
+        serde_json::to_string_pretty(trials).map_err(|error| Failure::unwritable(&path, error))?;
+    json.push('\n');
+    write_atomically(&path, json.as_bytes())?;
+    write_atomically(&folder.join("trials.md"), markdown(trials).as_bytes())
+}
+
+fn check(plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
+    let missed = floors_missed(plan, trials);
+    for one in &missed {
+        let floor = &one.floor;
+        eprintln!(
+            "floor missed: {:?} model, {:?}, {} x typical, {:?}: {}, allowed {}{}",
+            floor.denied,
+            floor.background,
+            floor.times,
+            floor.score,
+            one.reached.map_or_else(|| "no case".to_owned(), |value| format!("{value:.3}")),
+            floor.least.map_or_else(String::new, |least| format!(">= {least} ")),
+            floor.most.map_or_else(String::new, |most| format!("<= {most}")),
+        );
+    }
+    if missed.is_empty() && trials.failed.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::TrialFloors { missed: missed.len(), failed: trials.failed.len() })
+    }
+}
+
+fn wrong(error: &dyn std::fmt::Display) -> Failure {
+    Failure::BadArgument { argument: "PLAN.ron", reason: error.to_string() }
+}

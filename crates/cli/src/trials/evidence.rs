@@ -1,0 +1,338 @@
+//! What the diagnosis is given: a model that was denied the effect, and segments. No name of an effect, no size.
+
+use std::sync::Arc;
+
+use diagnose::{
+    Baseline, Diagnosis, FlightRecord, GaugeBurn, Input, Options, TableUncertainty, diagnose,
+};
+use flight::Segment;
+use flight::effect::EffectId;
+use lut::Table;
+use lut::surface::{Basis, Surface};
+use perf_model::aircraft::{
+    AircraftFile, AxisFile, MassDeviation, SensorDeviations, TableFile, TsfcFile,
+};
+use perf_model::{Aircraft, PerformanceModel};
+use rayon::prelude::*;
+use segmenter::TrimCriteria;
+use simulate::study::DragError;
+use simulate::{
+    AircraftTruth, ChannelSensor, Richness, Scatter, Sensors, Simulation, SimulationError,
+};
+use units::Mach;
+use units::convert::TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR;
+
+use super::case::CaseFailure;
+use super::draw::{TAIL, Withheld};
+use crate::commands::diagnose::table_uncertainty;
+use crate::learning::{self, FlightToLearn, LawChoice};
+use crate::model_file::LedgerEntry;
+
+/// Grid of an exact model: chords of it err by less than 0.005 % of drag below the drag rise.
+const FINE: [(f64, f64, f64); 2] = [(0.08, 0.75, 0.005), (0.50, 0.95, 0.005)];
+/// Grid of an adapted model, as an aircraft file of the paper has it.
+const COARSE: [(f64, f64, f64); 2] = [(0.10, 0.75, 0.05), (0.50, 0.95, 0.05)];
+
+/// What the diagnosis is given.
+#[derive(Debug)]
+pub struct Evidence {
+    model: PerformanceModel,
+    /// The adapted drag table; the model's own where nothing was learnt.
+    drag_table: Table,
+    baseline: Option<Baseline>,
+    uncertainty: Option<TableUncertainty>,
+    flights: Vec<FlightSegments>,
+}
+
+/// One flight, reduced as every command reduces it.
+#[derive(Clone, Debug)]
+pub(super) struct FlightSegments {
+    pub(super) segments: Vec<Segment>,
+    gauges: Option<GaugeBurn>,
+    samples: usize,
+}
+
+impl Evidence {
+    /// Flies a case and makes the model that is denied what the case withholds.
+    ///
+    /// # Errors
+    /// What the simulator, the segmenter or the law of adaptation refuses.
+    pub fn gather(withheld: &Withheld) -> Result<Self, CaseFailure> {
+        let clean = withheld.clean_flights();
+        let sensors = withheld.flown().plan().sensors.sensors();
+        let flights = fly(withheld.flown(), clean..withheld.flown().len())?;
+        if clean == 0 {
+            let model =
+                denied_model(withheld.aircraft(), withheld.richness(), &sensors, &FINE, None)?;
+            let drag_table = model.drag_table().clone();
+            return Ok(Self { model, drag_table, baseline: None, uncertainty: None, flights });
+        }
+        // The first flights of the twin: no effect, no clutter.
+        let lessons = fly(withheld.twin(), 0..clean)?;
+        let error = DragError::study();
+        let initial = denied_model(
+            withheld.aircraft(),
+            withheld.richness(),
+            &sensors,
+            &COARSE,
+            Some(&error),
+        )?;
+        adapted(initial, &lessons, flights)
+    }
+
+    /// The diagnosis.
+    ///
+    /// # Errors
+    /// What the diagnosis refuses.
+    pub fn diagnose(
+        &self,
+        without: &[EffectId],
+        skip_closure: bool,
+    ) -> Result<Diagnosis, CaseFailure> {
+        let records: Vec<FlightRecord<'_>> = self
+            .flights
+            .iter()
+            .filter(|flight| !flight.segments.is_empty())
+            .map(|flight| FlightRecord { segments: &flight.segments, gauges: flight.gauges })
+            .collect();
+        let input = Input {
+            model: &self.model,
+            drag_table: &self.drag_table,
+            flights: &records,
+            baseline: self.baseline.as_ref(),
+            table: self.uncertainty.as_ref(),
+            references: self.baseline.as_ref().map(|baseline| *baseline.references()),
+        };
+        let options = Options { effects: vec![], without: without.to_vec(), skip_closure };
+        Ok(diagnose(&input, &options)?)
+    }
+}
+
+/// Flies, derives, segments: what `simulate` and `diagnose` do through files, without the files. A flight that the weather
+/// does not allow is left out; the number of flights that were diagnosed is in every result.
+pub(super) fn fly(
+    simulation: &Simulation,
+    indices: std::ops::Range<usize>,
+) -> Result<Vec<FlightSegments>, CaseFailure> {
+    let criteria = TrimCriteria::ghazi_2020_table_4();
+    let planned = indices.len();
+    let flown = indices
+        .into_par_iter()
+        .map(|index| {
+            let report = match simulation.fly(index) {
+                Ok(flown) => flown.report,
+                // A day too warm for the planned level: nobody flies there.
+                Err(SimulationError::Flight { .. }) => return Ok(None),
+                Err(error) => return Err(error.into()),
+            };
+            let samples = report.len();
+            let track = track::derive(report)?;
+            let segments = segmenter::segment(&track, &criteria).segments;
+            Ok(Some(FlightSegments { segments, gauges: GaugeBurn::of_track(&track), samples }))
+        })
+        .collect::<Result<Vec<_>, CaseFailure>>()?;
+    let flown: Vec<FlightSegments> = flown.into_iter().flatten().collect();
+    if 10 * flown.len() < 9 * planned {
+        return Err(CaseFailure::NotFlown { flown: flown.len(), planned });
+    }
+    Ok(flown)
+}
+
+/// The truth's drag at its reference conditions, and its TSFC law at the best part load, as a model's table.
+fn denied_model(
+    truth: &AircraftTruth,
+    richness: Richness,
+    sensors: &Sensors,
+    grid: &[(f64, f64, f64); 2],
+    error: Option<&DragError>,
+) -> Result<PerformanceModel, CaseFailure> {
+    let axis = |(from, to, step)| AxisFile::Step { from, to, step };
+    let aircraft = Aircraft::new(AircraftFile {
+        name: truth.name.clone(),
+        type_code: truth.type_code.clone(),
+        engines: truth.engine.count,
+        wing_area_m2: truth.airframe.wing_area_m2,
+        tsfc: TsfcFile {
+            static_lb_per_lbf_h: truth.engine.tsfc.static_kg_n_s
+                / TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR,
+            mach_exponent: truth.engine.tsfc.mach_exponent,
+        },
+        table: TableFile { lift_coefficient: axis(grid[0]), mach: axis(grid[1]) },
+        polynomial: Basis::SeparableQuadratic,
+        mean_aerodynamic_chord_m: Some(truth.airframe.mean_aerodynamic_chord_m),
+        drag_divergence_mach: None,
+        reference_lhv_mj_kg: None,
+        sensors: sensor_deviations(sensors, &Scatter::default(), truth),
+    })?;
+    let at = truth.reference_conditions();
+    let grid = Arc::clone(aircraft.grid());
+    let values = (0..grid.nodes())
+        .map(|node| grid.coordinates(node))
+        .map(|(lift, mach)| {
+            let drag = truth.drag_coefficient(lift, Mach::new(mach), &at, richness);
+            drag * (1.0 + error.map_or(0.0, |error| error.at(mach, lift)))
+        })
+        .collect();
+    let table = Table::new(Arc::clone(&grid), values)?;
+    let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
+    let extrapolated = vec![false; grid.nodes()];
+    Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?)
+}
+
+/// What the aircraft file says of the fleet's sensors: those of the virtual aircraft, as an operator would state them of a
+/// mean over a segment of ten samples. What stays within a flight and what stays within minutes counts whole, noise by
+/// 1/√10.
+///
+/// The air-data computer's errors are stated where the fleet cruises, Mach 0.80 and 200 hPa:
+///
+/// ```text
+/// σM = √((σpt/pt)² + (σps/ps)²)·(1 + 0.2 M²)/(1.4 M),  σh = R·T·σps/(g0·ps)
+/// ```
+///
+/// from M² = 5((pt/ps)^(2/7) − 1) and the hydrostatic equation at T = 216.65 K.
+fn sensor_deviations(
+    sensors: &Sensors,
+    scatter: &Scatter,
+    truth: &AircraftTruth,
+) -> SensorDeviations {
+    const SAMPLES: f64 = 10.0;
+    const MACH: f64 = 0.80;
+    const STATIC_PRESSURE_HPA: f64 = 200.0;
+    const PRESSURE_SCALE_HEIGHT_M: f64 = 287.05287 * 216.65 / 9.80665;
+    let added = |sensor: &ChannelSensor| {
+        let noise = sensor.noise_sd.powi(2) / SAMPLES;
+        (sensor.flight_sd.powi(2) + sensor.slow_sd.powi(2) + noise).sqrt()
+    };
+    let gained = |sensor: &ChannelSensor| {
+        let noise = sensor.gain_noise_sd.powi(2) / SAMPLES;
+        (sensor.gain_flight_sd.powi(2) + sensor.gain_slow_sd.powi(2) + noise).sqrt()
+    };
+    let heating = 1.0 + 0.2 * MACH * MACH;
+    let static_relative = added(&sensors.static_pressure) / STATIC_PRESSURE_HPA;
+    let total_relative = added(&sensors.total_pressure) / (STATIC_PRESSURE_HPA * heating.powf(3.5));
+    SensorDeviations {
+        fuel_flow_percent: 100.0 * gained(&sensors.fuel_flow),
+        mach: static_relative.hypot(total_relative) * heating / (1.4 * MACH),
+        static_air_temperature_k: added(&sensors.total_air_temperature) / heating,
+        mass: MassDeviation::Kilograms(
+            0.01 * scatter.zero_fuel_mass_percent * truth.masses.maximum_zero_fuel_kg,
+        ),
+        lower_heating_value_percent: scatter.heating_value_percent,
+        n2_percent: (100.0 * gained(&sensors.n2)).hypot(added(&sensors.n2)),
+        pressure_altitude_m: static_relative * PRESSURE_SCALE_HEIGHT_M,
+        acceleration_m_s2: SensorDeviations::default().acceleration_m_s2,
+    }
+}
+
+/// Law `bayes` on clean flights with its remainder, as `cruisefit adapt` does it.
+fn adapted(
+    initial: PerformanceModel,
+    lessons: &[FlightSegments],
+    flights: Vec<FlightSegments>,
+) -> Result<Evidence, CaseFailure> {
+    let law = LawChoice::Bayes(adapt::bayes::BayesSettings::physical_2026());
+    let mut learnt = learning::begin(&initial, TAIL, TrimCriteria::PRESETS[0], law)?;
+    let mut all = Vec::new();
+    for (index, flight) in lessons.iter().enumerate() {
+        let Some(first) = flight.segments.first() else { continue };
+        let entry = LedgerEntry {
+            tail: TAIL.to_owned(),
+            flight: first.identity.flight.clone(),
+            start: first.identity.start.to_string(),
+            content: format!("flight {index}"),
+            samples: flight.samples as u64,
+            segments: 0,
+            outside_table: 0,
+        };
+        let lesson = FlightToLearn { entry, segments: &flight.segments };
+        learning::learn_flight(&initial, &mut learnt, &lesson)?;
+        all.extend(flight.segments.iter().cloned());
+    }
+    learning::settle(&mut learnt)?;
+    learning::remember_remainder(&initial, &mut learnt, &all);
+    let uncertainty = match &learnt.law {
+        crate::model_file::LawState::Bayes { posterior, .. } => {
+            Some(table_uncertainty(posterior, initial.drag_table().grid())?)
+        }
+        crate::model_file::LawState::Paper { .. } => None,
+    };
+    Ok(Evidence {
+        drag_table: learnt.law.drag_coefficient().clone(),
+        baseline: learnt.baseline,
+        uncertainty,
+        model: initial,
+        flights,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use perf_model::effects::{EffectModel, EffectPoint, EffectReferences, Effects};
+    use simulate::{Earth, FleetDesign, Plan, SensorChoice, Weather};
+
+    use super::*;
+
+    fn residuals(plan: Plan) -> Vec<f64> {
+        let simulation = Simulation::new(plan).unwrap();
+        let model = denied_model(
+            simulation.aircraft(),
+            Richness::plain(),
+            &Sensors::transport(),
+            &FINE,
+            None,
+        )
+        .unwrap();
+        let flights = fly(&simulation, 0..simulation.len()).unwrap();
+        let segments: Vec<Segment> = flights.into_iter().flat_map(|f| f.segments).collect();
+        let points: Vec<EffectPoint> = segments
+            .iter()
+            .map(|s| EffectPoint::of_means(&s.means, s.identity.start.as_second() as f64, 2))
+            .collect();
+        let references =
+            EffectReferences::mean_of(model.aircraft(), model.drag_table(), &points).unwrap();
+        let of = EffectModel::new(&model, model.drag_table(), references).unwrap();
+        segments
+            .iter()
+            .zip(&points)
+            .map(|(segment, point)| {
+                let response = of.response(point, &Effects::none()).unwrap();
+                segment.means.fuel_flow_total_kg_s.ln() - response.ln_fuel_flow_total
+            })
+            .collect()
+    }
+
+    fn plan(flights: usize) -> Plan {
+        let design = FleetDesign { flights, ..FleetDesign::default() };
+        Plan {
+            richness: Richness::plain(),
+            earth: Earth::plain(),
+            sensors: SensorChoice::Perfect,
+            scatter: Scatter::none(),
+            ..Plan::of_one_tail(5, TAIL, design)
+        }
+    }
+
+    #[test]
+    fn an_exact_model_is_exact() {
+        // The oracle is the simulator, whose physics is its own: without effect, noise and weather nothing may be left.
+        let all = residuals(Plan { weather: Weather::still(), ..plan(6) });
+        assert!(all.len() > 40, "{}", all.len());
+        let rms = (all.iter().map(|r| r * r).sum::<f64>() / all.len() as f64).sqrt();
+        // 0.02 % is left where the speed changes within a segment.
+        assert!(rms < 5e-4, "{rms}");
+        // With weather 0.1 %, against 0.2 to 0.5 % of noise.
+        let all = residuals(plan(6));
+        let rms = (all.iter().map(|r| r * r).sum::<f64>() / all.len() as f64).sqrt();
+        assert!(rms < 2e-3, "{rms}");
+    }
+
+    #[test]
+    fn the_aircraft_file_states_the_virtual_sensors() {
+        // By hand: 100·√(0.0015² + 0.0020² + 0.0030²/10), √(0.20² + 0.10² + 0.05²/10)/1.128, 0.007·11 068 kg.
+        let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
+        let stated = sensor_deviations(&Sensors::transport(), &Scatter::default(), &truth);
+        assert!((stated.fuel_flow_percent - 0.26743).abs() < 1e-4, "{stated:?}");
+        assert!((stated.static_air_temperature_k - 0.19873).abs() < 1e-4, "{stated:?}");
+        assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
+    }
+}

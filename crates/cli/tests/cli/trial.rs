@@ -1,0 +1,63 @@
+//! Blind trials, small.
+
+use crate::support::{bytes_below, cruisefit};
+
+/// Three cases of eight short flights.
+const PLAN: &str = r#"(
+    seed: 3, flights: 8, clean_flights: 6, duration_h: 1.0, effects: ["drag_factor"],
+    parts: [
+        (denied: exact, background: clutter, kind: single, repeats: 1, times: 2.0),
+        (denied: exact, background: clean, kind: struck, repeats: 1),
+        (denied: adapted, background: clean, kind: null, repeats: 1),
+    ],
+    floors: [(denied: exact, background: clean, score: reported, least: 0.5)],
+)"#;
+
+#[test]
+fn a_trial_is_sealed_scored_and_gone_on_from() {
+    let scratch = tempfile::tempdir().unwrap();
+    let plan = scratch.path().join("plan.ron");
+    std::fs::write(&plan, PLAN).unwrap();
+    let output = scratch.path().join("out");
+    let run = |threads: &str, more: &[&str]| {
+        let mut arguments = vec![
+            "trial",
+            plan.to_str().unwrap(),
+            "-o",
+            output.to_str().unwrap(),
+            "--threads",
+            threads,
+        ];
+        arguments.extend(more);
+        cruisefit(&arguments)
+    };
+    let ran = run("2", &[]).expect(0);
+    assert!(ran.stdout.contains("exact model, clutter, 2 x typical: 1 single"), "{}", ran.stdout);
+    let expected = bytes_below(&output);
+    let trials: serde_json::Value = serde_json::from_slice(&expected["trials.json"]).unwrap();
+    assert_eq!(trials["schema"], "cruisefit.trials/1");
+    // The hash that was told at the start is the one of the results.
+    ran.says(trials["seal_sha256"].as_str().unwrap());
+    assert_eq!(trials["cases"].as_array().unwrap().len(), 3);
+    let truth: serde_json::Value = serde_json::from_slice(&expected["truth/00001.json"]).unwrap();
+    assert_eq!(truth["effects"][0]["id"], "drag_factor");
+    // Twice the typical 2 %, of either sign; every other effect is there too, but for those that are known.
+    let size = truth["effects"][0]["size"].as_f64().unwrap();
+    assert!((size.abs() - 4.0).abs() < 1e-12, "{size}");
+    assert_eq!(truth["clutter"].as_array().unwrap().len(), 27);
+
+    // A run that was cut off goes on: what is left is the same, to the last byte, on one thread as on two.
+    std::fs::remove_file(output.join("cases/00002.json")).unwrap();
+    std::fs::remove_file(output.join("trials.json")).unwrap();
+    run("1", &[]).expect(0);
+    assert_eq!(bytes_below(&output), expected);
+
+    // A floor without a case behind it is missed.
+    run("2", &["--check"]).expect(2).says("1 scores miss their floor, 0 cases came to nothing");
+    // Another plan in the same folder is refused, unless begun anew.
+    run("2", &["--seed", "4"]).expect(2).says("was begun with another plan");
+    // A truth that was changed is noticed.
+    let path = output.join("truth/00001.json");
+    std::fs::write(&path, std::fs::read_to_string(&path).unwrap().replace("4.0", "5.0")).unwrap();
+    run("2", &[]).expect(2).says("was begun with another truth");
+}
