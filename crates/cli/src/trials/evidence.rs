@@ -80,15 +80,11 @@ impl Evidence {
         adapted(initial, &lessons, flights)
     }
 
-    /// The diagnosis.
+    /// The diagnosis; a quick one leaves out closure and places.
     ///
     /// # Errors
     /// What the diagnosis refuses.
-    pub fn diagnose(
-        &self,
-        without: &[EffectId],
-        skip_closure: bool,
-    ) -> Result<Diagnosis, CaseFailure> {
+    pub fn diagnose(&self, without: &[EffectId], quick: bool) -> Result<Diagnosis, CaseFailure> {
         let records: Vec<FlightRecord<'_>> = self
             .flights
             .iter()
@@ -103,7 +99,12 @@ impl Evidence {
             table: self.uncertainty.as_ref(),
             references: self.baseline.as_ref().map(|baseline| *baseline.references()),
         };
-        let options = Options { effects: vec![], without: without.to_vec(), skip_closure };
+        let options = Options {
+            without: without.to_vec(),
+            skip_closure: quick,
+            skip_where: quick,
+            ..Options::default()
+        };
         Ok(diagnose(&input, &options)?)
     }
 }
