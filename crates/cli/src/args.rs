@@ -225,6 +225,9 @@ pub struct PredictArgs {
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// Predict by the drag table alone, without the remainder that the model remembers
+    #[arg(long)]
+    pub table_only: bool,
 }
 
 /// `evaluate`
@@ -259,6 +262,10 @@ pub struct DiagnoseArgs {
     /// Leave these effects out
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     pub without: Vec<String>,
+    /// Write to this folder, as TAIL.ron, each tail's model extended by the effects found; where flights cannot tell
+    /// several effects apart, name the one with --effects
+    #[arg(long, value_name = "DIR")]
+    pub apply: Option<PathBuf>,
     /// One diagnosis for all tails together
     #[arg(long)]
     pub pool: bool,

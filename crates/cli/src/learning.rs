@@ -90,12 +90,12 @@ pub fn learn_flight(
     let mut observations = Vec::with_capacity(flight.segments.len());
     let mut result = FlightLearnt::default();
     for segment in flight.segments {
-        match initial.observe(segment) {
-            Ok(observation) => {
-                learnt.references.add(segment, observation.lift_coefficient);
+        match (initial.observe(segment), initial.corrected(segment)) {
+            (Ok(observation), Ok(corrected)) => {
+                learnt.references.add(&corrected, observation.lift_coefficient);
                 observations.push(observation);
             }
-            Err(_) => result.outside_table += 1,
+            _ => result.outside_table += 1,
         }
     }
     match &mut learnt.law {
@@ -209,13 +209,26 @@ pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
     Some(paper::error_percent(table, &cell, observation))
 }
 
+fn state_without_errors(
+    model: &PerformanceModel,
+    segment: &Segment,
+) -> Option<perf_model::SegmentState> {
+    model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
+}
+
 /// What a table on the model's grid says of each segment; `None` for a state that the model is not defined for. A
 /// segment outside the grid keeps its coefficients and has no error.
+///
+/// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
+/// the error, effects included.
 pub fn evaluate(
     model: &PerformanceModel,
     table: &Table,
     segments: &[Segment],
 ) -> Vec<Option<Evaluated>> {
+    // Some effects are shares of the table's own drag: they are those of the table that is asked.
+    let moved = model.effects().and_then(|_| model.with_drag_table(table.clone()).ok());
+    let model = moved.as_ref().unwrap_or(model);
     segments
         .iter()
         .map(|segment| match model.observe(segment) {
@@ -225,11 +238,11 @@ pub fn evaluate(
                     lift_coefficient: observation.lift_coefficient,
                     drag_coefficient: observation.drag_coefficient,
                     predicted_fuel_flow_kg_s: error
-                        .map(|error| observation.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
+                        .map(|error| segment.means.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
                     error_percent: error,
                 })
             }
-            Err(_) => model.state_of(segment).ok().map(|state| Evaluated {
+            Err(_) => state_without_errors(model, segment).map(|state| Evaluated {
                 lift_coefficient: state.lift_coefficient,
                 drag_coefficient: state.drag_coefficient,
                 predicted_fuel_flow_kg_s: None,

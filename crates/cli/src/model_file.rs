@@ -5,8 +5,10 @@
 //! that read back to the same bits. The last field is a checksum of all bytes before it: a digit that a disk, a mail
 //! program or an editor changed is noticed before anybody acts on it.
 
+mod applied;
 mod text;
 
+pub use applied::{AppliedRecord, DiagnosisRecord};
 pub(crate) use text::hex;
 
 use std::path::Path;
@@ -29,7 +31,7 @@ pub const FORMAT: u32 = 1;
 /// A model, and what it has learnt.
 #[derive(Clone, Debug)]
 pub struct ModelFile {
-    /// The initial model: aircraft, polynomial, drag table, extrapolated nodes.
+    /// The initial model: aircraft, polynomial, drag table, extrapolated nodes, and the effects of `applied`.
     pub initial: PerformanceModel,
     /// What the guide was like from which the initial model comes.
     pub guide: GuideRecord,
@@ -37,6 +39,8 @@ pub struct ModelFile {
     pub settings: LawSettings,
     /// What was learnt; `None` in an initial model.
     pub learnt: Option<Learnt>,
+    /// Diagnoses whose effects the model contains, in the order in which they were applied.
+    pub applied: Vec<AppliedRecord>,
 }
 
 /// What the initial model's guide was like, and how well the polynomial fits it.
@@ -279,6 +283,12 @@ impl ModelFile {
                     other.initial.aircraft().name(),
                     self.initial.aircraft().name()
                 ),
+            ));
+        }
+        if self.initial.effects() != other.initial.effects() {
+            return Some((
+                "set of applied effects",
+                format!("{} against {}", other.told_effects(), self.told_effects()),
             ));
         }
         if self.initial != other.initial {

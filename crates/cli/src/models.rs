@@ -111,7 +111,7 @@ fn files_of(argument: &Path) -> Result<Vec<PathBuf>, Failure> {
 }
 
 fn tail_of(model: &ModelFile) -> Option<&str> {
-    model.learnt.as_ref().map(|learnt| learnt.tail.as_str())
+    model.tail()
 }
 
 fn same_claim(one: &ModelFile, other: &ModelFile) -> bool {

@@ -44,6 +44,8 @@ const FOLDS: usize = 10;
 const INFLATIONS: usize = 3;
 /// Prior standard deviation of how much of the environment's effects a fleet shows: all of it, or none.
 const ENVIRONMENT_DEVIATION: f64 = 1.0;
+/// Share of the prior variance that is left where flown data informed the remainder.
+const INFORMED_SHARE: f64 = 0.25;
 /// Fewest flights that teach a remainder.
 const FEWEST_FLIGHTS: usize = 5;
 
@@ -161,6 +163,29 @@ impl Baseline {
             })
             .sum();
         (self.remainder_mean(&terms), variance.sqrt())
+    }
+
+    /// The same where flown data informed it; `None` elsewhere, where the mean is hardly more than the prior's.
+    ///
+    /// Informed is a point that lies inside the range flown of each variable, and at which the remainder's variance is at
+    /// most a quarter of what it was before anything was flown. The level, which any flight informs, does not count in the
+    /// latter.
+    #[must_use]
+    pub fn known_remainder(&self, response: &Response) -> Option<(f64, f64)> {
+        let inside = self.parts.hats.iter().all(|(variable, hats)| {
+            let value = variable.flown(response, &self.parts.references);
+            hats.beyond(value).iter().all(|distance| *distance <= 0.0)
+        });
+        let mut terms = vec![0.0; self.remainder_terms()];
+        self.write_remainder(response, &mut terms);
+        let prior: f64 = terms
+            .iter()
+            .enumerate()
+            .skip(1)
+            .map(|(index, term)| (term * self.prior_deviation(index)).powi(2))
+            .sum();
+        let (mean, deviation) = self.remainder(response);
+        (inside && deviation * deviation <= INFORMED_SHARE * prior).then_some((mean, deviation))
     }
 
     /// Mean of the remainder at a point.

@@ -2,17 +2,19 @@
 //!
 //! Everything is linear in the number of segments and lies segment by segment.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use flight::effect::EffectId;
-use flight::{MAXIMUM_ENGINES, Segment};
+use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use perf_model::effects::{EffectModel, EffectPoint, Effects, HiddenParameters, Response};
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
 use crate::library::Library;
 use crate::noise::{
-    ByChannel, Channels, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise, segment_noise,
+    ByChannel, Channels, HEATING_LOADING, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise,
+    segment_noise,
 };
 use crate::record::FlightRecord;
 
@@ -176,7 +178,9 @@ impl Predictor<'_> {
 
 /// A segment that the model can predict, before signatures.
 struct Inside<'a> {
-    segment: &'a Segment,
+    /// Corrected by what the model contains.
+    means: Cow<'a, SegmentMeans>,
+    rows: &'a [u32],
     point: EffectPoint,
     response: Response,
 }
@@ -194,12 +198,14 @@ fn inside<'a>(
         for segment in flight.segments {
             #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
             let start_s = segment.identity.start.as_second() as f64;
-            let point = EffectPoint::of_means(&segment.means, start_s, engines);
+            let found = model.corrected_means(&segment.means).and_then(|means| {
+                let point = EffectPoint::of_means(&means, start_s, engines);
+                let response = model.response(&point, &Effects::none())?;
+                Ok(Inside { means, rows: &segment.rows, point, response })
+            });
             let flow_kg_s = segment.means.fuel_flow_total_kg_s;
-            match model.response(&point, &Effects::none()) {
-                Ok(response) if flow_kg_s.is_finite() && flow_kg_s > 0.0 => {
-                    kept.push(Inside { segment, point, response });
-                }
+            match found {
+                Ok(inside) if flow_kg_s.is_finite() && flow_kg_s > 0.0 => kept.push(inside),
                 Ok(_) => *left_out.entry("fuel flow not positive".to_owned()).or_default() += 1,
                 Err(error) => *left_out.entry(reason(&error).to_owned()).or_default() += 1,
             }
@@ -222,7 +228,7 @@ fn reason(error: &perf_model::effects::EffectError) -> &'static str {
 }
 
 fn recorded_channels(
-    means: &flight::SegmentMeans,
+    means: &SegmentMeans,
     channels: Channels,
 ) -> (ByChannel, [bool; MAXIMUM_CHANNELS]) {
     let mut values = [0.0; MAXIMUM_CHANNELS];
@@ -249,11 +255,11 @@ fn recorded_channels(
 }
 
 /// Mean N2 of the engines, %, where all are recorded.
-pub(crate) fn mean_n2_percent(means: &flight::SegmentMeans) -> Option<f64> {
+pub(crate) fn mean_n2_percent(means: &SegmentMeans) -> Option<f64> {
     has_n2(means).then(|| means.n2_percent.iter().sum::<f64>() / means.n2_percent.len() as f64)
 }
 
-fn has_n2(means: &flight::SegmentMeans) -> bool {
+fn has_n2(means: &SegmentMeans) -> bool {
     !means.n2_percent.is_empty() && means.n2_percent.iter().all(|n2| n2.is_finite() && *n2 > 1.0)
 }
 
@@ -294,7 +300,8 @@ impl<'a> Data<'a> {
                 }
             }
             if data.segments.len() > first {
-                let gauge = gauges.map(|burn| gauge_row(burn, &library, &data.segments[first..]));
+                let gauge =
+                    gauges.map(|burn| gauge_row(burn, model, &library, &data.segments[first..]));
                 data.flights.push(FlightRows { segments: first..data.segments.len(), gauge });
             }
         }
@@ -311,7 +318,7 @@ impl<'a> Data<'a> {
         let channels = self.channels;
         let deck = &self.predictor.deck;
         let predict = |response: &Response| self.predictor.predict(response);
-        let (recorded, is_recorded) = recorded_channels(&kept.segment.means, channels);
+        let (recorded, is_recorded) = recorded_channels(&kept.means, channels);
         let predicted = predict(&kept.response);
         let mut residual = [0.0; MAXIMUM_CHANNELS];
         for channel in 0..channels.count() {
@@ -319,17 +326,22 @@ impl<'a> Data<'a> {
                 residual[channel] = recorded[channel] - predicted[channel];
             }
         }
-        let noise = segment_noise(
+        let mut noise = segment_noise(
             model,
             &kept.point,
             &Effects::none(),
-            &kept.segment.rows,
+            kept.rows,
             0.0,
             is_recorded,
             channels,
             factors,
             &predict,
         )?;
+        // Scatter between flights that the model contains is no gap: it adds to what a flight has in common.
+        let scatter = model.applied().map_or(0.0, |applied| applied.fuel_heating_value_deviation());
+        if let Some(heating) = noise.common.get_mut(HEATING_LOADING) {
+            heating[0] = heating[0].hypot(scatter);
+        }
         let mut row = SegmentRow {
             point: kept.point,
             response: kept.response,
@@ -341,7 +353,7 @@ impl<'a> Data<'a> {
             deck: deck.terms(&kept.response),
             n2_slope: if channels.n2 { deck.slope(&kept.response) } else { 0.0 },
             drag_over_thrust: kept.response.drag_over_thrust,
-            n2_percent: mean_n2_percent(&kept.segment.means),
+            n2_percent: mean_n2_percent(&kept.means),
             acceleration_deviation_m_s2: factors.within[0]
                 * mean_acceleration_deviation_m_s2(
                     model.aircraft().sensors().acceleration_m_s2,
@@ -430,9 +442,8 @@ fn channels_of(
     let segments = || inside.iter().flat_map(|(segments, _)| segments);
     let total = segments().count();
     let half = |count: usize| 2 * count > total;
-    let split =
-        segments().filter(|kept| kept.segment.means.fuel_flow_engine_kg_s.len() == engines).count();
-    let n2 = segments().filter(|kept| has_n2(&kept.segment.means)).count();
+    let split = segments().filter(|kept| kept.means.fuel_flow_engine_kg_s.len() == engines).count();
+    let n2 = segments().filter(|kept| has_n2(&kept.means)).count();
     Channels { contrasts: if engines > 1 && half(split) { engines - 1 } else { 0 }, n2: half(n2) }
 }
 
@@ -446,11 +457,8 @@ fn deck_of(
         return deck;
     }
     let mut deck = Deck { centers: [0.0; 4], coefficients: [0.0; DECK_TERMS] };
-    let segments: Vec<&Inside<'_>> = inside
-        .iter()
-        .flat_map(|(segments, _)| segments)
-        .filter(|k| has_n2(&k.segment.means))
-        .collect();
+    let segments: Vec<&Inside<'_>> =
+        inside.iter().flat_map(|(segments, _)| segments).filter(|k| has_n2(&k.means)).collect();
     if !channels.n2 || segments.is_empty() {
         return deck;
     }
@@ -465,7 +473,7 @@ fn deck_of(
     let mut right = faer::Mat::<f64>::zeros(DECK_TERMS, 1);
     for kept in &segments {
         let terms = deck.terms(&kept.response);
-        let (values, _) = recorded_channels(&kept.segment.means, channels);
+        let (values, _) = recorded_channels(&kept.means, channels);
         let target = values[channels.n2_row()] - half_ln_total_temperature_ratio(&kept.response);
         for a in 0..DECK_TERMS {
             right[(a, 0)] += terms[a] * target;
@@ -486,8 +494,16 @@ fn deck_of(
     deck
 }
 
-fn gauge_row(burn: crate::GaugeBurn, library: &Library, segments: &[SegmentRow]) -> GaugeRow {
+fn gauge_row(
+    burn: crate::GaugeBurn,
+    model: &EffectModel<'_>,
+    library: &Library,
+    segments: &[SegmentRow],
+) -> GaugeRow {
     let count = segments.len().max(1) as f64;
+    // Meter errors that the model contains are undone here as they are in the segments' fuel flow.
+    let metered_too_much: f64 =
+        segments.iter().map(|row| model.metered_over_burnt(&row.point).ln()).sum::<f64>() / count;
     let share = |engine: u8| {
         let index = usize::from(engine).wrapping_sub(1);
         segments
@@ -506,7 +522,7 @@ fn gauge_row(burn: crate::GaugeBurn, library: &Library, segments: &[SegmentRow])
         })
         .collect();
     GaugeRow {
-        residual: (burn.gauged_kg / burn.metered_kg).ln(),
+        residual: (burn.gauged_kg / burn.metered_kg).ln() + metered_too_much,
         deviation: (burn.deviation_kg / burn.metered_kg).max(1e-6),
         signatures,
     }

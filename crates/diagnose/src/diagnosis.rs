@@ -10,6 +10,7 @@ use perf_model::effects::{
 use statrs::function::erf::erfc;
 
 use crate::TableUncertainty;
+use crate::addition::Addition;
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
 use crate::classes::{Distances, leading_columns};
@@ -107,7 +108,12 @@ pub fn references_of(
     let points: Vec<EffectPoint> = flights
         .iter()
         .flat_map(|flight| flight.segments)
-        .map(|s| EffectPoint::of_means(&s.means, s.identity.start.as_second() as f64, engines))
+        .filter_map(|segment| {
+            // What cannot be corrected is left out of the diagnosis too, with its reason.
+            let means = model.corrected_means(&segment.means).ok()?;
+            let start_s = segment.identity.start.as_second() as f64;
+            Some(EffectPoint::of_means(&means, start_s, engines))
+        })
         .collect();
     Ok(EffectReferences::mean_of(model.aircraft(), drag_table, &points)?)
 }
@@ -242,6 +248,7 @@ fn insufficient(flights: usize, segments: usize, reason: &str) -> Diagnosis {
             advice: format!("Too little data: {reason}."),
             separations: vec![],
         },
+        addition: None,
         detectable: vec![],
         outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None },
         left_out: std::collections::BTreeMap::new(),
@@ -327,6 +334,8 @@ fn conclude(
         r#where: places,
         causes,
         not_testable: vec![],
+        addition: Addition::of(&analysis, library, &verdict.effects, *model.references())
+            .filter(|_| !verdict.effects.is_empty()),
         verdict,
         detectable,
         outside: OutsideLibrary {
@@ -698,18 +707,14 @@ fn advice(verdict: &Verdict, differs: Option<&str>) -> String {
     words
 }
 
-/// Effects of a verdict as they are switched on in a model.
 impl Diagnosis {
-    /// The sizes of the verdict's effects, for applying them; empty where the verdict names none.
+    /// The verdict's effects as they are switched on in a model, hidden parameters included; empty where the verdict names
+    /// none.
     #[must_use]
     pub fn effects(&self) -> Effects {
-        let mut effects = Effects::none();
-        for name in &self.verdict.effects {
-            let cause = self.causes.iter().find(|cause| &cause.effect == name);
-            if let (Some(id), Some(cause)) = (EffectId::from_name(name), cause) {
-                effects = effects.with(id, cause.magnitude.value);
-            }
-        }
-        effects
+        self.addition
+            .as_ref()
+            .and_then(|addition| addition.layer().ok())
+            .map_or_else(Effects::none, |layer| layer.effects)
     }
 }

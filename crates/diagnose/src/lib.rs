@@ -49,6 +49,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod addition;
 mod analysis;
 mod baseline;
 mod classes;
@@ -72,6 +73,7 @@ pub mod trial;
 mod uncertainty;
 mod variables;
 
+pub use addition::{AddedEffect, Addition, UnknownEffect};
 pub use baseline::{Baseline, BaselineLengthError};
 pub use diagnosis::{DiagnoseError, Input, Options, diagnose, references_of};
 pub use noise::NoiseFactors;

@@ -66,7 +66,8 @@ impl Library {
             heating_value: false,
         };
         for id in EffectId::library(model.aircraft().engines()) {
-            if !chosen(id) {
+            // What the model contains and physics knows the size of is no effect any more.
+            if !chosen(id) || model.applied().is_some_and(|applied| applied.settles(id)) {
                 continue;
             }
             if let Some(needs) = lacking(id, points, engines_recorded) {

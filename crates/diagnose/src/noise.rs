@@ -12,6 +12,9 @@ pub(crate) type ByChannel = [f64; MAXIMUM_CHANNELS];
 /// Flight-to-flight standard deviation of the split of thrust between engines, of ln(Wf1/Wf2): 1 %.
 const SPLIT_DEVIATION: f64 = 0.01;
 
+/// Place of the heating value among a segment's common loadings.
+pub(crate) const HEATING_LOADING: usize = 1;
+
 /// Factors on the sensors' standard deviations, learnt from clean flights; 1 before.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

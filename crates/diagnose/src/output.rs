@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::Addition;
+
 /// One tail's diagnosis. Field names and meanings are the format's; what it does not name is beside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Diagnosis {
@@ -23,6 +25,9 @@ pub struct Diagnosis {
     pub not_testable: Vec<NotTestable>,
     /// What it comes to.
     pub verdict: Verdict,
+    /// What the verdict would add to the model; `null` where it names nothing.
+    #[serde(default)]
+    pub addition: Option<Addition>,
     /// For every testable effect the size that would just be seen, and its class.
     pub detectable: Vec<Detectable>,
     /// Probability that something outside the library acts, and the variable that it hangs on.

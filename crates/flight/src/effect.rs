@@ -203,6 +203,13 @@ impl EffectId {
         Self::library(MAXIMUM_ENGINES).into_iter().find(|id| id.to_string() == name)
     }
 
+    /// Whether it is about what was recorded (sensors, load sheet, fuel quantity) and not about what flies: it then corrects
+    /// recordings, and never a prediction.
+    #[must_use]
+    pub const fn is_of_recordings(self) -> bool {
+        matches!(self.entry().group, EffectGroup::Mass | EffectGroup::Sensor)
+    }
+
     /// The library's entry.
     #[must_use]
     #[expect(clippy::too_many_lines, reason = "one table: splitting it would hide it")]

@@ -8,6 +8,8 @@
 //! Difficult: a sensor effect says how the *recording* errs, so that its sign is the other way round from a change of the
 //! aircraft. All of it is in the file on what was recorded.
 
+use std::borrow::Cow;
+
 use flight::effect::{EffectId, TypicalSize};
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use lut::surface::{Basis, FitError, Surface, fit};
@@ -15,17 +17,20 @@ use lut::{Outside, Table};
 use serde::{Deserialize, Serialize};
 use units::OutOfDomain;
 
-use crate::{Aircraft, PerformanceModel};
+use crate::{Aircraft, FlightPoint, PerformanceModel};
 
+mod applied;
 mod drag;
 mod engine;
 mod recorded;
 mod terms;
 
+pub use applied::{AppliedEffects, AppliedLayer};
 pub use engine::ANTI_ICE_PROXY_K;
 pub use terms::{Effects, HiddenParameters, StepTarget};
 
-use terms::Terms;
+pub(crate) use applied::Contained;
+use terms::{Layers, Terms};
 
 /// What effects need to know about a segment. SI unless the name says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,12 +92,19 @@ pub struct EffectReferences {
 }
 
 /// A performance model that effects can be switched on in.
+///
+/// What the performance model contains already ([`PerformanceModel::with_effects`]) acts always: its physical effects are
+/// part of every response, and points are those of *corrected* recordings
+/// ([`PerformanceModel::corrected`]). Trial effects come on top.
 #[derive(Clone, Debug)]
 pub struct EffectModel<'a> {
     aircraft: &'a Aircraft,
     drag_table: &'a Table,
     polar: Surface,
     references: EffectReferences,
+    applied: Option<&'a AppliedEffects>,
+    contained: &'a [Terms],
+    recorded: &'a [Terms],
 }
 
 /// The prediction for one segment, with everything the residual channels ask for.
@@ -140,6 +152,14 @@ pub enum EffectModelError {
         /// What was given.
         value: f64,
     },
+    /// The size of an applied effect that is not finite.
+    #[error("size of {effect} is {size}, not finite")]
+    Size {
+        /// The effect.
+        effect: EffectId,
+        /// What was given.
+        size: f64,
+    },
     /// No segment that the model can predict, so no references.
     #[error("none of {segments} segments is inside the drag table")]
     NothingInside {
@@ -180,6 +200,41 @@ pub enum EffectError {
 }
 
 impl EffectPoint {
+    /// The point that a prediction is wanted for: level, unaccelerated, wings level, no wind. Anti-ice bleed is off and
+    /// the center of gravity, latitude and heading are unknown where the flight point does not say; `date_s` is 0 without
+    /// a date.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] for a pressure altitude outside the atmosphere's domain.
+    pub fn of_flight_point(point: &FlightPoint, engines: usize) -> Result<Self, OutOfDomain> {
+        let sat = point.static_air_temperature()?;
+        let true_airspeed_m_s =
+            atmos::airspeed::mach_to_true_airspeed(point.mach, sat).to_meters_per_second();
+        let engines = engines.clamp(1, MAXIMUM_ENGINES);
+        let mut fuel_flow_share = [0.0; MAXIMUM_ENGINES];
+        fuel_flow_share[..engines].fill(1.0 / engines as f64);
+        #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
+        let date_s = point.date.map_or(0.0, |date| date.as_second() as f64);
+        Ok(Self {
+            date_s,
+            pressure_altitude_m: point.pressure_altitude.to_meters(),
+            static_air_temperature_k: sat.to_kelvin(),
+            mach: point.mach.value(),
+            true_airspeed_m_s,
+            ground_speed_m_s: true_airspeed_m_s,
+            acceleration_m_s2: 0.0,
+            mass_kg: point.mass.to_kilograms(),
+            fuel_used_kg: 0.0,
+            fuel_flow_share,
+            roll_squared_deg2: None,
+            drift_deg: None,
+            latitude_deg: point.latitude.map(units::Angle::to_degrees),
+            true_heading_deg: point.true_heading.map(units::Angle::to_degrees),
+            center_of_gravity_percent_mac: point.center_of_gravity_percent_mac,
+            anti_ice: Some(if point.anti_ice == Some(true) { 1.0 } else { 0.0 }),
+        })
+    }
+
     /// The point of a segment's means. `engines` is the aircraft's number.
     #[must_use]
     pub fn of_means(means: &SegmentMeans, start_s: f64, engines: usize) -> Self {
@@ -251,6 +306,9 @@ impl EffectReferences {
             drag_table,
             polar: Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] },
             references: unused,
+            applied: None,
+            contained: &[],
+            recorded: &[],
         };
         let mut sum = Self { mach: 0.0, ..unused };
         sum.unit_reynolds_number_per_m = 0.0;
@@ -326,18 +384,50 @@ impl<'a> EffectModel<'a> {
             return Err(EffectModelError::GridDiffers);
         }
         references.check()?;
-        let grid = drag_table.grid();
-        let points: Vec<_> = drag_table
-            .values()
-            .iter()
-            .enumerate()
-            .map(|(node, &drag_coefficient)| {
-                let (lift_coefficient, mach) = grid.coordinates(node);
-                (lift_coefficient, mach, drag_coefficient, 1.0)
-            })
-            .collect();
-        let polar = fit(Basis::SeparableQuadratic, &points)?.surface;
-        Ok(Self { aircraft: model.aircraft(), drag_table, polar, references })
+        let contained = model.contained();
+        Ok(Self {
+            aircraft: model.aircraft(),
+            drag_table,
+            polar: polar_of(drag_table)?,
+            references,
+            applied: contained.map(|contained| &contained.applied),
+            contained: contained.map_or(&[], |contained| &contained.physical),
+            recorded: contained.map_or(&[], |contained| &contained.recorded),
+        })
+    }
+
+    /// Whether the model contains an effect already, beside trial ones.
+    #[must_use]
+    pub fn contains(&self, effect: EffectId) -> bool {
+        self.applied.is_some_and(|applied| applied.contains(effect))
+    }
+
+    /// What the model contains already; `None` for nothing.
+    #[must_use]
+    pub const fn applied(&self) -> Option<&AppliedEffects> {
+        self.applied
+    }
+
+    /// A segment's means as they would have been recorded without the errors that the model contains: what points are made
+    /// of.
+    ///
+    /// # Errors
+    /// [`EffectError`] where a correction leaves the domain of a quantity.
+    pub fn corrected_means<'m>(
+        &self,
+        means: &'m SegmentMeans,
+    ) -> Result<Cow<'m, SegmentMeans>, EffectError> {
+        applied::corrected_by(self.recorded, means, self.aircraft.engines())
+    }
+
+    /// Fuel that meters counted over fuel that was burnt, by the errors that the model contains, at a corrected point.
+    #[must_use]
+    pub fn metered_over_burnt(&self, point: &EffectPoint) -> f64 {
+        let of = |terms: &Terms| -> f64 {
+            let shares = point.fuel_flow_share.iter().zip(terms.fuel_flow_gain);
+            1.0 + shares.map(|(share, gain)| share * gain).sum::<f64>()
+        };
+        self.recorded.iter().map(of).product()
     }
 
     /// The references.
@@ -399,8 +489,9 @@ impl<'a> EffectModel<'a> {
                 return Err(EffectError::NotRecorded { effect, needs });
             }
         }
-        let terms = Terms::of(effects, &self.references);
-        self.evaluate(point, &terms, terms.moves_the_point())
+        let trial = Terms::of(effects, &self.references);
+        let layers = Layers { contained: self.contained, trial: &trial };
+        self.evaluate(point, layers, layers.moves_the_point())
     }
 
     /// As [`response`](Self::response), at a point beside a recorded one: the table is continued in a straight line for
@@ -413,30 +504,32 @@ impl<'a> EffectModel<'a> {
         point: &EffectPoint,
         effects: &Effects,
     ) -> Result<Response, EffectError> {
-        self.evaluate(point, &Terms::of(effects, &self.references), true)
+        let trial = Terms::of(effects, &self.references);
+        self.evaluate(point, Layers { contained: self.contained, trial: &trial }, true)
     }
 
     fn evaluate(
         &self,
         point: &EffectPoint,
-        terms: &Terms,
+        layers: Layers<'_>,
         may_leave: bool,
     ) -> Result<Response, EffectError> {
-        let flown = recorded::as_flown(point, terms)?;
-        let weight_n = flown.mass_kg * drag::apparent_gravity_m_s2(point, terms);
+        let flown = recorded::as_flown(point, layers.trial)?;
+        let weight_n = flown.mass_kg * drag::apparent_gravity_m_s2(point, layers);
         let surface_n = flown.dynamic_pressure_pa * self.aircraft.wing_area().to_square_meters();
         let lift_coefficient = weight_n / surface_n;
         let table = self.table_value(lift_coefficient, flown.mach, may_leave)?;
-        let drag_coefficient = self.drag_coefficient(table, lift_coefficient, point, &flown, terms);
+        let drag_coefficient =
+            self.drag_coefficient(table, lift_coefficient, point, &flown, layers);
         let drag_n = surface_n * drag_coefficient;
-        let net_thrust_n = drag_n + drag::path_force_n(point, &flown, terms);
+        let net_thrust_n = drag_n + drag::path_force_n(point, &flown, layers);
         // Written so that NaN is refused too.
         if net_thrust_n.is_nan() || net_thrust_n <= 0.0 {
             return Err(EffectError::ThrustNotPositive { net_thrust_n });
         }
         let corrected_thrust_n = net_thrust_n / flown.pressure_ratio;
         let (total_kg_s, engines_kg_s) =
-            self.recorded_fuel_flow(net_thrust_n, corrected_thrust_n, point, &flown, terms);
+            self.recorded_fuel_flow(net_thrust_n, corrected_thrust_n, point, &flown, layers);
         Ok(Response {
             ln_fuel_flow_total: total_kg_s.ln(),
             ln_fuel_flow_engine: engines_kg_s.map(f64::ln),
@@ -473,6 +566,21 @@ impl<'a> EffectModel<'a> {
             + along_lift * (lift_coefficient - clamped_lift)
             + along_mach * (mach - clamped_mach))
     }
+}
+
+/// CD0(M) and K(M) of a table.
+fn polar_of(drag_table: &Table) -> Result<Surface, FitError> {
+    let grid = drag_table.grid();
+    let points: Vec<_> = drag_table
+        .values()
+        .iter()
+        .enumerate()
+        .map(|(node, &drag_coefficient)| {
+            let (lift_coefficient, mach) = grid.coordinates(node);
+            (lift_coefficient, mach, drag_coefficient, 1.0)
+        })
+        .collect();
+    Ok(fit(Basis::SeparableQuadratic, &points)?.surface)
 }
 
 #[cfg(test)]

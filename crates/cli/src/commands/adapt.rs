@@ -143,9 +143,10 @@ fn beginning(model: &ModelFile, tail: &str, arguments: &AdaptArgs) -> Result<Mod
     if let Some(learnt) = &model.learnt {
         tracing::warn!(
             tail,
-            "the model given has learnt {} flights of tail {}; adapting begins from its initial part",
+            "the model given has learnt {} flights of tail {}; adapting begins from its initial part{}",
             learnt.ledger.len(),
-            learnt.tail
+            learnt.tail,
+            if model.applied.is_empty() { "" } else { " and the effects applied to it" }
         );
     }
     let law = match arguments.law {
@@ -269,6 +270,7 @@ impl Job {
         };
         let mut refused = Vec::new();
         let mut notes = self.warnings;
+        notes.extend(model.note_of_effects());
         let mut flights_new = 0;
         for flight in self.flights {
             let Some(learnt) = &mut model.learnt else { break };

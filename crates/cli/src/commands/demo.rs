@@ -82,6 +82,7 @@ pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
             model: path,
             points: folder.join("static.csv"),
             output: Some(predicted.clone()),
+            table_only: false,
         })?;
         let errors = errors_of(&predicted)?;
         let _ = writeln!(

@@ -1,5 +1,7 @@
 //! `cruisefit diagnose`: where a model differs from flight and which effect it lacks.
 
+mod apply;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -84,11 +86,17 @@ pub fn run(arguments: &DiagnoseArgs, progress: bool) -> Result<Outcome, Failure>
     for diagnosis in &diagnoses {
         tell(diagnosis, &mut text);
     }
+    let refused_reports = reading.refused.len();
+    if let Some(folder) = &arguments.apply {
+        let applied = apply::apply(folder, &groups, &diagnoses)?;
+        text.push_str(&applied.text);
+        reading.refused.extend(applied.refused);
+    }
     let _ = writeln!(
         text,
         "{} read, {} refused. Written to {}: diagnosis.json, diagnosis.html",
         counted(read, "report"),
-        reading.refused.len(),
+        refused_reports,
         show(&arguments.output)
     );
     Ok(Outcome { text, refused: reading.refused })

@@ -73,7 +73,7 @@ fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -
         flights_new: flights.len(),
         samples: flights.iter().map(|flight| flight.samples as u64).sum(),
     };
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = model.note_of_effects().into_iter().collect();
     for flight in &flights {
         flight.add_notes(&mut notes);
     }

@@ -15,6 +15,12 @@ use crate::model_file::ModelFile;
 /// What leaves nothing done.
 pub fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
     let model = ModelFile::read(&arguments.model)?;
+    if !model.applied.is_empty() {
+        tracing::warn!(
+            "a table holds drag alone; effects that the model contains are not in it: {}",
+            model.told_effects()
+        );
+    }
     let columns = if arguments.polynomial {
         polynomial(&model).map_err(|reason| Failure::bad_file(&arguments.model, reason))?
     } else {

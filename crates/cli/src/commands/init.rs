@@ -73,6 +73,7 @@ pub fn model_of(initial: &InitialModel, guide: &Guide) -> ModelFile {
         },
         settings: LawSettings::published(),
         learnt: None,
+        applied: Vec::new(),
     }
 }
 

@@ -5,13 +5,19 @@ use std::sync::Arc;
 
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans, Timestamp};
 use parquet::file::reader::{FileReader, SerializedFileReader};
+use perf_model::effects::AppliedEffects;
 use perf_model::{FlightPointRow, FlightPoints};
+use units::FuelFlowTotal;
 
 use crate::args::PredictArgs;
 use crate::columns::Columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::model_file::ModelFile;
+
+mod remainder;
+
+use remainder::Remainder;
 
 /// Runs the command.
 ///
@@ -23,11 +29,23 @@ pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let text = points_text(&arguments.points)?;
     let points = FlightPoints::from_csv(&text)
         .map_err(|error| Failure::bad_file(&arguments.points, error))?;
+    let remembered = Remainder::of(&model, arguments.table_only);
     let mut refused = Vec::new();
     let mut predicted = Vec::with_capacity(points.rows().len());
+    let mut remainders = Vec::with_capacity(points.rows().len());
     for row in points.rows() {
-        match current.predict(&row.point) {
-            Ok(prediction) => predicted.push(Some(prediction)),
+        let found = current.predict(&row.point);
+        let known = found.as_ref().ok().and_then(|_| remembered.as_ref()?.at(&current, &row.point));
+        remainders.push(known);
+        match found {
+            Ok(prediction) => predicted.push(Some(match known {
+                Some((mean, _)) => {
+                    let total = prediction.fuel_flow_total.to_kilograms_per_second() * mean.exp();
+                    prediction
+                        .with_fuel_flow(FuelFlowTotal::kilograms_per_second(total), &row.point)
+                }
+                None => prediction,
+            })),
             // The row stays, without figures: a planner's table keeps its lines.
             Err(error) => {
                 predicted.push(None);
@@ -40,18 +58,43 @@ pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
             }
         }
     }
-    let deviations = deviations(&model, points.rows(), &predicted);
-    table(points.header(), points.rows(), &predicted, &deviations)
-        .write(arguments.output.as_deref())?;
+    let deviations = deviations(&model, points.rows(), &predicted, &remainders);
+    let mut columns = table(points.header(), points.rows(), &predicted, &deviations);
+    if remembered.is_some() {
+        columns.number(
+            "remainder_percent",
+            remainders.iter().map(|known| known.map(|(mean, _)| 100.0 * mean.exp_m1())),
+        );
+    }
+    columns.write(arguments.output.as_deref())?;
+    tell_references(&model, points.rows());
     let text = arguments.output.as_ref().map_or_else(String::new, |path| {
+        let known = remainders.iter().flatten().count();
+        let said = if remembered.is_some() {
+            format!("; {known} of them with the remainder that flown data informed")
+        } else {
+            String::new()
+        };
         format!(
-            "{} of {} points predicted, written to {}\n",
+            "{} of {} points predicted{said}, written to {}\n",
             points.rows().len() - refused.len(),
             points.rows().len(),
             show(path)
         )
     });
     Ok(Outcome { text, refused })
+}
+
+/// Says once which applied effects are at their reference for want of an input.
+fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
+    let Some(effects) = model.initial.effects() else { return };
+    let mut said = Vec::new();
+    for (effect, missing) in rows.iter().flat_map(|row| effects.at_reference(&row.point)) {
+        if !said.contains(&(effect, missing)) {
+            said.push((effect, missing));
+            tracing::warn!("points without {missing}: {effect} is at its reference there");
+        }
+    }
 }
 
 /// The input's columns and the results.
@@ -92,23 +135,40 @@ fn table(
 }
 
 /// Standard deviation of what a segment recorded there would say, kg/s: what the table does not know, what is common to
-/// a flight, and the segment's own noise by the aircraft's sensors.
+/// a flight, and the segment's own noise by the aircraft's sensors; with what the remainder leaves open where it is known,
+/// and scatter between flights that was applied.
 fn deviations(
     model: &ModelFile,
     rows: &[FlightPointRow],
     predicted: &[Option<perf_model::Prediction>],
+    remainders: &[Option<(f64, f64)>],
 ) -> Vec<Option<f64>> {
-    let of = |row: &FlightPointRow, prediction: &perf_model::Prediction| {
+    // What is imagined is recorded by the aircraft's sensors as they should be.
+    let Ok(plain) = model.initial.with_effects(AppliedEffects::default()) else {
+        return vec![None; rows.len()];
+    };
+    let scatter = model.initial.effects().map_or(0.0, AppliedEffects::fuel_heating_value_deviation);
+    let of = |row: &FlightPointRow,
+              prediction: &perf_model::Prediction,
+              remainder: Option<(f64, f64)>| {
         let posterior = model.posterior()?;
-        let segment = imagined_segment(&row.point, prediction, &model.initial);
-        let observation = model.initial.observe(&segment).ok()?;
+        let segment = imagined_segment(&row.point, prediction, &plain);
+        let observation = plain.observe(&segment).ok()?;
         let variance = posterior.segment_variance(&prediction.cell, &observation.variance);
         let initial = posterior.initial().interpolate(&prediction.cell);
-        Some(variance.sqrt() * initial * prediction.fuel_flow_per_drag_coefficient_kg_s)
+        let table = variance.sqrt() * initial * prediction.fuel_flow_per_drag_coefficient_kg_s;
+        let relative = remainder.map_or(0.0, |(_, deviation)| deviation).hypot(scatter);
+        if relative == 0.0 {
+            return Some(table);
+        }
+        Some(table.hypot(relative * prediction.fuel_flow_total.to_kilograms_per_second()))
     };
     rows.iter()
         .zip(predicted)
-        .map(|(row, prediction)| prediction.as_ref().and_then(|prediction| of(row, prediction)))
+        .zip(remainders)
+        .map(|((row, prediction), remainder)| {
+            prediction.as_ref().and_then(|prediction| of(row, prediction, *remainder))
+        })
         .collect()
 }
 

@@ -22,6 +22,7 @@ pub fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
         Some(learnt) => describe_learnt(&model, learnt, &mut text),
         None => text.push_str("It has learnt nothing yet.\n"),
     }
+    describe_effects(&model, &mut text);
     describe_table(&model, &mut text);
     Ok(Outcome::text(text))
 }
@@ -91,6 +92,40 @@ fn describe_learnt(model: &ModelFile, learnt: &Learnt, text: &mut String) {
         .collect();
     if !means.is_empty() {
         let _ = writeln!(text, "reference means: {}", means.join(", "));
+    }
+}
+
+/// Effects that were applied, and what each acts on.
+fn describe_effects(model: &ModelFile, text: &mut String) {
+    for record in &model.applied {
+        let from = &record.diagnosis;
+        let _ = writeln!(
+            text,
+            "Applied: {}, from {} flights of tail {} ({} to {}), probability {:.2}",
+            record.told(),
+            from.flights,
+            from.tail,
+            from.first,
+            from.last,
+            from.probability
+        );
+    }
+    let Some(effects) = model.initial.effects() else { return };
+    let named = |of_recordings: bool| {
+        let mut names: Vec<String> = effects
+            .iter()
+            .filter(|(id, _)| id.is_of_recordings() == of_recordings)
+            .map(|(id, _)| id.to_string())
+            .collect();
+        names.dedup();
+        names.join(", ")
+    };
+    for (words, names) in
+        [("Predictions have", named(false)), ("Recordings are corrected by", named(true))]
+    {
+        if !names.is_empty() {
+            let _ = writeln!(text, "{words} {names}");
+        }
     }
 }
 

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::{
-    FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile, PaperSettings,
-    PaperState,
+    AppliedRecord, FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile,
+    PaperSettings, PaperState,
 };
 use crate::references::References;
 
@@ -85,6 +85,8 @@ struct Document {
     initial: InitialText,
     settings: LawSettings,
     learnt: Option<LearntText>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    effects: Vec<AppliedRecord>,
     #[serde(default)]
     checksum: String,
 }
@@ -204,6 +206,7 @@ fn document_of(model: &ModelFile) -> Document {
         },
         settings: model.settings,
         learnt: model.learnt.as_ref().map(learnt_to_text),
+        effects: model.applied.clone(),
         checksum: String::new(),
     }
 }
@@ -255,6 +258,9 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
         flags_from_text("initial.extrapolated", &document.initial.extrapolated, nodes)?,
     )
     .map_err(|error| value("initial", error))?;
+    let effects =
+        super::applied::layers_of(&document.effects).map_err(|error| value("effects", error))?;
+    let initial = initial.with_effects(effects).map_err(|error| value("effects", error))?;
     let settings = document.settings;
     let learnt = match document.learnt {
         None => None,
@@ -263,7 +269,7 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
             Some(Learnt { tail, criteria, law, references, baseline, ledger })
         }
     };
-    Ok(ModelFile { initial, guide: document.guide, settings, learnt })
+    Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied: document.effects })
 }
 
 fn law_of(

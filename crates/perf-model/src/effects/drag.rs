@@ -5,7 +5,7 @@ use units::convert::{DAYS_PER_YEAR, RADIANS_PER_DEGREE, SECONDS_PER_DAY, STANDAR
 use units::{Angle, GeometricAltitude};
 
 use super::recorded::AsFlown;
-use super::terms::Terms;
+use super::terms::{Layers, Terms};
 use super::{EffectModel, EffectPoint};
 
 /// Height of the parabola of fourth degree by which drag rises, per Mach⁴: Lock's.
@@ -49,16 +49,18 @@ pub(super) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
 ///
 /// Pressure altitude stands for height (1 km of difference is 0.03 % of gravity). Track is heading plus drift; heading
 /// where drift is not recorded. ϕ is the root of the mean squared roll angle.
-pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, terms: &Terms) -> f64 {
+pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> f64 {
     let mut gravity_m_s2 = STANDARD_GRAVITY_M_S2;
+    let local_gravity = layers.sum(|terms| terms.local_gravity);
+    let rotating_earth = layers.sum(|terms| terms.rotating_earth);
     if let Some(latitude_deg) = point.latitude_deg {
         let latitude = Angle::degrees(latitude_deg);
         let height = GeometricAltitude::meters(point.pressure_altitude_m);
-        if terms.local_gravity != 0.0 {
+        if local_gravity != 0.0 {
             let local = gravity::gravity(latitude, height).to_meters_per_second_squared();
-            gravity_m_s2 += terms.local_gravity * (local - STANDARD_GRAVITY_M_S2);
+            gravity_m_s2 += local_gravity * (local - STANDARD_GRAVITY_M_S2);
         }
-        if terms.rotating_earth != 0.0
+        if rotating_earth != 0.0
             && let Some(heading_deg) = point.true_heading_deg
         {
             let track = (heading_deg + point.drift_deg.unwrap_or(0.0)) * RADIANS_PER_DEGREE;
@@ -68,14 +70,15 @@ pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, terms: &Terms) -> f64 {
                 point.ground_speed_m_s * track.cos(),
                 height,
             );
-            gravity_m_s2 -= terms.rotating_earth * lighter.to_meters_per_second_squared();
+            gravity_m_s2 -= rotating_earth * lighter.to_meters_per_second_squared();
         }
     }
-    if terms.load_factor != 0.0
+    let load_factor = layers.sum(|terms| terms.load_factor);
+    if load_factor != 0.0
         && let Some(roll_squared_deg2) = point.roll_squared_deg2
     {
         let roll = roll_squared_deg2.max(0.0).sqrt() * RADIANS_PER_DEGREE;
-        gravity_m_s2 *= 1.0 + terms.load_factor * (1.0 / roll.cos() - 1.0);
+        gravity_m_s2 *= 1.0 + load_factor * (1.0 / roll.cos() - 1.0);
     }
     gravity_m_s2
 }
@@ -88,14 +91,15 @@ pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, terms: &Terms) -> f64 {
 ///
 /// `V_cross` is positive when the wind blows to the left of the track: in the north, high pressure is then ahead and a
 /// surface of constant pressure climbs. In geostrophic flow the Coriolis force on the cross-wind takes exactly as much.
-pub(super) fn path_force_n(point: &EffectPoint, flown: &AsFlown, terms: &Terms) -> f64 {
+pub(super) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<'_>) -> f64 {
     let mut force_n = flown.mass_kg * point.acceleration_m_s2;
-    if terms.isobaric_slope != 0.0
+    let isobaric_slope = layers.sum(|terms| terms.isobaric_slope);
+    if isobaric_slope != 0.0
         && let (Some(latitude_deg), Some(drift_deg)) = (point.latitude_deg, point.drift_deg)
     {
         let coriolis = gravity::coriolis_parameter(Angle::degrees(latitude_deg));
         let cross_m_s = -flown.true_airspeed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin();
-        force_n += terms.isobaric_slope * flown.mass_kg * coriolis * cross_m_s;
+        force_n += isobaric_slope * flown.mass_kg * coriolis * cross_m_s;
     }
     force_n
 }
@@ -107,9 +111,24 @@ impl EffectModel<'_> {
     /// CD = (CD_table + θ0·1e-4 + θi K(M) CL² + w(Mdd − θw) − w(Mdd) + CD0(M)·((Re/Re_ref)^−θR − 1 + θa t)
     ///       + θc·1e-4·(CG_ref − CG)/10·CL/0.4 + θϕ·1e-4·ϕ²)·(1 + θD)·(1 + θs from the date on)   [diagnosis.8]
     /// ```
+    ///
+    /// Layer by layer: what the model contains comes first, and takes the place of the table for what is on top.
     pub(super) fn drag_coefficient(
         &self,
         table: f64,
+        lift_coefficient: f64,
+        point: &EffectPoint,
+        flown: &AsFlown,
+        layers: Layers<'_>,
+    ) -> f64 {
+        layers.iter().fold(table, |below, terms| {
+            self.drag_with_layer(below, lift_coefficient, point, flown, terms)
+        })
+    }
+
+    fn drag_with_layer(
+        &self,
+        below: f64,
         lift_coefficient: f64,
         point: &EffectPoint,
         flown: &AsFlown,
@@ -117,7 +136,7 @@ impl EffectModel<'_> {
     ) -> f64 {
         let references = &terms.references;
         let mach = flown.mach;
-        let mut drag = table + terms.zero_lift_drag;
+        let mut drag = below + terms.zero_lift_drag;
         if terms.induced_drag != 0.0 {
             let [_, _, _, k0, k1, k2] = self.polar.coefficients;
             let factor = k0 + k1 * mach + k2 * mach * mach;

@@ -5,7 +5,7 @@ use units::Mach;
 
 use super::drag::years_since_reference;
 use super::recorded::AsFlown;
-use super::terms::Terms;
+use super::terms::{Layers, Terms};
 use super::{EffectModel, EffectPoint};
 use crate::tsfc::tsfc;
 
@@ -23,54 +23,69 @@ impl EffectModel<'_> {
     /// recorded Wf_k = Wf_k·(1 + θWF,k)                                                             [diagnosis.11]
     /// ```
     ///
-    /// x is corrected thrust over its reference. Engines give equal thrust.
+    /// x is corrected thrust over its reference. Engines give equal thrust. Factors of all layers multiply, offtakes add.
     pub(super) fn recorded_fuel_flow(
         &self,
         net_thrust_n: f64,
         corrected_thrust_n: f64,
         point: &EffectPoint,
         flown: &AsFlown,
-        terms: &Terms,
+        layers: Layers<'_>,
     ) -> (f64, [f64; MAXIMUM_ENGINES]) {
-        let references = &terms.references;
-        let mut factor = 1.0 + terms.tsfc_factor;
-        if terms.tsfc_mach_exponent != 0.0 {
-            factor *= ((1.0 + flown.mach) / (1.0 + references.mach)).powf(terms.tsfc_mach_exponent);
-        }
-        if terms.tsfc_temperature_exponent != 0.0 {
-            factor *= (flown.temperature_ratio / references.temperature_ratio)
-                .powf(terms.tsfc_temperature_exponent);
-        }
-        if terms.tsfc_throttle != 0.0 {
-            let x = corrected_thrust_n / references.corrected_thrust_n;
-            let distance = (x - terms.hidden.throttle_pivot) / THROTTLE_WIDTH;
-            factor *= 1.0 + terms.tsfc_throttle * distance * distance;
-        }
-        if terms.engine_ageing_per_year != 0.0 {
-            factor *= 1.0 + terms.engine_ageing_per_year * years_since_reference(point, terms);
-        }
-        let mut all = 1.0;
-        if terms.anti_ice_bleed != 0.0 {
-            all *= 1.0 + terms.anti_ice_bleed * anti_ice_on(point, flown);
-        }
-        if terms.step_fuel_flow != 0.0 && point.date_s >= terms.hidden.step_from_s {
-            all *= 1.0 + terms.step_fuel_flow;
+        let (mut factor, mut all) = (1.0, 1.0);
+        for terms in layers.iter() {
+            factor *= tsfc_factor(corrected_thrust_n, point, flown, terms);
+            if terms.anti_ice_bleed != 0.0 {
+                all *= 1.0 + terms.anti_ice_bleed * anti_ice_on(point, flown);
+            }
+            if terms.step_fuel_flow != 0.0 && point.date_s >= terms.hidden.step_from_s {
+                all *= 1.0 + terms.step_fuel_flow;
+            }
         }
         let engines = self.aircraft.engines();
         let share = 1.0 / engines as f64;
         let law = tsfc(self.aircraft.tsfc_law(), flown.temperature_ratio, Mach::new(flown.mach));
         let thrust_flow_kg_s = net_thrust_n * law.to_kilograms_per_newton_second() * factor * share;
-        let aside_kg_s = terms.power_offtake * references.fuel_flow_total_kg_s * share;
+        let aside_kg_s =
+            layers.sum(|terms| terms.power_offtake * terms.references.fuel_flow_total_kg_s) * share;
         let mut each = [0.0; MAXIMUM_ENGINES];
         let mut total = 0.0;
         for (engine, flow) in each.iter_mut().enumerate().take(engines) {
-            *flow = (thrust_flow_kg_s * (1.0 + terms.tsfc_engine[engine]) + aside_kg_s)
-                * all
-                * (1.0 + terms.fuel_flow_gain[engine]);
+            let own: f64 = layers.iter().map(|terms| 1.0 + terms.tsfc_engine[engine]).product();
+            // Meters are of the trial layer alone: recordings are corrected before by what the model contains.
+            let meter = 1.0 + layers.trial.fuel_flow_gain[engine];
+            *flow = (thrust_flow_kg_s * own + aside_kg_s) * all * meter;
             total += *flow;
         }
         (total, each)
     }
+}
+
+/// What one layer multiplies TSFC of all engines by, `[diagnosis.9]`.
+fn tsfc_factor(
+    corrected_thrust_n: f64,
+    point: &EffectPoint,
+    flown: &AsFlown,
+    terms: &Terms,
+) -> f64 {
+    let references = &terms.references;
+    let mut factor = 1.0 + terms.tsfc_factor;
+    if terms.tsfc_mach_exponent != 0.0 {
+        factor *= ((1.0 + flown.mach) / (1.0 + references.mach)).powf(terms.tsfc_mach_exponent);
+    }
+    if terms.tsfc_temperature_exponent != 0.0 {
+        factor *= (flown.temperature_ratio / references.temperature_ratio)
+            .powf(terms.tsfc_temperature_exponent);
+    }
+    if terms.tsfc_throttle != 0.0 {
+        let x = corrected_thrust_n / references.corrected_thrust_n;
+        let distance = (x - terms.hidden.throttle_pivot) / THROTTLE_WIDTH;
+        factor *= 1.0 + terms.tsfc_throttle * distance * distance;
+    }
+    if terms.engine_ageing_per_year != 0.0 {
+        factor *= 1.0 + terms.engine_ageing_per_year * years_since_reference(point, terms);
+    }
+    factor
 }
 
 /// Share of a segment with anti-ice bleed on: recorded, else all of it above −40 °C.

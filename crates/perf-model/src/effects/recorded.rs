@@ -1,6 +1,7 @@
 //! From what was recorded to what was flown: sensor, mass and fuel-quantity effects undone.
 
 use atmos::{airspeed, isa, viscosity};
+use flight::SegmentMeans;
 use units::{Pressure, PressureAltitude, Temperature, TrueAirspeed, check_within};
 
 use super::{EffectError, EffectPoint};
@@ -50,15 +51,9 @@ pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
     positive("static air temperature less its error", "K", sat_k)?;
     let true_airspeed_m_s =
         recorded_tas_m_s * (mach / recorded_mach) * (sat_k / recorded_sat_k).sqrt();
-    let counted_too_much: f64 = point
-        .fuel_flow_share
-        .iter()
-        .zip(terms.fuel_flow_gain)
-        .map(|(share, gain)| share * gain / (1.0 + gain))
-        .sum();
     let mass_kg = point.mass_kg
         + terms.zero_fuel_mass_kg
-        + point.fuel_used_kg * (terms.fuel_quantity_gain + counted_too_much);
+        + point.fuel_used_kg * (terms.fuel_quantity_gain + counted_too_much(point, terms));
     positive("gross mass", "kg", mass_kg)?;
 
     let sat = Temperature::kelvin(sat_k);
@@ -79,6 +74,51 @@ pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
             viscosity::dynamic_viscosity(sat),
         ),
     })
+}
+
+/// The means of a segment as they would have been recorded without the errors.
+///
+/// What [`as_flown`] says of Mach number, TAS, SAT and mass; pressure altitude of the static pressure; and
+///
+/// ```text
+/// Wf_k = Wf_k,rec/(1 + θWF,k),   FU = FU_rec·(1 − θFQ − Σ_k s_k θWF,k/(1 + θWF,k))          [applying.1]
+/// ```
+///
+/// Ground speed, acceleration, gauged fuel quantity and rotor speeds stay as recorded.
+pub(super) fn corrected(
+    means: &SegmentMeans,
+    terms: &Terms,
+    engines: usize,
+) -> Result<SegmentMeans, EffectError> {
+    let point = EffectPoint::of_means(means, 0.0, engines);
+    let flown = as_flown(&point, terms)?;
+    let mut corrected = means.clone();
+    corrected.mach = flown.mach;
+    corrected.static_air_temperature_k = flown.static_air_temperature_k;
+    corrected.true_airspeed_m_s = flown.true_airspeed_m_s;
+    corrected.mass_kg = flown.mass_kg;
+    if terms.static_pressure_bias != 0.0 {
+        let recorded = isa::pressure(PressureAltitude::meters(means.pressure_altitude_m))?;
+        let flown = Pressure::pascals(recorded.to_pascals() / (1.0 + terms.static_pressure_bias));
+        corrected.pressure_altitude_m = isa::pressure_altitude(flown)?.to_meters();
+    }
+    let counted = counted_too_much(&point, terms);
+    corrected.fuel_used_kg *= 1.0 - terms.fuel_quantity_gain - counted;
+    corrected.fuel_flow_total_kg_s *= 1.0 - counted;
+    for (flow, gain) in corrected.fuel_flow_engine_kg_s.iter_mut().zip(terms.fuel_flow_gain) {
+        *flow /= 1.0 + gain;
+    }
+    Ok(corrected)
+}
+
+/// Share of the metered fuel that was never burnt: Σ_k `s_k` θWF,k/(1 + θWF,k).
+fn counted_too_much(point: &EffectPoint, terms: &Terms) -> f64 {
+    point
+        .fuel_flow_share
+        .iter()
+        .zip(terms.fuel_flow_gain)
+        .map(|(share, gain)| share * gain / (1.0 + gain))
+        .sum()
 }
 
 fn positive(quantity: &'static str, unit: &'static str, value: f64) -> Result<f64, EffectError> {

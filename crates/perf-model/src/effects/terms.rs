@@ -140,8 +140,31 @@ mod by_name {
     }
 }
 
+/// Everything that acts at once: effects that the model contains, in the order in which they were applied, and the trial
+/// effects on top of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layers<'t> {
+    pub(super) contained: &'t [Terms],
+    pub(super) trial: &'t Terms,
+}
+
+impl<'t> Layers<'t> {
+    pub(super) fn iter(self) -> impl Iterator<Item = &'t Terms> {
+        self.contained.iter().chain(core::iter::once(self.trial))
+    }
+
+    pub(super) fn sum(self, of: impl Fn(&Terms) -> f64) -> f64 {
+        self.iter().map(of).sum()
+    }
+
+    /// Whether an effect moves lift coefficient or Mach number away from what was recorded.
+    pub(super) fn moves_the_point(self) -> bool {
+        self.iter().any(Terms::moves_the_point)
+    }
+}
+
 /// Sizes as the kernels use them: shares instead of per cent, coefficients instead of counts.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Terms {
     pub(super) references: EffectReferences,
     pub(super) hidden: HiddenParameters,

@@ -1,0 +1,104 @@
+//! `cruisefit diagnose --apply`: each tail's model extended by the effects of its verdict.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use diagnose::{Diagnosis, VerdictKind};
+
+use super::Group;
+use crate::commands::Outcome;
+use crate::failure::{Failure, RefusedReport, show};
+use crate::files::{file_stem_of_tail, make_folder};
+use crate::model_file::{AppliedRecord, DiagnosisRecord};
+
+/// Writes the extended model of every group whose verdict names effects without doubt which; the others are said, or
+/// refused where a person has to choose.
+///
+/// # Errors
+/// A place that cannot be written.
+pub(super) fn apply(
+    folder: &Path,
+    groups: &[Group<'_>],
+    diagnoses: &[Diagnosis],
+) -> Result<Outcome, Failure> {
+    make_folder(folder)?;
+    let mut outcome = Outcome::default();
+    for (group, diagnosis) in groups.iter().zip(diagnoses) {
+        let path = folder.join(format!("{}.ron", file_stem(group)));
+        let said = match chosen(group, diagnosis) {
+            Choice::Nothing(reason) => format!("nothing applied: {reason}"),
+            Choice::Refused(reason) => {
+                outcome.refused.push(RefusedReport::whole(path, reason));
+                continue;
+            }
+            Choice::Record(record) => match group.model.extended(record) {
+                Ok(model) => {
+                    model.write(&path)?;
+                    let told = model.applied.last().map_or_else(String::new, AppliedRecord::told);
+                    format!("applied {told}; written to {}", show(&path))
+                }
+                Err(reason) => {
+                    outcome.refused.push(RefusedReport::whole(path, reason));
+                    continue;
+                }
+            },
+        };
+        let _ = writeln!(outcome.text, "{}: {said}", group.name);
+    }
+    Ok(outcome)
+}
+
+/// A model of one tail is called after it, that of a pool after its type.
+fn file_stem(group: &Group<'_>) -> String {
+    if group.name == "*" {
+        file_stem_of_tail(group.model.initial.aircraft().type_code())
+    } else {
+        file_stem_of_tail(&group.name)
+    }
+}
+
+enum Choice {
+    Record(AppliedRecord),
+    Nothing(&'static str),
+    Refused(String),
+}
+
+fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
+    let verdict = &diagnosis.verdict;
+    match verdict.kind {
+        VerdictKind::Effects => {}
+        VerdictKind::NoGap => return Choice::Nothing("no gap beyond the noise"),
+        VerdictKind::OutsideLibrary => {
+            return Choice::Nothing("the gap is no effect of the library");
+        }
+        VerdictKind::InsufficientData => return Choice::Nothing("insufficient data"),
+    }
+    if verdict.class.iter().any(|member| !verdict.effects.contains(member)) {
+        return Choice::Refused(format!(
+            "tail {}: nothing applied, these flights cannot tell apart {}; name the one that it is with --effects",
+            group.name,
+            verdict.class.join(", ")
+        ));
+    }
+    let Some(addition) = diagnosis.addition.clone() else {
+        return Choice::Refused(format!(
+            "tail {}: nothing applied, no model holds exactly {}",
+            group.name,
+            verdict.effects.join(" and ")
+        ));
+    };
+    let starts = || group.flights.iter().map(|flight| flight.identity.start);
+    let word = |start: Option<flight::Timestamp>| start.map_or_else(String::new, |s| s.to_string());
+    Choice::Record(AppliedRecord {
+        addition,
+        diagnosis: DiagnosisRecord {
+            tail: group.name.clone(),
+            flights: diagnosis.flights as u64,
+            segments: diagnosis.segments as u64,
+            first: word(starts().min()),
+            last: word(starts().max()),
+            probability: verdict.probability,
+            class: verdict.class.clone(),
+        },
+    })
+}

@@ -1,0 +1,24 @@
+//! What a model remembers beside its table, at flight points.
+
+use diagnose::Baseline;
+use perf_model::{FlightPoint, PerformanceModel};
+
+use crate::model_file::ModelFile;
+
+/// The remainder of a model that remembers one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Remainder<'a>(&'a Baseline);
+
+impl<'a> Remainder<'a> {
+    /// The model's remainder; `None` where it remembers none, or the table alone was asked for.
+    pub(super) fn of(model: &'a ModelFile, table_only: bool) -> Option<Self> {
+        let baseline = model.learnt.as_ref()?.baseline.as_ref()?;
+        (!table_only).then_some(Self(baseline))
+    }
+
+    /// Mean and standard deviation of ln fuel flow less the table's, where flown data informed them.
+    pub(super) fn at(self, current: &PerformanceModel, point: &FlightPoint) -> Option<(f64, f64)> {
+        let response = current.response(point).ok()?;
+        self.0.known_remainder(&response)
+    }
+}

@@ -1,0 +1,185 @@
+//! What a verdict would add to the model: its effects with sizes, hidden parameters and references, ready to be applied.
+
+use flight::effect::EffectId;
+use perf_model::effects::{AppliedLayer, EffectReferences, Effects, HiddenParameters, StepTarget};
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::Analysis;
+use crate::evidence::Scored;
+use crate::library::Library;
+
+/// A flight-to-flight scatter is known to about this share of itself.
+const SCATTER_SHARE: f64 = 0.5;
+
+/// Effects of a verdict and what they are zero at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Addition {
+    /// The effects, as they act together.
+    pub effects: Vec<AddedEffect>,
+    /// What they are zero at.
+    pub references: EffectReferences,
+}
+
+/// One effect with its size and hidden parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AddedEffect {
+    /// Name.
+    pub effect: String,
+    /// Size in the effect's unit.
+    pub size: f64,
+    /// Its standard deviation.
+    pub standard_deviation: f64,
+    /// `tsfc_throttle`: corrected thrust over its reference at which TSFC is unchanged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub throttle_pivot: Option<f64>,
+    /// `wave_drag`: drag-divergence Mach number at lift coefficient 0.35.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drag_divergence_mach: Option<f64>,
+    /// `step_change`: instant from which it holds, s since 1970.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_from_s: Option<f64>,
+    /// `step_change`: what it multiplies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_target: Option<StepTarget>,
+}
+
+/// A name that no effect has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no effect is called {name:?}")]
+pub struct UnknownEffect {
+    /// What was found.
+    pub name: String,
+}
+
+impl Addition {
+    /// The layer that a performance model takes.
+    ///
+    /// # Errors
+    /// [`UnknownEffect`] for a name that the library does not have.
+    pub fn layer(&self) -> Result<AppliedLayer, UnknownEffect> {
+        let mut effects = Effects::none();
+        let mut hidden = HiddenParameters::default();
+        for added in &self.effects {
+            let id = EffectId::from_name(&added.effect)
+                .ok_or_else(|| UnknownEffect { name: added.effect.clone() })?;
+            effects = effects.with(id, added.size);
+            hidden.throttle_pivot = added.throttle_pivot.unwrap_or(hidden.throttle_pivot);
+            hidden.drag_divergence_mach =
+                added.drag_divergence_mach.unwrap_or(hidden.drag_divergence_mach);
+            hidden.step_from_s = added.step_from_s.unwrap_or(hidden.step_from_s);
+            hidden.step_target = added.step_target.unwrap_or(hidden.step_target);
+        }
+        Ok(AppliedLayer { effects: effects.with_hidden(hidden), references: self.references })
+    }
+
+    /// The effects `names` with the sizes that they have in the most probable model of exactly these; `None` where the
+    /// search has no such model.
+    pub(crate) fn of(
+        analysis: &Analysis,
+        library: &Library,
+        names: &[String],
+        references: EffectReferences,
+    ) -> Option<Self> {
+        let (scored, _) = analysis.models.iter().find(|(scored, _)| {
+            let found = named(scored, library);
+            found.len() == names.len() && names.iter().all(|name| found.contains(name))
+        })?;
+        let mut effects: Vec<AddedEffect> = scored
+            .model
+            .columns
+            .iter()
+            .enumerate()
+            .map(|(place, &column)| {
+                let id = library.effects[library.columns[column].effect].id;
+                let hidden = library.columns[column].hidden;
+                let is_step = id == EffectId::StepChange;
+                AddedEffect {
+                    effect: id.to_string(),
+                    size: scored.sizes[place],
+                    standard_deviation: scored.deviations[place],
+                    throttle_pivot: (id == EffectId::TsfcThrottle).then_some(hidden.throttle_pivot),
+                    drag_divergence_mach: (id == EffectId::WaveDrag)
+                        .then_some(hidden.drag_divergence_mach),
+                    step_from_s: is_step.then_some(hidden.step_from_s),
+                    step_target: is_step.then_some(hidden.step_target),
+                }
+            })
+            .collect();
+        effects.extend(scored.model.heating_percent.map(|percent| AddedEffect {
+            effect: EffectId::FuelHeatingValue.to_string(),
+            size: percent,
+            standard_deviation: SCATTER_SHARE * percent,
+            throttle_pivot: None,
+            drag_divergence_mach: None,
+            step_from_s: None,
+            step_target: None,
+        }));
+        // The order of the verdict, the larger effect first.
+        effects.sort_by_key(|added| names.iter().position(|name| *name == added.effect));
+        Some(Self { effects, references })
+    }
+}
+
+fn named(scored: &Scored, library: &Library) -> Vec<String> {
+    let columns = scored.model.columns.iter();
+    let mut names: Vec<String> = columns
+        .map(|&column| library.effects[library.columns[column].effect].id.to_string())
+        .collect();
+    names.extend(scored.model.heating_percent.map(|_| EffectId::FuelHeatingValue.to_string()));
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layer_has_every_size_and_the_hidden_parameters_of_their_owners() {
+        let effect = |effect: &str, size: f64| AddedEffect {
+            effect: effect.to_owned(),
+            size,
+            standard_deviation: 0.1,
+            throttle_pivot: None,
+            drag_divergence_mach: None,
+            step_from_s: None,
+            step_target: None,
+        };
+        let references = EffectReferences {
+            date_s: 1.5e9,
+            mach: 0.8,
+            unit_reynolds_number_per_m: 6e6,
+            temperature_ratio: 0.75,
+            corrected_thrust_n: 5e4,
+            fuel_flow_total_kg_s: 0.25,
+            mass_kg: 13_000.0,
+            center_of_gravity_percent_mac: None,
+        };
+        let addition = Addition {
+            effects: vec![
+                AddedEffect {
+                    step_from_s: Some(1.6e9),
+                    step_target: Some(StepTarget::Drag),
+                    ..effect("step_change", 1.5)
+                },
+                AddedEffect { drag_divergence_mach: Some(0.86), ..effect("wave_drag", 0.006) },
+            ],
+            references,
+        };
+        let layer = addition.layer().unwrap();
+        assert_eq!(
+            layer.effects,
+            Effects::one(EffectId::StepChange, 1.5).with(EffectId::WaveDrag, 0.006).with_hidden(
+                HiddenParameters {
+                    drag_divergence_mach: 0.86,
+                    step_from_s: 1.6e9,
+                    step_target: StepTarget::Drag,
+                    ..HiddenParameters::default()
+                }
+            )
+        );
+        let unknown = Addition { effects: vec![effect("drag_faktor", 1.0)], references };
+        assert_eq!(unknown.layer(), Err(UnknownEffect { name: "drag_faktor".to_owned() }));
+    }
+}
