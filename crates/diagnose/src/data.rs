@@ -7,7 +7,9 @@ use std::collections::BTreeMap;
 
 use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
-use perf_model::effects::{EffectModel, EffectPoint, Effects, HiddenParameters, Response};
+use perf_model::effects::{
+    AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, Response,
+};
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
@@ -338,7 +340,7 @@ impl<'a> Data<'a> {
             &predict,
         )?;
         // Scatter between flights that the model contains is no gap: it adds to what a flight has in common.
-        let scatter = model.applied().map_or(0.0, |applied| applied.fuel_heating_value_deviation());
+        let scatter = model.applied().map_or(0.0, AppliedEffects::fuel_heating_value_deviation);
         if let Some(heating) = noise.common.get_mut(HEATING_LOADING) {
             heating[0] = heating[0].hypot(scatter);
         }

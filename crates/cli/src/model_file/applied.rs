@@ -101,13 +101,11 @@ impl ModelFile {
         Ok(Self { initial, applied, ..self.clone() })
     }
 
-    /// The tail that the model is of: whose flights it has learnt, or whose diagnosis was applied to it.
+    /// The tail that the model is of: whose diagnosis was applied to it, else whose flights it has learnt.
     pub fn tail(&self) -> Option<&str> {
+        let applied = self.applied.last().map(|record| record.diagnosis.tail.as_str());
         let learnt = self.learnt.as_ref().map(|learnt| learnt.tail.as_str());
-        learnt.or_else(|| {
-            let applied = self.applied.last().map(|record| record.diagnosis.tail.as_str());
-            applied.filter(|tail| *tail != "*")
-        })
+        applied.filter(|tail| *tail != "*").or(learnt)
     }
 
     /// The effects that the model contains in words; "none" for none.

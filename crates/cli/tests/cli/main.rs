@@ -7,6 +7,7 @@
     reason = "tests of a program that reads and writes files; a test that cannot go on shall stop"
 )]
 
+mod applied;
 mod bad_input;
 mod commands;
 mod diagnosis;

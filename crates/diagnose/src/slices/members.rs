@@ -49,11 +49,12 @@ pub fn slice_members(input: &Input<'_>, slice: &Slice) -> Result<Vec<Vec<bool>>,
     let is_member = |segment: &flight::Segment| {
         #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
         let start_s = segment.identity.start.as_second() as f64;
-        let point = EffectPoint::of_means(&segment.means, start_s, engines);
+        let Ok(means) = model.corrected_means(&segment.means) else { return false };
+        let point = EffectPoint::of_means(&means, start_s, engines);
         let Ok(response) = model.response(&point, &Effects::none()) else { return false };
         bounds.iter().all(|&(variable, bounds)| {
             let value = match variable {
-                Variable::N2 => mean_n2_percent(&segment.means),
+                Variable::N2 => mean_n2_percent(&means),
                 Variable::Date => Some(point.date_s),
                 _ => variable.value(&point, &response, &references),
             };

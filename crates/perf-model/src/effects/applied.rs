@@ -121,7 +121,7 @@ impl AppliedEffects {
                 }
                 let effects = effects.with_hidden(*layer.effects.hidden());
                 let effects =
-                    if dated { effects } else { on_reference_date(effects, &layer.references) };
+                    if dated { effects } else { on_reference_date(&effects, &layer.references) };
                 Some(Terms::of(&effects, &layer.references))
             })
             .collect()
@@ -146,7 +146,7 @@ fn lacks(needed: NeededInput, point: &FlightPoint) -> Option<&'static str> {
 }
 
 /// The effects as they are on the date of their references: no ageing since, a step as it was then.
-fn on_reference_date(effects: Effects, references: &EffectReferences) -> Effects {
+fn on_reference_date(effects: &Effects, references: &EffectReferences) -> Effects {
     let mut hidden = *effects.hidden();
     hidden.step_from_s =
         if references.date_s >= hidden.step_from_s { f64::NEG_INFINITY } else { f64::INFINITY };

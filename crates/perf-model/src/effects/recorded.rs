@@ -111,7 +111,7 @@ pub(super) fn corrected(
     Ok(corrected)
 }
 
-/// Share of the metered fuel that was never burnt: Σ_k `s_k` θWF,k/(1 + θWF,k).
+/// Share of the metered fuel that was never burnt: the sum over engines in `[applying.1]`.
 fn counted_too_much(point: &EffectPoint, terms: &Terms) -> f64 {
     point
         .fuel_flow_share
