@@ -359,7 +359,7 @@ impl<'a> Data<'a> {
             acceleration_deviation_m_s2: factors.within[0]
                 * mean_acceleration_deviation_m_s2(
                     model.aircraft().sensors().acceleration_m_s2,
-                    kept.segment.rows.len(),
+                    kept.rows.len(),
                 ),
             chords: chord_errors(model, &kept.response),
         };
