@@ -5,6 +5,7 @@
 //! is linear in segments.
 
 pub(crate) mod draws;
+mod likelihood;
 pub(crate) mod members;
 pub(crate) mod place;
 mod search;
@@ -12,6 +13,7 @@ mod search;
 use std::collections::BTreeMap;
 
 use draws::{Level, Source, draw};
+use likelihood::Noise;
 use place::{ENGINE, Place, places};
 use search::{Candidate, Null, Search, Series};
 
@@ -31,7 +33,11 @@ const SIGNIFICANT: f64 = 0.05;
 const FEWEST_FLIGHTS: usize = 3;
 /// Resamples of flights.
 const RESAMPLES: usize = 1000;
-/// Statistics that differ by less are of one place and its complement.
+/// Places whose statistic is at least this share of the largest are told apart by how well a step over them fits.
+const NEARLY: f64 = 0.9;
+/// At most as many of them.
+const MOST_COMPARED: usize = 200;
+/// Falls of χ² that differ by less are of one place and its complement.
 const EQUAL: f64 = 1e-6;
 
 /// The gap, segment by segment, as the search sees and changes it.
@@ -67,6 +73,7 @@ pub(crate) fn find(
     let (null, variances) = null_of(stacked, &search, level, &mut source);
 
     let as_recorded = gaps(stacked);
+    let noise = Noise::of(stacked, level);
     let mut left = expected_errors_removed(stacked, &as_recorded);
     let told = Told { stacked, places: &places, gaps: &as_recorded, variances: &variances };
     let mut found = Vec::new();
@@ -77,7 +84,9 @@ pub(crate) fn find(
             let level = search.candidates.iter().position(Candidate::is_everywhere);
             everywhere = (level.map_or(1.0, |k| null.p_value(statistics[k])), level);
         }
-        let Some((index, members)) = best(&search, &statistics, &told) else { break };
+        let Some((index, members)) = best(&search, &statistics, &told, &left, &noise) else {
+            break;
+        };
         let p_value = null.p_value(statistics[index]);
         if p_value > SIGNIFICANT {
             break;
@@ -231,34 +240,62 @@ fn statistics(search: &Search<'_>, null: &Null, gaps: &Gaps) -> Vec<f64> {
     statistics
 }
 
-/// The place that stands out most, with its segments; of a place and its complement, which stand out alike, the one with
-/// the larger gap.
-fn best(search: &Search<'_>, statistics: &[f64], told: &Told<'_>) -> Option<(usize, Vec<usize>)> {
+/// The place that stands out most, with its segments. Variables hang together, so that several places stand out nearly
+/// alike: of those a step over the place decides, which fits best by likelihood; of a place and its complement, which fit
+/// alike, the larger gap.
+fn best(
+    search: &Search<'_>,
+    statistics: &[f64],
+    told: &Told<'_>,
+    left: &Gaps,
+    noise: &Noise<'_>,
+) -> Option<(usize, Vec<usize>)> {
     let mut order: Vec<usize> = (0..search.candidates.len())
         .filter(|&index| !search.candidates[index].is_everywhere())
         .collect();
     order.sort_by(|&a, &b| statistics[b].total_cmp(&statistics[a]));
-    let members = |index: usize| -> Vec<usize> {
+    let members = |index: &usize| -> Vec<usize> {
         let segments = 0..told.gaps.total.len();
-        segments.filter(|&k| search.candidates[index].holds(told.places, k)).collect()
+        segments.filter(|&k| search.candidates[*index].holds(told.places, k)).collect()
     };
-    let mut chosen: Option<(usize, Vec<usize>, f64)> = None;
-    for index in order {
-        if let Some((first, ..)) = &chosen
-            && statistics[index] < statistics[*first] * (1.0 - EQUAL)
-        {
-            break;
-        }
-        let inside = members(index);
-        if told.flights_of(&inside) < FEWEST_FLIGHTS {
-            continue;
-        }
-        let size = told.mean(&search.candidates[index], &inside).abs();
-        if chosen.as_ref().is_none_or(|(.., largest)| size > *largest) {
-            chosen = Some((index, inside, size));
-        }
+    let enough = |index: &usize| told.flights_of(&members(index)) >= FEWEST_FLIGHTS;
+    let first = order.iter().copied().find(enough)?;
+    if search.candidates[first].series != Series::FuelFlow {
+        return Some((first, members(&first)));
     }
-    chosen.map(|(index, inside, _)| (index, inside))
+    let compared: Vec<usize> = order
+        .into_iter()
+        .skip_while(|&index| index != first)
+        .take_while(|&index| statistics[index] >= NEARLY * statistics[first])
+        .filter(|&index| search.candidates[index].series == Series::FuelFlow)
+        .filter(enough)
+        .take(MOST_COMPARED)
+        .collect();
+    let steps = compared.iter().map(|index| {
+        let mut step = vec![0.0; left.total.len()];
+        for segment in members(index) {
+            step[segment] = 1.0;
+        }
+        step
+    });
+    let falls = noise.falls(&left.total, steps);
+    let weighed: Vec<f64> = compared
+        .iter()
+        .zip(&falls)
+        .map(|(&index, fall)| fall * search.candidates[index].weight().powi(2))
+        .collect();
+    let largest = weighed.iter().copied().fold(0.0, f64::max);
+    compared
+        .into_iter()
+        .zip(weighed)
+        .filter(|(_, fall)| *fall >= largest * (1.0 - EQUAL))
+        .map(|(index, _)| {
+            let inside = members(&index);
+            (told.mean(&search.candidates[index], &inside).abs(), index, inside)
+        })
+        // The first of equals, so that the order of variables decides.
+        .reduce(|a, b| if b.0 > a.0 { b } else { a })
+        .map(|(_, index, inside)| (index, inside))
 }
 
 /// Takes out what makes a place stand out: its excess over the rest, or what its engine does apart from the others.

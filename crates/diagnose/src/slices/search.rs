@@ -37,7 +37,8 @@ impl Candidate {
         self.series == Series::FuelFlow && self.ranges == [None; 2]
     }
 
-    fn weight(&self) -> f64 {
+    /// Of the statistic: less with a second condition.
+    pub(crate) fn weight(&self) -> f64 {
         let engine = usize::from(self.series != Series::FuelFlow);
         let conditions = engine + self.ranges.iter().flatten().count();
         if conditions > 1 { 1.0 / SECOND_CONDITION } else { 1.0 }
