@@ -1,5 +1,5 @@
 //! Where and closure on the virtual fleet of the tests, for development and for the validation page:
-//! `places SEED REPEATS [null | effects | closure] [effect]`.
+//! `places SEED REPEATS [null | effects | closure | cost] [effect]`; of `cost` REPEATS is the number of flights.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a development tool")]
 
 use diagnose::trial::places::{names_driver, spread, worst_region_overlap};
@@ -26,6 +26,7 @@ fn main() {
     let model = exact_model();
     match what {
         "null" => nulls(&model, seed, repeats),
+        "cost" => cost(&model, seed, repeats),
         _ => effects(&model, seed, repeats, what == "closure", only.map(String::as_str)),
     }
 }
@@ -198,7 +199,7 @@ fn closed(
     let after = found.causes.iter().find_map(|c| c.rms_after_percent).map(|p| (p / 100.0).powi(2));
     let oracle = after.map(|after| (before - after) / (before - floor));
     println!(
-        "{:<26} closure {:?} {:?} oracle {:?} before {:.3} floor {:.3} oracle floor {:.3} | {:?} | {took:.3} s",
+        "{:<26} closure {:?} {:?} oracle {:?} before {:.3} floor {:.3} oracle floor {:.3} replicates {:?} held out {:?} | {:?} | {took:.3} s",
         id.to_string(),
         found.verdict.closure,
         found.verdict.closure_ci95,
@@ -206,6 +207,33 @@ fn closed(
         100.0 * before.sqrt(),
         found.gap.noise_floor_rms_percent,
         100.0 * floor.sqrt(),
+        found.gap.floor_by_replicates_rms_percent.map(rounded),
+        found.gap.floor_by_held_out_fit_rms_percent.map(rounded),
         found.verdict.kind,
     );
+}
+
+fn rounded(percent: f64) -> f64 {
+    (1000.0 * percent).round() / 1000.0
+}
+
+/// Seconds with and without the search for places.
+fn cost(model: &PerformanceModel, seed: u64, flights: u64) {
+    let flights = usize::try_from(flights).unwrap();
+    let setup = Setup { flights, ..Setup::default() };
+    let planted = plant(EffectId::WaveDrag, 1.0, &mut Random::new(seed, 9));
+    let fleet = fly(seed, &setup, &[planted], &Background::default());
+    let records = fleet.records();
+    for (skip_where, skip_closure) in [(true, true), (false, true), (true, false)] {
+        let options = Options { skip_closure, skip_where, ..Options::default() };
+        let begin = std::time::Instant::now();
+        let found = diagnose(&input(model, &records), &options).unwrap();
+        println!(
+            "{} segments: where {}, closure {}: {:.2} s",
+            found.segments,
+            !skip_where,
+            !skip_closure,
+            begin.elapsed().as_secs_f64()
+        );
+    }
 }

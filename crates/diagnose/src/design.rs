@@ -192,6 +192,27 @@ impl<'a> Design<'a> {
         self.columns - 1
     }
 
+    /// All columns of a flight's fuel flow as they are, not whitened: one row a segment.
+    pub(crate) fn fuel_flow(&self, data: &Data<'_>, flight: &FlightRows) -> Mat<f64> {
+        let channels = data.channels.count();
+        let mut matrix = Mat::<f64>::zeros(channels, self.columns);
+        let mut rows = Mat::<f64>::zeros(flight.segments.len(), self.columns);
+        let mut scratch = vec![0.0; self.columns];
+        for (index, row) in data.segments[flight.segments.clone()].iter().enumerate() {
+            let mut plain = row.clone();
+            plain.noise.factor = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+            for channel in 0..MAXIMUM_CHANNELS {
+                plain.noise.factor[channel][channel] = 1.0;
+            }
+            self.write_segment(data, &plain, 0, &mut matrix, &mut scratch);
+            for column in 0..self.columns {
+                rows[(index, column)] = matrix[(0, column)];
+            }
+        }
+        self.scale_nuisance(&mut rows);
+        rows
+    }
+
     /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
     pub(crate) fn whitened(
         &self,

@@ -14,7 +14,7 @@ use crate::addition::Addition;
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
 use crate::classes::{Distances, leading_columns};
-use crate::closure::{Shrinkage, in_sample, nested};
+use crate::closure::{Shrinkage, held_out_floor, in_sample, nested, replicate_floor};
 use crate::data::Data;
 use crate::design::{Acts, Design};
 use crate::evidence::{NOISE_FREEDOM, Scored};
@@ -31,7 +31,7 @@ use crate::slices;
 const FEWEST_FLIGHTS: usize = 6;
 const FEWEST_SEGMENTS: usize = 30;
 /// A gap counts as real when nothing at all is less probable than this.
-const CLEAN_PROBABILITY: f64 = 0.05;
+pub(crate) const CLEAN_PROBABILITY: f64 = 0.05;
 /// Probability of a cause outside the library above which it is said.
 const OUTSIDE_PROBABILITY: f64 = 0.5;
 /// Shares of the explainable gap between which a named set that an agnostic function improves upon passes from "something
@@ -232,6 +232,8 @@ fn insufficient(flights: usize, segments: usize, reason: &str) -> Diagnosis {
             rms_percent: 0.0,
             rms_ci95: [0.0; 2],
             noise_floor_rms_percent: 0.0,
+            floor_by_replicates_rms_percent: None,
+            floor_by_held_out_fit_rms_percent: None,
             detected: false,
             p_value: 1.0,
         },
@@ -284,10 +286,16 @@ fn conclude(
     let best = &analysis.models[0].0;
     let scale = noise_scale(&analysis, best, gram.rows);
     let posteriors = dominant(stacked, &analysis, library);
-    let own = in_sample(stacked, model, library, &best.model.columns, &best.sizes, scale);
+    let own =
+        in_sample(stacked, model, library, &best.model.columns, &best.sizes, scale, options.seed);
     let unseen = (!options.skip_closure && is_real(&analysis, &outside))
-        .then(|| nested(stacked, model, library, scale));
-    let gap = gap_of(stacked, &analysis, &outside, &own, scale);
+        .then(|| nested(stacked, model, library, scale, options.seed));
+    let mut gap = gap_of(stacked, &analysis, &outside, &own, scale);
+    if unseen.is_some() {
+        let percent = |square: f64| 100.0 * square.sqrt();
+        gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
+        gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
+    }
     let places = if options.skip_where {
         vec![]
     } else {
@@ -477,6 +485,8 @@ fn gap_of(
         rms_percent: 100.0 * square.sqrt(),
         rms_ci95: [100.0 * (square - half).max(0.0).sqrt(), 100.0 * (square + half).sqrt()],
         noise_floor_rms_percent: 100.0 * own.floor().sqrt(),
+        floor_by_replicates_rms_percent: None,
+        floor_by_held_out_fit_rms_percent: None,
         detected: is_real(analysis, outside),
         p_value,
     }

@@ -47,8 +47,15 @@ pub struct Gap {
     pub rms_percent: f64,
     /// 95 % interval of the rms, by flight.
     pub rms_ci95: [f64; 2],
-    /// Root mean square that noise alone makes.
+    /// Root mean square that noise alone makes: the propagated one.
     pub noise_floor_rms_percent: f64,
+    /// The same by replicates: what differs between like segments of one flight. `null` where closure is not measured, or
+    /// for too few of them.
+    #[serde(default)]
+    pub floor_by_replicates_rms_percent: Option<f64>,
+    /// What a flexible model leaves on flights it was not fitted to: an upper bound. `null` where closure is not measured.
+    #[serde(default)]
+    pub floor_by_held_out_fit_rms_percent: Option<f64>,
     /// Whether there is more than noise.
     pub detected: bool,
     /// Probability of as large a deviation without any effect, all effects looked at.

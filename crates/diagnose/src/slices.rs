@@ -12,7 +12,7 @@ mod search;
 
 use std::collections::BTreeMap;
 
-use draws::{Level, Source, draw};
+use draws::{Level, Source, chords, draw};
 use likelihood::Noise;
 use place::{ENGINE, Place, places};
 use search::{Candidate, Null, Search, Series};
@@ -82,7 +82,7 @@ pub(crate) fn find(
         let statistics = statistics(&search, &null, &left);
         if found.is_empty() {
             let level = search.candidates.iter().position(Candidate::is_everywhere);
-            everywhere = (level.map_or(1.0, |k| null.p_value(statistics[k])), level);
+            everywhere = (level.map_or(1.0, |k| null.p_value_everywhere(statistics[k])), level);
         }
         let Some((index, members)) = best(&search, &statistics, &told, &left, &noise) else {
             break;
@@ -123,12 +123,13 @@ fn null_of(
     source: &mut Source,
 ) -> (Null, Vec<f64>) {
     let engines = stacked.data.channels.contrasts + 1;
+    let chords = chords(stacked);
     let mut squares = vec![0.0; search.candidates.len()];
     let mut variances = vec![0.0; stacked.data.segments.len()];
     let mut values = vec![vec![0.0; GROUP]; search.series().len()];
     let mut group = |source: &mut Source| {
         let mut sums = search.sums(GROUP);
-        draw(stacked, level, source, GROUP, |segment, channels| {
+        draw(stacked, level, &chords, source, GROUP, |segment, channels| {
             values[0].copy_from_slice(&channels[0]);
             for draw in 0..if search.series().len() > 1 { GROUP } else { 0 } {
                 let mut contrasts = [0.0; MAXIMUM_CHANNELS];

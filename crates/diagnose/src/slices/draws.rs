@@ -3,6 +3,7 @@
 //! Sensors within a segment, what a flight has in common, and what the model does not know for sure (remainder, split
 //! between engines, environment, chords and nodes of the table), which is the same for all flights.
 
+use faer::Mat;
 use lut::Outside;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -10,6 +11,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::analysis::Stacked;
 use crate::data::SegmentRow;
+use crate::linear::Factor;
 
 /// A source of standard normal numbers: the same for the same seed and stream on every machine.
 pub(crate) struct Source(ChaCha8Rng);
@@ -22,7 +24,7 @@ impl Source {
         Self(ChaCha8Rng::from_seed(key))
     }
 
-    fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
 
@@ -131,6 +133,7 @@ impl Model {
         &self,
         stacked: &Stacked<'_>,
         row: &SegmentRow,
+        chords: [f64; 2],
         terms: &mut Vec<f64>,
         into: &mut [Vec<f64>],
     ) {
@@ -163,8 +166,8 @@ impl Model {
                 add(&mut into[0], smooth.row(k), term);
             }
         }
-        for (k, chord) in row.chords.iter().enumerate() {
-            add(&mut into[0], self.chords.row(k), chord * row.drag_over_thrust);
+        for (k, chord) in chords.into_iter().enumerate() {
+            add(&mut into[0], self.chords.row(k), chord);
         }
         if let (Some(nodes), Some(table)) = (&self.nodes, design.table()) {
             let response = &row.response;
@@ -178,6 +181,44 @@ impl Model {
     }
 }
 
+/// How far chords of the drag table may be off in fuel flow, relative, along lift coefficient and Mach number, at every
+/// segment. A taught remainder was taught on the same chords: of them only counts what its functions cannot follow
+/// (least squares).
+pub(crate) fn chords(stacked: &Stacked<'_>) -> Vec<[f64; 2]> {
+    let segments = &stacked.data.segments;
+    let mut chords: Vec<[f64; 2]> =
+        segments.iter().map(|row| row.chords.map(|chord| chord * row.drag_over_thrust)).collect();
+    let Some(baseline) = stacked.design.baseline() else { return chords };
+    let count = baseline.remainder_terms();
+    let mut terms = vec![0.0; count];
+    let mut normal = Mat::<f64>::zeros(count, count);
+    let mut right = Mat::<f64>::zeros(count, 2);
+    for (row, chord) in segments.iter().zip(&chords) {
+        baseline.write_remainder(&row.response, &mut terms);
+        for i in 0..count {
+            for (k, value) in chord.iter().enumerate() {
+                right[(i, k)] += terms[i] * value;
+            }
+            for j in 0..=i {
+                normal[(i, j)] += terms[i] * terms[j];
+            }
+        }
+    }
+    // Hats sum to nothing, and some terms are zero within the range flown: a ridge of a millionth holds them.
+    for i in 0..count {
+        normal[(i, i)] += 1e-6 * segments.len() as f64;
+    }
+    let Some(factor) = Factor::of(&normal) else { return chords };
+    factor.solve(&mut right);
+    for (row, chord) in segments.iter().zip(&mut chords) {
+        baseline.write_remainder(&row.response, &mut terms);
+        for (k, value) in chord.iter_mut().enumerate() {
+            *value -= (0..count).map(|i| terms[i] * right[(i, k)]).sum::<f64>();
+        }
+    }
+    chords
+}
+
 /// Draws `width` times the residuals of every segment, channel by channel, and hands them over segment by segment.
 ///
 /// ```text
@@ -188,6 +229,7 @@ impl Model {
 pub(crate) fn draw(
     stacked: &Stacked<'_>,
     level: Level,
+    chords: &[[f64; 2]],
     source: &mut Source,
     width: usize,
     mut each: impl FnMut(usize, &[Vec<f64>]),
@@ -223,7 +265,7 @@ pub(crate) fn draw(
                 }
             }
             add(&mut values[0], common.row(rank), level.scatter);
-            model.add_at(stacked, row, &mut terms, &mut values);
+            model.add_at(stacked, row, chords[index], &mut terms, &mut values);
             each(index, &values);
         }
     }

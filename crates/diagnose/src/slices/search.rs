@@ -238,13 +238,15 @@ fn intervals(bins: usize, is_variable: bool) -> Vec<(usize, usize)> {
 pub(crate) struct Null {
     deviations: Vec<f64>,
     largest: Vec<f64>,
+    /// Statistic of everywhere, which is no place and takes no part in the search.
+    everywhere: Vec<f64>,
 }
 
 impl Null {
     /// From sums of squares over draws.
     pub(crate) fn of(squares: &[f64], draws: usize) -> Self {
         let deviations = squares.iter().map(|square| (square / draws as f64).sqrt()).collect();
-        Self { deviations, largest: vec![] }
+        Self { deviations, largest: vec![], everywhere: vec![] }
     }
 
     /// Statistic of a place: its sum over the standard deviation that noise gives it, weighed by its conditions.
@@ -260,9 +262,13 @@ impl Null {
     /// Adds draws that took no part in the standard deviations.
     pub(crate) fn add(&mut self, search: &Search<'_>, sums: &Sums) {
         let mut largest = vec![0.0_f64; sums.width];
+        let mut everywhere = Vec::with_capacity(sums.width);
         search.for_each(sums, |index, sums| {
             let deviation = self.deviations[index];
-            if deviation > 0.0 {
+            if search.candidates[index].is_everywhere() {
+                let of = |sum: &f64| self.statistic(search, index, *sum);
+                everywhere.extend(sums.iter().map(of));
+            } else if deviation > 0.0 {
                 let by = search.candidates[index].weight() / deviation;
                 for (slot, sum) in largest.iter_mut().zip(sums) {
                     *slot = slot.max(by * sum.abs());
@@ -270,6 +276,7 @@ impl Null {
             }
         });
         self.largest.extend(largest);
+        self.everywhere.extend(everywhere);
     }
 
     /// Probability that noise alone makes as large a statistic somewhere.
@@ -278,7 +285,16 @@ impl Null {
     /// p = (1 + number of draws with max T ≥ T)/(1 + number of draws)                              [diagnosis.26]
     /// ```
     pub(crate) fn p_value(&self, statistic: f64) -> f64 {
-        let above = self.largest.iter().filter(|largest| **largest >= statistic).count();
-        (1.0 + above as f64) / (1.0 + self.largest.len() as f64)
+        p_value(&self.largest, statistic)
     }
+
+    /// Probability that noise alone makes as large a level.
+    pub(crate) fn p_value_everywhere(&self, statistic: f64) -> f64 {
+        p_value(&self.everywhere, statistic)
+    }
+}
+
+fn p_value(of_noise: &[f64], statistic: f64) -> f64 {
+    let above = of_noise.iter().filter(|value| **value >= statistic).count();
+    (1.0 + above as f64) / (1.0 + of_noise.len() as f64)
 }
