@@ -254,11 +254,16 @@ impl Baseline {
         let width = part.columns.len() - 1; // the residual is the last
         let deviations: Vec<f64> =
             part.columns[..width].iter().map(|&column| self.prior_deviation(column)).collect();
-        let inner = Mat::from_fn(width, width, |i, j| {
-            // Only the lower triangle is read.
-            gram[(i.max(j), i.min(j))] * deviations[i] * deviations[j]
-                + if i == j { 1.0 } else { 0.0 }
-        });
+        // Only the lower triangle is read.
+        let mut inner = Mat::<f64>::zeros(width, width);
+        for j in 0..width {
+            let from = &gram.col_as_slice(j)[j..width];
+            let into = &mut inner.col_as_slice_mut(j)[j..];
+            for ((into, from), deviation) in into.iter_mut().zip(from).zip(&deviations[j..]) {
+                *into = from * deviation * deviations[j];
+            }
+            into[0] += 1.0;
+        }
         let Some(factor) = Factor::of(&inner) else { return f64::NEG_INFINITY };
         let mut projected = Mat::from_fn(width, 1, |k, _| gram[(width, k)] * deviations[k]);
         factor.half_solve(&mut projected);

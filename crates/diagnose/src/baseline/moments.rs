@@ -7,7 +7,7 @@
 //! ```text
 //! XᵀC⁻¹X = Σ_ab 1/(w_a w_b) Σ_segments K_ab x_a x_bᵀ
 //! XᵀC⁻¹U = Σ_ab v_b/(w_a w_b) Σ_segments K_ab x_a u_bᵀ,   UᵀC⁻¹U alike
-//! Xᵀ(C + UUᵀ)⁻¹X = XᵀC⁻¹X − XᵀC⁻¹U (1 + UᵀC⁻¹U)⁻¹ UᵀC⁻¹X                                    [diagnosis.16]
+//! Xᵀ(C + UUᵀ)⁻¹X = XᵀC⁻¹X − XᵀC⁻¹U (1 + UᵀC⁻¹U)⁻¹ UᵀC⁻¹X                                    [diagnosis.40]
 //! ```
 //!
 //! Kinds that neither noise nor a column couples (engine against engine, as a rule) are kept apart.
