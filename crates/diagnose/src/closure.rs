@@ -5,7 +5,6 @@ mod cross_checks;
 use perf_model::effects::EffectModel;
 
 use crate::analysis::{Analysis, Stacked, analyse};
-use crate::data::SegmentRow;
 use crate::diagnosis::CLEAN_PROBABILITY;
 use crate::gram::{FOLDS, fold_of};
 use crate::library::Library;
@@ -25,8 +24,6 @@ pub(crate) struct Shrinkage {
     pub(crate) after: Vec<f64>,
     pub(crate) floor: Vec<f64>,
     pub(crate) segments: Vec<f64>,
-    /// Variance of the noise's sum of squares, flight by flight.
-    floor_variance: Vec<f64>,
     /// What is left of the gap, segment by segment.
     pub(crate) left: Vec<f64>,
     seed: u64,
@@ -58,12 +55,8 @@ impl Shrinkage {
     /// closure = (rms²_before − rms²_after)/(rms²_before − floor²)                      [diagnosis.23]
     /// ```
     ///
-    /// The interval is of a bootstrap over flights. What noise there was in these flights is not known, only what is
-    /// expected: each resample draws its mean square anew, with the variance that normal noise gives it.
-    ///
-    /// ```text
-    /// var Σe² = Σ_f 2 tr(C_f²),  C_f = D + UUᵀ:  tr(C_f²) = Σσ⁴ + 2Σσ²|u|² + Σ(UᵀU)²    [diagnosis.30]
-    /// ```
+    /// The interval is of a bootstrap over flights, with the floor as propagated; `None` too where resamples leave nothing
+    /// explainable, so that the ratio has no bound.
     pub(crate) fn closure(&self) -> Option<(f64, [f64; 2])> {
         let (before, after, floor) = (self.before(), self.after(), self.floor());
         if before - floor < SMALLEST_GAP * floor {
@@ -74,14 +67,12 @@ impl Shrinkage {
         let flights = self.before.len();
         let mut closures: Vec<f64> = (0..RESAMPLES)
             .map(|_| {
-                let (mut closed, mut explainable, mut variance) = (0.0, 0.0, 0.0);
+                let (mut closed, mut explainable) = (0.0, 0.0);
                 for _ in 0..flights {
                     let k = source.below(flights);
                     closed += self.before[k] - self.after[k];
                     explainable += self.before[k] - self.floor[k];
-                    variance += self.floor_variance[k];
                 }
-                let explainable = explainable - source.normal() * variance.sqrt();
                 // Where as good as nothing is explainable, the ratio says nothing: it counts as unbounded.
                 if explainable > 0.0 {
                     closed / explainable
@@ -156,7 +147,6 @@ fn shrinkage(
         after: vec![],
         floor: vec![],
         segments: vec![],
-        floor_variance: vec![],
         left: Vec::with_capacity(data.segments.len()),
         seed,
     };
@@ -179,46 +169,21 @@ fn shrinkage(
         found.before.push(before);
         found.after.push(after);
         found.floor.push(floor);
-        let rows = &data.segments[flight.segments.clone()];
-        found.floor_variance.push(2.0 * noise_scale * noise_scale * trace_of_square(rows));
         found.segments.push(flight.segments.len() as f64);
     }
     found
-}
-
-/// tr(C²) of the noise of a flight's fuel flow.
-fn trace_of_square(rows: &[SegmentRow]) -> f64 {
-    let own = |row: &SegmentRow| row.noise.factor[0][0].powi(2);
-    let rank = rows.first().map_or(0, |row| row.noise.common.len());
-    let diagonal: f64 = rows
-        .iter()
-        .map(|row| {
-            let common: f64 = row.noise.common.iter().map(|u| u[0] * u[0]).sum();
-            own(row) * (own(row) + 2.0 * common)
-        })
-        .sum();
-    let mut shared = 0.0;
-    for i in 0..rank {
-        for j in 0..rank {
-            let product: f64 =
-                rows.iter().map(|row| row.noise.common[i][0] * row.noise.common[j][0]).sum();
-            shared += product * product;
-        }
-    }
-    diagonal + shared
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn shrinkage(before: &[f64], after: &[f64], floor: &[f64], variance: f64) -> Shrinkage {
+    fn shrinkage(before: &[f64], after: &[f64], floor: &[f64]) -> Shrinkage {
         Shrinkage {
             before: before.to_vec(),
             after: after.to_vec(),
             floor: floor.to_vec(),
             segments: vec![1.0; before.len()],
-            floor_variance: vec![variance; before.len()],
             left: vec![],
             seed: 7,
         }
@@ -226,22 +191,23 @@ mod tests {
 
     #[test]
     fn closure_by_hand() {
-        // (5 − 2)/(5 − 1) = 0.75; all flights alike and the floor known: no interval to speak of.
-        let sure = shrinkage(&[5.0; 8], &[2.0; 8], &[1.0; 8], 0.0);
+        // (5 − 2)/(5 − 1) = 0.75; all flights alike: no interval to speak of.
+        let sure = shrinkage(&[5.0; 8], &[2.0; 8], &[1.0; 8]);
         let (closure, [low, high]) = sure.closure().unwrap();
         assert!((closure - 0.75).abs() < 1e-15);
         assert!((low - 0.75).abs() < 1e-12 && (high - 0.75).abs() < 1e-12);
-        // 100 flights, floor of variance 0.16 each: the explainable mean is 4 ± 0.04, 95 % 3.92 to 4.08.
-        let unsure = shrinkage(&[5.0; 100], &[2.0; 100], &[1.0; 100], 0.16);
+        // 400 flights, every other one with 1 more left: closed 3 ± 0.5 of 4, standard error 0.5/√400/4 = 0.00625.
+        let after: Vec<f64> = (0..400).map(|k| if k % 2 == 0 { 1.5 } else { 2.5 }).collect();
+        let unsure = shrinkage(&[5.0; 400], &after, &[1.0; 400]);
         let (_, [low, high]) = unsure.closure().unwrap();
-        assert!((low - 3.0 / 4.0784).abs() < 0.003, "{low}");
-        assert!((high - 3.0 / 3.9216).abs() < 0.003, "{high}");
+        assert!((low - (0.75 - 0.01225)).abs() < 0.0015, "{low}");
+        assert!((high - (0.75 + 0.01225)).abs() < 0.0015, "{high}");
     }
 
     #[test]
     fn a_gap_within_the_floor_has_no_closure() {
         // 1.14 is less than 15 % above 1; 1.16 is more.
-        assert!(shrinkage(&[1.14; 8], &[1.0; 8], &[1.0; 8], 0.0).closure().is_none());
-        assert!(shrinkage(&[1.16; 8], &[1.0; 8], &[1.0; 8], 0.0).closure().is_some());
+        assert!(shrinkage(&[1.14; 8], &[1.0; 8], &[1.0; 8]).closure().is_none());
+        assert!(shrinkage(&[1.16; 8], &[1.0; 8], &[1.0; 8]).closure().is_some());
     }
 }

@@ -21,7 +21,7 @@ const FLEXIBLE_SMOOTH: f64 = 0.004;
 /// few replicates.
 ///
 /// ```text
-/// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r²,   e what the best model leaves                      [diagnosis.31]
+/// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r²,   e what the best model leaves                      [diagnosis.30]
 /// ```
 pub(crate) fn replicate_floor(
     stacked: &Stacked<'_>,

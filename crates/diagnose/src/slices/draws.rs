@@ -24,7 +24,7 @@ impl Source {
         Self(ChaCha8Rng::from_seed(key))
     }
 
-    pub(crate) fn normal(&mut self) -> f64 {
+    fn normal(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
 
