@@ -23,10 +23,19 @@ fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
     // serde_json writes a number that is not finite as null; every null must be one that the format knows.
     let text = serde_json::to_string(&found).unwrap();
     let nulls = text.matches("null").count();
-    let known = ["closure", "closure_ci95", "rms_after_percent", "smallest", "variable", "acts_on"]
-        .iter()
-        .map(|field| text.matches(&format!("\"{field}\":null")).count())
-        .sum::<usize>();
+    let known = [
+        "closure",
+        "closure_ci95",
+        "rms_after_percent",
+        "smallest",
+        "variable",
+        "acts_on",
+        "addition",
+        "center_of_gravity_percent_mac",
+    ]
+    .iter()
+    .map(|field| text.matches(&format!("\"{field}\":null")).count())
+    .sum::<usize>();
     assert_eq!(nulls, known, "{text}");
     found
 }

@@ -58,7 +58,7 @@ pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
             }
         }
     }
-    let deviations = deviations(&model, points.rows(), &predicted, &remainders);
+    let deviations = deviations(&model, points.rows(), &predicted, remembered, &remainders);
     let mut columns = table(points.header(), points.rows(), &predicted, &deviations);
     if remembered.is_some() {
         columns.number(
@@ -135,12 +135,13 @@ fn table(
 }
 
 /// Standard deviation of what a segment recorded there would say, kg/s: what the table does not know, what is common to
-/// a flight, and the segment's own noise by the aircraft's sensors; with what the remainder leaves open where it is known,
-/// and scatter between flights that was applied.
+/// a flight, and the segment's own noise by the aircraft's sensors, and scatter between flights that was applied. Where the
+/// remainder is known, what it leaves open is added, and noise is as large as flights showed it.
 fn deviations(
     model: &ModelFile,
     rows: &[FlightPointRow],
     predicted: &[Option<perf_model::Prediction>],
+    remembered: Option<Remainder<'_>>,
     remainders: &[Option<(f64, f64)>],
 ) -> Vec<Option<f64>> {
     // What is imagined is recorded by the aircraft's sensors as they should be.
@@ -153,15 +154,24 @@ fn deviations(
               remainder: Option<(f64, f64)>| {
         let posterior = model.posterior()?;
         let segment = imagined_segment(&row.point, prediction, &plain);
-        let observation = plain.observe(&segment).ok()?;
-        let variance = posterior.segment_variance(&prediction.cell, &observation.variance);
-        let initial = posterior.initial().interpolate(&prediction.cell);
-        let table = variance.sqrt() * initial * prediction.fuel_flow_per_drag_coefficient_kg_s;
-        let relative = remainder.map_or(0.0, |(_, deviation)| deviation).hypot(scatter);
-        if relative == 0.0 {
-            return Some(table);
-        }
-        Some(table.hypot(relative * prediction.fuel_flow_total.to_kilograms_per_second()))
+        let sensors = plain.observe(&segment).ok()?.variance;
+        let total_kg_s = prediction.fuel_flow_total.to_kilograms_per_second();
+        let per_relative_drag_kg_s = posterior.initial().interpolate(&prediction.cell)
+            * prediction.fuel_flow_per_drag_coefficient_kg_s;
+        let kg_s = match remembered.zip(remainder) {
+            Some((remembered, (_, deviation))) => {
+                let [within, between] = remembered.variance_factors();
+                let variance = posterior.relative_variance(&prediction.cell)
+                    + within * sensors.segment
+                    + between * sensors.flight;
+                (variance.sqrt() * per_relative_drag_kg_s).hypot(deviation * total_kg_s)
+            }
+            None => {
+                let variance = posterior.segment_variance(&prediction.cell, &sensors);
+                variance.sqrt() * per_relative_drag_kg_s
+            }
+        };
+        Some(if scatter > 0.0 { kg_s.hypot(scatter * total_kg_s) } else { kg_s })
     };
     rows.iter()
         .zip(predicted)

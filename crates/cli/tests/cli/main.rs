@@ -12,6 +12,7 @@ mod bad_input;
 mod commands;
 mod diagnosis;
 mod reference;
+mod remainder;
 mod same_bytes;
 mod state;
 mod support;

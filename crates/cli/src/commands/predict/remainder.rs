@@ -18,7 +18,13 @@ impl<'a> Remainder<'a> {
 
     /// Mean and standard deviation of ln fuel flow less the table's, where flown data informed them.
     pub(super) fn at(self, current: &PerformanceModel, point: &FlightPoint) -> Option<(f64, f64)> {
-        let response = current.response(point).ok()?;
-        self.0.known_remainder(&response)
+        self.0.known_remainder(&current.response(point).ok()?)
+    }
+
+    /// Factors on the variances that the aircraft's sensors announce, of one segment and common to a flight: what the flown
+    /// data showed of them.
+    pub(super) fn variance_factors(self) -> [f64; 2] {
+        let noise = self.0.noise();
+        [noise.within[0] * noise.within[0], noise.between[0] * noise.between[0]]
     }
 }

@@ -1,0 +1,117 @@
+//! `predict` with what a model remembers beside its table.
+
+use std::path::{Path, PathBuf};
+
+use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers};
+
+/// Flights of one virtual aircraft with the sensors, wind and scatter of the default, and with all that no table holds.
+const PLAN: &str = r#"(seed: 11, tails: [(tail: "V", flights: Designed((flights: 60)))])"#;
+
+fn run(words: &[&dyn AsRef<std::ffi::OsStr>]) -> crate::support::Ran {
+    let arguments: Vec<&std::ffi::OsStr> = words.iter().map(AsRef::as_ref).collect();
+    cruisefit(&arguments)
+}
+
+/// Flight points of recorded segments; measured fuel flow is the recorded one less what accelerates the aircraft, by the
+/// TSFC of the aircraft file: 0.3616 lb/(lbf h)·√θ·(1 + M)^1.25.
+fn points_of(segments: &Path, points: &Path) {
+    let columns = csv_columns(segments);
+    let of = |name: &str| numbers(&columns, name);
+    let (mass, altitude, mach) = (of("mass_kg"), of("pressure_altitude_m"), of("mach"));
+    let (sat, acceleration) = (of("static_air_temperature_k"), of("acceleration_m_s2"));
+    let flow = of("fuel_flow_kg_s");
+    let mut text = "mass_kg,pressure_altitude_ft,mach,isa_deviation_c,fuel_flow_kg_h\n".to_owned();
+    for k in 0..mass.len() {
+        let isa = if altitude[k] < 11_000.0 { 288.15 - 0.0065 * altitude[k] } else { 216.65 };
+        let tsfc =
+            0.3616 / 3600.0 / 9.806_65 * (sat[k] / 288.15).sqrt() * (1.0 + mach[k]).powf(1.25);
+        let level = flow[k] - mass[k] * acceleration[k] * tsfc;
+        text += &format!(
+            "{},{},{},{},{}\n",
+            mass[k],
+            altitude[k] / 0.3048,
+            mach[k],
+            sat[k] - isa,
+            3600.0 * level
+        );
+    }
+    std::fs::write(points, text).unwrap();
+}
+
+fn rms(errors: impl Iterator<Item = f64>) -> f64 {
+    let squares: Vec<f64> = errors.map(|error| error * error).collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+#[test]
+fn flights_that_no_model_has_seen_are_predicted_better_with_the_remainder() {
+    let scratch = tempfile::tempdir().unwrap();
+    let at = |name: &str| scratch.path().join(name);
+    std::fs::write(at("PLAN.ron"), PLAN).unwrap();
+    run(&[&"simulate", &at("PLAN.ron"), &"-o", &at("flown")]).expect(0);
+    run(&[&"simulate", &"ghazi-2020", &"-o", &at("study")]).expect(0);
+    let (aircraft, guide) = (at("study/AIRCRAFT.ron"), at("study/guide.csv"));
+    let initial = at("MODEL.ron");
+    run(&[&"init", &"--aircraft", &aircraft, &"--guide", &guide, &"-o", &initial]).expect(0);
+    let reports: Vec<PathBuf> =
+        bytes_below(&at("flown/V")).into_keys().map(|name| at("flown/V").join(name)).collect();
+    let (teaching, judging) = reports.split_at(30);
+    adapt(&initial, &at("out"), teaching, &[]).expect(0);
+    let model = at("out/models/V.ron");
+    let segments = at("segments.csv");
+    let mut words: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"segment", &"-o", &segments];
+    words.extend(judging.iter().map(|path| path as &dyn AsRef<std::ffi::OsStr>));
+    run(&words).expect(0);
+    let points = at("points.csv");
+    points_of(&segments, &points);
+
+    let (with, table) = (at("with.csv"), at("table.csv"));
+    let ran = run(&[&"predict", &"--model", &model, &points, &"-o", &with]);
+    assert!(ran.stdout.contains("with the remainder that flown data informed"), "{}", ran.stdout);
+    let ran = run(&[&"predict", &"--model", &model, &points, &"-o", &table, &"--table-only"]);
+    assert!(!ran.stdout.contains("remainder"), "{}", ran.stdout);
+    let (with, table) = (csv_columns(&with), csv_columns(&table));
+    assert!(!table.contains_key("remainder_percent"));
+    let rows = with["remainder_percent"].len();
+    let predicted = |row: &usize| !table["error_percent"][*row].is_empty();
+    let known: Vec<usize> = (0..rows)
+        .filter(predicted)
+        .filter(|&row| !with["remainder_percent"][row].is_empty())
+        .collect();
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let errors = |of: &std::collections::BTreeMap<String, Vec<String>>| {
+        rms(known.iter().map(|&row| number(&of["error_percent"][row])))
+    };
+    let covered = known
+        .iter()
+        .filter(|&&row| {
+            let relative =
+                number(&with["fuel_flow_std_kg_s"][row]) / number(&with["fuel_flow_kg_s"][row]);
+            number(&with["error_percent"][row]).abs() < 196.0 * relative
+        })
+        .count() as f64
+        / known.len() as f64;
+    eprintln!(
+        "{} of {rows} points known: rms {:.3} % by the table, {:.3} % with the remainder; {:.0} % within 95 %",
+        known.len(),
+        errors(&table),
+        errors(&with),
+        100.0 * covered
+    );
+    assert!(known.len() > rows / 3, "{}", known.len());
+    assert!(errors(&with) < 0.93 * errors(&table));
+    assert!(covered > 0.93, "{covered}");
+    // Where it is not known the row is the table's.
+    for row in (0..rows).filter(|row| with["remainder_percent"][*row].is_empty()) {
+        assert_eq!(with["fuel_flow_kg_s"][row], table["fuel_flow_kg_s"][row]);
+        assert_eq!(with["fuel_flow_std_kg_s"][row], table["fuel_flow_std_kg_s"][row]);
+    }
+}
+
+#[test]
+fn a_model_without_a_remainder_has_no_column_of_it() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let ran = run(&[&"predict", &"--model", &model, &fixture("static.csv")]);
+    assert!(ran.status < 2 && !ran.stdout.contains("remainder"), "{}", ran.stdout);
+}

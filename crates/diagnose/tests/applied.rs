@@ -1,0 +1,66 @@
+//! Diagnosing the same flights with the model that was extended by what they showed finds nothing left.
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test")]
+
+use diagnose::{Diagnosis, Input, Options, VerdictKind, diagnose};
+use flight::effect::EffectId;
+use perf_model::PerformanceModel;
+use perf_model::effects::AppliedEffects;
+
+#[path = "fleet/flown.rs"]
+mod flown;
+use flown::{Background, Fleet, Planted, Setup, exact_model, fly, typical};
+
+fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
+    let records = fleet.records();
+    let input = Input {
+        model,
+        drag_table: model.drag_table(),
+        flights: &records,
+        baseline: None,
+        table: None,
+        references: None,
+    };
+    diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()
+}
+
+/// Fleets whose truth has other functional forms than the library, at 1.5 typical sizes: one effect of each kind, with
+/// hidden parameters, of the aircraft and of what is recorded.
+#[test]
+fn nothing_is_left_after_applying() {
+    let model = exact_model();
+    for id in [
+        EffectId::ZeroLiftDrag,
+        EffectId::TsfcEngine(2),
+        EffectId::StepChange,
+        EffectId::MachBias,
+        EffectId::FuelFlowGain,
+        EffectId::ZeroFuelMassBias,
+        EffectId::LocalGravity,
+    ] {
+        let known = id == EffectId::LocalGravity;
+        let size = if known { 1.0 } else { 1.5 * typical(id) };
+        let fleet = fly(31, &Setup::default(), &[Planted { id, size }], &Background::default());
+        let found = run(&model, &fleet);
+        assert_eq!(found.verdict.kind, VerdictKind::Effects, "{id}: {:?}", found.verdict);
+        let addition = found.addition.unwrap();
+        assert_eq!(addition.effects[0].effect, found.verdict.effects[0]);
+        let layer = addition.layer().unwrap();
+        let extended = model.with_effects(AppliedEffects::new(vec![layer])).unwrap();
+        let left = run(&extended, &fleet);
+        eprintln!(
+            "{id}: {:?}, gap {:.2} -> {:.2} %, floor {:.2} %, then {:?} {:?}",
+            addition.effects,
+            found.gap.rms_percent,
+            left.gap.rms_percent,
+            left.gap.noise_floor_rms_percent,
+            left.verdict.kind,
+            left.verdict.effects
+        );
+        assert_eq!(left.verdict.kind, VerdictKind::NoGap, "{id}: {:?}", left.verdict);
+        assert!(left.gap.rms_percent < found.gap.rms_percent, "{id}");
+        if found.verdict.effects == ["local_gravity"] {
+            // What physics knows and the model contains is no candidate any more.
+            assert!(left.detectable.iter().all(|entry| entry.effect != "local_gravity"));
+        }
+    }
+}
