@@ -1,5 +1,5 @@
 //! Diagnosing the same flights with the model that was extended by what they showed finds nothing left.
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test")]
+#![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{Diagnosis, Input, Options, VerdictKind, diagnose};
 use flight::effect::EffectId;

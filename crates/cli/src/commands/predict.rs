@@ -158,18 +158,15 @@ fn deviations(
         let total_kg_s = prediction.fuel_flow_total.to_kilograms_per_second();
         let per_relative_drag_kg_s = posterior.initial().interpolate(&prediction.cell)
             * prediction.fuel_flow_per_drag_coefficient_kg_s;
-        let kg_s = match remembered.zip(remainder) {
-            Some((remembered, (_, deviation))) => {
-                let [within, between] = remembered.variance_factors();
-                let variance = posterior.relative_variance(&prediction.cell)
-                    + within * sensors.segment
-                    + between * sensors.flight;
-                (variance.sqrt() * per_relative_drag_kg_s).hypot(deviation * total_kg_s)
-            }
-            None => {
-                let variance = posterior.segment_variance(&prediction.cell, &sensors);
-                variance.sqrt() * per_relative_drag_kg_s
-            }
+        let kg_s = if let Some((remembered, (_, deviation))) = remembered.zip(remainder) {
+            let [within, between] = remembered.variance_factors();
+            let variance = posterior.relative_variance(&prediction.cell)
+                + within * sensors.segment
+                + between * sensors.flight;
+            (variance.sqrt() * per_relative_drag_kg_s).hypot(deviation * total_kg_s)
+        } else {
+            let variance = posterior.segment_variance(&prediction.cell, &sensors);
+            variance.sqrt() * per_relative_drag_kg_s
         };
         Some(if scatter > 0.0 { kg_s.hypot(scatter * total_kg_s) } else { kg_s })
     };

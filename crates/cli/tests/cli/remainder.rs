@@ -1,5 +1,6 @@
 //! `predict` with what a model remembers beside its table.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers};
@@ -26,8 +27,9 @@ fn points_of(segments: &Path, points: &Path) {
         let tsfc =
             0.3616 / 3600.0 / 9.806_65 * (sat[k] / 288.15).sqrt() * (1.0 + mach[k]).powf(1.25);
         let level = flow[k] - mass[k] * acceleration[k] * tsfc;
-        text += &format!(
-            "{},{},{},{},{}\n",
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{}",
             mass[k],
             altitude[k] / 0.3048,
             mach[k],
