@@ -11,6 +11,7 @@ mod case;
 mod draw;
 mod evidence;
 mod plan;
+mod planted;
 mod seal;
 mod summary;
 mod text;

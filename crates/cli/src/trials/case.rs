@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::draw::Withheld;
 use super::evidence::Evidence;
 use super::plan::{Background, CaseSpec, Denied, Kind, TrialPlan};
+use super::planted::PlantedGap;
 use super::seal::{CaseTruth, Seal};
 use crate::failure::Failure;
 use crate::files::write_atomically;
@@ -87,6 +88,12 @@ pub enum CaseFailure {
     /// The diagnosis.
     #[error(transparent)]
     Diagnose(#[from] diagnose::DiagnoseError),
+    /// A place that the diagnosis named.
+    #[error(transparent)]
+    Slice(#[from] diagnose::SliceError),
+    /// A model that takes no effects.
+    #[error(transparent)]
+    Effects(#[from] perf_model::effects::EffectModelError),
     /// Truth or result on disk.
     #[error(transparent)]
     Disk(#[from] Failure),
@@ -107,7 +114,8 @@ pub fn run_case(
     if let Some(known) = finished(&path, seal.hash_of(spec.number)) {
         return Ok(known);
     }
-    let evidence = Evidence::gather(&Withheld::draw(plan, spec)?)?;
+    let withheld = Withheld::draw(plan, spec)?;
+    let evidence = Evidence::gather(&withheld)?;
     let without: Vec<EffectId> = match spec.part.kind {
         // Which name is struck is an instruction, not a hint: the name is then not in the library.
         Kind::Struck => {
@@ -118,6 +126,9 @@ pub fn run_case(
     let found = evidence.diagnose(&without, false)?;
     let truth = seal.open(spec.number)?;
     let mut scored = Case::of(truth.planted(), &found);
+    let planted = PlantedGap::measure(&withheld, &evidence, &truth)?;
+    scored.planted_closure = planted.closure(&evidence, &found);
+    scored.located = planted.located(&evidence, &found, &truth)?;
     if !without.is_empty() {
         // How far the struck effect is from the rest is known only to a library that holds it.
         scored.take_distance(&evidence.diagnose(&[], true)?);

@@ -22,8 +22,10 @@ const SIXTY_FLIGHTS_S: i64 = 50_716_800;
 pub struct Withheld {
     /// Flights with everything that is withheld, after `clean` ones.
     flown: Simulation,
-    /// The same flights with nothing withheld.
+    /// The same flights and clutter without what is planted.
     twin: Simulation,
+    /// The same flights with nothing withheld: what an adapted model learns.
+    lessons: Simulation,
     /// How many flights the model may learn: the first ones, of the twin.
     clean: usize,
     aircraft: AircraftTruth,
@@ -82,15 +84,32 @@ impl Withheld {
             .collect();
         let clutter = spec.part.background == Background::Clutter;
         let smooth = if clutter { plan.smooth_error_percent } else { 0.0 };
-        let flown = Simulation::new(Plan {
-            tails: vec![listed(effects)],
-            clutter_share: if clutter { plan.clutter_share } else { 0.0 },
-            smooth_errors: SmoothErrorSizes { drag_percent: smooth, fuel_flow_percent: smooth },
-            ..bare.clone()
-        })?;
-        let twin = Simulation::new(Plan { tails: vec![listed(vec![])], ..bare })?;
+        let with = |effects: Vec<PlannedEffect>| {
+            Simulation::new(Plan {
+                tails: vec![listed(effects)],
+                clutter_share: if clutter { plan.clutter_share } else { 0.0 },
+                smooth_errors: SmoothErrorSizes { drag_percent: smooth, fuel_flow_percent: smooth },
+                ..bare.clone()
+            })
+        };
+        // Named with size 0, so that clutter does not draw them either.
+        let nothing = effects
+            .iter()
+            .filter(|effect| !is_known(effect.id))
+            .map(|effect| PlannedEffect { size: Some(0.0), ..*effect })
+            .collect();
+        let (flown, twin) = (with(effects)?, with(nothing)?);
+        let lessons = Simulation::new(Plan { tails: vec![listed(vec![])], ..bare })?;
         let truth = truth(&flown, spec);
-        Ok(Self { aircraft: flown.aircraft().clone(), flown, twin, clean, richness, truth })
+        Ok(Self {
+            aircraft: flown.aircraft().clone(),
+            flown,
+            twin,
+            lessons,
+            clean,
+            richness,
+            truth,
+        })
     }
 
     /// What is sealed.
@@ -117,6 +136,10 @@ impl Withheld {
 
     pub(super) const fn twin(&self) -> &Simulation {
         &self.twin
+    }
+
+    pub(super) const fn lessons(&self) -> &Simulation {
+        &self.lessons
     }
 }
 
@@ -169,9 +192,7 @@ fn planned(
     let byte = |number: usize| spec.draws[8 + 8 * place.min(1) + number];
     let unit = |number: usize| (f64::from(byte(number)) + 0.5) / 256.0;
     let between = |number: usize, low: f64, high: f64| low + unit(number) * (high - low);
-    let known = matches!(id, TruthEffect::Library(library)
-        if library.entry().typical == TypicalSize::Known);
-    let sign = if id.is_one_sided() || known || byte(0) % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if id.is_one_sided() || is_known(id) || byte(0) % 2 == 0 { 1.0 } else { -1.0 };
     let mut effect =
         PlannedEffect::sized(id, sign * spec.part.times * id.typical_size(mean_mass_kg));
     match id {
@@ -190,6 +211,11 @@ fn planned(
         _ => {}
     }
     effect
+}
+
+/// Effects that are there or not, without a size.
+fn is_known(id: TruthEffect) -> bool {
+    matches!(id, TruthEffect::Library(library) if library.entry().typical == TypicalSize::Known)
 }
 
 fn truth(flown: &Simulation, spec: &CaseSpec) -> CaseTruth {

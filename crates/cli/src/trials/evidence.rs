@@ -34,7 +34,7 @@ const FINE: [(f64, f64, f64); 2] = [(0.08, 0.75, 0.005), (0.50, 0.95, 0.005)];
 const COARSE: [(f64, f64, f64); 2] = [(0.10, 0.75, 0.05), (0.50, 0.95, 0.05)];
 
 /// What the diagnosis is given.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Evidence {
     model: PerformanceModel,
     /// The adapted drag table; the model's own where nothing was learnt.
@@ -67,8 +67,7 @@ impl Evidence {
             let drag_table = model.drag_table().clone();
             return Ok(Self { model, drag_table, baseline: None, uncertainty: None, flights });
         }
-        // The first flights of the twin: no effect, no clutter.
-        let lessons = fly(withheld.twin(), 0..clean)?;
+        let lessons = fly(withheld.lessons(), 0..clean)?;
         let error = DragError::study();
         let initial = denied_model(
             withheld.aircraft(),
@@ -85,27 +84,38 @@ impl Evidence {
     /// # Errors
     /// What the diagnosis refuses.
     pub fn diagnose(&self, without: &[EffectId], quick: bool) -> Result<Diagnosis, CaseFailure> {
-        let records: Vec<FlightRecord<'_>> = self
-            .flights
-            .iter()
-            .filter(|flight| !flight.segments.is_empty())
-            .map(|flight| FlightRecord { segments: &flight.segments, gauges: flight.gauges })
-            .collect();
-        let input = Input {
-            model: &self.model,
-            drag_table: &self.drag_table,
-            flights: &records,
-            baseline: self.baseline.as_ref(),
-            table: self.uncertainty.as_ref(),
-            references: self.baseline.as_ref().map(|baseline| *baseline.references()),
-        };
+        let records = self.records();
         let options = Options {
             without: without.to_vec(),
             skip_closure: quick,
             skip_where: quick,
             ..Options::default()
         };
-        Ok(diagnose(&input, &options)?)
+        Ok(diagnose(&self.input(&records), &options)?)
+    }
+
+    /// The same model held against other flights, for the scorer.
+    pub(super) fn against(&self, flights: Vec<FlightSegments>) -> Self {
+        Self { flights, ..self.clone() }
+    }
+
+    pub(super) fn records(&self) -> Vec<FlightRecord<'_>> {
+        self.flights
+            .iter()
+            .filter(|flight| !flight.segments.is_empty())
+            .map(|flight| FlightRecord { segments: &flight.segments, gauges: flight.gauges })
+            .collect()
+    }
+
+    pub(super) fn input<'a>(&'a self, records: &'a [FlightRecord<'a>]) -> Input<'a> {
+        Input {
+            model: &self.model,
+            drag_table: &self.drag_table,
+            flights: records,
+            baseline: self.baseline.as_ref(),
+            table: self.uncertainty.as_ref(),
+            references: self.baseline.as_ref().map(|baseline| *baseline.references()),
+        }
     }
 }
 
@@ -180,9 +190,10 @@ fn denied_model(
     Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?)
 }
 
-/// What the aircraft file says of the fleet's sensors: those of the virtual aircraft, as an operator would state them of a
-/// mean over a segment of ten samples. What stays within a flight and what stays within minutes counts whole, noise by
-/// 1/√10.
+/// What the aircraft file says of the fleet's sensors: those of the virtual aircraft, as an operator sees them in past
+/// reports. What wanders within minutes counts whole, noise by 1/√10 (ten samples a segment). What a flow meter keeps
+/// through a flight is stated with the fuel's heating value; what air data and rotor speed keep through a flight has no
+/// place in the file, and is not stated.
 ///
 /// The air-data computer's errors are stated where the fleet cruises, Mach 0.80 and 200 hPa:
 ///
@@ -200,28 +211,27 @@ fn sensor_deviations(
     const MACH: f64 = 0.80;
     const STATIC_PRESSURE_HPA: f64 = 200.0;
     const PRESSURE_SCALE_HEIGHT_M: f64 = 287.05287 * 216.65 / 9.80665;
-    let added = |sensor: &ChannelSensor| {
-        let noise = sensor.noise_sd.powi(2) / SAMPLES;
-        (sensor.flight_sd.powi(2) + sensor.slow_sd.powi(2) + noise).sqrt()
-    };
-    let gained = |sensor: &ChannelSensor| {
-        let noise = sensor.gain_noise_sd.powi(2) / SAMPLES;
-        (sensor.gain_flight_sd.powi(2) + sensor.gain_slow_sd.powi(2) + noise).sqrt()
-    };
+    // The quiet end of what is seen at 60 s in turbulence; the virtual air is turbulent now and then.
+    const ACCELERATION_M_S2: f64 = 0.003;
+    let added = |sensor: &ChannelSensor| sensor.slow_sd.hypot(sensor.noise_sd / SAMPLES.sqrt());
+    let gained =
+        |sensor: &ChannelSensor| sensor.gain_slow_sd.hypot(sensor.gain_noise_sd / SAMPLES.sqrt());
     let heating = 1.0 + 0.2 * MACH * MACH;
     let static_relative = added(&sensors.static_pressure) / STATIC_PRESSURE_HPA;
     let total_relative = added(&sensors.total_pressure) / (STATIC_PRESSURE_HPA * heating.powf(3.5));
+    let meters_of_a_flight =
+        100.0 * sensors.fuel_flow.gain_flight_sd / f64::from(truth.engine.count).sqrt();
     SensorDeviations {
         fuel_flow_percent: 100.0 * gained(&sensors.fuel_flow),
         mach: static_relative.hypot(total_relative) * heating / (1.4 * MACH),
         static_air_temperature_k: added(&sensors.total_air_temperature) / heating,
+        acceleration_m_s2: ACCELERATION_M_S2,
         mass: MassDeviation::Kilograms(
             0.01 * scatter.zero_fuel_mass_percent * truth.masses.maximum_zero_fuel_kg,
         ),
-        lower_heating_value_percent: scatter.heating_value_percent,
+        lower_heating_value_percent: scatter.heating_value_percent.hypot(meters_of_a_flight),
         n2_percent: (100.0 * gained(&sensors.n2)).hypot(added(&sensors.n2)),
         pressure_altitude_m: static_relative * PRESSURE_SCALE_HEIGHT_M,
-        acceleration_m_s2: SensorDeviations::default().acceleration_m_s2,
     }
 }
 
@@ -329,11 +339,12 @@ mod tests {
 
     #[test]
     fn the_aircraft_file_states_the_virtual_sensors() {
-        // By hand: 100·√(0.0015² + 0.0020² + 0.0030²/10), √(0.20² + 0.10² + 0.05²/10)/1.128, 0.007·11 068 kg.
+        // By hand: 100·√(0.0020² + 0.0030²/10), √(0.10² + 0.05²/10)/1.128, √(0.3² + 0.15²/2), 0.007·11 068 kg.
         let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
         let stated = sensor_deviations(&Sensors::transport(), &Scatter::default(), &truth);
-        assert!((stated.fuel_flow_percent - 0.26743).abs() < 1e-4, "{stated:?}");
-        assert!((stated.static_air_temperature_k - 0.19873).abs() < 1e-4, "{stated:?}");
+        assert!((stated.fuel_flow_percent - 0.22136).abs() < 1e-4, "{stated:?}");
+        assert!((stated.static_air_temperature_k - 0.08975).abs() < 1e-4, "{stated:?}");
+        assert!((stated.lower_heating_value_percent - 0.31820).abs() < 1e-4, "{stated:?}");
         assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
     }
 }
