@@ -61,7 +61,7 @@ pub use plan::{
     SmoothErrorSizes, TailPlan,
 };
 pub use route::{Autopilot, Change, Earth, FlightPlan, Loading};
-pub use sensor::{ChannelSensor, Columns, Faults, Sensors};
+pub use sensor::{ChannelSensor, Columns, Faults, SLOW_TIME_S, Sensors};
 pub use simulation::{Flown, Simulation, SimulationError};
 pub use state::{EnergyBook, MassBook, TrueState};
 pub use terms::References;

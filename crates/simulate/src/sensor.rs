@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::aircraft::Switch;
 
 pub(crate) use bank::{RecordedLoading, SensorBank};
-pub use channel::{ChannelSensor, Faults};
+pub use channel::{ChannelSensor, Faults, SLOW_TIME_S};
 
 /// The sensors of an aircraft. Units are those that reports usually carry.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

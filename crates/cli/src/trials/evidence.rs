@@ -17,7 +17,8 @@ use rayon::prelude::*;
 use segmenter::TrimCriteria;
 use simulate::study::DragError;
 use simulate::{
-    AircraftTruth, ChannelSensor, Richness, Scatter, Sensors, Simulation, SimulationError,
+    AircraftTruth, ChannelSensor, Richness, SLOW_TIME_S, Scatter, Sensors, Simulation,
+    SimulationError,
 };
 use units::Mach;
 use units::convert::TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR;
@@ -190,10 +191,18 @@ fn denied_model(
     Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?)
 }
 
-/// What the aircraft file says of the fleet's sensors: those of the virtual aircraft, as an operator sees them in past
-/// reports. What wanders within minutes counts whole, noise by 1/√10 (ten samples a segment). What a flow meter keeps
-/// through a flight is stated with the fuel's heating value; what air data and rotor speed keep through a flight has no
-/// place in the file, and is not stated.
+/// What the aircraft file says of the fleet's sensors: what they do within a flight, as an operator sees it in past reports.
+///
+/// A slow wander of variance σ² and time constant τ has, over a time T, a mean of variance
+///
+/// ```text
+/// v(T)·σ²,  v(T) = 2τ/T·(1 − τ/T·(1 − e^(−T/τ)))
+/// ```
+///
+/// (Ornstein–Uhlenbeck process): v of a segment less v of a flight is left within the flight, and noise counts with 1/√10
+/// (ten samples a segment). What a flow meter keeps through a flight is stated with the fuel's heating value. What air data
+/// and rotor speed keep through a flight has no place in an aircraft file and is not stated, though it is there: counted
+/// as if it differed from segment to segment, it would make every null look like scatter between flights.
 ///
 /// The air-data computer's errors are stated where the fleet cruises, Mach 0.80 and 200 hPa:
 ///
@@ -208,28 +217,38 @@ fn sensor_deviations(
     truth: &AircraftTruth,
 ) -> SensorDeviations {
     const SAMPLES: f64 = 10.0;
+    const SEGMENT_S: f64 = 600.0;
+    const FLIGHT_S: f64 = 7200.0;
     const MACH: f64 = 0.80;
     const STATIC_PRESSURE_HPA: f64 = 200.0;
     const PRESSURE_SCALE_HEIGHT_M: f64 = 287.05287 * 216.65 / 9.80665;
     // The quiet end of what is seen at 60 s in turbulence; the virtual air is turbulent now and then.
     const ACCELERATION_M_S2: f64 = 0.003;
-    let added = |sensor: &ChannelSensor| sensor.slow_sd.hypot(sensor.noise_sd / SAMPLES.sqrt());
-    let gained =
-        |sensor: &ChannelSensor| sensor.gain_slow_sd.hypot(sensor.gain_noise_sd / SAMPLES.sqrt());
+    let of_mean = |over_s: f64| {
+        let x = over_s / SLOW_TIME_S;
+        2.0 / x * (1.0 - (1.0 - (-x).exp()) / x)
+    };
+    let within = |slow: f64, noise: f64| {
+        let wander = (of_mean(SEGMENT_S) - of_mean(FLIGHT_S)).sqrt() * slow;
+        wander.hypot(noise / SAMPLES.sqrt())
+    };
+    let added = |sensor: &ChannelSensor| within(sensor.slow_sd, sensor.noise_sd);
+    let gained = |sensor: &ChannelSensor| within(sensor.gain_slow_sd, sensor.gain_noise_sd);
     let heating = 1.0 + 0.2 * MACH * MACH;
     let static_relative = added(&sensors.static_pressure) / STATIC_PRESSURE_HPA;
     let total_relative = added(&sensors.total_pressure) / (STATIC_PRESSURE_HPA * heating.powf(3.5));
-    let meters_of_a_flight =
-        100.0 * sensors.fuel_flow.gain_flight_sd / f64::from(truth.engine.count).sqrt();
+    let meter = &sensors.fuel_flow;
+    let kept = meter.gain_flight_sd.hypot(of_mean(FLIGHT_S).sqrt() * meter.gain_slow_sd);
+    let kept_by_all = 100.0 * kept / f64::from(truth.engine.count).sqrt();
     SensorDeviations {
-        fuel_flow_percent: 100.0 * gained(&sensors.fuel_flow),
+        fuel_flow_percent: 100.0 * gained(meter),
         mach: static_relative.hypot(total_relative) * heating / (1.4 * MACH),
         static_air_temperature_k: added(&sensors.total_air_temperature) / heating,
         acceleration_m_s2: ACCELERATION_M_S2,
         mass: MassDeviation::Kilograms(
             0.01 * scatter.zero_fuel_mass_percent * truth.masses.maximum_zero_fuel_kg,
         ),
-        lower_heating_value_percent: scatter.heating_value_percent.hypot(meters_of_a_flight),
+        lower_heating_value_percent: scatter.heating_value_percent.hypot(kept_by_all),
         n2_percent: (100.0 * gained(&sensors.n2)).hypot(added(&sensors.n2)),
         pressure_altitude_m: static_relative * PRESSURE_SCALE_HEIGHT_M,
     }
@@ -339,12 +358,14 @@ mod tests {
 
     #[test]
     fn the_aircraft_file_states_the_virtual_sensors() {
-        // By hand: 100·√(0.0020² + 0.0030²/10), √(0.10² + 0.05²/10)/1.128, √(0.3² + 0.15²/2), 0.007·11 068 kg.
+        // By hand: means of a wander of 1 200 s keep 0.85225 of its variance over 600 s and 0.27785 over 7 200 s. Then
+        // 100·√(0.57440·0.0020² + 0.0030²/10), √(0.57440·0.10² + 0.05²/10)/1.128 and
+        // √(0.3² + 100²·(0.0015² + 0.27785·0.0020²)/2).
         let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
         let stated = sensor_deviations(&Sensors::transport(), &Scatter::default(), &truth);
-        assert!((stated.fuel_flow_percent - 0.22136).abs() < 1e-4, "{stated:?}");
-        assert!((stated.static_air_temperature_k - 0.08975).abs() < 1e-4, "{stated:?}");
-        assert!((stated.lower_heating_value_percent - 0.31820).abs() < 1e-4, "{stated:?}");
+        assert!((stated.fuel_flow_percent - 0.178823).abs() < 1e-5, "{stated:?}");
+        assert!((stated.static_air_temperature_k - 0.068632).abs() < 1e-5, "{stated:?}");
+        assert!((stated.lower_heating_value_percent - 0.327015).abs() < 1e-5, "{stated:?}");
         assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
     }
 }

@@ -81,7 +81,7 @@ pub struct FloorMissed {
 }
 
 /// The goals of the specification at typical sizes.
-const CLEAN: [(ScoreName, bool, f64); 12] = [
+const CLEAN: [(ScoreName, bool, f64); 13] = [
     (ScoreName::Class, true, 0.97),
     (ScoreName::TopOneSeparable, true, 0.95),
     (ScoreName::SureAndWrong, false, 0.005),
@@ -93,6 +93,7 @@ const CLEAN: [(ScoreName, bool, f64); 12] = [
     (ScoreName::CalibrationError, false, 0.05),
     (ScoreName::PlaceSignificant, true, 0.95),
     (ScoreName::PlaceDriver, true, 0.90),
+    (ScoreName::PlaceOverlapMedian, true, 0.80),
     (ScoreName::PlaceAlarm, false, 0.07),
 ];
 const CLUTTER: [(ScoreName, bool, f64); 2] =

@@ -37,7 +37,7 @@ pub struct ChannelSensor {
 }
 
 /// Time constant of the slow wander, s: our choice, longer than a segment.
-pub(crate) const SLOW_TIME_S: f64 = 1200.0;
+pub const SLOW_TIME_S: f64 = 1200.0;
 
 /// Faults of the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
