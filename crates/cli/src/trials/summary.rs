@@ -283,12 +283,12 @@ mod tests {
 
     #[test]
     fn goals_and_floors_by_hand() {
-        let text = r#"(seed: 1, parts: [(denied: exact, background: clean, kind: null, repeats: 1)], floors: [
+        let text = "(seed: 1, parts: [(denied: exact, background: clean, kind: null, repeats: 1)], floors: [
             (denied: exact, background: clean, score: silent, least: 0.5),
             (denied: exact, background: clean, score: silent, least: 0.6),
             (denied: exact, background: clean, score: class, least: 0.9),
             (denied: adapted, background: clean, score: class, least: 0.1),
-        ])"#;
+        ])";
         let plan = TrialPlan::from_ron(text).unwrap();
         let cases = vec![
             result(3, Kind::Single, VerdictKind::Effects),
