@@ -603,4 +603,5 @@ def main():
             outliers(run, options.jsbsim)
 
 
-main()
+if __name__ == "__main__":
+    main()
