@@ -206,7 +206,7 @@ pub(crate) fn analyse(
 ) -> Option<Analysis> {
     let design = stacked.design;
     let gram = stacked.folds.without(without);
-    let reduced = stacked.reduced_at_levels(&gram, without, &Replaced::default(), refining)?;
+    let reduced = stacked.reduced_at_levels(gram, without, &Replaced::default(), refining)?;
     let effects = library.columns.len();
     let all =
         backgrounds_at_levels(&reduced, effects, design.smooth.len(), library, |_, _, _| true);
@@ -219,7 +219,7 @@ pub(crate) fn analyse(
                 continue; // part of the noise already
             }
             let (changed, ln_determinant) =
-                stacked.with_scatter(&gram, percent / 100.0, None, &Replaced::default());
+                stacked.with_scatter(gram, percent / 100.0, None, &Replaced::default());
             let mut reduced = without_nuisance(&changed, design, false)?;
             reduced.ln_determinant += ln_determinant;
             let under = backgrounds(&reduced, effects, design.smooth.len(), library, |_, _| true);
@@ -257,7 +257,7 @@ pub(crate) fn analyse(
         });
         if scatter_alone {
             let (changed, ln_determinant) =
-                stacked.with_scatter(&gram, percent / 100.0, without, &Replaced::default());
+                stacked.with_scatter(gram, percent / 100.0, without, &Replaced::default());
             let mut reduced = without_nuisance(&changed, design, true)?;
             reduced.ln_determinant += ln_determinant;
             heating.push((percent, reduced));

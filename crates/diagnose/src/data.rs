@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use perf_model::effects::{
-    AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, Response,
+    AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, Response, StepTarget,
 };
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
@@ -384,9 +384,20 @@ impl<'a> Data<'a> {
                 }
             }
         }
+        // A step is the same whenever it began, and nothing before.
+        let mut steps: BTreeMap<StepTarget, ByChannel> = BTreeMap::new();
         for column in &library.columns {
             let effect = &library.effects[column.effect];
-            let signature = signature(
+            let is_step = effect.id == EffectId::StepChange;
+            if is_step && row.point.date_s < column.hidden.step_from_s {
+                row.signatures.push([0.0; MAXIMUM_CHANNELS]);
+                continue;
+            }
+            if let Some(known) = steps.get(&column.hidden.step_target).filter(|_| is_step) {
+                row.signatures.push(*known);
+                continue;
+            }
+            let found = signature(
                 model,
                 &row.point,
                 &Effects::none(),
@@ -397,7 +408,11 @@ impl<'a> Data<'a> {
                 &self.predictor,
             );
             // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
-            row.signatures.push(signature.unwrap_or([0.0; MAXIMUM_CHANNELS]));
+            let found = found.unwrap_or([0.0; MAXIMUM_CHANNELS]);
+            if is_step {
+                steps.insert(column.hidden.step_target, found);
+            }
+            row.signatures.push(found);
         }
         Ok(row)
     }

@@ -282,7 +282,7 @@ fn conclude(
     let gram = stacked.folds.without(None);
     let leading = leading_columns(library, &analysis.models);
     let distances =
-        Distances::of(&gram, stacked.design, leading).ok_or(DiagnoseError::Degenerate)?;
+        Distances::of(gram, stacked.design, leading).ok_or(DiagnoseError::Degenerate)?;
     let best = &analysis.models[0].0;
     let scale = noise_scale(&analysis, best, gram.rows);
     let posteriors = dominant(stacked, &analysis, library);

@@ -19,6 +19,8 @@ pub(crate) struct Gram {
 #[derive(Clone, Debug)]
 pub(crate) struct Folds {
     grams: Vec<Gram>,
+    /// Sum of all folds but one, and of all; made when first asked for, since every refinement asks again.
+    sums: [core::cell::OnceCell<Gram>; FOLDS + 1],
 }
 
 /// Fold of a flight by its place in the order of flying.
@@ -29,7 +31,7 @@ pub(crate) const fn fold_of(flight: usize) -> usize {
 impl Folds {
     pub(crate) fn empty(design: &Design<'_>) -> Self {
         let empty = || Gram { matrix: Mat::zeros(design.columns, design.columns), rows: 0 };
-        Self { grams: (0..FOLDS).map(|_| empty()).collect() }
+        Self { grams: (0..FOLDS).map(|_| empty()).collect(), sums: Default::default() }
     }
 
     /// Adds a flight's whitened rows; [`finish`](Self::finish) when all are in.
@@ -46,7 +48,11 @@ impl Folds {
     }
 
     /// All flights but those of one fold; all where none is left out.
-    pub(crate) fn without(&self, fold: Option<usize>) -> Gram {
+    pub(crate) fn without(&self, fold: Option<usize>) -> &Gram {
+        self.sums[fold.unwrap_or(FOLDS)].get_or_init(|| self.sum_without(fold))
+    }
+
+    fn sum_without(&self, fold: Option<usize>) -> Gram {
         let mut kept =
             self.grams.iter().enumerate().filter(|(k, _)| Some(*k) != fold).map(|(_, gram)| gram);
         let Some(first) = kept.next() else {

@@ -72,8 +72,11 @@ pub(crate) fn refine(
 ) -> Option<Relinearised> {
     let columns = &start.model.columns;
     let mut sizes = start.sizes.clone();
+    // Agnostic functions compete once, at the end, and never on folds.
+    let agnostic = without.is_none();
     for _ in 0..STEPS {
-        let reduced = relinearise(stacked, model, library, columns, &sizes, without)?;
+        let (gram, replaced) = relinearise(stacked, model, library, columns, &sizes, without);
+        let reduced = stacked.reduced_at_levels(&gram, without, &replaced, false)?;
         let chosen = |spike: f64, tau: f64, scatter: usize| {
             spike.total_cmp(&at.spike).is_eq()
                 && tau.total_cmp(&at.tau).is_eq()
@@ -91,11 +94,17 @@ pub(crate) fn refine(
             return None;
         }
         if converged {
+            let reduced = if agnostic {
+                stacked.reduced_at_levels(&gram, without, &replaced, agnostic)?
+            } else {
+                reduced
+            };
             return Some(score_everywhere(stacked, library, scorer, start, reduced, sizes));
         }
         sizes = found;
     }
-    let reduced = relinearise(stacked, model, library, columns, &sizes, without)?;
+    let (gram, replaced) = relinearise(stacked, model, library, columns, &sizes, without);
+    let reduced = stacked.reduced_at_levels(&gram, without, &replaced, agnostic)?;
     Some(score_everywhere(stacked, library, scorer, start, reduced, sizes))
 }
 
@@ -154,8 +163,7 @@ fn estimate(scorer: &Scorer, at: &Background, columns: &[usize], shifts: &[f64])
     }
 }
 
-/// The Gram without nuisance, at every level of scatter, in which the model's columns and the residual are those at
-/// `sizes`.
+/// The Gram in which the model's columns and the residual are those at `sizes`, and what that replaced.
 fn relinearise(
     stacked: &Stacked<'_>,
     model: &EffectModel<'_>,
@@ -163,13 +171,13 @@ fn relinearise(
     columns: &[usize],
     sizes: &[f64],
     without: Option<usize>,
-) -> Option<Vec<Reduced>> {
+) -> (Gram, Replaced) {
     let data = stacked.data;
     let design = stacked.design;
     let effects = effects_of(library, columns, sizes);
     let channels = data.channels.count();
     let count = columns.len() + 1;
-    let mut gram: Gram = stacked.folds.without(without);
+    let mut gram: Gram = stacked.folds.without(without).clone();
     let mut cross = Mat::<f64>::zeros(design.columns, count);
     let mut own = Mat::<f64>::zeros(count, count);
     let places: Vec<usize> = columns.iter().copied().chain([design.residual()]).collect();
@@ -247,5 +255,5 @@ fn relinearise(
             gram.matrix[(a, b)] = own[(k, l)];
         }
     }
-    stacked.reduced_at_levels(&gram, without, &replaced, without.is_none())
+    (gram, replaced)
 }
