@@ -31,6 +31,7 @@ pub mod statistics;
 pub mod studies;
 pub mod summary;
 pub mod trials;
+pub mod words;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;

@@ -17,6 +17,9 @@ pub const CITATION_X: &str = include_str!("../embedded/CITATION-X.ron");
 /// The plan of the demonstration.
 const DEMONSTRATION: &str = include_str!("../embedded/DEMO-PLAN.ron");
 
+/// The later period of the demonstration, with an effect that the model does not know.
+const DEMONSTRATION_LATER: &str = include_str!("../embedded/DEMO-LATER.ron");
+
 /// Seed of the study, fixed before anything was run.
 const GHAZI_2020_SEED: u64 = 2020;
 
@@ -47,6 +50,15 @@ pub fn ghazi_2020() -> Result<Study, Failure> {
 /// What the simulator refuses.
 pub fn demonstration() -> Result<Study, Failure> {
     study_with(Plan::from_ron(DEMONSTRATION).map_err(|error| wrong(&error))?)
+}
+
+/// The demonstration's tail a year later, with an effect that its model has not learnt.
+///
+/// # Errors
+/// What the simulator refuses.
+pub fn demonstration_later() -> Result<Simulation, Failure> {
+    let plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
+    Simulation::new(plan).map_err(|error| wrong(&error))
 }
 
 fn study_with(plan: Plan) -> Result<Study, Failure> {

@@ -3,11 +3,16 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest, Sha256};
+
 use crate::args::{
-    AdaptArgs, DemoArgs, EvaluateArgs, InitArgs, LawName, ModelArgs, PredictArgs, ReportsArgs,
+    AdaptArgs, DemoArgs, DiagnoseArgs, EvaluateArgs, InitArgs, LawName, ModelArgs, PredictArgs,
+    ReportsArgs,
 };
-use crate::commands::{Outcome, adapt, evaluate, init, predict};
+use crate::commands::{Outcome, adapt, diagnose, evaluate, init, predict, simulate};
 use crate::failure::{Failure, show};
+use crate::files::read_text;
+use crate::model_file::hex;
 use crate::statistics::ErrorStatistics;
 use crate::studies;
 
@@ -95,13 +100,65 @@ pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
             }
         );
     }
+    later_period(folder, progress, &mut text)?;
     let _ = writeln!(
         text,
-        "\nLook at {}; everything above can be run again by hand from {}.",
+        "\nLook at {} and {}; everything above can be run again by hand from {}.",
         show(&folder.join("adapted-bayes/report.html")),
+        show(&folder.join("diagnosis/diagnosis.html")),
         show(folder)
     );
     Ok(Outcome::text(text))
+}
+
+/// Flies the tail a year later with an effect that its model does not know, diagnoses it against the adapted model, and only
+/// then opens what was true.
+fn later_period(folder: &Path, progress: bool, text: &mut String) -> Result<(), Failure> {
+    let later = folder.join("later");
+    let flights = simulate::write(&studies::demonstration_later()?, &later, progress)?;
+    let sealed = later.join("TRUTH.json");
+    let hash = hash_of(&sealed)?;
+    let _ = writeln!(
+        text,
+        "\nA year later, {flights} more flights: something about the aircraft has changed, and the model does not know \
+         it.\nWhat it is lies sealed in later/TRUTH.json, SHA-256 {hash}.\n"
+    );
+    let found = diagnose::run(
+        &DiagnoseArgs {
+            reports: reports_arguments(&[later.join("N750CF")]),
+            models: ModelArgs { models: vec![folder.join("adapted-bayes/models/N750CF.ron")] },
+            output: folder.join("diagnosis"),
+            effects: vec![],
+            without: vec![],
+            apply: None,
+            pool: false,
+            table_only: false,
+            allow_learnt: false,
+        },
+        progress,
+    )?;
+    let _ = writeln!(
+        text,
+        "$ cruisefit diagnose later/N750CF --model adapted-bayes/models/N750CF.ron -o diagnosis\n{}",
+        found.text
+    );
+    let opened = read_text(&sealed)?;
+    let truth: ::simulate::Truth =
+        serde_json::from_str(&opened).map_err(|error| Failure::bad_file(&sealed, error))?;
+    let unchanged = if hash_of(&sealed)? == hash { "unchanged" } else { "CHANGED SINCE" };
+    let planted: Vec<String> = truth
+        .tails
+        .iter()
+        .flat_map(|tail| &tail.effects)
+        .map(|effect| format!("{} {:+}", effect.id, effect.size))
+        .collect();
+    let _ =
+        writeln!(text, "The seal is opened ({unchanged}). What was true: {}.", planted.join(", "));
+    Ok(())
+}
+
+fn hash_of(path: &Path) -> Result<String, Failure> {
+    Ok(hex(&Sha256::digest(read_text(path)?.as_bytes())))
 }
 
 fn reports_arguments(reports: &[PathBuf]) -> ReportsArgs {

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 use adapt::bayes::Posterior;
-use diagnose::{Diagnosis, FlightRecord, Input, Options, TableUncertainty, VerdictKind, diagnose};
+use diagnose::{Diagnosis, FlightRecord, Input, Options, TableUncertainty, diagnose};
 use flight::effect::EffectId;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -21,15 +21,12 @@ use crate::models::Models;
 use crate::page;
 use crate::reading::{FlightRead, Reading};
 use crate::summary::{RefusedSummary, counted};
+use crate::words;
 
 /// Schema of `diagnosis.json`.
 const SCHEMA: &str = "cruisefit.diagnosis/1";
 /// Most nodes of a table whose full covariance is taken; beyond, the nodes' standard deviations alone.
 const NODES_WITH_COVARIANCE: usize = 700;
-/// Least probability of a cause outside the library that the terminal tells.
-const SHARE_TOLD: f64 = 0.01;
-/// Most causes that the terminal lists.
-const CAUSES_TOLD: usize = 4;
 
 /// `diagnosis.json`.
 #[derive(Debug, Serialize)]
@@ -262,87 +259,13 @@ pub(crate) fn table_uncertainty(
     TableUncertainty::from_covariance(Arc::clone(grid), &posterior.relative_covariances(&cells))
 }
 
-/// The diagnosis in a dozen lines.
+/// The diagnosis in a dozen lines, and what was assumed.
 fn tell(diagnosis: &Diagnosis, text: &mut String) {
-    let gap = &diagnosis.gap;
-    let _ = writeln!(
-        text,
-        "{}: {}, {}. Gap {:+.2} % in the mean, {:.2} % rms; noise floor {:.2} %.",
-        if diagnosis.tail == "*" { "All tails" } else { &diagnosis.tail },
-        counted(diagnosis.flights, "flight"),
-        counted(diagnosis.segments, "segment"),
-        gap.mean_percent,
-        gap.rms_percent,
-        gap.noise_floor_rms_percent
-    );
-    let verdict = &diagnosis.verdict;
-    let word = match verdict.kind {
-        VerdictKind::NoGap => "no gap beyond the noise",
-        VerdictKind::Effects => "effect",
-        VerdictKind::OutsideLibrary => "outside the library",
-        VerdictKind::InsufficientData => "insufficient data",
-    };
-    let named = if verdict.effects.is_empty() {
-        String::new()
-    } else {
-        format!(" {}", verdict.effects.join(" and "))
-    };
-    let _ = writeln!(text, "  Verdict: {word}{named}. {}", verdict.advice);
-    if verdict.class.len() > 1 {
-        let _ = writeln!(text, "  This data cannot tell apart: {}", verdict.class.join(", "));
-    }
-    if verdict.kind != VerdictKind::InsufficientData {
-        for cause in diagnosis.causes.iter().take(CAUSES_TOLD) {
-            let size = &cause.magnitude;
-            let closure = cause.closure.map_or_else(String::new, |share| {
-                format!(", closes {:.0} % on unseen flights", 100.0 * share)
-            });
-            let _ = writeln!(
-                text,
-                "    {:<26} probability {:.2}, {:+.4} ({:+.4} to {:+.4}) {}{}{closure}",
-                cause.effect,
-                cause.probability,
-                size.value,
-                size.ci95[0],
-                size.ci95[1],
-                size.unit,
-                if cause.hidden.is_empty() { String::new() } else { format!(", {}", cause.hidden) },
-            );
-        }
-    }
-    // The causes' probabilities share one whole with this one.
-    if diagnosis.outside.probability >= SHARE_TOLD {
-        let _ = writeln!(
-            text,
-            "    something that no effect of the library is: probability {:.2}{}",
-            diagnosis.outside.probability,
-            diagnosis
-                .outside
-                .variable
-                .as_ref()
-                .map_or_else(String::new, |variable| format!(", it hangs on {variable}"))
-        );
-    }
-    for separation in verdict.separations.iter().take(2) {
-        let _ = writeln!(
-            text,
-            "  To be sure: {} (tells it from {}, {:.1} → {:.1} σ)",
-            separation.measurement,
-            separation.from,
-            separation.distance_now,
-            separation.distance_then
-        );
-    }
-    if !diagnosis.not_testable.is_empty() {
-        let names: Vec<String> = diagnosis
-            .not_testable
-            .iter()
-            .map(|entry| format!("{} (needs {})", entry.effect, entry.needs.join(", ")))
-            .collect();
-        let _ = writeln!(text, "  Not testable with this data: {}", names.join("; "));
+    for (place, line) in words::lines(diagnosis).into_iter().enumerate() {
+        let _ = writeln!(text, "{}{line}", if place == 0 { "" } else { "  " });
     }
     for note in &diagnosis.notes {
-        let _ = writeln!(text, "  Note: {note}");
+        let _ = writeln!(text, "  Note: {note}.");
     }
     text.push('\n');
 }

@@ -6,6 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::{fleet, style};
 use crate::failure::RefusedReport;
 use crate::summary::{RefusedSummary, ReportsSummary, counted};
+use crate::words;
 
 /// Causes shown of each tail.
 const CAUSES_SHOWN: usize = 8;
@@ -47,26 +48,23 @@ pub fn diagnosis(read: usize, refused: &[RefusedReport], diagnoses: &[Diagnosis]
 }
 
 fn section(diagnosis: &Diagnosis) -> Markup {
-    let gap = &diagnosis.gap;
     html! {
         section {
             h2 { @if diagnosis.tail == "*" { "All tails" } @else { (diagnosis.tail) } }
-            p {
-                (counted(diagnosis.flights, "flight")) ", " (counted(diagnosis.segments, "segment")) ". Gap "
-                (format!("{:+.2} % in the mean, {:.2} % rms", gap.mean_percent, gap.rms_percent))
-                (format!(" (95 % interval {:.2} to {:.2})", gap.rms_ci95[0], gap.rms_ci95[1]))
-                "; noise floor " (format!("{:.2} %", gap.noise_floor_rms_percent)) "."
+            @for (place, line) in words::lines(diagnosis).iter().skip(1).enumerate() {
+                p { @if place == 0 {
+                    (counted(diagnosis.flights, "flight")) ", " (counted(diagnosis.segments, "segment")) ". "
+                } (line) }
             }
-            p { strong { (words(diagnosis)) } " " (diagnosis.verdict.advice) }
-            @if diagnosis.verdict.class.len() > 1 {
-                p { "This data cannot tell apart: " (diagnosis.verdict.class.join(", ")) "." }
-            }
-            @if diagnosis.verdict.kind != VerdictKind::InsufficientData { (causes(&diagnosis.causes)) }
-            p {
-                "Something that no effect of the library is: probability "
-                (format!("{:.3}", diagnosis.outside.probability))
-                @if let Some(variable) = &diagnosis.outside.variable { ", it hangs on " (variable) }
-                ". The causes' probabilities share one whole with this one."
+            (places(diagnosis))
+            @if diagnosis.verdict.kind != VerdictKind::InsufficientData {
+                (causes(&diagnosis.causes))
+                p {
+                    "Something that no effect of the library is: probability "
+                    (format!("{:.3}", diagnosis.outside.probability))
+                    ". The causes' probabilities share one whole with this one."
+                }
+                (floors(diagnosis))
             }
             @if !diagnosis.verdict.separations.is_empty() {
                 h3 { "What would separate them" }
@@ -81,16 +79,6 @@ fn section(diagnosis: &Diagnosis) -> Markup {
                     } } }
                 }
             }
-            @if !diagnosis.not_testable.is_empty() {
-                p {
-                    "Not testable with this data: "
-                    @for (k, entry) in diagnosis.not_testable.iter().enumerate() {
-                        @if k > 0 { "; " }
-                        (entry.effect) " (needs " (entry.needs.join(", ")) ")"
-                    }
-                    "."
-                }
-            }
             (detectable(diagnosis))
             @if !diagnosis.notes.is_empty() {
                 h3 { "Notes" }
@@ -100,15 +88,44 @@ fn section(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-fn words(diagnosis: &Diagnosis) -> String {
-    let verdict = &diagnosis.verdict;
-    match verdict.kind {
-        VerdictKind::NoGap => "No gap beyond the noise.".to_owned(),
-        VerdictKind::Effects => format!("{}.", verdict.effects.join(" and ")),
-        VerdictKind::OutsideLibrary => {
-            "A gap that is real and that no effect of the library explains.".to_owned()
+fn places(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        @if !diagnosis.r#where.is_empty() {
+            h3 { "Where the gap lies" }
+            table {
+                thead { tr {
+                    th scope="col" { "place" } th scope="col" { "segments" } th scope="col" { "mean gap, %" }
+                    th scope="col" { "95 % interval by flight, %" } th scope="col" { "share of the explainable gap" }
+                    th scope="col" { "p, search accounted for" }
+                } }
+                tbody { @for place in &diagnosis.r#where { tr {
+                    th scope="row" { (place.slice) }
+                    td { (place.segments) }
+                    td { (format!("{:+.2}", place.mean_gap_percent)) }
+                    td { (format!("{:+.2} to {:+.2}", place.ci95[0], place.ci95[1])) }
+                    td { (format!("{:.0} %", 100.0 * place.share_of_gap)) }
+                    td { (format!("{:.3}", place.p_value)) }
+                } } }
+            }
         }
-        VerdictKind::InsufficientData => "Insufficient data.".to_owned(),
+    }
+}
+
+fn floors(diagnosis: &Diagnosis) -> Markup {
+    let gap = &diagnosis.gap;
+    html! {
+        @if gap.floor_by_replicates_rms_percent.is_some() || gap.floor_by_held_out_fit_rms_percent.is_some() {
+            p {
+                "Noise floor " (format!("{:.2} %", gap.noise_floor_rms_percent)) " by the sensors' standard deviations"
+                @if let Some(floor) = gap.floor_by_replicates_rms_percent {
+                    "; " (format!("{floor:.2} %")) " by like segments of one flight"
+                }
+                @if let Some(floor) = gap.floor_by_held_out_fit_rms_percent {
+                    "; at most " (format!("{floor:.2} %")) " by a flexible model on flights it was not fitted to"
+                }
+                "."
+            }
+        }
     }
 }
 

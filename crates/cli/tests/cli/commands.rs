@@ -179,11 +179,18 @@ fn demo_does_the_whole_chain_on_embedded_data() {
     let folder = scratch.path().join("demo");
     let ran = cruisefit(&["demo".as_ref(), "-o".as_ref(), folder.as_os_str()]).expect(0);
     assert!(ran.stdout.contains("flights that no model has seen:"), "{}", ran.stdout);
+    // The later period: named, or in its class, before the seal was opened.
+    let (before, after) = ran.stdout.split_once("The seal is opened (unchanged)").unwrap();
+    assert!(before.contains("tsfc_engine_2"), "{before}");
+    assert!(after.contains("tsfc_engine_2 +3"), "{after}");
     for file in [
         "MODEL.ron",
         "adapted-bayes/models/N750CF.ron",
         "adapted-paper/report.html",
         "reports/TRUTH.json",
+        "later/TRUTH.json",
+        "diagnosis/diagnosis.json",
+        "diagnosis/diagnosis.html",
     ] {
         assert!(folder.join(file).exists(), "{file}");
     }

@@ -65,7 +65,7 @@ pub(crate) fn held_out_floor(stacked: &Stacked<'_>, library: &Library) -> Option
         .unzip();
     let mut sum = 0.0;
     for fold in 0..FOLDS {
-        let gram = stacked.folds.without(Some(fold)).matrix;
+        let gram = &stacked.folds.without(Some(fold)).matrix;
         let mut normal =
             Mat::from_fn(columns.len(), columns.len(), |i, j| gram[(columns[i], columns[j])]);
         for (k, deviation) in deviations.iter().enumerate() {
