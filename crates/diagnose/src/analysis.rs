@@ -17,6 +17,10 @@ use crate::refine::{Relinearised, refine};
 const TAUGHT_SCATTERS: [f64; 2] = [0.0, 0.003];
 /// Smooth discrepancy that a taught remainder may have, the smallest amplitude of the background.
 pub(crate) const TAUGHT_TAU: f64 = 0.0015;
+/// Largest smooth discrepancy that a taught remainder is given at all: it was fitted to what the fleet flies.
+const TAUGHT_LARGEST_TAU: f64 = 0.004;
+/// Spike of every other effect that still counts as nothing beside a taught remainder.
+const TAUGHT_SPIKE: f64 = 0.05;
 /// Models that are refined.
 const REFINED: usize = 5;
 /// Models less probable than this are not worth refining.
@@ -98,6 +102,18 @@ impl<'a> Stacked<'a> {
     /// A level of scatter between flights, relative.
     pub(crate) fn scatter(&self, level: usize) -> f64 {
         self.scatters.get(level).copied().unwrap_or(0.0)
+    }
+
+    /// Whether a smooth discrepancy of this amplitude is among the backgrounds.
+    pub(crate) fn admits(&self, tau: f64) -> bool {
+        self.data.predictor.baseline.is_none() || tau <= TAUGHT_LARGEST_TAU
+    }
+
+    /// Whether a background without a named effect is no finding: nothing at all against a table, as little as a taught
+    /// remainder may be off against one.
+    fn is_nothing(&self, at: &Background) -> bool {
+        let spike = if self.data.predictor.baseline.is_some() { TAUGHT_SPIKE } else { 0.0 };
+        at.tau <= self.clean_tau() && at.spike <= spike
     }
 
     /// Whitened rows of a flight.
@@ -209,9 +225,11 @@ pub(crate) fn analyse(
     let reduced = stacked.reduced_at_levels(gram, without, &Replaced::default(), refining)?;
     let effects = library.columns.len();
     let all =
-        backgrounds_at_levels(&reduced, effects, design.smooth.len(), library, |_, _, _| true);
+        backgrounds_at_levels(&reduced, effects, design.smooth.len(), library, |_, tau, _| {
+            stacked.admits(tau)
+        });
     let scorer = Scorer::of(library, gram.rows);
-    let search = scorer.search(&all, 2);
+    let search = scorer.search(&all, 2, |at| stacked.is_nothing(at));
     let mut models = search.models;
     if library.heating_value && without.is_none() {
         for percent in HEATING_SIZES_PERCENT {
@@ -222,7 +240,9 @@ pub(crate) fn analyse(
                 stacked.with_scatter(gram, percent / 100.0, None, &Replaced::default());
             let mut reduced = without_nuisance(&changed, design, false)?;
             reduced.ln_determinant += ln_determinant;
-            let under = backgrounds(&reduced, effects, design.smooth.len(), library, |_, _| true);
+            let under = backgrounds(&reduced, effects, design.smooth.len(), library, |_, tau| {
+                stacked.admits(tau)
+            });
             models.extend(scorer.search_heating(&under, percent));
         }
     }
@@ -263,13 +283,7 @@ pub(crate) fn analyse(
             heating.push((percent, reduced));
         }
     }
-    let none: f64 = models
-        .iter()
-        .filter(|m| m.model.columns.is_empty() && m.model.heating_percent.is_none())
-        .map(|m| (m.ln_weight - total).exp())
-        .sum();
-    // Against a taught remainder, which is never exact, a smooth discrepancy without a name is no finding.
-    let clean = if stacked.clean_tau() > 0.0 { none } else { (search.ln_clean - total).exp() };
+    let clean = (search.ln_clean - total).exp();
     let models = models
         .into_iter()
         .map(|m| {

@@ -42,8 +42,8 @@ const DECK_DEVIATION: f64 = 0.02;
 /// Folds of flights that the scatter between flights is judged on, and rounds of it.
 const FOLDS: usize = 10;
 const INFLATIONS: usize = 3;
-/// Prior standard deviation of how much of the environment's effects a fleet shows: all of it, or none.
-const ENVIRONMENT_DEVIATION: f64 = 1.0;
+/// Effects that the first model files with a baseline carried.
+const FIRST_CARRIED: usize = 3;
 /// Share of the prior variance that is left where flown data informed the remainder.
 const INFORMED_SHARE: f64 = 0.25;
 /// Fewest flights that teach a remainder.
@@ -79,8 +79,8 @@ struct Parts {
     mean: Vec<f64>,
     /// Lower triangle, row by row, of the Cholesky factor of the covariance of remainder terms, splits and deck.
     factor: Vec<f64>,
-    /// How much of local gravity, rotating Earth and isobaric slope the fleet shows.
-    environment: [f64; ENVIRONMENT.len()],
+    /// Sizes of the effects that the fleet shows at all times.
+    environment: Vec<f64>,
     /// Remaining rms of ln fuel flow over what taught it.
     rms: f64,
 }
@@ -195,11 +195,12 @@ impl Baseline {
         self.remainder_mean(&terms)
     }
 
-    /// How much of local gravity, rotating Earth and isobaric slope the fleet that taught it shows: 1 is all that physics
-    /// says, 0 none.
+    /// Sizes of effects that the fleet that taught it shows at all times, each in its unit: local gravity, rotating Earth and
+    /// isobaric slope, load factor, trim drag with the center of gravity, drag of a low wing, anti-ice bleed, and drag rise
+    /// about three Mach numbers.
     #[must_use]
-    pub const fn environment(&self) -> [f64; 3] {
-        self.parts.environment
+    pub const fn environment(&self) -> &[f64] {
+        self.parts.environment.as_slice()
     }
 
     pub(crate) const fn contrasts(&self) -> usize {
@@ -308,7 +309,7 @@ impl Baseline {
             deck_coefficients: data.predictor.deck.coefficients.to_vec(),
             mean: Vec::new(),
             factor: Vec::new(),
-            environment: [0.0; ENVIRONMENT.len()],
+            environment: vec![0.0; ENVIRONMENT.len()],
             rms: f64::NAN,
         };
         let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
@@ -333,8 +334,14 @@ impl Baseline {
         } else if index < self.factor.nrows() - ENVIRONMENT.len() {
             DECK_DEVIATION
         } else {
-            ENVIRONMENT_DEVIATION
+            self.carried_deviation(index + ENVIRONMENT.len() - self.factor.nrows())
         }
+    }
+
+    /// Prior standard deviation of a carried effect, in its unit.
+    fn carried_deviation(&self, carried: usize) -> f64 {
+        let effect = &ENVIRONMENT[carried];
+        effect.deviation * self.parts.references.typical_size(effect.id)
     }
 
     /// Raw values of every column and, last, the residual.
@@ -372,6 +379,11 @@ impl Baseline {
     }
 }
 
+/// Lower triangle, row by row.
+fn lower_triangle(matrix: &Mat<f64>) -> Vec<f64> {
+    (0..matrix.nrows()).flat_map(|i| (0..=i).map(move |j| matrix[(i, j)])).collect()
+}
+
 impl From<Baseline> for Parts {
     fn from(baseline: Baseline) -> Self {
         baseline.parts
@@ -393,13 +405,27 @@ impl TryFrom<Parts> for Baseline {
         let width = means + DECK_TERMS + ENVIRONMENT.len();
         check("means", baseline.parts.mean.len(), means)?;
         check("deck coefficients", baseline.parts.deck_coefficients.len(), DECK_TERMS)?;
-        check("covariance factor", baseline.parts.factor.len(), width * (width + 1) / 2)?;
+        let carried = baseline.parts.environment.len();
+        if carried != FIRST_CARRIED {
+            check("carried effects", carried, ENVIRONMENT.len())?;
+        }
+        let known = means + DECK_TERMS + carried;
+        check("covariance factor", baseline.parts.factor.len(), known * (known + 1) / 2)?;
         let mut factor = Mat::zeros(width, width);
         let mut values = baseline.parts.factor.iter();
-        for i in 0..width {
+        for i in 0..known {
             for j in 0..=i {
                 factor[(i, j)] = values.next().copied().unwrap_or(0.0);
             }
+        }
+        // An older file was taught nothing of the effects that were added since: their prior stands.
+        for k in carried..ENVIRONMENT.len() {
+            let deviation = baseline.carried_deviation(k);
+            factor[(means + DECK_TERMS + k, means + DECK_TERMS + k)] = deviation;
+            baseline.parts.environment.push(0.0);
+        }
+        if known < width {
+            baseline.parts.factor = lower_triangle(&factor);
         }
         baseline.factor = factor;
         Ok(baseline)

@@ -25,9 +25,38 @@ pub(crate) const DECK_TERMS: usize = 15;
 /// Scales that make the deck's variables dimensionless: ln F/δ, Mach number, ln δ, ln θ.
 const DECK_SCALES: [f64; 4] = [0.2, 0.05, 0.3, 0.04];
 
-/// Effects of the Earth and its air: whatever of them a fleet shows, a baseline that was taught on it carries.
-pub(crate) const ENVIRONMENT: [EffectId; 3] =
-    [EffectId::LocalGravity, EffectId::RotatingEarth, EffectId::IsobaricSlope];
+/// An effect that a baseline carries.
+pub(crate) struct Carried {
+    pub(crate) id: EffectId,
+    hidden: HiddenParameters,
+    /// Prior standard deviation of its size over the typical size; 1 is all that physics says where the size is known.
+    pub(crate) deviation: f64,
+}
+
+/// What a fleet shows at all times and no table over lift coefficient and Mach number, and no smooth remainder, can hold: the
+/// Earth and its air, and effects of signals that the remainder does not look at, or that bend faster than a table's cells.
+/// Whatever of it a baseline was taught is no change. The first three are what older model files hold.
+pub(crate) const ENVIRONMENT: [Carried; 10] = [
+    carried(EffectId::LocalGravity, 1.0),
+    carried(EffectId::RotatingEarth, 1.0),
+    carried(EffectId::IsobaricSlope, 2.0),
+    carried(EffectId::LoadFactor, 1.0),
+    carried(EffectId::TrimDragCg, 3.0),
+    carried(EffectId::AsymmetryDrag, 3.0),
+    carried(EffectId::AntiIceBleed, 3.0),
+    drag_rise(0.82),
+    drag_rise(0.88),
+    drag_rise(0.94),
+];
+
+const fn carried(id: EffectId, deviation: f64) -> Carried {
+    Carried { id, hidden: HiddenParameters::DEFAULT, deviation }
+}
+
+const fn drag_rise(drag_divergence_mach: f64) -> Carried {
+    let hidden = HiddenParameters { drag_divergence_mach, ..HiddenParameters::DEFAULT };
+    Carried { id: EffectId::WaveDrag, hidden, deviation: 3.0 }
+}
 
 /// One segment.
 #[derive(Clone, Debug)]
@@ -41,7 +70,7 @@ pub(crate) struct SegmentRow {
     /// ∂channel/∂θ of each column.
     pub(crate) signatures: Vec<ByChannel>,
     pub(crate) noise: SegmentNoise,
-    /// ∂channel/∂θ of the environment's effects, which a baseline carries; 0 where an input is not recorded.
+    /// ∂channel/∂θ of the effects that a baseline carries; 0 where an input is not recorded.
     pub(crate) environment: [ByChannel; ENVIRONMENT.len()],
     /// Deck terms at the prediction.
     pub(crate) deck: [f64; DECK_TERMS],
@@ -363,14 +392,16 @@ impl<'a> Data<'a> {
                 ),
             chords: chord_errors(model, &kept.response),
         };
-        for (slot, id) in row.environment.iter_mut().zip(ENVIRONMENT) {
+        // Only where there is a baseline to carry them, or one to be taught (then there is no library).
+        let carries = self.predictor.baseline.is_some() || library.columns.is_empty();
+        for (slot, effect) in row.environment.iter_mut().zip(&ENVIRONMENT).filter(|_| carries) {
             *slot = signature(
                 model,
                 &row.point,
                 &Effects::none(),
-                id,
-                HiddenParameters::default(),
-                0.5,
+                effect.id,
+                effect.hidden,
+                0.5 * model.references().typical_size(effect.id),
                 row.is_recorded,
                 &self.predictor,
             )

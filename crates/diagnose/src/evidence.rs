@@ -67,7 +67,7 @@ pub(crate) struct Scored {
 #[derive(Clone, Debug)]
 pub(crate) struct Search {
     pub(crate) models: Vec<Scored>,
-    /// ln weight of no effect in no background at all.
+    /// ln weight of no effect in backgrounds that are no finding.
     pub(crate) ln_clean: f64,
 }
 
@@ -361,8 +361,13 @@ impl Scorer {
         sum.mean()
     }
 
-    /// Every model of at most `largest` effects.
-    pub(crate) fn search(&self, backgrounds: &[Background], largest: usize) -> Search {
+    /// Every model of at most `largest` effects. `is_nothing` says which backgrounds without an effect are no finding.
+    pub(crate) fn search(
+        &self,
+        backgrounds: &[Background],
+        largest: usize,
+        is_nothing: impl Fn(&Background) -> bool,
+    ) -> Search {
         let ln_background = -(backgrounds.len() as f64).ln();
         let columns = self.priors.len();
         let mut models = Vec::new();
@@ -374,7 +379,7 @@ impl Scorer {
         let mut best = (f64::NEG_INFINITY, 0);
         for (k, at) in backgrounds.iter().enumerate() {
             let ln = self.none(at) + prior;
-            if at.spike == 0.0 && at.tau == 0.0 {
+            if is_nothing(at) {
                 ln_clean = ln_sum([ln_clean, ln]);
             }
             best = if ln > best.0 { (ln, k) } else { best };

@@ -121,7 +121,7 @@ fn score_everywhere(
         library.columns.len(),
         stacked.design.smooth.len(),
         library,
-        |_, _, _| true,
+        |_, tau, _| stacked.admits(tau),
     );
     let prior = scorer.ln_prior(&start.model) - (all.len() as f64).ln();
     let columns = &start.model.columns;

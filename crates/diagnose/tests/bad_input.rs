@@ -31,6 +31,8 @@ fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
         "variable",
         "acts_on",
         "addition",
+        "floor_by_replicates_rms_percent",
+        "floor_by_held_out_fit_rms_percent",
         "center_of_gravity_percent_mac",
         "floor_by_replicates_rms_percent",
         "floor_by_held_out_fit_rms_percent",

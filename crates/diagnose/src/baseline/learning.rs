@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
+use super::lower_triangle;
 use super::moments::{KINDS, LeftOut, Moments, Part};
 use super::{Baseline, FOLDS};
 use crate::DiagnoseError;
@@ -196,10 +197,7 @@ impl Baseline {
         }
         let lower = Factor::of(&covariance).ok_or(DiagnoseError::Degenerate)?;
         self.factor = lower.lower().to_owned();
-        self.parts.factor = (0..width)
-            .flat_map(|i| (0..=i).map(move |j| (i, j)))
-            .map(|ij| self.factor[ij])
-            .collect();
+        self.parts.factor = lower_triangle(&self.factor);
         let squares: f64 = data
             .segments
             .iter()
@@ -207,7 +205,7 @@ impl Baseline {
                 let carried: f64 = row
                     .environment
                     .iter()
-                    .zip(self.parts.environment)
+                    .zip(&self.parts.environment)
                     .map(|(slope, size)| slope[0] * size)
                     .sum();
                 (row.residual[0] - self.mean_at(&row.response) - carried).powi(2)

@@ -37,14 +37,19 @@ pub struct HiddenParameters {
     pub step_target: StepTarget,
 }
 
+impl HiddenParameters {
+    /// What holds where nothing is said: pivot at the reference, drag rise in the middle of the contract's range, no step.
+    pub const DEFAULT: Self = Self {
+        throttle_pivot: 1.0,
+        drag_divergence_mach: DEFAULT_DRAG_DIVERGENCE_MACH,
+        step_from_s: f64::INFINITY,
+        step_target: StepTarget::FuelFlow,
+    };
+}
+
 impl Default for HiddenParameters {
     fn default() -> Self {
-        Self {
-            throttle_pivot: 1.0,
-            drag_divergence_mach: DEFAULT_DRAG_DIVERGENCE_MACH,
-            step_from_s: f64::INFINITY,
-            step_target: StepTarget::FuelFlow,
-        }
+        Self::DEFAULT
     }
 }
 
