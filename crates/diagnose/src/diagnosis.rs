@@ -288,9 +288,10 @@ fn conclude(
     let posteriors = dominant(stacked, &analysis, library);
     let own =
         in_sample(stacked, model, library, &best.model.columns, &best.sizes, scale, options.seed);
-    let unseen = (!options.skip_closure && is_real(&analysis, &outside))
+    let mut gap = gap_of(stacked, &analysis, &own, scale);
+    gap.detected = is_real(&analysis, &outside) && !is_vague(&gap, &outside, posteriors.first());
+    let unseen = (!options.skip_closure && gap.detected)
         .then(|| nested(stacked, model, library, scale, options.seed));
-    let mut gap = gap_of(stacked, &analysis, &outside, &own, scale);
     if unseen.is_some() {
         let percent = |square: f64| 100.0 * square.sqrt();
         gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
@@ -360,6 +361,14 @@ fn conclude(
 /// Whether there is more than noise: either nothing at all is improbable beside the library, or nothing outside it is.
 fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
     analysis.clean <= CLEAN_PROBABILITY || 1.0 - outside.probability <= CLEAN_PROBABILITY
+}
+
+/// Whether the evidence points at nothing: the gap's size is within its noise, and nothing is more probable than not. A
+/// remainder is never exact, and what is left over is spread over many small hypotheses.
+fn is_vague(gap: &Gap, outside: &Outside, top: Option<&Posterior>) -> bool {
+    gap.rms_ci95[0] <= gap.noise_floor_rms_percent
+        && outside.probability <= OUTSIDE_PROBABILITY
+        && top.is_none_or(|top| top.probability < 0.5)
 }
 
 /// Share of the explainable gap that the leading set closes: on unseen flights; on the same ones where the gap is too small
@@ -449,13 +458,7 @@ fn dominant(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Ve
     all
 }
 
-fn gap_of(
-    stacked: &Stacked<'_>,
-    analysis: &Analysis,
-    outside: &Outside,
-    own: &Shrinkage,
-    scale: f64,
-) -> Gap {
+fn gap_of(stacked: &Stacked<'_>, analysis: &Analysis, own: &Shrinkage, scale: f64) -> Gap {
     let count = stacked.data.segments.len() as f64;
     let mean = stacked.data.segments.iter().map(|row| row.residual[0]).sum::<f64>() / count;
     let square = own.before();
@@ -487,7 +490,7 @@ fn gap_of(
         noise_floor_rms_percent: 100.0 * own.floor().sqrt(),
         floor_by_replicates_rms_percent: None,
         floor_by_held_out_fit_rms_percent: None,
-        detected: is_real(analysis, outside),
+        detected: false,
         p_value,
     }
 }
