@@ -262,14 +262,15 @@ fn named(diagnosis: &Diagnosis) -> Vec<String> {
 
 fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
     let outside = &diagnosis.outside;
-    let mut first = "A real gap that no effect of the library explains".to_owned();
-    if let Some(variable) = &outside.variable {
-        first += &format!("; it hangs on {variable}");
-    }
-    if let Some(acts_on) = &outside.acts_on {
-        first += &format!(" and acts on {acts_on}");
-    }
-    let mut lines = vec![format!("{first} (probability {:.2}).", outside.probability)];
+    let told = |words: &str, what: Option<&String>| {
+        what.map_or_else(String::new, |what| format!("{words}{what}"))
+    };
+    let mut lines = vec![format!(
+        "A real gap that no effect of the library explains{}{} (probability {:.2}).",
+        told("; it hangs on ", outside.variable.as_ref()),
+        told(" and acts on ", outside.acts_on.as_ref()),
+        outside.probability
+    )];
     if let Some(cause) = diagnosis.causes.first() {
         lines.push(format!(
             "The nearest is {} ({}); do not act on it.",
@@ -312,7 +313,7 @@ fn rivals(diagnosis: &Diagnosis) -> Vec<String> {
     }
 }
 
-/// "earlier drag rise with Mach number, wave_drag +0.0080 ± 0.0010 Mach".
+/// "earlier drag rise with Mach number, `wave_drag` +0.0080 ± 0.0010 Mach", without the backticks.
 fn effect_told(diagnosis: &Diagnosis, name: &str) -> String {
     let cause = diagnosis.causes.iter().find(|cause| cause.effect == name);
     let added = diagnosis

@@ -34,8 +34,6 @@ fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
         "floor_by_replicates_rms_percent",
         "floor_by_held_out_fit_rms_percent",
         "center_of_gravity_percent_mac",
-        "floor_by_replicates_rms_percent",
-        "floor_by_held_out_fit_rms_percent",
     ]
     .iter()
     .map(|field| text.matches(&format!("\"{field}\":null")).count())
