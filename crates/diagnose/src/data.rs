@@ -41,9 +41,9 @@ pub(crate) const ENVIRONMENT: [Carried; 10] = [
     carried(EffectId::RotatingEarth, 1.0),
     carried(EffectId::IsobaricSlope, 2.0),
     carried(EffectId::LoadFactor, 1.0),
-    carried(EffectId::TrimDragCg, 3.0),
-    carried(EffectId::AsymmetryDrag, 3.0),
-    carried(EffectId::AntiIceBleed, 3.0),
+    carried(EffectId::TrimDragCg, 1.0),
+    carried(EffectId::AsymmetryDrag, 1.0),
+    carried(EffectId::AntiIceBleed, 1.0),
     drag_rise(0.82),
     drag_rise(0.88),
     drag_rise(0.94),
@@ -55,7 +55,7 @@ const fn carried(id: EffectId, deviation: f64) -> Carried {
 
 const fn drag_rise(drag_divergence_mach: f64) -> Carried {
     let hidden = HiddenParameters { drag_divergence_mach, ..HiddenParameters::DEFAULT };
-    Carried { id: EffectId::WaveDrag, hidden, deviation: 3.0 }
+    Carried { id: EffectId::WaveDrag, hidden, deviation: 1.0 }
 }
 
 /// One segment.
