@@ -20,6 +20,8 @@ const TOLD_WHEN_SILENT: [EffectId; 6] = [
 /// Other causes than the verdict's that are told, and the least probability that is.
 const OTHERS_TOLD: usize = 3;
 const LEAST_TOLD: f64 = 0.02;
+/// Probability below which no cause is told as one.
+const PROBABLE: f64 = 0.5;
 /// Half width of a 95 % interval in standard deviations.
 const NORMAL_95: f64 = 1.96;
 
@@ -208,16 +210,24 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
 
 fn named(diagnosis: &Diagnosis) -> Vec<String> {
     let verdict = &diagnosis.verdict;
+    let open = verdict.probability < PROBABLE;
     let mut lines = Vec::new();
     for (place, name) in verdict.effects.iter().enumerate() {
         let what = effect_told(diagnosis, name);
-        lines.push(if place == 0 {
+        lines.push(if place == 0 && open {
+            format!(
+                "No cause stands out. The most probable is {what}, probability {:.2}: do not act on it.",
+                verdict.probability
+            )
+        } else if place == 0 {
             format!("Cause: {what}, probability {:.2}.", verdict.probability)
         } else {
             format!("Together with: {what}.")
         });
     }
-    if let Some(id) = verdict.effects.first().and_then(|name| EffectId::from_name(name)) {
+    if let Some(id) =
+        verdict.effects.first().filter(|_| !open).and_then(|name| EffectId::from_name(name))
+    {
         lines.push(consequence(id.entry().group).to_owned());
     }
     let after = diagnosis.causes.iter().find_map(|cause| cause.rms_after_percent);

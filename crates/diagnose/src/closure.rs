@@ -12,7 +12,7 @@ use crate::refine::{effects_of, refine};
 use crate::slices::draws::Source;
 
 /// A gap whose excess over the noise floor is less than this share of the floor is too small to measure closure.
-const SMALLEST_GAP: f64 = 0.15;
+pub(crate) const SMALLEST_GAP: f64 = 0.15;
 
 /// Resamples of flights.
 const RESAMPLES: usize = 1000;

@@ -14,7 +14,7 @@ use crate::addition::Addition;
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
 use crate::classes::{Distances, leading_columns};
-use crate::closure::{Shrinkage, held_out_floor, in_sample, nested, replicate_floor};
+use crate::closure::{SMALLEST_GAP, Shrinkage, held_out_floor, in_sample, nested, replicate_floor};
 use crate::data::Data;
 use crate::design::{Acts, Design};
 use crate::evidence::{NOISE_FREEDOM, Scored};
@@ -289,9 +289,14 @@ fn conclude(
     let own =
         in_sample(stacked, model, library, &best.model.columns, &best.sizes, scale, options.seed);
     let mut gap = gap_of(stacked, &analysis, &own, scale);
-    gap.detected = is_real(&analysis, &outside) && !is_vague(&gap, &outside, posteriors.first());
-    let unseen = (!options.skip_closure && gap.detected)
+    let real = is_real(&analysis, &outside) || exceeds_noise(&gap);
+    let unseen = (!options.skip_closure && real)
         .then(|| nested(stacked, model, library, scale, options.seed));
+    // What a taught remainder leaves need not be noise; but a name that makes other flights worse is none.
+    let makes_worse = stacked.data.predictor.baseline.is_some()
+        && unseen.as_ref().and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0);
+    gap.detected = real && !is_vague(&gap, &outside, posteriors.first(), makes_worse);
+    let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {
         let percent = |square: f64| 100.0 * square.sqrt();
         gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
@@ -363,12 +368,19 @@ fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
     analysis.clean <= CLEAN_PROBABILITY || 1.0 - outside.probability <= CLEAN_PROBABILITY
 }
 
-/// Whether the evidence points at nothing: the gap's size is within its noise, and nothing is more probable than not. A
-/// remainder is never exact, and what is left over is spread over many small hypotheses.
-fn is_vague(gap: &Gap, outside: &Outside, top: Option<&Posterior>) -> bool {
-    gap.rms_ci95[0] <= gap.noise_floor_rms_percent
-        && outside.probability <= OUTSIDE_PROBABILITY
-        && top.is_none_or(|top| top.probability < 0.5)
+/// Whether the gap is larger than its noise by what closure needs, at 97.5 %: then it is real, however many small effects
+/// could make it up together.
+fn exceeds_noise(gap: &Gap) -> bool {
+    gap.rms_ci95[0].powi(2) > (1.0 + SMALLEST_GAP) * gap.noise_floor_rms_percent.powi(2)
+}
+
+/// Whether the evidence points at nothing: nothing is more probable than not, and the size of the gap is within its noise or
+/// the leading set widens it on flights that it was not fitted to. A remainder is never exact, and what is left over
+/// is spread over many small hypotheses.
+fn is_vague(gap: &Gap, outside: &Outside, top: Option<&Posterior>, makes_worse: bool) -> bool {
+    outside.probability <= OUTSIDE_PROBABILITY
+        && top.is_none_or(|top| top.probability * (1.0 - outside.probability) < 0.5)
+        && (gap.rms_ci95[0] <= gap.noise_floor_rms_percent || makes_worse)
 }
 
 /// Share of the explainable gap that the leading set closes: on unseen flights; on the same ones where the gap is too small
@@ -377,7 +389,8 @@ fn closed(unseen: Option<&Shrinkage>, own: &Shrinkage) -> f64 {
     unseen.and_then(Shrinkage::closure).or_else(|| own.closure()).map_or(1.0, |c| c.0)
 }
 
-/// How much of the evidence for an agnostic function goes to the leading set in another form, by what the set closes.
+/// How much of the evidence for an agnostic function goes to the leading set in another form, by what the set closes
+/// `[diagnosis.41]`.
 ///
 /// Truth never has the library's form exactly, and with enough flights an agnostic function sees it. Effects of the library
 /// in other forms closed 0.94 to 0.98 of the gap on two other simulators, effects that the library lacks 0.25 at most.
