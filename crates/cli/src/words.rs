@@ -135,7 +135,7 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         counted(diagnosis.segments, "segment"),
     )];
     if verdict.kind == VerdictKind::InsufficientData {
-        lines.push(verdict.advice.clone());
+        lines.push(format!("No verdict, insufficient data. {}", verdict.advice));
         return lines;
     }
     lines.push(gap(diagnosis));

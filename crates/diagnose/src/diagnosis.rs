@@ -289,7 +289,7 @@ fn conclude(
     let own =
         in_sample(stacked, model, library, &best.model.columns, &best.sizes, scale, options.seed);
     let mut gap = gap_of(stacked, &analysis, &own, scale);
-    let real = is_real(&analysis, &outside) || exceeds_noise(&gap);
+    let real = is_real(&analysis, &outside) || exceeds_uncertainty(&gap, unknown_square(stacked));
     let unseen = (!options.skip_closure && real)
         .then(|| nested(stacked, model, library, scale, options.seed));
     // What a taught remainder leaves need not be noise; but a name that makes other flights worse is none.
@@ -368,10 +368,28 @@ fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
     analysis.clean <= CLEAN_PROBABILITY || 1.0 - outside.probability <= CLEAN_PROBABILITY
 }
 
-/// Whether the gap is larger than its noise by what closure needs, at 97.5 %: then it is real, however many small effects
-/// could make it up together.
-fn exceeds_noise(gap: &Gap) -> bool {
-    gap.rms_ci95[0].powi(2) > (1.0 + SMALLEST_GAP) * gap.noise_floor_rms_percent.powi(2)
+/// Whether the gap is larger than noise and what the model does not know together by what closure needs, at 97.5 %: then it
+/// is real, however many small effects could make it up together. `unknown` is a mean square of ln fuel flow.
+fn exceeds_uncertainty(gap: &Gap, unknown: f64) -> bool {
+    let expected = gap.noise_floor_rms_percent.powi(2) + 1e4 * unknown;
+    gap.rms_ci95[0].powi(2) > (1.0 + SMALLEST_GAP) * expected
+}
+
+/// Mean square of ln fuel flow that the table, the chords of its cells and a taught remainder leave open.
+fn unknown_square(stacked: &Stacked<'_>) -> f64 {
+    let (data, design) = (stacked.data, stacked.design);
+    let sum: f64 = data
+        .flights
+        .iter()
+        .map(|flight| {
+            let rows = design.fuel_flow(data, flight);
+            (0..rows.nrows())
+                .flat_map(|row| design.nuisance.clone().map(move |column| (row, column)))
+                .map(|at| rows[at] * rows[at])
+                .sum::<f64>()
+        })
+        .sum();
+    sum / data.segments.len().max(1) as f64
 }
 
 /// Whether the evidence points at nothing: nothing is more probable than not, and the size of the gap is within its noise or
