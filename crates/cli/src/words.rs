@@ -3,7 +3,7 @@
 //! Limits are said where they hold: what cannot be told apart, what was not testable, how much is left. An effect is named
 //! by what it does *and* by its id, so that a reader without the library's table knows what is meant.
 
-use diagnose::{Diagnosis, VerdictKind};
+use diagnose::{Diagnosis, Verdict, VerdictKind};
 use flight::effect::{EffectGroup, EffectId};
 
 use crate::summary::counted;
@@ -179,13 +179,17 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
                 return "It has no place: it is everywhere.".to_owned();
             }
             format!(
-                "{} at {}: {:+.2} % there ({:+.2} to {:+.2}), {:.0} % of the explainable gap, p {:.3}.",
+                "{} at {}: {:+.2} % there ({:+.2} to {:+.2}), {} of the explainable gap, p {:.3}.",
                 if rank == 0 { "It sits" } else { "And" },
                 place.slice,
                 place.mean_gap_percent,
                 place.ci95[0],
                 place.ci95[1],
-                100.0 * place.share_of_gap,
+                if place.share_of_gap > 1.0 {
+                    "more than all".to_owned()
+                } else {
+                    format!("{:.0} %", 100.0 * place.share_of_gap)
+                },
                 place.p_value
             )
         })
@@ -225,10 +229,8 @@ fn named(diagnosis: &Diagnosis) -> Vec<String> {
             format!("Together with: {what}.")
         });
     }
-    if let Some(id) =
-        verdict.effects.first().filter(|_| !open).and_then(|name| EffectId::from_name(name))
-    {
-        lines.push(consequence(id.entry().group).to_owned());
+    if !open {
+        lines.extend(follows(verdict));
     }
     let after = diagnosis.causes.iter().find_map(|cause| cause.rms_after_percent);
     match (after, verdict.closure, verdict.closure_ci95) {
@@ -293,6 +295,25 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
     }
     lines.push("Nothing is applied. Look at what these flights have in common there, or record more signals.".to_owned());
     lines
+}
+
+/// What follows from the verdict; not before it is clear whether the recording errs or the aircraft.
+fn follows(verdict: &Verdict) -> Option<String> {
+    let ids: Vec<EffectId> = verdict
+        .effects
+        .iter()
+        .chain(&verdict.class)
+        .filter_map(|name| EffectId::from_name(name))
+        .collect();
+    let first = ids.first()?;
+    if ids.iter().all(|id| id.is_of_recordings() == first.is_of_recordings()) {
+        return Some(consequence(first.entry().group).to_owned());
+    }
+    Some(
+        "Errors of the recording and changes of the aircraft are both possible: only the latter change predictions. Find \
+         out which before you apply one."
+            .to_owned(),
+    )
 }
 
 /// Other causes that the data leave open.

@@ -1,7 +1,13 @@
 //! How long a search takes: `speed [FLIGHTS]` on the virtual fleet of the tests, `speed SEGMENTS.csv` on another program's
 //! data (the columns are those of `Row`, written by `docs/figures/diagnosis_speed.py`). Everything but closure and places:
 //! signatures, whitening, evidence of every single effect and pair, refinement, agnostic functions, classes.
-#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a measuring tool")]
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    clippy::cast_possible_truncation,
+    reason = "a measuring tool: it reads files and the memory it took"
+)]
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -199,6 +199,12 @@ impl Distances {
             .iter()
             .find(|e| e.id == EffectId::ZeroFuelMassBias)
             .map_or(f64::INFINITY, |e| e.typical / 0.015 * 0.003);
+        let engines = library
+            .effects
+            .iter()
+            .filter(|e| matches!(e.id, EffectId::FuelFlowGainEngine(_)))
+            .count()
+            .max(1) as f64;
         let offers = [
             (EffectId::ZeroFuelMassBias, mass_kg, "weigh the aircraft (to 0.3 % of its mass)"),
             (EffectId::FuelFlowGain, 0.15, "compare with tank gauges (to 0.15 %)"),
@@ -218,10 +224,15 @@ impl Distances {
             let mut gram = self.gram.clone();
             let mut touched = false;
             for column in [k, l] {
-                if library.effects[library.columns[column].effect].id == id {
-                    gram[(column, column)] += 1.0 / (deviation * deviation);
-                    touched = true;
-                }
+                let own = library.effects[library.columns[column].effect].id;
+                // Gauges see the sum of the meters: one engine's share of an error is twice as hard to see with two.
+                let share = match (id, own) {
+                    (EffectId::FuelFlowGain, EffectId::FuelFlowGainEngine(_)) => engines,
+                    _ if own == id => 1.0,
+                    _ => continue,
+                };
+                gram[(column, column)] += 1.0 / (deviation * share).powi(2);
+                touched = true;
             }
             if touched {
                 let after = squared(&gram, k, l, size).0.sqrt();
