@@ -58,12 +58,8 @@ impl Distances {
     }
 
     /// The size of an effect that would just be detected, in its unit; infinite where the data say nothing.
-    pub(crate) fn smallest_detectable(&self, library: &Library, effect: usize) -> f64 {
-        let entry = &library.effects[effect];
-        let best = (entry.first_column..entry.first_column + entry.columns)
-            .map(|column| self.information(column))
-            .fold(0.0, f64::max);
-        DETECTION / best.sqrt()
+    pub(crate) fn smallest_detectable(&self, effect: usize) -> f64 {
+        DETECTION / self.information(self.leading[effect]).sqrt()
     }
 
     /// Squared distance of column `k` at a size from the best-fitting multiple of column `l`, and that multiple.

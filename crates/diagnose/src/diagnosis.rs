@@ -326,7 +326,7 @@ fn conclude(
     let name = |effect: usize| library.effects[effect].id.to_string();
     let detectable = (0..library.effects.len())
         .map(|effect| {
-            let smallest = distances.smallest_detectable(library, effect);
+            let smallest = distances.smallest_detectable(effect);
             Detectable {
                 effect: name(effect),
                 smallest: smallest.is_finite().then_some(smallest),
