@@ -72,6 +72,33 @@ pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
     let ids = ids(tails);
     let most_points = (POINTS_OF_PAGE / tails.len().max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
     let adapted = tails.iter().any(|tail| tail.summary.fuel_flow_error_percent.after.is_some());
+    let body = html! {
+        p.run { (what_was_run(summary, tails)) }
+        (how_to_read(adapted))
+        section {
+            h2 { "Fleet" }
+            (fleet::table(summary, |tail| ids.get(tail).cloned()))
+        }
+        (fleet::refused(&summary.reports))
+        section {
+            h2 { "Tails" }
+            @if tails.len() > 1 {
+                p.note {
+                    "Each tail unfolds at a click on its line, or on its name in the table above."
+                    @if tails.len() > TAILS_PRINTED { " Printed are those that are unfolded." }
+                }
+            }
+            @for (k, result) in tails.iter().enumerate() {
+                @let id = ids.get(result.tail.as_str()).cloned().unwrap_or_default();
+                (tail::section(result, &Place { tail: &result.tail, id, most_points }, k == 0))
+            }
+        }
+    };
+    framed(title, tails.len() <= TAILS_PRINTED, &body)
+}
+
+/// A whole page: `body` under a title, without scripts or network. `prints_all` also unfolds for print what is folded.
+fn framed(title: &str, prints_all: bool, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -82,29 +109,10 @@ pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
                 title { (title) }
                 style { (PreEscaped(style::STYLE)) }
             }
-            body.print-all[tails.len() <= TAILS_PRINTED] {
+            body.print-all[prints_all] {
                 main {
                     h1 { (title) }
-                    p.run { (what_was_run(summary, tails)) }
-                    (how_to_read(adapted))
-                    section {
-                        h2 { "Fleet" }
-                        (fleet::table(summary, |tail| ids.get(tail).cloned()))
-                    }
-                    (fleet::refused(&summary.reports))
-                    section {
-                        h2 { "Tails" }
-                        @if tails.len() > 1 {
-                            p.note {
-                                "Each tail unfolds at a click on its line, or on its name in the table above."
-                                @if tails.len() > TAILS_PRINTED { " Printed are those that are unfolded." }
-                            }
-                        }
-                        @for (k, result) in tails.iter().enumerate() {
-                            @let id = ids.get(result.tail.as_str()).cloned().unwrap_or_default();
-                            (tail::section(result, &Place { tail: &result.tail, id, most_points }, k == 0))
-                        }
-                    }
+                    (body)
                 }
             }
         }

@@ -43,14 +43,7 @@ fn main() {
             };
             let fleet = fly(case, &setup, &planted, &background);
             let records = fleet.records();
-            let input = Input {
-                model: &model,
-                drag_table: model.drag_table(),
-                flights: &records,
-                baseline: None,
-                table: None,
-                references: None,
-            };
+            let input = Input::against(&model, &records);
             let options = Options {
                 without: if what == "struck" { vec![id] } else { vec![] },
                 ..Options::default()

@@ -20,17 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let records: Vec<FlightRecord<'_>> =
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-    let found = diagnose(
-        &Input {
-            model: &model,
-            drag_table: model.drag_table(),
-            flights: &records,
-            baseline: None,
-            table: None,
-            references: None,
-        },
-        &Options::default(),
-    )?;
+    let found = diagnose(&Input::against(&model, &records), &Options::default())?;
     // Fuel flow alone cannot say whether engine or airframe: both are in the class, and neither is sure.
     assert_eq!(found.verdict.kind, VerdictKind::Effects);
     assert!(found.verdict.class.contains(&"tsfc_factor".to_owned()));

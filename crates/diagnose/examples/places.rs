@@ -41,14 +41,7 @@ fn run(model: &PerformanceModel, fleet: &Fleet, closure: bool) -> (Diagnosis, f6
 }
 
 fn input<'a>(model: &'a PerformanceModel, records: &'a [diagnose::FlightRecord<'a>]) -> Input<'a> {
-    Input {
-        model,
-        drag_table: model.drag_table(),
-        flights: records,
-        baseline: None,
-        table: None,
-        references: None,
-    }
+    Input::against(model, records)
 }
 
 /// ln recorded − ln predicted, segment by segment; `None` outside the table.

@@ -35,14 +35,7 @@ fn main() {
     let model = exact_model();
     let records: Vec<_> =
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-    let input = Input {
-        model: &model,
-        drag_table: model.drag_table(),
-        flights: &records,
-        baseline: None,
-        table: None,
-        references: None,
-    };
+    let input = Input::against(&model, &records);
     let options = Options { skip_closure: true, skip_where: true, ..Options::default() };
     let mut shortest = f64::INFINITY;
     let mut found = None;

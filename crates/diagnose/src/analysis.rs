@@ -52,7 +52,7 @@ pub(crate) struct Analysis {
     pub(crate) refined: Vec<Relinearised>,
     /// Without nuisance, with this much scatter between flights, per cent: where scatter alone is no hopeless cause.
     pub(crate) heating: Vec<(f64, Reduced)>,
-    /// Probability that there is neither an effect nor a background.
+    /// Probability of no effect in backgrounds that are no finding.
     pub(crate) clean: f64,
 }
 
@@ -93,8 +93,8 @@ impl<'a> Stacked<'a> {
         stacked
     }
 
-    /// Largest smooth discrepancy that still counts as nothing: a taught remainder is not exact, a table is taken at its
-    /// word (its uncertainty is given apart).
+    /// Smooth discrepancy that no agnostic function and no place is found in: a taught remainder is not exact, a table is
+    /// taken at its word (its uncertainty is given apart).
     pub(crate) const fn clean_tau(&self) -> f64 {
         if self.data.predictor.baseline.is_some() { TAUGHT_TAU } else { 0.0 }
     }
@@ -199,17 +199,26 @@ impl Stacked<'_> {
     ) -> Option<Vec<Reduced>> {
         self.scatters
             .iter()
-            .map(|&relative| {
-                if relative == 0.0 {
-                    return without_nuisance(gram, self.design, agnostic);
-                }
-                let (changed, ln_determinant) =
-                    self.with_scatter(gram, relative, without, replaced);
-                let mut reduced = without_nuisance(&changed, self.design, agnostic)?;
-                reduced.ln_determinant += ln_determinant;
-                Some(reduced)
-            })
+            .map(|&relative| self.reduced_with_scatter(gram, relative, without, replaced, agnostic))
             .collect()
+    }
+
+    /// The Gram without nuisance, with this much scatter between flights, relative.
+    fn reduced_with_scatter(
+        &self,
+        gram: &Gram,
+        relative: f64,
+        without: Option<usize>,
+        replaced: &Replaced,
+        agnostic: bool,
+    ) -> Option<Reduced> {
+        if relative == 0.0 {
+            return without_nuisance(gram, self.design, agnostic);
+        }
+        let (changed, ln_determinant) = self.with_scatter(gram, relative, without, replaced);
+        let mut reduced = without_nuisance(&changed, self.design, agnostic)?;
+        reduced.ln_determinant += ln_determinant;
+        Some(reduced)
     }
 }
 
@@ -237,10 +246,9 @@ pub(crate) fn analyse(
             if stacked.scatters.iter().any(|&scatter| scatter >= percent / 100.0) {
                 continue; // part of the noise already
             }
-            let (changed, ln_determinant) =
-                stacked.with_scatter(gram, percent / 100.0, None, &Replaced::default());
-            let mut reduced = without_nuisance(&changed, design, false)?;
-            reduced.ln_determinant += ln_determinant;
+            let relative = percent / 100.0;
+            let none = Replaced::default();
+            let reduced = stacked.reduced_with_scatter(gram, relative, None, &none, false)?;
             let under = backgrounds(&reduced, effects, design.smooth.len(), library, |_, tau| {
                 stacked.admits(tau)
             });
@@ -277,10 +285,9 @@ pub(crate) fn analyse(
                 && (m.ln_weight - total).exp() > WORTH_REFINING
         });
         if scatter_alone {
-            let (changed, ln_determinant) =
-                stacked.with_scatter(gram, percent / 100.0, without, &Replaced::default());
-            let mut reduced = without_nuisance(&changed, design, true)?;
-            reduced.ln_determinant += ln_determinant;
+            let relative = percent / 100.0;
+            let none = Replaced::default();
+            let reduced = stacked.reduced_with_scatter(gram, relative, without, &none, true)?;
             heating.push((percent, reduced));
         }
     }

@@ -59,6 +59,21 @@ pub struct Input<'a> {
     pub references: Option<EffectReferences>,
 }
 
+impl<'a> Input<'a> {
+    /// Flights against a model's own table, nothing taught and every node taken as known.
+    #[must_use]
+    pub const fn against(model: &'a PerformanceModel, flights: &'a [FlightRecord<'a>]) -> Self {
+        Self {
+            model,
+            drag_table: model.drag_table(),
+            flights,
+            baseline: None,
+            table: None,
+            references: None,
+        }
+    }
+}
+
 /// What to look for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {

@@ -67,6 +67,27 @@ impl Folds {
     }
 }
 
+impl Gram {
+    /// Posterior means of the sizes of `columns` with independent normal priors about 0, all other columns left out; `None`
+    /// where the matrix is not positive definite.
+    pub(crate) fn fit(
+        &self,
+        columns: &[usize],
+        deviations: &[f64],
+        residual: usize,
+    ) -> Option<Mat<f64>> {
+        let gram = &self.matrix;
+        let mut normal =
+            Mat::from_fn(columns.len(), columns.len(), |i, j| gram[(columns[i], columns[j])]);
+        for (k, deviation) in deviations.iter().enumerate() {
+            normal[(k, k)] += 1.0 / (deviation * deviation);
+        }
+        let mut sizes = Mat::from_fn(columns.len(), 1, |i, _| gram[(columns[i], residual)]);
+        Factor::of(&normal)?.solve(&mut sizes);
+        Some(sizes)
+    }
+}
+
 /// A Gram matrix from which columns of known prior were integrated out, over the columns that are left.
 #[derive(Clone, Debug)]
 pub(crate) struct Reduced {

@@ -35,14 +35,7 @@
 //! )?;
 //! let guide = Guide::from_csv(include_bytes!("../../perf-model/tests/golden/guide.csv"))?;
 //! let model = initial_model(&aircraft, &guide)?.model;
-//! let input = Input {
-//!     model: &model,
-//!     drag_table: model.drag_table(),
-//!     flights: &[],
-//!     baseline: None,
-//!     table: None,
-//!     references: None,
-//! };
+//! let input = Input::against(&model, &[]);
 //! // No flights, no name.
 //! let found = diagnose(&input, &Options::default())?;
 //! assert_eq!(found.verdict.kind, VerdictKind::InsufficientData);

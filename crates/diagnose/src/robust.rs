@@ -1,10 +1,7 @@
 //! Outliers: whitened residuals with heavy tails weigh segments down.
 
-use faer::Mat;
-
 use crate::analysis::{Analysis, Stacked};
 use crate::library::Library;
-use crate::linear::Factor;
 
 /// Kurtosis of whitened residuals above which weights are used; 3 for normal ones.
 const HEAVY: f64 = 4.0;
@@ -25,24 +22,14 @@ pub(crate) fn weights(
 ) -> Option<Vec<f64>> {
     let best = analysis.models.first().map_or(&[][..], |(scored, _)| &scored.model.columns);
     let design = stacked.design;
-    let columns: Vec<usize> =
-        best.iter().copied().chain(design.nuisance.clone()).chain(design.smooth.clone()).collect();
+    let (columns, deviations): (Vec<usize>, Vec<f64>) = best
+        .iter()
+        .map(|&column| (column, 3.0 * library.effects[library.columns[column].effect].typical))
+        .chain(design.nuisance.clone().map(|column| (column, 1.0)))
+        .chain(design.smooth.clone().map(|column| (column, 0.0015)))
+        .unzip();
     let gram = stacked.folds.without(None);
-    let mut normal =
-        Mat::from_fn(columns.len(), columns.len(), |i, j| gram.matrix[(columns[i], columns[j])]);
-    for (k, &column) in columns.iter().enumerate() {
-        let deviation = if k < best.len() {
-            3.0 * library.effects[library.columns[column].effect].typical
-        } else if design.nuisance.contains(&column) {
-            1.0
-        } else {
-            0.0015
-        };
-        normal[(k, k)] += 1.0 / (deviation * deviation);
-    }
-    let mut solution =
-        Mat::from_fn(columns.len(), 1, |i, _| gram.matrix[(columns[i], design.residual())]);
-    Factor::of(&normal)?.solve(&mut solution);
+    let solution = gram.fit(&columns, &deviations, design.residual())?;
 
     let data = stacked.data;
     let channels = data.channels.count();

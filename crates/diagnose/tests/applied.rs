@@ -12,14 +12,7 @@ use flown::{Background, Fleet, Planted, Setup, exact_model, fly, typical};
 
 fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
     let records = fleet.records();
-    let input = Input {
-        model,
-        drag_table: model.drag_table(),
-        flights: &records,
-        baseline: None,
-        table: None,
-        references: None,
-    };
+    let input = Input::against(model, &records);
     diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()
 }
 

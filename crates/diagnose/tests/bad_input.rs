@@ -11,14 +11,7 @@ use flown::{Background, Fleet, Planted, Setup, exact_model, fly};
 
 fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
     let records = fleet.records();
-    let input = Input {
-        model,
-        drag_table: model.drag_table(),
-        flights: &records,
-        baseline: None,
-        table: None,
-        references: None,
-    };
+    let input = Input::against(model, &records);
     let found = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();
     // serde_json writes a number that is not finite as null; every null must be one that the format knows.
     let text = serde_json::to_string(&found).unwrap();

@@ -65,14 +65,7 @@ fn run(
     flights: &[Vec<Segment>],
 ) -> Diagnosis {
     let records = records(flights);
-    let input = Input {
-        model,
-        drag_table: model.drag_table(),
-        flights: &records,
-        baseline,
-        table: None,
-        references: None,
-    };
+    let input = Input { baseline, ..Input::against(model, &records) };
     diagnose(&input, &Options::default()).unwrap()
 }
 

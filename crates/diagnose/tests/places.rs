@@ -12,14 +12,7 @@ use flown::{Background, Fleet, Planted, Setup, exact_model, fly};
 fn place(fleet: &Fleet, options: &Options) -> Diagnosis {
     let model = exact_model();
     let records = fleet.records();
-    let input = Input {
-        model: &model,
-        drag_table: model.drag_table(),
-        flights: &records,
-        baseline: None,
-        table: None,
-        references: None,
-    };
+    let input = Input::against(&model, &records);
     let found = diagnose(&input, options).unwrap();
     for slice in &found.r#where {
         let members = slice_members(&input, slice).unwrap();
@@ -86,14 +79,7 @@ fn bounds_that_are_no_variable_are_refused() {
     let mut found = place(&with(402, EffectId::TsfcFactor, 2.0), &options());
     found.r#where[0].bounds.insert("phase_of_moon".to_owned(), [None, Some(1.0)]);
     let model = exact_model();
-    let input = Input {
-        model: &model,
-        drag_table: model.drag_table(),
-        flights: &[],
-        baseline: None,
-        table: None,
-        references: None,
-    };
+    let input = Input::against(&model, &[]);
     let error = slice_members(&input, &found.r#where[0]).unwrap_err();
     assert_eq!(error, SliceError::UnknownVariable { name: "phase_of_moon".to_owned() });
 }

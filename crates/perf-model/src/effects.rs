@@ -271,6 +271,18 @@ impl EffectPoint {
 }
 
 impl EffectReferences {
+    /// For a model in which no effect is switched on: only effects look at references.
+    const UNUSED: Self = Self {
+        date_s: 0.0,
+        mach: 1.0,
+        unit_reynolds_number_per_m: 1.0,
+        temperature_ratio: 1.0,
+        corrected_thrust_n: 1.0,
+        fuel_flow_total_kg_s: 1.0,
+        mass_kg: 1.0,
+        center_of_gravity_percent_mac: None,
+    };
+
     /// The size of θ that is usual for an effect, in its unit.
     #[must_use]
     pub fn typical_size(&self, effect: EffectId) -> f64 {
@@ -290,27 +302,16 @@ impl EffectReferences {
         drag_table: &Table,
         points: &[EffectPoint],
     ) -> Result<Self, EffectModelError> {
-        // Only effects look at references, and none is switched on.
-        let unused = Self {
-            date_s: 0.0,
-            mach: 1.0,
-            unit_reynolds_number_per_m: 1.0,
-            temperature_ratio: 1.0,
-            corrected_thrust_n: 1.0,
-            fuel_flow_total_kg_s: 1.0,
-            mass_kg: 1.0,
-            center_of_gravity_percent_mac: None,
-        };
         let model = EffectModel {
             aircraft,
             drag_table,
             polar: Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] },
-            references: unused,
+            references: Self::UNUSED,
             applied: None,
             contained: &[],
             recorded: &[],
         };
-        let mut sum = Self { mach: 0.0, ..unused };
+        let mut sum = Self { mach: 0.0, ..Self::UNUSED };
         sum.unit_reynolds_number_per_m = 0.0;
         sum.temperature_ratio = 0.0;
         sum.corrected_thrust_n = 0.0;

@@ -1,9 +1,9 @@
 //! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be seen.
 
 use diagnose::{Cause, Diagnosis, VerdictKind};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::{fleet, style};
+use super::{fleet, framed};
 use crate::failure::RefusedReport;
 use crate::summary::{RefusedSummary, ReportsSummary, counted};
 use crate::words;
@@ -19,32 +19,15 @@ pub fn diagnosis(read: usize, refused: &[RefusedReport], diagnoses: &[Diagnosis]
         already_known: 0,
         refused: refused.iter().map(RefusedSummary::from).collect(),
     };
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="generator" content=(concat!("cruisefit ", env!("CARGO_PKG_VERSION")));
-                title { (title) }
-                style { (PreEscaped(style::STYLE)) }
-            }
-            body.print-all {
-                main {
-                    h1 { (title) }
-                    p.run {
-                        (counted(read, "report")) " read, " (refused.len()) " refused. Gap: ln recorded − ln predicted "
-                        "total fuel flow, in %; positive, the aircraft burns more than the model says."
-                    }
-                    (fleet::refused(&reports))
-                    @for one in diagnoses { (section(one)) }
-                }
-            }
+    let body = html! {
+        p.run {
+            (counted(read, "report")) " read, " (refused.len()) " refused. Gap: ln recorded − ln predicted "
+            "total fuel flow, in %; positive, the aircraft burns more than the model says."
         }
+        (fleet::refused(&reports))
+        @for one in diagnoses { (section(one)) }
     };
-    let mut page = page.into_string();
-    page.push('\n');
-    page
+    framed(title, true, &body)
 }
 
 fn section(diagnosis: &Diagnosis) -> Markup {

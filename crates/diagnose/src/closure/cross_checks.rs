@@ -1,12 +1,9 @@
 //! Two other estimates of the noise floor, which need no sensor's standard deviation.
 
-use faer::Mat;
-
 use super::Shrinkage;
 use crate::analysis::Stacked;
 use crate::gram::{FOLDS, fold_of};
 use crate::library::Library;
-use crate::linear::Factor;
 
 /// Two successive segments of a flight are replicates when Mach number and pressure altitude differ by no more.
 const ALIKE_MACH: f64 = 0.02;
@@ -65,15 +62,8 @@ pub(crate) fn held_out_floor(stacked: &Stacked<'_>, library: &Library) -> Option
         .unzip();
     let mut sum = 0.0;
     for fold in 0..FOLDS {
-        let gram = &stacked.folds.without(Some(fold)).matrix;
-        let mut normal =
-            Mat::from_fn(columns.len(), columns.len(), |i, j| gram[(columns[i], columns[j])]);
-        for (k, deviation) in deviations.iter().enumerate() {
-            normal[(k, k)] += 1.0 / (deviation * deviation);
-        }
-        let mut sizes =
-            Mat::from_fn(columns.len(), 1, |i, _| gram[(columns[i], design.residual())]);
-        Factor::of(&normal)?.solve(&mut sizes);
+        let gram = stacked.folds.without(Some(fold));
+        let sizes = gram.fit(&columns, &deviations, design.residual())?;
         for (index, flight) in stacked.data.flights.iter().enumerate() {
             if fold_of(index) != fold {
                 continue;

@@ -311,28 +311,18 @@ impl PerformanceModel {
         drag_table: &Table,
         contained: &[Terms],
     ) -> Result<Response, EffectError> {
-        // References are those of trial effects, and there are none.
-        let references = EffectReferences {
-            date_s: 0.0,
-            mach: 1.0,
-            unit_reynolds_number_per_m: 1.0,
-            temperature_ratio: 1.0,
-            corrected_thrust_n: 1.0,
-            fuel_flow_total_kg_s: 1.0,
-            mass_kg: 1.0,
-            center_of_gravity_percent_mac: None,
-        };
         let polar = self.contained().map_or(*self.polynomial(), |contained| contained.polar);
         let model = EffectModel {
             aircraft: self.aircraft(),
             drag_table,
             polar,
-            references,
+            // Those of trial effects, and there are none.
+            references: EffectReferences::UNUSED,
             applied: None,
             contained,
             recorded: &[],
         };
-        let trial = Terms::of(&Effects::none(), &references);
+        let trial = Terms::of(&Effects::none(), &EffectReferences::UNUSED);
         let layers = Layers { contained, trial: &trial };
         model.evaluate(point, layers, layers.moves_the_point())
     }
