@@ -129,6 +129,14 @@ impl<'a> Stacked<'a> {
         }
     }
 
+    /// Root mean square of the robust weights; 1 without.
+    pub(crate) fn mean_weight(&self) -> f64 {
+        self.weights.as_ref().map_or(1.0, |weights| {
+            let square: f64 = weights.iter().map(|weight| weight * weight).sum();
+            (square / weights.len().max(1) as f64).sqrt()
+        })
+    }
+
     /// Applies the robust weights to rows of a flight.
     pub(crate) fn weigh(&self, flight: usize, rows: &mut Mat<f64>) {
         let Some(weights) = &self.weights else { return };

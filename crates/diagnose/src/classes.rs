@@ -52,6 +52,11 @@ impl Distances {
         self.leading[effect]
     }
 
+    /// Gram of some columns, nuisance integrated out.
+    pub(crate) fn gram_of(&self, columns: &[usize]) -> Mat<f64> {
+        Mat::from_fn(columns.len(), columns.len(), |i, j| self.gram[(columns[i], columns[j])])
+    }
+
     /// Information on a column: 1/√ is the standard deviation of its size.
     pub(crate) fn information(&self, column: usize) -> f64 {
         self.gram[(column, column)].max(0.0)
@@ -237,7 +242,7 @@ impl Distances {
         }
         let after = squared(&self.with_deck, k, l, size).0.sqrt();
         found.push(Measurement { words: "measure an N2 deck (to 0.1 %)", before, after });
-        found.retain(|m| m.after > 1.1 * m.before + 0.1);
+        found.retain(|m| gains(m.before, m.after));
         found.sort_by(|a, b| b.after.total_cmp(&a.after));
         found
     }
@@ -260,7 +265,13 @@ pub(crate) fn leading_columns(library: &Library, models: &[(Scored, f64)]) -> Ve
     leading
 }
 
-fn squared(g: &Mat<f64>, k: usize, l: usize, size: f64) -> (f64, f64) {
+/// Whether a distance is worth an effort: a tenth more than another one, and a tenth of a standard deviation.
+pub(crate) fn gains(before: f64, after: f64) -> bool {
+    after > 1.1 * before + 0.1
+}
+
+/// [`Distances::squared`] in any Gram.
+pub(crate) fn squared(g: &Mat<f64>, k: usize, l: usize, size: f64) -> (f64, f64) {
     if g[(l, l)] <= 0.0 {
         return (size * size * g[(k, k)], 0.0);
     }

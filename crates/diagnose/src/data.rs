@@ -20,6 +20,8 @@ use crate::noise::{
 };
 use crate::record::FlightRecord;
 
+pub(crate) mod planned;
+
 /// Coefficients of the N2 deck: a full quadratic in four variables.
 pub(crate) const DECK_TERMS: usize = 15;
 /// Scales that make the deck's variables dimensionless: ln F/δ, Mach number, ln δ, ln θ.
@@ -82,6 +84,8 @@ pub(crate) struct SegmentRow {
     pub(crate) n2_percent: Option<f64>,
     /// Standard deviation of the recorded acceleration, m/s².
     pub(crate) acceleration_deviation_m_s2: f64,
+    /// Samples that its means are of.
+    pub(crate) samples: usize,
     /// Chord errors of the drag table along lift coefficient and Mach number, relative to drag.
     pub(crate) chords: [f64; 2],
 }
@@ -390,6 +394,7 @@ impl<'a> Data<'a> {
                     model.aircraft().sensors().acceleration_m_s2,
                     kept.rows.len(),
                 ),
+            samples: kept.rows.len(),
             chords: chord_errors(model, &kept.response),
         };
         // Only where there is a baseline to carry them, or one to be taught (then there is no library).

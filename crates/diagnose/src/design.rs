@@ -192,6 +192,22 @@ impl<'a> Design<'a> {
         self.columns - 1
     }
 
+    /// The same nuisance beside fewer columns of effects, without smooth background and agnostic functions.
+    pub(crate) fn of_nuisance(&self, effects: usize) -> Self {
+        let nuisance = effects..effects + self.nuisance.len();
+        Self {
+            effects,
+            smooth: nuisance.end..nuisance.end,
+            blocks: vec![],
+            columns: nuisance.end + 1,
+            smooth_hats: vec![],
+            smooth_products: vec![],
+            nuisance,
+            references: self.references,
+            nuisance_parts: self.nuisance_parts.clone(),
+        }
+    }
+
     /// All columns of a flight's fuel flow as they are, not whitened: one row a segment.
     pub(crate) fn fuel_flow(&self, data: &Data<'_>, flight: &FlightRows) -> Mat<f64> {
         let channels = data.channels.count();
@@ -335,7 +351,9 @@ impl<'a> Design<'a> {
         put(matrix, self.columns - 1, &row.residual);
 
         let once = self.smooth.len() / if data.channels.n2 { 2 } else { 1 };
-        self.write_smooth(row, &mut scratch[..once]);
+        if once > 0 {
+            self.write_smooth(row, &mut scratch[..once]);
+        }
         for (k, value) in scratch[..once].iter().enumerate() {
             scaled(matrix, self.smooth.start + k, &fuel, *value);
             if data.channels.n2 {

@@ -11,6 +11,7 @@ use statrs::function::erf::erfc;
 
 use crate::TableUncertainty;
 use crate::addition::Addition;
+use crate::advice::{Advisor, best_first};
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
 use crate::classes::{Distances, leading_columns};
@@ -324,11 +325,14 @@ fn conclude(
     };
     let found_outside = outside.probability;
     outside.probability *= 1.0 - credit(posteriors.first(), unseen.as_ref(), &own);
+    let classes = distances.classes(library);
+    let advisor = advisor(stacked, model, library, &distances, &classes, &posteriors, gap.detected);
     let verdict = verdict(
         &analysis,
         &outside,
         found_outside,
         &distances,
+        &advisor,
         library,
         &posteriors,
         &own,
@@ -337,21 +341,20 @@ fn conclude(
         notes,
     );
     let causes = causes(&analysis, &outside, &distances, library, &posteriors, unseen.as_ref());
-    let classes = distances.classes(library);
     let name = |effect: usize| library.effects[effect].id.to_string();
     let detectable = (0..library.effects.len())
         .map(|effect| {
             let smallest = distances.smallest_detectable(effect);
+            let class = classes.iter().find(|class| class.contains(&effect));
             Detectable {
                 effect: name(effect),
                 smallest: smallest.is_finite().then_some(smallest),
                 unit: library.effects[effect].id.entry().unit.to_owned(),
-                class: classes
-                    .iter()
-                    .find(|class| class.contains(&effect))
+                class: class
                     .map_or_else(Vec::new, |class| class.iter().map(|&e| name(e)).collect()),
                 nearest_other: distances.nearest_other(library, effect),
                 nearest_pair: distances.nearest_pair(library, effect),
+                separation: class.and_then(|class| advisor.beforehand(effect, class)),
             }
         })
         .collect();
@@ -636,6 +639,7 @@ fn verdict(
     outside: &Outside,
     agnostic: f64,
     distances: &Distances,
+    advisor: &Advisor<'_>,
     library: &Library,
     posteriors: &[Posterior],
     own: &Shrinkage,
@@ -680,12 +684,7 @@ fn verdict(
     verdict.effects = set_of(analysis, library, top);
     verdict.class = class_of(distances, library, top);
     // What the evidence leaves open belongs to the class too, however far apart sizes typical of it would be.
-    let mut sum = 0.0;
-    for posterior in posteriors {
-        if sum >= CREDIBLE * named {
-            break;
-        }
-        sum += posterior.probability;
+    for posterior in credible(posteriors) {
         let name = name_of(library, posterior.effect);
         if !verdict.class.contains(&name) {
             verdict.class.push(name);
@@ -695,9 +694,20 @@ fn verdict(
     if elsewhere {
         notes.push(format!("the form of the effect differs in {variable}"));
     }
-    verdict.separations = separations(distances, library, top, &verdict.class);
+    verdict.separations = separations(advisor, library, top, &verdict.class);
     verdict.advice = advice(&verdict, elsewhere.then_some(variable));
     verdict
+}
+
+/// The most probable causes that hold 95 % of the probability together.
+fn credible(posteriors: &[Posterior]) -> impl Iterator<Item = &Posterior> {
+    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
+    let mut sum = 0.0;
+    posteriors.iter().take_while(move |posterior| {
+        let before = sum;
+        sum += posterior.probability;
+        before < CREDIBLE * named
+    })
 }
 
 /// The effects that act together, where a pair is more probable than not; else the top effect.
@@ -717,8 +727,29 @@ fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String
     names
 }
 
+/// Who is asked for advice: about the leading effect of every probable cause, and what could be taken for it.
+fn advisor<'a>(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &'a Library,
+    distances: &'a Distances,
+    classes: &[Vec<usize>],
+    posteriors: &[Posterior],
+    detected: bool,
+) -> Advisor<'a> {
+    let top = posteriors.first().filter(|top| detected && top.effect.is_some());
+    let found = top.map(|top| top.model.model.columns[top.place]);
+    let mut likely: Vec<usize> = Vec::new();
+    if let (Some(top), Some(column)) = (top, found) {
+        likely.extend(credible(posteriors).filter_map(|posterior| posterior.effect));
+        likely.extend(distances.confused_with(library, column, top.model.sizes[top.place]));
+    }
+    let found: Vec<usize> = found.into_iter().collect();
+    Advisor::of(stacked, model, library, distances, classes, &found, &likely)
+}
+
 fn separations(
-    distances: &Distances,
+    advisor: &Advisor<'_>,
     library: &Library,
     top: &Posterior,
     class: &[String],
@@ -730,20 +761,11 @@ fn separations(
     let size = top.model.sizes[top.place];
     let mut all = Vec::new();
     for (index, effect) in library.effects.iter().enumerate() {
-        let name = effect.id.to_string();
-        if Some(index) == top.effect || !class.contains(&name) {
-            continue;
-        }
-        for found in distances.measurements(library, column, distances.leading(index), size) {
-            all.push(Separation {
-                from: name.clone(),
-                measurement: found.words.to_owned(),
-                distance_now: found.before,
-                distance_then: found.after,
-            });
+        if Some(index) != top.effect && class.contains(&effect.id.to_string()) {
+            all.extend(advisor.between(column, size, index));
         }
     }
-    all.sort_by(|a, b| b.distance_then.total_cmp(&a.distance_then));
+    best_first(&mut all);
     all
 }
 
@@ -759,8 +781,9 @@ fn advice(verdict: &Verdict, differs: Option<&str>) -> String {
     if let Some(best) = verdict.separations.first() {
         let _ = write!(
             words,
-            " To be sure: {} ({:.1} to {:.1} standard deviations from {}).",
-            best.measurement, best.distance_now, best.distance_then, best.from
+            " To be sure: {} ({}).",
+            best.measurement,
+            best.distances_told()
         );
     }
     words

@@ -42,11 +42,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(test)]
+extern crate self as diagnose; // the fleet of the tests names the crate
+
 mod addition;
+mod advice;
 mod analysis;
 mod baseline;
 mod classes;
 mod closure;
+mod conditions;
 mod data;
 mod design;
 mod diagnosis;

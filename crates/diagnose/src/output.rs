@@ -153,21 +153,24 @@ pub struct Verdict {
     pub closure_ci95: Option<[f64; 2]>,
     /// One sentence or two: what to do.
     pub advice: String,
-    /// Measurements that would separate the class, the best first.
+    /// Measurements and flights on purpose that would separate the class, the best first.
     pub separations: Vec<Separation>,
 }
 
-/// A measurement that separates two effects.
+/// A measurement, or flights on purpose, that separate two effects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Separation {
     /// The effect that would be told from the first.
     pub from: String,
-    /// What to measure.
+    /// What to measure or to fly.
     pub measurement: String,
     /// Distance between them now, in standard deviations.
     pub distance_now: f64,
-    /// And with the measurement.
+    /// And with the measurement or the flights.
     pub distance_then: f64,
+    /// Of flights on purpose: with as many ordinary flights instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distance_ordinary_flights: Option<f64>,
 }
 
 /// What an effect would have to be to be seen.
@@ -185,6 +188,10 @@ pub struct Detectable {
     pub nearest_other: f64,
     /// Distance at the typical size from the nearest pair of others.
     pub nearest_pair: f64,
+    /// What would best tell it, at the typical size, from the nearest other effect of its class; `null` where the class is
+    /// itself alone, or nothing known here would.
+    #[serde(default)]
+    pub separation: Option<Separation>,
 }
 
 /// Probability of a cause outside the library.

@@ -1,0 +1,100 @@
+//! What would tell confused effects apart: measurements and flights on purpose, in one list by the distance they put.
+
+use perf_model::effects::EffectModel;
+
+use crate::analysis::Stacked;
+use crate::classes::Distances;
+use crate::conditions::Conditions;
+use crate::library::Library;
+use crate::output::Separation;
+
+/// Everything that advice is made of.
+pub(crate) struct Advisor<'a> {
+    distances: &'a Distances,
+    library: &'a Library,
+    conditions: Option<Conditions>,
+}
+
+impl<'a> Advisor<'a> {
+    /// For the columns of a verdict, the effects that may be in its class, and those confused at typical sizes. Flights are
+    /// only looked at for these.
+    pub(crate) fn of(
+        stacked: &Stacked<'_>,
+        model: &EffectModel<'_>,
+        library: &'a Library,
+        distances: &'a Distances,
+        classes: &[Vec<usize>],
+        found: &[usize],
+        likely: &[usize],
+    ) -> Self {
+        let confused = classes.iter().filter(|class| class.len() > 1).flatten();
+        let columns = confused
+            .chain(likely)
+            .map(|&effect| distances.leading(effect))
+            .chain(found.iter().copied())
+            .collect();
+        let conditions = Conditions::of(stacked, model, library, distances, columns);
+        Self { distances, library, conditions }
+    }
+
+    /// What would tell a column at a size from another effect, the best first.
+    pub(crate) fn between(&self, column: usize, size: f64, other: usize) -> Vec<Separation> {
+        let from = self.library.effects[other].id.to_string();
+        let leading = self.distances.leading(other);
+        let mut all: Vec<Separation> = self
+            .distances
+            .measurements(self.library, column, leading, size)
+            .into_iter()
+            .map(|found| Separation {
+                from: from.clone(),
+                measurement: found.words.to_owned(),
+                distance_now: found.before,
+                distance_then: found.after,
+                distance_ordinary_flights: None,
+            })
+            .collect();
+        let flights = self.conditions.iter().flat_map(|at| at.advised(column, leading, size));
+        all.extend(flights.map(|found| Separation {
+            from: from.clone(),
+            measurement: found.words,
+            distance_now: found.before,
+            distance_then: found.after,
+            distance_ordinary_flights: Some(found.ordinary),
+        }));
+        best_first(&mut all);
+        all
+    }
+
+    /// The best of what would tell an effect of typical size from the nearest other one of its class.
+    pub(crate) fn beforehand(&self, effect: usize, class: &[usize]) -> Option<Separation> {
+        let column = self.distances.leading(effect);
+        let size = self.library.effects[effect].typical;
+        let (_, nearest) = class
+            .iter()
+            .filter(|&&other| other != effect)
+            .map(|&other| {
+                (self.distances.squared(column, self.distances.leading(other), size).0, other)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))?;
+        self.between(column, size, nearest).into_iter().next()
+    }
+}
+
+/// By the distance that is reached.
+pub(crate) fn best_first(separations: &mut [Separation]) {
+    separations.sort_by(|a, b| b.distance_then.total_cmp(&a.distance_then));
+}
+
+impl Separation {
+    /// The distances in words: "3.1 to 5.2 standard deviations from `wave_drag`; six ordinary flights 3.3".
+    #[must_use]
+    pub fn distances_told(&self) -> String {
+        let ordinary = self
+            .distance_ordinary_flights
+            .map_or_else(String::new, |distance| format!("; six ordinary flights {distance:.1}"));
+        format!(
+            "{:.1} to {:.1} standard deviations from {}{ordinary}",
+            self.distance_now, self.distance_then, self.from
+        )
+    }
+}

@@ -1,0 +1,173 @@
+//! Which flights on purpose would tell two effects apart that the flights at hand do not.
+//!
+//! What it is: a fixed list of flights (a Mach sweep at a constant level, a level sweep at a constant Mach number, heavy or
+//! light) inside what this fleet has shown to be possible, their rows made by the same signatures, noise and nuisance as
+//! those of real flights, and the distance that six of them put between two effects, beside what six more ordinary flights
+//! would do. Most pairs gain little: then nothing is said.
+//! What it is not: a flight planner. Weather, traffic and the aircraft's limits are not known here; nothing faster, higher,
+//! lower, heavier, lighter or with more thrust, lift coefficient or dynamic pressure than was flown is proposed.
+
+use faer::Mat;
+use perf_model::effects::EffectModel;
+
+use crate::analysis::Stacked;
+use crate::classes::{Distances, gains, squared};
+use crate::gram::integrate_out;
+use crate::library::{Column, Library};
+
+mod envelope;
+mod information;
+mod sweeps;
+
+use envelope::Envelope;
+use information::{FlightInformation, Known, added};
+use sweeps::{Kind, test_flights};
+
+/// Flights on purpose that an advice asks for.
+pub(crate) const FLIGHTS: usize = 6;
+/// Their segments.
+const SEGMENTS: usize = 10;
+
+/// What flights on purpose would do for some columns of the library.
+pub(crate) struct Conditions {
+    /// Columns of the library, in order.
+    columns: Vec<usize>,
+    /// Gram of these columns now, nuisance integrated out.
+    now: Mat<f64>,
+    /// With six ordinary flights more: as the flights at hand, and as one in the middle of them at the last date.
+    ordinary: Vec<Mat<f64>>,
+    programs: Vec<Program>,
+}
+
+/// Six flights, of one kind.
+struct Program {
+    kind: Kind,
+    words: String,
+    gram: Mat<f64>,
+}
+
+/// An advice: flights, and the distance between two effects now, with them, and with as many ordinary ones.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Advised {
+    pub(crate) words: String,
+    pub(crate) before: f64,
+    pub(crate) ordinary: f64,
+    pub(crate) after: f64,
+}
+
+impl Conditions {
+    /// For these columns of the library; `None` where there is nothing to tell apart or nothing else can be flown.
+    pub(crate) fn of(
+        stacked: &Stacked<'_>,
+        model: &EffectModel<'_>,
+        library: &Library,
+        distances: &Distances,
+        mut columns: Vec<usize>,
+    ) -> Option<Self> {
+        columns.sort_unstable();
+        columns.dedup();
+        if columns.len() < 2 {
+            return None;
+        }
+        let gram = stacked.folds.without(None);
+        let nuisance = stacked.design.nuisance.clone();
+        let known = Known::of(&gram.matrix, &columns, nuisance.clone())?;
+        let envelope = Envelope::of(stacked.data, model)?;
+        let design = stacked.design.of_nuisance(columns.len());
+        let few = Library {
+            effects: library.effects.clone(),
+            columns: columns.iter().map(|&column| library.columns[column]).collect::<Vec<Column>>(),
+            not_testable: vec![],
+            heating_value: false,
+        };
+        let weight = stacked.mean_weight();
+        let mut flights: Vec<(Kind, String, FlightInformation)> = Vec::new();
+        for flight in test_flights(&envelope, model) {
+            let planned = stacked.data.planned(model, &few, &flight.points, envelope.recorded);
+            let Some(planned) = planned else { continue };
+            let rows = design.whitened(&planned, &planned.flights[0], None);
+            let rows = faer::Scale(weight) * rows;
+            flights.push((flight.kind, flight.words, known.flight(&rows)));
+        }
+        let now = distances.gram_of(&columns);
+        let mut ordinary = vec![more_of_the_same(
+            &gram.matrix,
+            &columns,
+            nuisance,
+            stacked.data.flights.len(),
+        )?];
+        for (_, _, steady) in flights.iter().filter(|(kind, _, _)| *kind == Kind::Steady) {
+            ordinary.push(&now + added(&[(steady, FLIGHTS as f64)])?);
+        }
+        flights.retain(|(kind, _, _)| *kind != Kind::Steady);
+        let programs = programs(&flights, &now);
+        (!programs.is_empty()).then_some(Self { columns, now, ordinary, programs })
+    }
+
+    /// The best flights of each kind between columns `k` at a size and `l`, those that gain clearly more than ordinary
+    /// flights, the best first.
+    pub(crate) fn advised(&self, k: usize, l: usize, size: f64) -> Vec<Advised> {
+        let place = |column: usize| self.columns.binary_search(&column).ok();
+        let (Some(k), Some(l)) = (place(k), place(l)) else { return vec![] };
+        let distance = |gram: &Mat<f64>| squared(gram, k, l, size).0.sqrt();
+        let before = distance(&self.now);
+        let ordinary = self.ordinary.iter().map(distance).fold(before, f64::max);
+        let mut found = Vec::new();
+        for kind in [Kind::Mach, Kind::Level] {
+            let best = self
+                .programs
+                .iter()
+                .filter(|program| program.kind == kind)
+                .map(|program| (distance(&program.gram), program))
+                .reduce(|best, next| if next.0 > best.0 { next } else { best });
+            found.extend(best.filter(|(after, _)| gains(ordinary, *after)).map(
+                |(after, program)| Advised {
+                    words: program.words.clone(),
+                    before,
+                    ordinary,
+                    after,
+                },
+            ));
+        }
+        found.sort_by(|a, b| b.after.total_cmp(&a.after));
+        found
+    }
+}
+
+/// Six flights of one sort, or three each of two sorts of one kind.
+fn programs(flights: &[(Kind, String, FlightInformation)], now: &Mat<f64>) -> Vec<Program> {
+    let mut programs = Vec::new();
+    let mut add = |kind: Kind, words: String, parts: &[(&FlightInformation, f64)]| {
+        if let Some(more) = added(parts) {
+            programs.push(Program { kind, words, gram: now + more });
+        }
+    };
+    for (place, (kind, words, flight)) in flights.iter().enumerate() {
+        add(*kind, format!("six flights with {words}"), &[(flight, FLIGHTS as f64)]);
+        let half = FLIGHTS as f64 / 2.0;
+        for (other_kind, other_words, other) in &flights[place + 1..] {
+            if other_kind == kind {
+                let words = format!("three flights with {words}, and three with {other_words}");
+                add(*kind, words, &[(flight, half), (other, half)]);
+            }
+        }
+    }
+    programs
+}
+
+/// The Gram if as many flights more were like the mean of those at hand: G·(1 + n/flights) before the nuisance is
+/// integrated out.
+fn more_of_the_same(
+    gram: &Mat<f64>,
+    columns: &[usize],
+    nuisance: core::ops::Range<usize>,
+    flights: usize,
+) -> Option<Mat<f64>> {
+    let grown = 1.0 + FLIGHTS as f64 / flights.max(1) as f64;
+    let out: Vec<usize> = nuisance.collect();
+    let deviations = vec![grown.sqrt(); out.len()];
+    Some(faer::Scale(grown) * integrate_out(gram, columns, &out, &deviations)?.matrix)
+}
+
+#[cfg(test)]
+mod tests;
