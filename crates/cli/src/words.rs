@@ -261,11 +261,14 @@ fn named(diagnosis: &Diagnosis) -> Vec<String> {
     }
     for separation in verdict.separations.iter().take(2) {
         lines.push(format!(
-            "To be sure: {} (tells it from {}: {:.1} to {:.1} standard deviations).",
+            "To be sure: {} (tells it from {}: {:.1} to {:.1} standard deviations{}).",
             separation.measurement,
             separation.from,
             separation.distance_now,
-            separation.distance_then
+            separation.distance_then,
+            separation.distance_ordinary_flights.map_or_else(String::new, |distance| format!(
+                "; six ordinary flights {distance:.1}"
+            ))
         ));
     }
     lines.extend(rivals(diagnosis));

@@ -65,18 +65,18 @@ impl<'a> Advisor<'a> {
         all
     }
 
-    /// The best of what would tell an effect of typical size from the nearest other one of its class.
-    pub(crate) fn beforehand(&self, effect: usize, class: &[usize]) -> Option<Separation> {
+    /// What would tell an effect of typical size from the nearest other one of its class, the best first.
+    pub(crate) fn beforehand(&self, effect: usize, class: &[usize]) -> Vec<Separation> {
         let column = self.distances.leading(effect);
         let size = self.library.effects[effect].typical;
-        let (_, nearest) = class
+        let nearest = class
             .iter()
             .filter(|&&other| other != effect)
             .map(|&other| {
                 (self.distances.squared(column, self.distances.leading(other), size).0, other)
             })
-            .min_by(|a, b| a.0.total_cmp(&b.0))?;
-        self.between(column, size, nearest).into_iter().next()
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.map_or_else(Vec::new, |(_, other)| self.between(column, size, other))
     }
 }
 

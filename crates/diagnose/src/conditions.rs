@@ -27,6 +27,8 @@ use sweeps::{Kind, test_flights};
 pub(crate) const FLIGHTS: usize = 6;
 /// Their segments.
 const SEGMENTS: usize = 10;
+/// Two sorts of flights are offered where they put this much more distance than the best of one sort.
+const WORTH_MIXING: f64 = 1.05;
 
 /// What flights on purpose would do for some columns of the library.
 pub(crate) struct Conditions {
@@ -42,6 +44,8 @@ pub(crate) struct Conditions {
 /// Six flights, of one kind.
 struct Program {
     kind: Kind,
+    /// Whether it has two sorts of flights.
+    mixed: bool,
     words: String,
     gram: Mat<f64>,
 }
@@ -90,12 +94,8 @@ impl Conditions {
             flights.push((flight.kind, flight.words, known.flight(&rows)));
         }
         let now = distances.gram_of(&columns);
-        let mut ordinary = vec![more_of_the_same(
-            &gram.matrix,
-            &columns,
-            nuisance,
-            stacked.data.flights.len(),
-        )?];
+        let mut ordinary =
+            vec![more_of_the_same(&gram.matrix, &columns, nuisance, stacked.data.flights.len())?];
         for (_, _, steady) in flights.iter().filter(|(kind, _, _)| *kind == Kind::Steady) {
             ordinary.push(&now + added(&[(steady, FLIGHTS as f64)])?);
         }
@@ -119,7 +119,10 @@ impl Conditions {
                 .iter()
                 .filter(|program| program.kind == kind)
                 .map(|program| (distance(&program.gram), program))
-                .reduce(|best, next| if next.0 > best.0 { next } else { best });
+                .reduce(|best, next| {
+                    let worth = if next.1.mixed && !best.1.mixed { WORTH_MIXING } else { 1.0 };
+                    if next.0 > worth * best.0 { next } else { best }
+                });
             found.extend(best.filter(|(after, _)| gains(ordinary, *after)).map(
                 |(after, program)| Advised {
                     words: program.words.clone(),
@@ -134,22 +137,23 @@ impl Conditions {
     }
 }
 
-/// Six flights of one sort, or three each of two sorts of one kind.
+/// Six flights of one sort first, then three each of two sorts of one kind.
 fn programs(flights: &[(Kind, String, FlightInformation)], now: &Mat<f64>) -> Vec<Program> {
     let mut programs = Vec::new();
     let mut add = |kind: Kind, words: String, parts: &[(&FlightInformation, f64)]| {
         if let Some(more) = added(parts) {
-            programs.push(Program { kind, words, gram: now + more });
+            programs.push(Program { kind, mixed: parts.len() > 1, words, gram: now + more });
         }
     };
-    for (place, (kind, words, flight)) in flights.iter().enumerate() {
+    for (kind, words, flight) in flights {
         add(*kind, format!("six flights with {words}"), &[(flight, FLIGHTS as f64)]);
-        let half = FLIGHTS as f64 / 2.0;
-        for (other_kind, other_words, other) in &flights[place + 1..] {
-            if other_kind == kind {
-                let words = format!("three flights with {words}, and three with {other_words}");
-                add(*kind, words, &[(flight, half), (other, half)]);
-            }
+    }
+    let half = FLIGHTS as f64 / 2.0;
+    for (place, (kind, words, flight)) in flights.iter().enumerate() {
+        for (_, other_words, other) in flights[place + 1..].iter().filter(|other| other.0 == *kind)
+        {
+            let words = format!("three flights with {words}, and three with {other_words}");
+            add(*kind, words, &[(flight, half), (other, half)]);
         }
     }
     programs

@@ -354,7 +354,7 @@ fn conclude(
                     .map_or_else(Vec::new, |class| class.iter().map(|&e| name(e)).collect()),
                 nearest_other: distances.nearest_other(library, effect),
                 nearest_pair: distances.nearest_pair(library, effect),
-                separation: class.and_then(|class| advisor.beforehand(effect, class)),
+                separations: class.map_or_else(Vec::new, |class| advisor.beforehand(effect, class)),
             }
         })
         .collect();
@@ -779,12 +779,7 @@ fn advice(verdict: &Verdict, differs: Option<&str>) -> String {
         let _ = write!(words, " Its form differs from the library's in {variable}.");
     }
     if let Some(best) = verdict.separations.first() {
-        let _ = write!(
-            words,
-            " To be sure: {} ({}).",
-            best.measurement,
-            best.distances_told()
-        );
+        let _ = write!(words, " To be sure: {} ({}).", best.measurement, best.distances_told());
     }
     words
 }

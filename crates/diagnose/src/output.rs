@@ -188,10 +188,10 @@ pub struct Detectable {
     pub nearest_other: f64,
     /// Distance at the typical size from the nearest pair of others.
     pub nearest_pair: f64,
-    /// What would best tell it, at the typical size, from the nearest other effect of its class; `null` where the class is
-    /// itself alone, or nothing known here would.
+    /// Measurements and flights on purpose that would tell it, at the typical size, from the nearest other effect of its
+    /// class, the best first.
     #[serde(default)]
-    pub separation: Option<Separation>,
+    pub separations: Vec<Separation>,
 }
 
 /// Probability of a cause outside the library.

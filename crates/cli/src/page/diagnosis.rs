@@ -1,6 +1,6 @@
 //! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be seen.
 
-use diagnose::{Cause, Diagnosis, VerdictKind};
+use diagnose::{Cause, Diagnosis, Separation, VerdictKind};
 use maud::{Markup, html};
 
 use super::{fleet, framed};
@@ -10,6 +10,8 @@ use crate::words;
 
 /// Causes shown of each tail.
 const CAUSES_SHOWN: usize = 8;
+/// Measurements or flights shown of each effect, whatever is found.
+const SEPARATIONS_SHOWN: usize = 2;
 
 /// The page of diagnoses.
 pub fn diagnosis(read: usize, refused: &[RefusedReport], diagnoses: &[Diagnosis]) -> String {
@@ -51,18 +53,10 @@ fn section(diagnosis: &Diagnosis) -> Markup {
             }
             @if !diagnosis.verdict.separations.is_empty() {
                 h3 { "What would separate them" }
-                table {
-                    thead { tr {
-                        th scope="col" { "measurement" } th scope="col" { "tells it from" }
-                        th scope="col" { "distance now, σ" } th scope="col" { "distance then, σ" }
-                    } }
-                    tbody { @for one in &diagnosis.verdict.separations { tr {
-                        th scope="row" { (one.measurement) } td { (one.from) }
-                        td { (format!("{:.1}", one.distance_now)) } td { (format!("{:.1}", one.distance_then)) }
-                    } } }
-                }
+                (separations(diagnosis.verdict.separations.iter().map(|one| (None, one))))
             }
             (detectable(diagnosis))
+            (beforehand(diagnosis))
             @if !diagnosis.notes.is_empty() {
                 h3 { "Notes" }
                 ul { @for note in &diagnosis.notes { li { (note) } } }
@@ -154,6 +148,44 @@ fn detectable(diagnosis: &Diagnosis) -> Markup {
                     td { (one.unit) }
                 } } }
             }
+        }
+    }
+}
+
+/// Effects that share a class at their typical sizes, whatever was found, and what would tell each from the nearest.
+fn beforehand(diagnosis: &Diagnosis) -> Markup {
+    let told: Vec<_> = diagnosis
+        .detectable
+        .iter()
+        .flat_map(|one| {
+            let shown = one.separations.iter().take(SEPARATIONS_SHOWN);
+            shown.map(|separation| (Some(one.effect.as_str()), separation))
+        })
+        .collect();
+    html! {
+        @if !told.is_empty() {
+            h3 { "What these flights could not tell apart, at typical sizes, and what could" }
+            (separations(told.into_iter()))
+        }
+    }
+}
+
+fn separations<'a>(all: impl Iterator<Item = (Option<&'a str>, &'a Separation)> + Clone) -> Markup {
+    let named = all.clone().any(|(effect, _)| effect.is_some());
+    html! {
+        table {
+            thead { tr {
+                @if named { th scope="col" { "effect" } }
+                th scope="col" { "measurement or flights" } th scope="col" { "tells it from" }
+                th scope="col" { "distance now, σ" } th scope="col" { "distance then, σ" }
+                th scope="col" { "with six ordinary flights, σ" }
+            } }
+            tbody { @for (effect, one) in all { tr {
+                @if let Some(effect) = effect { th scope="row" { (effect) } }
+                td { (one.measurement) } td { (one.from) }
+                td { (format!("{:.1}", one.distance_now)) } td { (format!("{:.1}", one.distance_then)) }
+                td { @if let Some(distance) = one.distance_ordinary_flights { (format!("{distance:.1}")) } @else { "–" } }
+            } } }
         }
     }
 }

@@ -15,6 +15,12 @@ const REDUCED_SEPARATION_TO: u32 = 410;
 /// Shares of the segments below the mass and the fuel used of a light and of a heavy aircraft.
 const LIGHT: f64 = 0.1;
 const HEAVY: f64 = 0.9;
+/// From one segment to the next, s: a new level or Mach number, settled and held. Our choice.
+const SEGMENT_EVERY_S: f64 = 600.0;
+/// How near to the edges of the drag table a flight on purpose may be planned: as Mach number, hundredths, and as a share of
+/// mass, since the aircraft will not be exactly there.
+const EDGE_MACH: u32 = 1;
+const EDGE_MASS: f64 = 0.02;
 /// Gross masses are rounded to this, kg.
 const MASS_STEP_KG: f64 = 100.0;
 
@@ -31,11 +37,13 @@ pub(crate) struct Loading {
 pub(crate) struct Envelope {
     /// Flight levels from the lowest to the highest flown.
     pub(crate) levels: Vec<u32>,
-    /// Slowest, usual and fastest Mach numbers of the data, hundredths; see [`Envelope::of`].
+    /// Slowest Mach number that was flown, hundredths.
     pub(crate) slowest: u32,
+    /// A slow, the middle and a fast one.
     pub(crate) usual: [u32; 3],
+    /// The fastest that was flown, inside the drag table.
     pub(crate) fastest: u32,
-    /// Slowest Mach number of the drag table, hundredths.
+    /// Slowest Mach number of the drag table that may be planned, hundredths.
     pub(crate) table_from: u32,
     pub(crate) loadings: Vec<Loading>,
     pub(crate) recorded: Recorded,
@@ -54,8 +62,7 @@ pub(crate) struct Envelope {
 }
 
 impl Envelope {
-    /// Of the data at hand. Mach numbers are rounded to the outside where they say what was flown (`slowest`), to the
-    /// inside where they limit what may be (`fastest`).
+    /// Of the data at hand.
     ///
     /// Whatever is neither Mach number, pressure altitude, mass nor fuel used is as usual: the median; wind and position
     /// those of the segment whose eastward speed is the median; the date is the last one.
@@ -68,21 +75,17 @@ impl Envelope {
         let mass_kg = of(&|p| p.mass_kg);
         let fuel_used_kg = of(&|p| p.fuel_used_kg);
         let take_off_mass_kg = of(&|p| p.mass_kg + p.fuel_used_kg);
-        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NEG_INFINITY, f64::max);
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.fold(f64::NEG_INFINITY, f64::max);
         let rows = || data.segments.iter().map(|row| &row.response);
         let references = model.references();
+        let table = model.drag_table().grid().y();
         let isa_deviation_k = sorted(
             data.segments
                 .iter()
-                .filter_map(|row| Variable::IsaDeviation.value(&row.point, &row.response, references))
-                .collect(),
-        );
-        let burns_kg = sorted(
-            data.flights
-                .iter()
-                .flat_map(|flight| data.segments[flight.segments.clone()].windows(2))
-                .map(|pair| pair[0].point.mass_kg - pair[1].point.mass_kg)
-                .filter(|burn_kg| *burn_kg > 0.0)
+                .filter_map(|row| {
+                    Variable::IsaDeviation.value(&row.point, &row.response, references)
+                })
                 .collect(),
         );
         let samples = sorted(data.segments.iter().map(|row| row.samples as f64).collect());
@@ -93,8 +96,9 @@ impl Envelope {
             levels: levels(*pressure_altitude_m.first()?, *pressure_altitude_m.last()?),
             slowest: hundredths(mach.first()? + 1e-9, f64::floor),
             usual: [LIGHT, 0.5, HEAVY].map(|share| hundredths(quantile(&mach, share), f64::round)),
-            fastest: hundredths(mach.last()? + 1e-9, f64::floor),
-            table_from: hundredths(model.drag_table().grid().y().first() - 1e-9, f64::ceil),
+            fastest: hundredths(mach.last()? + 1e-9, f64::floor)
+                .min(hundredths(table.last() + 1e-9, f64::floor).saturating_sub(EDGE_MACH)),
+            table_from: hundredths(table.first() - 1e-9, f64::ceil) + EDGE_MACH,
             loadings: vec![],
             #[expect(
                 clippy::cast_possible_truncation,
@@ -105,11 +109,14 @@ impl Envelope {
                 samples: quantile(&samples, 0.5) as usize,
                 gauge_deviation: gauged.then(|| quantile(&sorted(gauges), 0.5)),
             },
-            burn_kg: if burns_kg.is_empty() { 0.0 } else { quantile(&burns_kg, 0.5) },
+            burn_kg: SEGMENT_EVERY_S * references.fuel_flow_total_kg_s,
             largest_lift_coefficient: largest(&mut rows().map(|r| r.lift_coefficient)),
             largest_ln_corrected_thrust: largest(&mut rows().map(|r| r.ln_corrected_thrust)),
             largest_ln_pressure: largest(
-                &mut data.segments.iter().map(|row| ln_pressure(&row.point, row.response.ln_pressure_ratio)),
+                &mut data
+                    .segments
+                    .iter()
+                    .map(|row| ln_pressure(&row.point, row.response.ln_pressure_ratio)),
             ),
             take_off_mass_kg: [*take_off_mass_kg.first()?, *take_off_mass_kg.last()?],
             mass_kg: [*mass_kg.first()?, *mass_kg.last()?],
@@ -189,9 +196,16 @@ impl Envelope {
     }
 
     pub(crate) fn admits(&self, model: &EffectModel<'_>, point: &EffectPoint) -> bool {
-        let Ok(response) = model.response(point, &Effects::none()) else { return false };
+        let none = Effects::none();
+        let Ok(response) = model.response(point, &none) else { return false };
+        let inside = |share: f64| {
+            let beside = EffectPoint { mass_kg: point.mass_kg * share, ..*point };
+            model.response(&beside, &none).is_ok()
+        };
         let within = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);
-        within(point.mass_kg, self.mass_kg)
+        inside(1.0 - EDGE_MASS)
+            && inside(1.0 + EDGE_MASS)
+            && within(point.mass_kg, self.mass_kg)
             && within(point.mass_kg + point.fuel_used_kg, self.take_off_mass_kg)
             && response.lift_coefficient <= self.largest_lift_coefficient
             && response.ln_corrected_thrust <= self.largest_ln_corrected_thrust
@@ -209,7 +223,8 @@ fn template(data: &Data<'_>, model: &EffectModel<'_>) -> Option<EffectPoint> {
         .segments
         .iter()
         .map(|row| {
-            let value = Variable::EastwardSpeed.value(&row.point, &row.response, model.references());
+            let value =
+                Variable::EastwardSpeed.value(&row.point, &row.response, model.references());
             (value.unwrap_or(0.0), &row.point)
         })
         .collect();
@@ -243,7 +258,9 @@ pub(crate) fn level_m(level: u32) -> f64 {
 fn levels(lowest_m: f64, highest_m: f64) -> Vec<u32> {
     (10..=1000)
         .step_by(10)
-        .filter(|&level| level <= REDUCED_SEPARATION_TO || (level - REDUCED_SEPARATION_TO).is_multiple_of(20))
+        .filter(|&level| {
+            level <= REDUCED_SEPARATION_TO || (level - REDUCED_SEPARATION_TO).is_multiple_of(20)
+        })
         .filter(|&level| {
             let m = level_m(level);
             m >= lowest_m - LEVEL_TOLERANCE_M && m <= highest_m + LEVEL_TOLERANCE_M
@@ -251,7 +268,11 @@ fn levels(lowest_m: f64, highest_m: f64) -> Vec<u32> {
         .collect()
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "Mach numbers of a table")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "Mach numbers of a table"
+)]
 fn hundredths(mach: f64, round: fn(f64) -> f64) -> u32 {
     round(100.0 * mach) as u32
 }
@@ -283,7 +304,10 @@ mod tests {
     #[test]
     fn quantiles_by_hand() {
         let values = sorted(vec![3.0, 1.0, 2.0, 5.0, 4.0]);
-        assert_eq!([0.0, 0.1, 0.5, 0.9, 1.0].map(|q| quantile(&values, q)), [1.0, 1.0, 3.0, 5.0, 5.0]);
+        assert_eq!(
+            [0.0, 0.1, 0.5, 0.9, 1.0].map(|q| quantile(&values, q)),
+            [1.0, 1.0, 3.0, 5.0, 5.0]
+        );
         assert!(quantile(&[], 0.5).is_nan());
     }
 }

@@ -129,7 +129,8 @@ mod tests {
         let b = Mat::from_fn(9, 7, |i, j| value(i, j, 8.7));
         let gram = flown.transpose() * &flown;
         let (kept, out) = ([0, 1, 2], [3, 4, 5, 6]);
-        let integrated = |gram: &Mat<f64>| integrate_out(gram, &kept, &out, &[1.0; 4]).unwrap().matrix;
+        let integrated =
+            |gram: &Mat<f64>| integrate_out(gram, &kept, &out, &[1.0; 4]).unwrap().matrix;
         let known = Known::of(&gram, &kept, 3..7).unwrap();
         let (fa, fb) = (known.flight(&a), known.flight(&b));
         let sum = &gram

@@ -21,8 +21,7 @@ fn with<R>(
 ) -> R {
     let records: Vec<FlightRecord<'_>> =
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-    let references: EffectReferences =
-        references_of(model, model.drag_table(), &records).unwrap();
+    let references: EffectReferences = references_of(model, model.drag_table(), &records).unwrap();
     let effects = EffectModel::new(model, model.drag_table(), references).unwrap();
     let (data, library) = Data::prepare(&effects, &records, None, |points, engines, starts| {
         Library::of(&effects, points, engines, starts, |_| true)
@@ -62,9 +61,8 @@ fn every_candidate_keeps_to_what_was_flown() {
         let (lowest, highest) = range(&|m| m.pressure_altitude_m);
         let (lightest, heaviest) = range(&|m| m.mass_kg);
         // Lift coefficient by hand: m·g/(0.7·p·M²·S) with the fleet's own atmosphere and wing.
-        let lift = |m: f64, h: f64, mach: f64| {
-            m * 9.80665 / (0.7 * flown::isa(h).1 * mach * mach * 48.96)
-        };
+        let lift =
+            |m: f64, h: f64, mach: f64| m * 9.80665 / (0.7 * flown::isa(h).1 * mach * mach * 48.96);
         let (_, most_lift) = range(&|m| lift(m.mass_kg, m.pressure_altitude_m, m.mach));
         let pressure = |h: f64, mach: f64| flown::isa(h).1 * mach * mach;
         let (_, most_pressure) = range(&|m| pressure(m.pressure_altitude_m, m.mach));
@@ -74,7 +72,10 @@ fn every_candidate_keeps_to_what_was_flown() {
                 let response = effects.response(p, &Effects::none()).unwrap();
                 assert!(response.net_thrust_n > 0.0);
                 assert!(p.mach <= fastest && p.mach >= 0.50, "{}", flight.words);
-                assert!(p.pressure_altitude_m >= lowest - 30.5 && p.pressure_altitude_m <= highest + 30.5);
+                assert!(
+                    p.pressure_altitude_m >= lowest - 30.5
+                        && p.pressure_altitude_m <= highest + 30.5
+                );
                 assert!(p.mass_kg >= lightest && p.mass_kg <= heaviest, "{}", flight.words);
                 let cl = lift(p.mass_kg, p.pressure_altitude_m, p.mach);
                 assert!(cl <= 1.0001 * most_lift, "{} {cl}", flight.words);
@@ -183,7 +184,8 @@ fn advice_is_ranked_and_repeats() {
     let flights = fleet(20);
     with(&model, &flights, |stacked, effects, library, distances| {
         let columns: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
-        let again = || Conditions::of(stacked, effects, library, distances, columns.clone()).unwrap();
+        let again =
+            || Conditions::of(stacked, effects, library, distances, columns.clone()).unwrap();
         let (conditions, other) = (again(), again());
         let mut offered = 0;
         for k in &library.effects {
