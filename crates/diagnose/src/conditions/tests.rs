@@ -146,8 +146,8 @@ fn flights_never_tell_less() {
     });
 }
 
-/// A fleet flown at Mach 0.80 and nothing else says nothing of TSFC's exponent of Mach number: ln((1 + M)/(1 + M_ref)) is
-/// zero. Whatever the level, only another Mach number can tell the exponent from a constant factor, and it must: at
+/// A fleet flown at Mach 0.80 and nothing else says nothing of TSFC's exponent of Mach number: `ln((1 + M)/(1 + M_ref))`
+/// is zero. Whatever the level, only another Mach number can tell the exponent from a constant factor, and it must: at
 /// Mach 0.70 against 0.80 the exponent's typical size 0.1 makes 0.1·ln(1.70/1.80) = −0.57 % of fuel flow.
 #[test]
 fn a_fleet_at_one_mach_number_is_told_to_sweep_it() {
@@ -155,7 +155,6 @@ fn a_fleet_at_one_mach_number_is_told_to_sweep_it() {
     let mut flights = fleet(30);
     for segment in flights.iter_mut().flatten() {
         let means = &mut segment.means;
-        // As fast as the aircraft can be told to keep a Mach number; levels where all of it is inside the table.
         let mach = 0.80 + 0.002 * (means.mach - 0.8);
         means.true_airspeed_m_s *= mach / means.mach;
         means.mach = mach;

@@ -20,7 +20,7 @@ pub(crate) struct Recorded {
     pub(crate) gauge_deviation: Option<f64>,
 }
 
-impl<'a> Data<'a> {
+impl Data<'_> {
     /// One planned flight as data of its own: noise, nuisance and the signatures of the library's columns as for flights
     /// that were flown, residuals of zero. `None` where the model cannot predict a point.
     pub(crate) fn planned(
@@ -29,7 +29,7 @@ impl<'a> Data<'a> {
         library: &Library,
         points: &[EffectPoint],
         recorded: Recorded,
-    ) -> Option<Data<'a>> {
+    ) -> Option<Self> {
         let factors =
             self.predictor.baseline.map_or_else(NoiseFactors::default, |b: &Baseline| *b.noise());
         let samples: Vec<u32> = (0..u32::try_from(recorded.samples).ok()?).collect();

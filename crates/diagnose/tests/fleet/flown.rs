@@ -3,7 +3,10 @@
 //! The truth's forms are not the library's: Prandtl–Schlichting friction for a power law, saturating ageing for a rate,
 //! two half-parabolas for one, bent trim drag, a hidden anti-ice switch, ageostrophic wind, exact sensor errors.
 #![allow(dead_code, reason = "each test uses its part")]
-#![expect(clippy::unwrap_used, reason = "tests and examples only")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "tests and examples only; in the library's own tests the lint is off"
+)]
 
 use std::sync::Arc;
 
