@@ -30,20 +30,20 @@ impl<'a> Advisor<'a> {
         let confused = classes.iter().filter(|class| class.len() > 1).flatten();
         let columns = confused
             .chain(likely)
-            .map(|&effect| distances.leading(effect))
+            .flat_map(|&effect| library.effects[effect].all_columns())
             .chain(found.iter().copied())
             .collect();
         let conditions = Conditions::of(stacked, model, library, distances, columns);
         Self { distances, library, conditions }
     }
 
-    /// What would tell a column at a size from another effect, the best first.
+    /// What would tell a column at a size from another effect, whatever the other's hidden parameter; the best first.
     pub(crate) fn between(&self, column: usize, size: f64, other: usize) -> Vec<Separation> {
         let from = self.library.effects[other].id.to_string();
-        let leading = self.distances.leading(other);
+        let others = self.library.effects[other].all_columns();
         let mut all: Vec<Separation> = self
             .distances
-            .measurements(self.library, column, leading, size)
+            .measurements(self.library, column, others.clone(), size)
             .into_iter()
             .map(|found| Separation {
                 from: from.clone(),
@@ -53,7 +53,8 @@ impl<'a> Advisor<'a> {
                 distance_ordinary_flights: None,
             })
             .collect();
-        let flights = self.conditions.iter().flat_map(|at| at.advised(column, leading, size));
+        let flights =
+            self.conditions.iter().flat_map(|at| at.advised(column, others.clone(), size));
         all.extend(flights.map(|found| Separation {
             from: from.clone(),
             measurement: found.words,
@@ -73,7 +74,8 @@ impl<'a> Advisor<'a> {
             .iter()
             .filter(|&&other| other != effect)
             .map(|&other| {
-                (self.distances.squared(column, self.distances.leading(other), size).0, other)
+                let columns = self.library.effects[other].all_columns();
+                (self.distances.squared_from_any(column, columns, size), other)
             })
             .min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map_or_else(Vec::new, |(_, other)| self.between(column, size, other))

@@ -76,6 +76,16 @@ impl Distances {
         squared(&self.gram, k, l, size)
     }
 
+    /// Squared distance of a column at a size from the nearest of several: those of an effect with a hidden parameter.
+    pub(crate) fn squared_from_any(
+        &self,
+        k: usize,
+        others: core::ops::Range<usize>,
+        size: f64,
+    ) -> f64 {
+        squared_from_any(&self.gram, k, others, size)
+    }
+
     /// Squared distance of a column at a size from the best-fitting pair of two others.
     fn squared_from_pair(&self, k: usize, pair: [usize; 2], size: f64) -> f64 {
         let g = &self.gram;
@@ -127,9 +137,7 @@ impl Distances {
         let distance = |a: usize, b: usize| {
             let (ea, eb) = (&library.effects[a], &library.effects[b]);
             let from = |k: usize, e: &crate::library::Testable, f: &crate::library::Testable| {
-                (f.first_column..f.first_column + f.columns)
-                    .map(|l| self.squared(k, l, e.typical).0)
-                    .fold(f64::INFINITY, f64::min)
+                self.squared_from_any(k, f.all_columns(), e.typical)
             };
             from(self.leading[a], ea, eb).min(from(self.leading[b], eb, ea))
         };
@@ -167,7 +175,7 @@ impl Distances {
             if index == own {
                 continue;
             }
-            let confused = (effect.first_column..effect.first_column + effect.columns).any(|l| {
+            let confused = effect.all_columns().any(|l| {
                 let (squared, implied) = self.squared(column, l, size);
                 let plausible = if effect.known {
                     (implied - 1.0).abs() < 0.5
@@ -183,17 +191,17 @@ impl Distances {
         class
     }
 
-    /// Measurements by the distance that they would put between two effects, the best first; those that gain less than a
-    /// tenth are left out.
+    /// Measurements by the distance that they would put between a column at a size and another effect, whose columns are
+    /// `others`, the best first; those that gain less than a tenth are left out.
     pub(crate) fn measurements(
         &self,
         library: &Library,
         k: usize,
-        l: usize,
+        others: core::ops::Range<usize>,
         size: f64,
     ) -> Vec<Measurement> {
         use flight::effect::EffectId;
-        let before = self.squared(k, l, size).0.sqrt();
+        let before = self.squared_from_any(k, others.clone(), size).sqrt();
         let mut found = Vec::new();
         let mass_kg = library
             .effects
@@ -224,7 +232,7 @@ impl Distances {
         for (id, deviation, words) in offers {
             let mut gram = self.gram.clone();
             let mut touched = false;
-            for column in [k, l] {
+            for column in others.clone().chain([k]) {
                 let own = library.effects[library.columns[column].effect].id;
                 // Gauges see the sum of the meters: one engine's share of an error is twice as hard to see with two.
                 let share = match (id, own) {
@@ -236,11 +244,11 @@ impl Distances {
                 touched = true;
             }
             if touched {
-                let after = squared(&gram, k, l, size).0.sqrt();
+                let after = squared_from_any(&gram, k, others.clone(), size).sqrt();
                 found.push(Measurement { words, before, after });
             }
         }
-        let after = squared(&self.with_deck, k, l, size).0.sqrt();
+        let after = squared_from_any(&self.with_deck, k, others, size).sqrt();
         found.push(Measurement { words: "measure an N2 deck (to 0.1 %)", before, after });
         found.retain(|m| gains(m.before, m.after));
         found.sort_by(|a, b| b.after.total_cmp(&a.after));
@@ -263,6 +271,16 @@ pub(crate) fn leading_columns(library: &Library, models: &[(Scored, f64)]) -> Ve
         }
     }
     leading
+}
+
+/// The smallest of [`squared`] over several columns.
+pub(crate) fn squared_from_any(
+    g: &Mat<f64>,
+    k: usize,
+    others: impl IntoIterator<Item = usize>,
+    size: f64,
+) -> f64 {
+    others.into_iter().map(|l| squared(g, k, l, size).0).fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a distance is worth an effort: a tenth more than another one, and a tenth of a standard deviation.

@@ -11,7 +11,7 @@ use faer::Mat;
 use perf_model::effects::EffectModel;
 
 use crate::analysis::Stacked;
-use crate::classes::{Distances, gains, squared};
+use crate::classes::{Distances, gains, squared_from_any};
 use crate::gram::integrate_out;
 use crate::library::{Column, Library};
 
@@ -104,12 +104,22 @@ impl Conditions {
         (!programs.is_empty()).then_some(Self { columns, now, ordinary, programs })
     }
 
-    /// The best flights of each kind between columns `k` at a size and `l`, those that gain clearly more than ordinary
-    /// flights, the best first.
-    pub(crate) fn advised(&self, k: usize, l: usize, size: f64) -> Vec<Advised> {
+    /// The best flights of each kind between column `k` at a size and an effect whose columns are `others`, those that gain
+    /// clearly more than ordinary flights, the best first.
+    pub(crate) fn advised(
+        &self,
+        k: usize,
+        others: core::ops::Range<usize>,
+        size: f64,
+    ) -> Vec<Advised> {
         let place = |column: usize| self.columns.binary_search(&column).ok();
-        let (Some(k), Some(l)) = (place(k), place(l)) else { return vec![] };
-        let distance = |gram: &Mat<f64>| squared(gram, k, l, size).0.sqrt();
+        let count = others.len();
+        let others: Vec<usize> = others.filter_map(place).collect();
+        let Some(k) = place(k).filter(|_| count > 0 && others.len() == count) else {
+            return vec![];
+        };
+        let distance =
+            |gram: &Mat<f64>| squared_from_any(gram, k, others.iter().copied(), size).sqrt();
         let before = distance(&self.now);
         let ordinary = self.ordinary.iter().map(distance).fold(before, f64::max);
         let mut found = Vec::new();

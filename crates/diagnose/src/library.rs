@@ -40,6 +40,13 @@ pub(crate) struct Testable {
     pub(crate) representative: usize,
 }
 
+impl Testable {
+    /// Its columns, one for each value of its hidden parameter.
+    pub(crate) const fn all_columns(&self) -> core::ops::Range<usize> {
+        self.first_column..self.first_column + self.columns
+    }
+}
+
 /// Testable effects, their columns, and what cannot be tested.
 #[derive(Clone, Debug)]
 pub(crate) struct Library {

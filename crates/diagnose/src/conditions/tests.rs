@@ -4,7 +4,7 @@ use perf_model::PerformanceModel;
 use perf_model::effects::{EffectReferences, Effects};
 
 use super::*;
-use crate::classes::CONFUSED;
+use crate::classes::{CONFUSED, squared};
 use crate::data::Data;
 use crate::design::Design;
 use crate::{FlightRecord, references_of};
@@ -166,7 +166,7 @@ fn a_fleet_at_one_mach_number_is_told_to_sweep_it() {
             Conditions::of(stacked, effects, library, distances, vec![factor, exponent]).unwrap();
         let size = 0.1;
         assert!(distances.squared(exponent, factor, size).0 < 0.1 * CONFUSED);
-        let advised = conditions.advised(exponent, factor, size);
+        let advised = conditions.advised(exponent, factor..factor + 1, size);
         let best = advised.first().expect("a Mach sweep");
         assert!(best.words.contains("a Mach sweep"), "{}", best.words);
         assert!(best.words.contains("slower than any flown"), "{}", best.words);
@@ -182,15 +182,16 @@ fn advice_is_ranked_and_repeats() {
     let model = exact_model();
     let flights = fleet(20);
     with(&model, &flights, |stacked, effects, library, distances| {
-        let columns: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
+        let columns: Vec<usize> = (0..library.columns.len()).collect();
         let again =
             || Conditions::of(stacked, effects, library, distances, columns.clone()).unwrap();
         let (conditions, other) = (again(), again());
         let mut offered = 0;
         for k in &library.effects {
             for l in library.effects.iter().filter(|l| l.id != k.id) {
-                let advised = conditions.advised(k.representative, l.representative, k.typical);
-                assert_eq!(advised, other.advised(k.representative, l.representative, k.typical));
+                let advised = conditions.advised(k.representative, l.all_columns(), k.typical);
+                let once_more = other.advised(k.representative, l.all_columns(), k.typical);
+                assert_eq!(advised, once_more);
                 assert!(advised.iter().all(|one| one.after > 1.1 * one.ordinary + 0.1));
                 assert!(advised.is_sorted_by(|a, b| a.after >= b.after));
                 offered += usize::from(!advised.is_empty());
