@@ -152,11 +152,11 @@ fn shrinkage(
     };
     for (index, flight) in data.flights.iter().enumerate() {
         let (columns, sizes) = choice(fold_of(index));
-        let effects = effects_of(library, &columns, &sizes);
+        let trial = model.trial(&effects_of(library, &columns, &sizes));
         let (mut before, mut after, mut floor) = (0.0, 0.0, 0.0);
         for row in &data.segments[flight.segments.clone()] {
             let gap = row.residual[0];
-            let closed = model.response(&row.point, &effects).map_or(0.0, |with| {
+            let closed = model.response_at(&row.known, &trial).map_or(0.0, |with| {
                 data.predictor.predict(&with)[0] - data.predictor.predict(&row.response)[0]
             });
             before += gap * gap;

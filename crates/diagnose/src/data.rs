@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use perf_model::effects::{
-    AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, Response, StepTarget,
+    AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, KnownPoint, Response,
+    StepTarget, Trial,
 };
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
@@ -64,6 +65,8 @@ const fn drag_rise(drag_divergence_mach: f64) -> Carried {
 #[derive(Clone, Debug)]
 pub(crate) struct SegmentRow {
     pub(crate) point: EffectPoint,
+    /// The same with what most effects leave alone.
+    pub(crate) known: KnownPoint,
     /// Prediction without any effect.
     pub(crate) response: Response,
     pub(crate) is_recorded: [bool; MAXIMUM_CHANNELS],
@@ -217,6 +220,7 @@ struct Inside<'a> {
     means: Cow<'a, SegmentMeans>,
     rows: &'a [u32],
     point: EffectPoint,
+    known: KnownPoint,
     response: Response,
 }
 
@@ -235,8 +239,8 @@ fn inside<'a>(
             let start_s = segment.identity.start.as_second() as f64;
             let found = model.corrected_means(&segment.means).and_then(|means| {
                 let point = EffectPoint::of_means(&means, start_s, engines);
-                let response = model.response(&point, &Effects::none())?;
-                Ok(Inside { means, rows: &segment.rows, point, response })
+                let (known, response) = model.known_point(&point)?;
+                Ok(Inside { means, rows: &segment.rows, point, known, response })
             });
             let flow_kg_s = segment.means.fuel_flow_total_kg_s;
             match found {
@@ -324,10 +328,11 @@ impl<'a> Data<'a> {
             segments: Vec::with_capacity(points.len()),
             left_out,
         };
+        let differences = Differences::of(model, &library, baseline.is_some());
         for (segments, gauges) in inside {
             let first = data.segments.len();
             for kept in segments {
-                match data.row(model, &kept, &library, &factors) {
+                match data.row(model, &kept, &library, &differences, &factors) {
                     Ok(row) => data.segments.push(row),
                     Err(error) => {
                         *data.left_out.entry(reason(&error).to_owned()).or_default() += 1;
@@ -348,6 +353,7 @@ impl<'a> Data<'a> {
         model: &EffectModel<'_>,
         kept: &Inside<'_>,
         library: &Library,
+        differences: &Differences,
         factors: &NoiseFactors,
     ) -> Result<SegmentRow, perf_model::effects::EffectError> {
         let channels = self.channels;
@@ -379,6 +385,7 @@ impl<'a> Data<'a> {
         }
         let mut row = SegmentRow {
             point: kept.point,
+            known: kept.known,
             response: kept.response,
             environment: [[0.0; MAXIMUM_CHANNELS]; ENVIRONMENT.len()],
             is_recorded,
@@ -397,20 +404,10 @@ impl<'a> Data<'a> {
             samples: kept.rows.len(),
             chords: chord_errors(model, &kept.response),
         };
-        // Only where there is a baseline to carry them, or one to be taught (then there is no library).
-        let carries = self.predictor.baseline.is_some() || library.columns.is_empty();
-        for (slot, effect) in row.environment.iter_mut().zip(&ENVIRONMENT).filter(|_| carries) {
-            *slot = signature(
-                model,
-                &row.point,
-                &Effects::none(),
-                effect.id,
-                effect.hidden,
-                0.5 * model.references().typical_size(effect.id),
-                row.is_recorded,
-                &self.predictor,
-            )
-            .unwrap_or([0.0; MAXIMUM_CHANNELS]);
+        for (slot, carried) in row.environment.iter_mut().zip(&differences.environment) {
+            *slot = carried
+                .signature(model, &row.known, row.is_recorded, &self.predictor)
+                .unwrap_or([0.0; MAXIMUM_CHANNELS]);
         }
         if let Some(baseline) = self.predictor.baseline {
             for (slope, carried) in row.environment.iter().zip(baseline.environment()) {
@@ -422,7 +419,7 @@ impl<'a> Data<'a> {
         }
         // A step is the same whenever it began, and nothing before.
         let mut steps: BTreeMap<StepTarget, ByChannel> = BTreeMap::new();
-        for column in &library.columns {
+        for (column, difference) in library.columns.iter().zip(&differences.columns) {
             let effect = &library.effects[column.effect];
             let is_step = effect.id == EffectId::StepChange;
             if is_step && row.point.date_s < column.hidden.step_from_s {
@@ -433,16 +430,7 @@ impl<'a> Data<'a> {
                 row.signatures.push(*known);
                 continue;
             }
-            let found = signature(
-                model,
-                &row.point,
-                &Effects::none(),
-                effect.id,
-                column.hidden,
-                0.5 * effect.typical,
-                row.is_recorded,
-                &self.predictor,
-            );
+            let found = difference.signature(model, &row.known, row.is_recorded, &self.predictor);
             // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
             let found = found.unwrap_or([0.0; MAXIMUM_CHANNELS]);
             if is_step {
@@ -458,33 +446,77 @@ impl<'a> Data<'a> {
     }
 }
 
-/// Central difference of every channel with an effect about `at`; `step` in the effect's unit.
-#[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
-pub(crate) fn signature(
-    model: &EffectModel<'_>,
-    point: &EffectPoint,
-    at: &Effects,
-    id: flight::effect::EffectId,
-    hidden: HiddenParameters,
+/// Central difference of every channel with an effect, made ready for many segments.
+pub(crate) struct Difference {
+    up: Trial,
+    down: Trial,
+    /// In the effect's unit.
     step: f64,
-    is_recorded: [bool; MAXIMUM_CHANNELS],
-    predictor: &Predictor<'_>,
-) -> Result<ByChannel, perf_model::effects::EffectError> {
-    let size = at.size(id);
-    let predict = |size: f64| {
-        let effects = at.clone().with(id, size).with_hidden(hidden);
-        Ok::<_, perf_model::effects::EffectError>(
-            predictor.predict(&model.response(point, &effects)?),
-        )
-    };
-    let (up, down) = (predict(size + step)?, predict(size - step)?);
-    let mut slope = [0.0; MAXIMUM_CHANNELS];
-    for channel in 0..predictor.channels.count() {
-        if is_recorded[channel] {
-            slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
-        }
+}
+
+impl Difference {
+    /// About `at`, whose other effects stay.
+    pub(crate) fn of(
+        model: &EffectModel<'_>,
+        at: &Effects,
+        id: EffectId,
+        hidden: HiddenParameters,
+        step: f64,
+    ) -> Self {
+        let size = at.size(id);
+        let trial = |size: f64| model.trial(&at.clone().with(id, size).with_hidden(hidden));
+        Self { up: trial(size + step), down: trial(size - step), step }
     }
-    Ok(slope)
+
+    pub(crate) fn signature(
+        &self,
+        model: &EffectModel<'_>,
+        point: &KnownPoint,
+        is_recorded: [bool; MAXIMUM_CHANNELS],
+        predictor: &Predictor<'_>,
+    ) -> Result<ByChannel, perf_model::effects::EffectError> {
+        let up = predictor.predict(&model.response_at(point, &self.up)?);
+        let down = predictor.predict(&model.response_at(point, &self.down)?);
+        let mut slope = [0.0; MAXIMUM_CHANNELS];
+        for channel in 0..predictor.channels.count() {
+            if is_recorded[channel] {
+                slope[channel] = (up[channel] - down[channel]) / (2.0 * self.step);
+            }
+        }
+        Ok(slope)
+    }
+}
+
+/// Differences of every column of a library, and of what a baseline carries.
+struct Differences {
+    columns: Vec<Difference>,
+    environment: Vec<Difference>,
+}
+
+impl Differences {
+    fn of(model: &EffectModel<'_>, library: &Library, has_baseline: bool) -> Self {
+        let none = Effects::none();
+        let columns = library
+            .columns
+            .iter()
+            .map(|column| {
+                let effect = &library.effects[column.effect];
+                let hidden = column.hidden;
+                Difference::of(model, &none, effect.id, hidden, 0.5 * effect.typical)
+            })
+            .collect();
+        // Only where there is a baseline to carry them, or one to be taught (then there is no library).
+        let carries = has_baseline || library.columns.is_empty();
+        let environment = ENVIRONMENT
+            .iter()
+            .filter(|_| carries)
+            .map(|carried| {
+                let step = 0.5 * model.references().typical_size(carried.id);
+                Difference::of(model, &none, carried.id, carried.hidden, step)
+            })
+            .collect();
+        Self { columns, environment }
+    }
 }
 
 fn channels_of(

@@ -4,7 +4,7 @@ use faer::Mat;
 use perf_model::effects::{EffectModel, Effects, HiddenParameters};
 
 use crate::analysis::{Replaced, Stacked};
-use crate::data::signature;
+use crate::data::Difference;
 use crate::design::{half_whitened, whiten_flight};
 use crate::evidence::{Background, Mixture, Scored, Scorer, backgrounds_at_levels};
 use crate::gram::{Gram, Reduced, fold_of};
@@ -175,6 +175,14 @@ fn relinearise(
     let data = stacked.data;
     let design = stacked.design;
     let effects = effects_of(library, columns, sizes);
+    let trial = model.trial(&effects);
+    let differences: Vec<Difference> = columns
+        .iter()
+        .map(|&column| {
+            let effect = &library.effects[library.columns[column].effect];
+            Difference::of(model, &effects, effect.id, *effects.hidden(), 0.5 * effect.typical)
+        })
+        .collect();
     let channels = data.channels.count();
     let count = columns.len() + 1;
     let mut gram: Gram = stacked.folds.without(without).clone();
@@ -197,26 +205,15 @@ fn relinearise(
                     fresh[(place * channels + channel, column)] = white[channel];
                 }
             };
-            for (k, &column) in columns.iter().enumerate() {
-                let entry = &library.columns[column];
-                let effect = &library.effects[entry.effect];
+            for (k, difference) in differences.iter().enumerate() {
                 // A segment that cannot be flown with the effects says nothing about this one.
-                let slope = signature(
-                    model,
-                    &row.point,
-                    &effects,
-                    effect.id,
-                    *effects.hidden(),
-                    0.5 * effect.typical,
-                    row.is_recorded,
-                    &data.predictor,
-                )
-                .unwrap_or([0.0; MAXIMUM_CHANNELS]);
+                let slope = difference
+                    .signature(model, &row.known, row.is_recorded, &data.predictor)
+                    .unwrap_or([0.0; MAXIMUM_CHANNELS]);
                 put(&mut fresh, k, &slope);
             }
-            let with = data
-                .predictor
-                .predict(&model.response(&row.point, &effects).unwrap_or(row.response));
+            let with = model.response_at(&row.known, &trial).unwrap_or(row.response);
+            let with = data.predictor.predict(&with);
             let plain = data.predictor.predict(&row.response);
             let mut change = [0.0; MAXIMUM_CHANNELS];
             for channel in 0..channels {

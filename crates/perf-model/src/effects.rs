@@ -15,21 +15,25 @@ use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use lut::surface::{Basis, FitError, Surface, fit};
 use lut::{Outside, Table};
 use serde::{Deserialize, Serialize};
-use units::OutOfDomain;
+use units::{Mach, OutOfDomain};
 
+use crate::tsfc::tsfc;
 use crate::{Aircraft, FlightPoint, PerformanceModel};
 
 mod applied;
 mod drag;
 mod engine;
+mod known;
 mod recorded;
 mod terms;
 
 pub use applied::{AppliedEffects, AppliedLayer};
 pub use engine::ANTI_ICE_PROXY_K;
+pub use known::{KnownPoint, Trial};
 pub use terms::{Effects, HiddenParameters, StepTarget};
 
 pub(crate) use applied::Contained;
+use known::{Known, has_inputs};
 use terms::{Layers, Terms};
 
 /// What effects need to know about a segment. SI unless the name says otherwise.
@@ -483,16 +487,11 @@ impl<'a> EffectModel<'a> {
         point: &EffectPoint,
         effects: &Effects,
     ) -> Result<Response, EffectError> {
-        for (effect, size) in effects.iter() {
-            if size != 0.0
-                && let Some(needs) = Self::lacks(effect, point)
-            {
-                return Err(EffectError::NotRecorded { effect, needs });
-            }
-        }
+        let acting = effects.iter().filter(|(_, size)| *size != 0.0);
+        has_inputs(acting.map(|(effect, _)| effect), point)?;
         let trial = Terms::of(effects, &self.references);
         let layers = Layers { contained: self.contained, trial: &trial };
-        self.evaluate(point, layers, layers.moves_the_point())
+        self.evaluate(point, layers, layers.moves_the_point(), None).map(|(response, _)| response)
     }
 
     /// As [`response`](Self::response), at a point beside a recorded one: the table is continued in a straight line for
@@ -506,7 +505,8 @@ impl<'a> EffectModel<'a> {
         effects: &Effects,
     ) -> Result<Response, EffectError> {
         let trial = Terms::of(effects, &self.references);
-        self.evaluate(point, Layers { contained: self.contained, trial: &trial }, true)
+        let layers = Layers { contained: self.contained, trial: &trial };
+        self.evaluate(point, layers, true, None).map(|(response, _)| response)
     }
 
     fn evaluate(
@@ -514,12 +514,27 @@ impl<'a> EffectModel<'a> {
         point: &EffectPoint,
         layers: Layers<'_>,
         may_leave: bool,
-    ) -> Result<Response, EffectError> {
-        let flown = recorded::as_flown(point, layers.trial)?;
-        let weight_n = flown.mass_kg * drag::apparent_gravity_m_s2(point, layers);
+        known: Option<&Known>,
+    ) -> Result<(Response, Known), EffectError> {
+        let uncorrected = known.filter(|_| !layers.trial.corrects_recordings());
+        let (flown, tsfc_kg_per_n_s) = if let Some(known) = uncorrected {
+            (known.flown, known.tsfc_kg_per_n_s)
+        } else {
+            let flown = recorded::as_flown(point, layers.trial)?;
+            let law =
+                tsfc(self.aircraft.tsfc_law(), flown.temperature_ratio, Mach::new(flown.mach));
+            (flown, law.to_kilograms_per_newton_second())
+        };
+        let gravity_m_s2 = match known {
+            Some(known) if !layers.trial.changes_weight() => known.gravity_m_s2,
+            _ => drag::apparent_gravity_m_s2(point, layers),
+        };
         let surface_n = flown.dynamic_pressure_pa * self.aircraft.wing_area().to_square_meters();
-        let lift_coefficient = weight_n / surface_n;
-        let table = self.table_value(lift_coefficient, flown.mach, may_leave)?;
+        let lift_coefficient = flown.mass_kg * gravity_m_s2 / surface_n;
+        let table = match uncorrected {
+            Some(known) if !layers.trial.moves_the_point() => known.table,
+            _ => self.table_value(lift_coefficient, flown.mach, may_leave)?,
+        };
         let drag_coefficient =
             self.drag_coefficient(table, lift_coefficient, point, &flown, layers);
         let drag_n = surface_n * drag_coefficient;
@@ -529,21 +544,34 @@ impl<'a> EffectModel<'a> {
             return Err(EffectError::ThrustNotPositive { net_thrust_n });
         }
         let corrected_thrust_n = net_thrust_n / flown.pressure_ratio;
-        let (total_kg_s, engines_kg_s) =
-            self.recorded_fuel_flow(net_thrust_n, corrected_thrust_n, point, &flown, layers);
-        Ok(Response {
+        let (total_kg_s, engines_kg_s) = self.recorded_fuel_flow(
+            net_thrust_n,
+            corrected_thrust_n,
+            tsfc_kg_per_n_s,
+            point,
+            &flown,
+            layers,
+        );
+        let mut ln_fuel_flow_engine = [f64::NEG_INFINITY; MAXIMUM_ENGINES];
+        for (ln, flow_kg_s) in
+            ln_fuel_flow_engine.iter_mut().zip(engines_kg_s).take(self.aircraft.engines())
+        {
+            *ln = flow_kg_s.ln();
+        }
+        let response = Response {
             ln_fuel_flow_total: total_kg_s.ln(),
-            ln_fuel_flow_engine: engines_kg_s.map(f64::ln),
+            ln_fuel_flow_engine,
             ln_corrected_thrust: corrected_thrust_n.ln(),
-            ln_pressure_ratio: flown.pressure_ratio.ln(),
-            ln_temperature_ratio: flown.temperature_ratio.ln(),
+            ln_pressure_ratio: flown.ln_pressure_ratio,
+            ln_temperature_ratio: flown.ln_temperature_ratio,
             mach: flown.mach,
             lift_coefficient,
             drag_over_thrust: drag_n / net_thrust_n,
             net_thrust_n,
             unit_reynolds_number_per_m: flown.unit_reynolds_number_per_m,
             mass_kg: flown.mass_kg,
-        })
+        };
+        Ok((response, Known { flown, gravity_m_s2, table, tsfc_kg_per_n_s }))
     }
 
     /// The table's drag coefficient, continued in a straight line beyond the edge where an effect moved the point there.

@@ -324,7 +324,8 @@ impl PerformanceModel {
         };
         let trial = Terms::of(&Effects::none(), &EffectReferences::UNUSED);
         let layers = Layers { contained, trial: &trial };
-        model.evaluate(point, layers, layers.moves_the_point())
+        let (response, _) = model.evaluate(point, layers, layers.moves_the_point(), None)?;
+        Ok(response)
     }
 }
 

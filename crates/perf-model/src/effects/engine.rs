@@ -1,13 +1,11 @@
 //! Effects on TSFC and fuel flow, and on what the flow meters say.
 
 use flight::MAXIMUM_ENGINES;
-use units::Mach;
 
 use super::drag::years_since_reference;
 use super::recorded::AsFlown;
 use super::terms::{Layers, Terms};
 use super::{EffectModel, EffectPoint};
-use crate::tsfc::tsfc;
 
 /// Static air temperature above which anti-ice bleed is taken as on where it is not recorded, K: −40 °C.
 pub const ANTI_ICE_PROXY_K: f64 = 233.15;
@@ -23,11 +21,12 @@ impl EffectModel<'_> {
     /// recorded Wf_k = Wf_k·(1 + θWF,k)                                                             [diagnosis.11]
     /// ```
     ///
-    /// x is corrected thrust over its reference. Engines give equal thrust. Factors of all layers multiply, offtakes add.
+    /// x is corrected thrust over its reference, TSFC the aircraft's law. Engines give equal thrust. Factors of all layers multiply, offtakes add.
     pub(super) fn recorded_fuel_flow(
         &self,
         net_thrust_n: f64,
         corrected_thrust_n: f64,
+        tsfc_kg_per_n_s: f64,
         point: &EffectPoint,
         flown: &AsFlown,
         layers: Layers<'_>,
@@ -44,8 +43,7 @@ impl EffectModel<'_> {
         }
         let engines = self.aircraft.engines();
         let share = 1.0 / engines as f64;
-        let law = tsfc(self.aircraft.tsfc_law(), flown.temperature_ratio, Mach::new(flown.mach));
-        let thrust_flow_kg_s = net_thrust_n * law.to_kilograms_per_newton_second() * factor * share;
+        let thrust_flow_kg_s = net_thrust_n * tsfc_kg_per_n_s * factor * share;
         let aside_kg_s =
             layers.sum(|terms| terms.power_offtake * terms.references.fuel_flow_total_kg_s) * share;
         let mut each = [0.0; MAXIMUM_ENGINES];

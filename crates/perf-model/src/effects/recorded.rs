@@ -15,6 +15,8 @@ pub(super) struct AsFlown {
     pub(super) true_airspeed_m_s: f64,
     pub(super) temperature_ratio: f64,
     pub(super) pressure_ratio: f64,
+    pub(super) ln_temperature_ratio: f64,
+    pub(super) ln_pressure_ratio: f64,
     pub(super) dynamic_pressure_pa: f64,
     pub(super) mass_kg: f64,
     pub(super) unit_reynolds_number_per_m: f64,
@@ -59,12 +61,16 @@ pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
     let sat = Temperature::kelvin(sat_k);
     let tas = TrueAirspeed::meters_per_second(true_airspeed_m_s);
     let density = isa::density(static_pressure, sat);
+    let temperature_ratio = isa::temperature_ratio(sat);
+    let pressure_ratio = isa::pressure_ratio(static_pressure);
     Ok(AsFlown {
         mach,
         static_air_temperature_k: sat_k,
         true_airspeed_m_s,
-        temperature_ratio: isa::temperature_ratio(sat),
-        pressure_ratio: isa::pressure_ratio(static_pressure),
+        temperature_ratio,
+        pressure_ratio,
+        ln_temperature_ratio: temperature_ratio.ln(),
+        ln_pressure_ratio: pressure_ratio.ln(),
         dynamic_pressure_pa: airspeed::dynamic_pressure(density, tas).to_pascals(),
         mass_kg,
         unit_reynolds_number_per_m: viscosity::reynolds_number(

@@ -224,6 +224,21 @@ impl Terms {
             || self.fuel_flow_gain.iter().any(|gain| *gain != 0.0)
     }
 
+    /// Whether an effect says that the state flown is not the one recorded.
+    pub(super) fn corrects_recordings(&self) -> bool {
+        self.zero_fuel_mass_kg != 0.0
+            || self.fuel_quantity_gain != 0.0
+            || self.mach_bias != 0.0
+            || self.static_pressure_bias != 0.0
+            || self.temperature_bias_k != 0.0
+            || self.fuel_flow_gain.iter().any(|gain| *gain != 0.0)
+    }
+
+    /// Whether an effect changes what a mass weighs.
+    pub(super) const fn changes_weight(&self) -> bool {
+        self.load_factor != 0.0 || self.local_gravity != 0.0 || self.rotating_earth != 0.0
+    }
+
     fn none(references: EffectReferences, hidden: HiddenParameters) -> Self {
         Self {
             references,

@@ -370,3 +370,37 @@ fn references_are_means_and_read_back_to_the_same_bits() {
     let text = ron::to_string(&effects).unwrap();
     assert_eq!(ron::from_str::<Effects>(&text).unwrap(), effects);
 }
+
+/// The short way to a response against the long one, to the last bit, for every effect alone and beside two others.
+#[test]
+fn known_point_gives_the_same_response() {
+    let model = model(true);
+    let effects = EffectModel::new(&model, model.drag_table(), references()).unwrap();
+    let at = point(0.82);
+    let (known, plain) = effects.known_point(&at).unwrap();
+    assert_eq!(plain, effects.response(&at, &Effects::none()).unwrap());
+    let hidden = HiddenParameters { step_from_s: 1.0e9, ..HiddenParameters::DEFAULT };
+    let mut tried = 0;
+    for id in EffectId::library(2) {
+        let size = 0.5 * effects.references().typical_size(id);
+        for on in [
+            Effects::one(id, size),
+            Effects::one(EffectId::MachBias, 0.003).with(id, -size),
+            Effects::one(EffectId::LocalGravity, 1.0).with(id, size),
+        ] {
+            let on = on.with_hidden(hidden);
+            let short = effects.response_at(&known, &effects.trial(&on)).unwrap();
+            assert_eq!(short, effects.response(&at, &on).unwrap(), "{id}");
+            tried += 1;
+        }
+    }
+    assert!(tried > 80);
+    let bare = EffectPoint { latitude_deg: None, ..at };
+    let (known, _) = effects.known_point(&bare).unwrap();
+    let trial = effects.trial(&Effects::one(EffectId::LocalGravity, 1.0));
+    let error = effects.response_at(&known, &trial).unwrap_err();
+    assert_eq!(
+        error,
+        effects.response(&bare, &Effects::one(EffectId::LocalGravity, 1.0)).unwrap_err()
+    );
+}
