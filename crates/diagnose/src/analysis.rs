@@ -3,14 +3,15 @@
 use faer::Mat;
 use perf_model::effects::EffectModel;
 
+use crate::backgrounds::{
+    Background, Smoothed, backgrounds, diagonals, smoothed, without_nuisance,
+};
 use crate::data::Data;
 use crate::design::Design;
-use crate::evidence::{
-    Background, HEATING_SIZES_PERCENT, Scored, Scorer, backgrounds, backgrounds_at_levels, ln_sum,
-    without_nuisance,
-};
-use crate::gram::{Folds, Gram, Reduced, fold_of};
+use crate::evidence::{HEATING_SIZES_PERCENT, Scored, Scorer, ln_sum};
+use crate::gram::{Changed, Elimination, FOLDS, Folds, Gram, Reduced, fold_of};
 use crate::library::Library;
+use crate::linear::{gather, subtract_gram, symmetrize};
 use crate::refine::{Relinearised, refine};
 
 /// Scatter between flights beyond what a baseline learnt, relative: all integrated over.
@@ -46,7 +47,7 @@ pub(crate) struct Analysis {
     pub(crate) scorer: Scorer,
     pub(crate) backgrounds: Vec<Background>,
     /// Without nuisance, at every level of scatter between flights.
-    pub(crate) reduced: Vec<Reduced>,
+    pub(crate) space: Space,
     /// Models, most probable first, with their probabilities.
     pub(crate) models: Vec<(Scored, f64)>,
     pub(crate) refined: Vec<Relinearised>,
@@ -82,12 +83,19 @@ impl<'a> Stacked<'a> {
             scatters,
             levels: Vec::new(),
         };
-        for index in 0..data.flights.len() {
-            let rows = stacked.whitened(index).into_owned();
-            stacked.folds.add(index, &rows);
-            let level = rows.col(design.smooth.start).to_owned();
-            let products = rows.transpose() * &level;
-            stacked.levels.push(products.iter().copied().collect());
+        let count = data.flights.len();
+        stacked.levels = vec![Vec::new(); count];
+        for index in (0..FOLDS).flat_map(|fold| (fold..count).step_by(FOLDS)) {
+            let made = stacked
+                .kept
+                .is_none()
+                .then(|| design.whitened(data, &data.flights[index], stacked.weights.as_deref()));
+            let Some(rows) = made.as_ref().or_else(|| Some(&stacked.kept.as_ref()?[index])) else {
+                continue;
+            };
+            stacked.folds.add(index, rows);
+            let products = rows.transpose() * rows.col(design.smooth.start);
+            stacked.levels[index] = products.iter().copied().collect();
         }
         stacked.folds.finish();
         stacked
@@ -151,83 +159,102 @@ impl<'a> Stacked<'a> {
         }
     }
 
-    /// The Gram if every flight's fuel flow had this much common scatter more.
+    /// Products of some columns with each flight's fuel-flow level, scaled to what `relative` more of scatter between flights
+    /// takes off the Gram: one column a flight.
     ///
     /// ```text
     /// G' = G − Σ_f w_f z_f z_fᵀ,  w_f = θ²/(1 + θ² v_fᵀv_f),  ln det = Σ_f ln(1 + θ² v_fᵀv_f)     [diagnosis.20]
     /// ```
-    fn with_scatter(
+    fn scatter_of(
         &self,
-        gram: &Gram,
+        columns: &[usize],
         relative: f64,
         without: Option<usize>,
-        replaced: &Replaced,
-    ) -> (Gram, f64) {
-        let design = self.design;
-        let mut scaled = Mat::<f64>::zeros(self.levels.len(), design.columns);
+    ) -> (Scatter, f64) {
+        let mut scaled = Mat::<f64>::zeros(columns.len(), self.levels.len());
+        let mut roots = vec![0.0; self.levels.len()];
         let mut ln_determinant = 0.0;
         for (flight, level) in self.levels.iter().enumerate() {
             if Some(fold_of(flight)) == without {
                 continue;
             }
-            let own = level[design.smooth.start];
+            let own = level[self.design.smooth.start];
             let grown = 1.0 + relative * relative * own;
             ln_determinant += grown.ln();
-            let root = relative / grown.sqrt();
-            for (column, value) in level.iter().enumerate() {
-                scaled[(flight, column)] = root * value;
-            }
-            if let Some(levels) = replaced.levels.get(flight) {
-                for (&column, value) in replaced.columns.iter().zip(levels) {
-                    scaled[(flight, column)] = root * value;
-                }
+            roots[flight] = relative / grown.sqrt();
+            for (value, &column) in scaled.col_as_slice_mut(flight).iter_mut().zip(columns) {
+                *value = roots[flight] * level[column];
             }
         }
-        let mut changed = gram.clone();
-        crate::linear::subtract_product(&mut changed.matrix, &scaled, &scaled);
-        (changed, ln_determinant)
+        (Scatter { scaled, roots }, ln_determinant)
     }
-}
 
-/// Columns whose rows were made anew, with their products with each flight's level.
-#[derive(Debug, Default)]
-pub(crate) struct Replaced {
-    pub(crate) columns: Vec<usize>,
-    pub(crate) levels: Vec<Vec<f64>>,
-}
-
-impl Stacked<'_> {
-    /// The Gram without nuisance at every level of scatter between flights.
-    pub(crate) fn reduced_at_levels(
-        &self,
-        gram: &Gram,
-        without: Option<usize>,
-        replaced: &Replaced,
-        agnostic: bool,
-    ) -> Option<Vec<Reduced>> {
-        self.scatters
-            .iter()
-            .map(|&relative| self.reduced_with_scatter(gram, relative, without, replaced, agnostic))
-            .collect()
+    /// Columns of a Gram without nuisance before it is taken out: all of the design, or all but the agnostic ones; the
+    /// residual is the last.
+    fn columns_of(&self, agnostic: bool) -> Vec<usize> {
+        let end = if agnostic { self.design.residual() } else { self.design.smooth.end };
+        (0..end).chain([self.design.residual()]).collect()
     }
 
     /// The Gram without nuisance, with this much scatter between flights, relative.
-    fn reduced_with_scatter(
+    fn level(
         &self,
         gram: &Gram,
         relative: f64,
         without: Option<usize>,
-        replaced: &Replaced,
         agnostic: bool,
-    ) -> Option<Reduced> {
-        if relative == 0.0 {
-            return without_nuisance(gram, self.design, agnostic);
+    ) -> Option<(Level, Reduced)> {
+        let columns = self.columns_of(agnostic);
+        if relative == 0.0 && agnostic {
+            let (elimination, reduced) = without_nuisance(&gram.matrix, self.design)?;
+            return Some((Level { scatter: None, elimination }, reduced));
         }
-        let (changed, ln_determinant) = self.with_scatter(gram, relative, without, replaced);
-        let mut reduced = without_nuisance(&changed, self.design, agnostic)?;
+        let mut matrix = gather(&gram.matrix, &columns, &columns);
+        if relative == 0.0 {
+            let (elimination, reduced) = without_nuisance(&matrix, self.design)?;
+            return Some((Level { scatter: None, elimination }, reduced));
+        }
+        let (scatter, ln_determinant) = self.scatter_of(&columns, relative, without);
+        subtract_gram(&mut matrix, &scatter.scaled);
+        symmetrize(&mut matrix);
+        let (elimination, mut reduced) = without_nuisance(&matrix, self.design)?;
         reduced.ln_determinant += ln_determinant;
-        Some(reduced)
+        Some((Level { scatter: Some(scatter), elimination }, reduced))
     }
+}
+
+/// What scatter between flights takes off a Gram: `[diagnosis.20]`.
+struct Scatter {
+    /// One column a flight.
+    scaled: Mat<f64>,
+    /// √w of each flight.
+    roots: Vec<f64>,
+}
+
+/// How a Gram without nuisance was made, at one level of scatter between flights.
+pub(crate) struct Level {
+    scatter: Option<Scatter>,
+    elimination: Elimination,
+}
+
+impl Level {
+    /// What becomes of changed columns; `levels` are their products with each flight's fuel-flow level, one row a flight.
+    pub(crate) fn follow(&self, mut changed: Changed, levels: &Mat<f64>) -> Changed {
+        if let Some(Scatter { scaled, roots }) = &self.scatter {
+            let fresh =
+                Mat::from_fn(levels.nrows(), levels.ncols(), |i, j| roots[i] * levels[(i, j)]);
+            changed.cross -= scaled * &fresh;
+            changed.own -= fresh.transpose() * &fresh;
+        }
+        self.elimination.follow(&changed)
+    }
+}
+
+/// Grams without nuisance at every level of scatter, and every smooth discrepancy over them: where columns that change follow.
+pub(crate) struct Space {
+    pub(crate) levels: Vec<Level>,
+    pub(crate) reduced: Vec<Reduced>,
+    pub(crate) smoothed: Vec<Smoothed>,
 }
 
 /// Searches. `without` leaves a fold of flights out; `refining` says whether the leading models are refined.
@@ -240,12 +267,19 @@ pub(crate) fn analyse(
 ) -> Option<Analysis> {
     let design = stacked.design;
     let gram = stacked.folds.without(without);
-    let reduced = stacked.reduced_at_levels(gram, without, &Replaced::default(), refining)?;
+    let mut levels = Vec::with_capacity(stacked.scatters.len());
+    let mut reduced = Vec::with_capacity(stacked.scatters.len());
+    for &relative in &stacked.scatters {
+        let (level, left) = stacked.level(gram, relative, without, refining)?;
+        levels.push(level);
+        reduced.push(left);
+    }
     let effects = library.columns.len();
-    let all =
-        backgrounds_at_levels(&reduced, effects, design.smooth.len(), library, |_, tau, _| {
-            stacked.admits(tau)
-        });
+    let smooth_out = |reduced: &[Reduced]| {
+        smoothed(reduced, effects, design.smooth.len(), |tau| stacked.admits(tau))
+    };
+    let space = Space { smoothed: smooth_out(&reduced), levels, reduced };
+    let all = backgrounds(&space.smoothed, library);
     let scorer = Scorer::of(library, gram.rows);
     let search = scorer.search(&all, 2, |at| stacked.is_nothing(at));
     let mut models = search.models;
@@ -255,11 +289,8 @@ pub(crate) fn analyse(
                 continue; // part of the noise already
             }
             let relative = percent / 100.0;
-            let none = Replaced::default();
-            let reduced = stacked.reduced_with_scatter(gram, relative, None, &none, false)?;
-            let under = backgrounds(&reduced, effects, design.smooth.len(), library, |_, tau| {
-                stacked.admits(tau)
-            });
+            let (_, left) = stacked.level(gram, relative, None, false)?;
+            let under = diagonals(&smooth_out(core::slice::from_ref(&left)), library);
             models.extend(scorer.search_heating(&under, percent));
         }
     }
@@ -267,20 +298,22 @@ pub(crate) fn analyse(
     let mut refined = Vec::new();
     if refining {
         let total = ln_sum(models.iter().map(|m| m.ln_weight));
-        for scored in models
-            .iter_mut()
-            .filter(|m| !m.model.columns.is_empty() && m.model.heating_percent.is_none())
+        let leading: Vec<usize> = (0..models.len())
+            .filter(|&k| {
+                let model = &models[k].model;
+                !model.columns.is_empty() && model.heating_percent.is_none()
+            })
             .take(REFINED)
-        {
-            if (scored.ln_weight - total).exp() < WORTH_REFINING {
-                break;
+            .take_while(|&k| (models[k].ln_weight - total).exp() >= WORTH_REFINING)
+            .collect();
+        let starts: Vec<_> =
+            leading.iter().map(|&k| (&models[k], &all[models[k].background])).collect();
+        let found = refine(stacked, model, library, &scorer, &space, &starts, without);
+        for (&k, found) in leading.iter().zip(found) {
+            if let Some(found) = found {
+                models[k] = found.scored.clone();
+                refined.push(found);
             }
-            let at = &all[scored.background];
-            let Some(found) = refine(stacked, model, library, &scorer, scored, at, without) else {
-                continue;
-            };
-            *scored = found.scored.clone();
-            refined.push(found);
         }
         models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
     }
@@ -294,8 +327,7 @@ pub(crate) fn analyse(
         });
         if scatter_alone {
             let relative = percent / 100.0;
-            let none = Replaced::default();
-            let reduced = stacked.reduced_with_scatter(gram, relative, without, &none, true)?;
+            let (_, reduced) = stacked.level(gram, relative, without, true)?;
             heating.push((percent, reduced));
         }
     }
@@ -307,5 +339,5 @@ pub(crate) fn analyse(
             (m, probability)
         })
         .collect();
-    Some(Analysis { scorer, backgrounds: all, reduced, models, refined, heating, clean })
+    Some(Analysis { scorer, backgrounds: all, space, models, refined, heating, clean })
 }

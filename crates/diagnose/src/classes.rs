@@ -2,8 +2,9 @@
 
 use faer::Mat;
 
+use crate::backgrounds::TAUS;
 use crate::design::Design;
-use crate::evidence::{Scored, TAUS};
+use crate::evidence::Scored;
 use crate::gram::Gram;
 use crate::gram::integrate_out;
 use crate::library::Library;

@@ -120,7 +120,7 @@ fn chosen(
     library: &Library,
     fold: usize,
 ) -> Option<(Vec<usize>, Vec<f64>)> {
-    let Analysis { scorer, backgrounds, models, clean, .. } =
+    let Analysis { scorer, backgrounds, space, models, clean, .. } =
         analyse(stacked, model, library, Some(fold), false)?;
     // The verdict's own rule: where nothing at all is improbable, the best named set, be it no more probable than none.
     let named = models.iter().map(|(scored, _)| scored).find(|s| !s.model.columns.is_empty());
@@ -128,7 +128,8 @@ fn chosen(
         return Some((vec![], vec![]));
     };
     let at = &backgrounds[best.background];
-    let found = refine(stacked, model, library, &scorer, best, at, Some(fold));
+    let mut found = refine(stacked, model, library, &scorer, &space, &[(best, at)], Some(fold));
+    let found = found.pop().flatten();
     let sizes = found.map_or_else(|| best.sizes.clone(), |found| found.scored.sizes);
     Some((best.model.columns.clone(), sizes))
 }

@@ -6,14 +6,9 @@
 
 use statrs::function::erf::erfc;
 
-use crate::design::Design;
-use crate::gram::{Gram, Reduced, integrate_out};
+use crate::backgrounds::{Background, Diagonal};
 use crate::library::Library;
 
-/// Sizes of the spike that every effect may have in the background, of its typical size.
-pub(crate) const SPIKES: [f64; 4] = [0.0, 0.05, 0.15, 0.30];
-/// Amplitudes of the smooth discrepancy, shares of fuel flow.
-pub(crate) const TAUS: [f64; 4] = [0.0, 0.0015, 0.004, 0.010];
 /// Degrees of freedom of the prior of the noise scale.
 pub(crate) const NOISE_FREEDOM: f64 = 40.0;
 /// Prior probability of no effect, one, two.
@@ -24,22 +19,6 @@ const PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)];
 const EXPECTED_SIGN: f64 = 0.95;
 /// Sizes of flight-to-flight scatter that are tried, per cent of fuel flow.
 pub(crate) const HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4];
-
-/// A background: Gram of the effects' columns, product with the residual, square of the residual.
-#[derive(Clone, Debug)]
-pub(crate) struct Background {
-    pub(crate) spike: f64,
-    pub(crate) tau: f64,
-    /// Which level of scatter between flights.
-    pub(crate) scatter: usize,
-    /// Where each column of the library lies in `gram`.
-    places: Vec<usize>,
-    width: usize,
-    gram: Vec<f64>,
-    product: Vec<f64>,
-    pub(crate) square: f64,
-    pub(crate) ln_determinant: f64,
-}
 
 /// What a model is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,6 +68,15 @@ pub(crate) struct Evidence<const K: usize> {
     pub(crate) deviations: [f64; K],
 }
 
+/// What one column comes to in one background.
+#[derive(Clone, Copy, Debug)]
+struct Single {
+    gram: f64,
+    product: f64,
+    square: f64,
+    ln_determinant: f64,
+}
+
 /// Everything the scoring of models needs.
 #[derive(Clone, Debug)]
 pub(crate) struct Scorer {
@@ -98,130 +86,6 @@ pub(crate) struct Scorer {
     pub(crate) ln_columns: Vec<f64>,
     pub(crate) effects: usize,
     pub(crate) rows: f64,
-}
-
-impl Background {
-    /// A background in which only some columns are known: those of `own`, with the residual last in `matrix`.
-    pub(crate) fn small(
-        matrix: &faer::Mat<f64>,
-        own: &[usize],
-        columns: usize,
-        ln_determinant: f64,
-    ) -> Self {
-        let last = own.len();
-        let mut at = Self {
-            spike: 0.0,
-            tau: 0.0,
-            scatter: 0,
-            places: vec![usize::MAX; columns],
-            width: last,
-            gram: Vec::with_capacity(last * last),
-            product: Vec::with_capacity(last),
-            square: matrix[(last, last)],
-            ln_determinant,
-        };
-        for (place, &column) in own.iter().enumerate() {
-            at.places[column] = place;
-            at.product.push(matrix[(place, last)]);
-            for other in 0..last {
-                at.gram.push(matrix[(place, other)]);
-            }
-        }
-        at
-    }
-
-    pub(crate) fn gram(&self, a: usize, b: usize) -> f64 {
-        self.gram[self.places[a] * self.width + self.places[b]]
-    }
-
-    pub(crate) fn product(&self, column: usize) -> f64 {
-        self.product[self.places[column]]
-    }
-}
-
-/// Integrates nuisance out: what is left are effects, smooth background, agnostic functions and residual.
-pub(crate) fn without_nuisance(
-    gram: &Gram,
-    design: &Design<'_>,
-    agnostic: bool,
-) -> Option<Reduced> {
-    let mut kept: Vec<usize> = (0..design.effects).chain(design.smooth.clone()).collect();
-    if agnostic {
-        kept.extend(design.blocks.iter().flat_map(|block| block.columns.clone()));
-    }
-    kept.push(design.residual());
-    let out: Vec<usize> = design.nuisance.clone().collect();
-    integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])
-}
-
-/// Every background, from a Gram without nuisance whose columns are effects, smooth background, …, residual.
-pub(crate) fn backgrounds(
-    reduced: &Reduced,
-    effects: usize,
-    smooth: usize,
-    library: &Library,
-    choose: impl Fn(f64, f64) -> bool,
-) -> Vec<Background> {
-    let residual = reduced.matrix.ncols() - 1;
-    let kept: Vec<usize> = (0..effects).chain([residual]).collect();
-    let smooth_columns: Vec<usize> = (effects..effects + smooth).collect();
-    let representatives: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
-    let mut all = Vec::new();
-    for tau in TAUS {
-        if !SPIKES.iter().any(|&spike| choose(spike, tau)) {
-            continue;
-        }
-        let out: &[usize] = if tau > 0.0 { &smooth_columns } else { &[] };
-        let Some(smoothed) = integrate_out(&reduced.matrix, &kept, out, &vec![tau; out.len()])
-        else {
-            continue;
-        };
-        for spike in SPIKES.into_iter().filter(|&spike| choose(spike, tau)) {
-            let out: &[usize] = if spike > 0.0 { &representatives } else { &[] };
-            let deviations: Vec<f64> =
-                library.effects.iter().map(|effect| spike * effect.typical).collect();
-            let inner: Vec<usize> = (0..=effects).collect();
-            let Some(spiked) = integrate_out(&smoothed.matrix, &inner, out, &deviations) else {
-                continue;
-            };
-            let m = &spiked.matrix;
-            all.push(Background {
-                spike,
-                tau,
-                scatter: 0,
-                places: (0..effects).collect(),
-                width: effects,
-                gram: (0..effects)
-                    .flat_map(|a| (0..effects).map(move |b| (a, b)))
-                    .map(|ab| m[ab])
-                    .collect(),
-                product: (0..effects).map(|a| m[(a, effects)]).collect(),
-                square: m[(effects, effects)],
-                ln_determinant: reduced.ln_determinant
-                    + smoothed.ln_determinant
-                    + spiked.ln_determinant,
-            });
-        }
-    }
-    all
-}
-
-/// Backgrounds at every level of scatter between flights.
-pub(crate) fn backgrounds_at_levels(
-    levels: &[Reduced],
-    effects: usize,
-    smooth: usize,
-    library: &Library,
-    choose: impl Fn(f64, f64, usize) -> bool,
-) -> Vec<Background> {
-    let mut all = Vec::new();
-    for (scatter, reduced) in levels.iter().enumerate() {
-        let at = backgrounds(reduced, effects, smooth, library, |spike, tau| {
-            choose(spike, tau, scatter)
-        });
-        all.extend(at.into_iter().map(|background| Background { scatter, ..background }));
-    }
-    all
 }
 
 impl Scorer {
@@ -282,7 +146,11 @@ impl Scorer {
     }
 
     pub(crate) fn none(&self, at: &Background) -> f64 {
-        -0.5 * at.ln_determinant - self.power() * (NOISE_FREEDOM + at.square).ln()
+        self.nothing(at.square, at.ln_determinant)
+    }
+
+    fn nothing(&self, square: f64, ln_determinant: f64) -> f64 {
+        -0.5 * ln_determinant - self.power() * (NOISE_FREEDOM + square).ln()
     }
 
     /// One effect; `shift` is the size at which the model was linearised.
@@ -292,8 +160,18 @@ impl Scorer {
     /// M = G + λ,  r = b + λμ,  λ = 1/s²
     /// ```
     pub(crate) fn one(&self, at: &Background, column: usize, shift: f64) -> Evidence<1> {
+        let single = Single {
+            gram: at.gram(column, column),
+            product: at.product(column),
+            square: at.square,
+            ln_determinant: at.ln_determinant,
+        };
+        self.single(single, column, shift)
+    }
+
+    fn single(&self, at: Single, column: usize, shift: f64) -> Evidence<1> {
         let prior = self.priors[column];
-        let (gram, product) = (at.gram(column, column), at.product(column));
+        let Single { gram, product, .. } = at;
         let mut sum = Mixture::<1>::new();
         for &(deviation, ln_share) in &prior.scales[..prior.count] {
             let precision = 1.0 / (deviation * deviation);
@@ -404,13 +282,13 @@ impl Scorer {
     }
 
     /// Models with flight-to-flight scatter: alone and with one effect.
-    pub(crate) fn search_heating(&self, backgrounds: &[Background], percent: f64) -> Vec<Scored> {
+    pub(crate) fn search_heating(&self, backgrounds: &[Diagonal], percent: f64) -> Vec<Scored> {
         let ln_background = -(backgrounds.len() as f64).ln();
         let mut models = Vec::new();
         let alone = Model { columns: vec![], heating_percent: Some(percent) };
         let prior = self.ln_prior(&alone) + ln_background;
         models.push(over(backgrounds, alone, |at| Evidence {
-            ln: self.none(at) + prior,
+            ln: self.nothing(at.square, at.ln_determinant) + prior,
             sizes: [],
             deviations: [],
         }));
@@ -418,7 +296,16 @@ impl Scorer {
             let model = Model { columns: vec![column], heating_percent: Some(percent) };
             let prior = self.ln_prior(&model) + ln_background;
             models.push(over(backgrounds, model, |at| {
-                let mut evidence = self.one(at, column, 0.0);
+                let mut evidence = self.single(
+                    Single {
+                        gram: at.gram[column],
+                        product: at.product[column],
+                        square: at.square,
+                        ln_determinant: at.ln_determinant,
+                    },
+                    column,
+                    0.0,
+                );
                 evidence.ln += prior;
                 evidence
             }));
@@ -427,10 +314,10 @@ impl Scorer {
     }
 }
 
-fn over<const K: usize>(
-    backgrounds: &[Background],
+fn over<B, const K: usize>(
+    backgrounds: &[B],
     model: Model,
-    evidence: impl Fn(&Background) -> Evidence<K>,
+    evidence: impl Fn(&B) -> Evidence<K>,
 ) -> Scored {
     let mut sum = Mixture::<K>::new();
     let mut best = (f64::NEG_INFINITY, 0);
@@ -563,17 +450,8 @@ mod tests {
     #[test]
     fn evidence_against_numerical_integration() {
         let (gram, product, square, rows) = (7.0, 5.0, 12.0, 9.0);
-        let at = Background {
-            spike: 0.0,
-            tau: 0.0,
-            scatter: 0,
-            places: vec![0],
-            width: 1,
-            gram: vec![gram],
-            product: vec![product],
-            square,
-            ln_determinant: 0.0,
-        };
+        let matrix = faer::Mat::from_fn(2, 2, |i, j| [[gram, product], [product, square]][i][j]);
+        let at = Background::small(&matrix, &[0], 1, 0.0);
         let prior =
             Prior { mean: 0.3, scales: [(0.8, 0.0), (0.8, 0.0)], count: 1, positive: false };
         let scorer = Scorer {

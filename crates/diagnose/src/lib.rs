@@ -48,6 +48,7 @@ extern crate self as diagnose; // the fleet of the tests names the crate
 mod addition;
 mod advice;
 mod analysis;
+mod backgrounds;
 mod baseline;
 mod classes;
 mod closure;

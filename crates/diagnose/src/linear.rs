@@ -6,6 +6,7 @@ use faer::linalg::triangular_solve::{
 use faer::{Mat, MatRef, Par, Side};
 
 /// Cholesky factor of a symmetric positive definite matrix.
+#[derive(Debug)]
 pub(crate) struct Factor {
     lower: Mat<f64>,
 }
@@ -53,7 +54,7 @@ pub(crate) fn subtract_product(from: &mut Mat<f64>, a: &Mat<f64>, b: &Mat<f64>) 
 }
 
 /// `C += ZᵀZ`, lower triangle only.
-pub(crate) fn add_gram(into: &mut Mat<f64>, rows: &Mat<f64>) {
+pub(crate) fn add_gram(into: &mut Mat<f64>, rows: MatRef<'_, f64>) {
     add_symmetric(into, rows.transpose(), 1.0);
 }
 
@@ -76,6 +77,18 @@ fn add_symmetric(into: &mut Mat<f64>, left: MatRef<'_, f64>, share: f64) {
         share,
         Par::Seq,
     );
+}
+
+/// Some rows and columns of a matrix, in this order.
+pub(crate) fn gather(from: &Mat<f64>, rows: &[usize], columns: &[usize]) -> Mat<f64> {
+    let mut into = Mat::<f64>::zeros(rows.len(), columns.len());
+    for (k, &column) in columns.iter().enumerate() {
+        let from = from.col_as_slice(column);
+        for (value, &row) in into.col_as_slice_mut(k).iter_mut().zip(rows) {
+            *value = from[row];
+        }
+    }
+    into
 }
 
 /// Copies the lower triangle to the upper one.
@@ -107,7 +120,7 @@ mod tests {
     fn gram_by_hand() {
         let rows = Mat::from_fn(2, 2, |i, j| [[1.0, 2.0], [3.0, 4.0]][i][j]);
         let mut gram = Mat::zeros(2, 2);
-        add_gram(&mut gram, &rows);
+        add_gram(&mut gram, rows.as_ref());
         symmetrize(&mut gram);
         assert!((gram[(0, 1)] - 14.0).abs() < 1e-15 && (gram[(1, 1)] - 20.0).abs() < 1e-15);
         // Rows instead of columns: [1, 2]·[3, 4] = 11, and 1 + 4 = 5 is taken from 10.

@@ -1,8 +1,9 @@
 //! Outside the library: agnostic functions of one variable compete with the named effects.
 
 use crate::analysis::{Analysis, Stacked};
+use crate::backgrounds::Background;
 use crate::design::Acts;
-use crate::evidence::{Background, Model, Scored, Scorer, ln_sum};
+use crate::evidence::{Model, Scored, Scorer, ln_sum};
 use crate::gram::{Reduced, integrate_out};
 use crate::library::Library;
 use crate::variables::Variable;
@@ -47,14 +48,14 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             .refined
             .iter()
             .find(|found| found.scored.model == set.model && !set.model.columns.is_empty());
-        let levels = refined.map_or(&analysis.reduced, |found| &found.reduced);
+        let levels = refined.map_or(&analysis.space.reduced, |found| &found.reduced);
         let shifts =
             refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
         weights.add(stacked, library, scorer, &set.model, levels, &shifts, 0.0);
     }
     // Scatter between flights is a named cause too, and what hangs on a flight's conditions looks like it until a function
     // of them competes. The other sets are summed over levels of scatter, which these replace.
-    let levels_ln = (analysis.reduced.len() as f64).ln();
+    let levels_ln = (analysis.space.reduced.len() as f64).ln();
     for (percent, reduced) in &analysis.heating {
         let model = Model { columns: vec![], heating_percent: Some(*percent) };
         let levels = core::slice::from_ref(reduced);

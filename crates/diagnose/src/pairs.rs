@@ -4,7 +4,8 @@
 //! scales. Backgrounds are the innermost, contiguous index; a pair whose evidence is below what any posterior could show is
 //! dropped before its first logarithm; each that is left costs one logarithm and one exponential.
 
-use crate::evidence::{Background, Model, NOISE_FREEDOM, Scored, Scorer, sign_factor};
+use crate::backgrounds::Background;
+use crate::evidence::{Model, NOISE_FREEDOM, Scored, Scorer, sign_factor};
 
 /// A model this much less probable than the best one, in ln, is left out: all together they hold less than 1e-13.
 const NEGLIGIBLE: f64 = 40.0;
