@@ -9,7 +9,7 @@ use crate::backgrounds::{
 use crate::data::Data;
 use crate::design::Design;
 use crate::evidence::{HEATING_SIZES_PERCENT, Scored, Scorer, ln_sum};
-use crate::gram::{Changed, Elimination, FOLDS, Folds, Gram, Reduced, fold_of};
+use crate::gram::{Changed, Elimination, FOLDS, Folds, Gram, Reduced, Sum, fold_of};
 use crate::library::Library;
 use crate::linear::{gather, subtract_gram, symmetrize};
 use crate::refine::{Relinearised, refine};
@@ -33,7 +33,8 @@ const KEPT_NUMBERS: usize = 8_000_000;
 pub(crate) struct Stacked<'a> {
     pub(crate) data: &'a Data<'a>,
     pub(crate) design: &'a Design<'a>,
-    pub(crate) folds: Folds,
+    gram: Gram,
+    folds: Folds,
     pub(crate) weights: Option<Vec<f64>>,
     kept: Option<Vec<Mat<f64>>>,
     /// Levels of scatter between flights that are integrated over, relative.
@@ -77,28 +78,39 @@ impl<'a> Stacked<'a> {
         let mut stacked = Self {
             data,
             design,
-            folds: Folds::empty(design),
+            gram: Gram { matrix: Mat::zeros(0, 0), rows: 0 },
+            folds: Folds::default(),
             weights,
             kept,
             scatters,
-            levels: Vec::new(),
+            levels: Vec::with_capacity(data.flights.len()),
         };
-        let count = data.flights.len();
-        stacked.levels = vec![Vec::new(); count];
-        for index in (0..FOLDS).flat_map(|fold| (fold..count).step_by(FOLDS)) {
-            let made = stacked
-                .kept
-                .is_none()
-                .then(|| design.whitened(data, &data.flights[index], stacked.weights.as_deref()));
-            let Some(rows) = made.as_ref().or_else(|| Some(&stacked.kept.as_ref()?[index])) else {
-                continue;
-            };
-            stacked.folds.add(index, rows);
+        let mut sum = Sum::of(design);
+        for index in 0..data.flights.len() {
+            let rows = stacked.whitened(index);
+            sum.add(&rows);
             let products = rows.transpose() * rows.col(design.smooth.start);
-            stacked.levels[index] = products.iter().copied().collect();
+            let level = products.iter().copied().collect();
+            drop(rows);
+            stacked.levels.push(level);
         }
-        stacked.folds.finish();
+        stacked.gram = sum.finish();
         stacked
+    }
+
+    /// The Gram of all flights but those of one fold; of all where none is left out.
+    pub(crate) fn gram(&self, without: Option<usize>) -> &Gram {
+        let Some(fold) = without else { return &self.gram };
+        self.folds.without(fold, || {
+            let of = |fold: usize| {
+                let mut sum = Sum::of(self.design);
+                for index in (fold..self.data.flights.len()).step_by(FOLDS) {
+                    sum.add(&self.whitened(index));
+                }
+                sum.finish()
+            };
+            (0..FOLDS).map(of).collect()
+        })
     }
 
     /// Smooth discrepancy that no agnostic function and no place is found in: a taught remainder is not exact, a table is
@@ -266,7 +278,7 @@ pub(crate) fn analyse(
     refining: bool,
 ) -> Option<Analysis> {
     let design = stacked.design;
-    let gram = stacked.folds.without(without);
+    let gram = stacked.gram(without);
     let mut levels = Vec::with_capacity(stacked.scatters.len());
     let mut reduced = Vec::with_capacity(stacked.scatters.len());
     for &relative in &stacked.scatters {

@@ -295,7 +295,7 @@ fn conclude(
 ) -> Result<(Diagnosis, Analysis), DiagnoseError> {
     let analysis = analyse(stacked, model, library, None, true).ok_or(DiagnoseError::Degenerate)?;
     let mut outside = compete(stacked, &analysis, library);
-    let gram = stacked.folds.without(None);
+    let gram = stacked.gram(None);
     let leading = leading_columns(library, &analysis.models);
     let distances =
         Distances::of(gram, stacked.design, leading).ok_or(DiagnoseError::Degenerate)?;

@@ -172,7 +172,7 @@ impl Scorer {
     fn single(&self, at: Single, column: usize, shift: f64) -> Evidence<1> {
         let prior = self.priors[column];
         let Single { gram, product, .. } = at;
-        let mut sum = Mixture::<1>::new();
+        let mut sum = Factored::new();
         for &(deviation, ln_share) in &prior.scales[..prior.count] {
             let precision = 1.0 / (deviation * deviation);
             let mean = prior.mean - shift;
@@ -181,15 +181,16 @@ impl Scorer {
             let size = right / posterior;
             let square = at.square + precision * mean * mean - right * size;
             let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
-            let spread = (scale / posterior).sqrt();
-            let ln = -0.5 * at.ln_determinant
-                - 0.5 * (posterior / precision).ln()
-                - self.power() * (NOISE_FREEDOM + square).ln()
-                + ln_share
-                + ln_sign(prior.positive, (size + shift) / spread);
-            sum.add(ln, [size + shift], [spread]);
+            let variance = scale / posterior;
+            let size = size + shift;
+            let factor = (precision / posterior).sqrt()
+                * sign_factor(prior.positive, size / variance.sqrt());
+            let ln = ln_share - self.power() * (NOISE_FREEDOM + square).ln();
+            sum.add(ln, factor, size, variance);
         }
-        sum.mean()
+        let mut evidence = sum.mean();
+        evidence.ln -= 0.5 * at.ln_determinant;
+        evidence
     }
 
     /// Two effects, `shifts` as above.
@@ -411,6 +412,51 @@ impl<const K: usize> Mixture<K> {
             }
         }
         Evidence { ln: self.ln(), sizes, deviations }
+    }
+}
+
+/// A sum of normals with weights factor·exp(ln), so that factors cost no logarithm.
+struct Factored {
+    largest: f64,
+    total: f64,
+    first: f64,
+    second: f64,
+}
+
+impl Factored {
+    const fn new() -> Self {
+        Self { largest: f64::NEG_INFINITY, total: 0.0, first: 0.0, second: 0.0 }
+    }
+
+    fn add(&mut self, ln: f64, factor: f64, size: f64, variance: f64) {
+        if ln.is_nan() || factor.is_nan() {
+            return;
+        }
+        let mut weight = factor;
+        if ln > self.largest {
+            if self.total > 0.0 {
+                let shrink = (self.largest - ln).exp();
+                self.total *= shrink;
+                self.first *= shrink;
+                self.second *= shrink;
+            }
+            self.largest = ln;
+        } else {
+            weight *= (ln - self.largest).exp();
+        }
+        self.total += weight;
+        self.first += weight * size;
+        self.second += weight * (size * size + variance);
+    }
+
+    fn mean(&self) -> Evidence<1> {
+        if self.total <= 0.0 {
+            return Evidence { ln: f64::NEG_INFINITY, sizes: [0.0], deviations: [0.0] };
+        }
+        let size = self.first / self.total;
+        let variance = (self.second / self.total - size * size).max(0.0);
+        let ln = self.largest + self.total.ln();
+        Evidence { ln, sizes: [size], deviations: [variance.sqrt()] }
     }
 }
 

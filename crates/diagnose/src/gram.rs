@@ -1,4 +1,4 @@
-//! Gram matrices of the whitened columns, one for each fold of flights: all that the search looks at.
+//! Gram matrices of the whitened columns, of all flights and of folds of them: all that the search looks at.
 
 use faer::Mat;
 
@@ -17,17 +17,20 @@ pub(crate) struct Gram {
     pub(crate) rows: usize,
 }
 
-/// One Gram a fold; flights take turns.
+/// A Gram in the making.
 #[derive(Clone, Debug)]
-pub(crate) struct Folds {
-    /// Lower triangles.
-    grams: Vec<Gram>,
-    /// Sum of all folds but one, and of all; made when first asked for, since every refinement asks again.
-    sums: [core::cell::OnceCell<Gram>; FOLDS + 1],
-    /// Rows of one fold that are not yet in its Gram.
+pub(crate) struct Sum {
+    gram: Gram,
+    /// Rows that are not yet in the Gram.
     waiting: Mat<f64>,
     waiting_rows: usize,
-    waiting_of: usize,
+}
+
+/// Grams of all folds but one, made when first asked for.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Folds {
+    each: core::cell::OnceCell<Vec<Gram>>,
+    sums: [core::cell::OnceCell<Gram>; FOLDS],
 }
 
 /// Fold of a flight by its place in the order of flying.
@@ -35,29 +38,23 @@ pub(crate) const fn fold_of(flight: usize) -> usize {
     flight % FOLDS
 }
 
-impl Folds {
-    pub(crate) fn empty(design: &Design<'_>) -> Self {
-        let empty = || Gram { matrix: Mat::zeros(design.columns, design.columns), rows: 0 };
+impl Sum {
+    pub(crate) fn of(design: &Design<'_>) -> Self {
         Self {
-            grams: (0..FOLDS).map(|_| empty()).collect(),
-            sums: Default::default(),
+            gram: Gram { matrix: Mat::zeros(design.columns, design.columns), rows: 0 },
             waiting: Mat::zeros(WAITING_ROWS, design.columns),
             waiting_rows: 0,
-            waiting_of: 0,
         }
     }
 
-    /// Adds a flight's whitened rows; [`finish`](Self::finish) when all are in. Rows wait until there are many, whose products
-    /// are made faster: flights of one fold had better come one after the other.
-    pub(crate) fn add(&mut self, flight: usize, rows: &Mat<f64>) {
-        let fold = fold_of(flight);
-        self.grams[fold].rows += rows.nrows();
-        if fold != self.waiting_of || self.waiting_rows + rows.nrows() > self.waiting.nrows() {
+    /// Adds a flight's whitened rows. They wait until there are many, whose products are made faster.
+    pub(crate) fn add(&mut self, rows: &Mat<f64>) {
+        self.gram.rows += rows.nrows();
+        if self.waiting_rows + rows.nrows() > self.waiting.nrows() {
             self.multiply_waiting();
-            self.waiting_of = fold;
         }
         if rows.nrows() > self.waiting.nrows() {
-            add_gram(&mut self.grams[fold].matrix, rows.as_ref());
+            add_gram(&mut self.gram.matrix, rows.as_ref());
             return;
         }
         let range = self.waiting_rows..self.waiting_rows + rows.nrows();
@@ -68,35 +65,34 @@ impl Folds {
         self.waiting_rows = range.end;
     }
 
-    pub(crate) fn finish(&mut self) {
+    pub(crate) fn finish(mut self) -> Gram {
         self.multiply_waiting();
-        self.waiting = Mat::zeros(0, 0);
+        symmetrize(&mut self.gram.matrix);
+        self.gram
     }
 
     fn multiply_waiting(&mut self) {
-        let rows = self.waiting.subrows(0, self.waiting_rows);
-        add_gram(&mut self.grams[self.waiting_of].matrix, rows);
+        add_gram(&mut self.gram.matrix, self.waiting.subrows(0, self.waiting_rows));
         self.waiting_rows = 0;
     }
+}
 
-    /// All flights but those of one fold; all where none is left out.
-    pub(crate) fn without(&self, fold: Option<usize>) -> &Gram {
-        self.sums[fold.unwrap_or(FOLDS)].get_or_init(|| self.sum_without(fold))
-    }
-
-    fn sum_without(&self, fold: Option<usize>) -> Gram {
-        let mut kept =
-            self.grams.iter().enumerate().filter(|(k, _)| Some(*k) != fold).map(|(_, gram)| gram);
-        let Some(first) = kept.next() else {
-            return Gram { matrix: Mat::zeros(0, 0), rows: 0 };
-        };
-        let mut sum = first.clone();
-        for gram in kept {
-            sum.matrix += &gram.matrix;
-            sum.rows += gram.rows;
-        }
-        symmetrize(&mut sum.matrix);
-        sum
+impl Folds {
+    /// All flights but those of one fold; `make` makes the Gram of each.
+    pub(crate) fn without(&self, fold: usize, make: impl FnOnce() -> Vec<Gram>) -> &Gram {
+        self.sums[fold].get_or_init(|| {
+            let each = self.each.get_or_init(make);
+            let mut kept = each.iter().enumerate().filter(|(k, _)| *k != fold).map(|(_, g)| g);
+            let Some(first) = kept.next() else {
+                return Gram { matrix: Mat::zeros(0, 0), rows: 0 };
+            };
+            let mut sum = first.clone();
+            for gram in kept {
+                sum.matrix += &gram.matrix;
+                sum.rows += gram.rows;
+            }
+            sum
+        })
     }
 }
 
@@ -233,6 +229,21 @@ impl Elimination {
 }
 
 impl Changed {
+    /// Writes the columns of these places into a part of a symmetric matrix: the rows and columns of `used`, some of them
+    /// more than once.
+    pub(crate) fn write_used(&self, part: &mut Mat<f64>, places: &[usize], used: &[usize]) {
+        let which: Vec<Option<usize>> =
+            used.iter().map(|of| places.iter().position(|place| place == of)).collect();
+        for (column, k) in which.iter().enumerate() {
+            let Some(k) = *k else { continue };
+            for (row, of) in used.iter().enumerate() {
+                let value = which[row].map_or_else(|| self.cross[(*of, k)], |l| self.own[(l, k)]);
+                part[(row, column)] = value;
+                part[(column, row)] = value;
+            }
+        }
+    }
+
     /// Writes the columns to these places of a symmetric matrix.
     pub(crate) fn write(&self, matrix: &mut Mat<f64>, places: &[usize]) {
         for (k, &place) in places.iter().enumerate() {
@@ -258,4 +269,116 @@ pub(crate) fn integrate_out(
 ) -> Option<Reduced> {
     let found = Elimination::of(gram, kept.to_vec(), out.to_vec(), deviations.to_vec())?;
     Some(found.1)
+}
+
+/// As [`integrate_out`] for a handful of neighboring columns of one prior standard deviation, without asking for memory.
+pub(crate) fn integrate_few_out(
+    gram: &Mat<f64>,
+    kept: &[usize],
+    out: core::ops::Range<usize>,
+    deviation: f64,
+) -> Option<Reduced> {
+    const FEW: usize = 8;
+    let (count, first) = (out.len(), out.start);
+    if count > FEW || kept.len() > FEW {
+        let out: Vec<usize> = out.collect();
+        return integrate_out(gram, kept, &out, &vec![deviation; count]);
+    }
+    let mut matrix = gather(gram, kept, kept);
+    // Rows: the Cholesky factor L of 1 + S G_zz S, then S G_kz L⁻ᵀ.
+    let mut rows = [[0.0; FEW]; 2 * FEW];
+    let mut ln_determinant = 0.0;
+    for column in 0..count {
+        let from = &gram.col_as_slice(first + column);
+        for row in column..count + kept.len() {
+            let own = row < count;
+            let value = if own { from[first + row] * deviation } else { from[kept[row - count]] };
+            let unit = if row == column { 1.0 } else { 0.0 };
+            let inner: f64 = (0..column).map(|k| rows[row][k] * rows[column][k]).sum();
+            let left = value * deviation + unit - inner;
+            rows[row][column] =
+                if row == column { left.sqrt() } else { left / rows[column][column] };
+        }
+        let pivot = rows[column][column];
+        if !(pivot.is_finite() && pivot > 0.0) {
+            return None;
+        }
+        ln_determinant += 2.0 * pivot.ln();
+    }
+    for i in 0..kept.len() {
+        for j in 0..kept.len() {
+            let explained: f64 = rows[count + i][..count]
+                .iter()
+                .zip(&rows[count + j][..count])
+                .map(|(a, b)| a * b)
+                .sum();
+            matrix[(i, j)] -= explained;
+        }
+    }
+    Some(Reduced { matrix, ln_determinant })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three columns and a residual: positive definite by its diagonal.
+    fn gram() -> Mat<f64> {
+        let gram = [
+            [9.0, 2.0, -1.0, 3.0],
+            [2.0, 7.0, 1.5, -2.0],
+            [-1.0, 1.5, 5.0, 1.0],
+            [3.0, -2.0, 1.0, 6.0],
+        ];
+        Mat::from_fn(4, 4, |i, j| gram[i][j])
+    }
+
+    #[test]
+    fn one_column_out_by_hand() {
+        // S = 0.5: 1 + 0.25·9 = 3.25; G_11 − 2·0.5·0.5·2/3.25 = 7 − 1/3.25; G_13 = −2 − 0.25·2·3/3.25.
+        let left = integrate_out(&gram(), &[1, 3], &[0], &[0.5]).unwrap();
+        assert!((left.ln_determinant - 3.25_f64.ln()).abs() < 1e-15);
+        assert!((left.matrix[(0, 0)] - (7.0 - 1.0 / 3.25)).abs() < 1e-14);
+        assert!((left.matrix[(1, 0)] - (-2.0 - 1.5 / 3.25)).abs() < 1e-14);
+    }
+
+    /// A few columns out by hand-written elimination and by faer's.
+    #[test]
+    fn few_columns_are_as_many() {
+        let few = integrate_few_out(&gram(), &[0, 3], 1..3, 0.7).unwrap();
+        let many = integrate_out(&gram(), &[0, 3], &[1, 2], &[0.7; 2]).unwrap();
+        assert!((few.ln_determinant - many.ln_determinant).abs() < 1e-14);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            assert!((few.matrix[(i, j)] - many.matrix[(i, j)]).abs() < 1e-14);
+        }
+        let none = integrate_few_out(&gram(), &[0, 3], 1..1, 0.7).unwrap();
+        assert!((none.matrix[(0, 1)] - 3.0).abs() < 1e-15 && none.ln_determinant.abs() < 1e-300);
+    }
+
+    /// Columns that change and follow, against integrating out after the change.
+    #[test]
+    fn changed_columns_follow() {
+        let (before, kept, out) = (gram(), vec![0, 2, 3], vec![1]);
+        let changed = Changed {
+            cross: Mat::from_fn(4, 1, |i, _| [2.0, -1.0, 0.5, 4.0][i]),
+            own: Mat::from_fn(1, 1, |_, _| 8.0),
+        };
+        let mut after = before.clone();
+        changed.write(&mut after, &[3]);
+        let expected = integrate_out(&after, &kept, &out, &[0.6]).unwrap();
+        let (elimination, left) = Elimination::of(&before, kept, out, vec![0.6]).unwrap();
+        let followed = elimination.follow(&changed);
+        let mut found = left.matrix;
+        followed.write(&mut found, &[2]);
+        assert!((left.ln_determinant - expected.ln_determinant).abs() < 1e-15);
+        for i in 0..3 {
+            for j in 0..3 {
+                assert!((found[(i, j)] - expected.matrix[(i, j)]).abs() < 1e-14, "{i} {j}");
+            }
+        }
+        let mut part = gather(&before, &[0, 3, 2], &[0, 3, 2]);
+        changed.write_used(&mut part, &[3], &[0, 3, 2]);
+        assert!((part[(0, 1)] - 2.0).abs() < 1e-15 && (part[(1, 2)] - 0.5).abs() < 1e-15);
+        assert!((part[(1, 1)] - 8.0).abs() < 1e-15 && (part[(0, 2)] + 1.0).abs() < 1e-15);
+    }
 }

@@ -56,6 +56,7 @@ mod conditions;
 mod data;
 mod design;
 mod diagnosis;
+mod elementary;
 mod evidence;
 mod gram;
 mod library;

@@ -4,8 +4,9 @@ use crate::analysis::{Analysis, Stacked};
 use crate::backgrounds::Background;
 use crate::design::Acts;
 use crate::evidence::{Model, Scored, Scorer, ln_sum};
-use crate::gram::{Reduced, integrate_out};
+use crate::gram::{Changed, Reduced, integrate_few_out, integrate_out};
 use crate::library::Library;
+use crate::linear::gather;
 use crate::variables::Variable;
 
 /// Prior probability that something outside the library acts.
@@ -48,18 +49,19 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             .refined
             .iter()
             .find(|found| found.scored.model == set.model && !set.model.columns.is_empty());
-        let levels = refined.map_or(&analysis.space.reduced, |found| &found.reduced);
         let shifts =
             refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
-        weights.add(stacked, library, scorer, &set.model, levels, &shifts, 0.0);
+        for (level, reduced) in analysis.space.reduced.iter().enumerate() {
+            let changed = refined.map(|found| &found.changed[level]);
+            weights.add(stacked, library, scorer, &set.model, (reduced, changed), &shifts, 0.0);
+        }
     }
     // Scatter between flights is a named cause too, and what hangs on a flight's conditions looks like it until a function
     // of them competes. The other sets are summed over levels of scatter, which these replace.
     let levels_ln = (analysis.space.reduced.len() as f64).ln();
     for (percent, reduced) in &analysis.heating {
         let model = Model { columns: vec![], heating_percent: Some(*percent) };
-        let levels = core::slice::from_ref(reduced);
-        weights.add(stacked, library, scorer, &model, levels, &[], levels_ln);
+        weights.add(stacked, library, scorer, &model, (reduced, None), &[], levels_ln);
     }
     let Weights { named, agnostic } = weights;
     let inside = ln_sum(named);
@@ -86,7 +88,7 @@ struct Weights {
 }
 
 impl Weights {
-    /// Adds a named set at every level of scatter and every spike, alone and with each agnostic function.
+    /// Adds a named set at one level of scatter and every spike, alone and with each agnostic function.
     #[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
     fn add(
         &mut self,
@@ -94,13 +96,13 @@ impl Weights {
         library: &Library,
         scorer: &Scorer,
         model: &Model,
-        levels: &[Reduced],
+        level: (&Reduced, Option<&Changed>),
         shifts: &[f64],
         ln_share: f64,
     ) {
         let prior = scorer.ln_prior(model) + ln_share;
-        for (reduced, spike) in levels.iter().flat_map(|r| SPIKES.map(|spike| (r, spike))) {
-            let Some(under) = spiked(stacked, library, reduced, &model.columns, spike) else {
+        for spike in SPIKES {
+            let Some(under) = spiked(stacked, library, level, &model.columns, spike) else {
                 continue;
             };
             let alone = under.evidence(scorer, None, shifts);
@@ -130,23 +132,27 @@ struct Under<'a> {
 fn spiked<'a>(
     stacked: &Stacked<'_>,
     library: &Library,
-    reduced: &Reduced,
+    (reduced, changed): (&Reduced, Option<&Changed>),
     columns: &'a [usize],
     spike: f64,
 ) -> Option<Under<'a>> {
     let design = stacked.design;
     // Columns of `reduced`: effects, smooth, blocks one after the other, residual.
     let first_block = design.effects + design.smooth.len();
+    let residual = reduced.matrix.ncols() - 1;
     let mut kept: Vec<usize> = columns.to_vec();
-    let mut blocks = Vec::with_capacity(design.blocks.len());
-    let mut at = first_block;
-    for block in &design.blocks {
-        let start = kept.len();
-        kept.extend(at..at + block.columns.len());
-        at += block.columns.len();
-        blocks.push(start..kept.len());
+    let mut blocks = Vec::new();
+    // Agnostic functions compete beside at most one effect.
+    if columns.len() <= 1 {
+        let mut at = first_block;
+        for block in &design.blocks {
+            let start = kept.len();
+            kept.extend(at..at + block.columns.len());
+            at += block.columns.len();
+            blocks.push(start..kept.len());
+        }
     }
-    kept.push(reduced.matrix.ncols() - 1);
+    kept.push(residual);
     let (mut out, mut deviations): (Vec<usize>, Vec<f64>) = if spike > 0.0 {
         library.effects.iter().map(|e| (e.representative, spike * e.typical)).unzip()
     } else {
@@ -158,7 +164,19 @@ fn spiked<'a>(
         out.extend(design.effects..first_block);
         deviations.extend(vec![tau; design.smooth.len()]);
     }
-    let mut spiked = integrate_out(&reduced.matrix, &kept, &out, &deviations)?;
+    let own: Vec<usize> = columns.iter().copied().chain([residual]).collect();
+    let mut spiked = match changed {
+        Some(changed) => {
+            // Only what is looked at, with the columns that changed.
+            let used: Vec<usize> = kept.iter().chain(&out).copied().collect();
+            let mut matrix = gather(&reduced.matrix, &used, &used);
+            changed.write_used(&mut matrix, &own, &used);
+            let kept: Vec<usize> = (0..kept.len()).collect();
+            let out: Vec<usize> = (kept.len()..used.len()).collect();
+            integrate_out(&matrix, &kept, &out, &deviations)?
+        }
+        None => integrate_out(&reduced.matrix, &kept, &out, &deviations)?,
+    };
     spiked.ln_determinant += reduced.ln_determinant;
     Some(Under { reduced: spiked, columns, blocks })
 }
@@ -168,14 +186,9 @@ impl Under<'_> {
         let own = self.columns.len();
         let residual = self.reduced.matrix.ncols() - 1;
         let kept: Vec<usize> = (0..own).chain([residual]).collect();
-        let (out, deviations) = match block {
-            Some((block, amplitude)) => {
-                let range = self.blocks[block].clone();
-                (range.clone().collect::<Vec<_>>(), vec![amplitude; range.len()])
-            }
-            None => (vec![], vec![]),
-        };
-        let Some(left) = integrate_out(&self.reduced.matrix, &kept, &out, &deviations) else {
+        let out = block.map_or(0..0, |(block, _)| self.blocks[block].clone());
+        let amplitude = block.map_or(0.0, |(_, amplitude)| amplitude);
+        let Some(left) = integrate_few_out(&self.reduced.matrix, &kept, out, amplitude) else {
             return f64::NEG_INFINITY;
         };
         let ln_determinant = self.reduced.ln_determinant + left.ln_determinant;

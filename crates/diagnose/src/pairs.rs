@@ -1,49 +1,55 @@
 //! The search over pairs: the same evidence as [`Scorer::two`], for every pair at every background at once.
 //!
 //! Difficult, because it is where the time goes: two thousand pairs, sixteen backgrounds or more, four combinations of prior
-//! scales. Backgrounds are the innermost, contiguous index; a pair whose evidence is below what any posterior could show is
-//! dropped before its first logarithm; each that is left costs one logarithm and one exponential.
+//! scales. Backgrounds lie side by side, eight to a step, and each step is written so that compilers make vectors of it. A pair
+//! whose evidence is below what any posterior could show is dropped before its first logarithm.
 
 use crate::backgrounds::Background;
+use crate::elementary::{exp, ln};
 use crate::evidence::{Model, NOISE_FREEDOM, Scored, Scorer, sign_factor};
 
 /// A model this much less probable than the best one, in ln, is left out: all together they hold less than 1e-13.
 const NEGLIGIBLE: f64 = 40.0;
 /// Largest gain of two signs, ln 2 each.
 const SIGNS: f64 = 2.0 * core::f64::consts::LN_2;
+/// Backgrounds to a step.
+const WIDTH: usize = 8;
+
+/// A number under each of so many backgrounds.
+type Lanes = [f64; WIDTH];
 
 /// A column with one of its prior scales, under every background.
 struct Column {
     /// G + λ.
-    posterior: Vec<f64>,
+    posterior: Vec<Lanes>,
     /// b + λμ.
-    right: Vec<f64>,
+    right: Vec<Lanes>,
     /// λ and λμ².
     precision: f64,
     square: f64,
     ln_share: f64,
 }
 
-/// What one pair comes to under one background and one choice of scales.
+/// What a pair comes to under some backgrounds and one choice of scales.
 #[derive(Clone, Copy)]
-struct Term {
-    /// The weight is factor·exp(ln): determinant and signs are factors, so that they cost no logarithm.
-    ln: f64,
-    factor: f64,
-    background: usize,
-    sizes: [f64; 2],
-    deviations: [f64; 2],
+struct Terms {
+    /// The weight is factor·exp(ln): determinant and signs are factors, so that they cost no logarithm. −∞ where negligible.
+    ln: Lanes,
+    factor: Lanes,
+    sizes: [Lanes; 2],
+    variances: [Lanes; 2],
+    /// First background over [`WIDTH`].
+    step: usize,
 }
 
 /// Every pair of columns of different effects that is not negligible beside `best`, the ln weight of the best smaller model.
 pub(crate) fn search(scorer: &Scorer, backgrounds: &[Background], best: f64) -> Vec<Scored> {
     let columns: Vec<Vec<Column>> =
-        (0..scorer.columns()).map(|column| lanes(scorer, backgrounds, column)).collect();
-    let squares: Vec<f64> = backgrounds.iter().map(|at| NOISE_FREEDOM + at.square).collect();
+        (0..scorer.columns()).map(|column| scales(scorer, backgrounds, column)).collect();
     let mut best = best;
     let mut models = Vec::new();
-    let mut scratch = Scratch::new(backgrounds.len());
-    scratch.limit(scorer, backgrounds, best - NEGLIGIBLE);
+    let mut scratch = Scratch::new(scorer, backgrounds);
+    scratch.limit(best - NEGLIGIBLE);
     for a in 0..columns.len() {
         for b in a + 1..columns.len() {
             if scorer.effect_of[a] == scorer.effect_of[b] {
@@ -51,22 +57,23 @@ pub(crate) fn search(scorer: &Scorer, backgrounds: &[Background], best: f64) -> 
             }
             let model = Model { columns: vec![a, b], heating_percent: None };
             let prior = scorer.ln_prior(&model) - (backgrounds.len() as f64).ln();
-            scratch.by_prior = (prior / scorer.power()).exp();
+            let by_prior = (prior / scorer.power()).exp();
             for (place, at) in backgrounds.iter().enumerate() {
-                scratch.cross[place] = at.gram(a, b);
+                scratch.cross[place / WIDTH][place % WIDTH] = at.gram(a, b);
             }
             scratch.terms.clear();
-            let positive = [scorer.priors[a].positive, scorer.priors[b].positive];
             for of_a in &columns[a] {
                 for of_b in &columns[b] {
-                    scratch.square(of_a, of_b, &squares);
-                    scratch.collect(scorer, backgrounds, of_a, of_b, positive, prior);
+                    for step in 0..scratch.cross.len() {
+                        scratch.collect(of_a, of_b, step, prior, by_prior);
+                    }
                 }
             }
-            if let Some(scored) = scratch.scored(model) {
+            let positive = [scorer.priors[a].positive, scorer.priors[b].positive];
+            if let Some(scored) = scratch.scored(model, positive) {
                 if scored.ln_weight > best {
                     best = scored.ln_weight;
-                    scratch.limit(scorer, backgrounds, best - NEGLIGIBLE);
+                    scratch.limit(best - NEGLIGIBLE);
                 }
                 models.push(scored);
             }
@@ -75,21 +82,24 @@ pub(crate) fn search(scorer: &Scorer, backgrounds: &[Background], best: f64) -> 
     models
 }
 
-fn lanes(scorer: &Scorer, backgrounds: &[Background], column: usize) -> Vec<Column> {
+/// One number a background, `rest` where there is none.
+fn lanes(backgrounds: &[Background], rest: f64, of: impl Fn(&Background) -> f64) -> Vec<Lanes> {
+    let mut all = vec![[rest; WIDTH]; backgrounds.len().div_ceil(WIDTH)];
+    for (place, at) in backgrounds.iter().enumerate() {
+        all[place / WIDTH][place % WIDTH] = of(at);
+    }
+    all
+}
+
+fn scales(scorer: &Scorer, backgrounds: &[Background], column: usize) -> Vec<Column> {
     let prior = &scorer.priors[column];
     prior.scales[..prior.count]
         .iter()
         .map(|&(deviation, ln_share)| {
             let precision = 1.0 / (deviation * deviation);
             Column {
-                posterior: backgrounds
-                    .iter()
-                    .map(|at| at.gram(column, column) + precision)
-                    .collect(),
-                right: backgrounds
-                    .iter()
-                    .map(|at| at.product(column) + precision * prior.mean)
-                    .collect(),
+                posterior: lanes(backgrounds, 1.0, |at| at.gram(column, column) + precision),
+                right: lanes(backgrounds, 0.0, |at| at.product(column) + precision * prior.mean),
                 precision,
                 square: precision * prior.mean * prior.mean,
                 ln_share,
@@ -100,130 +110,145 @@ fn lanes(scorer: &Scorer, backgrounds: &[Background], column: usize) -> Vec<Colu
 
 /// Memory of one pair, and of the limit that all are held against.
 struct Scratch {
-    cross: Vec<f64>,
-    /// ν0 + q of the pair; infinite where the pair is degenerate.
-    squares: Vec<f64>,
-    /// The same beyond which a term with prior 1 is negligible.
-    limits: Vec<f64>,
-    /// What the pair's prior makes of the limits.
-    by_prior: f64,
-    terms: Vec<Term>,
-    /// Weights by background.
-    totals: Vec<f64>,
+    power: f64,
+    /// ν0 + n.
+    freedom: f64,
+    cross: Vec<Lanes>,
+    /// ν0 + q without any effect; infinite where there is no background.
+    squares: Vec<Lanes>,
+    /// −½ ln of each background's determinant.
+    ln_determinants: Vec<Lanes>,
+    /// ν0 + q beyond which a term with prior 1 is negligible.
+    limits: Vec<Lanes>,
+    terms: Vec<Terms>,
 }
 
 impl Scratch {
-    fn new(backgrounds: usize) -> Self {
+    fn new(scorer: &Scorer, backgrounds: &[Background]) -> Self {
+        let squares = lanes(backgrounds, f64::INFINITY, |at| NOISE_FREEDOM + at.square);
         Self {
-            cross: vec![0.0; backgrounds],
-            squares: vec![0.0; backgrounds],
-            limits: vec![f64::INFINITY; backgrounds],
-            by_prior: 1.0,
-            terms: Vec::with_capacity(4 * backgrounds),
-            totals: vec![0.0; backgrounds],
+            power: scorer.power(),
+            freedom: NOISE_FREEDOM + scorer.rows,
+            cross: vec![[0.0; WIDTH]; squares.len()],
+            ln_determinants: lanes(backgrounds, 0.0, |at| -0.5 * at.ln_determinant),
+            limits: vec![[0.0; WIDTH]; squares.len()],
+            terms: Vec::with_capacity(4 * squares.len()),
+            squares,
         }
     }
 
     /// The residual square beyond which a term without prior is below `least`: determinants only make it smaller, signs at
     /// most double it.
-    fn limit(&mut self, scorer: &Scorer, backgrounds: &[Background], least: f64) {
-        for (limit, at) in self.limits.iter_mut().zip(backgrounds) {
-            *limit = ((SIGNS - 0.5 * at.ln_determinant - least) / scorer.power()).exp();
+    fn limit(&mut self, least: f64) {
+        for (limits, lns) in self.limits.iter_mut().zip(&self.ln_determinants) {
+            for (limit, ln_determinant) in limits.iter_mut().zip(lns) {
+                *limit = ((SIGNS + ln_determinant - least) / self.power).exp();
+            }
         }
     }
 
-    /// ν0 + q + Σλμ² − r'M⁻¹r under every background.
-    fn square(&mut self, a: &Column, b: &Column, squares: &[f64]) {
-        let count = self.squares.len();
-        let (posterior_a, posterior_b) = (&a.posterior[..count], &b.posterior[..count]);
-        let (right_a, right_b) = (&a.right[..count], &b.right[..count]);
-        let (cross, squares) = (&self.cross[..count], &squares[..count]);
+    /// Keeps the terms of one step where one of them is not negligible. ν0 + q + Σλμ² − r'M⁻¹r says so.
+    #[expect(clippy::needless_range_loop, reason = "lanes of many vectors")]
+    fn collect(&mut self, a: &Column, b: &Column, step: usize, prior: f64, by_prior: f64) {
+        let (posterior_a, posterior_b) = (&a.posterior[step], &b.posterior[step]);
+        let (right_a, right_b) = (&a.right[step], &b.right[step]);
+        let (cross, limits) = (&self.cross[step], &self.limits[step]);
         let own = a.square + b.square;
-        for k in 0..count {
-            let determinant = posterior_a[k] * posterior_b[k] - cross[k] * cross[k];
+        let (mut determinants, mut squares) = ([0.0; WIDTH], self.squares[step]);
+        let mut kept = 0;
+        for k in 0..WIDTH {
+            determinants[k] = posterior_a[k] * posterior_b[k] - cross[k] * cross[k];
             let explained = (posterior_b[k] * right_a[k] * right_a[k]
                 + posterior_a[k] * right_b[k] * right_b[k]
                 - 2.0 * cross[k] * right_a[k] * right_b[k])
-                / determinant;
-            self.squares[k] = squares[k] + own - explained;
+                / determinants[k];
+            squares[k] = squares[k] + own - explained;
+            kept += u32::from(squares[k] <= limits[k] * by_prior);
         }
-    }
-
-    /// Keeps the terms that are not negligible.
-    fn collect(
-        &mut self,
-        scorer: &Scorer,
-        backgrounds: &[Background],
-        a: &Column,
-        b: &Column,
-        positive: [bool; 2],
-        prior: f64,
-    ) {
-        for (k, at) in backgrounds.iter().enumerate() {
-            let square = self.squares[k];
-            if square.is_nan() || square > self.limits[k] * self.by_prior {
-                continue;
-            }
-            let cross = self.cross[k];
-            let posterior = [a.posterior[k], b.posterior[k]];
-            let determinant = posterior[0] * posterior[1] - cross * cross;
-            if determinant <= 0.0 {
-                continue; // rounding: exactly confounded and hardly any prior
-            }
-            let sizes = [
-                (posterior[1] * a.right[k] - cross * b.right[k]) / determinant,
-                (posterior[0] * b.right[k] - cross * a.right[k]) / determinant,
-            ];
-            let scale = square / (NOISE_FREEDOM + scorer.rows);
-            let deviations = [
-                (scale * posterior[1] / determinant).sqrt(),
-                (scale * posterior[0] / determinant).sqrt(),
-            ];
-            let ln = prior - 0.5 * at.ln_determinant - scorer.power() * square.ln()
-                + a.ln_share
-                + b.ln_share;
-            let factor = (a.precision * b.precision / determinant).sqrt()
-                * sign_factor(positive[0], sizes[0] / deviations[0])
-                * sign_factor(positive[1], sizes[1] / deviations[1]);
-            self.terms.push(Term { ln, factor, background: k, sizes, deviations });
+        if kept == 0 {
+            return;
         }
+        let mut terms = Terms {
+            ln: [0.0; WIDTH],
+            factor: [0.0; WIDTH],
+            sizes: [[0.0; WIDTH]; 2],
+            variances: [[0.0; WIDTH]; 2],
+            step,
+        };
+        let constant = prior + a.ln_share + b.ln_share;
+        let precisions = a.precision * b.precision;
+        let ln_determinants = &self.ln_determinants[step];
+        for k in 0..WIDTH {
+            let inverse = 1.0 / determinants[k];
+            terms.sizes[0][k] = (posterior_b[k] * right_a[k] - cross[k] * right_b[k]) * inverse;
+            terms.sizes[1][k] = (posterior_a[k] * right_b[k] - cross[k] * right_a[k]) * inverse;
+            let scale = squares[k] / self.freedom * inverse;
+            terms.variances[0][k] = scale * posterior_b[k];
+            terms.variances[1][k] = scale * posterior_a[k];
+            terms.factor[k] = (precisions * inverse).sqrt();
+            let ln = constant + ln_determinants[k] - self.power * ln(squares[k]);
+            // A determinant of 0 or less is rounding: exactly confounded and hardly any prior.
+            let keep = (squares[k] <= limits[k] * by_prior) & (determinants[k] > 0.0);
+            terms.ln[k] = if keep { ln } else { f64::NEG_INFINITY };
+        }
+        self.terms.push(terms);
     }
 
     /// The mixture of all terms; `None` where none was kept.
-    fn scored(&mut self, model: Model) -> Option<Scored> {
-        let largest = self.terms.iter().map(|term| term.ln).fold(f64::NEG_INFINITY, f64::max);
+    fn scored(&mut self, model: Model, positive: [bool; 2]) -> Option<Scored> {
+        let largest =
+            self.terms.iter().flat_map(|terms| terms.ln).fold(f64::NEG_INFINITY, f64::max);
         if largest == f64::NEG_INFINITY {
             return None;
         }
-        self.totals.fill(0.0);
-        let (mut total, mut first, mut second) = (0.0, [0.0; 2], [0.0; 2]);
-        for term in &self.terms {
-            let below = term.ln - largest;
-            if below < -NEGLIGIBLE {
-                continue;
+        let mut totals = vec![[0.0; WIDTH]; self.cross.len()];
+        let (mut firsts, mut seconds) = ([[0.0; WIDTH]; 2], [[0.0; WIDTH]; 2]);
+        for terms in &self.terms {
+            let mut weights = [0.0; WIDTH];
+            for k in 0..WIDTH {
+                let below = terms.ln[k] - largest;
+                let weight = terms.factor[k] * exp(below);
+                weights[k] = if below >= -NEGLIGIBLE { weight } else { 0.0 };
             }
-            let weight = term.factor * below.exp();
-            self.totals[term.background] += weight;
-            total += weight;
-            for k in 0..2 {
-                let (size, deviation) = (term.sizes[k], term.deviations[k]);
-                first[k] += weight * size;
-                second[k] += weight * (size * size + deviation * deviation);
+            for (which, _) in positive.iter().enumerate().filter(|(_, positive)| **positive) {
+                for k in 0..WIDTH {
+                    if weights[k] > 0.0 {
+                        let t = terms.sizes[which][k] / terms.variances[which][k].sqrt();
+                        weights[k] *= sign_factor(true, t);
+                    }
+                }
+            }
+            let total = &mut totals[terms.step];
+            for k in 0..WIDTH {
+                total[k] += weights[k];
+            }
+            for which in 0..2 {
+                let (sizes, variances) = (&terms.sizes[which], &terms.variances[which]);
+                let (first, second) = (&mut firsts[which], &mut seconds[which]);
+                for k in 0..WIDTH {
+                    let weighs = weights[k] > 0.0;
+                    let (size, variance) = (sizes[k], variances[k]);
+                    let one = weights[k] * size;
+                    let two = weights[k] * (size * size + variance);
+                    first[k] += if weighs { one } else { 0.0 };
+                    second[k] += if weighs { two } else { 0.0 };
+                }
             }
         }
-        let sizes = first.map(|sum| sum / total);
+        let flat = totals.as_flattened();
+        let total: f64 = flat.iter().sum();
+        let sizes = firsts.map(|first| first.iter().sum::<f64>() / total);
         let deviations = core::array::from_fn::<f64, 2, _>(|k| {
-            (second[k] / total - sizes[k] * sizes[k]).max(0.0).sqrt()
+            (seconds[k].iter().sum::<f64>() / total - sizes[k] * sizes[k]).max(0.0).sqrt()
         });
-        let background = (0..self.totals.len())
-            .reduce(|best, k| if self.totals[k] > self.totals[best] { k } else { best })
-            .unwrap_or(0);
+        let background =
+            (0..flat.len()).reduce(|best, k| if flat[k] > flat[best] { k } else { best });
         Some(Scored {
             model,
             ln_weight: largest + total.ln(),
             sizes: sizes.to_vec(),
             deviations: deviations.to_vec(),
-            background,
+            background: background.unwrap_or(0),
         })
     }
 }

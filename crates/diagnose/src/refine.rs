@@ -11,7 +11,7 @@ use crate::backgrounds::Background;
 use crate::data::{Difference, FlightRows};
 use crate::design::{half_whitened, whiten_flight};
 use crate::evidence::{Mixture, Scored, Scorer};
-use crate::gram::{Changed, Reduced, fold_of};
+use crate::gram::{Changed, fold_of};
 use crate::library::Library;
 use crate::noise::MAXIMUM_CHANNELS;
 
@@ -24,8 +24,8 @@ const CONVERGED: f64 = 0.02;
 #[derive(Clone, Debug)]
 pub(crate) struct Relinearised {
     pub(crate) scored: Scored,
-    /// Gram without nuisance, agnostic functions included, with the model's own columns and residual.
-    pub(crate) reduced: Vec<Reduced>,
+    /// Its own columns and the residual, in the Gram without nuisance at every level of scatter between flights.
+    pub(crate) changed: Vec<Changed>,
     /// Where it was linearised.
     pub(crate) shifts: Vec<f64>,
 }
@@ -135,8 +135,7 @@ pub(crate) fn refine(
             let Some(run) = runs[k].take() else { continue };
             let changed = products.of(&fresh, place);
             let levels = fresh.levels_of(place);
-            refined[k] =
-                Some(score_everywhere(library, scorer, space, run, &changed, &levels, agnostic));
+            refined[k] = Some(score_everywhere(library, scorer, space, run, &changed, &levels));
         }
     }
     refined
@@ -149,7 +148,6 @@ fn score_everywhere(
     run: Run<'_>,
     changed: &Changed,
     levels: &Mat<f64>,
-    agnostic: bool,
 ) -> Relinearised {
     let Run { start, sizes: shifts, .. } = run;
     let columns = &start.model.columns;
@@ -186,26 +184,9 @@ fn score_everywhere(
         let mean = sum.mean();
         (mean.ln, mean.sizes.to_vec(), mean.deviations.to_vec())
     };
-    // Only agnostic functions look at the matrices themselves.
-    let reduced = if agnostic {
-        space
-            .reduced
-            .iter()
-            .zip(&followed)
-            .map(|(reduced, followed)| {
-                let mut reduced = reduced.clone();
-                let last = reduced.matrix.ncols() - 1;
-                let places: Vec<usize> = columns.iter().copied().chain([last]).collect();
-                followed.write(&mut reduced.matrix, &places);
-                reduced
-            })
-            .collect()
-    } else {
-        vec![]
-    };
     let scored =
         Scored { model: start.model.clone(), ln_weight, sizes, deviations, background: best.1 };
-    Relinearised { scored, reduced, shifts }
+    Relinearised { scored, changed: followed, shifts }
 }
 
 /// Sizes in the background that the model was found in; `None` where that cannot be made.

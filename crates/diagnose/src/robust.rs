@@ -28,7 +28,7 @@ pub(crate) fn weights(
         .chain(design.nuisance.clone().map(|column| (column, 1.0)))
         .chain(design.smooth.clone().map(|column| (column, 0.0015)))
         .unzip();
-    let gram = stacked.folds.without(None);
+    let gram = stacked.gram(None);
     let solution = gram.fit(&columns, &deviations, design.residual())?;
 
     let data = stacked.data;

@@ -62,7 +62,7 @@ pub(crate) fn held_out_floor(stacked: &Stacked<'_>, library: &Library) -> Option
         .unzip();
     let mut sum = 0.0;
     for fold in 0..FOLDS {
-        let gram = stacked.folds.without(Some(fold));
+        let gram = stacked.gram(Some(fold));
         let sizes = gram.fit(&columns, &deviations, design.residual())?;
         for (index, flight) in stacked.data.flights.iter().enumerate() {
             if fold_of(index) != fold {
