@@ -137,7 +137,7 @@ pub(crate) struct Elimination {
     out: Vec<usize>,
     deviations: Vec<f64>,
     factor: Option<Factor>,
-    /// L⁻¹·S·G_zk, L the Cholesky factor of 1 + S G_zz S.
+    /// `L⁻¹·S·G_zk`, L the Cholesky factor of `1 + S G_zz S`.
     projected: Mat<f64>,
 }
 

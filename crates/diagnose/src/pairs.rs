@@ -148,7 +148,6 @@ impl Scratch {
     }
 
     /// Keeps the terms of one step where one of them is not negligible. ν0 + q + Σλμ² − r'M⁻¹r says so.
-    #[expect(clippy::needless_range_loop, reason = "lanes of many vectors")]
     fn collect(&mut self, a: &Column, b: &Column, step: usize, prior: f64, by_prior: f64) {
         let (posterior_a, posterior_b) = (&a.posterior[step], &b.posterior[step]);
         let (right_a, right_b) = (&a.right[step], &b.right[step]);
@@ -188,8 +187,8 @@ impl Scratch {
             terms.factor[k] = (precisions * inverse).sqrt();
             let ln = constant + ln_determinants[k] - self.power * ln(squares[k]);
             // A determinant of 0 or less is rounding: exactly confounded and hardly any prior.
-            let keep = (squares[k] <= limits[k] * by_prior) & (determinants[k] > 0.0);
-            terms.ln[k] = if keep { ln } else { f64::NEG_INFINITY };
+            let ln = if determinants[k] > 0.0 { ln } else { f64::NEG_INFINITY };
+            terms.ln[k] = if squares[k] <= limits[k] * by_prior { ln } else { f64::NEG_INFINITY };
         }
         self.terms.push(terms);
     }
@@ -205,16 +204,16 @@ impl Scratch {
         let (mut firsts, mut seconds) = ([[0.0; WIDTH]; 2], [[0.0; WIDTH]; 2]);
         for terms in &self.terms {
             let mut weights = [0.0; WIDTH];
-            for k in 0..WIDTH {
+            for (k, kept) in weights.iter_mut().enumerate() {
                 let below = terms.ln[k] - largest;
                 let weight = terms.factor[k] * exp(below);
-                weights[k] = if below >= -NEGLIGIBLE { weight } else { 0.0 };
+                *kept = if below >= -NEGLIGIBLE { weight } else { 0.0 };
             }
             for (which, _) in positive.iter().enumerate().filter(|(_, positive)| **positive) {
-                for k in 0..WIDTH {
-                    if weights[k] > 0.0 {
+                for (k, weight) in weights.iter_mut().enumerate() {
+                    if *weight > 0.0 {
                         let t = terms.sizes[which][k] / terms.variances[which][k].sqrt();
-                        weights[k] *= sign_factor(true, t);
+                        *weight *= sign_factor(true, t);
                     }
                 }
             }
