@@ -73,7 +73,7 @@ impl Conditions {
         if columns.len() < 2 {
             return None;
         }
-        let gram = stacked.folds.without(None);
+        let gram = stacked.gram(None);
         let nuisance = stacked.design.nuisance.clone();
         let known = Known::of(&gram.matrix, &columns, nuisance.clone())?;
         let envelope = Envelope::of(stacked.data, model)?;

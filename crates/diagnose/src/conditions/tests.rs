@@ -29,7 +29,7 @@ fn with<R>(
     let design = Design::of(&data, &references, None, None);
     let stacked = Stacked::of(&data, &design, None);
     let leading = library.effects.iter().map(|effect| effect.representative).collect();
-    let distances = Distances::of(stacked.folds.without(None), &design, leading).unwrap();
+    let distances = Distances::of(stacked.gram(None), &design, leading).unwrap();
     then(&stacked, &effects, &library, &distances)
 }
 

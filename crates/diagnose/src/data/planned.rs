@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
-use perf_model::effects::{EffectModel, EffectPoint, Effects, Response};
+use perf_model::effects::{EffectModel, EffectPoint, Response};
 
-use super::{Data, FlightRows, Inside, gauge_row};
+use super::{Data, Differences, FlightRows, Inside, gauge_row};
 use crate::baseline::Baseline;
 use crate::library::Library;
 use crate::noise::NoiseFactors;
@@ -33,12 +33,13 @@ impl Data<'_> {
         let factors =
             self.predictor.baseline.map_or_else(NoiseFactors::default, |b: &Baseline| *b.noise());
         let samples: Vec<u32> = (0..u32::try_from(recorded.samples).ok()?).collect();
+        let differences = Differences::of(model, library, self.predictor.baseline.is_some());
         let mut segments = Vec::with_capacity(points.len());
         for &point in points {
-            let response = model.response(&point, &Effects::none()).ok()?;
+            let (known, response) = model.known_point(&point).ok()?;
             let means = Cow::Owned(self.means(&point, &response));
-            let kept = Inside { means, rows: &samples, point, response };
-            segments.push(self.row(model, &kept, library, &factors).ok()?);
+            let kept = Inside { means, rows: &samples, point, known, response };
+            segments.push(self.row(model, &kept, library, &differences, &factors).ok()?);
         }
         let gauge = recorded.gauge_deviation.map(|deviation| {
             let burn = GaugeBurn { gauged_kg: 1.0, metered_kg: 1.0, deviation_kg: deviation };
