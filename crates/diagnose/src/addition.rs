@@ -1,7 +1,9 @@
 //! What a verdict would add to the model: its effects with sizes, hidden parameters and references, ready to be applied.
 
 use flight::effect::EffectId;
-use perf_model::effects::{AppliedLayer, EffectReferences, Effects, HiddenParameters, StepTarget};
+use perf_model::effects::{
+    AppliedLayer, EffectReferences, Effects, HiddenParameters, StepTarget, ThrottleArgument,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::Analysis;
@@ -34,6 +36,10 @@ pub struct AddedEffect {
     /// `tsfc_throttle`: corrected thrust over its reference at which TSFC is unchanged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub throttle_pivot: Option<f64>,
+    /// `tsfc_throttle`: what told pivot and size, where it was not corrected thrust. Once applied, the effect acts over
+    /// corrected thrust all the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub throttle_argument: Option<ThrottleArgument>,
     /// `wave_drag`: drag-divergence Mach number at lift coefficient 0.35.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drag_divergence_mach: Option<f64>,
@@ -66,6 +72,7 @@ impl Addition {
                 .ok_or_else(|| UnknownEffect { name: added.effect.clone() })?;
             effects = effects.with(id, added.size);
             hidden.throttle_pivot = added.throttle_pivot.unwrap_or(hidden.throttle_pivot);
+            hidden.throttle_argument = added.throttle_argument.unwrap_or(hidden.throttle_argument);
             hidden.drag_divergence_mach =
                 added.drag_divergence_mach.unwrap_or(hidden.drag_divergence_mach);
             hidden.step_from_s = added.step_from_s.unwrap_or(hidden.step_from_s);
@@ -100,6 +107,9 @@ impl Addition {
                     size: scored.sizes[place],
                     standard_deviation: scored.deviations[place],
                     throttle_pivot: (id == EffectId::TsfcThrottle).then_some(hidden.throttle_pivot),
+                    throttle_argument: (id == EffectId::TsfcThrottle
+                        && hidden.throttle_argument != ThrottleArgument::CorrectedThrust)
+                        .then_some(hidden.throttle_argument),
                     drag_divergence_mach: (id == EffectId::WaveDrag)
                         .then_some(hidden.drag_divergence_mach),
                     step_from_s: is_step.then_some(hidden.step_from_s),
@@ -112,6 +122,7 @@ impl Addition {
             size: percent,
             standard_deviation: SCATTER_SHARE * percent,
             throttle_pivot: None,
+            throttle_argument: None,
             drag_divergence_mach: None,
             step_from_s: None,
             step_target: None,
@@ -142,6 +153,7 @@ mod tests {
             size,
             standard_deviation: 0.1,
             throttle_pivot: None,
+            throttle_argument: None,
             drag_divergence_mach: None,
             step_from_s: None,
             step_target: None,

@@ -7,7 +7,8 @@ use perf_model::effects::{EffectModel, EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 
 use crate::DiagnoseError;
-use crate::data::{DECK_TERMS, Data, Deck, ENVIRONMENT};
+use crate::data::{Data, ENVIRONMENT};
+use crate::deck::{DECK_TERMS, Deck};
 use crate::library::Library;
 use crate::noise::{MAXIMUM_CHANNELS, NoiseFactors};
 use crate::record::FlightRecord;

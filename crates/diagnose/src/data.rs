@@ -14,6 +14,7 @@ use perf_model::effects::{
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
+use crate::deck::{DECK_TERMS, Deck, deck_variables, half_ln_total_temperature_ratio};
 use crate::library::Library;
 use crate::noise::{
     ByChannel, Channels, HEATING_LOADING, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise,
@@ -22,11 +23,6 @@ use crate::noise::{
 use crate::record::FlightRecord;
 
 pub(crate) mod planned;
-
-/// Coefficients of the N2 deck: a full quadratic in four variables.
-pub(crate) const DECK_TERMS: usize = 15;
-/// Scales that make the deck's variables dimensionless: ln F/δ, Mach number, ln δ, ln θ.
-const DECK_SCALES: [f64; 4] = [0.2, 0.05, 0.3, 0.04];
 
 /// An effect that a baseline carries.
 pub(crate) struct Carried {
@@ -119,61 +115,6 @@ pub(crate) struct Data<'a> {
     pub(crate) left_out: BTreeMap<String, usize>,
 }
 
-/// The N2 deck: ln(N2/√θt) as a full quadratic.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Deck {
-    pub(crate) centers: [f64; 4],
-    pub(crate) coefficients: [f64; DECK_TERMS],
-}
-
-impl Deck {
-    fn scaled(&self, response: &Response) -> [f64; 4] {
-        let variables = deck_variables(response);
-        core::array::from_fn(|k| (variables[k] - self.centers[k]) / DECK_SCALES[k])
-    }
-
-    pub(crate) fn terms(&self, response: &Response) -> [f64; DECK_TERMS] {
-        let v = self.scaled(response);
-        let mut terms = [1.0; DECK_TERMS];
-        terms[1..5].copy_from_slice(&v);
-        let mut at = 5;
-        for a in 0..4 {
-            for b in a..4 {
-                terms[at] = v[a] * v[b];
-                at += 1;
-            }
-        }
-        terms
-    }
-
-    /// ln N2 that the deck predicts.
-    fn value(&self, response: &Response) -> f64 {
-        let terms = self.terms(response);
-        let deck: f64 = terms.iter().zip(&self.coefficients).map(|(t, c)| t * c).sum();
-        deck + half_ln_total_temperature_ratio(response)
-    }
-
-    fn slope(&self, response: &Response) -> f64 {
-        let v = self.scaled(response);
-        let c = &self.coefficients;
-        (c[1] + 2.0 * c[5] * v[0] + c[6] * v[1] + c[7] * v[2] + c[8] * v[3]) / DECK_SCALES[0]
-    }
-}
-
-fn deck_variables(response: &Response) -> [f64; 4] {
-    [
-        response.ln_corrected_thrust,
-        response.mach,
-        response.ln_pressure_ratio,
-        response.ln_temperature_ratio,
-    ]
-}
-
-/// ½ ln θt, θt = θ(1 + 0.2 M²).
-fn half_ln_total_temperature_ratio(response: &Response) -> f64 {
-    0.5 * (response.ln_temperature_ratio + (0.2 * response.mach * response.mach).ln_1p())
-}
-
 /// Contrasts between engines, normalized like ln(Wf1/Wf2): the mean of the first k engines less engine k + 1.
 fn contrasts(ln_flows: &[f64], into: &mut [f64]) {
     for (k, slot) in into.iter_mut().enumerate() {
@@ -222,6 +163,16 @@ struct Inside<'a> {
     point: EffectPoint,
     known: KnownPoint,
     response: Response,
+}
+
+impl Inside<'_> {
+    /// Says what thrust the recorded N2 stands for.
+    fn look_up_n2(&mut self, deck: &Deck) {
+        let by_n2_n = mean_n2_percent(&self.means)
+            .and_then(|percent| deck.corrected_thrust_n(percent, &self.response));
+        self.point.corrected_thrust_by_n2_n = by_n2_n;
+        self.known = self.known.with_corrected_thrust_by_n2(by_n2_n);
+    }
 }
 
 /// Collects what the model can predict, flight by flight.
@@ -311,15 +262,20 @@ impl<'a> Data<'a> {
         library_of: impl FnOnce(&[EffectPoint], bool, &[f64]) -> Library,
     ) -> (Self, Library) {
         let mut left_out = BTreeMap::new();
-        let inside = inside(model, flights, &mut left_out);
+        let mut inside = inside(model, flights, &mut left_out);
+        let channels = channels_of(model, &inside);
+        let deck = deck_of(&inside, channels, baseline);
+        if channels.n2 {
+            for kept in inside.iter_mut().flat_map(|(segments, _)| segments) {
+                kept.look_up_n2(&deck);
+            }
+        }
         let points: Vec<EffectPoint> =
             inside.iter().flat_map(|(segments, _)| segments).map(|kept| kept.point).collect();
         let starts: Vec<f64> =
             inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
-        let channels = channels_of(model, &inside);
         let library = library_of(&points, channels.contrasts > 0, &starts);
         let factors = baseline.map_or_else(NoiseFactors::default, |b| *b.noise());
-        let deck = deck_of(&inside, channels, baseline);
 
         let mut data = Self {
             channels,
@@ -439,6 +395,22 @@ impl<'a> Data<'a> {
             row.signatures.push(found);
         }
         Ok(row)
+    }
+
+    /// Where N2 is recorded but stands for no thrust near the predicted one: how often.
+    pub(crate) fn thrust_by_n2_note(&self, library: &Library) -> Option<String> {
+        let recorded = self.segments.iter().filter(|row| row.n2_percent.is_some()).count();
+        let silent = |row: &&SegmentRow| {
+            row.n2_percent.is_some() && row.point.corrected_thrust_by_n2_n.is_none()
+        };
+        let silent = self.segments.iter().filter(silent).count();
+        let looked_for = library.effects.iter().any(|e| e.id == EffectId::TsfcThrottle);
+        (self.channels.n2 && looked_for && silent > 0).then(|| {
+            format!(
+                "N2 of {silent} of {recorded} segments stands for no thrust near the predicted one: \
+                 tsfc_throttle is over corrected thrust there"
+            )
+        })
     }
 
     pub(crate) fn columns(&self) -> usize {

@@ -9,7 +9,8 @@ use perf_model::effects::EffectReferences;
 
 use crate::TableUncertainty;
 use crate::baseline::Baseline;
-use crate::data::{DECK_TERMS, Data, FlightRows, SegmentRow};
+use crate::data::{Data, FlightRows, SegmentRow};
+use crate::deck::DECK_TERMS;
 use crate::noise::{ByChannel, MAXIMUM_CHANNELS};
 use crate::variables::{Hats, Scaled, Variable};
 

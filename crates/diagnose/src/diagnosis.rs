@@ -181,6 +181,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     let design = Design::of(&data, &references, input.baseline, input.table);
     let stacked = Stacked::of(&data, &design, None);
     let mut notes = Vec::new();
+    notes.extend(data.thrust_by_n2_note(&library));
     if input.references.is_none() && input.baseline.is_none() {
         notes.push("references of effects are the means of these flights".to_owned());
     }
@@ -627,7 +628,11 @@ fn hidden_words(library: &Library, posterior: &Posterior) -> String {
                 .map_or_else(|_| String::new(), |instant| instant.to_string());
             format!("{target} from {from}")
         }
-        EffectId::TsfcThrottle => format!("pivot {}", column.hidden.throttle_pivot),
+        EffectId::TsfcThrottle => format!(
+            "over {}, pivot {:.1}",
+            column.hidden.throttle_argument.words(),
+            column.hidden.throttle_pivot
+        ),
         EffectId::WaveDrag => format!("Mdd {}", column.hidden.drag_divergence_mach),
         _ => String::new(),
     }

@@ -54,6 +54,7 @@ mod classes;
 mod closure;
 mod conditions;
 mod data;
+mod deck;
 mod design;
 mod diagnosis;
 mod elementary;

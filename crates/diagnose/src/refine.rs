@@ -50,6 +50,11 @@ fn merged(a: HiddenParameters, b: HiddenParameters) -> HiddenParameters {
     };
     HiddenParameters {
         throttle_pivot: number(a.throttle_pivot, b.throttle_pivot, default.throttle_pivot),
+        throttle_argument: if b.throttle_argument == default.throttle_argument {
+            a.throttle_argument
+        } else {
+            b.throttle_argument
+        },
         drag_divergence_mach: number(
             a.drag_divergence_mach,
             b.drag_divergence_mach,

@@ -30,7 +30,7 @@ mod terms;
 pub use applied::{AppliedEffects, AppliedLayer};
 pub use engine::ANTI_ICE_PROXY_K;
 pub use known::{KnownPoint, Trial};
-pub use terms::{Effects, HiddenParameters, StepTarget};
+pub use terms::{Effects, HiddenParameters, StepTarget, ThrottleArgument};
 
 pub(crate) use applied::Contained;
 use known::{Known, has_inputs};
@@ -71,6 +71,9 @@ pub struct EffectPoint {
     pub center_of_gravity_percent_mac: Option<f64>,
     /// Share of the samples with anti-ice bleed on.
     pub anti_ice: Option<f64>,
+    /// Net thrust of all engines over pressure ratio that the recorded N2 stands for, N. It takes a deck (N2 over corrected
+    /// thrust), which whoever makes points may have; `None` without one, or where N2 is not recorded.
+    pub corrected_thrust_by_n2_n: Option<f64>,
 }
 
 /// What effects are zero at: the mean of what a model was adapted to, or of the data at hand.
@@ -236,10 +239,12 @@ impl EffectPoint {
             true_heading_deg: point.true_heading.map(units::Angle::to_degrees),
             center_of_gravity_percent_mac: point.center_of_gravity_percent_mac,
             anti_ice: Some(if point.anti_ice == Some(true) { 1.0 } else { 0.0 }),
+            corrected_thrust_by_n2_n: None,
         })
     }
 
-    /// The point of a segment's means. `engines` is the aircraft's number.
+    /// The point of a segment's means. `engines` is the aircraft's number. No deck is at hand: what N2 stands for is left
+    /// open.
     #[must_use]
     pub fn of_means(means: &SegmentMeans, start_s: f64, engines: usize) -> Self {
         let engines = engines.clamp(1, MAXIMUM_ENGINES);
@@ -270,6 +275,7 @@ impl EffectPoint {
             true_heading_deg: means.true_heading_deg,
             center_of_gravity_percent_mac: means.center_of_gravity_percent_mac,
             anti_ice: means.anti_ice,
+            corrected_thrust_by_n2_n: None,
         }
     }
 }

@@ -52,7 +52,8 @@ fn told(added: &AddedEffect) -> String {
     let mut words =
         format!("{} {:+.4} ± {:.4} {unit}", added.effect, added.size, added.standard_deviation);
     if let Some(pivot) = added.throttle_pivot {
-        let _ = write!(words, ", pivot {pivot}");
+        let argument = added.throttle_argument.unwrap_or_default().words();
+        let _ = write!(words, ", over {argument}, pivot {pivot:.1}");
     }
     if let Some(mach) = added.drag_divergence_mach {
         let _ = write!(words, ", Mdd {mach}");

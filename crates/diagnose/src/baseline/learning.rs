@@ -9,7 +9,8 @@ use super::lower_triangle;
 use super::moments::{KINDS, LeftOut, Moments, Part};
 use super::{Baseline, FOLDS};
 use crate::DiagnoseError;
-use crate::data::{DECK_TERMS, Data, ENVIRONMENT};
+use crate::data::{Data, ENVIRONMENT};
+use crate::deck::DECK_TERMS;
 use crate::linear::Factor;
 use crate::noise::NoiseFactors;
 

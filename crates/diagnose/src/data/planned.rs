@@ -38,7 +38,8 @@ impl Data<'_> {
         for &point in points {
             let (known, response) = model.known_point(&point).ok()?;
             let means = Cow::Owned(self.means(&point, &response));
-            let kept = Inside { means, rows: &samples, point, known, response };
+            let mut kept = Inside { means, rows: &samples, point, known, response };
+            kept.look_up_n2(&self.predictor.deck);
             segments.push(self.row(model, &kept, library, &differences, &factors).ok()?);
         }
         let gauge = recorded.gauge_deviation.map(|deviation| {

@@ -1,5 +1,7 @@
 //! Effects that a model contains for good: those of past diagnoses, applied.
 //!
+//! An applied `tsfc_throttle` always acts over corrected thrust, also where N2 told its size: the same in every command.
+//!
 //! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change what is
 //! predicted. Effects of what is recorded (sensors, load sheet, fuel quantity) correct recordings before anything looks at
 //! them, and no prediction knows of them.
@@ -13,10 +15,10 @@ use lut::surface::{FitError, Surface};
 use serde::{Deserialize, Serialize};
 
 use super::recorded::corrected;
-use super::terms::{Layers, Terms};
+use super::terms::{Layers, Terms, ThrottleArgument};
 use super::{
-    EffectError, EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects, Response,
-    polar_of,
+    EffectError, EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects,
+    HiddenParameters, Response, polar_of,
 };
 use crate::{FlightPoint, PerformanceModel};
 
@@ -119,7 +121,12 @@ impl AppliedEffects {
                 if effects.is_empty() {
                     return None;
                 }
-                let effects = effects.with_hidden(*layer.effects.hidden());
+                let hidden = HiddenParameters {
+                    // Points of a forecast have no N2, and most of what evaluates a model has no deck: N2 told the size.
+                    throttle_argument: ThrottleArgument::CorrectedThrust,
+                    ..*layer.effects.hidden()
+                };
+                let effects = effects.with_hidden(hidden);
                 let effects =
                     if dated { effects } else { on_reference_date(&effects, &layer.references) };
                 Some(Terms::of(&effects, &layer.references))

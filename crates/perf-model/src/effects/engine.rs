@@ -4,7 +4,7 @@ use flight::MAXIMUM_ENGINES;
 
 use super::drag::years_since_reference;
 use super::recorded::AsFlown;
-use super::terms::{Layers, Terms};
+use super::terms::{Layers, Terms, ThrottleArgument};
 use super::{EffectModel, EffectPoint};
 
 /// Static air temperature above which anti-ice bleed is taken as on where it is not recorded, K: −40 °C.
@@ -21,7 +21,8 @@ impl EffectModel<'_> {
     /// recorded Wf_k = Wf_k·(1 + θWF,k)                                                             [diagnosis.11]
     /// ```
     ///
-    /// x is corrected thrust over its reference, TSFC the aircraft's law. Engines give equal thrust. Factors of all layers multiply, offtakes add.
+    /// x is corrected thrust over its reference, or that which N2 stands for ([`ThrottleArgument`]); TSFC the aircraft's law.
+    /// Engines give equal thrust. Factors of all layers multiply, offtakes add.
     pub(super) fn recorded_fuel_flow(
         &self,
         net_thrust_n: f64,
@@ -76,7 +77,11 @@ fn tsfc_factor(
             .powf(terms.tsfc_temperature_exponent);
     }
     if terms.tsfc_throttle != 0.0 {
-        let x = corrected_thrust_n / references.corrected_thrust_n;
+        let by_n2_n = match terms.hidden.throttle_argument {
+            ThrottleArgument::CorrectedThrust => None,
+            ThrottleArgument::N2 => point.corrected_thrust_by_n2_n,
+        };
+        let x = by_n2_n.unwrap_or(corrected_thrust_n) / references.corrected_thrust_n;
         let distance = (x - terms.hidden.throttle_pivot) / THROTTLE_WIDTH;
         factor *= 1.0 + terms.tsfc_throttle * distance * distance;
     }

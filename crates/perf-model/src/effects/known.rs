@@ -31,6 +31,16 @@ pub(super) struct Known {
     pub(super) tsfc_kg_per_n_s: f64,
 }
 
+impl KnownPoint {
+    /// The same point with the corrected thrust that its N2 stands for
+    /// ([`EffectPoint::corrected_thrust_by_n2_n`]): of trial effects alone, so that what is known stays.
+    #[must_use]
+    pub const fn with_corrected_thrust_by_n2(mut self, newtons: Option<f64>) -> Self {
+        self.point.corrected_thrust_by_n2_n = newtons;
+        self
+    }
+}
+
 impl EffectModel<'_> {
     /// Makes effects ready for many points.
     #[must_use]

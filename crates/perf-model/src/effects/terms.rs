@@ -24,11 +24,44 @@ pub enum StepTarget {
     Drag,
 }
 
+/// What the parabola of `tsfc_throttle` runs over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThrottleArgument {
+    /// Corrected thrust as the model has it.
+    #[default]
+    CorrectedThrust,
+    /// The corrected thrust that the recorded N2 stands for; the model's where a point does not say it
+    /// ([`EffectPoint::corrected_thrust_by_n2_n`](super::EffectPoint::corrected_thrust_by_n2_n)).
+    N2,
+}
+
+impl ThrottleArgument {
+    /// Whether it is corrected thrust: not written to files, so that files without N2 are what they were before.
+    #[must_use]
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+    pub const fn is_corrected_thrust(&self) -> bool {
+        matches!(self, Self::CorrectedThrust)
+    }
+
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::CorrectedThrust => "corrected thrust",
+            Self::N2 => "N2",
+        }
+    }
+}
+
 /// Parameters of effects that are no sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HiddenParameters {
     /// `tsfc_throttle`: corrected thrust over its reference at which TSFC is unchanged.
     pub throttle_pivot: f64,
+    /// `tsfc_throttle`: where that corrected thrust comes from.
+    #[serde(default, skip_serializing_if = "ThrottleArgument::is_corrected_thrust")]
+    pub throttle_argument: ThrottleArgument,
     /// `wave_drag`: drag-divergence Mach number at lift coefficient 0.35.
     pub drag_divergence_mach: f64,
     /// `step_change`: instant from which it holds, s since 1970.
@@ -38,9 +71,10 @@ pub struct HiddenParameters {
 }
 
 impl HiddenParameters {
-    /// What holds where nothing is said: pivot at the reference, drag rise in the middle of the contract's range, no step.
+    /// What holds where nothing is said: pivot at the reference, over corrected thrust, drag rise in the middle of the contract's range, no step.
     pub const DEFAULT: Self = Self {
         throttle_pivot: 1.0,
+        throttle_argument: ThrottleArgument::CorrectedThrust,
         drag_divergence_mach: DEFAULT_DRAG_DIVERGENCE_MACH,
         step_from_s: f64::INFINITY,
         step_target: StepTarget::FuelFlow,

@@ -53,6 +53,7 @@ fn point(mach: f64) -> EffectPoint {
         true_heading_deg: Some(60.0),
         center_of_gravity_percent_mac: Some(22.0),
         anti_ice: None,
+        corrected_thrust_by_n2_n: None,
     }
 }
 
@@ -292,6 +293,48 @@ fn dated_steps_begin_on_their_date_and_know_drag_from_fuel_flow() {
     assert!((drag.ln_fuel_flow_total - plain.ln_fuel_flow_total - 1.03_f64.ln()).abs() < 1e-14);
     assert!((drag.ln_corrected_thrust - plain.ln_corrected_thrust - 1.03_f64.ln()).abs() < 1e-14);
     assert_eq!(step(at.date_s + 1.0, StepTarget::Drag), plain);
+}
+
+/// F/δ that N2 stands for is 1.3 references, pivot 0.9: ((1.3 − 0.9)/0.25)² = 2.56, at 0.5 % a factor of 1.0128.
+#[test]
+fn the_throttle_effect_over_n2_by_hand() {
+    let performance = model(true);
+    let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
+    let hidden = HiddenParameters { throttle_pivot: 0.9, ..HiddenParameters::default() };
+    let over = |at: &EffectPoint, throttle_argument: ThrottleArgument| {
+        let hidden = HiddenParameters { throttle_argument, ..hidden };
+        let on = Effects::one(EffectId::TsfcThrottle, 0.5).with_hidden(hidden);
+        effects.response(at, &on).unwrap()
+    };
+    let at = EffectPoint { corrected_thrust_by_n2_n: Some(1.3 * 60_000.0), ..point(0.8) };
+    let plain = effects.response(&at, &Effects::none()).unwrap();
+    let by_n2 = over(&at, ThrottleArgument::N2);
+    assert!((by_n2.ln_fuel_flow_total - plain.ln_fuel_flow_total - 1.0128_f64.ln()).abs() < 1e-14);
+    // N2 moves the argument of TSFC, not the thrust that is flown.
+    assert!((by_n2.ln_corrected_thrust - plain.ln_corrected_thrust).abs() < 1e-15);
+    // Over corrected thrust the point's N2 is not looked at.
+    let x = plain.ln_corrected_thrust.exp() / 60_000.0;
+    let factor: f64 = 1.0 + 0.005 * ((x - 0.9) / 0.25).powi(2);
+    let by_thrust = over(&at, ThrottleArgument::CorrectedThrust);
+    let grown = by_thrust.ln_fuel_flow_total - plain.ln_fuel_flow_total;
+    assert!((grown - factor.ln()).abs() < 1e-14);
+    // A point that N2 says nothing of is over corrected thrust too.
+    assert_eq!(over(&point(0.8), ThrottleArgument::N2), by_thrust);
+}
+
+/// As a file said it before there was a choice.
+#[test]
+fn hidden_parameters_without_an_argument_are_over_corrected_thrust() {
+    let before =
+        "(throttle_pivot:0.8,drag_divergence_mach:0.86,step_from_s:1.5e9,step_target:drag)";
+    let read: HiddenParameters = ron::from_str(before).unwrap();
+    assert_eq!(read.throttle_argument, ThrottleArgument::CorrectedThrust);
+    // And is written as before; N2 is said.
+    assert!(!ron::to_string(&read).unwrap().contains("throttle_argument"));
+    let by_n2 = HiddenParameters { throttle_argument: ThrottleArgument::N2, ..read };
+    let text = ron::to_string(&by_n2).unwrap();
+    assert!(text.contains("throttle_argument:n2"), "{text}");
+    assert_eq!(ron::from_str::<HiddenParameters>(&text).unwrap(), by_n2);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use units::{Angle, Mach, Mass, PressureAltitude};
 
 use super::*;
 use crate::Aircraft;
-use crate::effects::{HiddenParameters, StepTarget};
+use crate::effects::StepTarget;
 
 const DATE_S: f64 = 1.5e9;
 const YEAR_S: f64 = 365.25 * 86_400.0;
@@ -48,6 +48,7 @@ fn references() -> EffectReferences {
 fn hidden() -> HiddenParameters {
     HiddenParameters {
         throttle_pivot: 0.8,
+        throttle_argument: ThrottleArgument::CorrectedThrust,
         drag_divergence_mach: 0.86,
         step_from_s: DATE_S - 0.5 * YEAR_S,
         step_target: StepTarget::FuelFlow,
@@ -185,6 +186,32 @@ fn a_model_that_contains_an_effect_leaves_nothing_of_it() {
         let observed = model.observe(&recorded).unwrap().drag_coefficient;
         assert!((observed / after.drag_coefficient - 1.0).abs() < 1e-9, "{id}: {observed}");
     }
+}
+
+#[test]
+fn a_throttle_effect_that_n2_told_acts_over_corrected_thrust() {
+    let by_thrust = with(Effects::one(EffectId::TsfcThrottle, 0.6));
+    let told_by_n2 = HiddenParameters { throttle_argument: ThrottleArgument::N2, ..hidden() };
+    let layer = AppliedLayer {
+        effects: Effects::one(EffectId::TsfcThrottle, 0.6).with_hidden(told_by_n2),
+        references: references(),
+    };
+    let model = bare().with_effects(AppliedEffects::new(vec![layer])).unwrap();
+    let flow = |model: &PerformanceModel| {
+        model.predict(&flight_point()).unwrap().fuel_flow_total.to_kilograms_per_second()
+    };
+    assert_eq!(flow(&model).to_bits(), flow(&by_thrust).to_bits());
+    assert_ne!(flow(&model).to_bits(), flow(&bare()).to_bits());
+    // Nor does a point that knows what its N2 stands for make a difference: every command says the same.
+    let at = EffectPoint {
+        corrected_thrust_by_n2_n: Some(80_000.0),
+        ..EffectPoint::of_means(&segment().means, DATE_S, 2)
+    };
+    let response = |model: &PerformanceModel| {
+        let effects = EffectModel::new(model, model.drag_table(), references()).unwrap();
+        effects.response(&at, &Effects::none()).unwrap()
+    };
+    assert_eq!(response(&model), response(&by_thrust));
 }
 
 #[test]
