@@ -191,6 +191,18 @@ mod tests {
                 }
             )
         );
+        // As files said it before N2 could tell a throttle effect, and after.
+        let before =
+            r#"(effect:"tsfc_throttle",size:0.6,standard_deviation:0.1,throttle_pivot:Some(0.8))"#;
+        let added: AddedEffect = ron::from_str(before).unwrap();
+        let layer = Addition { effects: vec![added.clone()], references }.layer().unwrap();
+        let over_thrust = HiddenParameters { throttle_pivot: 0.8, ..HiddenParameters::default() };
+        assert_eq!(*layer.effects.hidden(), over_thrust);
+        assert_eq!(ron::to_string(&added).unwrap(), before);
+        let by_n2 = AddedEffect { throttle_argument: Some(ThrottleArgument::N2), ..added };
+        let layer = Addition { effects: vec![by_n2], references }.layer().unwrap();
+        let over_n2 = HiddenParameters { throttle_argument: ThrottleArgument::N2, ..over_thrust };
+        assert_eq!(*layer.effects.hidden(), over_n2);
         let unknown = Addition { effects: vec![effect("drag_faktor", 1.0)], references };
         assert_eq!(unknown.layer(), Err(UnknownEffect { name: "drag_faktor".to_owned() }));
     }

@@ -11,7 +11,7 @@ const RECORDED_SHARE: f64 = 0.9;
 const THROTTLE_PIVOTS: [f64; 5] = [0.6, 0.8, 1.0, 1.2, 1.5];
 /// The one thrust by N2 that the throttle effect may pivot about. Away from the reference the parabola has a slope there, and
 /// what N2 and model disagree about (noise of either) times that slope passes for a throttle effect: of 16 fleets without any
-/// effect but accelerations that err by 0.009 m/s², 7 had one over N2 with all pivots of thrust, none with this one alone.
+/// effect but accelerations that err by 0.009 m/s², 7 had one over N2 with all pivots of thrust, none of them with this one alone.
 const N2_PIVOT: f64 = 1.0;
 /// Drag-divergence Mach numbers of the contract's range, where the aircraft file does not say one.
 const DIVERGENCE_MACHS: [f64; 6] = [0.74, 0.78, 0.82, 0.86, 0.90, 0.94];

@@ -39,7 +39,6 @@ pub enum ThrottleArgument {
 impl ThrottleArgument {
     /// Whether it is corrected thrust: not written to files, so that files without N2 are what they were before.
     #[must_use]
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
     pub const fn is_corrected_thrust(&self) -> bool {
         matches!(self, Self::CorrectedThrust)
     }
