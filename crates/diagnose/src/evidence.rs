@@ -70,11 +70,11 @@ pub(crate) struct Evidence<const K: usize> {
 
 /// What one column comes to in one background.
 #[derive(Clone, Copy, Debug)]
-struct Single {
-    gram: f64,
-    product: f64,
-    square: f64,
-    ln_determinant: f64,
+pub(crate) struct Single {
+    pub(crate) gram: f64,
+    pub(crate) product: f64,
+    pub(crate) square: f64,
+    pub(crate) ln_determinant: f64,
 }
 
 /// Everything the scoring of models needs.
@@ -149,7 +149,8 @@ impl Scorer {
         self.nothing(at.square, at.ln_determinant)
     }
 
-    fn nothing(&self, square: f64, ln_determinant: f64) -> f64 {
+    /// As [`none`](Self::none).
+    pub(crate) fn nothing(&self, square: f64, ln_determinant: f64) -> f64 {
         -0.5 * ln_determinant - self.power() * (NOISE_FREEDOM + square).ln()
     }
 
@@ -169,7 +170,8 @@ impl Scorer {
         self.single(single, column, shift)
     }
 
-    fn single(&self, at: Single, column: usize, shift: f64) -> Evidence<1> {
+    /// As [`one`](Self::one).
+    pub(crate) fn single(&self, at: Single, column: usize, shift: f64) -> Evidence<1> {
         let prior = self.priors[column];
         let Single { gram, product, .. } = at;
         let mut sum = Factored::new();

@@ -82,10 +82,15 @@ fn add_symmetric(into: &mut Mat<f64>, left: MatRef<'_, f64>, share: f64) {
 /// Some rows and columns of a matrix, in this order.
 pub(crate) fn gather(from: &Mat<f64>, rows: &[usize], columns: &[usize]) -> Mat<f64> {
     let mut into = Mat::<f64>::zeros(rows.len(), columns.len());
+    // Most rows are neighbors, which are copied together.
+    let runs: Vec<&[usize]> = rows.chunk_by(|a, b| a + 1 == *b).collect();
     for (k, &column) in columns.iter().enumerate() {
         let from = from.col_as_slice(column);
-        for (value, &row) in into.col_as_slice_mut(k).iter_mut().zip(rows) {
-            *value = from[row];
+        let mut rest = into.col_as_slice_mut(k);
+        for run in &runs {
+            let (values, after) = rest.split_at_mut(run.len());
+            values.copy_from_slice(&from[run[0]..run[0] + run.len()]);
+            rest = after;
         }
     }
     into
@@ -114,6 +119,15 @@ mod tests {
         factor.solve(&mut right);
         assert!((right[(0, 0)] - 1.375).abs() < 1e-15 && (right[(1, 0)] - 1.25).abs() < 1e-15);
         assert!(Factor::of(&Mat::from_fn(2, 2, |_, _| -1.0)).is_none());
+    }
+
+    #[test]
+    fn gathered_by_hand() {
+        let from = Mat::from_fn(4, 3, |i, j| 10.0 * i as f64 + j as f64);
+        let found = gather(&from, &[3, 0, 1, 1], &[2, 0]);
+        let expected = [[32.0, 30.0], [2.0, 0.0], [12.0, 10.0], [12.0, 10.0]];
+        assert_eq!(found, Mat::from_fn(4, 2, |i, j| expected[i][j]));
+        assert_eq!(gather(&from, &[], &[1]).nrows(), 0);
     }
 
     #[test]

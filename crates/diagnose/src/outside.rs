@@ -3,7 +3,7 @@
 use crate::analysis::{Analysis, Stacked};
 use crate::backgrounds::Background;
 use crate::design::Acts;
-use crate::evidence::{Model, Scored, Scorer, ln_sum};
+use crate::evidence::{Model, Scored, Scorer, Single, ln_sum};
 use crate::gram::{Changed, Reduced, integrate_few_out, integrate_out};
 use crate::library::Library;
 use crate::linear::gather;
@@ -192,11 +192,19 @@ impl Under<'_> {
             return f64::NEG_INFINITY;
         };
         let ln_determinant = self.reduced.ln_determinant + left.ln_determinant;
-        let at = Background::small(&left.matrix, self.columns, scorer.columns(), ln_determinant);
+        let square = left.matrix[(own, own)];
         match self.columns[..] {
-            [] => scorer.none(&at),
-            [a] => scorer.one(&at, a, shifts[0]).ln,
-            [a, b, ..] => scorer.two(&at, [a, b], [shifts[0], shifts[1]]).ln,
+            [] => scorer.nothing(square, ln_determinant),
+            [a] => {
+                let (gram, product) = (left.matrix[(0, 0)], left.matrix[(0, 1)]);
+                let single = Single { gram, product, square, ln_determinant };
+                scorer.single(single, a, shifts[0]).ln
+            }
+            [a, b, ..] => {
+                let columns = scorer.columns();
+                let at = Background::small(&left.matrix, self.columns, columns, ln_determinant);
+                scorer.two(&at, [a, b], [shifts[0], shifts[1]]).ln
+            }
         }
     }
 }

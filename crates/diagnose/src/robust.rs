@@ -37,20 +37,18 @@ pub(crate) fn weights(
     let mut all = Vec::with_capacity(data.segments.len() * channels);
     for (index, flight) in data.flights.iter().enumerate() {
         let rows = stacked.whitened(index);
-        for place in 0..flight.segments.len() {
-            let mut largest: f64 = 0.0;
-            for row in place * channels..(place + 1) * channels {
-                let fitted: f64 = columns
-                    .iter()
-                    .enumerate()
-                    .map(|(k, &column)| rows[(row, column)] * solution[(k, 0)])
-                    .sum();
-                let left = rows[(row, design.residual())] - fitted;
-                largest = largest.max(left.abs());
-                all.push(left);
+        let mut left = rows.col_as_slice(design.residual()).to_vec();
+        for (k, &column) in columns.iter().enumerate() {
+            let size = solution[(k, 0)];
+            for (left, value) in left.iter_mut().zip(rows.col_as_slice(column)) {
+                *left -= value * size;
             }
-            worst.push(largest);
         }
+        left.truncate(flight.segments.len() * channels);
+        for segment in left.chunks(channels) {
+            worst.push(segment.iter().fold(0.0_f64, |largest, e| largest.max(e.abs())));
+        }
+        all.append(&mut left);
     }
     let count = all.len() as f64;
     let second = all.iter().map(|e| e * e).sum::<f64>() / count;
