@@ -3,7 +3,7 @@
 use perf_model::effects::EffectModel;
 
 use crate::analysis::Stacked;
-use crate::classes::Distances;
+use crate::classes::{CONFUSED, Distances};
 use crate::conditions::Conditions;
 use crate::library::Library;
 use crate::output::Separation;
@@ -66,7 +66,8 @@ impl<'a> Advisor<'a> {
         all
     }
 
-    /// What would tell an effect of typical size from the nearest other one of its class, the best first.
+    /// What would tell an effect of typical size from the nearest other one of its class, the best first; nothing where
+    /// that one is far enough already, seen from this side.
     pub(crate) fn beforehand(&self, effect: usize, class: &[usize]) -> Vec<Separation> {
         let column = self.distances.leading(effect);
         let size = self.library.effects[effect].typical;
@@ -77,7 +78,8 @@ impl<'a> Advisor<'a> {
                 let columns = self.library.effects[other].all_columns();
                 (self.distances.squared_from_any(column, columns, size), other)
             })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(squared, _)| *squared < CONFUSED);
         nearest.map_or_else(Vec::new, |(_, other)| self.between(column, size, other))
     }
 }

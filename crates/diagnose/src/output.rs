@@ -189,7 +189,7 @@ pub struct Detectable {
     /// Distance at the typical size from the nearest pair of others.
     pub nearest_pair: f64,
     /// Measurements and flights on purpose that would tell it, at the typical size, from the nearest other effect of its
-    /// class, the best first.
+    /// class, the best first; empty where none is nearer than three noise standard deviations.
     #[serde(default)]
     pub separations: Vec<Separation>,
 }

@@ -45,6 +45,7 @@ pub(crate) fn test_flights(envelope: &Envelope, model: &EffectModel<'_>) -> Vec<
     }
     let mut machs = envelope.usual.to_vec();
     machs.dedup();
+    machs.retain(|mach| (envelope.table_from..=envelope.fastest).contains(mach));
     for mach in machs {
         for loading in &envelope.loadings {
             flights.extend(level_sweep(envelope, model, mach, loading));

@@ -193,6 +193,7 @@ fn advice_is_ranked_and_repeats() {
                 let once_more = other.advised(k.representative, l.all_columns(), k.typical);
                 assert_eq!(advised, once_more);
                 assert!(advised.iter().all(|one| one.after > 1.1 * one.ordinary + 0.1));
+                assert!(advised.iter().all(|one| one.after >= 1.0));
                 assert!(advised.is_sorted_by(|a, b| a.after >= b.after));
                 offered += usize::from(!advised.is_empty());
             }
