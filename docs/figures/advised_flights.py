@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Flies the flights that `cruisefit diagnose` advises, and compares the distance that was announced with the one reached.
 
-    python3 docs/figures/advised_flights.py target/release/cruisefit DIR SEED
+    python3 docs/figures/advised_flights.py target/release/cruisefit DIR SEED [EFFECT SIZE]
 
 A model is adapted on sixty varied flights of the virtual aircraft (`adapt`, law bayes). Thirty clean flights of one habit (FLEETS)
 are diagnosed. Every pair of effects for which flights are advised beforehand (`detectable`, `separations`) is diagnosed alone
@@ -9,6 +9,9 @@ are diagnosed. Every pair of effects for which flights are advised beforehand (`
 With two effects in the library, `nearest_other` is the distance between them (or from nothing, where that is less).
 Where the data support another hidden parameter of the first effect with the new flights than without (Mdd, throttle pivot), the
 two distances are of different effects: "moved". Prints one line a pair, and a table in Markdown at the end. Needs no packages.
+
+With an effect and a size: that effect is planted in the fleet of one speed, and the verdicts on thirty flights, with the six advised
+against `tsfc_factor`, and with six ordinary ones, are printed. The model must be there from a run without.
 """
 
 import datetime
@@ -41,10 +44,10 @@ class Bench:
         if found.returncode not in (0, 1):
             sys.exit(f"{arguments}: {found.stderr}")
 
-    def fly(self, name, seed, flights):
-        """Reports of a clean tail."""
+    def fly(self, name, seed, flights, truth=""):
+        """Reports of a tail, clean where `truth` says nothing."""
         plan, reports = self.root / f"{name}.ron", self.root / name
-        plan.write_text(f'(seed: {seed}, tails: [(tail: "T-001", flights: {flights})])')
+        plan.write_text(f'(seed: {seed}, tails: [(tail: "T-001", {truth} flights: {flights})])')
         shutil.rmtree(reports, ignore_errors=True)
         self.run("simulate", plan, "-o", reports)
         return reports
@@ -105,6 +108,29 @@ def listed(words, number, day):
     return f"Listed([{', '.join(flights)}])"
 
 
+def verdicts(binary, root, seed, effect, size):
+    bench = Bench(binary, root, seed)
+    model = bench.root / "learnt" / "models" / "T-001.ron"
+    references = json.loads((bench.root / "taught" / "TRUTH.json").read_text())["tails"][0]["references"]
+    told = ", ".join(f"{name}: {value}" for name, value in references.items())
+    truth = f'effects: [(id: "{effect}", size: {size})], references: Some(({told})),'
+    habit = FLEETS["one speed"]
+    flown = bench.fly("planted", seed + 1, designed(FLIGHTS, habit, "2020-01-01", "2020-12-01"), truth)
+    more = bench.fly("planted-more", seed + 2, designed(6, habit, "2020-12-03", "2020-12-20"), truth)
+    _, pair = bench.diagnose([flown], model, ["--effects", f"{effect},tsfc_factor"])
+    advised = [one["measurement"] for one in pair[effect]["separations"] if "distance_ordinary_flights" in one]
+    sorts = advised[0].split(", and three with ") if advised else []
+    extra = [
+        bench.fly(f"planted-advised{k}", seed + 3 + k, listed(words, 6 // len(sorts), 20 * k), truth)
+        for k, words in enumerate(sorts)
+    ]
+    for name, reports in (("thirty", []), ("advised", extra), ("ordinary", [more])):
+        found, _ = bench.diagnose([flown, *reports], model, [])
+        verdict, causes = found["verdict"], found["causes"][:1]
+        sizes = [(cause["effect"], round(cause["magnitude"]["value"], 3)) for cause in causes]
+        print(name, verdict["kind"], verdict["effects"], round(verdict["probability"], 2), verdict["class"], sizes)
+
+
 def main(binary, root, seed):
     bench = Bench(binary, root, seed)
     model = bench.model()
@@ -154,4 +180,7 @@ def main(binary, root, seed):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2], int(sys.argv[3]))
+    if len(sys.argv) > 4:
+        verdicts(sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4], float(sys.argv[5]))
+    else:
+        main(sys.argv[1], sys.argv[2], int(sys.argv[3]))

@@ -20,6 +20,8 @@ const TOLD_WHEN_SILENT: [EffectId; 6] = [
 /// Other causes than the verdict's that are told, and the least probability that is.
 const OTHERS_TOLD: usize = 3;
 const LEAST_TOLD: f64 = 0.02;
+/// Measurements or flights that are told.
+const SEPARATIONS_TOLD: usize = 2;
 /// Probability below which no cause is told as one.
 const PROBABLE: f64 = 0.5;
 /// Half width of a 95 % interval in standard deviations.
@@ -259,7 +261,16 @@ fn named(diagnosis: &Diagnosis) -> Vec<String> {
     if !others.is_empty() {
         lines.push(format!("These flights cannot tell it from: {}.", others.join(", ")));
     }
-    for separation in verdict.separations.iter().take(2) {
+    // One measurement often separates from several effects: it is told once, where it does most.
+    let mut told: Vec<&str> = Vec::new();
+    for separation in &verdict.separations {
+        if told.len() == SEPARATIONS_TOLD {
+            break;
+        }
+        if told.contains(&separation.measurement.as_str()) {
+            continue;
+        }
+        told.push(&separation.measurement);
         lines.push(format!(
             "To be sure: {} (tells it from {}: {:.1} to {:.1} standard deviations{}).",
             separation.measurement,
