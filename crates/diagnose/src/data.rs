@@ -14,7 +14,7 @@ use perf_model::effects::{
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
-use crate::deck::{DECK_TERMS, Deck, deck_variables, half_ln_total_temperature_ratio};
+use crate::deck::{DECK_TERMS, Deck};
 use crate::library::Library;
 use crate::noise::{
     ByChannel, Channels, HEATING_LOADING, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise,
@@ -513,42 +513,10 @@ fn deck_of(
     if let Some(deck) = baseline.and_then(Baseline::deck) {
         return deck;
     }
-    let mut deck = Deck { centers: [0.0; 4], coefficients: [0.0; DECK_TERMS] };
-    let segments: Vec<&Inside<'_>> =
-        inside.iter().flat_map(|(segments, _)| segments).filter(|k| has_n2(&k.means)).collect();
-    if !channels.n2 || segments.is_empty() {
-        return deck;
-    }
-    for kept in &segments {
-        let variables = deck_variables(&kept.response);
-        for (center, variable) in deck.centers.iter_mut().zip(variables) {
-            *center += variable / segments.len() as f64;
-        }
-    }
-    // Ridge of a millionth: with fewer directions flown than the deck has, the rest stays at zero.
-    let mut normal = faer::Mat::<f64>::zeros(DECK_TERMS, DECK_TERMS);
-    let mut right = faer::Mat::<f64>::zeros(DECK_TERMS, 1);
-    for kept in &segments {
-        let terms = deck.terms(&kept.response);
-        let (values, _) = recorded_channels(&kept.means, channels);
-        let target = values[channels.n2_row()] - half_ln_total_temperature_ratio(&kept.response);
-        for a in 0..DECK_TERMS {
-            right[(a, 0)] += terms[a] * target;
-            for b in 0..DECK_TERMS {
-                normal[(a, b)] += terms[a] * terms[b];
-            }
-        }
-    }
-    for a in 0..DECK_TERMS {
-        normal[(a, a)] += 1e-6 * segments.len() as f64;
-    }
-    if let Some(factor) = crate::linear::Factor::of(&normal) {
-        factor.solve(&mut right);
-        for a in 0..DECK_TERMS {
-            deck.coefficients[a] = right[(a, 0)];
-        }
-    }
-    deck
+    let segments = inside.iter().flat_map(|(segments, _)| segments).filter(|_| channels.n2);
+    let recorded: Vec<(&Response, f64)> =
+        segments.filter_map(|kept| Some((&kept.response, mean_n2_percent(&kept.means)?))).collect();
+    Deck::fitted(&recorded)
 }
 
 fn gauge_row(

@@ -19,6 +19,42 @@ pub(crate) struct Deck {
 }
 
 impl Deck {
+    /// Least squares over predictions and the N2 recorded there, %; all zero without any.
+    pub(crate) fn fitted(recorded: &[(&Response, f64)]) -> Self {
+        let mut deck = Self { centers: [0.0; 4], coefficients: [0.0; DECK_TERMS] };
+        if recorded.is_empty() {
+            return deck;
+        }
+        for (response, _) in recorded {
+            for (center, variable) in deck.centers.iter_mut().zip(deck_variables(response)) {
+                *center += variable / recorded.len() as f64;
+            }
+        }
+        // Ridge of a millionth: with fewer directions flown than the deck has, the rest stays at zero.
+        let mut normal = faer::Mat::<f64>::zeros(DECK_TERMS, DECK_TERMS);
+        let mut right = faer::Mat::<f64>::zeros(DECK_TERMS, 1);
+        for (response, n2_percent) in recorded {
+            let terms = deck.terms(response);
+            let target = (n2_percent / 100.0).ln() - half_ln_total_temperature_ratio(response);
+            for a in 0..DECK_TERMS {
+                right[(a, 0)] += terms[a] * target;
+                for b in 0..DECK_TERMS {
+                    normal[(a, b)] += terms[a] * terms[b];
+                }
+            }
+        }
+        for a in 0..DECK_TERMS {
+            normal[(a, a)] += 1e-6 * recorded.len() as f64;
+        }
+        if let Some(factor) = crate::linear::Factor::of(&normal) {
+            factor.solve(&mut right);
+            for a in 0..DECK_TERMS {
+                deck.coefficients[a] = right[(a, 0)];
+            }
+        }
+        deck
+    }
+
     fn scaled(&self, response: &Response) -> [f64; 4] {
         let variables = deck_variables(response);
         core::array::from_fn(|k| (variables[k] - self.centers[k]) / DECK_SCALES[k])
@@ -75,7 +111,7 @@ impl Deck {
     }
 }
 
-pub(crate) fn deck_variables(response: &Response) -> [f64; 4] {
+fn deck_variables(response: &Response) -> [f64; 4] {
     [
         response.ln_corrected_thrust,
         response.mach,
@@ -85,7 +121,7 @@ pub(crate) fn deck_variables(response: &Response) -> [f64; 4] {
 }
 
 /// ½ ln θt, θt = θ(1 + 0.2 M²).
-pub(crate) fn half_ln_total_temperature_ratio(response: &Response) -> f64 {
+fn half_ln_total_temperature_ratio(response: &Response) -> f64 {
     0.5 * (response.ln_temperature_ratio + (0.2 * response.mach * response.mach).ln_1p())
 }
 
@@ -141,6 +177,40 @@ mod tests {
         let elsewhere = Response { ln_corrected_thrust: 55_000.0_f64.ln(), ..response() };
         let found = deck(-0.05).corrected_thrust_n(n2_percent(-0.05, 0.05), &elsewhere).unwrap();
         assert!((found / (60_000.0 * 0.05_f64.exp()) - 1.0).abs() < 1e-12);
+    }
+
+    /// From N2 of a known deck, over l, Mach number, δ and θ that vary apart, back to its coefficients.
+    #[test]
+    fn a_fitted_deck_is_the_one_that_it_was_made_of() {
+        let mut responses = Vec::new();
+        for (k, l) in [-0.3, -0.1, 0.0, 0.15, 0.3_f64].into_iter().enumerate() {
+            for (j, mach) in [0.72, 0.80, 0.86].into_iter().enumerate() {
+                for ln_pressure_ratio in [-1.9, -1.6, -1.4] {
+                    for ln_temperature_ratio in [-0.30, -0.26, -0.21] {
+                        responses.push(Response {
+                            ln_corrected_thrust: 60_000.0_f64.ln() + l + 0.01 * (j * k % 3) as f64,
+                            mach,
+                            ln_pressure_ratio,
+                            ln_temperature_ratio,
+                            ..response()
+                        });
+                    }
+                }
+            }
+        }
+        let n2 = |r: &Response| {
+            let l = r.ln_corrected_thrust - 60_000.0_f64.ln();
+            let theta_t = r.ln_temperature_ratio.exp() * (1.0 + 0.2 * r.mach * r.mach);
+            100.0 * (-0.1 + 0.16 * l - 0.05 * l * l + 0.04 * (r.mach - 0.8)).exp() * theta_t.sqrt()
+        };
+        let recorded: Vec<_> = responses.iter().map(|r| (r, n2(r))).collect();
+        let found = Deck::fitted(&recorded);
+        for r in &responses {
+            let l = r.ln_corrected_thrust - 60_000.0_f64.ln();
+            assert!((found.slope(r) - (0.16 - 0.1 * l)).abs() < 1e-4, "{l} {}", found.slope(r));
+            let thrust = found.corrected_thrust_n(n2(r), r).unwrap();
+            assert!((thrust / r.ln_corrected_thrust.exp() - 1.0).abs() < 1e-4);
+        }
     }
 
     #[test]
