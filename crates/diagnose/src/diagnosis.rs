@@ -325,7 +325,13 @@ fn conclude(
         slices::find(stacked, &analysis, scale, gap.detected, options.seed)
     };
     let found_outside = outside.probability;
-    outside.probability *= 1.0 - credit(posteriors.first(), unseen.as_ref(), &own);
+    let top = posteriors.first();
+    outside.probability *= 1.0
+        - credit(
+            beside(&outside, &distances, library, top),
+            top.is_some_and(|top| top.effect.is_none()),
+            closed(unseen.as_ref(), &own),
+        );
     let classes = distances.classes(library);
     let advisor = advisor(stacked, model, library, &distances, &classes, &posteriors, gap.detected);
     let verdict = verdict(
@@ -420,24 +426,47 @@ fn is_vague(gap: &Gap, outside: &Outside, top: Option<&Posterior>, makes_worse: 
         && (gap.rms_ci95[0] <= gap.noise_floor_rms_percent || makes_worse)
 }
 
-/// Share of the explainable gap that the leading set closes: on unseen flights; on the same ones where the gap is too small
-/// for that; 1 where it is too small for either.
-fn closed(unseen: Option<&Shrinkage>, own: &Shrinkage) -> f64 {
-    unseen.and_then(Shrinkage::closure).or_else(|| own.closure()).map_or(1.0, |c| c.0)
+/// Share of the explainable gap that the leading set closes, with its interval: on unseen flights; on the same ones where the
+/// gap is too small for that; `None` where it is too small for either.
+fn closed(unseen: Option<&Shrinkage>, own: &Shrinkage) -> Option<(f64, [f64; 2])> {
+    unseen.and_then(Shrinkage::closure).or_else(|| own.closure())
 }
 
-/// How much of the evidence for an agnostic function goes to the leading set in another form, by what the set closes
-/// `[diagnosis.41]`.
+/// How much of the evidence for an agnostic function goes to the leading effect `[diagnosis.41]`: the larger of
 ///
-/// Truth never has the library's form exactly, and with enough flights an agnostic function sees it. Effects of the library
-/// in other forms closed 0.94 to 0.98 of the gap on two other simulators, effects that the library lacks 0.25 at most.
-/// Scatter between flights closes nothing and gets no credit.
-fn credit(top: Option<&Posterior>, unseen: Option<&Shrinkage>, own: &Shrinkage) -> f64 {
-    if top.is_some_and(|top| top.effect.is_none()) {
-        return 0.0;
-    }
+/// - what says that the function is the effect in another form. Truth never has the library's form exactly, and with enough
+///   flights an agnostic function sees it. Effects of the library in other forms closed 0.94 to 0.98 of the gap on two
+///   other simulators, effects that the library lacks 0.25 at most;
+/// - what says that the effect acts *beside* the function: the probability of it or of a member of its class in the models
+///   that hold a function, as long as the effect surely makes unseen flights better, where that can be measured. Real
+///   gaps have many causes, and the largest has a name though the rest has none.
+///
+/// Scatter between flights closes nothing: only the second counts for it.
+fn credit(beside: f64, is_scatter: bool, closed: Option<(f64, [f64; 2])>) -> f64 {
+    let Some((share, [least, _])) = closed.filter(|_| !is_scatter) else { return beside };
     let [none, all] = OTHER_FORM;
-    ((closed(unseen, own) - none) / (all - none)).clamp(0.0, 1.0)
+    let form = ((share - none) / (all - none)).clamp(0.0, 1.0);
+    if least > 0.0 { form.max(beside) } else { form }
+}
+
+/// If an agnostic function is needed, the probability that the leading effect, or one that these flights cannot tell from it,
+/// acts beside it.
+fn beside(
+    outside: &Outside,
+    distances: &Distances,
+    library: &Library,
+    top: Option<&Posterior>,
+) -> f64 {
+    let Some(top) = top else { return 0.0 };
+    let class = match top.effect {
+        None => vec![None],
+        Some(_) => {
+            let column = top.model.model.columns[top.place];
+            let size = top.model.sizes[top.place];
+            distances.confused_with(library, column, size).into_iter().map(Some).collect()
+        }
+    };
+    outside.beside(&class).min(1.0)
 }
 
 const fn acts_words(acts: Acts) -> &'static str {
@@ -677,11 +706,16 @@ fn verdict(
     {
         verdict.kind = VerdictKind::OutsideLibrary;
         verdict.probability = outside.probability.max(1.0 - named);
-        verdict.advice = format!(
-            "A gap that no effect of the library explains; it hangs on {variable}. The nearest, {}, closes {:.0} % of it.",
-            name_of(library, top.effect),
-            100.0 * closed.clamp(0.0, 1.0)
-        );
+        verdict.advice =
+            format!("A gap that no effect of the library explains; it hangs on {variable}.");
+        if let Some((closed, _)) = closed {
+            let _ = write!(
+                verdict.advice,
+                " The nearest, {}, closes {:.0} % of it.",
+                name_of(library, top.effect),
+                100.0 * closed.clamp(0.0, 1.0)
+            );
+        }
         return verdict;
     }
     verdict.kind = VerdictKind::Effects;
@@ -695,13 +729,34 @@ fn verdict(
             verdict.class.push(name);
         }
     }
-    let elsewhere = agnostic > OUTSIDE_PROBABILITY;
-    if elsewhere {
-        notes.push(format!("the form of the effect differs in {variable}"));
-    }
     verdict.separations = separations(advisor, library, top, &verdict.class);
-    verdict.advice = advice(&verdict, elsewhere.then_some(variable));
+    let rest = (agnostic > OUTSIDE_PROBABILITY).then(|| Rest {
+        variable,
+        is_form: closed
+            .is_none_or(|(share, _)| share >= f64::midpoint(OTHER_FORM[0], OTHER_FORM[1])),
+    });
+    if let Some(rest) = &rest {
+        notes.push(rest.words());
+    }
+    verdict.advice = advice(&verdict, rest.as_ref());
     verdict
+}
+
+/// What an agnostic function sees beside a named effect.
+struct Rest {
+    variable: &'static str,
+    /// The effect itself in another form; else something else.
+    is_form: bool,
+}
+
+impl Rest {
+    fn words(&self) -> String {
+        if self.is_form {
+            format!("the form of the effect differs in {}", self.variable)
+        } else {
+            format!("something else acts beside the effect; it hangs on {}", self.variable)
+        }
+    }
 }
 
 /// The most probable causes that hold 95 % of the probability together.
@@ -774,14 +829,20 @@ fn separations(
     all
 }
 
-fn advice(verdict: &Verdict, differs: Option<&str>) -> String {
+fn advice(verdict: &Verdict, rest: Option<&Rest>) -> String {
     let mut words = if verdict.class.len() > 1 {
         format!("One of {}: these flights cannot tell them apart.", verdict.class.join(", "))
     } else {
         format!("{}.", verdict.effects.join(" and "))
     };
-    if let Some(variable) = differs {
-        let _ = write!(words, " Its form differs from the library's in {variable}.");
+    match rest {
+        Some(Rest { variable, is_form: true }) => {
+            let _ = write!(words, " Its form differs from the library's in {variable}.");
+        }
+        Some(Rest { variable, is_form: false }) => {
+            let _ = write!(words, " Something else acts beside it, which hangs on {variable}.");
+        }
+        None => {}
     }
     if let Some(best) = verdict.separations.first() {
         let _ = write!(words, " To be sure: {} ({}).", best.measurement, best.distances_told());

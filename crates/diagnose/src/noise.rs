@@ -65,7 +65,7 @@ impl Channels {
 pub(crate) struct SegmentNoise {
     /// Lower triangle, row by row, of the Cholesky factor of the segment's own covariance.
     pub(crate) factor: [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
-    /// Loadings: mass, heating value, one split a contrast.
+    /// Loadings: mass, heating value, one split a contrast, Mach number, SAT, pressure altitude, N2.
     pub(crate) common: Vec<ByChannel>,
 }
 
@@ -77,7 +77,8 @@ impl<F: Fn(&Response) -> ByChannel> PredictChannels for F {}
 ///
 /// ```text
 /// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
-/// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split        [diagnosis.14]
+/// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split,
+///                                          and Mach number, SAT, pressure altitude, N2 by what a flight keeps  [diagnosis.14]
 /// ```
 #[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
 #[expect(clippy::needless_range_loop, reason = "rows and columns of a covariance")]
@@ -170,7 +171,7 @@ pub(crate) fn segment_noise(
         }
     }
 
-    let mut common = Vec::with_capacity(2 + channels.contrasts);
+    let mut common = Vec::with_capacity(6 + channels.contrasts);
     let mut mass = [0.0; MAXIMUM_CHANNELS];
     for channel in 0..count {
         mass[channel] = by_mass[channel] * relative_mass * factors.between[channels.kind(channel)];
@@ -183,6 +184,23 @@ pub(crate) fn segment_noise(
         let mut split = [0.0; MAXIMUM_CHANNELS];
         split[contrast] = SPLIT_DEVIATION * factors.between[1];
         common.push(split);
+    }
+    let kept = &sensors.through_flight;
+    let mut rotor = [0.0; MAXIMUM_CHANNELS];
+    if channels.n2 {
+        rotor[channels.n2_row()] = 1.0;
+    }
+    for (slope, deviation) in [
+        (&by_mach, kept.mach),
+        (&by_temperature, kept.static_air_temperature_k),
+        (&by_altitude, kept.pressure_altitude_m),
+        (&rotor, kept.n2_percent / 100.0),
+    ] {
+        let mut loading = [0.0; MAXIMUM_CHANNELS];
+        for channel in 0..count {
+            loading[channel] = slope[channel] * deviation * factors.between[channels.kind(channel)];
+        }
+        common.push(loading);
     }
     for loading in &mut common {
         for channel in 0..count {

@@ -25,6 +25,15 @@ pub(crate) struct Outside {
     pub(crate) probability: f64,
     /// The variable that it hangs on, and how it acts.
     pub(crate) variable: Option<(Variable, Acts)>,
+    /// If one is needed: the probability of each effect to act beside it; scatter between flights is `None`.
+    beside: Vec<(Option<usize>, f64)>,
+}
+
+impl Outside {
+    /// If an agnostic function is needed: the probability that one of these effects acts beside it.
+    pub(crate) fn beside(&self, effects: &[Option<usize>]) -> f64 {
+        self.beside.iter().filter(|(effect, _)| effects.contains(effect)).map(|b| b.1).sum()
+    }
 }
 
 /// Lets agnostic functions compete with the most probable named sets.
@@ -33,16 +42,9 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
     let empty = Model { columns: vec![], heating_percent: None };
     let none =
         Scored { model: empty, ln_weight: 0.0, sizes: vec![], deviations: vec![], background: 0 };
-    let sets: Vec<&Scored> = core::iter::once(&none)
-        .chain(
-            analysis
-                .models
-                .iter()
-                .map(|(scored, _)| scored)
-                .filter(|s| !s.model.columns.is_empty() && s.model.heating_percent.is_none())
-                .take(SETS),
-        )
-        .collect();
+    let mut sets: Vec<&Scored> =
+        core::iter::once(&none).chain(named_models(analysis).take(SETS)).collect();
+    add_singles(&mut sets, analysis, library);
     let mut weights = Weights { named: Vec::new(), agnostic: Vec::new() };
     for set in &sets {
         let refined = analysis
@@ -65,26 +67,72 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
     }
     let Weights { named, agnostic } = weights;
     let inside = ln_sum(named);
-    let outside = ln_sum(agnostic.iter().map(|a| a.0));
+    let outside = ln_sum(agnostic.iter().map(|a| a.ln));
     let probability = 1.0 / (1.0 + (inside - outside).clamp(-500.0, 500.0).exp());
     // The variable: weights summed over sets and amplitudes.
     let blocks = &stacked.design.blocks;
     let best = (0..blocks.len())
         .map(|block| {
-            let ln = ln_sum(agnostic.iter().filter(|a| a.1 == block).map(|a| a.0));
+            let ln = ln_sum(agnostic.iter().filter(|a| a.block == block).map(|a| a.ln));
             (ln, block)
         })
         .max_by(|a, b| a.0.total_cmp(&b.0));
     Outside {
         probability: if probability.is_finite() { probability } else { 0.0 },
         variable: best.map(|(_, block)| (blocks[block].variable, blocks[block].acts)),
+        beside: (0..library.effects.len())
+            .map(Some)
+            .chain([None])
+            .map(|effect| {
+                let with = agnostic.iter().filter(|a| a.beside == Some(effect)).map(|a| a.ln);
+                (effect, (ln_sum(with) - outside).exp())
+            })
+            .filter(|(_, probability)| *probability > 0.0)
+            .collect(),
     }
 }
 
-/// ln weights of sets without an agnostic function, and of sets with one: weight and block.
+/// Models with a named effect and without scatter between flights, most probable first.
+fn named_models(analysis: &Analysis) -> impl Iterator<Item = &Scored> {
+    analysis
+        .models
+        .iter()
+        .map(|(scored, _)| scored)
+        .filter(|s| !s.model.columns.is_empty() && s.model.heating_percent.is_none())
+}
+
+/// Adds the best single model of every effect that a set holds: agnostic functions join at most one effect, and the sets may
+/// all be pairs.
+fn add_singles<'a>(sets: &mut Vec<&'a Scored>, analysis: &'a Analysis, library: &Library) {
+    let effect = |column: usize| library.columns[column].effect;
+    let mut wanted: Vec<usize> =
+        sets.iter().flat_map(|s| &s.model.columns).map(|&column| effect(column)).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    for set in sets.iter().filter(|s| s.model.columns.len() == 1) {
+        wanted.retain(|&e| e != effect(set.model.columns[0]));
+    }
+    for single in named_models(analysis).filter(|s| s.model.columns.len() == 1) {
+        let own = effect(single.model.columns[0]);
+        if wanted.contains(&own) {
+            wanted.retain(|&e| e != own);
+            sets.push(single);
+        }
+    }
+}
+
+/// ln weights of sets without an agnostic function, and of sets with one.
 struct Weights {
     named: Vec<f64>,
-    agnostic: Vec<(f64, usize)>,
+    agnostic: Vec<Agnostic>,
+}
+
+/// A set with an agnostic function.
+struct Agnostic {
+    ln: f64,
+    block: usize,
+    /// The effect of the set, `Some(None)` for scatter between flights.
+    beside: Option<Option<usize>>,
 }
 
 impl Weights {
@@ -110,12 +158,18 @@ impl Weights {
             if model.columns.len() > 1 {
                 continue;
             }
+            let effect = model.columns.first().map(|&column| library.columns[column].effect);
+            let beside = match model.heating_percent {
+                Some(_) => Some(None),
+                None => effect.map(Some),
+            };
             let blocks = stacked.design.blocks.len();
             let share = (AMPLITUDES.len() * blocks).max(1) as f64;
             for block in 0..blocks {
                 for amplitude in AMPLITUDES {
                     let ln = under.evidence(scorer, Some((block, amplitude)), shifts);
-                    self.agnostic.push((prior + PRIOR_OUTSIDE.ln() - share.ln() + ln, block));
+                    let ln = prior + PRIOR_OUTSIDE.ln() - share.ln() + ln;
+                    self.agnostic.push(Agnostic { ln, block, beside });
                 }
             }
         }

@@ -10,7 +10,7 @@ use flight::effect::EffectId;
 use lut::Table;
 use lut::surface::{Basis, Surface};
 use perf_model::aircraft::{
-    AircraftFile, AxisFile, MassDeviation, SensorDeviations, TableFile, TsfcFile,
+    AircraftFile, AxisFile, FlightDeviations, MassDeviation, SensorDeviations, TableFile, TsfcFile,
 };
 use perf_model::{Aircraft, PerformanceModel};
 use rayon::prelude::*;
@@ -191,7 +191,8 @@ fn denied_model(
     Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?)
 }
 
-/// What the aircraft file says of the fleet's sensors: what they do within a flight, as an operator sees it in past reports.
+/// What the aircraft file says of the fleet's sensors: what they do within a flight and from flight to flight, as an operator
+/// sees it in past reports.
 ///
 /// A slow wander of variance σ² and time constant τ has, over a time T, a mean of variance
 ///
@@ -200,9 +201,8 @@ fn denied_model(
 /// ```
 ///
 /// (Ornstein–Uhlenbeck process): v of a segment less v of a flight is left within the flight, and noise counts with 1/√10
-/// (ten samples a segment). What a flow meter keeps through a flight is stated with the fuel's heating value. What air data
-/// and rotor speed keep through a flight has no place in an aircraft file and is not stated, though it is there: counted
-/// as if it differed from segment to segment, it would make every null look like scatter between flights.
+/// (ten samples a segment). What a flow meter keeps through a flight is stated with the fuel's heating value. Of what air
+/// data and rotor speed keep through a flight, σ of the flight and v of a flight of the wander are stated.
 ///
 /// The air-data computer's errors are stated where the fleet cruises, Mach 0.80 and 200 hPa:
 ///
@@ -232,17 +232,29 @@ fn sensor_deviations(
         let wander = (of_mean(SEGMENT_S) - of_mean(FLIGHT_S)).sqrt() * slow;
         wander.hypot(noise / SAMPLES.sqrt())
     };
+    let through = |slow: f64, flight: f64| (of_mean(FLIGHT_S).sqrt() * slow).hypot(flight);
     let added = |sensor: &ChannelSensor| within(sensor.slow_sd, sensor.noise_sd);
+    let kept = |sensor: &ChannelSensor| through(sensor.slow_sd, sensor.flight_sd);
     let gained = |sensor: &ChannelSensor| within(sensor.gain_slow_sd, sensor.gain_noise_sd);
     let heating = 1.0 + 0.2 * MACH * MACH;
-    let static_relative = added(&sensors.static_pressure) / STATIC_PRESSURE_HPA;
-    let total_relative = added(&sensors.total_pressure) / (STATIC_PRESSURE_HPA * heating.powf(3.5));
+    let of_pressures = |deviation: &dyn Fn(&ChannelSensor) -> f64| {
+        let of_static = deviation(&sensors.static_pressure) / STATIC_PRESSURE_HPA;
+        let of_total =
+            deviation(&sensors.total_pressure) / (STATIC_PRESSURE_HPA * heating.powf(3.5));
+        let mach = of_static.hypot(of_total) * heating / (1.4 * MACH);
+        (mach, of_static * PRESSURE_SCALE_HEIGHT_M)
+    };
+    let (mach, pressure_altitude_m) = of_pressures(&added);
+    let (mach_kept, pressure_altitude_kept_m) = of_pressures(&kept);
     let meter = &sensors.fuel_flow;
-    let kept = meter.gain_flight_sd.hypot(of_mean(FLIGHT_S).sqrt() * meter.gain_slow_sd);
-    let kept_by_all = 100.0 * kept / f64::from(truth.engine.count).sqrt();
+    // Engines err independently; the N2 channel is their mean.
+    let engines = f64::from(truth.engine.count).sqrt();
+    let kept_by_all = 100.0 * through(meter.gain_slow_sd, meter.gain_flight_sd) / engines;
+    let rotor_kept = (100.0 * through(sensors.n2.gain_slow_sd, sensors.n2.gain_flight_sd))
+        .hypot(kept(&sensors.n2));
     SensorDeviations {
         fuel_flow_percent: 100.0 * gained(meter),
-        mach: static_relative.hypot(total_relative) * heating / (1.4 * MACH),
+        mach,
         static_air_temperature_k: added(&sensors.total_air_temperature) / heating,
         acceleration_m_s2: ACCELERATION_M_S2,
         mass: MassDeviation::Kilograms(
@@ -250,7 +262,13 @@ fn sensor_deviations(
         ),
         lower_heating_value_percent: scatter.heating_value_percent.hypot(kept_by_all),
         n2_percent: (100.0 * gained(&sensors.n2)).hypot(added(&sensors.n2)),
-        pressure_altitude_m: static_relative * PRESSURE_SCALE_HEIGHT_M,
+        pressure_altitude_m,
+        through_flight: FlightDeviations {
+            mach: mach_kept,
+            static_air_temperature_k: kept(&sensors.total_air_temperature) / heating,
+            n2_percent: rotor_kept / engines,
+            pressure_altitude_m: pressure_altitude_kept_m,
+        },
     }
 }
 
@@ -360,12 +378,19 @@ mod tests {
     fn the_aircraft_file_states_the_virtual_sensors() {
         // By hand: means of a wander of 1 200 s keep 0.852245 of its variance over 600 s and 0.277915 over 7 200 s. Then
         // 100·√(0.57433·0.0020² + 0.0030²/10), √(0.57433·0.10² + 0.05²/10)/1.128 and
-        // √(0.3² + 100²·(0.0015² + 0.277915·0.0020²)/2).
+        // √(0.3² + 100²·(0.0015² + 0.277915·0.0020²)/2). Through a flight: TAT √(0.277915·0.10² + 0.20²)/1.128 = 0.183361,
+        // N2 0.03/√2, static pressure √(0.277915·0.03² + 0.10²)/200 = 5.0622e-4 of p, total pressure
+        // √(0.277915·0.05² + 0.15²)/(200·1.128^3.5) = 4.9955e-4; Mach √(5.0622² + 4.9955²)e-4·1.128/1.12, altitude 5.0622e-4·6341.6.
         let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
         let stated = sensor_deviations(&Sensors::transport(), &Scatter::default(), &truth);
         assert!((stated.fuel_flow_percent - 0.178810).abs() < 1e-5, "{stated:?}");
         assert!((stated.static_air_temperature_k - 0.068632).abs() < 1e-5, "{stated:?}");
         assert!((stated.lower_heating_value_percent - 0.326815).abs() < 1e-5, "{stated:?}");
         assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
+        let kept = stated.through_flight;
+        assert!((kept.static_air_temperature_k - 0.183361).abs() < 1e-5, "{kept:?}");
+        assert!((kept.n2_percent - 0.021213).abs() < 1e-5, "{kept:?}");
+        assert!((kept.mach - 7.1630e-4).abs() < 1e-6, "{kept:?}");
+        assert!((kept.pressure_altitude_m - 3.2103).abs() < 1e-3, "{kept:?}");
     }
 }

@@ -55,6 +55,7 @@ bounded!(mass_percent, "standard deviation of mass", "%", 0.0, 20.0);
 bounded!(mass_kg, "standard deviation of mass", "kg", 0.0, 50_000.0);
 bounded!(lower_heating_value_percent, "standard deviation of heating value", "%", 0.0, 10.0);
 bounded!(n2_percent, "standard deviation of N2", "%", 0.001, 10.0);
+bounded!(n2_through_flight_percent, "standard deviation of N2 through a flight", "%", 0.0, 10.0);
 bounded!(pressure_altitude_m, "standard deviation of pressure altitude", "m", 0.0, 500.0);
 
 /// Limits of the table's lift-coefficient axis.

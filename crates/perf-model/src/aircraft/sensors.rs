@@ -39,6 +39,33 @@ pub struct SensorDeviations {
     /// Pressure altitude, m. Default 8: the resolution and repeatability of an air-data computer.
     #[serde(deserialize_with = "limits::pressure_altitude_m::deserialize")]
     pub pressure_altitude_m: f64,
+    /// What air data and rotor speed keep through a flight. Not written where it is the default.
+    #[serde(skip_serializing_if = "FlightDeviations::is_default")]
+    pub through_flight: FlightDeviations,
+}
+
+/// Standard deviations of what stays the same through one flight and differs in the next: calibration drift, hysteresis,
+/// the way a computer was aligned. They come on top of what differs from segment to segment.
+///
+/// Ten segments of one flight that err together say no more than one of them. Without this, a diagnosis without a learnt
+/// remainder takes three warm flights for a step, or for scatter between flights.
+///
+/// The defaults are our choice: 0.7 of what the handbook says of one reading, so that half of its variance stays.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FlightDeviations {
+    /// Mach number; true airspeed errs with it. Default 0.0007.
+    #[serde(deserialize_with = "limits::mach::deserialize")]
+    pub mach: f64,
+    /// Static air temperature, K; true airspeed errs with it. Default 0.21.
+    #[serde(deserialize_with = "limits::static_air_temperature_k::deserialize")]
+    pub static_air_temperature_k: f64,
+    /// High-pressure rotor speed, % of the reading. Default 0.056.
+    #[serde(deserialize_with = "limits::n2_through_flight_percent::deserialize")]
+    pub n2_percent: f64,
+    /// Pressure altitude, m. Default 5.6.
+    #[serde(deserialize_with = "limits::pressure_altitude_m::deserialize")]
+    pub pressure_altitude_m: f64,
 }
 
 /// Standard deviation of the gross mass from flight to flight.
@@ -72,7 +99,39 @@ impl Default for SensorDeviations {
             lower_heating_value_percent: 0.3,
             n2_percent: 0.08,
             pressure_altitude_m: 8.0,
+            through_flight: FlightDeviations::default(),
         }
+    }
+}
+
+impl Default for FlightDeviations {
+    fn default() -> Self {
+        Self {
+            mach: 0.0007,
+            static_air_temperature_k: 0.21,
+            n2_percent: 0.056,
+            pressure_altitude_m: 5.6,
+        }
+    }
+}
+
+impl FlightDeviations {
+    /// Nothing stays the same through a flight.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self { mach: 0.0, static_air_temperature_k: 0.0, n2_percent: 0.0, pressure_altitude_m: 0.0 }
+    }
+
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn check(&self) -> Result<(), AircraftError> {
+        limits::mach::check(self.mach)?;
+        limits::static_air_temperature_k::check(self.static_air_temperature_k)?;
+        limits::n2_through_flight_percent::check(self.n2_percent)?;
+        limits::pressure_altitude_m::check(self.pressure_altitude_m)?;
+        Ok(())
     }
 }
 
@@ -89,7 +148,7 @@ impl SensorDeviations {
         limits::lower_heating_value_percent::check(self.lower_heating_value_percent)?;
         limits::n2_percent::check(self.n2_percent)?;
         limits::pressure_altitude_m::check(self.pressure_altitude_m)?;
-        Ok(())
+        self.through_flight.check()
     }
 }
 
