@@ -7,7 +7,7 @@ use perf_model::effects::{EffectModel, EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 
 use crate::DiagnoseError;
-use crate::data::{Data, ENVIRONMENT};
+use crate::data::{Against, Data, ENVIRONMENT};
 use crate::deck::{DECK_TERMS, Deck};
 use crate::library::Library;
 use crate::noise::{MAXIMUM_CHANNELS, NoiseFactors};
@@ -107,9 +107,14 @@ impl Baseline {
     ) -> Result<Self, DiagnoseError> {
         let references = crate::references_of(model, drag_table, flights)?;
         let effect_model = EffectModel::new(model, drag_table, references)?;
-        let (data, _) = Data::prepare(&effect_model, flights, None, |points, engines, starts| {
-            Library::of(&effect_model, points, engines, starts, |_| false)
-        });
+        let (data, _) = Data::prepare(
+            &effect_model,
+            flights,
+            Against::NothingYet,
+            |points, engines, starts| {
+                Library::of(&effect_model, points, engines, starts, |_| false)
+            },
+        );
         if data.flights.len() < FEWEST_FLIGHTS {
             let found = data.flights.len();
             return Err(DiagnoseError::TooFewFlights { found, needed: FEWEST_FLIGHTS });

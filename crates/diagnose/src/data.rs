@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
+use perf_model::aircraft::FlightDeviations;
 use perf_model::effects::{
     AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, KnownPoint, Response,
     StepTarget, Trial,
@@ -17,7 +18,7 @@ use crate::baseline::Baseline;
 use crate::deck::{DECK_TERMS, Deck};
 use crate::library::Library;
 use crate::noise::{
-    ByChannel, Channels, HEATING_LOADING, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise,
+    ByChannel, Channels, HEATING_LOADING, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise, Statistics,
     segment_noise,
 };
 use crate::record::FlightRecord;
@@ -102,6 +103,37 @@ pub(crate) struct GaugeRow {
 pub(crate) struct FlightRows {
     pub(crate) segments: core::ops::Range<usize>,
     pub(crate) gauge: Option<GaugeRow>,
+}
+
+/// What flights are held against, and with it where their noise is known from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Against<'a> {
+    /// A table alone: the aircraft file states the noise.
+    Table,
+    /// A table whose remainder and noise are about to be learnt.
+    NothingYet,
+    /// A table and what it was taught of clean flights, noise included.
+    Baseline(&'a Baseline),
+}
+
+impl<'a> Against<'a> {
+    fn baseline(self) -> Option<&'a Baseline> {
+        match self {
+            Self::Table | Self::NothingYet => None,
+            Self::Baseline(baseline) => Some(baseline),
+        }
+    }
+
+    fn statistics(self, model: &EffectModel<'_>) -> Statistics {
+        Statistics {
+            factors: self.baseline().map_or_else(NoiseFactors::default, |b| *b.noise()),
+            through_flight: match self {
+                Self::Table => model.aircraft().sensors().through_flight,
+                // What a flight keeps is learnt as a factor on mass, heating value and split.
+                Self::NothingYet | Self::Baseline(_) => FlightDeviations::none(),
+            },
+        }
+    }
 }
 
 /// Everything ready.
@@ -258,12 +290,13 @@ impl<'a> Data<'a> {
     pub(crate) fn prepare(
         model: &EffectModel<'_>,
         flights: &[FlightRecord<'_>],
-        baseline: Option<&'a Baseline>,
+        against: Against<'a>,
         library_of: impl FnOnce(&[EffectPoint], bool, &[f64]) -> Library,
     ) -> (Self, Library) {
         let mut left_out = BTreeMap::new();
         let mut inside = inside(model, flights, &mut left_out);
         let channels = channels_of(model, &inside);
+        let baseline = against.baseline();
         let deck = deck_of(&inside, channels, baseline);
         if channels.n2 {
             for kept in inside.iter_mut().flat_map(|(segments, _)| segments) {
@@ -275,7 +308,7 @@ impl<'a> Data<'a> {
         let starts: Vec<f64> =
             inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
         let library = library_of(&points, channels.contrasts > 0, &starts);
-        let factors = baseline.map_or_else(NoiseFactors::default, |b| *b.noise());
+        let statistics = against.statistics(model);
 
         let mut data = Self {
             channels,
@@ -287,8 +320,8 @@ impl<'a> Data<'a> {
         let differences = Differences::of(model, &library, baseline.is_some());
         for (segments, gauges) in inside {
             let first = data.segments.len();
-            for kept in segments {
-                match data.row(model, &kept, &library, &differences, &factors) {
+            for segment in segments {
+                match data.row(model, &segment, &library, &differences, &statistics) {
                     Ok(row) => data.segments.push(row),
                     Err(error) => {
                         *data.left_out.entry(reason(&error).to_owned()).or_default() += 1;
@@ -310,7 +343,7 @@ impl<'a> Data<'a> {
         kept: &Inside<'_>,
         library: &Library,
         differences: &Differences,
-        factors: &NoiseFactors,
+        statistics: &Statistics,
     ) -> Result<SegmentRow, perf_model::effects::EffectError> {
         let channels = self.channels;
         let deck = &self.predictor.deck;
@@ -331,7 +364,7 @@ impl<'a> Data<'a> {
             0.0,
             is_recorded,
             channels,
-            factors,
+            statistics,
             &predict,
         )?;
         // Scatter between flights that the model contains is no gap: it adds to what a flight has in common.
@@ -352,7 +385,7 @@ impl<'a> Data<'a> {
             n2_slope: if channels.n2 { deck.slope(&kept.response) } else { 0.0 },
             drag_over_thrust: kept.response.drag_over_thrust,
             n2_percent: mean_n2_percent(&kept.means),
-            acceleration_deviation_m_s2: factors.within[0]
+            acceleration_deviation_m_s2: statistics.factors.within[0]
                 * mean_acceleration_deviation_m_s2(
                     model.aircraft().sensors().acceleration_m_s2,
                     kept.rows.len(),

@@ -16,7 +16,7 @@ use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
 use crate::classes::{Distances, leading_columns};
 use crate::closure::{SMALLEST_GAP, Shrinkage, held_out_floor, in_sample, nested, replicate_floor};
-use crate::data::Data;
+use crate::data::{Against, Data};
 use crate::design::{Acts, Design};
 use crate::evidence::{NOISE_FREEDOM, Scored};
 use crate::library::Library;
@@ -160,8 +160,9 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)
     };
+    let against = input.baseline.map_or(Against::Table, Against::Baseline);
     let (data, library) =
-        Data::prepare(&model, input.flights, input.baseline, |points, engines, starts| {
+        Data::prepare(&model, input.flights, against, |points, engines, starts| {
             Library::of(&model, points, engines, starts, chosen)
         });
     let not_testable = library

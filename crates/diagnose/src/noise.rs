@@ -1,5 +1,6 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
+use perf_model::aircraft::FlightDeviations;
 use perf_model::effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,13 @@ impl Default for NoiseFactors {
     fn default() -> Self {
         Self { within: [1.0; 3], between: [1.0; 3] }
     }
+}
+
+/// What is said of the noise besides the sensors' deviations from segment to segment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Statistics {
+    pub(crate) factors: NoiseFactors,
+    pub(crate) through_flight: FlightDeviations,
 }
 
 /// Which channels there are.
@@ -78,7 +86,7 @@ impl<F: Fn(&Response) -> ByChannel> PredictChannels for F {}
 /// ```text
 /// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
 /// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split,
-///                                          and Mach number, SAT, pressure altitude, N2 by what a flight keeps  [diagnosis.14]
+///                                          and Mach number, SAT, pressure altitude, N2 by `through_flight`  [diagnosis.14]
 /// ```
 #[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
 #[expect(clippy::needless_range_loop, reason = "rows and columns of a covariance")]
@@ -90,9 +98,10 @@ pub(crate) fn segment_noise(
     extra_variance: f64,
     recorded: [bool; MAXIMUM_CHANNELS],
     channels: Channels,
-    factors: &NoiseFactors,
+    statistics: &Statistics,
     predict: &impl PredictChannels,
 ) -> Result<SegmentNoise, EffectError> {
+    let Statistics { factors, through_flight } = statistics;
     let sensors = model.aircraft().sensors();
     let count = channels.count();
     let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
@@ -185,16 +194,15 @@ pub(crate) fn segment_noise(
         split[contrast] = SPLIT_DEVIATION * factors.between[1];
         common.push(split);
     }
-    let kept = &sensors.through_flight;
     let mut rotor = [0.0; MAXIMUM_CHANNELS];
     if channels.n2 {
         rotor[channels.n2_row()] = 1.0;
     }
     for (slope, deviation) in [
-        (&by_mach, kept.mach),
-        (&by_temperature, kept.static_air_temperature_k),
-        (&by_altitude, kept.pressure_altitude_m),
-        (&rotor, kept.n2_percent / 100.0),
+        (&by_mach, through_flight.mach),
+        (&by_temperature, through_flight.static_air_temperature_k),
+        (&by_altitude, through_flight.pressure_altitude_m),
+        (&rotor, through_flight.n2_percent / 100.0),
     ] {
         let mut loading = [0.0; MAXIMUM_CHANNELS];
         for channel in 0..count {

@@ -5,7 +5,7 @@ use perf_model::effects::{EffectReferences, Effects};
 
 use super::*;
 use crate::classes::{CONFUSED, squared};
-use crate::data::Data;
+use crate::data::{Against, Data};
 use crate::design::Design;
 use crate::{FlightRecord, references_of};
 
@@ -23,9 +23,10 @@ fn with<R>(
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
     let references: EffectReferences = references_of(model, model.drag_table(), &records).unwrap();
     let effects = EffectModel::new(model, model.drag_table(), references).unwrap();
-    let (data, library) = Data::prepare(&effects, &records, None, |points, engines, starts| {
-        Library::of(&effects, points, engines, starts, |_| true)
-    });
+    let (data, library) =
+        Data::prepare(&effects, &records, Against::Table, |points, engines, starts| {
+            Library::of(&effects, points, engines, starts, |_| true)
+        });
     let design = Design::of(&data, &references, None, None);
     let stacked = Stacked::of(&data, &design, None);
     let leading = library.effects.iter().map(|effect| effect.representative).collect();

@@ -5,10 +5,8 @@ use std::borrow::Cow;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use perf_model::effects::{EffectModel, EffectPoint, Response};
 
-use super::{Data, Differences, FlightRows, Inside, gauge_row};
-use crate::baseline::Baseline;
+use super::{Against, Data, Differences, FlightRows, Inside, gauge_row};
 use crate::library::Library;
-use crate::noise::NoiseFactors;
 use crate::record::GaugeBurn;
 
 /// How a planned flight is recorded: as the flights of the data at hand are.
@@ -30,8 +28,8 @@ impl Data<'_> {
         points: &[EffectPoint],
         recorded: Recorded,
     ) -> Option<Self> {
-        let factors =
-            self.predictor.baseline.map_or_else(NoiseFactors::default, |b: &Baseline| *b.noise());
+        let against = self.predictor.baseline.map_or(Against::Table, Against::Baseline);
+        let statistics = against.statistics(model);
         let samples: Vec<u32> = (0..u32::try_from(recorded.samples).ok()?).collect();
         let differences = Differences::of(model, library, self.predictor.baseline.is_some());
         let mut segments = Vec::with_capacity(points.len());
@@ -40,7 +38,7 @@ impl Data<'_> {
             let means = Cow::Owned(self.means(&point, &response));
             let mut kept = Inside { means, rows: &samples, point, known, response };
             kept.look_up_n2(&self.predictor.deck);
-            segments.push(self.row(model, &kept, library, &differences, &factors).ok()?);
+            segments.push(self.row(model, &kept, library, &differences, &statistics).ok()?);
         }
         let gauge = recorded.gauge_deviation.map(|deviation| {
             let burn = GaugeBurn { gauged_kg: 1.0, metered_kg: 1.0, deviation_kg: deviation };

@@ -50,7 +50,12 @@ pub(crate) fn exact_model() -> PerformanceModel {
             name: "virtual", type_code: "VIRT", engines: 2, wing_area_m2: 48.96,
             tsfc: (static_lb_per_lbf_h: 0.48, mach_exponent: 0.8),
             table: (lift_coefficient: (0.08, 0.72, 0.005), mach: (0.50, 0.95, 0.005)),
-            sensors: (fuel_flow_percent: 0.7071, mass: Percent(0.6)),
+            sensors: (
+                fuel_flow_percent: 0.7071,
+                mass: Percent(0.6),
+                // These sensors keep nothing through a flight.
+                through_flight: (mach: 0, static_air_temperature_k: 0, n2_percent: 0, pressure_altitude_m: 0),
+            ),
         )"#,
     )
     .unwrap();
