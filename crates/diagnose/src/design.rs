@@ -115,6 +115,8 @@ struct Nuisance<'a> {
     baseline: Option<&'a Baseline>,
     deck: bool,
     chords: bool,
+    /// Share of the recorded accelerations' mean square that their error has.
+    acceleration: f64,
     table: Option<&'a TableUncertainty>,
 }
 
@@ -132,7 +134,9 @@ impl<'a> Design<'a> {
                 .collect()
         };
         let effects = data.columns();
-        let parts = Nuisance { baseline, deck: data.channels.n2, chords: true, table };
+        let acceleration = share_of_error(data);
+        let parts =
+            Nuisance { baseline, deck: data.channels.n2, chords: true, acceleration, table };
         let nuisance = effects..effects + parts.columns();
 
         let smooth_hats: Vec<(Variable, Hats)> = SMOOTH_VARIABLES
@@ -340,6 +344,8 @@ impl<'a> Design<'a> {
                 at += 1;
             }
         }
+        put(matrix, at, &row.noise.acceleration.map(|value| value * parts.acceleration));
+        at += 1;
         if let Some(table) = parts.table {
             let loadings = &mut scratch[..table.rank()];
             table.write(&row.response, loadings);
@@ -455,6 +461,25 @@ impl<'a> Design<'a> {
     }
 }
 
+/// Share of the recorded accelerations' mean square that their error has, at most 1.
+///
+/// A recorded acceleration errs in the prediction and in every signature that leans on thrust at once, so that residuals
+/// seem to follow it:
+///
+/// ```text
+/// E[residual | V̇] = −κ·V̇·∂channel/∂V̇,  κ = Σσ²/ΣV̇²                              [diagnosis.46]
+/// ```
+///
+/// The sum of a drag factor and the opposite TSFC factor is that signature. The coefficient is nuisance, N(0, κ²).
+fn share_of_error(data: &Data<'_>) -> f64 {
+    let (mut error, mut square) = (0.0, 0.0);
+    for row in &data.segments {
+        error += row.acceleration_deviation_m_s2.powi(2);
+        square += row.point.acceleration_m_s2.powi(2);
+    }
+    if square > error { error / square } else { 1.0 }
+}
+
 impl Nuisance<'_> {
     fn columns(&self) -> usize {
         let taught = self.baseline.map_or(0, |baseline| baseline.factor().nrows());
@@ -462,6 +487,7 @@ impl Nuisance<'_> {
         taught
             + deck
             + if self.chords { 2 } else { 0 }
+            + 1
             + self.table.map_or(0, TableUncertainty::rank)
     }
 }

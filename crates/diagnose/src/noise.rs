@@ -75,6 +75,8 @@ pub(crate) struct SegmentNoise {
     pub(crate) factor: [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
     /// Loadings: mass, heating value, one split a contrast, Mach number, SAT, pressure altitude, N2.
     pub(crate) common: Vec<ByChannel>,
+    /// What the recorded acceleration adds to each channel.
+    pub(crate) acceleration: ByChannel,
 }
 
 /// The prediction of every channel from a response.
@@ -217,7 +219,11 @@ pub(crate) fn segment_noise(
             }
         }
     }
-    Ok(SegmentNoise { factor: cholesky(&covariance, count), common })
+    let mut added = [0.0; MAXIMUM_CHANNELS];
+    for channel in (0..count).filter(|&channel| recorded[channel]) {
+        added[channel] = by_acceleration[channel] * point.acceleration_m_s2;
+    }
+    Ok(SegmentNoise { factor: cholesky(&covariance, count), common, acceleration: added })
 }
 
 /// Cholesky factor of a small covariance whose diagonal is positive.
