@@ -24,7 +24,7 @@ use crate::output::{
     Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Separation, Verdict,
     VerdictKind,
 };
-use crate::outside::{Outside, compete};
+use crate::outside::{Companion, Outside, compete};
 use crate::record::FlightRecord;
 use crate::slices;
 
@@ -459,15 +459,13 @@ fn beside(
     top: Option<&Posterior>,
 ) -> f64 {
     let Some(top) = top else { return 0.0 };
-    let class = match top.effect {
-        None => vec![None],
-        Some(_) => {
-            let column = top.model.model.columns[top.place];
-            let size = top.model.sizes[top.place];
-            distances.confused_with(library, column, size).into_iter().map(Some).collect()
-        }
-    };
-    outside.beside(&class).min(1.0)
+    if top.effect.is_none() {
+        return outside.beside(&Companion::Scatter).min(1.0);
+    }
+    let column = top.model.model.columns[top.place];
+    let size = top.model.sizes[top.place];
+    let class = distances.confused_with(library, column, size);
+    class.into_iter().map(|effect| outside.beside(&Companion::Effect(effect))).sum::<f64>().min(1.0)
 }
 
 const fn acts_words(acts: Acts) -> &'static str {

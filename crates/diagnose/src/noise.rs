@@ -1,6 +1,6 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
-use perf_model::aircraft::FlightDeviations;
+use perf_model::aircraft::{FlightDeviations, SensorDeviations};
 use perf_model::effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
@@ -103,7 +103,7 @@ pub(crate) fn segment_noise(
     statistics: &Statistics,
     predict: &impl PredictChannels,
 ) -> Result<SegmentNoise, EffectError> {
-    let Statistics { factors, through_flight } = statistics;
+    let factors = &statistics.factors;
     let sensors = model.aircraft().sensors();
     let count = channels.count();
     let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
@@ -182,48 +182,72 @@ pub(crate) fn segment_noise(
         }
     }
 
-    let mut common = Vec::with_capacity(6 + channels.contrasts);
-    let mut mass = [0.0; MAXIMUM_CHANNELS];
-    for channel in 0..count {
-        mass[channel] = by_mass[channel] * relative_mass * factors.between[channels.kind(channel)];
-    }
-    common.push(mass);
-    let mut heating = [0.0; MAXIMUM_CHANNELS];
-    heating[0] = sensors.lower_heating_value_percent / 100.0 * factors.between[0];
-    common.push(heating);
-    for contrast in 1..=channels.contrasts {
-        let mut split = [0.0; MAXIMUM_CHANNELS];
-        split[contrast] = SPLIT_DEVIATION * factors.between[1];
-        common.push(split);
-    }
-    let mut rotor = [0.0; MAXIMUM_CHANNELS];
-    if channels.n2 {
-        rotor[channels.n2_row()] = 1.0;
-    }
-    for (slope, deviation) in [
-        (&by_mach, through_flight.mach),
-        (&by_temperature, through_flight.static_air_temperature_k),
-        (&by_altitude, through_flight.pressure_altitude_m),
-        (&rotor, through_flight.n2_percent / 100.0),
-    ] {
-        let mut loading = [0.0; MAXIMUM_CHANNELS];
-        for channel in 0..count {
-            loading[channel] = slope[channel] * deviation * factors.between[channels.kind(channel)];
-        }
-        common.push(loading);
-    }
-    for loading in &mut common {
-        for channel in 0..count {
-            if !recorded[channel] {
-                loading[channel] = 0.0;
-            }
-        }
-    }
+    let common = common_loadings(
+        &SharedSlopes {
+            mach: by_mach,
+            static_air_temperature: by_temperature,
+            pressure_altitude: by_altitude,
+            mass: by_mass,
+        },
+        sensors,
+        relative_mass,
+        recorded,
+        channels,
+        statistics,
+    );
     let mut added = [0.0; MAXIMUM_CHANNELS];
     for channel in (0..count).filter(|&channel| recorded[channel]) {
         added[channel] = by_acceleration[channel] * point.acceleration_m_s2;
     }
     Ok(SegmentNoise { factor: cholesky(&covariance, count), common, acceleration: added })
+}
+
+/// Slopes of the channels that a flight's common errors act through.
+struct SharedSlopes {
+    mach: ByChannel,
+    static_air_temperature: ByChannel,
+    pressure_altitude: ByChannel,
+    mass: ByChannel,
+}
+
+/// Loadings on what all segments of a flight have in common: mass, heating value, one split a contrast, Mach number, SAT,
+/// pressure altitude, N2.
+fn common_loadings(
+    slopes: &SharedSlopes,
+    sensors: &SensorDeviations,
+    relative_mass: f64,
+    recorded: [bool; MAXIMUM_CHANNELS],
+    channels: Channels,
+    statistics: &Statistics,
+) -> Vec<ByChannel> {
+    let Statistics { factors, through_flight } = statistics;
+    let unit = |row: usize| {
+        let mut slope = [0.0; MAXIMUM_CHANNELS];
+        slope[row] = 1.0;
+        slope
+    };
+    let mut sources =
+        vec![(slopes.mass, relative_mass), (unit(0), sensors.lower_heating_value_percent / 100.0)];
+    sources.extend((1..=channels.contrasts).map(|contrast| (unit(contrast), SPLIT_DEVIATION)));
+    sources.extend([
+        (slopes.mach, through_flight.mach),
+        (slopes.static_air_temperature, through_flight.static_air_temperature_k),
+        (slopes.pressure_altitude, through_flight.pressure_altitude_m),
+    ]);
+    if channels.n2 {
+        sources.push((unit(channels.n2_row()), through_flight.n2_percent / 100.0));
+    }
+    sources
+        .into_iter()
+        .map(|(slope, deviation)| {
+            let mut loading = [0.0; MAXIMUM_CHANNELS];
+            for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
+                let factor = factors.between[channels.kind(channel)];
+                loading[channel] = slope[channel] * deviation * factor;
+            }
+            loading
+        })
+        .collect()
 }
 
 /// Cholesky factor of a small covariance whose diagonal is positive.

@@ -25,14 +25,23 @@ pub(crate) struct Outside {
     pub(crate) probability: f64,
     /// The variable that it hangs on, and how it acts.
     pub(crate) variable: Option<(Variable, Acts)>,
-    /// If one is needed: the probability of each effect to act beside it; scatter between flights is `None`.
-    beside: Vec<(Option<usize>, f64)>,
+    /// If one is needed: the probability of each companion to act beside it.
+    beside: Vec<(Companion, f64)>,
+}
+
+/// A named cause that an agnostic function may have beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Companion {
+    /// An effect of the library.
+    Effect(usize),
+    /// Scatter between flights.
+    Scatter,
 }
 
 impl Outside {
-    /// If an agnostic function is needed: the probability that one of these effects acts beside it.
-    pub(crate) fn beside(&self, effects: &[Option<usize>]) -> f64 {
-        self.beside.iter().filter(|(effect, _)| effects.contains(effect)).map(|b| b.1).sum()
+    /// If an agnostic function is needed: the probability that this acts beside it.
+    pub(crate) fn beside(&self, companion: &Companion) -> f64 {
+        self.beside.iter().filter(|b| b.0 == *companion).map(|b| b.1).sum()
     }
 }
 
@@ -81,11 +90,11 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
         probability: if probability.is_finite() { probability } else { 0.0 },
         variable: best.map(|(_, block)| (blocks[block].variable, blocks[block].acts)),
         beside: (0..library.effects.len())
-            .map(Some)
-            .chain([None])
-            .map(|effect| {
-                let with = agnostic.iter().filter(|a| a.beside == Some(effect)).map(|a| a.ln);
-                (effect, (ln_sum(with) - outside).exp())
+            .map(Companion::Effect)
+            .chain([Companion::Scatter])
+            .map(|companion| {
+                let with = agnostic.iter().filter(|a| a.beside == Some(companion)).map(|a| a.ln);
+                (companion, (ln_sum(with) - outside).exp())
             })
             .filter(|(_, probability)| *probability > 0.0)
             .collect(),
@@ -131,8 +140,8 @@ struct Weights {
 struct Agnostic {
     ln: f64,
     block: usize,
-    /// The effect of the set, `Some(None)` for scatter between flights.
-    beside: Option<Option<usize>>,
+    /// What the set names.
+    beside: Option<Companion>,
 }
 
 impl Weights {
@@ -160,8 +169,8 @@ impl Weights {
             }
             let effect = model.columns.first().map(|&column| library.columns[column].effect);
             let beside = match model.heating_percent {
-                Some(_) => Some(None),
-                None => effect.map(Some),
+                Some(_) => Some(Companion::Scatter),
+                None => effect.map(Companion::Effect),
             };
             let blocks = stacked.design.blocks.len();
             let share = (AMPLITUDES.len() * blocks).max(1) as f64;
