@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
-use perf_model::aircraft::FlightDeviations;
+use perf_model::aircraft::{FlightDeviations, FuelFlowWander};
 use perf_model::effects::{
     AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, KnownPoint, Response,
     StepTarget, Trial,
@@ -19,7 +19,7 @@ use crate::deck::{DECK_TERMS, Deck};
 use crate::library::Library;
 use crate::noise::{
     ByChannel, Channels, HEATING_LOADING, MAXIMUM_CHANNELS, NoiseFactors, SegmentNoise, Statistics,
-    segment_noise,
+    add_wander, segment_noise,
 };
 use crate::record::FlightRecord;
 
@@ -125,12 +125,16 @@ impl<'a> Against<'a> {
     }
 
     fn statistics(self, model: &EffectModel<'_>) -> Statistics {
+        let sensors = model.aircraft().sensors();
+        let stated = matches!(self, Self::Table);
         Statistics {
             factors: self.baseline().map_or_else(NoiseFactors::default, |b| *b.noise()),
-            through_flight: match self {
-                Self::Table => model.aircraft().sensors().through_flight,
-                // What a flight keeps is learnt as a factor on mass, heating value and split.
-                Self::NothingYet | Self::Baseline(_) => FlightDeviations::none(),
+            // What a flight keeps is learnt as a factor on mass, heating value and split, what wanders as one on the rest.
+            through_flight: if stated { sensors.through_flight } else { FlightDeviations::none() },
+            fuel_flow_wander: if stated {
+                sensors.fuel_flow_wander
+            } else {
+                FuelFlowWander::default()
             },
         }
     }
@@ -328,6 +332,7 @@ impl<'a> Data<'a> {
                     }
                 }
             }
+            add_wander_to(&mut data.segments[first..], &statistics, model);
             if data.segments.len() > first {
                 let gauge =
                     gauges.map(|burn| gauge_row(burn, model, &library, &data.segments[first..]));
@@ -490,6 +495,15 @@ impl Difference {
         }
         Ok(slope)
     }
+}
+
+/// Adds what wanders within a flight to the noise of its segments.
+fn add_wander_to(segments: &mut [SegmentRow], statistics: &Statistics, model: &EffectModel<'_>) {
+    let times_s: Vec<f64> = segments.iter().map(|row| row.point.date_s).collect();
+    let mut noises: Vec<&mut SegmentNoise> =
+        segments.iter_mut().map(|row| &mut row.noise).collect();
+    let engines = model.aircraft().engines();
+    add_wander(&mut noises, &times_s, statistics.fuel_flow_wander, engines);
 }
 
 /// Differences of every column of a library, and of what a baseline carries.

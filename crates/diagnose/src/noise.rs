@@ -1,6 +1,6 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
-use perf_model::aircraft::{FlightDeviations, SensorDeviations};
+use perf_model::aircraft::{FlightDeviations, FuelFlowWander, SensorDeviations};
 use perf_model::effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
@@ -37,6 +37,7 @@ impl Default for NoiseFactors {
 pub(crate) struct Statistics {
     pub(crate) factors: NoiseFactors,
     pub(crate) through_flight: FlightDeviations,
+    pub(crate) fuel_flow_wander: FuelFlowWander,
 }
 
 /// Which channels there are.
@@ -73,7 +74,7 @@ impl Channels {
 pub(crate) struct SegmentNoise {
     /// Lower triangle, row by row, of the Cholesky factor of the segment's own covariance.
     pub(crate) factor: [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
-    /// Loadings: mass, heating value, one split a contrast, Mach number, SAT, pressure altitude, N2.
+    /// Loadings: mass, heating value, one split a contrast, Mach number, SAT, pressure altitude, N2, then the wander's.
     pub(crate) common: Vec<ByChannel>,
     /// What the recorded acceleration adds to each channel.
     pub(crate) acceleration: ByChannel,
@@ -148,7 +149,9 @@ pub(crate) fn segment_noise(
     covariance[0][0] = total_fuel_flow_relative_variance(meter, &[], engines);
     for contrast in 1..=channels.contrasts {
         // Contrasts are normalized like ln(Wf1/Wf2): squares of the weights sum to 2.
-        covariance[contrast][contrast] = 2.0 * meter * meter;
+        // What wanders is taken as new in every segment here: half as many columns, and a contrast is seldom short of data.
+        let wander = statistics.fuel_flow_wander.percent / 100.0;
+        covariance[contrast][contrast] = 2.0 * (meter * meter + wander * wander);
     }
     if channels.n2 {
         let n2 = sensors.n2_percent / 100.0;
@@ -220,7 +223,7 @@ fn common_loadings(
     channels: Channels,
     statistics: &Statistics,
 ) -> Vec<ByChannel> {
-    let Statistics { factors, through_flight } = statistics;
+    let Statistics { factors, through_flight, .. } = statistics;
     let unit = |row: usize| {
         let mut slope = [0.0; MAXIMUM_CHANNELS];
         slope[row] = 1.0;
@@ -250,6 +253,42 @@ fn common_loadings(
         .collect()
 }
 
+/// Adds the flow meters' wander to what the segments of a flight have in common, one loading a segment.
+///
+/// ```text
+/// cov(i, j) = σ²/n·exp(−|t_i − t_j|/τ),  n engines                                    [diagnosis.47]
+/// ```
+///
+/// It is Markov: each value is ρ times the one before plus √(1 − ρ²) times something new, ρ the likeness of neighbours, which
+/// is its Cholesky factor row by row. `times_s` rise.
+pub(crate) fn add_wander(
+    noises: &mut [&mut SegmentNoise],
+    times_s: &[f64],
+    wander: FuelFlowWander,
+    engines: usize,
+) {
+    if wander.percent <= 0.0 {
+        return;
+    }
+    let deviation = wander.percent / 100.0 / (engines.max(1) as f64).sqrt();
+    let mut weights = vec![0.0; times_s.len()];
+    for (index, noise) in noises.iter_mut().enumerate() {
+        let likeness = match index {
+            0 => 0.0,
+            _ => (-(times_s[index] - times_s[index - 1]).abs() / wander.time_s).exp(),
+        };
+        for weight in &mut weights {
+            *weight *= likeness;
+        }
+        weights[index] = (1.0 - likeness * likeness).max(0.0).sqrt();
+        noise.common.extend(weights.iter().map(|weight| {
+            let mut loading = [0.0; MAXIMUM_CHANNELS];
+            loading[0] = deviation * weight;
+            loading
+        }));
+    }
+}
+
 /// Cholesky factor of a small covariance whose diagonal is positive.
 fn cholesky(
     covariance: &[[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
@@ -269,4 +308,35 @@ fn cholesky(
         }
     }
     factor
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wander_has_the_covariance_it_states() {
+        let noise = || SegmentNoise {
+            factor: [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
+            common: vec![],
+            acceleration: [0.0; MAXIMUM_CHANNELS],
+        };
+        let (mut a, mut b, mut c) = (noise(), noise(), noise());
+        let wander = FuelFlowWander { percent: 0.2, time_s: 1200.0 };
+        add_wander(&mut [&mut a, &mut b, &mut c], &[0.0, 600.0, 2400.0], wander, 2);
+        let covariance = |x: &SegmentNoise, y: &SegmentNoise| {
+            x.common.iter().zip(&y.common).map(|(x, y)| x[0] * y[0]).sum::<f64>()
+        };
+        // By hand: 0.002²/2 = 2e-6, e^(−1/2) = 0.606531, e^(−3/2) = 0.223130, e^(−2) = 0.135335.
+        for (found, expected) in [
+            (covariance(&a, &a), 2e-6),
+            (covariance(&b, &b), 2e-6),
+            (covariance(&c, &c), 2e-6),
+            (covariance(&a, &b), 2e-6 * 0.606531),
+            (covariance(&b, &c), 2e-6 * 0.223130),
+            (covariance(&a, &c), 2e-6 * 0.135335),
+        ] {
+            assert!((found - expected).abs() < 1e-11, "{found} {expected}");
+        }
+    }
 }

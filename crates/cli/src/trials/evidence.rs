@@ -10,7 +10,8 @@ use flight::effect::EffectId;
 use lut::Table;
 use lut::surface::{Basis, Surface};
 use perf_model::aircraft::{
-    AircraftFile, AxisFile, FlightDeviations, MassDeviation, SensorDeviations, TableFile, TsfcFile,
+    AircraftFile, AxisFile, FlightDeviations, FuelFlowWander, MassDeviation, SensorDeviations,
+    TableFile, TsfcFile,
 };
 use perf_model::{Aircraft, PerformanceModel};
 use rayon::prelude::*;
@@ -201,8 +202,9 @@ fn denied_model(
 /// ```
 ///
 /// (Ornstein–Uhlenbeck process): v of a segment less v of a flight is left within the flight, and noise counts with 1/√10
-/// (ten samples a segment). What a flow meter keeps through a flight is stated with the fuel's heating value. Of what air
-/// data and rotor speed keep through a flight, σ of the flight and v of a flight of the wander are stated.
+/// (ten samples a segment). What a flow meter keeps through a flight is stated with the fuel's heating value, its wander, with
+/// v of a segment, as what it is. Of what air data and rotor speed keep through a flight, σ of the flight and v of a
+/// flight of the wander are stated.
 ///
 /// The air-data computer's errors are stated where the fleet cruises, Mach 0.80 and 200 hPa:
 ///
@@ -249,11 +251,11 @@ fn sensor_deviations(
     let meter = &sensors.fuel_flow;
     // Engines err independently; the N2 channel is their mean.
     let engines = f64::from(truth.engine.count).sqrt();
-    let kept_by_all = 100.0 * through(meter.gain_slow_sd, meter.gain_flight_sd) / engines;
+    let kept_by_all = 100.0 * meter.gain_flight_sd / engines;
     let rotor_kept = (100.0 * through(sensors.n2.gain_slow_sd, sensors.n2.gain_flight_sd))
         .hypot(kept(&sensors.n2));
     SensorDeviations {
-        fuel_flow_percent: 100.0 * gained(meter),
+        fuel_flow_percent: 100.0 * meter.gain_noise_sd / SAMPLES.sqrt(),
         mach,
         static_air_temperature_k: added(&sensors.total_air_temperature) / heating,
         acceleration_m_s2: ACCELERATION_M_S2,
@@ -263,6 +265,10 @@ fn sensor_deviations(
         lower_heating_value_percent: scatter.heating_value_percent.hypot(kept_by_all),
         n2_percent: (100.0 * gained(&sensors.n2)).hypot(added(&sensors.n2)),
         pressure_altitude_m,
+        fuel_flow_wander: FuelFlowWander {
+            percent: 100.0 * of_mean(SEGMENT_S).sqrt() * meter.gain_slow_sd,
+            time_s: SLOW_TIME_S,
+        },
         through_flight: FlightDeviations {
             mach: mach_kept,
             static_air_temperature_k: kept(&sensors.total_air_temperature) / heating,
@@ -377,15 +383,16 @@ mod tests {
     #[test]
     fn the_aircraft_file_states_the_virtual_sensors() {
         // By hand: means of a wander of 1 200 s keep 0.852245 of its variance over 600 s and 0.277915 over 7 200 s. Then
-        // 100·√(0.57433·0.0020² + 0.0030²/10), √(0.57433·0.10² + 0.05²/10)/1.128 and
-        // √(0.3² + 100²·(0.0015² + 0.277915·0.0020²)/2). Through a flight: TAT √(0.277915·0.10² + 0.20²)/1.128 = 0.183361,
+        // 100·0.0030/√10, 100·√0.852245·0.0020, √(0.57433·0.10² + 0.05²/10)/1.128 and
+        // √(0.3² + 100²·0.0015²/2). Through a flight: TAT √(0.277915·0.10² + 0.20²)/1.128 = 0.183361,
         // N2 0.03/√2, static pressure √(0.277915·0.03² + 0.10²)/200 = 5.0622e-4 of p, total pressure
         // √(0.277915·0.05² + 0.15²)/(200·1.128^3.5) = 4.9955e-4; Mach √(5.0622² + 4.9955²)e-4·1.128/1.12, altitude 5.0622e-4·6341.6.
         let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
         let stated = sensor_deviations(&Sensors::transport(), &Scatter::default(), &truth);
-        assert!((stated.fuel_flow_percent - 0.178810).abs() < 1e-5, "{stated:?}");
+        assert!((stated.fuel_flow_percent - 0.094868).abs() < 1e-5, "{stated:?}");
+        assert!((stated.fuel_flow_wander.percent - 0.184634).abs() < 1e-5, "{stated:?}");
         assert!((stated.static_air_temperature_k - 0.068632).abs() < 1e-5, "{stated:?}");
-        assert!((stated.lower_heating_value_percent - 0.326815).abs() < 1e-5, "{stated:?}");
+        assert!((stated.lower_heating_value_percent - 0.318198).abs() < 1e-5, "{stated:?}");
         assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
         let kept = stated.through_flight;
         assert!((kept.static_air_temperature_k - 0.183361).abs() < 1e-5, "{kept:?}");

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use perf_model::effects::{EffectModel, EffectPoint, Response};
 
-use super::{Against, Data, Differences, FlightRows, Inside, gauge_row};
+use super::{Against, Data, Differences, FlightRows, Inside, add_wander_to, gauge_row};
 use crate::library::Library;
 use crate::record::GaugeBurn;
 
@@ -40,6 +40,7 @@ impl Data<'_> {
             kept.look_up_n2(&self.predictor.deck);
             segments.push(self.row(model, &kept, library, &differences, &statistics).ok()?);
         }
+        add_wander_to(&mut segments, &statistics, model);
         let gauge = recorded.gauge_deviation.map(|deviation| {
             let burn = GaugeBurn { gauged_kg: 1.0, metered_kg: 1.0, deviation_kg: deviation };
             gauge_row(burn, model, library, &segments)

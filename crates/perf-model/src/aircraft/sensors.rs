@@ -42,6 +42,24 @@ pub struct SensorDeviations {
     /// What air data and rotor speed keep through a flight. Not written where it is the default.
     #[serde(skip_serializing_if = "FlightDeviations::is_default")]
     pub through_flight: FlightDeviations,
+    /// What flow meters wander within a flight, slower than a segment lasts. Not written where it is none.
+    #[serde(skip_serializing_if = "FuelFlowWander::is_none")]
+    pub fuel_flow_wander: FuelFlowWander,
+}
+
+/// A slow wander of flow meters within a flight, on top of what differs from segment to segment: neighbours err alike.
+///
+/// It is not known for real meters and none by default. Where meters wander and it is not stated, functions of what changes
+/// slowly through a flight seem to explain it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FuelFlowWander {
+    /// Standard deviation of one engine's segment means, % of the reading; engines err independently. Default 0.
+    #[serde(deserialize_with = "limits::fuel_flow_wander_percent::deserialize")]
+    pub percent: f64,
+    /// Time in which the likeness of two means falls to 1/e, s. Default 1200.
+    #[serde(deserialize_with = "limits::wander_time_s::deserialize")]
+    pub time_s: f64,
 }
 
 /// Standard deviations of what stays the same through one flight and differs in the next: calibration drift, hysteresis,
@@ -100,7 +118,26 @@ impl Default for SensorDeviations {
             n2_percent: 0.08,
             pressure_altitude_m: 8.0,
             through_flight: FlightDeviations::default(),
+            fuel_flow_wander: FuelFlowWander::default(),
         }
+    }
+}
+
+impl Default for FuelFlowWander {
+    fn default() -> Self {
+        Self { percent: 0.0, time_s: 1200.0 }
+    }
+}
+
+impl FuelFlowWander {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn check(&self) -> Result<(), AircraftError> {
+        limits::fuel_flow_wander_percent::check(self.percent)?;
+        limits::wander_time_s::check(self.time_s)?;
+        Ok(())
     }
 }
 
@@ -148,7 +185,8 @@ impl SensorDeviations {
         limits::lower_heating_value_percent::check(self.lower_heating_value_percent)?;
         limits::n2_percent::check(self.n2_percent)?;
         limits::pressure_altitude_m::check(self.pressure_altitude_m)?;
-        self.through_flight.check()
+        self.through_flight.check()?;
+        self.fuel_flow_wander.check()
     }
 }
 
