@@ -1,32 +1,32 @@
 //! From flights to a verdict.
 
-use core::fmt::Write as _;
-
 use flight::effect::EffectId;
 use perf_model::PerformanceModel;
-use perf_model::effects::{
-    EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects, StepTarget,
-};
-use statrs::function::erf::erfc;
+use perf_model::effects::{EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects};
 
 use crate::TableUncertainty;
 use crate::addition::Addition;
-use crate::advice::{Advisor, best_first};
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::baseline::Baseline;
 use crate::classes::{Distances, leading_columns};
-use crate::closure::{SMALLEST_GAP, Shrinkage, held_out_floor, in_sample, nested, replicate_floor};
+use crate::closure::{Shrinkage, held_out_floor, in_sample, nested, replicate_floor};
 use crate::data::{Against, Data};
 use crate::design::{Acts, Design};
-use crate::evidence::{NOISE_FREEDOM, Scored};
 use crate::library::Library;
 use crate::output::{
-    Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Separation, Verdict,
-    VerdictKind,
+    Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary, Verdict, VerdictKind,
 };
-use crate::outside::{Companion, Outside, compete};
+use crate::outside::compete;
 use crate::record::FlightRecord;
 use crate::slices;
+
+mod gap;
+mod posterior;
+mod verdict;
+
+use gap::{exceeds_uncertainty, gap_of, is_real, is_vague, noise_scale, unknown_square};
+use posterior::{causes, dominant};
+use verdict::{advisor, beside, closed, credit, verdict};
 
 /// Fewest flights and segments that a name is given on.
 const FEWEST_FLIGHTS: usize = 6;
@@ -35,11 +35,6 @@ const FEWEST_SEGMENTS: usize = 30;
 pub(crate) const CLEAN_PROBABILITY: f64 = 0.05;
 /// Probability of a cause outside the library above which it is said.
 const OUTSIDE_PROBABILITY: f64 = 0.5;
-/// Shares of the explainable gap between which a named set that an agnostic function improves upon passes from "something
-/// else" to "this effect in another form". Their middle, nine tenths, is where the verdict turns.
-const OTHER_FORM: [f64; 2] = [0.8, 1.0];
-/// Probability that the credible set of effects holds.
-const CREDIBLE: f64 = 0.95;
 /// Half width of a 95 % interval in standard deviations.
 const NORMAL_95: f64 = 1.96;
 
@@ -276,18 +271,6 @@ fn insufficient(flights: usize, segments: usize, reason: &str) -> Diagnosis {
     }
 }
 
-/// An effect with its posterior.
-#[derive(Clone, Debug)]
-struct Posterior {
-    /// Index in the library; `None` for flight-to-flight scatter.
-    effect: Option<usize>,
-    probability: f64,
-    /// The most probable model in which it is the larger effect.
-    model: Scored,
-    /// Its place in that model.
-    place: usize,
-}
-
 fn conclude(
     stacked: &Stacked<'_>,
     model: &EffectModel<'_>,
@@ -389,464 +372,12 @@ fn conclude(
     Ok((diagnosis, analysis))
 }
 
-/// Whether there is more than noise: either nothing at all is improbable beside the library, or nothing outside it is.
-fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
-    analysis.clean <= CLEAN_PROBABILITY || 1.0 - outside.probability <= CLEAN_PROBABILITY
-}
-
-/// Whether the gap is larger than noise and what the model does not know together by what closure needs, at 97.5 %: then it
-/// is real, however many small effects could make it up together. `unknown` is a mean square of ln fuel flow.
-fn exceeds_uncertainty(gap: &Gap, unknown: f64) -> bool {
-    let expected = gap.noise_floor_rms_percent.powi(2) + 1e4 * unknown;
-    gap.rms_ci95[0].powi(2) > (1.0 + SMALLEST_GAP) * expected
-}
-
-/// Mean square of ln fuel flow that the table, the chords of its cells and a taught remainder leave open.
-fn unknown_square(stacked: &Stacked<'_>) -> f64 {
-    let (data, design) = (stacked.data, stacked.design);
-    let sum: f64 = data
-        .flights
-        .iter()
-        .map(|flight| {
-            let rows = design.fuel_flow(data, flight);
-            (0..rows.nrows())
-                .flat_map(|row| design.nuisance.clone().map(move |column| (row, column)))
-                .map(|at| rows[at] * rows[at])
-                .sum::<f64>()
-        })
-        .sum();
-    sum / data.segments.len().max(1) as f64
-}
-
-/// Whether the evidence points at nothing: nothing is more probable than not, and the size of the gap is within its noise or
-/// the leading set widens it on flights that it was not fitted to. A remainder is never exact, and what is left over
-/// is spread over many small hypotheses.
-fn is_vague(gap: &Gap, outside: &Outside, top: Option<&Posterior>, makes_worse: bool) -> bool {
-    outside.probability <= OUTSIDE_PROBABILITY
-        && top.is_none_or(|top| top.probability * (1.0 - outside.probability) < 0.5)
-        && (gap.rms_ci95[0] <= gap.noise_floor_rms_percent || makes_worse)
-}
-
-/// Share of the explainable gap that the leading set closes, with its interval: on unseen flights; on the same ones where the
-/// gap is too small for that; `None` where it is too small for either.
-fn closed(unseen: Option<&Shrinkage>, own: &Shrinkage) -> Option<(f64, [f64; 2])> {
-    unseen.and_then(Shrinkage::closure).or_else(|| own.closure())
-}
-
-/// How much of the evidence for an agnostic function goes to the leading effect `[diagnosis.41]`: the larger of
-///
-/// - what says that the function is the effect in another form. Truth never has the library's form exactly, and with enough
-///   flights an agnostic function sees it. Effects of the library in other forms closed 0.94 to 0.98 of the gap on two
-///   other simulators, effects that the library lacks 0.25 at most;
-/// - what says that the effect acts *beside* the function: the probability of it or of a member of its class in the models
-///   that hold a function, as long as the effect surely makes unseen flights better, where that can be measured. Real
-///   gaps have many causes, and the largest has a name though the rest has none.
-///
-/// Scatter between flights closes nothing: only the second counts for it.
-fn credit(beside: f64, is_scatter: bool, closed: Option<(f64, [f64; 2])>) -> f64 {
-    let Some((share, [least, _])) = closed.filter(|_| !is_scatter) else { return beside };
-    let [none, all] = OTHER_FORM;
-    let form = ((share - none) / (all - none)).clamp(0.0, 1.0);
-    if least > 0.0 { form.max(beside) } else { form }
-}
-
-/// If an agnostic function is needed, the probability that the leading effect, or one that these flights cannot tell from it,
-/// acts beside it.
-fn beside(
-    outside: &Outside,
-    distances: &Distances,
-    library: &Library,
-    top: Option<&Posterior>,
-) -> f64 {
-    let Some(top) = top else { return 0.0 };
-    if top.effect.is_none() {
-        return outside.beside(&Companion::Scatter).min(1.0);
-    }
-    let column = top.model.model.columns[top.place];
-    let size = top.model.sizes[top.place];
-    let class = distances.confused_with(library, column, size);
-    class.into_iter().map(|effect| outside.beside(&Companion::Effect(effect))).sum::<f64>().min(1.0)
-}
-
 const fn acts_words(acts: Acts) -> &'static str {
     match acts {
         Acts::FuelFlow => "fuel flow",
         Acts::Thrust => "thrust",
         Acts::Split => "one engine",
     }
-}
-
-/// Noise variance over what the sensors announce, of the best model.
-fn noise_scale(analysis: &Analysis, best: &Scored, rows: usize) -> f64 {
-    let at = &analysis.backgrounds[best.background.min(analysis.backgrounds.len() - 1)];
-    let explained: f64 = best
-        .model
-        .columns
-        .iter()
-        .zip(&best.sizes)
-        .map(|(&column, size)| at.product(column) * size)
-        .sum();
-    let square = (at.square - explained).max(0.0);
-    (NOISE_FREEDOM + square) / (NOISE_FREEDOM + rows as f64)
-}
-
-/// Probability of each effect to be the larger one of what acts, over models.
-fn dominant(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Vec<Posterior> {
-    let count = stacked.data.segments.len() as f64;
-    let mean_squares: Vec<f64> = (0..library.columns.len())
-        .map(|column| {
-            stacked.data.segments.iter().map(|row| row.signatures[column][0].powi(2)).sum::<f64>()
-                / count
-        })
-        .collect();
-    // One entry an effect, flight-to-flight scatter last.
-    let mut found: Vec<Option<Posterior>> = vec![None; library.effects.len() + 1];
-    for (scored, probability) in &analysis.models {
-        let mut shares: Vec<(f64, Option<usize>, usize)> = scored
-            .model
-            .columns
-            .iter()
-            .zip(&scored.sizes)
-            .enumerate()
-            .map(|(place, (&column, size))| {
-                (size * size * mean_squares[column], Some(library.columns[column].effect), place)
-            })
-            .collect();
-        if let Some(percent) = scored.model.heating_percent {
-            shares.push(((percent / 100.0).powi(2), None, 0));
-        }
-        let Some(&(_, effect, place)) = shares.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
-            continue;
-        };
-        let slot = &mut found[effect.unwrap_or(library.effects.len())];
-        match slot {
-            Some(posterior) => posterior.probability += probability,
-            None => {
-                *slot = Some(Posterior {
-                    effect,
-                    probability: *probability,
-                    model: scored.clone(),
-                    place,
-                });
-            }
-        }
-    }
-    let mut all: Vec<Posterior> = found.into_iter().flatten().collect();
-    all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    all
-}
-
-fn gap_of(stacked: &Stacked<'_>, analysis: &Analysis, own: &Shrinkage, scale: f64) -> Gap {
-    let count = stacked.data.segments.len() as f64;
-    let mean = stacked.data.segments.iter().map(|row| row.residual[0]).sum::<f64>() / count;
-    let square = own.before();
-    // Interval of the mean square by flight, then its root.
-    let flights = own.before.len() as f64;
-    let spread: f64 = own
-        .before
-        .iter()
-        .zip(&own.segments)
-        .map(|(sum, n)| (sum - square * n).powi(2))
-        .sum::<f64>()
-        * flights
-        / (flights - 1.0).max(1.0);
-    let half = NORMAL_95 * spread.sqrt() / count;
-    // The largest deviation any effect makes of noise alone, with as many looks as columns (Bonferroni).
-    let plain = analysis.backgrounds.iter().find(|b| b.spike == 0.0 && b.tau == 0.0);
-    let p_value = plain.map_or(1.0, |at| {
-        let columns = analysis.scorer.columns();
-        let largest = (0..columns)
-            .filter(|&column| at.gram(column, column) > 0.0)
-            .map(|column| at.product(column).powi(2) / at.gram(column, column))
-            .fold(0.0, f64::max);
-        (columns as f64 * erfc((largest / scale / 2.0).sqrt())).min(1.0)
-    });
-    Gap {
-        mean_percent: 100.0 * mean,
-        rms_percent: 100.0 * square.sqrt(),
-        rms_ci95: [100.0 * (square - half).max(0.0).sqrt(), 100.0 * (square + half).sqrt()],
-        noise_floor_rms_percent: 100.0 * own.floor().sqrt(),
-        floor_by_replicates_rms_percent: None,
-        floor_by_held_out_fit_rms_percent: None,
-        detected: false,
-        p_value,
-    }
-}
-
-fn causes(
-    analysis: &Analysis,
-    outside: &Outside,
-    distances: &Distances,
-    library: &Library,
-    posteriors: &[Posterior],
-    unseen: Option<&Shrinkage>,
-) -> Vec<Cause> {
-    let inside = 1.0 - outside.probability;
-    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
-    let best = &analysis.models[0].0;
-    let mut sum = 0.0;
-    let mut causes = Vec::new();
-    for posterior in posteriors {
-        if causes.len() >= 3 && (sum > 0.995 * named || posterior.probability < 1e-3) {
-            break;
-        }
-        sum += posterior.probability;
-        let is_best = posterior.model.model == best.model;
-        let closure = unseen.filter(|_| is_best).and_then(Shrinkage::closure);
-        causes.push(Cause {
-            effect: name_of(library, posterior.effect),
-            probability: posterior.probability * inside,
-            class: class_of(distances, library, posterior),
-            magnitude: magnitude(library, posterior),
-            rms_after_percent: unseen.filter(|_| is_best).map(|s| 100.0 * s.after().sqrt()),
-            closure: closure.map(|c| c.0),
-            closure_ci95: closure.map(|c| c.1),
-            hidden: hidden_words(library, posterior),
-        });
-    }
-    causes
-}
-
-fn name_of(library: &Library, effect: Option<usize>) -> String {
-    effect.map_or(EffectId::FuelHeatingValue, |e| library.effects[e].id).to_string()
-}
-
-fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
-    let Some(effect) = posterior.effect else {
-        let percent = posterior.model.model.heating_percent.unwrap_or(0.0);
-        return Magnitude {
-            value: percent,
-            unit: EffectId::FuelHeatingValue.entry().unit.to_owned(),
-            ci95: [0.5 * percent, 2.0 * percent],
-        };
-    };
-    let value = posterior.model.sizes[posterior.place];
-    let half = NORMAL_95 * posterior.model.deviations[posterior.place];
-    Magnitude {
-        value,
-        unit: library.effects[effect].id.entry().unit.to_owned(),
-        ci95: [value - half, value + half],
-    }
-}
-
-fn class_of(distances: &Distances, library: &Library, posterior: &Posterior) -> Vec<String> {
-    let Some(_) = posterior.effect else {
-        return vec![EffectId::FuelHeatingValue.to_string()];
-    };
-    let column = posterior.model.model.columns[posterior.place];
-    let size = posterior.model.sizes[posterior.place];
-    distances
-        .confused_with(library, column, size)
-        .into_iter()
-        .map(|effect| library.effects[effect].id.to_string())
-        .collect()
-}
-
-fn hidden_words(library: &Library, posterior: &Posterior) -> String {
-    let Some(effect) = posterior.effect else { return String::new() };
-    let column = &library.columns[posterior.model.model.columns[posterior.place]];
-    match library.effects[effect].id {
-        EffectId::StepChange => {
-            let target = match column.hidden.step_target {
-                StepTarget::FuelFlow => "fuel flow",
-                StepTarget::Drag => "drag",
-            };
-            #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
-            let from = flight::Timestamp::from_second(column.hidden.step_from_s as i64)
-                .map_or_else(|_| String::new(), |instant| instant.to_string());
-            format!("{target} from {from}")
-        }
-        EffectId::TsfcThrottle => format!(
-            "over {}, pivot {:.1}",
-            column.hidden.throttle_argument.words(),
-            column.hidden.throttle_pivot
-        ),
-        EffectId::WaveDrag => format!("Mdd {}", column.hidden.drag_divergence_mach),
-        _ => String::new(),
-    }
-}
-
-#[expect(clippy::too_many_arguments, reason = "the verdict reads all that was found")]
-fn verdict(
-    analysis: &Analysis,
-    outside: &Outside,
-    agnostic: f64,
-    distances: &Distances,
-    advisor: &Advisor<'_>,
-    library: &Library,
-    posteriors: &[Posterior],
-    own: &Shrinkage,
-    unseen: Option<&Shrinkage>,
-    detected: bool,
-    notes: &mut Vec<String>,
-) -> Verdict {
-    let closure = unseen.and_then(Shrinkage::closure);
-    let mut verdict = Verdict {
-        kind: VerdictKind::NoGap,
-        effects: vec![],
-        class: vec![],
-        probability: 0.0,
-        closure: closure.map(|c| c.0),
-        closure_ci95: closure.map(|c| c.1),
-        advice: String::new(),
-        separations: vec![],
-    };
-    let Some(top) = posteriors.first().filter(|_| detected) else {
-        verdict.closure = None;
-        verdict.closure_ci95 = None;
-        "Nothing beyond the noise. `detectable` says how large each effect would have to be."
-            .clone_into(&mut verdict.advice);
-        return verdict;
-    };
-    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
-    let variable = outside.variable.map_or("no variable", |(variable, _)| variable.words());
-    let closed = closed(unseen, own);
-    if outside.probability > OUTSIDE_PROBABILITY || (agnostic > OUTSIDE_PROBABILITY && named < 0.5)
-    {
-        verdict.kind = VerdictKind::OutsideLibrary;
-        verdict.probability = outside.probability.max(1.0 - named);
-        verdict.advice =
-            format!("A gap that no effect of the library explains; it hangs on {variable}.");
-        if let Some((closed, _)) = closed {
-            let _ = write!(
-                verdict.advice,
-                " The nearest, {}, closes {:.0} % of it.",
-                name_of(library, top.effect),
-                100.0 * closed.clamp(0.0, 1.0)
-            );
-        }
-        return verdict;
-    }
-    verdict.kind = VerdictKind::Effects;
-    verdict.probability = top.probability * (1.0 - outside.probability);
-    verdict.effects = set_of(analysis, library, top);
-    verdict.class = class_of(distances, library, top);
-    // What the evidence leaves open belongs to the class too, however far apart sizes typical of it would be.
-    for posterior in credible(posteriors) {
-        let name = name_of(library, posterior.effect);
-        if !verdict.class.contains(&name) {
-            verdict.class.push(name);
-        }
-    }
-    verdict.separations = separations(advisor, library, top, &verdict.class);
-    let rest = (agnostic > OUTSIDE_PROBABILITY).then(|| Rest {
-        variable,
-        is_form: closed
-            .is_none_or(|(share, _)| share >= f64::midpoint(OTHER_FORM[0], OTHER_FORM[1])),
-    });
-    if let Some(rest) = &rest {
-        notes.push(rest.words());
-    }
-    verdict.advice = advice(&verdict, rest.as_ref());
-    verdict
-}
-
-/// What an agnostic function sees beside a named effect.
-struct Rest {
-    variable: &'static str,
-    /// The effect itself in another form; else something else.
-    is_form: bool,
-}
-
-impl Rest {
-    fn words(&self) -> String {
-        if self.is_form {
-            format!("the form of the effect differs in {}", self.variable)
-        } else {
-            format!("something else acts beside the effect; it hangs on {}", self.variable)
-        }
-    }
-}
-
-/// The most probable causes that hold 95 % of the probability together.
-fn credible(posteriors: &[Posterior]) -> impl Iterator<Item = &Posterior> {
-    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
-    let mut sum = 0.0;
-    posteriors.iter().take_while(move |posterior| {
-        let before = sum;
-        sum += posterior.probability;
-        before < CREDIBLE * named
-    })
-}
-
-/// The effects that act together, where a pair is more probable than not; else the top effect.
-fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String> {
-    let (best, probability) = &analysis.models[0];
-    let mut names = vec![name_of(library, top.effect)];
-    if *probability > 0.5 {
-        let members = best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
-        let scatter = best.model.heating_percent.map(|_| None);
-        for member in members.chain(scatter) {
-            let name = name_of(library, member);
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-    }
-    names
-}
-
-/// Who is asked for advice: about the leading effect of every probable cause, and what could be taken for it.
-fn advisor<'a>(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &'a Library,
-    distances: &'a Distances,
-    classes: &[Vec<usize>],
-    posteriors: &[Posterior],
-    detected: bool,
-) -> Advisor<'a> {
-    let top = posteriors.first().filter(|top| detected && top.effect.is_some());
-    let found = top.map(|top| top.model.model.columns[top.place]);
-    let mut likely: Vec<usize> = Vec::new();
-    if let (Some(top), Some(column)) = (top, found) {
-        likely.extend(credible(posteriors).filter_map(|posterior| posterior.effect));
-        likely.extend(distances.confused_with(library, column, top.model.sizes[top.place]));
-    }
-    let found: Vec<usize> = found.into_iter().collect();
-    Advisor::of(stacked, model, library, distances, classes, &found, &likely)
-}
-
-fn separations(
-    advisor: &Advisor<'_>,
-    library: &Library,
-    top: &Posterior,
-    class: &[String],
-) -> Vec<Separation> {
-    if top.effect.is_none() {
-        return vec![];
-    }
-    let column = top.model.model.columns[top.place];
-    let size = top.model.sizes[top.place];
-    let mut all = Vec::new();
-    for (index, effect) in library.effects.iter().enumerate() {
-        if Some(index) != top.effect && class.contains(&effect.id.to_string()) {
-            all.extend(advisor.between(column, size, index));
-        }
-    }
-    best_first(&mut all);
-    all
-}
-
-fn advice(verdict: &Verdict, rest: Option<&Rest>) -> String {
-    let mut words = if verdict.class.len() > 1 {
-        format!("One of {}: these flights cannot tell them apart.", verdict.class.join(", "))
-    } else {
-        format!("{}.", verdict.effects.join(" and "))
-    };
-    match rest {
-        Some(Rest { variable, is_form: true }) => {
-            let _ = write!(words, " Its form differs from the library's in {variable}.");
-        }
-        Some(Rest { variable, is_form: false }) => {
-            let _ = write!(words, " Something else acts beside it, which hangs on {variable}.");
-        }
-        None => {}
-    }
-    if let Some(best) = verdict.separations.first() {
-        let _ = write!(words, " To be sure: {} ({}).", best.measurement, best.distances_told());
-    }
-    words
 }
 
 impl Diagnosis {
