@@ -216,7 +216,9 @@ impl ScoreName {
                 "Share of the planted gap that the named effects remove, median over gaps above 0.5 %"
             }
             Self::SizeErrorMedian => "Error of size, median",
-            Self::PlaceSignificant => "Gaps that vary by 0.35 % with a variable: a place is reported",
+            Self::PlaceSignificant => {
+                "Gaps that vary by 0.35 % with a variable: a place is reported"
+            }
             Self::PlaceDriver => "Of those: the variable that drives the gap is named",
             Self::PlaceOverlapMedian => "Of those: overlap with the truly worst region, median",
             Self::PlaceAlarm => "No effect planted: a place is reported",
