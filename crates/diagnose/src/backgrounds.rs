@@ -14,6 +14,7 @@ use crate::library::Library;
 pub(crate) const SPIKES: [f64; 4] = [0.0, 0.05, 0.15, 0.30];
 /// Amplitudes of the smooth discrepancy, shares of fuel flow.
 pub(crate) const TAUS: [f64; 4] = [0.0, 0.0015, 0.004, 0.010];
+
 /// A background: Gram of the effects' columns, product with the residual, square of the residual.
 #[derive(Clone, Debug)]
 pub(crate) struct Background {
@@ -175,7 +176,7 @@ pub(crate) fn diagonals(smoothed: &[Smoothed], library: &Library) -> Vec<Diagona
 }
 
 /// Columns that a spike of every effect takes out, and its standard deviations.
-fn spike_of(library: &Library, spike: f64) -> (Vec<usize>, Vec<f64>) {
+pub(crate) fn spike_of(library: &Library, spike: f64) -> (Vec<usize>, Vec<f64>) {
     if spike == 0.0 {
         return (vec![], vec![]);
     }

@@ -117,6 +117,11 @@ pub(crate) enum Against<'a> {
 }
 
 impl<'a> Against<'a> {
+    /// What was taught, where there is something; else the table.
+    pub(crate) fn taught_or_table(baseline: Option<&'a Baseline>) -> Self {
+        baseline.map_or(Self::Table, Self::Baseline)
+    }
+
     fn baseline(self) -> Option<&'a Baseline> {
         match self {
             Self::Table | Self::NothingYet => None,

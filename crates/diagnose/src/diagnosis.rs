@@ -155,7 +155,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)
     };
-    let against = input.baseline.map_or(Against::Table, Against::Baseline);
+    let against = Against::taught_or_table(input.baseline);
     let (data, library) =
         Data::prepare(&model, input.flights, against, |points, engines, starts| {
             Library::of(&model, points, engines, starts, chosen)

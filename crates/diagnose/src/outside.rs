@@ -1,7 +1,7 @@
 //! Outside the library: agnostic functions of one variable compete with the named effects.
 
 use crate::analysis::{Analysis, Stacked};
-use crate::backgrounds::Background;
+use crate::backgrounds::{Background, spike_of};
 use crate::design::Acts;
 use crate::evidence::{Model, Scored, Scorer, Single, ln_sum};
 use crate::gram::{Changed, Reduced, integrate_few_out, integrate_out};
@@ -40,8 +40,8 @@ pub(crate) enum Companion {
 
 impl Outside {
     /// If an agnostic function is needed: the probability that this acts beside it.
-    pub(crate) fn beside(&self, companion: &Companion) -> f64 {
-        self.beside.iter().filter(|b| b.0 == *companion).map(|b| b.1).sum()
+    pub(crate) fn beside(&self, companion: Companion) -> f64 {
+        self.beside.iter().filter(|b| b.0 == companion).map(|b| b.1).sum()
     }
 }
 
@@ -216,11 +216,7 @@ fn spiked<'a>(
         }
     }
     kept.push(residual);
-    let (mut out, mut deviations): (Vec<usize>, Vec<f64>) = if spike > 0.0 {
-        library.effects.iter().map(|e| (e.representative, spike * e.typical)).unzip()
-    } else {
-        (vec![], vec![])
-    };
+    let (mut out, mut deviations) = spike_of(library, spike);
     // What a taught remainder may lack is no discovery.
     let tau = stacked.clean_tau();
     if tau > 0.0 {

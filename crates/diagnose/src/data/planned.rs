@@ -28,7 +28,7 @@ impl Data<'_> {
         points: &[EffectPoint],
         recorded: Recorded,
     ) -> Option<Self> {
-        let against = self.predictor.baseline.map_or(Against::Table, Against::Baseline);
+        let against = Against::taught_or_table(self.predictor.baseline);
         let statistics = against.statistics(model);
         let samples: Vec<u32> = (0..u32::try_from(recorded.samples).ok()?).collect();
         let differences = Differences::of(model, library, self.predictor.baseline.is_some());

@@ -25,6 +25,20 @@ pub(super) struct Posterior {
     pub(super) place: usize,
 }
 
+impl Posterior {
+    /// Its column of the library and the size there; `None` for scatter between flights.
+    pub(super) fn column_and_size(&self) -> Option<(usize, f64)> {
+        self.effect?;
+        Some((self.model.model.columns[self.place], self.model.sizes[self.place]))
+    }
+
+    /// Effects that these flights cannot tell from it, itself first; `None` for scatter between flights.
+    pub(super) fn confused(&self, distances: &Distances, library: &Library) -> Option<Vec<usize>> {
+        let (column, size) = self.column_and_size()?;
+        Some(distances.confused_with(library, column, size))
+    }
+}
+
 /// Probability of each effect to be the larger one of what acts, over models.
 pub(super) fn dominant(
     stacked: &Stacked<'_>,
@@ -113,7 +127,7 @@ pub(super) fn name_of(library: &Library, effect: Option<usize>) -> String {
     effect.map_or(EffectId::FuelHeatingValue, |e| library.effects[e].id).to_string()
 }
 
-pub(super) fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
+fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
     let Some(effect) = posterior.effect else {
         let percent = posterior.model.model.heating_percent.unwrap_or(0.0);
         return Magnitude {
@@ -136,19 +150,13 @@ pub(super) fn class_of(
     library: &Library,
     posterior: &Posterior,
 ) -> Vec<String> {
-    let Some(_) = posterior.effect else {
-        return vec![EffectId::FuelHeatingValue.to_string()];
-    };
-    let column = posterior.model.model.columns[posterior.place];
-    let size = posterior.model.sizes[posterior.place];
-    distances
-        .confused_with(library, column, size)
-        .into_iter()
-        .map(|effect| library.effects[effect].id.to_string())
-        .collect()
+    match posterior.confused(distances, library) {
+        None => vec![name_of(library, None)],
+        Some(effects) => effects.into_iter().map(|effect| name_of(library, Some(effect))).collect(),
+    }
 }
 
-pub(super) fn hidden_words(library: &Library, posterior: &Posterior) -> String {
+fn hidden_words(library: &Library, posterior: &Posterior) -> String {
     let Some(effect) = posterior.effect else { return String::new() };
     let column = &library.columns[posterior.model.model.columns[posterior.place]];
     match library.effects[effect].id {

@@ -53,13 +53,13 @@ pub(super) fn beside(
     top: Option<&Posterior>,
 ) -> f64 {
     let Some(top) = top else { return 0.0 };
-    if top.effect.is_none() {
-        return outside.beside(&Companion::Scatter).min(1.0);
-    }
-    let column = top.model.model.columns[top.place];
-    let size = top.model.sizes[top.place];
-    let class = distances.confused_with(library, column, size);
-    class.into_iter().map(|effect| outside.beside(&Companion::Effect(effect))).sum::<f64>().min(1.0)
+    let found: f64 = match top.confused(distances, library) {
+        None => outside.beside(Companion::Scatter),
+        Some(class) => {
+            class.into_iter().map(|effect| outside.beside(Companion::Effect(effect))).sum()
+        }
+    };
+    found.min(1.0)
 }
 
 #[expect(clippy::too_many_arguments, reason = "the verdict reads all that was found")]
@@ -192,14 +192,14 @@ pub(super) fn advisor<'a>(
     posteriors: &[Posterior],
     detected: bool,
 ) -> Advisor<'a> {
-    let top = posteriors.first().filter(|top| detected && top.effect.is_some());
-    let found = top.map(|top| top.model.model.columns[top.place]);
+    let top = posteriors.first().filter(|_| detected);
+    let found: Vec<usize> =
+        top.and_then(Posterior::column_and_size).map(|(column, _)| column).into_iter().collect();
     let mut likely: Vec<usize> = Vec::new();
-    if let (Some(top), Some(column)) = (top, found) {
+    if let Some(class) = top.and_then(|top| top.confused(distances, library)) {
         likely.extend(credible(posteriors).filter_map(|posterior| posterior.effect));
-        likely.extend(distances.confused_with(library, column, top.model.sizes[top.place]));
+        likely.extend(class);
     }
-    let found: Vec<usize> = found.into_iter().collect();
     Advisor::of(stacked, model, library, distances, classes, &found, &likely)
 }
 
@@ -209,11 +209,7 @@ fn separations(
     top: &Posterior,
     class: &[String],
 ) -> Vec<Separation> {
-    if top.effect.is_none() {
-        return vec![];
-    }
-    let column = top.model.model.columns[top.place];
-    let size = top.model.sizes[top.place];
+    let Some((column, size)) = top.column_and_size() else { return vec![] };
     let mut all = Vec::new();
     for (index, effect) in library.effects.iter().enumerate() {
         if Some(index) != top.effect && class.contains(&effect.id.to_string()) {
