@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The search of `diagnose` against a numpy prototype of the same method, on the same data, in the same run.
 
-    cargo build --release --locked -p diagnose --example speed
+    cargo build --release --locked -p cruisefit-diagnose --example speed
     python3 docs/figures/diagnosis_speed.py PROTOTYPE.py target/release/examples/speed [CASES]
 
 PROTOTYPE.py makes the data (600 segments of 60 flights, one planted effect), diagnoses it (signatures, whitening, evidence of

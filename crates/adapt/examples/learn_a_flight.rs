@@ -1,6 +1,6 @@
 //! A table learns from three segments of an aircraft with 7 % more drag, one of them outside the table.
 //!
-//! `cargo run -p adapt --example learn_a_flight`
+//! `cargo run -p cruisefit-adapt --example learn_a_flight`
 
 use std::error::Error;
 use std::sync::Arc;

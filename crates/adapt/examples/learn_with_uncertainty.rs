@@ -1,6 +1,6 @@
 //! Law `bayes` learns three flights of an aircraft with 5 % more drag, and says how sure it is where they never went.
 //!
-//! `cargo run -p adapt --example learn_with_uncertainty`
+//! `cargo run -p cruisefit-adapt --example learn_with_uncertainty`
 
 #![expect(clippy::print_stdout, reason = "an example shows its result")]
 

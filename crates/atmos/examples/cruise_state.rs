@@ -1,6 +1,6 @@
 //! From what a cruise report says (pressure altitude, SAT, Mach number) to what a performance model wants.
 //!
-//! `cargo run -p atmos --example cruise_state`
+//! `cargo run -p cruisefit-atmos --example cruise_state`
 #![expect(clippy::print_stdout, reason = "an example shows its result")]
 
 use atmos::{airspeed, gravity, isa, temperature};

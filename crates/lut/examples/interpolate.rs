@@ -1,6 +1,6 @@
 //! A table on uneven axes: reading it, and changing the nodes of one cell.
 //!
-//! `cargo run -p lut --example interpolate`
+//! `cargo run -p cruisefit-lut --example interpolate`
 
 use std::error::Error;
 use std::sync::Arc;

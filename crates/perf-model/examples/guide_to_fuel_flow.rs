@@ -1,6 +1,6 @@
 //! From a flight-planning guide to fuel flow and specific range at weights and altitudes between its rows.
 //!
-//! `cargo run -p perf-model --example guide_to_fuel_flow`
+//! `cargo run -p cruisefit-perf-model --example guide_to_fuel_flow`
 #![expect(clippy::print_stdout, reason = "an example shows its result")]
 
 use perf_model::{Aircraft, FlightPoint, Guide, initial_model};

@@ -1,6 +1,6 @@
 //! Speed of reading against the limit of merely summing the bytes, and of writing.
 //!
-//! `cargo bench -p report --bench read`. Before criterion's groups the ratio of reading to summing is printed, as the
+//! `cargo bench -p cruisefit-report --bench read`. Before criterion's groups the ratio of reading to summing is printed, as the
 //! median of alternating runs on the same bytes: times alone move with the machine's neighbors, the ratio less.
 //! Everything is warm in memory: files are not opened here.
 

@@ -1,6 +1,6 @@
 //! Reads a cruise report, says what a damaged one is refused for, and writes it in other units.
 //!
-//! `cargo run -p report --example read_report`
+//! `cargo run -p cruisefit-report --example read_report`
 
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
