@@ -2,36 +2,16 @@
 //! and how large the noise is. Each with its covariance.
 
 use faer::Mat;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModel, EffectReferences, Response};
+use perf_model::effects::{EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 
-use crate::DiagnoseError;
-use crate::data::{Against, Data, ENVIRONMENT};
-use crate::deck::{DECK_TERMS, Deck};
-use crate::library::Library;
-use crate::noise::{MAXIMUM_CHANNELS, NoiseFactors};
-use crate::record::FlightRecord;
-use crate::variables::{Hats, Scaled, Variable};
+use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::signals::n2_deck::{DECK_TERMS, Deck};
+use crate::signals::noise::NoiseFactors;
+use crate::signals::variables::{Hats, Scaled, Variable};
 
-mod learning;
-mod moments;
+pub(crate) mod standing_effects;
 
-use moments::Moments;
-
-/// Variables of the remainder.
-const VARIABLES: [Variable; 6] = [
-    Variable::Mach,
-    Variable::LiftCoefficient,
-    Variable::PressureAltitude,
-    Variable::CorrectedThrust,
-    Variable::IsaDeviation,
-    Variable::Mass,
-];
-/// Variables that the remainder may bend along differently at each Mach number: drag rises locally, and so does thrust.
-const LOCAL_VARIABLES: [Variable; 3] =
-    [Variable::LiftCoefficient, Variable::CorrectedThrust, Variable::PressureAltitude];
-const QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
 /// Prior standard deviation of the remainder's level, of a hat function and of a product: shares of fuel flow.
 const LEVEL_DEVIATION: f64 = 0.10;
 const HAT_DEVIATION: f64 = 0.02;
@@ -40,50 +20,45 @@ const PRODUCT_DEVIATION: f64 = 0.005;
 const SPLIT_DEVIATION: f64 = 0.03;
 /// Prior standard deviation of a deck coefficient about its least-squares value.
 const DECK_DEVIATION: f64 = 0.02;
-/// Folds of flights that the scatter between flights is judged on, and rounds of it.
-const FOLDS: usize = 10;
-const INFLATIONS: usize = 3;
 /// Effects that the first model files with a baseline carried.
 const FIRST_CARRIED: usize = 3;
 /// Share of the prior variance that is left where flown data informed the remainder.
 const INFORMED_SHARE: f64 = 0.25;
-/// Fewest flights that teach a remainder.
-const FEWEST_FLIGHTS: usize = 5;
 
 /// A taught baseline. Reads and writes with serde, to the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Baseline {
-    parts: Parts,
-    factor: Mat<f64>,
+    pub(crate) parts: Parts,
+    pub(crate) factor: Mat<f64>,
 }
 
 /// A baseline as it is written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Baseline")]
-struct Parts {
-    flights: usize,
-    segments: usize,
-    references: EffectReferences,
-    noise: NoiseFactors,
+pub(crate) struct Parts {
+    pub(crate) flights: usize,
+    pub(crate) segments: usize,
+    pub(crate) references: EffectReferences,
+    pub(crate) noise: NoiseFactors,
     /// Factors on the prior standard deviations of hat functions and products.
-    scales: [f64; 2],
-    hats: Vec<(Variable, Hats)>,
-    products: Vec<(Variable, Scaled, Variable, Scaled)>,
+    pub(crate) scales: [f64; 2],
+    pub(crate) hats: Vec<(Variable, Hats)>,
+    pub(crate) products: Vec<(Variable, Scaled, Variable, Scaled)>,
     /// Variables that the remainder may bend along differently at each Mach number.
-    local: Vec<(Variable, Scaled)>,
-    contrasts: usize,
-    deck_known: bool,
-    deck_centers: [f64; 4],
-    deck_coefficients: Vec<f64>,
+    pub(crate) local: Vec<(Variable, Scaled)>,
+    pub(crate) contrasts: usize,
+    pub(crate) deck_known: bool,
+    pub(crate) deck_centers: [f64; 4],
+    pub(crate) deck_coefficients: Vec<f64>,
     /// Means of remainder terms and splits.
-    mean: Vec<f64>,
+    pub(crate) mean: Vec<f64>,
     /// Lower triangle, row by row, of the Cholesky factor of the covariance of remainder terms, splits and deck.
-    factor: Vec<f64>,
+    pub(crate) factor: Vec<f64>,
     /// Sizes of the effects that the fleet shows at all times.
-    environment: Vec<f64>,
+    pub(crate) environment: Vec<f64>,
     /// Remaining rms of ln fuel flow over what taught it.
-    rms: f64,
+    pub(crate) rms: f64,
 }
 
 /// Numbers that are no baseline.
@@ -96,39 +71,6 @@ pub struct BaselineLengthError {
 }
 
 impl Baseline {
-    /// Learns from clean flights against a model and a drag table (its own, or the adapted one).
-    ///
-    /// # Errors
-    /// [`DiagnoseError`] where the model takes no effects, or fewer than five flights are inside the table.
-    pub fn learn(
-        model: &PerformanceModel,
-        drag_table: &lut::Table,
-        flights: &[FlightRecord<'_>],
-    ) -> Result<Self, DiagnoseError> {
-        let references = crate::references_of(model, drag_table, flights)?;
-        let effect_model = EffectModel::new(model, drag_table, references)?;
-        let (data, _) = Data::prepare(
-            &effect_model,
-            flights,
-            Against::NothingYet,
-            |points, engines, starts| {
-                Library::of(&effect_model, points, engines, starts, |_| false)
-            },
-        );
-        if data.flights.len() < FEWEST_FLIGHTS {
-            let found = data.flights.len();
-            return Err(DiagnoseError::TooFewFlights { found, needed: FEWEST_FLIGHTS });
-        }
-        let mut baseline = Self::prior(&data, &references);
-        let moments = Moments::of(&baseline, &data);
-        baseline.tune(&moments);
-        for _ in 0..INFLATIONS {
-            baseline.inflate(&moments);
-        }
-        baseline.fit(&data, &moments)?;
-        Ok(baseline)
-    }
-
     /// Factors on the sensors' standard deviations.
     #[must_use]
     pub const fn noise(&self) -> &NoiseFactors {
@@ -275,58 +217,7 @@ impl Baseline {
             .map(|(_, hats)| (hats, &self.parts.local))
     }
 
-    /// The baseline before it has learnt.
-    fn prior(data: &Data<'_>, references: &EffectReferences) -> Self {
-        let values = |variable: Variable| -> Option<Vec<f64>> {
-            data.segments
-                .iter()
-                .map(|row| variable.flown(&row.response, references))
-                .map(Some)
-                .collect()
-        };
-        let hats: Vec<_> = VARIABLES
-            .into_iter()
-            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &QUANTILES)?)))
-            .collect();
-        let mut products = Vec::new();
-        for (k, a) in VARIABLES.into_iter().enumerate() {
-            for b in VARIABLES.into_iter().skip(k + 1) {
-                if let (Some(of_a), Some(of_b)) = (values(a), values(b)) {
-                    products.push((a, Scaled::of(&of_a), b, Scaled::of(&of_b)));
-                }
-            }
-        }
-        let local: Vec<(Variable, Scaled)> = LOCAL_VARIABLES
-            .into_iter()
-            .filter_map(|v| Some((v, Scaled::of(&values(v)?))))
-            .collect();
-        let parts = Parts {
-            flights: data.flights.len(),
-            segments: data.segments.len(),
-            references: *references,
-            noise: NoiseFactors::default(),
-            scales: [1.0; 2],
-            hats,
-            products,
-            local,
-            contrasts: data.channels.contrasts,
-            deck_known: data.channels.n2,
-            deck_centers: data.predictor.deck.centers,
-            deck_coefficients: data.predictor.deck.coefficients.to_vec(),
-            mean: Vec::new(),
-            factor: Vec::new(),
-            environment: vec![0.0; ENVIRONMENT.len()],
-            rms: f64::NAN,
-        };
-        let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
-        let means = baseline.remainder_terms() + baseline.parts.contrasts;
-        let width = means + DECK_TERMS + ENVIRONMENT.len();
-        baseline.parts.mean = vec![0.0; means];
-        baseline.factor = Mat::zeros(width, width);
-        baseline
-    }
-
-    fn prior_deviation(&self, index: usize) -> f64 {
+    pub(crate) fn prior_deviation(&self, index: usize) -> f64 {
         let terms = self.remainder_terms();
         let products = 1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
         if index == 0 {
@@ -349,44 +240,10 @@ impl Baseline {
         let effect = &ENVIRONMENT[carried];
         effect.deviation * self.parts.references.typical_size(effect.id)
     }
-
-    /// Raw values of every column and, last, the residual.
-    fn raw_row(
-        &self,
-        data: &Data<'_>,
-        row: &crate::data::SegmentRow,
-    ) -> Vec<[f64; MAXIMUM_CHANNELS]> {
-        let terms = self.remainder_terms();
-        let mut remainder = vec![0.0; terms];
-        self.write_remainder(&row.response, &mut remainder);
-        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; self.factor.nrows() + 1];
-        for (slot, value) in raw.iter_mut().zip(&remainder) {
-            slot[0] = *value;
-        }
-        for contrast in 1..=self.parts.contrasts {
-            if row.is_recorded[contrast] {
-                raw[terms + contrast - 1][contrast] = 1.0;
-            }
-        }
-        if data.channels.n2 {
-            let channel = data.channels.n2_row();
-            if row.is_recorded[channel] {
-                for (k, term) in row.deck.into_iter().enumerate() {
-                    raw[terms + self.parts.contrasts + k][channel] = term;
-                }
-            }
-        }
-        let environment = self.factor.nrows() - ENVIRONMENT.len();
-        raw[environment..environment + ENVIRONMENT.len()].copy_from_slice(&row.environment);
-        if let Some(last) = raw.last_mut() {
-            *last = row.residual;
-        }
-        raw
-    }
 }
 
 /// Lower triangle, row by row.
-fn lower_triangle(matrix: &Mat<f64>) -> Vec<f64> {
+pub(crate) fn lower_triangle(matrix: &Mat<f64>) -> Vec<f64> {
     (0..matrix.nrows()).flat_map(|i| (0..=i).map(move |j| matrix[(i, j)])).collect()
 }
 

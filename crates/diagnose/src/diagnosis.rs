@@ -1,133 +1,29 @@
 //! From flights to a verdict.
 
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects};
+use perf_model::effects::{EffectModel, EffectModelError};
 
-use crate::TableUncertainty;
-use crate::addition::Addition;
-use crate::analysis::{Analysis, Stacked, analyse};
-use crate::baseline::Baseline;
-use crate::classes::{Distances, leading_columns};
-use crate::closure::{Shrinkage, held_out_floor, in_sample, nested, replicate_floor};
-use crate::data::{Against, Data};
-use crate::design::{Acts, Design};
-use crate::library::Library;
-use crate::output::{
-    Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary, Verdict, VerdictKind,
+use crate::advice::distances::{Distances, leading_columns};
+use crate::hypotheses::design::{Acts, Design};
+use crate::input::{Input, Options};
+use crate::judge::closure::{Shrinkage, in_sample, nested};
+use crate::judge::gap::{
+    exceeds_uncertainty, gap_of, is_real, is_vague, noise_scale, unknown_square,
 };
-use crate::outside::compete;
-use crate::record::FlightRecord;
-use crate::slices;
-
-mod gap;
-mod posterior;
-mod verdict;
-
-use gap::{exceeds_uncertainty, gap_of, is_real, is_vague, noise_scale, unknown_square};
-use posterior::{causes, dominant};
-use verdict::{advisor, beside, closed, credit, verdict};
-
-/// Fewest flights and segments that a name is given on.
-const FEWEST_FLIGHTS: usize = 6;
-const FEWEST_SEGMENTS: usize = 30;
-/// A gap counts as real when nothing at all is less probable than this.
-pub(crate) const CLEAN_PROBABILITY: f64 = 0.05;
-/// Probability of a cause outside the library above which it is said.
-const OUTSIDE_PROBABILITY: f64 = 0.5;
-/// Half width of a 95 % interval in standard deviations.
-const NORMAL_95: f64 = 1.96;
-
-/// What is diagnosed, and against what.
-#[derive(Clone, Copy, Debug)]
-pub struct Input<'a> {
-    /// The performance model.
-    pub model: &'a PerformanceModel,
-    /// Its drag table: its own, or the adapted one.
-    pub drag_table: &'a lut::Table,
-    /// Flights in order of flying, none of which the table has learnt.
-    pub flights: &'a [FlightRecord<'a>],
-    /// What the model remembers of clean flights; `None` against a table alone.
-    pub baseline: Option<&'a Baseline>,
-    /// What the table does not know; `None` where every node counts as known.
-    pub table: Option<&'a TableUncertainty>,
-    /// Conditions that effects are zero at; else the baseline's, else the means of the data at hand.
-    pub references: Option<EffectReferences>,
-}
-
-impl<'a> Input<'a> {
-    /// Flights against a model's own table, nothing taught and every node taken as known.
-    #[must_use]
-    pub const fn against(model: &'a PerformanceModel, flights: &'a [FlightRecord<'a>]) -> Self {
-        Self {
-            model,
-            drag_table: model.drag_table(),
-            flights,
-            baseline: None,
-            table: None,
-            references: None,
-        }
-    }
-}
-
-/// What to look for.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Options {
-    /// Only these effects; empty for all.
-    pub effects: Vec<EffectId>,
-    /// Not these.
-    pub without: Vec<EffectId>,
-    /// Leave closure out: choice and fit on folds cost as much again as the search.
-    pub skip_closure: bool,
-    /// Leave out where the gap lies.
-    pub skip_where: bool,
-    /// Seed of the draws of noise and the resamples of flights behind intervals and `where`.
-    pub seed: u64,
-}
-
-/// Why there is no diagnosis.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum DiagnoseError {
-    /// The model takes no effects.
-    #[error(transparent)]
-    Model(#[from] EffectModelError),
-    /// Too few flights to learn a baseline from.
-    #[error("{found} flights inside the drag table, at least {needed} are needed")]
-    TooFewFlights {
-        /// Flights found.
-        found: usize,
-        /// Flights needed.
-        needed: usize,
-    },
-    /// A matrix that is not positive definite: columns beyond what doubles hold.
-    #[error("the linear model is degenerate")]
-    Degenerate,
-}
-
-/// References of the data at hand.
-///
-/// # Errors
-/// [`DiagnoseError::Model`] where nothing is inside the drag table.
-pub fn references_of(
-    model: &PerformanceModel,
-    drag_table: &lut::Table,
-    flights: &[FlightRecord<'_>],
-) -> Result<EffectReferences, DiagnoseError> {
-    let engines = model.aircraft().engines();
-    #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
-    let points: Vec<EffectPoint> = flights
-        .iter()
-        .flat_map(|flight| flight.segments)
-        .filter_map(|segment| {
-            // What cannot be corrected is left out of the diagnosis too, with its reason.
-            let means = model.corrected_means(&segment.means).ok()?;
-            let start_s = segment.identity.start.as_second() as f64;
-            Some(EffectPoint::of_means(&means, start_s, engines))
-        })
-        .collect();
-    Ok(EffectReferences::mean_of(model.aircraft(), drag_table, &points)?)
-}
+use crate::judge::noise_floors::{held_out_floor, replicate_floor};
+use crate::judge::posterior::{causes, dominant};
+use crate::judge::sufficiency::{insufficient, too_little};
+use crate::judge::verdict::{advisor, beside, closed, credit, verdict};
+use crate::library::Library;
+use crate::output::addition::Addition;
+use crate::output::{Detectable, Diagnosis, NotTestable, OutsideLibrary};
+use crate::place::find::find;
+use crate::residuals::reference::Against;
+use crate::residuals::segments::Data;
+use crate::search::analyse::{Analysis, analyse};
+use crate::search::outside::compete;
+use crate::search::system::Stacked;
+use crate::signals::references::{DiagnoseError, references_of};
 
 /// Diagnoses one set of flights.
 ///
@@ -183,7 +79,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     }
     let mut result = conclude(&stacked, &model, &library, options, &mut notes)?;
     // Heavy tails show only beside the best model; then everything is done again with weights.
-    if let Some(weights) = crate::robust::weights(&stacked, &result.1, &library) {
+    if let Some(weights) = crate::search::robust::weights(&stacked, &result.1, &library) {
         notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
         drop(result);
         let stacked = Stacked::of(&data, &design, Some(weights));
@@ -194,81 +90,6 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     diagnosis.left_out.clone_from(&data.left_out);
     diagnosis.notes = notes;
     Ok(diagnosis)
-}
-
-/// Why the data is too little for any name.
-fn too_little(data: &Data<'_>, library: &Library) -> Option<String> {
-    let (flights, segments) = (data.flights.len(), data.segments.len());
-    if flights < FEWEST_FLIGHTS {
-        return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS} are needed"));
-    }
-    if segments < FEWEST_SEGMENTS {
-        return Some(format!("{segments} segments, at least {FEWEST_SEGMENTS} are needed"));
-    }
-    if library.effects.is_empty() {
-        return Some("no effect of the library can be tested".to_owned());
-    }
-    let spread = |of: &dyn Fn(&EffectPoint) -> f64| {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for row in &data.segments {
-            low = low.min(of(&row.point));
-            high = high.max(of(&row.point));
-        }
-        high - low
-    };
-    let conditions = [
-        spread(&|p| p.mach) > 1e-3,
-        spread(&|p| p.pressure_altitude_m) > 30.0,
-        spread(&|p| p.mass_kg / p.mass_kg.max(1.0)) > 0.0 || spread(&|p| p.mass_kg) > 1.0,
-        spread(&|p| p.static_air_temperature_k) > 0.1,
-    ];
-    if conditions.iter().filter(|varied| **varied).count() < 2 {
-        return Some("all segments were flown at the same conditions".to_owned());
-    }
-    let first = data.segments[0].residual[0];
-    if data.segments.iter().all(|row| (row.residual[0] - first).abs() < 1e-12) {
-        return Some(
-            "the residuals of all segments are equal: fuel flow was computed, not measured"
-                .to_owned(),
-        );
-    }
-    None
-}
-
-fn insufficient(flights: usize, segments: usize, reason: &str) -> Diagnosis {
-    Diagnosis {
-        tail: String::new(),
-        flights,
-        segments,
-        gap: Gap {
-            mean_percent: 0.0,
-            rms_percent: 0.0,
-            rms_ci95: [0.0; 2],
-            noise_floor_rms_percent: 0.0,
-            floor_by_replicates_rms_percent: None,
-            floor_by_held_out_fit_rms_percent: None,
-            detected: false,
-            p_value: 1.0,
-        },
-        r#where: vec![],
-        causes: vec![],
-        not_testable: vec![],
-        verdict: Verdict {
-            kind: VerdictKind::InsufficientData,
-            effects: vec![],
-            class: vec![],
-            probability: 0.0,
-            closure: None,
-            closure_ci95: None,
-            advice: format!("Too little data: {reason}."),
-            separations: vec![],
-        },
-        addition: None,
-        detectable: vec![],
-        outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None },
-        left_out: std::collections::BTreeMap::new(),
-        notes: vec![],
-    }
 }
 
 fn conclude(
@@ -306,7 +127,7 @@ fn conclude(
     let places = if options.skip_where {
         vec![]
     } else {
-        slices::find(stacked, &analysis, scale, gap.detected, options.seed)
+        find(stacked, &analysis, scale, gap.detected, options.seed)
     };
     let found_outside = outside.probability;
     let top = posteriors.first();
@@ -377,17 +198,5 @@ const fn acts_words(acts: Acts) -> &'static str {
         Acts::FuelFlow => "fuel flow",
         Acts::Thrust => "thrust",
         Acts::Split => "one engine",
-    }
-}
-
-impl Diagnosis {
-    /// The verdict's effects as they are switched on in a model, hidden parameters included; empty where the verdict names
-    /// none.
-    #[must_use]
-    pub fn effects(&self) -> Effects {
-        self.addition
-            .as_ref()
-            .and_then(|addition| addition.layer().ok())
-            .map_or_else(Effects::none, |layer| layer.effects)
     }
 }

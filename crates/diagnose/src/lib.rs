@@ -45,44 +45,40 @@
 #[cfg(test)]
 extern crate self as diagnose; // the fleet of the tests names the crate
 
-mod addition;
-mod advice;
-mod analysis;
-mod backgrounds;
-mod baseline;
-mod classes;
-mod closure;
-mod conditions;
-mod data;
-mod deck;
-mod design;
-mod diagnosis;
-mod elementary;
-mod evidence;
-mod gram;
-mod library;
-mod linear;
-mod noise;
-mod output;
-mod outside;
-mod pairs;
-mod record;
-mod refine;
-mod robust;
-mod slices;
-pub mod trial;
-mod uncertainty;
-mod variables;
+// Floors, from the ground up: a module imports from its own floor or a lower one (`tests/floors.rs`).
+mod math;
+mod signals;
 
-pub use addition::{AddedEffect, Addition, UnknownEffect};
+mod baseline;
+mod library;
+
+mod input;
+mod output;
+
+mod learning;
+mod residuals;
+
+mod hypotheses;
+mod search;
+
+mod advice;
+mod place;
+
+mod diagnosis;
+mod judge;
+pub mod trial;
+
 pub use baseline::{Baseline, BaselineLengthError};
-pub use diagnosis::{DiagnoseError, Input, Options, diagnose, references_of};
-pub use noise::NoiseFactors;
+pub use diagnosis::diagnose;
+pub use input::{Input, Options};
+pub use output::addition::{AddedEffect, Addition, UnknownEffect};
 pub use output::{
     Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Separation, Slice,
     Verdict, VerdictKind,
 };
-pub use record::{FlightRecord, GaugeBurn};
-pub use slices::members::{SliceError, slice_members};
-pub use uncertainty::{TableUncertainty, TableUncertaintyError};
-pub use variables::Variable;
+pub use place::members::{SliceError, slice_members};
+pub use signals::noise::NoiseFactors;
+pub use signals::record::{FlightRecord, GaugeBurn};
+pub use signals::references::{DiagnoseError, references_of};
+pub use signals::table_uncertainty::{TableUncertainty, TableUncertaintyError};
+pub use signals::variables::Variable;

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use perf_model::effects::Effects;
 use serde::{Deserialize, Serialize};
 
-use crate::Addition;
+use crate::output::addition::Addition;
+
+pub(crate) mod addition;
 
 /// One tail's diagnosis. Field names and meanings are the format's; what it does not name is beside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -203,4 +206,30 @@ pub struct OutsideLibrary {
     pub variable: Option<String>,
     /// Whether it acts on thrust (drag, weight), fuel flow or one engine.
     pub acts_on: Option<String>,
+}
+
+impl Diagnosis {
+    /// The verdict's effects as they are switched on in a model, hidden parameters included; empty where the verdict names
+    /// none.
+    #[must_use]
+    pub fn effects(&self) -> Effects {
+        self.addition
+            .as_ref()
+            .and_then(|addition| addition.layer().ok())
+            .map_or_else(Effects::none, |layer| layer.effects)
+    }
+}
+
+impl Separation {
+    /// The distances in words: "3.1 to 5.2 standard deviations from `wave_drag`; six ordinary flights 3.3".
+    #[must_use]
+    pub fn distances_told(&self) -> String {
+        let ordinary = self
+            .distance_ordinary_flights
+            .map_or_else(String::new, |distance| format!("; six ordinary flights {distance:.1}"));
+        format!(
+            "{:.1} to {:.1} standard deviations from {}{ordinary}",
+            self.distance_now, self.distance_then, self.from
+        )
+    }
 }

@@ -125,8 +125,8 @@ mod tests {
     fn drivers_are_names_of_bounds() {
         for id in EffectId::library(2) {
             for name in driving_variables(id) {
-                let known =
-                    *name == "engine" || crate::slices::place::variable_named(name).is_some();
+                let known = *name == "engine"
+                    || crate::place::binned_variable::variable_named(name).is_some();
                 assert!(known, "{id}: {name}");
             }
         }

@@ -1,0 +1,90 @@
+//! What would tell confused effects apart: measurements and flights on purpose, in one list by the distance they put.
+
+use perf_model::effects::EffectModel;
+
+use crate::advice::distances::{CONFUSED, Distances};
+use crate::advice::flights::Conditions;
+use crate::library::Library;
+use crate::output::Separation;
+use crate::search::system::Stacked;
+
+/// Everything that advice is made of.
+pub(crate) struct Advisor<'a> {
+    distances: &'a Distances,
+    library: &'a Library,
+    conditions: Option<Conditions>,
+}
+
+impl<'a> Advisor<'a> {
+    /// For the columns of a verdict, the effects that may be in its class, and those confused at typical sizes. Flights are
+    /// only looked at for these.
+    pub(crate) fn of(
+        stacked: &Stacked<'_>,
+        model: &EffectModel<'_>,
+        library: &'a Library,
+        distances: &'a Distances,
+        classes: &[Vec<usize>],
+        found: &[usize],
+        likely: &[usize],
+    ) -> Self {
+        let confused = classes.iter().filter(|class| class.len() > 1).flatten();
+        let columns = confused
+            .chain(likely)
+            .flat_map(|&effect| library.effects[effect].all_columns())
+            .chain(found.iter().copied())
+            .collect();
+        let conditions = Conditions::of(stacked, model, library, distances, columns);
+        Self { distances, library, conditions }
+    }
+
+    /// What would tell a column at a size from another effect, whatever the other's hidden parameter; the best first.
+    pub(crate) fn between(&self, column: usize, size: f64, other: usize) -> Vec<Separation> {
+        let from = self.library.effects[other].id.to_string();
+        let others = self.library.effects[other].all_columns();
+        let mut all: Vec<Separation> = self
+            .distances
+            .measurements(self.library, column, others.clone(), size)
+            .into_iter()
+            .map(|found| Separation {
+                from: from.clone(),
+                measurement: found.words.to_owned(),
+                distance_now: found.before,
+                distance_then: found.after,
+                distance_ordinary_flights: None,
+            })
+            .collect();
+        let flights =
+            self.conditions.iter().flat_map(|at| at.advised(column, others.clone(), size));
+        all.extend(flights.map(|found| Separation {
+            from: from.clone(),
+            measurement: found.words,
+            distance_now: found.before,
+            distance_then: found.after,
+            distance_ordinary_flights: Some(found.ordinary),
+        }));
+        best_first(&mut all);
+        all
+    }
+
+    /// What would tell an effect of typical size from the nearest other one of its class, the best first; nothing where
+    /// that one is far enough already, seen from this side.
+    pub(crate) fn beforehand(&self, effect: usize, class: &[usize]) -> Vec<Separation> {
+        let column = self.distances.leading(effect);
+        let size = self.library.effects[effect].typical;
+        let nearest = class
+            .iter()
+            .filter(|&&other| other != effect)
+            .map(|&other| {
+                let columns = self.library.effects[other].all_columns();
+                (self.distances.squared_from_any(column, columns, size), other)
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|(squared, _)| *squared < CONFUSED);
+        nearest.map_or_else(Vec::new, |(_, other)| self.between(column, size, other))
+    }
+}
+
+/// By the distance that is reached.
+pub(crate) fn best_first(separations: &mut [Separation]) {
+    separations.sort_by(|a, b| b.distance_then.total_cmp(&a.distance_then));
+}

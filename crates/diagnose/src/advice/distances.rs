@@ -1,0 +1,164 @@
+//! What this data can tell apart, before any residual is looked at.
+
+use faer::Mat;
+
+use crate::hypotheses::backgrounds::TAUS;
+use crate::hypotheses::design::Design;
+use crate::hypotheses::evidence::Scored;
+use crate::library::Library;
+use crate::math::eliminate::integrate_out;
+use crate::math::gram::Gram;
+
+/// Squared distance, in noise standard deviations, below which two effects cannot be told apart.
+pub(crate) const CONFUSED: f64 = 9.0;
+/// Factor on 1/√G of the smallest size that would just be seen.
+const DETECTION: f64 = 4.0;
+/// Factor on the deck's uncertainty when an N2 deck is measured: from 2 % to 0.1 %.
+const DECK_MEASURED: f64 = 0.05;
+
+/// Distances between effects in the data at hand, nuisance integrated out.
+#[derive(Clone, Debug)]
+pub(crate) struct Distances {
+    /// Gram over columns, without residual.
+    pub(crate) gram: Mat<f64>,
+    /// The same if an N2 deck were known.
+    pub(crate) with_deck: Mat<f64>,
+    /// Of each effect the column that stands for it: the best supported value of its hidden parameter.
+    pub(crate) leading: Vec<usize>,
+}
+
+impl Distances {
+    /// `leading` has one column an effect; see [`leading_columns`].
+    pub(crate) fn of(gram: &Gram, design: &Design<'_>, leading: Vec<usize>) -> Option<Self> {
+        let kept: Vec<usize> = (0..design.effects).collect();
+        let out: Vec<usize> = design.nuisance.clone().collect();
+        let plain = integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])?;
+        let deck = integrate_out(&gram.matrix, &kept, &out, &vec![DECK_MEASURED; out.len()])?;
+        const { assert!(TAUS[0] == 0.0) };
+        Some(Self { gram: plain.matrix, with_deck: deck.matrix, leading })
+    }
+
+    /// The column that stands for an effect.
+    pub(crate) fn leading(&self, effect: usize) -> usize {
+        self.leading[effect]
+    }
+
+    /// Gram of some columns, nuisance integrated out.
+    pub(crate) fn gram_of(&self, columns: &[usize]) -> Mat<f64> {
+        Mat::from_fn(columns.len(), columns.len(), |i, j| self.gram[(columns[i], columns[j])])
+    }
+
+    /// Information on a column: 1/√ is the standard deviation of its size.
+    pub(crate) fn information(&self, column: usize) -> f64 {
+        self.gram[(column, column)].max(0.0)
+    }
+
+    /// The size of an effect that would just be detected, in its unit; infinite where the data say nothing.
+    pub(crate) fn smallest_detectable(&self, effect: usize) -> f64 {
+        DETECTION / self.information(self.leading[effect]).sqrt()
+    }
+
+    /// Squared distance of column `k` at a size from the best-fitting multiple of column `l`, and that multiple.
+    ///
+    /// ```text
+    /// d²(k|l) = θ²·(G_kk − G_kl²/G_ll)                                    [diagnosis.22]
+    /// ```
+    pub(crate) fn squared(&self, k: usize, l: usize, size: f64) -> (f64, f64) {
+        squared(&self.gram, k, l, size)
+    }
+
+    /// Squared distance of a column at a size from the nearest of several: those of an effect with a hidden parameter.
+    pub(crate) fn squared_from_any(
+        &self,
+        k: usize,
+        others: core::ops::Range<usize>,
+        size: f64,
+    ) -> f64 {
+        squared_from_any(&self.gram, k, others, size)
+    }
+
+    /// Squared distance of a column at a size from the best-fitting pair of two others.
+    fn squared_from_pair(&self, k: usize, pair: [usize; 2], size: f64) -> f64 {
+        let g = &self.gram;
+        let [a, b] = pair;
+        let determinant = g[(a, a)] * g[(b, b)] - g[(a, b)] * g[(a, b)];
+        if determinant <= 1e-9 * g[(a, a)] * g[(b, b)] {
+            return self.squared(k, a, size).0.min(self.squared(k, b, size).0);
+        }
+        let (ka, kb) = (g[(k, a)], g[(k, b)]);
+        let explained =
+            (ka * ka * g[(b, b)] - 2.0 * ka * kb * g[(a, b)] + kb * kb * g[(a, a)]) / determinant;
+        (size * size * (g[(k, k)] - explained)).max(0.0)
+    }
+
+    /// Distance of an effect at its typical size from the nearest other one, in noise standard deviations.
+    pub(crate) fn nearest_other(&self, library: &Library, effect: usize) -> f64 {
+        let own = &library.effects[effect];
+        let leading = self.leading[effect];
+        (0..library.columns.len())
+            .filter(|&column| library.columns[column].effect != effect)
+            .map(|column| self.squared(leading, column, own.typical).0.sqrt())
+            .fold(own.typical * self.information(leading).sqrt(), f64::min)
+    }
+
+    /// Distance of an effect at its typical size from the nearest pair of others, in noise standard deviations: what is
+    /// nearer than about 5 cannot be found missing from the library, because two others imitate it.
+    pub(crate) fn nearest_pair(&self, library: &Library, effect: usize) -> f64 {
+        let own = &library.effects[effect];
+        let others: Vec<usize> = (0..library.columns.len())
+            .filter(|&column| library.columns[column].effect != effect)
+            .collect();
+        let leading = self.leading[effect];
+        let mut nearest = own.typical * self.information(leading).sqrt();
+        for (place, &a) in others.iter().enumerate() {
+            for &b in &others[place + 1..] {
+                if library.columns[a].effect != library.columns[b].effect {
+                    let squared = self.squared_from_pair(leading, [a, b], own.typical);
+                    nearest = nearest.min(squared.sqrt());
+                }
+            }
+        }
+        nearest
+    }
+}
+
+/// Of each effect the column of the most probable model that it makes alone. Where an effect has a hidden parameter
+/// (Mdd, pivot, date), its distance from others is that at the value which the data support, not at an arbitrary one.
+pub(crate) fn leading_columns(library: &Library, models: &[(Scored, f64)]) -> Vec<usize> {
+    let mut leading: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
+    let mut found = vec![false; leading.len()];
+    // Most probable first.
+    for (scored, _) in models {
+        if let ([column], None) = (&scored.model.columns[..], scored.model.heating_percent) {
+            let effect = library.columns[*column].effect;
+            if !core::mem::replace(&mut found[effect], true) {
+                leading[effect] = *column;
+            }
+        }
+    }
+    leading
+}
+
+/// The smallest of [`squared`] over several columns.
+pub(crate) fn squared_from_any(
+    g: &Mat<f64>,
+    k: usize,
+    others: impl IntoIterator<Item = usize>,
+    size: f64,
+) -> f64 {
+    others.into_iter().map(|l| squared(g, k, l, size).0).fold(f64::INFINITY, f64::min)
+}
+
+/// Whether a distance is worth an effort: a tenth more than another one, and a tenth of a standard deviation.
+pub(crate) fn gains(before: f64, after: f64) -> bool {
+    after > 1.1 * before + 0.1
+}
+
+/// [`Distances::squared`] in any Gram.
+pub(crate) fn squared(g: &Mat<f64>, k: usize, l: usize, size: f64) -> (f64, f64) {
+    if g[(l, l)] <= 0.0 {
+        return (size * size * g[(k, k)], 0.0);
+    }
+    let slope = g[(k, l)] / g[(l, l)];
+    ((size * size * (g[(k, k)] - slope * g[(k, l)])).max(0.0), size * slope)
+}

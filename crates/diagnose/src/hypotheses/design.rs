@@ -1,0 +1,488 @@
+//! The whitened linear model of a flight: which columns there are, and their rows.
+
+use faer::Mat;
+use perf_model::effects::EffectReferences;
+
+use crate::baseline::Baseline;
+use crate::residuals::rows::{FlightRows, SegmentRow};
+use crate::residuals::segments::Data;
+use crate::residuals::whiten::{half_whitened, whiten_flight};
+use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
+use crate::signals::n2_deck::DECK_TERMS;
+use crate::signals::table_uncertainty::TableUncertainty;
+use crate::signals::variables::{Hats, Scaled, Variable};
+
+/// Prior standard deviation of a deck coefficient about its least-squares value where no deck was taught.
+const DECK_DEVIATION: f64 = 0.02;
+/// Split of the fuel flow between engines that an agnostic level is scaled to, against 1 for fuel flow.
+const SPLIT_SCALE: f64 = 2.0;
+/// Quantiles at which the smooth background has its knots.
+const SMOOTH_QUANTILES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+/// Quantiles at which agnostic functions have theirs.
+const AGNOSTIC_QUANTILES: [f64; 7] = [0.0, 0.17, 0.33, 0.5, 0.67, 0.83, 1.0];
+/// Amplitude of a product of two scaled variables in the smooth background.
+const PRODUCT_SCALE: f64 = 0.5;
+const SMOOTH_VARIABLES: [Variable; 15] = [
+    Variable::Mach,
+    Variable::LiftCoefficient,
+    Variable::PressureAltitude,
+    Variable::CorrectedThrust,
+    Variable::IsaDeviation,
+    Variable::StaticAirTemperature,
+    Variable::Date,
+    Variable::FuelUsed,
+    Variable::Roll,
+    Variable::Acceleration,
+    Variable::CrossWind,
+    Variable::Latitude,
+    Variable::EastwardSpeed,
+    Variable::CenterOfGravity,
+    Variable::Mass,
+];
+const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
+    (Variable::Mach, Variable::LiftCoefficient),
+    (Variable::Mach, Variable::PressureAltitude),
+    (Variable::LiftCoefficient, Variable::PressureAltitude),
+    (Variable::Mach, Variable::IsaDeviation),
+    (Variable::PressureAltitude, Variable::IsaDeviation),
+    (Variable::CorrectedThrust, Variable::Mach),
+    (Variable::CrossWind, Variable::Latitude),
+    (Variable::EastwardSpeed, Variable::Latitude),
+    (Variable::CenterOfGravity, Variable::LiftCoefficient),
+    (Variable::Mach, Variable::Date),
+];
+/// Without acceleration: its own error is in the residual, which hangs on it in every recording.
+const AGNOSTIC_VARIABLES: [Variable; 18] = [
+    Variable::Mach,
+    Variable::LiftCoefficient,
+    Variable::PressureAltitude,
+    Variable::CorrectedThrust,
+    Variable::IsaDeviation,
+    Variable::StaticAirTemperature,
+    Variable::FuelUsed,
+    Variable::Mass,
+    Variable::Date,
+    Variable::Roll,
+    Variable::CrossWind,
+    Variable::Latitude,
+    Variable::EastwardSpeed,
+    Variable::CenterOfGravity,
+    Variable::LatitudeCrossWind,
+    Variable::CenterOfGravityLift,
+    Variable::MachLift,
+    Variable::MachExcess,
+];
+
+/// How a smooth function acts: on fuel flow alone, or on thrust, so that N2 sees it too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Acts {
+    FuelFlow,
+    Thrust,
+    Split,
+}
+
+/// An agnostic function of one variable.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    pub(crate) variable: Variable,
+    pub(crate) acts: Acts,
+    pub(crate) columns: core::ops::Range<usize>,
+    hats: Option<Hats>,
+}
+
+/// Which column is what: effects, nuisance, smooth background, agnostic functions, residual last.
+#[derive(Clone, Debug)]
+pub(crate) struct Design<'a> {
+    pub(crate) effects: usize,
+    pub(crate) nuisance: core::ops::Range<usize>,
+    pub(crate) smooth: core::ops::Range<usize>,
+    pub(crate) blocks: Vec<Block>,
+    pub(crate) columns: usize,
+    references: EffectReferences,
+    smooth_hats: Vec<(Variable, Hats)>,
+    smooth_products: Vec<(Variable, Scaled, Variable, Scaled)>,
+    nuisance_parts: Nuisance<'a>,
+}
+
+/// What is uncertain about the model, as columns of unit prior variance.
+#[derive(Clone, Debug)]
+struct Nuisance<'a> {
+    baseline: Option<&'a Baseline>,
+    deck: bool,
+    chords: bool,
+    /// Share of the recorded accelerations' mean square that their error has.
+    acceleration: f64,
+    table: Option<&'a TableUncertainty>,
+}
+
+impl<'a> Design<'a> {
+    pub(crate) fn of(
+        data: &Data<'_>,
+        references: &EffectReferences,
+        baseline: Option<&'a Baseline>,
+        table: Option<&'a TableUncertainty>,
+    ) -> Self {
+        let values = |variable: Variable| -> Option<Vec<f64>> {
+            data.segments
+                .iter()
+                .map(|row| variable.value(&row.point, &row.response, references))
+                .collect()
+        };
+        let effects = data.columns();
+        let acceleration = share_of_error(data);
+        let parts =
+            Nuisance { baseline, deck: data.channels.n2, chords: true, acceleration, table };
+        let nuisance = effects..effects + parts.columns();
+
+        let smooth_hats: Vec<(Variable, Hats)> = SMOOTH_VARIABLES
+            .into_iter()
+            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &SMOOTH_QUANTILES)?)))
+            .collect();
+        let smooth_products: Vec<_> = SMOOTH_PRODUCTS
+            .into_iter()
+            .filter_map(|(a, b)| Some((a, Scaled::of(&values(a)?), b, Scaled::of(&values(b)?))))
+            .collect();
+        let once = 1
+            + smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
+            + smooth_products.len();
+        let kinds = if data.channels.n2 { 2 } else { 1 };
+        let smooth = nuisance.end..nuisance.end + kinds * once;
+
+        let mut blocks = Vec::new();
+        let mut at = smooth.end;
+        for variable in AGNOSTIC_VARIABLES {
+            let Some(hats) =
+                values(variable).and_then(|v| Hats::at_quantiles(&v, &AGNOSTIC_QUANTILES))
+            else {
+                continue;
+            };
+            for acts in [Acts::FuelFlow, Acts::Thrust] {
+                if acts == Acts::Thrust && !data.channels.n2 {
+                    continue;
+                }
+                let columns = at..at + hats.len();
+                at = columns.end;
+                blocks.push(Block { variable, acts, columns, hats: Some(hats.clone()) });
+            }
+        }
+        if data.channels.contrasts > 0 {
+            let columns = at..at + data.channels.contrasts;
+            at = columns.end;
+            blocks.push(Block {
+                variable: Variable::Engine,
+                acts: Acts::Split,
+                columns,
+                hats: None,
+            });
+        }
+        Self {
+            effects,
+            nuisance,
+            smooth,
+            blocks,
+            columns: at + 1,
+            references: *references,
+            smooth_hats,
+            smooth_products,
+            nuisance_parts: parts,
+        }
+    }
+
+    pub(crate) const fn residual(&self) -> usize {
+        self.columns - 1
+    }
+
+    /// The same nuisance beside fewer columns of effects, without smooth background and agnostic functions.
+    pub(crate) fn of_nuisance(&self, effects: usize) -> Self {
+        let nuisance = effects..effects + self.nuisance.len();
+        Self {
+            effects,
+            smooth: nuisance.end..nuisance.end,
+            blocks: vec![],
+            columns: nuisance.end + 1,
+            smooth_hats: vec![],
+            smooth_products: vec![],
+            nuisance,
+            references: self.references,
+            nuisance_parts: self.nuisance_parts.clone(),
+        }
+    }
+
+    /// All columns of a flight's fuel flow as they are, not whitened: one row a segment.
+    pub(crate) fn fuel_flow(&self, data: &Data<'_>, flight: &FlightRows) -> Mat<f64> {
+        let channels = data.channels.count();
+        let mut matrix = Mat::<f64>::zeros(channels, self.columns);
+        let mut rows = Mat::<f64>::zeros(flight.segments.len(), self.columns);
+        let mut scratch = vec![0.0; self.columns];
+        for (index, row) in data.segments[flight.segments.clone()].iter().enumerate() {
+            let mut plain = row.clone();
+            plain.noise.factor = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+            for channel in 0..MAXIMUM_CHANNELS {
+                plain.noise.factor[channel][channel] = 1.0;
+            }
+            self.write_segment(data, &plain, 0, &mut matrix, &mut scratch);
+            for column in 0..self.columns {
+                rows[(index, column)] = matrix[(0, column)];
+            }
+        }
+        self.scale_nuisance(&mut rows);
+        rows
+    }
+
+    /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
+    pub(crate) fn whitened(
+        &self,
+        data: &Data<'_>,
+        flight: &FlightRows,
+        weights: Option<&[f64]>,
+    ) -> Mat<f64> {
+        let channels = data.channels.count();
+        let segments = &data.segments[flight.segments.clone()];
+        let rows = segments.len() * channels + usize::from(flight.gauge.is_some());
+        let mut matrix = Mat::<f64>::zeros(rows, self.columns);
+        let mut scratch = vec![0.0; self.columns];
+        for (index, row) in segments.iter().enumerate() {
+            self.write_segment(data, row, index * channels, &mut matrix, &mut scratch);
+        }
+        if let Some(gauge) = &flight.gauge {
+            for (column, signature) in gauge.signatures.iter().enumerate() {
+                matrix[(rows - 1, column)] = signature / gauge.deviation;
+            }
+            matrix[(rows - 1, self.columns - 1)] = gauge.residual / gauge.deviation;
+        }
+        self.scale_nuisance(&mut matrix);
+        whiten_flight(data, segments, &mut matrix);
+        if let Some(weights) = weights {
+            for (index, weight) in weights[flight.segments.clone()].iter().enumerate() {
+                for row in index * channels..(index + 1) * channels {
+                    for column in 0..self.columns {
+                        matrix[(row, column)] *= weight;
+                    }
+                }
+            }
+        }
+        matrix
+    }
+
+    #[expect(clippy::too_many_lines, reason = "one block for each kind of column, in their order")]
+    fn write_segment(
+        &self,
+        data: &Data<'_>,
+        row: &SegmentRow,
+        first: usize,
+        matrix: &mut Mat<f64>,
+        scratch: &mut [f64],
+    ) {
+        let channels = data.channels.count();
+        let put = |matrix: &mut Mat<f64>, column: usize, values: &ByChannel| {
+            let white = half_whitened(row, values, channels);
+            for channel in 0..channels {
+                matrix[(first + channel, column)] = white[channel];
+            }
+        };
+        for (column, signature) in row.signatures.iter().enumerate() {
+            put(matrix, column, signature);
+        }
+        let mut on_fuel = [0.0; MAXIMUM_CHANNELS];
+        on_fuel[0] = 1.0;
+        let mut on_thrust = on_fuel;
+        on_thrust[0] = row.drag_over_thrust;
+        if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
+            on_thrust[data.channels.n2_row()] = row.n2_slope * row.drag_over_thrust;
+        }
+        let fuel = half_whitened(row, &on_fuel, channels);
+        let thrust = half_whitened(row, &on_thrust, channels);
+        let scaled = |matrix: &mut Mat<f64>, column: usize, unit: &ByChannel, by: f64| {
+            for channel in 0..channels {
+                matrix[(first + channel, column)] = unit[channel] * by;
+            }
+        };
+
+        let mut at = self.nuisance.start;
+        let parts = &self.nuisance_parts;
+        if let Some(baseline) = parts.baseline {
+            let terms = &mut scratch[..baseline.remainder_terms()];
+            baseline.write_remainder(&row.response, terms);
+            for value in &*terms {
+                scaled(matrix, at, &fuel, *value);
+                at += 1;
+            }
+            for contrast in 1..=baseline.contrasts() {
+                let mut values = [0.0; MAXIMUM_CHANNELS];
+                if contrast <= data.channels.contrasts && row.is_recorded[contrast] {
+                    values[contrast] = 1.0;
+                }
+                put(matrix, at, &values);
+                at += 1;
+            }
+        }
+        let deck_columns = if parts.baseline.is_some() || parts.deck { DECK_TERMS } else { 0 };
+        if deck_columns > 0 {
+            for term in row.deck {
+                let mut values = [0.0; MAXIMUM_CHANNELS];
+                if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
+                    values[data.channels.n2_row()] = term;
+                }
+                put(matrix, at, &values);
+                at += 1;
+            }
+        }
+        if parts.baseline.is_some() {
+            for slope in &row.environment {
+                put(matrix, at, slope);
+                at += 1;
+            }
+        }
+        if parts.chords {
+            for chord in row.chords {
+                scaled(matrix, at, &thrust, chord);
+                at += 1;
+            }
+        }
+        put(matrix, at, &row.noise.acceleration.map(|value| value * parts.acceleration));
+        at += 1;
+        if let Some(table) = parts.table {
+            let loadings = &mut scratch[..table.rank()];
+            table.write(&row.response, loadings);
+            for loading in &*loadings {
+                scaled(matrix, at, &thrust, *loading);
+                at += 1;
+            }
+        }
+        debug_assert_eq!(at, self.nuisance.end);
+        put(matrix, self.columns - 1, &row.residual);
+
+        let once = self.smooth.len() / if data.channels.n2 { 2 } else { 1 };
+        if once > 0 {
+            self.write_smooth(row, &mut scratch[..once]);
+        }
+        for (k, value) in scratch[..once].iter().enumerate() {
+            scaled(matrix, self.smooth.start + k, &fuel, *value);
+            if data.channels.n2 {
+                scaled(matrix, self.smooth.start + once + k, &thrust, *value);
+            }
+        }
+        for block in &self.blocks {
+            match (&block.hats, block.acts) {
+                (Some(hats), acts) => {
+                    let value = block
+                        .variable
+                        .value(&row.point, &row.response, &self.references)
+                        .unwrap_or(0.0);
+                    hats.write(value, &mut scratch[..hats.len()]);
+                    let unit = if acts == Acts::Thrust { &thrust } else { &fuel };
+                    for (k, value) in scratch[..hats.len()].iter().enumerate() {
+                        scaled(matrix, block.columns.start + k, unit, *value);
+                    }
+                }
+                (None, _) => {
+                    for (k, column) in block.columns.clone().enumerate() {
+                        let mut values = [0.0; MAXIMUM_CHANNELS];
+                        if row.is_recorded[1 + k] {
+                            values[1 + k] = SPLIT_SCALE;
+                        }
+                        put(matrix, column, &values);
+                    }
+                }
+            }
+        }
+    }
+
+    /// What a baseline was taught, where there is one.
+    pub(crate) const fn baseline(&self) -> Option<&Baseline> {
+        self.nuisance_parts.baseline
+    }
+
+    /// What the table does not know, where that is given.
+    pub(crate) const fn table(&self) -> Option<&TableUncertainty> {
+        self.nuisance_parts.table
+    }
+
+    pub(crate) const fn references(&self) -> &EffectReferences {
+        &self.references
+    }
+
+    /// Terms of the smooth background, of one kind.
+    pub(crate) fn smooth_terms(&self) -> usize {
+        1 + self.smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
+            + self.smooth_products.len()
+    }
+
+    pub(crate) fn write_smooth(&self, row: &SegmentRow, into: &mut [f64]) {
+        let value = |variable: Variable| {
+            variable.value(&row.point, &row.response, &self.references).unwrap_or(0.0)
+        };
+        into[0] = 1.0;
+        let mut at = 1;
+        for (variable, hats) in &self.smooth_hats {
+            hats.write(value(*variable), &mut into[at..at + hats.len()]);
+            at += hats.len();
+        }
+        for (a, scaled_a, b, scaled_b) in &self.smooth_products {
+            into[at] = PRODUCT_SCALE * scaled_a.at(value(*a)) * scaled_b.at(value(*b));
+            at += 1;
+        }
+    }
+
+    /// Turns the raw nuisance columns into columns of unit prior variance.
+    fn scale_nuisance(&self, matrix: &mut Mat<f64>) {
+        let parts = &self.nuisance_parts;
+        if let Some(baseline) = parts.baseline {
+            let factor = baseline.factor();
+            let width = factor.nrows();
+            let range = self.nuisance.start..self.nuisance.start + width;
+            let raw = matrix.subcols(range.start, width).to_owned();
+            let mut scaled = Mat::<f64>::zeros(raw.nrows(), width);
+            faer::linalg::matmul::matmul(
+                scaled.as_mut(),
+                faer::Accum::Replace,
+                raw.as_ref(),
+                factor.as_ref(),
+                1.0,
+                faer::Par::Seq,
+            );
+            for column in 0..width {
+                for row in 0..raw.nrows() {
+                    matrix[(row, range.start + column)] = scaled[(row, column)];
+                }
+            }
+        } else if parts.deck {
+            for column in self.nuisance.start..self.nuisance.start + DECK_TERMS {
+                for row in 0..matrix.nrows() {
+                    matrix[(row, column)] *= DECK_DEVIATION;
+                }
+            }
+        }
+    }
+}
+
+/// Share of the recorded accelerations' mean square that their error has, at most 1.
+///
+/// A recorded acceleration errs in the prediction and in every signature that leans on thrust at once, so that residuals
+/// seem to follow it:
+///
+/// ```text
+/// E[residual | V̇] = −κ·V̇·∂channel/∂V̇,  κ = Σσ²/ΣV̇²                              [diagnosis.46]
+/// ```
+///
+/// The sum of a drag factor and the opposite TSFC factor is that signature. The coefficient is nuisance, N(0, κ²).
+fn share_of_error(data: &Data<'_>) -> f64 {
+    let (mut error, mut square) = (0.0, 0.0);
+    for row in &data.segments {
+        error += row.acceleration_deviation_m_s2.powi(2);
+        square += row.point.acceleration_m_s2.powi(2);
+    }
+    if square > error { error / square } else { 1.0 }
+}
+
+impl Nuisance<'_> {
+    fn columns(&self) -> usize {
+        let taught = self.baseline.map_or(0, |baseline| baseline.factor().nrows());
+        let deck = if self.baseline.is_none() && self.deck { DECK_TERMS } else { 0 };
+        taught
+            + deck
+            + if self.chords { 2 } else { 0 }
+            + 1
+            + self.table.map_or(0, TableUncertainty::rank)
+    }
+}

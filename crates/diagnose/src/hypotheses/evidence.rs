@@ -1,0 +1,307 @@
+//! The search: every single effect and every pair, scored by closed-form Gaussian evidence over backgrounds.
+//!
+//! Difficult: everything happens on small matrices from which all that no hypothesis names (nuisance, smooth discrepancy,
+//! a spike of every other effect) was integrated out before. A model is a choice of columns; an effect with a hidden
+//! parameter has several columns that share its prior mass.
+
+use statrs::function::erf::erfc;
+
+use crate::hypotheses::backgrounds::Background;
+use crate::library::Library;
+use crate::math::mixture::{Evidence, Factored, Mixture};
+
+/// Degrees of freedom of the prior of the noise scale.
+pub(crate) const NOISE_FREEDOM: f64 = 40.0;
+/// Prior probability of no effect, one, two.
+const PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25];
+/// Prior standard deviations of a free effect, of its typical size, and how probable each is.
+const PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)];
+/// Prior probability of the sign that physics expects.
+const EXPECTED_SIGN: f64 = 0.95;
+/// Sizes of flight-to-flight scatter that are tried, per cent of fuel flow.
+pub(crate) const HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4];
+
+/// What a model is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Model {
+    /// Columns, at most two.
+    pub(crate) columns: Vec<usize>,
+    /// Flight-to-flight scatter, per cent.
+    pub(crate) heating_percent: Option<f64>,
+}
+
+/// A scored model.
+#[derive(Clone, Debug)]
+pub(crate) struct Scored {
+    pub(crate) model: Model,
+    /// ln of evidence times prior, summed over backgrounds.
+    pub(crate) ln_weight: f64,
+    /// Posterior means and standard deviations of the sizes.
+    pub(crate) sizes: Vec<f64>,
+    pub(crate) deviations: Vec<f64>,
+    /// The background under which the model is most probable.
+    pub(crate) background: usize,
+}
+
+/// Prior of a column.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Prior {
+    pub(crate) mean: f64,
+    /// Standard deviations and ln probabilities.
+    pub(crate) scales: [(f64, f64); 2],
+    pub(crate) count: usize,
+    pub(crate) positive: bool,
+}
+
+/// What one column comes to in one background.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Single {
+    pub(crate) gram: f64,
+    pub(crate) product: f64,
+    pub(crate) square: f64,
+    pub(crate) ln_determinant: f64,
+}
+
+/// Everything the scoring of models needs.
+#[derive(Clone, Debug)]
+pub(crate) struct Scorer {
+    pub(crate) priors: Vec<Prior>,
+    /// Effect of each column.
+    pub(crate) effect_of: Vec<usize>,
+    pub(crate) ln_columns: Vec<f64>,
+    pub(crate) effects: usize,
+    pub(crate) rows: f64,
+}
+
+impl Scorer {
+    pub(crate) fn of(library: &Library, rows: usize) -> Self {
+        let priors = library
+            .columns
+            .iter()
+            .map(|column| {
+                let effect = &library.effects[column.effect];
+                let free =
+                    PRIOR_SCALES.map(|(scale, share)| (scale * effect.prior_deviation, share.ln()));
+                Prior {
+                    mean: effect.prior_mean,
+                    scales: if effect.known {
+                        [(effect.prior_deviation, 0.0), (effect.prior_deviation, 0.0)]
+                    } else {
+                        free
+                    },
+                    count: if effect.known { 1 } else { 2 },
+                    positive: effect.positive,
+                }
+            })
+            .collect();
+        Self {
+            priors,
+            effect_of: library.columns.iter().map(|column| column.effect).collect(),
+            ln_columns: library.effects.iter().map(|e| (e.columns as f64).ln()).collect(),
+            effects: library.effects.len() + usize::from(library.heating_value),
+            rows: rows as f64,
+        }
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        self.priors.len()
+    }
+
+    pub(crate) fn power(&self) -> f64 {
+        0.5 * (NOISE_FREEDOM + self.rows)
+    }
+
+    /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters.
+    pub(crate) fn ln_prior(&self, model: &Model) -> f64 {
+        let size = model.columns.len() + usize::from(model.heating_percent.is_some());
+        let count = self.effects as f64;
+        let choices = match size {
+            0 => 1.0,
+            1 => count,
+            _ => 0.5 * count * (count - 1.0),
+        };
+        let hidden: f64 =
+            model.columns.iter().map(|&column| self.ln_columns[self.effect_of[column]]).sum();
+        let heating = if model.heating_percent.is_some() {
+            (HEATING_SIZES_PERCENT.len() as f64).ln()
+        } else {
+            0.0
+        };
+        PRIOR_BY_SIZE[size.min(2)].ln() - f64::ln(choices) - hidden - heating
+    }
+
+    pub(crate) fn none(&self, at: &Background) -> f64 {
+        self.nothing(at.square, at.ln_determinant)
+    }
+
+    /// As [`none`](Self::none).
+    pub(crate) fn nothing(&self, square: f64, ln_determinant: f64) -> f64 {
+        -0.5 * ln_determinant - self.power() * (NOISE_FREEDOM + square).ln()
+    }
+
+    /// One effect; `shift` is the size at which the model was linearised.
+    ///
+    /// ```text
+    /// ln p = −½ ln|1 + Z'Z| − ½ ln(M/λ) − ½(ν0 + n) ln(ν0 + q + λμ² − r²/M) + ln 2P(sign)     [diagnosis.19]
+    /// M = G + λ,  r = b + λμ,  λ = 1/s²
+    /// ```
+    pub(crate) fn one(&self, at: &Background, column: usize, shift: f64) -> Evidence<1> {
+        let single = Single {
+            gram: at.gram(column, column),
+            product: at.product(column),
+            square: at.square,
+            ln_determinant: at.ln_determinant,
+        };
+        self.single(single, column, shift)
+    }
+
+    /// As [`one`](Self::one).
+    pub(crate) fn single(&self, at: Single, column: usize, shift: f64) -> Evidence<1> {
+        let prior = self.priors[column];
+        let Single { gram, product, .. } = at;
+        let mut sum = Factored::new();
+        for &(deviation, ln_share) in &prior.scales[..prior.count] {
+            let precision = 1.0 / (deviation * deviation);
+            let mean = prior.mean - shift;
+            let posterior = gram + precision;
+            let right = product + precision * mean;
+            let size = right / posterior;
+            let square = at.square + precision * mean * mean - right * size;
+            let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
+            let variance = scale / posterior;
+            let size = size + shift;
+            let factor = (precision / posterior).sqrt()
+                * sign_factor(prior.positive, size / variance.sqrt());
+            let ln = ln_share - self.power() * (NOISE_FREEDOM + square).ln();
+            sum.add(ln, factor, size, variance);
+        }
+        let mut evidence = sum.mean();
+        evidence.ln -= 0.5 * at.ln_determinant;
+        evidence
+    }
+
+    /// Two effects, `shifts` as above.
+    pub(crate) fn two(
+        &self,
+        at: &Background,
+        columns: [usize; 2],
+        shifts: [f64; 2],
+    ) -> Evidence<2> {
+        let [a, b] = columns;
+        let (prior_a, prior_b) = (self.priors[a], self.priors[b]);
+        let cross = at.gram(a, b);
+        let mut sum = Mixture::<2>::new();
+        for &(deviation_a, ln_a) in &prior_a.scales[..prior_a.count] {
+            for &(deviation_b, ln_b) in &prior_b.scales[..prior_b.count] {
+                let precision =
+                    [1.0 / (deviation_a * deviation_a), 1.0 / (deviation_b * deviation_b)];
+                let mean = [prior_a.mean - shifts[0], prior_b.mean - shifts[1]];
+                let posterior = [at.gram(a, a) + precision[0], at.gram(b, b) + precision[1]];
+                let right = [
+                    at.product(a) + precision[0] * mean[0],
+                    at.product(b) + precision[1] * mean[1],
+                ];
+                let determinant = posterior[0] * posterior[1] - cross * cross;
+                if determinant <= 0.0 {
+                    continue; // rounding: exactly confounded and hardly any prior
+                }
+                let size_a = (posterior[1] * right[0] - cross * right[1]) / determinant;
+                let size_b = (posterior[0] * right[1] - cross * right[0]) / determinant;
+                let square =
+                    at.square + precision[0] * mean[0] * mean[0] + precision[1] * mean[1] * mean[1]
+                        - right[0] * size_a
+                        - right[1] * size_b;
+                let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
+                let spread_a = (scale * posterior[1] / determinant).sqrt();
+                let spread_b = (scale * posterior[0] / determinant).sqrt();
+                let ln = -0.5 * at.ln_determinant
+                    - 0.5 * (determinant / (precision[0] * precision[1])).ln()
+                    - self.power() * (NOISE_FREEDOM + square).ln()
+                    + ln_a
+                    + ln_b
+                    + ln_sign(prior_a.positive, (size_a + shifts[0]) / spread_a)
+                    + ln_sign(prior_b.positive, (size_b + shifts[1]) / spread_b);
+                sum.add(ln, [size_a + shifts[0], size_b + shifts[1]], [spread_a, spread_b]);
+            }
+        }
+        sum.mean()
+    }
+}
+
+/// ln of [`sign_factor`].
+fn ln_sign(positive: bool, t: f64) -> f64 {
+    if positive { sign_factor(positive, t).ln() } else { 0.0 }
+}
+
+/// How much more probable the data are when the sign is the expected one: 2·(p Φ(t) + (1 − p) Φ(−t)).
+pub(crate) fn sign_factor(positive: bool, t: f64) -> f64 {
+    if !positive {
+        return 1.0;
+    }
+    if t > 8.0 {
+        return 2.0 * EXPECTED_SIGN;
+    }
+    if t < -8.0 {
+        return 2.0 * (1.0 - EXPECTED_SIGN);
+    }
+    let above = 0.5 * erfc(-t / core::f64::consts::SQRT_2);
+    2.0 * (EXPECTED_SIGN * above + (1.0 - EXPECTED_SIGN) * (1.0 - above))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_by_the_normal_table() {
+        // Φ(1.96) = 0.975 002: 2·(0.95·0.975002 + 0.05·0.024998) = 1.855 004.
+        assert!((ln_sign(true, 1.96).exp() - 1.855_004).abs() < 1e-5);
+        assert!(ln_sign(false, -5.0).abs() < 1e-300);
+    }
+
+    /// The closed form against the marginal likelihood integrated on a grid of θ and of ln of the noise scale.
+    #[test]
+    fn evidence_against_numerical_integration() {
+        let (gram, product, square, rows) = (7.0, 5.0, 12.0, 9.0);
+        let matrix = faer::Mat::from_fn(2, 2, |i, j| [[gram, product], [product, square]][i][j]);
+        let at = Background::small(&matrix, &[0], 1, 0.0);
+        let prior =
+            Prior { mean: 0.3, scales: [(0.8, 0.0), (0.8, 0.0)], count: 1, positive: false };
+        let scorer = Scorer {
+            priors: vec![prior],
+            effect_of: vec![0],
+            ln_columns: vec![0.0],
+            effects: 1,
+            rows,
+        };
+        // p(y|θ, v) ∝ v^(−n/2) exp(−|y − Xθ|²/2v), θ ~ N(μ, s² v), v ~ inverse gamma(ν0/2, ν0/2).
+        let integral = |with: bool| {
+            let mut sum = 0.0;
+            for i in 0..400 {
+                let v = (f64::from(i - 200) * 0.015).exp();
+                let weight_v = v.powf(-0.5 * NOISE_FREEDOM) * (-0.5 * NOISE_FREEDOM / v).exp();
+                if !with {
+                    sum += weight_v * v.powf(-0.5 * rows) * (-0.5 * square / v).exp() * 0.015;
+                    continue;
+                }
+                for j in 0..800 {
+                    let theta = -3.0 + f64::from(j) * 0.0075;
+                    let rest = square - 2.0 * product * theta + gram * theta * theta;
+                    let z2 = (theta - 0.3_f64).powi(2) / (0.64 * v);
+                    let density =
+                        (-0.5 * z2).exp() / (0.8 * (2.0 * core::f64::consts::PI * v).sqrt());
+                    sum += weight_v
+                        * v.powf(-0.5 * rows)
+                        * (-0.5 * rest / v).exp()
+                        * density
+                        * 0.0075
+                        * 0.015;
+                }
+            }
+            sum.ln()
+        };
+        let expected = integral(true) - integral(false);
+        let found = scorer.one(&at, 0, 0.0).ln - scorer.none(&at);
+        assert!((found - expected).abs() < 2e-3, "{found} {expected}");
+    }
+}

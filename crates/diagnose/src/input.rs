@@ -1,0 +1,56 @@
+//! What is diagnosed, against what, and what to look for.
+
+use flight::effect::EffectId;
+use perf_model::PerformanceModel;
+use perf_model::effects::EffectReferences;
+
+use crate::baseline::Baseline;
+use crate::signals::record::FlightRecord;
+use crate::signals::table_uncertainty::TableUncertainty;
+
+/// What is diagnosed, and against what.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// The performance model.
+    pub model: &'a PerformanceModel,
+    /// Its drag table: its own, or the adapted one.
+    pub drag_table: &'a lut::Table,
+    /// Flights in order of flying, none of which the table has learnt.
+    pub flights: &'a [FlightRecord<'a>],
+    /// What the model remembers of clean flights; `None` against a table alone.
+    pub baseline: Option<&'a Baseline>,
+    /// What the table does not know; `None` where every node counts as known.
+    pub table: Option<&'a TableUncertainty>,
+    /// Conditions that effects are zero at; else the baseline's, else the means of the data at hand.
+    pub references: Option<EffectReferences>,
+}
+
+impl<'a> Input<'a> {
+    /// Flights against a model's own table, nothing taught and every node taken as known.
+    #[must_use]
+    pub const fn against(model: &'a PerformanceModel, flights: &'a [FlightRecord<'a>]) -> Self {
+        Self {
+            model,
+            drag_table: model.drag_table(),
+            flights,
+            baseline: None,
+            table: None,
+            references: None,
+        }
+    }
+}
+
+/// What to look for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Only these effects; empty for all.
+    pub effects: Vec<EffectId>,
+    /// Not these.
+    pub without: Vec<EffectId>,
+    /// Leave closure out: choice and fit on folds cost as much again as the search.
+    pub skip_closure: bool,
+    /// Leave out where the gap lies.
+    pub skip_where: bool,
+    /// Seed of the draws of noise and the resamples of flights behind intervals and `where`.
+    pub seed: u64,
+}

@@ -1,0 +1,10 @@
+//! What is said in the end: whether there is a gap, how far it shrinks, which effect it is.
+
+pub(crate) mod addition;
+pub(crate) mod closure;
+pub(crate) mod gap;
+pub(crate) mod noise_floors;
+pub(crate) mod posterior;
+pub(crate) mod sufficiency;
+pub(crate) mod thresholds;
+pub(crate) mod verdict;

@@ -1,0 +1,74 @@
+//! What the verdict adds to the model.
+
+use flight::effect::EffectId;
+use perf_model::effects::{EffectReferences, ThrottleArgument};
+
+use crate::hypotheses::evidence::Scored;
+use crate::library::Library;
+use crate::output::addition::{AddedEffect, Addition};
+use crate::search::analyse::Analysis;
+
+/// A flight-to-flight scatter is known to about this share of itself.
+const SCATTER_SHARE: f64 = 0.5;
+
+impl Addition {
+    /// The effects `names` with the sizes that they have in the most probable model of exactly these; `None` where the
+    /// search has no such model.
+    pub(crate) fn of(
+        analysis: &Analysis,
+        library: &Library,
+        names: &[String],
+        references: EffectReferences,
+    ) -> Option<Self> {
+        let (scored, _) = analysis.models.iter().find(|(scored, _)| {
+            let found = named(scored, library);
+            found.len() == names.len() && names.iter().all(|name| found.contains(name))
+        })?;
+        let mut effects: Vec<AddedEffect> = scored
+            .model
+            .columns
+            .iter()
+            .enumerate()
+            .map(|(place, &column)| {
+                let id = library.effects[library.columns[column].effect].id;
+                let hidden = library.columns[column].hidden;
+                let is_step = id == EffectId::StepChange;
+                AddedEffect {
+                    effect: id.to_string(),
+                    size: scored.sizes[place],
+                    standard_deviation: scored.deviations[place],
+                    throttle_pivot: (id == EffectId::TsfcThrottle).then_some(hidden.throttle_pivot),
+                    throttle_argument: (id == EffectId::TsfcThrottle
+                        && hidden.throttle_argument != ThrottleArgument::CorrectedThrust)
+                        .then_some(hidden.throttle_argument),
+                    drag_divergence_mach: (id == EffectId::WaveDrag)
+                        .then_some(hidden.drag_divergence_mach),
+                    step_from_s: is_step.then_some(hidden.step_from_s),
+                    step_target: is_step.then_some(hidden.step_target),
+                }
+            })
+            .collect();
+        effects.extend(scored.model.heating_percent.map(|percent| AddedEffect {
+            effect: EffectId::FuelHeatingValue.to_string(),
+            size: percent,
+            standard_deviation: SCATTER_SHARE * percent,
+            throttle_pivot: None,
+            throttle_argument: None,
+            drag_divergence_mach: None,
+            step_from_s: None,
+            step_target: None,
+        }));
+        // The order of the verdict, the larger effect first.
+        effects.sort_by_key(|added| names.iter().position(|name| *name == added.effect));
+        Some(Self { effects, references })
+    }
+}
+
+fn named(scored: &Scored, library: &Library) -> Vec<String> {
+    let columns = scored.model.columns.iter();
+    let mut names: Vec<String> = columns
+        .map(|&column| library.effects[library.columns[column].effect].id.to_string())
+        .collect();
+    names.extend(scored.model.heating_percent.map(|_| EffectId::FuelHeatingValue.to_string()));
+    names
+}

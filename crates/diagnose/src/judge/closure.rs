@@ -1,0 +1,209 @@
+//! How far the gap shrinks: choice and fit on four fifths of the flights, judged on the rest.
+
+use perf_model::effects::EffectModel;
+
+use crate::judge::thresholds::{CLEAN_PROBABILITY, SMALLEST_GAP};
+use crate::library::Library;
+use crate::math::random::Source;
+use crate::search::analyse::{Analysis, analyse};
+use crate::search::folds::FOLDS;
+use crate::search::folds::fold_of;
+use crate::search::refine::{effects_of, refine};
+use crate::search::system::Stacked;
+
+/// Resamples of flights.
+const RESAMPLES: usize = 1000;
+
+/// Sums of squares of the gap, flight by flight: before, after, and expected of the noise.
+#[derive(Clone, Debug)]
+pub(crate) struct Shrinkage {
+    pub(crate) before: Vec<f64>,
+    pub(crate) after: Vec<f64>,
+    pub(crate) floor: Vec<f64>,
+    pub(crate) segments: Vec<f64>,
+    /// What is left of the gap, segment by segment.
+    pub(crate) left: Vec<f64>,
+    seed: u64,
+}
+
+impl Shrinkage {
+    fn total(values: &[f64], segments: &[f64]) -> f64 {
+        let count: f64 = segments.iter().sum();
+        values.iter().sum::<f64>() / count
+    }
+
+    pub(crate) fn before(&self) -> f64 {
+        Self::total(&self.before, &self.segments)
+    }
+
+    pub(crate) fn after(&self) -> f64 {
+        Self::total(&self.after, &self.segments)
+    }
+
+    pub(crate) fn floor(&self) -> f64 {
+        Self::total(&self.floor, &self.segments)
+    }
+
+    /// Share of the explainable gap that is closed, with a 95 % interval; `None` where the gap is too small.
+    ///
+    /// ```text
+    /// closure = (rms²_before − rms²_after)/(rms²_before − floor²)                      [diagnosis.23]
+    /// ```
+    ///
+    /// The interval is of a bootstrap over flights, with the floor as propagated; `None` too where resamples leave nothing
+    /// explainable, so that the ratio has no bound.
+    pub(crate) fn closure(&self) -> Option<(f64, [f64; 2])> {
+        let (before, after, floor) = (self.before(), self.after(), self.floor());
+        if before - floor < SMALLEST_GAP * floor {
+            return None;
+        }
+        let closure = (before - after) / (before - floor);
+        let mut source = Source::new(self.seed, 3);
+        let flights = self.before.len();
+        let mut closures: Vec<f64> = (0..RESAMPLES)
+            .map(|_| {
+                let (mut closed, mut explainable) = (0.0, 0.0);
+                for _ in 0..flights {
+                    let k = source.below(flights);
+                    closed += self.before[k] - self.after[k];
+                    explainable += self.before[k] - self.floor[k];
+                }
+                // Where as good as nothing is explainable, the ratio says nothing: it counts as unbounded.
+                if explainable > 0.0 {
+                    closed / explainable
+                } else {
+                    f64::INFINITY.copysign(closed)
+                }
+            })
+            .collect();
+        closures.sort_by(f64::total_cmp);
+        let last = RESAMPLES - 1;
+        let [low, high] = [closures[last / 40], closures[last - last / 40]];
+        (low.is_finite() && high.is_finite()).then_some((closure, [low, high]))
+    }
+}
+
+/// Before and after with a model that is given: not judged on unseen flights.
+pub(crate) fn in_sample(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    columns: &[usize],
+    sizes: &[f64],
+    noise_scale: f64,
+    seed: u64,
+) -> Shrinkage {
+    shrinkage(stacked, model, library, noise_scale, seed, |_| (columns.to_vec(), sizes.to_vec()))
+}
+
+/// Before and after on flights that neither choice nor fit has seen.
+pub(crate) fn nested(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    noise_scale: f64,
+    seed: u64,
+) -> Shrinkage {
+    let choices: Vec<(Vec<usize>, Vec<f64>)> =
+        (0..FOLDS).map(|fold| chosen(stacked, model, library, fold).unwrap_or_default()).collect();
+    shrinkage(stacked, model, library, noise_scale, seed, |fold| choices[fold].clone())
+}
+
+fn chosen(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    fold: usize,
+) -> Option<(Vec<usize>, Vec<f64>)> {
+    let Analysis { scorer, backgrounds, space, models, clean, .. } =
+        analyse(stacked, model, library, Some(fold), false)?;
+    // The verdict's own rule: where nothing at all is improbable, the best named set, be it no more probable than none.
+    let named = models.iter().map(|(scored, _)| scored).find(|s| !s.model.columns.is_empty());
+    let Some(best) = named.filter(|_| clean <= CLEAN_PROBABILITY) else {
+        return Some((vec![], vec![]));
+    };
+    let at = &backgrounds[best.background];
+    let mut found = refine(stacked, model, library, &scorer, &space, &[(best, at)], Some(fold));
+    let found = found.pop().flatten();
+    let sizes = found.map_or_else(|| best.sizes.clone(), |found| found.scored.sizes);
+    Some((best.model.columns.clone(), sizes))
+}
+
+fn shrinkage(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    noise_scale: f64,
+    seed: u64,
+    choice: impl Fn(usize) -> (Vec<usize>, Vec<f64>),
+) -> Shrinkage {
+    let data = stacked.data;
+    let mut found = Shrinkage {
+        before: vec![],
+        after: vec![],
+        floor: vec![],
+        segments: vec![],
+        left: Vec::with_capacity(data.segments.len()),
+        seed,
+    };
+    for (index, flight) in data.flights.iter().enumerate() {
+        let (columns, sizes) = choice(fold_of(index));
+        let trial = model.trial(&effects_of(library, &columns, &sizes));
+        let (mut before, mut after, mut floor) = (0.0, 0.0, 0.0);
+        for row in &data.segments[flight.segments.clone()] {
+            let gap = row.residual[0];
+            let closed = model.response_at(&row.known, &trial).map_or(0.0, |with| {
+                data.predictor.predict(&with)[0] - data.predictor.predict(&row.response)[0]
+            });
+            before += gap * gap;
+            after += (gap - closed) * (gap - closed);
+            found.left.push(gap - closed);
+            let own = row.noise.factor[0][0] * row.noise.factor[0][0];
+            let common: f64 = row.noise.common.iter().map(|u| u[0] * u[0]).sum();
+            floor += noise_scale * (own + common);
+        }
+        found.before.push(before);
+        found.after.push(after);
+        found.floor.push(floor);
+        found.segments.push(flight.segments.len() as f64);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shrinkage(before: &[f64], after: &[f64], floor: &[f64]) -> Shrinkage {
+        Shrinkage {
+            before: before.to_vec(),
+            after: after.to_vec(),
+            floor: floor.to_vec(),
+            segments: vec![1.0; before.len()],
+            left: vec![],
+            seed: 7,
+        }
+    }
+
+    #[test]
+    fn closure_by_hand() {
+        // (5 − 2)/(5 − 1) = 0.75; all flights alike: no interval to speak of.
+        let sure = shrinkage(&[5.0; 8], &[2.0; 8], &[1.0; 8]);
+        let (closure, [low, high]) = sure.closure().unwrap();
+        assert!((closure - 0.75).abs() < 1e-15);
+        assert!((low - 0.75).abs() < 1e-12 && (high - 0.75).abs() < 1e-12);
+        // 400 flights, every other one with 1 more left: closed 3 ± 0.5 of 4, standard error 0.5/√400/4 = 0.00625.
+        let after: Vec<f64> = (0..400).map(|k| if k % 2 == 0 { 1.5 } else { 2.5 }).collect();
+        let unsure = shrinkage(&[5.0; 400], &after, &[1.0; 400]);
+        let (_, [low, high]) = unsure.closure().unwrap();
+        assert!((low - (0.75 - 0.01225)).abs() < 0.0015, "{low}");
+        assert!((high - (0.75 + 0.01225)).abs() < 0.0015, "{high}");
+    }
+
+    #[test]
+    fn a_gap_within_the_floor_has_no_closure() {
+        // 1.14 is less than 15 % above 1; 1.16 is more.
+        assert!(shrinkage(&[1.14; 8], &[1.0; 8], &[1.0; 8]).closure().is_none());
+        assert!(shrinkage(&[1.16; 8], &[1.0; 8], &[1.0; 8]).closure().is_some());
+    }
+}

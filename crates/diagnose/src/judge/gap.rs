@@ -1,0 +1,111 @@
+//! How large the gap is, and whether there is one.
+
+use statrs::function::erf::erfc;
+
+use crate::hypotheses::evidence::{NOISE_FREEDOM, Scored};
+use crate::judge::closure::Shrinkage;
+use crate::judge::posterior::Posterior;
+use crate::judge::thresholds::{CLEAN_PROBABILITY, NORMAL_95, OUTSIDE_PROBABILITY, SMALLEST_GAP};
+use crate::output::Gap;
+use crate::search::analyse::Analysis;
+use crate::search::outside::Outside;
+use crate::search::system::Stacked;
+
+/// Whether there is more than noise: either nothing at all is improbable beside the library, or nothing outside it is.
+pub(crate) fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
+    analysis.clean <= CLEAN_PROBABILITY || 1.0 - outside.probability <= CLEAN_PROBABILITY
+}
+
+/// Whether the gap is larger than noise and what the model does not know together by what closure needs, at 97.5 %: then it
+/// is real, however many small effects could make it up together. `unknown` is a mean square of ln fuel flow.
+pub(crate) fn exceeds_uncertainty(gap: &Gap, unknown: f64) -> bool {
+    let expected = gap.noise_floor_rms_percent.powi(2) + 1e4 * unknown;
+    gap.rms_ci95[0].powi(2) > (1.0 + SMALLEST_GAP) * expected
+}
+
+/// Mean square of ln fuel flow that the table, the chords of its cells and a taught remainder leave open.
+pub(crate) fn unknown_square(stacked: &Stacked<'_>) -> f64 {
+    let (data, design) = (stacked.data, stacked.design);
+    let sum: f64 = data
+        .flights
+        .iter()
+        .map(|flight| {
+            let rows = design.fuel_flow(data, flight);
+            (0..rows.nrows())
+                .flat_map(|row| design.nuisance.clone().map(move |column| (row, column)))
+                .map(|at| rows[at] * rows[at])
+                .sum::<f64>()
+        })
+        .sum();
+    sum / data.segments.len().max(1) as f64
+}
+
+/// Whether the evidence points at nothing: nothing is more probable than not, and the size of the gap is within its noise or
+/// the leading set widens it on flights that it was not fitted to. A remainder is never exact, and what is left over
+/// is spread over many small hypotheses.
+pub(crate) fn is_vague(
+    gap: &Gap,
+    outside: &Outside,
+    top: Option<&Posterior>,
+    makes_worse: bool,
+) -> bool {
+    outside.probability <= OUTSIDE_PROBABILITY
+        && top.is_none_or(|top| top.probability * (1.0 - outside.probability) < 0.5)
+        && (gap.rms_ci95[0] <= gap.noise_floor_rms_percent || makes_worse)
+}
+
+/// Noise variance over what the sensors announce, of the best model.
+pub(crate) fn noise_scale(analysis: &Analysis, best: &Scored, rows: usize) -> f64 {
+    let at = &analysis.backgrounds[best.background.min(analysis.backgrounds.len() - 1)];
+    let explained: f64 = best
+        .model
+        .columns
+        .iter()
+        .zip(&best.sizes)
+        .map(|(&column, size)| at.product(column) * size)
+        .sum();
+    let square = (at.square - explained).max(0.0);
+    (NOISE_FREEDOM + square) / (NOISE_FREEDOM + rows as f64)
+}
+
+pub(crate) fn gap_of(
+    stacked: &Stacked<'_>,
+    analysis: &Analysis,
+    own: &Shrinkage,
+    scale: f64,
+) -> Gap {
+    let count = stacked.data.segments.len() as f64;
+    let mean = stacked.data.segments.iter().map(|row| row.residual[0]).sum::<f64>() / count;
+    let square = own.before();
+    // Interval of the mean square by flight, then its root.
+    let flights = own.before.len() as f64;
+    let spread: f64 = own
+        .before
+        .iter()
+        .zip(&own.segments)
+        .map(|(sum, n)| (sum - square * n).powi(2))
+        .sum::<f64>()
+        * flights
+        / (flights - 1.0).max(1.0);
+    let half = NORMAL_95 * spread.sqrt() / count;
+    // The largest deviation any effect makes of noise alone, with as many looks as columns (Bonferroni).
+    let plain = analysis.backgrounds.iter().find(|b| b.spike == 0.0 && b.tau == 0.0);
+    let p_value = plain.map_or(1.0, |at| {
+        let columns = analysis.scorer.columns();
+        let largest = (0..columns)
+            .filter(|&column| at.gram(column, column) > 0.0)
+            .map(|column| at.product(column).powi(2) / at.gram(column, column))
+            .fold(0.0, f64::max);
+        (columns as f64 * erfc((largest / scale / 2.0).sqrt())).min(1.0)
+    });
+    Gap {
+        mean_percent: 100.0 * mean,
+        rms_percent: 100.0 * square.sqrt(),
+        rms_ci95: [100.0 * (square - half).max(0.0).sqrt(), 100.0 * (square + half).sqrt()],
+        noise_floor_rms_percent: 100.0 * own.floor().sqrt(),
+        floor_by_replicates_rms_percent: None,
+        floor_by_held_out_fit_rms_percent: None,
+        detected: false,
+        p_value,
+    }
+}

@@ -1,0 +1,84 @@
+//! Two other estimates of the noise floor, which need no sensor's standard deviation.
+
+use crate::judge::closure::Shrinkage;
+use crate::library::Library;
+use crate::search::folds::FOLDS;
+use crate::search::folds::fold_of;
+use crate::search::system::Stacked;
+
+/// Two successive segments of a flight are replicates when Mach number and pressure altitude differ by no more.
+const ALIKE_MACH: f64 = 0.02;
+const ALIKE_ALTITUDE_M: f64 = 100.0;
+/// Fewest pairs of replicates that a variance is told from.
+const FEWEST_PAIRS: usize = 20;
+/// Prior standard deviation of an effect in the flexible model, of its typical size, and of its smooth functions, relative.
+const FLEXIBLE_EFFECT: f64 = 3.0;
+const FLEXIBLE_SMOOTH: f64 = 0.004;
+
+/// Mean square of the noise, the part within a flight by replicates, the part between flights as propagated; `None` for too
+/// few replicates.
+///
+/// ```text
+/// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r²,   e what the best model leaves                      [diagnosis.30]
+/// ```
+pub(crate) fn replicate_floor(
+    stacked: &Stacked<'_>,
+    own: &Shrinkage,
+    noise_scale: f64,
+) -> Option<f64> {
+    let data = stacked.data;
+    let (mut sum, mut pairs) = (0.0, 0_usize);
+    for flight in &data.flights {
+        for index in flight.segments.clone().skip(1) {
+            let (a, b) = (&data.segments[index - 1].point, &data.segments[index].point);
+            if (a.mach - b.mach).abs() <= ALIKE_MACH
+                && (a.pressure_altitude_m - b.pressure_altitude_m).abs() <= ALIKE_ALTITUDE_M
+            {
+                sum += (own.left[index] - own.left[index - 1]).powi(2);
+                pairs += 1;
+            }
+        }
+    }
+    if pairs < FEWEST_PAIRS {
+        return None;
+    }
+    let common: f64 = data
+        .segments
+        .iter()
+        .map(|row| row.noise.common.iter().map(|u| u[0] * u[0]).sum::<f64>())
+        .sum();
+    Some(0.5 * sum / pairs as f64 + noise_scale * common / data.segments.len() as f64)
+}
+
+/// Mean square that a flexible model (all effects, smooth functions of all variables) leaves on folds of flights that it was
+/// not fitted to: an upper bound of the noise, by as much as it cannot learn. `None` where it cannot be fitted.
+pub(crate) fn held_out_floor(stacked: &Stacked<'_>, library: &Library) -> Option<f64> {
+    let design = stacked.design;
+    let (columns, deviations): (Vec<usize>, Vec<f64>) = library
+        .effects
+        .iter()
+        .map(|effect| (effect.representative, FLEXIBLE_EFFECT * effect.typical))
+        .chain(design.nuisance.clone().map(|column| (column, 1.0)))
+        .chain(design.smooth.clone().map(|column| (column, FLEXIBLE_SMOOTH)))
+        .unzip();
+    let mut sum = 0.0;
+    for fold in 0..FOLDS {
+        let gram = stacked.gram(Some(fold));
+        let sizes = gram.fit(&columns, &deviations, design.residual())?;
+        for (index, flight) in stacked.data.flights.iter().enumerate() {
+            if fold_of(index) != fold {
+                continue;
+            }
+            let rows = design.fuel_flow(stacked.data, flight);
+            for row in 0..rows.nrows() {
+                let fitted: f64 = columns
+                    .iter()
+                    .enumerate()
+                    .map(|(k, &column)| rows[(row, column)] * sizes[(k, 0)])
+                    .sum();
+                sum += (rows[(row, design.residual())] - fitted).powi(2);
+            }
+        }
+    }
+    Some(sum / stacked.data.segments.len() as f64)
+}

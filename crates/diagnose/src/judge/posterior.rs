@@ -1,0 +1,181 @@
+//! The probability of each effect, and what is printed of it.
+
+use flight::effect::EffectId;
+use perf_model::effects::StepTarget;
+
+use crate::advice::distances::Distances;
+use crate::hypotheses::evidence::Scored;
+use crate::judge::closure::Shrinkage;
+use crate::judge::thresholds::NORMAL_95;
+use crate::library::Library;
+use crate::output::{Cause, Magnitude};
+use crate::search::analyse::Analysis;
+use crate::search::outside::Outside;
+use crate::search::system::Stacked;
+
+/// An effect with its posterior.
+#[derive(Clone, Debug)]
+pub(crate) struct Posterior {
+    /// Index in the library; `None` for flight-to-flight scatter.
+    pub(crate) effect: Option<usize>,
+    pub(crate) probability: f64,
+    /// The most probable model in which it is the larger effect.
+    pub(crate) model: Scored,
+    /// Its place in that model.
+    pub(crate) place: usize,
+}
+
+impl Posterior {
+    /// Its column of the library and the size there; `None` for scatter between flights.
+    pub(crate) fn column_and_size(&self) -> Option<(usize, f64)> {
+        self.effect?;
+        Some((self.model.model.columns[self.place], self.model.sizes[self.place]))
+    }
+
+    /// Effects that these flights cannot tell from it, itself first; `None` for scatter between flights.
+    pub(crate) fn confused(&self, distances: &Distances, library: &Library) -> Option<Vec<usize>> {
+        let (column, size) = self.column_and_size()?;
+        Some(distances.confused_with(library, column, size))
+    }
+}
+
+/// Probability of each effect to be the larger one of what acts, over models.
+pub(crate) fn dominant(
+    stacked: &Stacked<'_>,
+    analysis: &Analysis,
+    library: &Library,
+) -> Vec<Posterior> {
+    let count = stacked.data.segments.len() as f64;
+    let mean_squares: Vec<f64> = (0..library.columns.len())
+        .map(|column| {
+            stacked.data.segments.iter().map(|row| row.signatures[column][0].powi(2)).sum::<f64>()
+                / count
+        })
+        .collect();
+    // One entry an effect, flight-to-flight scatter last.
+    let mut found: Vec<Option<Posterior>> = vec![None; library.effects.len() + 1];
+    for (scored, probability) in &analysis.models {
+        let mut shares: Vec<(f64, Option<usize>, usize)> = scored
+            .model
+            .columns
+            .iter()
+            .zip(&scored.sizes)
+            .enumerate()
+            .map(|(place, (&column, size))| {
+                (size * size * mean_squares[column], Some(library.columns[column].effect), place)
+            })
+            .collect();
+        if let Some(percent) = scored.model.heating_percent {
+            shares.push(((percent / 100.0).powi(2), None, 0));
+        }
+        let Some(&(_, effect, place)) = shares.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            continue;
+        };
+        let slot = &mut found[effect.unwrap_or(library.effects.len())];
+        match slot {
+            Some(posterior) => posterior.probability += probability,
+            None => {
+                *slot = Some(Posterior {
+                    effect,
+                    probability: *probability,
+                    model: scored.clone(),
+                    place,
+                });
+            }
+        }
+    }
+    let mut all: Vec<Posterior> = found.into_iter().flatten().collect();
+    all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    all
+}
+
+pub(crate) fn causes(
+    analysis: &Analysis,
+    outside: &Outside,
+    distances: &Distances,
+    library: &Library,
+    posteriors: &[Posterior],
+    unseen: Option<&Shrinkage>,
+) -> Vec<Cause> {
+    let inside = 1.0 - outside.probability;
+    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
+    let best = &analysis.models[0].0;
+    let mut sum = 0.0;
+    let mut causes = Vec::new();
+    for posterior in posteriors {
+        if causes.len() >= 3 && (sum > 0.995 * named || posterior.probability < 1e-3) {
+            break;
+        }
+        sum += posterior.probability;
+        let is_best = posterior.model.model == best.model;
+        let closure = unseen.filter(|_| is_best).and_then(Shrinkage::closure);
+        causes.push(Cause {
+            effect: name_of(library, posterior.effect),
+            probability: posterior.probability * inside,
+            class: class_of(distances, library, posterior),
+            magnitude: magnitude(library, posterior),
+            rms_after_percent: unseen.filter(|_| is_best).map(|s| 100.0 * s.after().sqrt()),
+            closure: closure.map(|c| c.0),
+            closure_ci95: closure.map(|c| c.1),
+            hidden: hidden_words(library, posterior),
+        });
+    }
+    causes
+}
+
+pub(crate) fn name_of(library: &Library, effect: Option<usize>) -> String {
+    effect.map_or(EffectId::FuelHeatingValue, |e| library.effects[e].id).to_string()
+}
+
+fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
+    let Some(effect) = posterior.effect else {
+        let percent = posterior.model.model.heating_percent.unwrap_or(0.0);
+        return Magnitude {
+            value: percent,
+            unit: EffectId::FuelHeatingValue.entry().unit.to_owned(),
+            ci95: [0.5 * percent, 2.0 * percent],
+        };
+    };
+    let value = posterior.model.sizes[posterior.place];
+    let half = NORMAL_95 * posterior.model.deviations[posterior.place];
+    Magnitude {
+        value,
+        unit: library.effects[effect].id.entry().unit.to_owned(),
+        ci95: [value - half, value + half],
+    }
+}
+
+pub(crate) fn class_of(
+    distances: &Distances,
+    library: &Library,
+    posterior: &Posterior,
+) -> Vec<String> {
+    match posterior.confused(distances, library) {
+        None => vec![name_of(library, None)],
+        Some(effects) => effects.into_iter().map(|effect| name_of(library, Some(effect))).collect(),
+    }
+}
+
+fn hidden_words(library: &Library, posterior: &Posterior) -> String {
+    let Some(effect) = posterior.effect else { return String::new() };
+    let column = &library.columns[posterior.model.model.columns[posterior.place]];
+    match library.effects[effect].id {
+        EffectId::StepChange => {
+            let target = match column.hidden.step_target {
+                StepTarget::FuelFlow => "fuel flow",
+                StepTarget::Drag => "drag",
+            };
+            #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
+            let from = flight::Timestamp::from_second(column.hidden.step_from_s as i64)
+                .map_or_else(|_| String::new(), |instant| instant.to_string());
+            format!("{target} from {from}")
+        }
+        EffectId::TsfcThrottle => format!(
+            "over {}, pivot {:.1}",
+            column.hidden.throttle_argument.words(),
+            column.hidden.throttle_pivot
+        ),
+        EffectId::WaveDrag => format!("Mdd {}", column.hidden.drag_divergence_mach),
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,120 @@
+//! From clean flights to a baseline.
+
+use faer::Mat;
+use perf_model::PerformanceModel;
+use perf_model::effects::{EffectModel, EffectReferences};
+
+use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::baseline::{Baseline, Parts};
+use crate::learning::moments::Moments;
+use crate::library::Library;
+use crate::residuals::reference::Against;
+use crate::residuals::segments::Data;
+use crate::signals::n2_deck::DECK_TERMS;
+use crate::signals::noise::NoiseFactors;
+use crate::signals::record::FlightRecord;
+use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::variables::{Hats, Scaled, Variable};
+
+/// Variables of the remainder.
+const VARIABLES: [Variable; 6] = [
+    Variable::Mach,
+    Variable::LiftCoefficient,
+    Variable::PressureAltitude,
+    Variable::CorrectedThrust,
+    Variable::IsaDeviation,
+    Variable::Mass,
+];
+/// Variables that the remainder may bend along differently at each Mach number: drag rises locally, and so does thrust.
+const LOCAL_VARIABLES: [Variable; 3] =
+    [Variable::LiftCoefficient, Variable::CorrectedThrust, Variable::PressureAltitude];
+const QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
+const INFLATIONS: usize = 3;
+/// Fewest flights that teach a remainder.
+const FEWEST_FLIGHTS: usize = 5;
+
+impl Baseline {
+    /// Learns from clean flights against a model and a drag table (its own, or the adapted one).
+    ///
+    /// # Errors
+    /// [`DiagnoseError`] where the model takes no effects, or fewer than five flights are inside the table.
+    pub fn learn(
+        model: &PerformanceModel,
+        drag_table: &lut::Table,
+        flights: &[FlightRecord<'_>],
+    ) -> Result<Self, DiagnoseError> {
+        let references = references_of(model, drag_table, flights)?;
+        let effect_model = EffectModel::new(model, drag_table, references)?;
+        let (data, _) = Data::prepare(
+            &effect_model,
+            flights,
+            Against::NothingYet,
+            |points, engines, starts| {
+                Library::of(&effect_model, points, engines, starts, |_| false)
+            },
+        );
+        if data.flights.len() < FEWEST_FLIGHTS {
+            let found = data.flights.len();
+            return Err(DiagnoseError::TooFewFlights { found, needed: FEWEST_FLIGHTS });
+        }
+        let mut baseline = Self::prior(&data, &references);
+        let moments = Moments::of(&baseline, &data);
+        baseline.tune(&moments);
+        for _ in 0..INFLATIONS {
+            baseline.inflate(&moments);
+        }
+        baseline.fit(&data, &moments)?;
+        Ok(baseline)
+    }
+
+    /// The baseline before it has learnt.
+    fn prior(data: &Data<'_>, references: &EffectReferences) -> Self {
+        let values = |variable: Variable| -> Option<Vec<f64>> {
+            data.segments
+                .iter()
+                .map(|row| variable.flown(&row.response, references))
+                .map(Some)
+                .collect()
+        };
+        let hats: Vec<_> = VARIABLES
+            .into_iter()
+            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &QUANTILES)?)))
+            .collect();
+        let mut products = Vec::new();
+        for (k, a) in VARIABLES.into_iter().enumerate() {
+            for b in VARIABLES.into_iter().skip(k + 1) {
+                if let (Some(of_a), Some(of_b)) = (values(a), values(b)) {
+                    products.push((a, Scaled::of(&of_a), b, Scaled::of(&of_b)));
+                }
+            }
+        }
+        let local: Vec<(Variable, Scaled)> = LOCAL_VARIABLES
+            .into_iter()
+            .filter_map(|v| Some((v, Scaled::of(&values(v)?))))
+            .collect();
+        let parts = Parts {
+            flights: data.flights.len(),
+            segments: data.segments.len(),
+            references: *references,
+            noise: NoiseFactors::default(),
+            scales: [1.0; 2],
+            hats,
+            products,
+            local,
+            contrasts: data.channels.contrasts,
+            deck_known: data.channels.n2,
+            deck_centers: data.predictor.deck.centers,
+            deck_coefficients: data.predictor.deck.coefficients.to_vec(),
+            mean: Vec::new(),
+            factor: Vec::new(),
+            environment: vec![0.0; ENVIRONMENT.len()],
+            rms: f64::NAN,
+        };
+        let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
+        let means = baseline.remainder_terms() + baseline.parts.contrasts;
+        let width = means + DECK_TERMS + ENVIRONMENT.len();
+        baseline.parts.mean = vec![0.0; means];
+        baseline.factor = Mat::zeros(width, width);
+        baseline
+    }
+}

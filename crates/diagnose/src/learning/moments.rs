@@ -1,0 +1,603 @@
+//! Sums over flights from which the Gram matrix of the whitened columns follows in closed form, whatever the noise
+//! factors: segments are looked at once, however often noise is turned.
+//!
+//! A noise factor multiplies rows and columns of a segment's covariance C and of its loadings U, nothing else. With
+//! K = C⁻¹ at factors of 1, kinds a, b of channels, factors w within flights and v between them,
+//!
+//! ```text
+//! XᵀC⁻¹X = Σ_ab 1/(w_a w_b) Σ_segments K_ab x_a x_bᵀ
+//! XᵀC⁻¹U = Σ_ab v_b/(w_a w_b) Σ_segments K_ab x_a u_bᵀ,   UᵀC⁻¹U alike
+//! Xᵀ(C + UUᵀ)⁻¹X = XᵀC⁻¹X − XᵀC⁻¹U (1 + UᵀC⁻¹U)⁻¹ UᵀC⁻¹X                                    [diagnosis.40]
+//! ```
+//!
+//! Kinds that neither noise nor a column couples (engine against engine, as a rule) are kept apart.
+
+use faer::Mat;
+
+use crate::baseline::Baseline;
+use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::math::linear::{subtract_gram, symmetrize};
+use crate::residuals::rows::SegmentRow;
+use crate::residuals::segments::Data;
+use crate::residuals::whiten::half_whitened;
+use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
+use crate::signals::noise::NoiseFactors;
+
+/// Folds of flights that the scatter between flights is judged on, and rounds of it.
+pub(crate) const FOLDS: usize = 10;
+
+/// Kinds of channels: fuel flow, engine against engine, N2.
+pub(super) const KINDS: usize = 3;
+
+/// All that learning asks of the data.
+pub(super) struct Moments {
+    pub(super) parts: Vec<Part>,
+    /// What flights that are left out are judged on.
+    pub(super) left_out: Vec<LeftOut>,
+    /// Columns, the residual last.
+    columns: usize,
+}
+
+/// Kinds of channels that are coupled with each other, and with no other kind.
+pub(super) struct Part {
+    pub(super) kinds: [bool; KINDS],
+    /// Columns that are not zero in it, ascending; the residual last.
+    pub(super) columns: Vec<usize>,
+    /// Sums of each fold of flights, and of all.
+    folds: Vec<Within>,
+    all: Within,
+    flights: Vec<Common>,
+    /// Σ ln|C| of all segments at factors of 1.
+    ln_noise: f64,
+    /// Recorded channels of each kind.
+    recorded: [usize; KINDS],
+}
+
+/// Mean residual of a flight in a channel, the mean columns there, and variances at factors of 1.
+pub(super) struct LeftOut {
+    pub(super) fold: usize,
+    pub(super) kind: usize,
+    pub(super) residual: f64,
+    pub(super) loading: Vec<f64>,
+    pub(super) within: f64,
+    pub(super) between: f64,
+}
+
+/// `XᵀKX` of pairs of kinds, lower kind first; both triangles.
+#[derive(Clone)]
+struct Within {
+    pairs: Vec<(usize, usize, Mat<f64>)>,
+}
+
+/// What the common errors of one flight need.
+struct Common {
+    /// Kind of the column's channel, kind of the loading's, loading, Σ `K_ab` `x_a` `u_b` over the part's columns.
+    projections: Vec<(usize, usize, usize, Vec<f64>)>,
+    /// The same of two loadings.
+    inner: Vec<(usize, usize, usize, usize, f64)>,
+    rank: usize,
+}
+
+/// A segment as sums need it.
+struct Row {
+    flight: usize,
+    /// Every column, the residual last.
+    raw: Vec<ByChannel>,
+    /// Inverse of the segment's own covariance.
+    inverse: [ByChannel; MAXIMUM_CHANNELS],
+    common: Vec<ByChannel>,
+    ln_noise: ByChannel,
+    is_recorded: [bool; MAXIMUM_CHANNELS],
+}
+
+impl Moments {
+    /// Sums over data whose noise has factors of 1.
+    pub(super) fn of(baseline: &Baseline, data: &Data<'_>) -> Self {
+        let count = data.channels.count();
+        let kind_of: Vec<usize> = (0..count).map(|channel| data.channels.kind(channel)).collect();
+        let mut rows = Vec::with_capacity(data.segments.len());
+        for (flight, range) in data.flights.iter().enumerate() {
+            for row in &data.segments[range.segments.clone()] {
+                let white: [ByChannel; MAXIMUM_CHANNELS] = core::array::from_fn(|channel| {
+                    let mut unit = [0.0; MAXIMUM_CHANNELS];
+                    unit[channel] = 1.0;
+                    half_whitened(row, &unit, count)
+                });
+                rows.push(Row {
+                    flight,
+                    raw: baseline.raw_row(data, row),
+                    inverse: core::array::from_fn(|a| {
+                        core::array::from_fn(|b| {
+                            (0..count).map(|k| white[a][k] * white[b][k]).sum()
+                        })
+                    }),
+                    common: row.noise.common.clone(),
+                    ln_noise: core::array::from_fn(|channel| {
+                        if channel < count {
+                            2.0 * row.noise.factor[channel][channel].ln()
+                        } else {
+                            0.0
+                        }
+                    }),
+                    is_recorded: row.is_recorded,
+                });
+            }
+        }
+        let columns = baseline.factor.nrows() + 1;
+        let parts = parts_of(&rows, &kind_of)
+            .into_iter()
+            .map(|kinds| Part::of(kinds, &rows, &kind_of, data.flights.len(), columns))
+            .collect();
+        Self { parts, left_out: left_out(data, &rows), columns }
+    }
+
+    /// Gram matrix of all columns over all flights, or over a fold; both triangles.
+    pub(super) fn gram(&self, noise: &NoiseFactors, fold: Option<usize>) -> Mat<f64> {
+        let mut gram = Mat::<f64>::zeros(self.columns, self.columns);
+        for part in &self.parts {
+            let of_part = part.gram(noise, fold).0;
+            for (j, &column) in part.columns.iter().enumerate() {
+                for (i, &row) in part.columns.iter().enumerate().skip(j) {
+                    gram[(row, column)] += of_part[(i, j)];
+                }
+            }
+        }
+        symmetrize(&mut gram);
+        gram
+    }
+}
+
+impl Part {
+    fn of(
+        kinds: [bool; KINDS],
+        rows: &[Row],
+        kind_of: &[usize],
+        flights: usize,
+        columns: usize,
+    ) -> Self {
+        let channels: Vec<usize> =
+            (0..kind_of.len()).filter(|&channel| kinds[kind_of[channel]]).collect();
+        let is_used = |column: usize| {
+            rows.iter().any(|row| channels.iter().any(|&c| row.raw[column][c] != 0.0))
+        };
+        let columns: Vec<usize> =
+            (0..columns).filter(|&column| column + 1 == columns || is_used(column)).collect();
+        let mut recorded = [0; KINDS];
+        let mut ln_noise = 0.0;
+        for row in rows {
+            for &channel in &channels {
+                ln_noise += row.ln_noise[channel];
+                recorded[kind_of[channel]] += usize::from(row.is_recorded[channel]);
+            }
+        }
+        let folds: Vec<Within> = (0..FOLDS)
+            .map(|fold| {
+                let rows: Vec<&Row> =
+                    rows.iter().filter(|row| row.flight % FOLDS == fold).collect();
+                Within::of(&rows, &channels, kind_of, &columns)
+            })
+            .collect();
+        let all = Within::sum(&folds);
+        let flights = (0..flights)
+            .map(|flight| {
+                let rows: Vec<&Row> = rows.iter().filter(|row| row.flight == flight).collect();
+                Common::of(&rows, &channels, kind_of, &columns)
+            })
+            .collect();
+        Self { kinds, columns, folds, all, flights, ln_noise, recorded }
+    }
+
+    /// Gram matrix of the part's columns, lower triangle, and, of all flights, Σ `ln|C_f|`.
+    pub(super) fn gram(&self, noise: &NoiseFactors, fold: Option<usize>) -> (Mat<f64>, f64) {
+        let size = self.columns.len();
+        let within = fold.map_or(&self.all, |fold| &self.folds[fold]);
+        let mut gram = Mat::<f64>::zeros(size, size);
+        for (a, b, sum) in &within.pairs {
+            let share = 1.0 / (noise.within[*a] * noise.within[*b]);
+            for column in 0..size {
+                let from = sum.col_as_slice(column);
+                let into = gram.col_as_slice_mut(column);
+                for (into, from) in into[column..].iter_mut().zip(&from[column..]) {
+                    *into += share * from;
+                }
+            }
+        }
+        let mut ln_noise = self.ln_noise;
+        for kind in 0..KINDS {
+            ln_noise += 2.0 * self.recorded[kind] as f64 * noise.within[kind].ln();
+        }
+        let kept: Vec<&Common> = self
+            .flights
+            .iter()
+            .enumerate()
+            .filter(|(flight, _)| fold.is_none_or(|fold| flight % FOLDS == fold))
+            .map(|(_, common)| common)
+            .collect();
+        let mut explained =
+            Mat::<f64>::zeros(size, kept.iter().map(|common| common.rank).sum::<usize>());
+        let mut at = 0;
+        for common in kept {
+            ln_noise += common.write(noise, &mut explained, at);
+            at += common.rank;
+        }
+        subtract_gram(&mut gram, &explained);
+        (gram, ln_noise)
+    }
+}
+
+impl Within {
+    fn of(rows: &[&Row], channels: &[usize], kind_of: &[usize], columns: &[usize]) -> Self {
+        // Most columns act on one channel only: products are taken over the columns that do.
+        let used: Vec<Vec<usize>> = channels
+            .iter()
+            .map(|&channel| {
+                (0..columns.len())
+                    .filter(|&k| rows.iter().any(|row| row.raw[columns[k]][channel] != 0.0))
+                    .collect()
+            })
+            .collect();
+        let mut pairs: Vec<(usize, usize, Mat<f64>)> = Vec::new();
+        for (p, &c) in channels.iter().enumerate() {
+            for (q, &d) in channels.iter().enumerate().take(p + 1) {
+                if rows.iter().all(|row| row.inverse[c][d] == 0.0) {
+                    continue;
+                }
+                let left = Mat::from_fn(rows.len(), used[p].len(), |s, k| {
+                    rows[s].raw[columns[used[p][k]]][c]
+                });
+                let right = Mat::from_fn(rows.len(), used[q].len(), |s, k| {
+                    rows[s].inverse[c][d] * rows[s].raw[columns[used[q][k]]][d]
+                });
+                let product = left.transpose() * &right;
+                let (a, b) = (kind_of[c].min(kind_of[d]), kind_of[c].max(kind_of[d]));
+                let known = pairs.iter().position(|pair| (pair.0, pair.1) == (a, b));
+                let at = known.unwrap_or_else(|| {
+                    pairs.push((a, b, Mat::zeros(columns.len(), columns.len())));
+                    pairs.len() - 1
+                });
+                let sum = &mut pairs[at].2;
+                for (j, &column) in used[q].iter().enumerate() {
+                    for (i, &row) in used[p].iter().enumerate() {
+                        sum[(row, column)] += product[(i, j)];
+                        if c != d {
+                            sum[(column, row)] += product[(i, j)];
+                        }
+                    }
+                }
+            }
+        }
+        Self { pairs }
+    }
+
+    fn sum(folds: &[Self]) -> Self {
+        let mut all = Self { pairs: Vec::new() };
+        for fold in folds {
+            for (a, b, sum) in &fold.pairs {
+                match all.pairs.iter_mut().find(|pair| (pair.0, pair.1) == (*a, *b)) {
+                    Some(pair) => pair.2 += sum,
+                    None => all.pairs.push((*a, *b, sum.clone())),
+                }
+            }
+        }
+        all
+    }
+}
+
+impl Common {
+    fn of(rows: &[&Row], channels: &[usize], kind_of: &[usize], columns: &[usize]) -> Self {
+        let loadings = rows.first().map_or(0, |row| row.common.len());
+        let acting: Vec<usize> = (0..loadings)
+            .filter(|&r| rows.iter().any(|row| channels.iter().any(|&c| row.common[r][c] != 0.0)))
+            .collect();
+        let mut projections: Vec<(usize, usize, usize, Vec<f64>)> = Vec::new();
+        let mut inner: Vec<(usize, usize, usize, usize, f64)> = Vec::new();
+        for row in rows {
+            for &c in channels {
+                for &d in channels {
+                    let (a, b) = (kind_of[c], kind_of[d]);
+                    for (r, &loading) in acting.iter().enumerate() {
+                        let by = row.inverse[c][d] * row.common[loading][d];
+                        if by == 0.0 {
+                            continue;
+                        }
+                        let known = projections.iter().position(|p| (p.0, p.1, p.2) == (a, b, r));
+                        let at = known.unwrap_or_else(|| {
+                            projections.push((a, b, r, vec![0.0; columns.len()]));
+                            projections.len() - 1
+                        });
+                        for (slot, &column) in projections[at].3.iter_mut().zip(columns) {
+                            *slot += row.raw[column][c] * by;
+                        }
+                        for (s, &other) in acting.iter().enumerate() {
+                            let value = row.common[other][c] * by;
+                            if value != 0.0 {
+                                inner.push((a, b, s, r, value));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        inner.sort_by_key(|entry| (entry.0, entry.1, entry.2, entry.3));
+        let mut summed: Vec<(usize, usize, usize, usize, f64)> = Vec::new();
+        for entry in inner {
+            match summed.last_mut() {
+                Some(last)
+                    if (last.0, last.1, last.2, last.3) == (entry.0, entry.1, entry.2, entry.3) =>
+                {
+                    last.4 += entry.4;
+                }
+                _ => summed.push(entry),
+            }
+        }
+        Self { projections, inner: summed, rank: acting.len() }
+    }
+
+    /// Writes XᵀC⁻¹U·L⁻ᵀ, `LLᵀ` = 1 + UᵀC⁻¹U, into columns from `at` on; returns `ln|1 + UᵀC⁻¹U|`.
+    fn write(&self, noise: &NoiseFactors, into: &mut Mat<f64>, at: usize) -> f64 {
+        let (within, between) = (&noise.within, &noise.between);
+        let mut inner = Mat::<f64>::identity(self.rank, self.rank);
+        for &(a, b, s, r, value) in &self.inner {
+            inner[(s, r)] += value * between[a] * between[b] / (within[a] * within[b]);
+        }
+        for (a, b, r, projection) in &self.projections {
+            let share = between[*b] / (within[*a] * within[*b]);
+            for (slot, value) in into.col_as_slice_mut(at + r).iter_mut().zip(projection) {
+                *slot += share * value;
+            }
+        }
+        let mut ln_determinant = 0.0;
+        for column in 0..self.rank {
+            for k in 0..column {
+                let by = inner[(column, k)];
+                for row in column..self.rank {
+                    let left = inner[(row, k)] * by;
+                    inner[(row, column)] -= left;
+                }
+                for row in 0..into.nrows() {
+                    let left = into[(row, at + k)] * by;
+                    into[(row, at + column)] -= left;
+                }
+            }
+            // 1 + UᵀC⁻¹U: its pivots are not below 1.
+            let pivot = inner[(column, column)].max(1.0).sqrt();
+            ln_determinant += 2.0 * pivot.ln();
+            for row in column..self.rank {
+                inner[(row, column)] /= pivot;
+            }
+            for row in 0..into.nrows() {
+                into[(row, at + column)] /= pivot;
+            }
+        }
+        ln_determinant
+    }
+}
+
+/// Kinds of channels, grouped by what couples them: noise of a segment, an error common to a flight, a column.
+fn parts_of(rows: &[Row], kind_of: &[usize]) -> Vec<[bool; KINDS]> {
+    let mut group: [usize; KINDS] = [0, 1, 2];
+    let mut join = |a: usize, b: usize| {
+        let (from, to) = (group[a].max(group[b]), group[a].min(group[b]));
+        for slot in &mut group {
+            if *slot == from {
+                *slot = to;
+            }
+        }
+    };
+    for row in rows {
+        for (c, &a) in kind_of.iter().enumerate() {
+            for (d, &b) in kind_of.iter().enumerate().take(c) {
+                if a == b {
+                    continue;
+                }
+                let both = |values: &ByChannel| values[c] != 0.0 && values[d] != 0.0;
+                let columns = &row.raw[..row.raw.len() - 1];
+                if row.inverse[c][d] != 0.0
+                    || row.common.iter().any(both)
+                    || columns.iter().any(both)
+                {
+                    join(a, b);
+                }
+            }
+        }
+    }
+    (0..KINDS)
+        .map(|of| core::array::from_fn(|kind| group[kind] == of && kind_of.contains(&kind)))
+        .filter(|kinds: &[bool; KINDS]| kinds.contains(&true))
+        .collect()
+}
+
+fn left_out(data: &Data<'_>, rows: &[Row]) -> Vec<LeftOut> {
+    let mut found = Vec::new();
+    for (flight, range) in data.flights.iter().enumerate() {
+        let segments = &data.segments[range.segments.clone()];
+        let rows = &rows[range.segments.clone()];
+        let count = segments.len() as f64;
+        for channel in 0..data.channels.count() {
+            if !segments.iter().all(|row| row.is_recorded[channel]) {
+                continue;
+            }
+            let width = rows.first().map_or(0, |row| row.raw.len() - 1);
+            let mut mean = LeftOut {
+                fold: flight % FOLDS,
+                kind: data.channels.kind(channel),
+                residual: 0.0,
+                loading: vec![0.0; width],
+                within: 0.0,
+                between: 0.0,
+            };
+            for (segment, row) in segments.iter().zip(rows) {
+                mean.residual += segment.residual[channel] / count;
+                for (slot, values) in mean.loading.iter_mut().zip(&row.raw) {
+                    *slot += values[channel] / count;
+                }
+                let own: f64 =
+                    segment.noise.factor[channel][..=channel].iter().map(|l| l * l).sum();
+                mean.within += own / (count * count);
+                mean.between +=
+                    segment.noise.common.iter().map(|u| u[channel] * u[channel]).sum::<f64>()
+                        / count;
+            }
+            found.push(mean);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Side;
+    use faer::linalg::solvers::Solve;
+
+    use super::*;
+
+    const COUNT: usize = 3;
+    const COLUMNS: usize = 6;
+
+    /// Numbers without order, from −½ to ½: the golden ratio's multiples.
+    fn number(k: &mut f64) -> f64 {
+        *k += 1.0;
+        (*k * 0.618_033_988_749_895).fract() - 0.5
+    }
+
+    /// Segments of three flights with fuel flow, a contrast and N2, the contrast coupled with the others or not.
+    fn rows(coupled: bool) -> (Vec<Row>, Vec<Mat<f64>>) {
+        let mut k = 0.0;
+        let couples = |a: usize, b: usize| coupled || (a == 1) == (b == 1);
+        let mut covariances = Vec::new();
+        let rows = (0..11)
+            .map(|segment| {
+                let root = Mat::from_fn(COUNT, COUNT, |a, b| {
+                    let value = number(&mut k);
+                    if a == b {
+                        1.0 + value
+                    } else if couples(a, b) {
+                        value
+                    } else {
+                        0.0
+                    }
+                });
+                let covariance = &root * root.transpose();
+                let inverse =
+                    covariance.llt(Side::Lower).unwrap().solve(Mat::<f64>::identity(3, 3));
+                let values = |k: &mut f64, of: &dyn Fn(usize) -> bool| {
+                    let mut values = [0.0; MAXIMUM_CHANNELS];
+                    for (channel, slot) in values.iter_mut().enumerate().take(COUNT) {
+                        *slot = if of(channel) { number(k) } else { 0.0 };
+                    }
+                    values
+                };
+                let row = Row {
+                    flight: segment / 4,
+                    raw: vec![
+                        values(&mut k, &|channel| channel == 0),
+                        values(&mut k, &|channel| channel == 0),
+                        values(&mut k, &|channel| channel == 1),
+                        values(&mut k, &|channel| channel == 2),
+                        values(&mut k, &|channel| couples(channel, 0)),
+                        values(&mut k, &|_| true), // the residual
+                    ],
+                    inverse: core::array::from_fn(|a| {
+                        core::array::from_fn(|b| if a < 3 && b < 3 { inverse[(a, b)] } else { 0.0 })
+                    }),
+                    common: vec![
+                        values(&mut k, &|channel| channel != 1),
+                        values(&mut k, &|channel| channel == 1),
+                    ],
+                    ln_noise: core::array::from_fn(|channel| {
+                        // Of the covariance as a whole; it is only summed.
+                        if channel == 0 { covariance.determinant().ln() } else { 0.0 }
+                    }),
+                    is_recorded: [true, true, true, false, false],
+                };
+                covariances.push(covariance);
+                row
+            })
+            .collect();
+        (rows, covariances)
+    }
+
+    /// The same by the covariance of each whole flight, inverted.
+    fn by_inverse(rows: &[Row], covariances: &[Mat<f64>], noise: &NoiseFactors) -> (Mat<f64>, f64) {
+        let mut gram = Mat::<f64>::zeros(COLUMNS, COLUMNS);
+        let mut ln_noise = 0.0;
+        for flight in 0..3 {
+            let of: Vec<usize> = (0..rows.len()).filter(|&s| rows[s].flight == flight).collect();
+            let columns = Mat::from_fn(of.len() * COUNT, COLUMNS, |at, column| {
+                rows[of[at / COUNT]].raw[column][at % COUNT]
+            });
+            let loadings = Mat::from_fn(of.len() * COUNT, 2, |at, loading| {
+                rows[of[at / COUNT]].common[loading][at % COUNT] * noise.between[at % COUNT]
+            });
+            let own = Mat::from_fn(of.len() * COUNT, of.len() * COUNT, |i, j| {
+                let (a, b) = (i % COUNT, j % COUNT);
+                let by = noise.within[a] * noise.within[b];
+                if i / COUNT == j / COUNT { by * covariances[of[i / COUNT]][(a, b)] } else { 0.0 }
+            });
+            let covariance = &own + &loadings * loadings.transpose();
+            ln_noise += covariance.determinant().ln();
+            gram += columns.transpose() * covariance.llt(Side::Lower).unwrap().solve(&columns);
+        }
+        (gram, ln_noise)
+    }
+
+    #[test]
+    fn gram_is_that_of_the_inverse_covariance_at_any_noise() {
+        let noise = NoiseFactors { within: [0.3, 1.7, 0.8], between: [1.9, 0.4, 0.6] };
+        for (coupled, parts) in [(true, 1), (false, 2)] {
+            let (rows, covariances) = rows(coupled);
+            let kinds = parts_of(&rows, &[0, 1, 2]);
+            assert_eq!(kinds.len(), parts);
+            let parts: Vec<Part> =
+                kinds.iter().map(|kinds| Part::of(*kinds, &rows, &[0, 1, 2], 3, COLUMNS)).collect();
+            let (expected, ln_noise) = by_inverse(&rows, &covariances, &noise);
+            let found: f64 = parts.iter().map(|part| part.gram(&noise, None).1).sum();
+            assert!((found - ln_noise).abs() < 1e-10, "{found} {ln_noise}");
+            let moments = Moments { parts, left_out: Vec::new(), columns: COLUMNS };
+            let all = moments.gram(&noise, None);
+            let mut by_folds = Mat::<f64>::zeros(COLUMNS, COLUMNS);
+            for fold in 0..FOLDS {
+                by_folds += moments.gram(&noise, Some(fold));
+            }
+            for i in 0..COLUMNS {
+                for j in 0..COLUMNS {
+                    let tolerance = 1e-10 * (expected[(i, i)] * expected[(j, j)]).sqrt();
+                    assert!((all[(i, j)] - expected[(i, j)]).abs() < tolerance, "{i} {j}");
+                    assert!((by_folds[(i, j)] - expected[(i, j)]).abs() < tolerance, "{i} {j}");
+                }
+            }
+        }
+    }
+}
+
+impl Baseline {
+    /// Raw values of every column and, last, the residual.
+    fn raw_row(&self, data: &Data<'_>, row: &SegmentRow) -> Vec<[f64; MAXIMUM_CHANNELS]> {
+        let terms = self.remainder_terms();
+        let mut remainder = vec![0.0; terms];
+        self.write_remainder(&row.response, &mut remainder);
+        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; self.factor.nrows() + 1];
+        for (slot, value) in raw.iter_mut().zip(&remainder) {
+            slot[0] = *value;
+        }
+        for contrast in 1..=self.parts.contrasts {
+            if row.is_recorded[contrast] {
+                raw[terms + contrast - 1][contrast] = 1.0;
+            }
+        }
+        if data.channels.n2 {
+            let channel = data.channels.n2_row();
+            if row.is_recorded[channel] {
+                for (k, term) in row.deck.into_iter().enumerate() {
+                    raw[terms + self.parts.contrasts + k][channel] = term;
+                }
+            }
+        }
+        let environment = self.factor.nrows() - ENVIRONMENT.len();
+        raw[environment..environment + ENVIRONMENT.len()].copy_from_slice(&row.environment);
+        if let Some(last) = raw.last_mut() {
+            *last = row.residual;
+        }
+        raw
+    }
+}

@@ -1,0 +1,85 @@
+//! Gram matrices of whitened columns: all that the search looks at.
+
+use faer::Mat;
+
+use crate::math::cholesky::Factor;
+use crate::math::linear::{add_gram, symmetrize};
+
+/// Rows that are multiplied together: a flight alone has too few for fast products.
+const WAITING_ROWS: usize = 384;
+
+/// Gram matrix of all columns, and the number of rows behind it.
+#[derive(Clone, Debug)]
+pub(crate) struct Gram {
+    pub(crate) matrix: Mat<f64>,
+    pub(crate) rows: usize,
+}
+
+/// A Gram in the making.
+#[derive(Clone, Debug)]
+pub(crate) struct Sum {
+    gram: Gram,
+    /// Rows that are not yet in the Gram.
+    waiting: Mat<f64>,
+    waiting_rows: usize,
+}
+
+impl Sum {
+    pub(crate) fn of(columns: usize) -> Self {
+        Self {
+            gram: Gram { matrix: Mat::zeros(columns, columns), rows: 0 },
+            waiting: Mat::zeros(WAITING_ROWS, columns),
+            waiting_rows: 0,
+        }
+    }
+
+    /// Adds a flight's whitened rows. They wait until there are many, whose products are made faster.
+    pub(crate) fn add(&mut self, rows: &Mat<f64>) {
+        self.gram.rows += rows.nrows();
+        if self.waiting_rows + rows.nrows() > self.waiting.nrows() {
+            self.multiply_waiting();
+        }
+        if rows.nrows() > self.waiting.nrows() {
+            add_gram(&mut self.gram.matrix, rows.as_ref());
+            return;
+        }
+        let range = self.waiting_rows..self.waiting_rows + rows.nrows();
+        for column in 0..rows.ncols() {
+            self.waiting.col_as_slice_mut(column)[range.clone()]
+                .copy_from_slice(rows.col_as_slice(column));
+        }
+        self.waiting_rows = range.end;
+    }
+
+    pub(crate) fn finish(mut self) -> Gram {
+        self.multiply_waiting();
+        symmetrize(&mut self.gram.matrix);
+        self.gram
+    }
+
+    fn multiply_waiting(&mut self) {
+        add_gram(&mut self.gram.matrix, self.waiting.subrows(0, self.waiting_rows));
+        self.waiting_rows = 0;
+    }
+}
+
+impl Gram {
+    /// Posterior means of the sizes of `columns` with independent normal priors about 0, all other columns left out; `None`
+    /// where the matrix is not positive definite.
+    pub(crate) fn fit(
+        &self,
+        columns: &[usize],
+        deviations: &[f64],
+        residual: usize,
+    ) -> Option<Mat<f64>> {
+        let gram = &self.matrix;
+        let mut normal =
+            Mat::from_fn(columns.len(), columns.len(), |i, j| gram[(columns[i], columns[j])]);
+        for (k, deviation) in deviations.iter().enumerate() {
+            normal[(k, k)] += 1.0 / (deviation * deviation);
+        }
+        let mut sizes = Mat::from_fn(columns.len(), 1, |i, _| gram[(columns[i], residual)]);
+        Factor::of(&normal)?.solve(&mut sizes);
+        Some(sizes)
+    }
+}

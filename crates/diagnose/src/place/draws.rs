@@ -1,0 +1,240 @@
+//! What noise alone would make of the residuals: draws of everything that is uncertain.
+//!
+//! Sensors within a segment, what a flight has in common, and what the model does not know for sure (remainder, split
+//! between engines, environment, chords and nodes of the table), which is the same for all flights.
+
+use faer::Mat;
+use lut::Outside;
+
+use crate::math::cholesky::Factor;
+use crate::math::random::Source;
+use crate::residuals::rows::SegmentRow;
+use crate::search::system::Stacked;
+
+/// How noisy the flights are beyond what the sensors announce.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level {
+    /// Factor on the noise's standard deviations.
+    pub(crate) factor: f64,
+    /// Scatter of fuel flow from flight to flight beyond that, relative.
+    pub(crate) scatter: f64,
+}
+
+/// Rows of numbers, one a draw.
+#[derive(Clone, Debug, Default)]
+struct Rows {
+    width: usize,
+    numbers: Vec<f64>,
+}
+
+impl Rows {
+    fn normal(source: &mut Source, rows: usize, width: usize) -> Self {
+        let mut numbers = vec![0.0; rows * width];
+        source.fill(&mut numbers);
+        Self { width, numbers }
+    }
+
+    fn row(&self, index: usize) -> &[f64] {
+        &self.numbers[index * self.width..(index + 1) * self.width]
+    }
+
+    fn row_mut(&mut self, index: usize) -> &mut [f64] {
+        &mut self.numbers[index * self.width..(index + 1) * self.width]
+    }
+}
+
+fn add(into: &mut [f64], from: &[f64], by: f64) {
+    for (slot, value) in into.iter_mut().zip(from) {
+        *slot += by * value;
+    }
+}
+
+/// What all flights have in common in each draw.
+struct Model {
+    taught: Option<Rows>,
+    smooth: Option<Rows>,
+    chords: Rows,
+    nodes: Option<Rows>,
+}
+
+impl Model {
+    fn draw(stacked: &Stacked<'_>, source: &mut Source, width: usize) -> Self {
+        let design = stacked.design;
+        let taught = design.baseline().map(|baseline| {
+            let factor = baseline.factor();
+            let unit = Rows::normal(source, factor.ncols(), width);
+            let mut rows = Rows { width, numbers: vec![0.0; factor.nrows() * width] };
+            for k in 0..factor.nrows() {
+                for j in 0..factor.ncols() {
+                    add(rows.row_mut(k), unit.row(j), factor[(k, j)]);
+                }
+            }
+            rows
+        });
+        let tau = stacked.clean_tau();
+        let smooth = (tau > 0.0).then(|| {
+            let mut rows = Rows::normal(source, design.smooth_terms(), width);
+            for number in &mut rows.numbers {
+                *number *= tau;
+            }
+            rows
+        });
+        let chords = Rows::normal(source, 2, width);
+        let nodes = design.table().map(|table| {
+            let unit = Rows::normal(source, table.rank(), width);
+            let nodes = table.grid().nodes();
+            let mut rows = Rows { width, numbers: vec![0.0; nodes * width] };
+            for node in 0..nodes {
+                for (k, &value) in table.row(node).iter().enumerate() {
+                    if value != 0.0 {
+                        add(rows.row_mut(node), unit.row(k), value);
+                    }
+                }
+            }
+            rows
+        });
+        Self { taught, smooth, chords, nodes }
+    }
+
+    /// Adds what the model does not know, at a segment, to fuel flow and contrasts.
+    fn add_at(
+        &self,
+        stacked: &Stacked<'_>,
+        row: &SegmentRow,
+        chords: [f64; 2],
+        terms: &mut Vec<f64>,
+        into: &mut [Vec<f64>],
+    ) {
+        let design = stacked.design;
+        if let (Some(taught), Some(baseline)) = (&self.taught, design.baseline()) {
+            let count = baseline.remainder_terms();
+            terms.resize(count, 0.0);
+            baseline.write_remainder(&row.response, terms);
+            for (k, &term) in terms.iter().enumerate().filter(|(_, term)| **term != 0.0) {
+                add(&mut into[0], taught.row(k), term);
+            }
+            let contrasts = into.iter_mut().enumerate().skip(1).take(baseline.contrasts());
+            for (contrast, values) in contrasts.filter(|(contrast, _)| row.is_recorded[*contrast]) {
+                add(values, taught.row(count + contrast - 1), 1.0);
+            }
+            // Behind remainder, split and deck: the environment, as the columns of the design are.
+            let first = taught.numbers.len() / taught.width - row.environment.len();
+            for (k, slope) in row.environment.iter().enumerate() {
+                for (channel, values) in into.iter_mut().enumerate() {
+                    if slope[channel] != 0.0 {
+                        add(values, taught.row(first + k), slope[channel]);
+                    }
+                }
+            }
+        }
+        if let Some(smooth) = &self.smooth {
+            terms.resize(design.smooth_terms(), 0.0);
+            design.write_smooth(row, terms);
+            for (k, &term) in terms.iter().enumerate().filter(|(_, term)| **term != 0.0) {
+                add(&mut into[0], smooth.row(k), term);
+            }
+        }
+        for (k, chord) in chords.into_iter().enumerate() {
+            add(&mut into[0], self.chords.row(k), chord);
+        }
+        if let (Some(nodes), Some(table)) = (&self.nodes, design.table()) {
+            let response = &row.response;
+            let cell = table.grid().locate(response.lift_coefficient, response.mach, Outside::Hold);
+            if let Ok(cell) = cell {
+                for (node, weight) in cell.nodes().into_iter().zip(cell.weights()) {
+                    add(&mut into[0], nodes.row(node), weight * row.drag_over_thrust);
+                }
+            }
+        }
+    }
+}
+
+/// How far chords of the drag table may be off in fuel flow, relative, along lift coefficient and Mach number, at every
+/// segment. A taught remainder was taught on the same chords: of them only counts what its functions cannot follow
+/// (least squares).
+pub(crate) fn chords(stacked: &Stacked<'_>) -> Vec<[f64; 2]> {
+    let segments = &stacked.data.segments;
+    let mut chords: Vec<[f64; 2]> =
+        segments.iter().map(|row| row.chords.map(|chord| chord * row.drag_over_thrust)).collect();
+    let Some(baseline) = stacked.design.baseline() else { return chords };
+    let count = baseline.remainder_terms();
+    let mut terms = vec![0.0; count];
+    let mut normal = Mat::<f64>::zeros(count, count);
+    let mut right = Mat::<f64>::zeros(count, 2);
+    for (row, chord) in segments.iter().zip(&chords) {
+        baseline.write_remainder(&row.response, &mut terms);
+        for i in 0..count {
+            for (k, value) in chord.iter().enumerate() {
+                right[(i, k)] += terms[i] * value;
+            }
+            for j in 0..=i {
+                normal[(i, j)] += terms[i] * terms[j];
+            }
+        }
+    }
+    // Hats sum to nothing, and some terms are zero within the range flown: a ridge of a millionth holds them.
+    for i in 0..count {
+        normal[(i, i)] += 1e-6 * segments.len() as f64;
+    }
+    let Some(factor) = Factor::of(&normal) else { return chords };
+    factor.solve(&mut right);
+    for (row, chord) in segments.iter().zip(&mut chords) {
+        baseline.write_remainder(&row.response, &mut terms);
+        for (k, value) in chord.iter_mut().enumerate() {
+            *value -= (0..count).map(|i| terms[i] * right[(i, k)]).sum::<f64>();
+        }
+    }
+    chords
+}
+
+/// Draws `width` times the residuals of every segment, channel by channel, and hands them over segment by segment.
+///
+/// ```text
+/// e = k·(L z_segment + Σ_r u_r z_flight,r) + s·z_flight + N z,   every z of N(0, 1)                [diagnosis.24]
+/// ```
+///
+/// k and s: [`Level`]; L and u: \[diagnosis.14\]; N: the columns of what the model does not know.
+pub(crate) fn draw(
+    stacked: &Stacked<'_>,
+    level: Level,
+    chords: &[[f64; 2]],
+    source: &mut Source,
+    width: usize,
+    mut each: impl FnMut(usize, &[Vec<f64>]),
+) {
+    let data = stacked.data;
+    let channels = 1 + data.channels.contrasts;
+    let model = Model::draw(stacked, source, width);
+    let mut values = vec![vec![0.0; width]; channels];
+    let mut own = vec![vec![0.0; width]; channels];
+    let mut terms = Vec::new();
+    for flight in &data.flights {
+        let rank = data.segments[flight.segments.start].noise.common.len();
+        let common = Rows::normal(source, rank + 1, width);
+        for index in flight.segments.clone() {
+            let row = &data.segments[index];
+            for channel in 0..channels {
+                source.fill(&mut own[channel]);
+                values[channel].fill(0.0);
+                if !row.is_recorded[channel] {
+                    continue;
+                }
+                let (before, _) = own.split_at(channel + 1);
+                for (k, unit) in before.iter().enumerate() {
+                    let by = level.factor * row.noise.factor[channel][k];
+                    if by != 0.0 {
+                        add(&mut values[channel], unit, by);
+                    }
+                }
+                for (k, loading) in row.noise.common.iter().enumerate() {
+                    if loading[channel] != 0.0 {
+                        add(&mut values[channel], common.row(k), level.factor * loading[channel]);
+                    }
+                }
+            }
+            add(&mut values[0], common.row(rank), level.scatter);
+            model.add_at(stacked, row, chords[index], &mut terms, &mut values);
+            each(index, &values);
+        }
+    }
+}

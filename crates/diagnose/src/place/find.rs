@@ -1,0 +1,463 @@
+//! Where the gap lies: readable places, each with a p-value that accounts for the search.
+//!
+//! Difficult: the sums over all places of one and two variables are taken at once, by prefix sums over bins, for the
+//! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
+//! is linear in segments.
+
+use std::collections::BTreeMap;
+
+use crate::math::random::Source;
+use crate::output::Slice;
+use crate::place::binned_variable::{ENGINE, Place, places};
+use crate::place::draws::{Level, chords, draw};
+use crate::place::likelihood::Noise;
+use crate::place::null::Null;
+use crate::place::regions::{Candidate, Search, Series};
+use crate::search::analyse::Analysis;
+use crate::search::system::Stacked;
+use crate::signals::channels::MAXIMUM_CHANNELS;
+
+/// Draws of noise: the first half for standard deviations, the second for the largest statistic.
+const DRAWS: usize = 400;
+/// Draws that are summed together.
+const GROUP: usize = 40;
+/// Places at most.
+const MOST: usize = 3;
+/// Probability of as large a statistic by noise alone, above which a place is not told.
+const SIGNIFICANT: f64 = 0.05;
+/// Fewest flights in a place.
+const FEWEST_FLIGHTS: usize = 3;
+/// Resamples of flights.
+const RESAMPLES: usize = 1000;
+/// Places whose statistic is at least this share of the largest are told apart by how well a step over them fits.
+const NEARLY: f64 = 0.9;
+/// At most as many of them.
+const MOST_COMPARED: usize = 200;
+/// Falls of χ² that differ by less are of one place and its complement.
+const EQUAL: f64 = 1e-6;
+
+/// The gap, segment by segment, as the search sees and changes it.
+#[derive(Clone, Debug)]
+struct Gaps {
+    /// Of fuel flow.
+    total: Vec<f64>,
+    /// Of each engine, less the mean of all engines.
+    apart: Vec<Vec<f64>>,
+}
+
+/// Places where the gap lies, most striking first; `everywhere` where it is real and has none.
+///
+/// ```text
+/// T = |Σ_{i in place} (y_i − ȳ)| / sd0,  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
+/// ```
+///
+/// # Errors of method
+/// Sizes are those of the place that stands out most, which is a little more than it is (winner's curse).
+pub(crate) fn find(
+    stacked: &Stacked<'_>,
+    analysis: &Analysis,
+    noise_scale: f64,
+    is_real: bool,
+    seed: u64,
+) -> Vec<Slice> {
+    let data = stacked.data;
+    let places = places(&data.segments, stacked.design.references());
+    let engines = if data.channels.contrasts > 0 { data.channels.contrasts + 1 } else { 0 };
+    let search = Search::of(&places, data.segments.len(), engines);
+    let mut source = Source::new(seed, 1);
+    let level = level(stacked, analysis, noise_scale);
+    let (null, variances) = null_of(stacked, &search, level, &mut source);
+
+    let as_recorded = gaps(stacked);
+    let noise = Noise::of(stacked, level);
+    let mut left = expected_errors_removed(stacked, &as_recorded);
+    let told = Told { stacked, places: &places, gaps: &as_recorded, variances: &variances };
+    let mut found = Vec::new();
+    let mut everywhere = (1.0, None);
+    while found.len() < MOST {
+        let statistics = statistics(&search, &null, &left);
+        if found.is_empty() {
+            let level = search.candidates.iter().position(Candidate::is_everywhere);
+            everywhere = (level.map_or(1.0, |k| null.p_value_everywhere(statistics[k])), level);
+        }
+        let Some((index, members)) = best(&search, &statistics, &told, &left, &noise) else {
+            break;
+        };
+        let p_value = null.p_value(statistics[index]);
+        if p_value > SIGNIFICANT {
+            break;
+        }
+        let candidate = &search.candidates[index];
+        found.push(told.slice(candidate, &members, p_value, seed));
+        take_out(&mut left, candidate, &members, engines);
+    }
+    if let (p_value, Some(index)) = everywhere
+        && found.is_empty()
+        && is_real
+        && p_value <= SIGNIFICANT
+    {
+        let members: Vec<usize> = (0..data.segments.len()).collect();
+        found.push(told.slice(&search.candidates[index], &members, p_value, seed));
+    }
+    found
+}
+
+/// Noise as the best model finds it, never less than announced.
+fn level(stacked: &Stacked<'_>, analysis: &Analysis, noise_scale: f64) -> Level {
+    let best = analysis.models.first().map(|(scored, _)| scored);
+    let background = best.and_then(|scored| analysis.backgrounds.get(scored.background));
+    let integrated = background.map_or(0.0, |at| stacked.scatter(at.scatter));
+    let heating = best.and_then(|scored| scored.model.heating_percent).map_or(0.0, |p| p / 100.0);
+    Level { factor: noise_scale.max(1.0).sqrt(), scatter: integrated.max(heating) }
+}
+
+/// What noise alone does to every place; and the variance that it gives each segment's fuel flow.
+fn null_of(
+    stacked: &Stacked<'_>,
+    search: &Search<'_>,
+    level: Level,
+    source: &mut Source,
+) -> (Null, Vec<f64>) {
+    let engines = stacked.data.channels.contrasts + 1;
+    let chords = chords(stacked);
+    let mut squares = vec![0.0; search.candidates.len()];
+    let mut variances = vec![0.0; stacked.data.segments.len()];
+    let mut values = vec![vec![0.0; GROUP]; search.series().len()];
+    let mut group = |source: &mut Source| {
+        let mut sums = search.sums(GROUP);
+        draw(stacked, level, &chords, source, GROUP, |segment, channels| {
+            values[0].copy_from_slice(&channels[0]);
+            for draw in 0..if search.series().len() > 1 { GROUP } else { 0 } {
+                let mut contrasts = [0.0; MAXIMUM_CHANNELS];
+                for (slot, channel) in contrasts.iter_mut().zip(&channels[1..]) {
+                    *slot = channel[draw];
+                }
+                let apart = engines_apart(&contrasts[..engines - 1]);
+                for (values, value) in values[1..].iter_mut().zip(apart) {
+                    values[draw] = value;
+                }
+            }
+            variances[segment] += channels[0].iter().map(|v| v * v).sum::<f64>() / DRAWS as f64;
+            search.add(&mut sums, segment, &values);
+        });
+        sums
+    };
+    for _ in 0..DRAWS / 2 / GROUP {
+        let sums = group(source);
+        search.for_each(&sums, |index, sums| {
+            squares[index] += sums.iter().map(|sum| sum * sum).sum::<f64>();
+        });
+    }
+    let mut null = Null::of(&squares, DRAWS / 2);
+    for _ in 0..DRAWS / 2 / GROUP {
+        let sums = group(source);
+        null.add(search, &sums);
+    }
+    (null, variances)
+}
+
+/// ln of each engine's fuel flow less the mean of all, from the contrasts between the first k engines and the next.
+///
+/// ```text
+/// c_k = (m_k − l_(k+1))·√(2k/(k + 1)),  m_k the mean of the first k;  m_n = 0
+/// ```
+fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
+    let mut apart = [0.0; MAXIMUM_CHANNELS];
+    let mut mean = 0.0;
+    for k in (1..=contrasts.len()).rev() {
+        let difference = contrasts[k - 1] / (2.0 * k as f64 / (k + 1) as f64).sqrt();
+        // The mean of k + 1 is that of k less difference/(k + 1).
+        mean += difference / (k + 1) as f64;
+        apart[k] = mean - difference;
+    }
+    apart[0] = mean;
+    apart
+}
+
+fn gaps(stacked: &Stacked<'_>) -> Gaps {
+    let data = stacked.data;
+    let contrasts = data.channels.contrasts;
+    let total = data.segments.iter().map(|row| row.residual[0]).collect();
+    let mut apart = vec![
+        Vec::with_capacity(data.segments.len());
+        if contrasts > 0 { contrasts + 1 } else { 0 }
+    ];
+    for row in &data.segments {
+        let of_segment = engines_apart(&row.residual[1..=contrasts]);
+        for (series, value) in apart.iter_mut().zip(of_segment) {
+            series.push(value);
+        }
+    }
+    Gaps { total, apart }
+}
+
+/// Takes out of fuel flow what the error of the recorded acceleration makes of it, as far as the recording itself tells;
+/// and weighs outliers down, where heavy tails were found.
+///
+/// A recorded acceleration that is far from the mean is partly in error, and the error is in the residual: without this,
+/// slices over acceleration would stand out in every recording.
+///
+/// ```text
+/// E(δ | V̇G) = (V̇G − mean)·σ_δ²/var(V̇G),   ∂ ln Wf/∂V̇G = m/F                                    [diagnosis.27]
+/// ```
+fn expected_errors_removed(stacked: &Stacked<'_>, gaps: &Gaps) -> Gaps {
+    let segments = &stacked.data.segments;
+    let count = segments.len() as f64;
+    let mean = segments.iter().map(|row| row.point.acceleration_m_s2).sum::<f64>() / count;
+    let variance =
+        segments.iter().map(|row| (row.point.acceleration_m_s2 - mean).powi(2)).sum::<f64>()
+            / count;
+    let mut left = gaps.clone();
+    for (index, (row, gap)) in segments.iter().zip(&mut left.total).enumerate() {
+        if variance > 0.0 {
+            // A recording that varies less than its sensor announces is all error.
+            let share = (row.acceleration_deviation_m_s2.powi(2) / variance).min(1.0);
+            let slope = row.point.mass_kg / row.response.net_thrust_n;
+            *gap += slope * share * (row.point.acceleration_m_s2 - mean);
+        }
+        *gap *= stacked.weights.as_ref().map_or(1.0, |weights| weights[index]);
+    }
+    left
+}
+
+fn statistics(search: &Search<'_>, null: &Null, gaps: &Gaps) -> Vec<f64> {
+    let mut sums = search.sums(1);
+    let mut values = vec![vec![0.0]; search.series().len()];
+    for segment in 0..gaps.total.len() {
+        for (values, series) in values.iter_mut().zip(search.series()) {
+            values[0] = match series {
+                Series::FuelFlow => gaps.total[segment],
+                Series::Engine(engine) => gaps.apart[*engine][segment],
+            };
+        }
+        search.add(&mut sums, segment, &values);
+    }
+    let mut statistics = vec![0.0; search.candidates.len()];
+    search.for_each(&sums, |index, sum| statistics[index] = null.statistic(search, index, sum[0]));
+    statistics
+}
+
+/// The place that stands out most, with its segments. Variables hang together, so that several places stand out nearly
+/// alike: of those a step over the place decides, which fits best by likelihood; of a place and its complement, which fit
+/// alike, the larger gap.
+fn best(
+    search: &Search<'_>,
+    statistics: &[f64],
+    told: &Told<'_>,
+    left: &Gaps,
+    noise: &Noise<'_>,
+) -> Option<(usize, Vec<usize>)> {
+    let mut order: Vec<usize> = (0..search.candidates.len())
+        .filter(|&index| !search.candidates[index].is_everywhere())
+        .collect();
+    order.sort_by(|&a, &b| statistics[b].total_cmp(&statistics[a]));
+    let members = |index: &usize| -> Vec<usize> {
+        let segments = 0..told.gaps.total.len();
+        segments.filter(|&k| search.candidates[*index].holds(told.places, k)).collect()
+    };
+    let enough = |index: &usize| told.flights_of(&members(index)) >= FEWEST_FLIGHTS;
+    let first = order.iter().copied().find(enough)?;
+    if search.candidates[first].series != Series::FuelFlow {
+        return Some((first, members(&first)));
+    }
+    let compared: Vec<usize> = order
+        .into_iter()
+        .skip_while(|&index| index != first)
+        .take_while(|&index| statistics[index] >= NEARLY * statistics[first])
+        .filter(|&index| search.candidates[index].series == Series::FuelFlow)
+        .filter(enough)
+        .take(MOST_COMPARED)
+        .collect();
+    let steps = compared.iter().map(|index| {
+        let mut step = vec![0.0; left.total.len()];
+        for segment in members(index) {
+            step[segment] = 1.0;
+        }
+        step
+    });
+    let falls = noise.falls(&left.total, steps);
+    let weighed: Vec<f64> = compared
+        .iter()
+        .zip(&falls)
+        .map(|(&index, fall)| fall * search.candidates[index].weight().powi(2))
+        .collect();
+    let largest = weighed.iter().copied().fold(0.0, f64::max);
+    compared
+        .into_iter()
+        .zip(weighed)
+        .filter(|(_, fall)| *fall >= largest * (1.0 - EQUAL))
+        .map(|(index, _)| {
+            let inside = members(&index);
+            (told.mean(&search.candidates[index], &inside).abs(), index, inside)
+        })
+        // The first of equals, so that the order of variables decides.
+        .reduce(|a, b| if b.0 > a.0 { b } else { a })
+        .map(|(_, index, inside)| (index, inside))
+}
+
+/// Takes out what makes a place stand out: its excess over the rest, or what its engine does apart from the others.
+fn take_out(left: &mut Gaps, candidate: &Candidate, members: &[usize], engines: usize) {
+    let count = members.len() as f64;
+    let mean_of = |values: &[f64]| members.iter().map(|&k| values[k]).sum::<f64>() / count;
+    match candidate.series {
+        Series::FuelFlow => {
+            let inside = mean_of(&left.total);
+            let all: f64 = left.total.iter().sum();
+            let outside = (all - inside * count) / (left.total.len() as f64 - count).max(1.0);
+            for &segment in members {
+                left.total[segment] -= inside - outside;
+            }
+        }
+        Series::Engine(engine) => {
+            // An engine alone that is off by θ shows θ/n in all fuel flow, θ(1 − 1/n) apart, and −θ/n at the others.
+            let own = mean_of(&left.apart[engine]);
+            let others = own / (engines as f64 - 1.0);
+            for &segment in members {
+                left.total[segment] -= others;
+                for (index, series) in left.apart.iter_mut().enumerate() {
+                    series[segment] -= if index == engine { own } else { -others };
+                }
+            }
+        }
+    }
+}
+
+/// What a place is told with.
+struct Told<'a> {
+    stacked: &'a Stacked<'a>,
+    places: &'a [Place],
+    gaps: &'a Gaps,
+    variances: &'a [f64],
+}
+
+impl Told<'_> {
+    fn flights_of(&self, members: &[usize]) -> usize {
+        self.by_flight(members, |_| 1.0).len()
+    }
+
+    /// Sums and counts of the flights that have segments in a place.
+    fn by_flight(&self, members: &[usize], value: impl Fn(usize) -> f64) -> Vec<(f64, f64)> {
+        let mut sums = Vec::new();
+        let mut members = members.iter().copied().peekable();
+        for flight in &self.stacked.data.flights {
+            let (mut sum, mut count) = (0.0, 0.0);
+            while let Some(segment) = members.next_if(|segment| *segment < flight.segments.end) {
+                sum += value(segment);
+                count += 1.0;
+            }
+            if count > 0.0 {
+                sums.push((sum, count));
+            }
+        }
+        sums
+    }
+
+    /// The engine that a place is told of: of two engines, whose series is one, the one whose own gap is larger.
+    fn engine(&self, candidate: &Candidate, members: &[usize]) -> Option<usize> {
+        let Series::Engine(engine) = candidate.series else { return None };
+        if self.gaps.apart.len() != 2 {
+            return Some(engine);
+        }
+        let size = |engine| members.iter().map(|&k| self.value(Some(engine), k)).sum::<f64>().abs();
+        Some(usize::from(size(1) > size(0)))
+    }
+
+    fn value(&self, engine: Option<usize>, segment: usize) -> f64 {
+        self.gaps.total[segment] + engine.map_or(0.0, |engine| self.gaps.apart[engine][segment])
+    }
+
+    fn mean(&self, candidate: &Candidate, members: &[usize]) -> f64 {
+        let engine = self.engine(candidate, members);
+        members.iter().map(|&k| self.value(engine, k)).sum::<f64>() / members.len() as f64
+    }
+
+    fn slice(&self, candidate: &Candidate, members: &[usize], p_value: f64, seed: u64) -> Slice {
+        let engine = self.engine(candidate, members);
+        let by_flight = self.by_flight(members, |segment| self.value(engine, segment));
+        let mut words = Vec::new();
+        let mut bounds = BTreeMap::new();
+        if let Some(engine) = engine {
+            let number = (engine + 1) as f64;
+            words.push(format!("engine {number}"));
+            bounds.insert(ENGINE.to_owned(), [Some(number), Some(number)]);
+        }
+        for &(place, low, high) in candidate.ranges.iter().flatten() {
+            words.push(self.places[place].words(low, high));
+            let (name, range) = self.places[place].bounds(low, high);
+            bounds.insert(name, range);
+        }
+        if words.is_empty() {
+            words.push("everywhere".to_owned());
+        }
+        Slice {
+            slice: words.join(" and "),
+            bounds,
+            segments: members.len(),
+            mean_gap_percent: 100.0 * self.mean(candidate, members),
+            ci95: bootstrap_mean(&by_flight, seed).map(|end| 100.0 * end),
+            share_of_gap: self.share(engine, members),
+            p_value,
+        }
+    }
+
+    /// Share of the explainable gap; an engine's is what it has in it. 0 where there is no more than noise.
+    ///
+    /// ```text
+    /// Σ_place (y² − σ²)/Σ (y² − σ²);   of engine k of n  Σ_place (y·y_k − σ²)/n / Σ (y² − σ²)         [diagnosis.28]
+    /// ```
+    fn share(&self, engine: Option<usize>, members: &[usize]) -> f64 {
+        let of = |segment: usize, engine: Option<usize>| {
+            self.gaps.total[segment] * self.value(engine, segment) - self.variances[segment]
+        };
+        let whole: f64 = (0..self.gaps.total.len()).map(|segment| of(segment, None)).sum();
+        let inside: f64 = members.iter().map(|&segment| of(segment, engine)).sum();
+        let engines = engine.map_or(1.0, |_| self.gaps.apart.len() as f64);
+        if whole > 0.0 { inside / engines / whole } else { 0.0 }
+    }
+}
+
+/// 95 % interval of a mean, whole flights drawn with replacement.
+fn bootstrap_mean(by_flight: &[(f64, f64)], seed: u64) -> [f64; 2] {
+    let mut source = Source::new(seed, 2);
+    let mut means: Vec<f64> = (0..RESAMPLES)
+        .map(|_| {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for _ in 0..by_flight.len() {
+                let (of_flight, segments) = by_flight[source.below(by_flight.len())];
+                sum += of_flight;
+                count += segments;
+            }
+            sum / count
+        })
+        .collect();
+    means.sort_by(f64::total_cmp);
+    let last = RESAMPLES - 1;
+    [means[last / 40], means[last - last / 40]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn engines_apart_by_hand() {
+        // Two: ln(Wf1/Wf2) = 0.02 is ±0.01. Four: l = (0.03, −0.01, −0.01, −0.01) has mean 0; contrasts (l1 − l2)·1,
+        // ((l1 + l2)/2 − l3)·√(4/3) = 0.02·√(4/3), ((l1 + l2 + l3)/3 − l4)·√1.5 = (0.01/3 + 0.01)·√1.5.
+        let two = engines_apart(&[0.02]);
+        assert!((two[0] - 0.01).abs() < 1e-15 && (two[1] + 0.01).abs() < 1e-15);
+        let contrasts = [0.04, 0.02 * (4.0_f64 / 3.0).sqrt(), (0.01 / 3.0 + 0.01) * 1.5_f64.sqrt()];
+        let four = engines_apart(&contrasts);
+        for (found, expected) in four.iter().zip([0.03, -0.01, -0.01, -0.01]) {
+            assert!((found - expected).abs() < 1e-15, "{four:?}");
+        }
+    }
+
+    #[test]
+    fn bootstrap_of_many_equal_flights() {
+        // 400 flights whose means are ±1 alternately: standard error 1/√400 = 0.05, interval ±0.098.
+        let flights: Vec<(f64, f64)> =
+            (0..400).map(|k| (if k % 2 == 0 { 10.0 } else { -10.0 }, 10.0)).collect();
+        let [low, high] = bootstrap_mean(&flights, 3);
+        assert!((low + 0.098).abs() < 0.012 && (high - 0.098).abs() < 0.012, "{low} {high}");
+    }
+}

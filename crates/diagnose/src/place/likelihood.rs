@@ -1,0 +1,126 @@
+//! How much better a step over a place fits the gap, with the noise that flights have in common taken into account.
+
+use faer::Mat;
+
+use crate::math::cholesky::Factor;
+use crate::place::draws::Level;
+use crate::search::system::Stacked;
+
+/// Products aᵀC⁻¹b over all flights, C the noise of fuel flow: a segment's own, and what its flight has in common.
+pub(crate) struct Noise<'a> {
+    flights: Vec<OfFlight>,
+    stacked: &'a Stacked<'a>,
+}
+
+struct OfFlight {
+    /// 1/σ² of each segment.
+    weights: Vec<f64>,
+    /// Loadings of what is common, scaled by 1/σ²: one row a segment.
+    loadings: Vec<Vec<f64>>,
+    /// Of 1 + UᵀD⁻¹U.
+    inner: Option<Factor>,
+}
+
+/// A vector ready for products: C⁻¹·v needs its loadings only once.
+struct Projected {
+    /// Of each flight: L⁻¹·UᵀD⁻¹v.
+    common: Vec<Vec<f64>>,
+}
+
+impl<'a> Noise<'a> {
+    pub(crate) fn of(stacked: &'a Stacked<'a>, level: Level) -> Self {
+        let data = stacked.data;
+        let flights = data
+            .flights
+            .iter()
+            .map(|flight| {
+                let rows = &data.segments[flight.segments.clone()];
+                let scale = level.factor * level.factor;
+                let weights: Vec<f64> =
+                    rows.iter().map(|row| 1.0 / (scale * row.noise.factor[0][0].powi(2))).collect();
+                let plain: Vec<Vec<f64>> = rows
+                    .iter()
+                    .map(|row| {
+                        let common = row.noise.common.iter().map(|u| level.factor * u[0]);
+                        common.chain([level.scatter]).collect()
+                    })
+                    .collect();
+                let rank = plain.first().map_or(0, Vec::len);
+                let inner = Mat::from_fn(rank, rank, |i, j| {
+                    let product: f64 =
+                        plain.iter().zip(&weights).map(|(u, w)| u[i] * u[j] * w).sum();
+                    product + if i == j { 1.0 } else { 0.0 }
+                });
+                let loadings = plain
+                    .iter()
+                    .zip(&weights)
+                    .map(|(u, w)| u.iter().map(|u| u * w).collect())
+                    .collect();
+                OfFlight { weights, loadings, inner: Factor::of(&inner) }
+            })
+            .collect();
+        Self { flights, stacked }
+    }
+
+    fn projected(&self, values: &[f64]) -> Projected {
+        let ranges = self.stacked.data.flights.iter().map(|flight| flight.segments.clone());
+        let common = self
+            .flights
+            .iter()
+            .zip(ranges)
+            .map(|(flight, range)| {
+                let rank = flight.loadings.first().map_or(0, Vec::len);
+                let mut sums = Mat::<f64>::zeros(rank, 1);
+                for (loading, value) in flight.loadings.iter().zip(&values[range]) {
+                    for (k, u) in loading.iter().enumerate() {
+                        sums[(k, 0)] += u * value;
+                    }
+                }
+                if let Some(inner) = &flight.inner {
+                    inner.half_solve(&mut sums);
+                }
+                (0..rank).map(|k| sums[(k, 0)]).collect()
+            })
+            .collect();
+        Projected { common }
+    }
+
+    fn product(&self, a: (&[f64], &Projected), b: (&[f64], &Projected)) -> f64 {
+        let mut sum = 0.0;
+        for (index, flight) in self.flights.iter().enumerate() {
+            let range = self.stacked.data.flights[index].segments.clone();
+            let own: f64 = flight
+                .weights
+                .iter()
+                .zip(a.0[range.clone()].iter().zip(&b.0[range]))
+                .map(|(w, (a, b))| w * a * b)
+                .sum();
+            let shared: f64 =
+                a.1.common[index].iter().zip(&b.1.common[index]).map(|(a, b)| a * b).sum();
+            sum += own - shared;
+        }
+        sum
+    }
+
+    /// Fall of χ² by a step over a place, of any size, beside a level of any size.
+    ///
+    /// ```text
+    /// (xᵀC⁻¹y)²/xᵀC⁻¹x,  x the place less its projection on the level, products with C⁻¹             [diagnosis.29]
+    /// ```
+    pub(crate) fn falls(&self, gap: &[f64], places: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
+        let ones = vec![1.0; gap.len()];
+        let (level, gaps) = (self.projected(&ones), self.projected(gap));
+        let of_level = self.product((&ones, &level), (&ones, &level));
+        let level_of_gap = self.product((&ones, &level), (gap, &gaps));
+        places
+            .map(|place| {
+                let own = self.projected(&place);
+                let x = (&*place, &own);
+                let with_level = self.product(x, (&ones, &level));
+                let square = self.product(x, x) - with_level * with_level / of_level;
+                let slope = self.product(x, (gap, &gaps)) - with_level * level_of_gap / of_level;
+                if square > 0.0 { slope * slope / square } else { 0.0 }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,235 @@
+//! Sums over all places at once, by prefix sums over bins.
+
+use crate::place::binned_variable::{BINS, Place};
+
+/// Smallest and largest share of the segments that a place may hold.
+const SHARES: [f64; 2] = [0.05, 0.70];
+/// How much a second condition must raise the statistic.
+const SECOND_CONDITION: f64 = 1.15;
+
+/// What is summed: fuel flow about its mean, or one engine's difference from the mean of all, as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Series {
+    FuelFlow,
+    Engine(usize),
+}
+
+/// A place: bins `low..high` of one or two variables, of all engines or of one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Candidate {
+    pub(crate) series: Series,
+    /// Index of the variable, and its bins.
+    pub(crate) ranges: [Option<(usize, usize, usize)>; 2],
+    table: usize,
+    share: f64,
+}
+
+impl Candidate {
+    pub(crate) fn holds(&self, places: &[Place], segment: usize) -> bool {
+        self.ranges.iter().flatten().all(|&(place, low, high)| {
+            let bin = usize::from(places[place].bins[segment]);
+            (low..high).contains(&bin)
+        })
+    }
+
+    /// Everything: no condition at all.
+    pub(crate) fn is_everywhere(&self) -> bool {
+        self.series == Series::FuelFlow && self.ranges == [None; 2]
+    }
+
+    /// Of the statistic: less with a second condition.
+    pub(crate) fn weight(&self) -> f64 {
+        let engine = usize::from(self.series != Series::FuelFlow);
+        let conditions = engine + self.ranges.iter().flatten().count();
+        if conditions > 1 { 1.0 / SECOND_CONDITION } else { 1.0 }
+    }
+
+    fn corners(&self) -> [(usize, usize); 2] {
+        let [first, second] = self.ranges.map(|range| range.map_or((0, 1), |(_, l, h)| (l, h)));
+        [first, second]
+    }
+}
+
+/// Bins of up to two variables over which one series is summed.
+#[derive(Clone, Copy, Debug)]
+struct Table {
+    series: usize,
+    variables: [Option<usize>; 2],
+    offset: usize,
+}
+
+/// All places that are looked at.
+pub(crate) struct Search<'a> {
+    places: &'a [Place],
+    tables: Vec<Table>,
+    cells: usize,
+    /// Ordered by table.
+    pub(crate) candidates: Vec<Candidate>,
+    segments: usize,
+    series: Vec<Series>,
+}
+
+/// Sums over the bins of every table, `width` draws side by side.
+pub(crate) struct Sums {
+    pub(crate) width: usize,
+    cells: Vec<f64>,
+    /// Of each series, over all segments.
+    totals: Vec<Vec<f64>>,
+}
+
+impl<'a> Search<'a> {
+    /// `engines` that are looked at one by one (none where fuel flow is not recorded by engine).
+    pub(crate) fn of(places: &'a [Place], segments: usize, engines: usize) -> Self {
+        // Of two engines one series says all: the other's is its negative.
+        let apart = if engines == 2 { 1 } else { engines };
+        let series: Vec<Series> =
+            core::iter::once(Series::FuelFlow).chain((0..apart).map(Series::Engine)).collect();
+        let mut search =
+            Self { places, tables: vec![], cells: 0, candidates: vec![], segments, series };
+        for k in 0..search.series.len() {
+            search.table(k, [None; 2]);
+            for first in 0..places.len() {
+                search.table(k, [Some(first), None]);
+            }
+        }
+        for first in 0..places.len() {
+            for second in first + 1..places.len() {
+                search.table(0, [Some(first), Some(second)]);
+            }
+        }
+        search
+    }
+
+    fn table(&mut self, series: usize, variables: [Option<usize>; 2]) {
+        let [rows, columns] = variables.map(|v| v.map_or(1, |place| self.places[place].count()));
+        let table = self.tables.len();
+        self.tables.push(Table { series, variables, offset: self.cells });
+        self.cells += if variables[1].is_some() {
+            BINS * BINS
+        } else if variables[0].is_some() {
+            BINS
+        } else {
+            1
+        };
+        let mut counts = vec![0_usize; rows * columns];
+        for segment in 0..self.segments {
+            counts[self.bin(variables[0], segment) * columns + self.bin(variables[1], segment)] +=
+                1;
+        }
+        for (low, high) in intervals(rows, variables[0].is_some()) {
+            for (left, right) in intervals(columns, variables[1].is_some()) {
+                let count: usize = (low..high)
+                    .flat_map(|row| (left..right).map(move |column| row * columns + column))
+                    .map(|cell| counts[cell])
+                    .sum();
+                let share = count as f64 / self.segments as f64;
+                if variables[0].is_some() && !(SHARES[0]..=SHARES[1]).contains(&share) {
+                    continue;
+                }
+                let ranges = [
+                    variables[0].map(|place| (place, low, high)),
+                    variables[1].map(|place| (place, left, right)),
+                ];
+                let series = self.series[series];
+                self.candidates.push(Candidate { series, ranges, table, share });
+            }
+        }
+    }
+
+    fn bin(&self, place: Option<usize>, segment: usize) -> usize {
+        place.map_or(0, |place| usize::from(self.places[place].bins[segment]))
+    }
+
+    pub(crate) fn series(&self) -> &[Series] {
+        &self.series
+    }
+
+    pub(crate) fn sums(&self, width: usize) -> Sums {
+        Sums {
+            width,
+            cells: vec![0.0; self.cells * width],
+            totals: vec![vec![0.0; width]; self.series.len()],
+        }
+    }
+
+    /// Adds a segment: values of each series, one a draw.
+    pub(crate) fn add(&self, sums: &mut Sums, segment: usize, values: &[Vec<f64>]) {
+        let width = sums.width;
+        for (total, values) in sums.totals.iter_mut().zip(values) {
+            for (slot, value) in total.iter_mut().zip(values) {
+                *slot += value;
+            }
+        }
+        for table in &self.tables {
+            let [row, column] = table.variables.map(|place| self.bin(place, segment));
+            let cell = table.offset + if table.variables[1].is_some() { BINS * row } else { row };
+            let at = (cell + column) * width;
+            for (slot, value) in sums.cells[at..at + width].iter_mut().zip(&values[table.series]) {
+                *slot += value;
+            }
+        }
+    }
+
+    /// Hands over the sum over every place, about the mean where fuel flow is looked at, in the order of candidates.
+    ///
+    /// ```text
+    /// S = Σ_{i in place} (y_i − ȳ)
+    /// ```
+    pub(crate) fn for_each(&self, sums: &Sums, mut each: impl FnMut(usize, &[f64])) {
+        let width = sums.width;
+        let mut prefix = vec![0.0; (BINS + 1) * (BINS + 1) * width];
+        let mut out = vec![0.0; width];
+        let mut made = usize::MAX;
+        for (index, candidate) in self.candidates.iter().enumerate() {
+            if made != candidate.table {
+                made = candidate.table;
+                self.prefix(sums, made, &mut prefix);
+            }
+            let [(low, high), (left, right)] = candidate.corners();
+            let at = |row: usize, column: usize| {
+                let start = (row * (BINS + 1) + column) * width;
+                &prefix[start..start + width]
+            };
+            let corners = [at(high, right), at(low, right), at(high, left), at(low, left)];
+            let is_level = candidate.series != Series::FuelFlow || candidate.is_everywhere();
+            let share = if is_level { 0.0 } else { candidate.share };
+            let total = &sums.totals[self.tables[made].series];
+            for (k, slot) in out.iter_mut().enumerate() {
+                let inside = corners[0][k] - corners[1][k] - corners[2][k] + corners[3][k];
+                *slot = inside - share * total[k];
+            }
+            each(index, &out);
+        }
+    }
+
+    fn prefix(&self, sums: &Sums, table: usize, prefix: &mut [f64]) {
+        let width = sums.width;
+        let Table { variables, offset, .. } = self.tables[table];
+        let rows = if variables[0].is_some() { BINS } else { 1 };
+        let columns = if variables[1].is_some() { BINS } else { 1 };
+        for row in 0..rows {
+            for column in 0..columns {
+                let cell = (offset + row * columns + column) * width;
+                let at = |row: usize, column: usize| (row * (BINS + 1) + column) * width;
+                for k in 0..width {
+                    // Row 0 and column 0 of the prefix stay zero.
+                    prefix[at(row + 1, column + 1) + k] = sums.cells[cell + k]
+                        + prefix[at(row, column + 1) + k]
+                        + prefix[at(row + 1, column) + k]
+                        - prefix[at(row, column) + k];
+                }
+            }
+        }
+    }
+}
+
+/// Ranges of bins, all of them together left out unless there is only this one.
+fn intervals(bins: usize, is_variable: bool) -> Vec<(usize, usize)> {
+    if !is_variable {
+        return vec![(0, 1)];
+    }
+    (0..bins)
+        .flat_map(|low| (low + 1..=bins).map(move |high| (low, high)))
+        .filter(|(low, high)| high - low < bins)
+        .collect()
+}

@@ -1,0 +1,311 @@
+//! Segments made ready for the search: residuals of every channel, signatures of every column, noise.
+//!
+//! Everything is linear in the number of segments and lies segment by segment.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use flight::SegmentMeans;
+use flight::effect::EffectId;
+use perf_model::effects::{
+    AppliedEffects, EffectModel, EffectPoint, Effects, KnownPoint, Response, StepTarget,
+};
+use perf_model::variance::mean_acceleration_deviation_m_s2;
+
+use crate::baseline::Baseline;
+use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::library::Library;
+use crate::residuals::chords::chord_errors;
+use crate::residuals::gauges::gauge_row;
+use crate::residuals::predictor::Predictor;
+use crate::residuals::reference::Against;
+use crate::residuals::rows::{FlightRows, SegmentRow};
+use crate::residuals::signatures::Differences;
+use crate::signals::channels::{
+    ByChannel, Channels, MAXIMUM_CHANNELS, has_n2, mean_n2_percent, recorded_channels,
+};
+use crate::signals::n2_deck::Deck;
+use crate::signals::noise::{HEATING_LOADING, SegmentNoise, Statistics, add_wander, segment_noise};
+use crate::signals::record::FlightRecord;
+use crate::signals::record::GaugeBurn;
+
+/// Everything ready.
+#[derive(Clone, Debug)]
+pub(crate) struct Data<'a> {
+    pub(crate) channels: Channels,
+    pub(crate) predictor: Predictor<'a>,
+    pub(crate) flights: Vec<FlightRows>,
+    pub(crate) segments: Vec<SegmentRow>,
+    /// Segments that were left out, by reason.
+    pub(crate) left_out: BTreeMap<String, usize>,
+}
+
+/// A segment that the model can predict, before signatures.
+pub(crate) struct Inside<'a> {
+    /// Corrected by what the model contains.
+    pub(crate) means: Cow<'a, SegmentMeans>,
+    pub(crate) rows: &'a [u32],
+    pub(crate) point: EffectPoint,
+    pub(crate) known: KnownPoint,
+    pub(crate) response: Response,
+}
+
+impl Inside<'_> {
+    /// Says what thrust the recorded N2 stands for.
+    pub(crate) fn look_up_n2(&mut self, deck: &Deck) {
+        let by_n2_n = mean_n2_percent(&self.means)
+            .and_then(|percent| deck.corrected_thrust_n(percent, &self.response));
+        self.point.corrected_thrust_by_n2_n = by_n2_n;
+        self.known = self.known.with_corrected_thrust_by_n2(by_n2_n);
+    }
+}
+
+/// Collects what the model can predict, flight by flight.
+fn inside<'a>(
+    model: &EffectModel<'_>,
+    flights: &[FlightRecord<'a>],
+    left_out: &mut BTreeMap<String, usize>,
+) -> Vec<(Vec<Inside<'a>>, Option<GaugeBurn>)> {
+    let engines = model.aircraft().engines();
+    let mut all = Vec::with_capacity(flights.len());
+    for flight in flights {
+        let mut kept = Vec::with_capacity(flight.segments.len());
+        for segment in flight.segments {
+            #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
+            let start_s = segment.identity.start.as_second() as f64;
+            let found = model.corrected_means(&segment.means).and_then(|means| {
+                let point = EffectPoint::of_means(&means, start_s, engines);
+                let (known, response) = model.known_point(&point)?;
+                Ok(Inside { means, rows: &segment.rows, point, known, response })
+            });
+            let flow_kg_s = segment.means.fuel_flow_total_kg_s;
+            match found {
+                Ok(inside) if flow_kg_s.is_finite() && flow_kg_s > 0.0 => kept.push(inside),
+                Ok(_) => *left_out.entry("fuel flow not positive".to_owned()).or_default() += 1,
+                Err(error) => *left_out.entry(reason(&error).to_owned()).or_default() += 1,
+            }
+        }
+        if !kept.is_empty() {
+            all.push((kept, flight.gauges));
+        }
+    }
+    all
+}
+
+pub(crate) fn reason(error: &perf_model::effects::EffectError) -> &'static str {
+    use perf_model::effects::EffectError;
+    match error {
+        EffectError::OutsideTable { .. } => "outside the drag table",
+        EffectError::OutOfDomain(_) => "a mean outside its domain",
+        EffectError::ThrustNotPositive { .. } => "no thrust left",
+        _ => "not predictable",
+    }
+}
+
+impl<'a> Data<'a> {
+    /// Prepares the flights against a model. `effects` are already part of the model (none, as a rule).
+    pub(crate) fn prepare(
+        model: &EffectModel<'_>,
+        flights: &[FlightRecord<'_>],
+        against: Against<'a>,
+        library_of: impl FnOnce(&[EffectPoint], bool, &[f64]) -> Library,
+    ) -> (Self, Library) {
+        let mut left_out = BTreeMap::new();
+        let mut inside = inside(model, flights, &mut left_out);
+        let channels = channels_of(model, &inside);
+        let baseline = against.baseline();
+        let deck = deck_of(&inside, channels, baseline);
+        if channels.n2 {
+            for kept in inside.iter_mut().flat_map(|(segments, _)| segments) {
+                kept.look_up_n2(&deck);
+            }
+        }
+        let points: Vec<EffectPoint> =
+            inside.iter().flat_map(|(segments, _)| segments).map(|kept| kept.point).collect();
+        let starts: Vec<f64> =
+            inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
+        let library = library_of(&points, channels.contrasts > 0, &starts);
+        let statistics = against.statistics(model);
+
+        let mut data = Self {
+            channels,
+            predictor: Predictor { channels, deck, baseline },
+            flights: Vec::with_capacity(inside.len()),
+            segments: Vec::with_capacity(points.len()),
+            left_out,
+        };
+        let differences = Differences::of(model, &library, baseline.is_some());
+        for (segments, gauges) in inside {
+            let first = data.segments.len();
+            for segment in segments {
+                match data.row(model, &segment, &library, &differences, &statistics) {
+                    Ok(row) => data.segments.push(row),
+                    Err(error) => {
+                        *data.left_out.entry(reason(&error).to_owned()).or_default() += 1;
+                    }
+                }
+            }
+            add_wander_to(&mut data.segments[first..], &statistics, model);
+            if data.segments.len() > first {
+                let gauge =
+                    gauges.map(|burn| gauge_row(burn, model, &library, &data.segments[first..]));
+                data.flights.push(FlightRows { segments: first..data.segments.len(), gauge });
+            }
+        }
+        (data, library)
+    }
+
+    pub(crate) fn row(
+        &self,
+        model: &EffectModel<'_>,
+        kept: &Inside<'_>,
+        library: &Library,
+        differences: &Differences,
+        statistics: &Statistics,
+    ) -> Result<SegmentRow, perf_model::effects::EffectError> {
+        let channels = self.channels;
+        let deck = &self.predictor.deck;
+        let predict = |response: &Response| self.predictor.predict(response);
+        let (recorded, is_recorded) = recorded_channels(&kept.means, channels);
+        let predicted = predict(&kept.response);
+        let mut residual = [0.0; MAXIMUM_CHANNELS];
+        for channel in 0..channels.count() {
+            if is_recorded[channel] {
+                residual[channel] = recorded[channel] - predicted[channel];
+            }
+        }
+        let mut noise = segment_noise(
+            model,
+            &kept.point,
+            &Effects::none(),
+            kept.rows,
+            0.0,
+            is_recorded,
+            channels,
+            statistics,
+            &predict,
+        )?;
+        // Scatter between flights that the model contains is no gap: it adds to what a flight has in common.
+        let scatter = model.applied().map_or(0.0, AppliedEffects::fuel_heating_value_deviation);
+        if let Some(heating) = noise.common.get_mut(HEATING_LOADING) {
+            heating[0] = heating[0].hypot(scatter);
+        }
+        let mut row = SegmentRow {
+            point: kept.point,
+            known: kept.known,
+            response: kept.response,
+            environment: [[0.0; MAXIMUM_CHANNELS]; ENVIRONMENT.len()],
+            is_recorded,
+            residual,
+            signatures: Vec::with_capacity(library.columns.len()),
+            noise,
+            deck: deck.terms(&kept.response),
+            n2_slope: if channels.n2 { deck.slope(&kept.response) } else { 0.0 },
+            drag_over_thrust: kept.response.drag_over_thrust,
+            n2_percent: mean_n2_percent(&kept.means),
+            acceleration_deviation_m_s2: statistics.factors.within[0]
+                * mean_acceleration_deviation_m_s2(
+                    model.aircraft().sensors().acceleration_m_s2,
+                    kept.rows.len(),
+                ),
+            samples: kept.rows.len(),
+            chords: chord_errors(model, &kept.response),
+        };
+        for (slot, carried) in row.environment.iter_mut().zip(&differences.environment) {
+            *slot = carried
+                .signature(model, &row.known, row.is_recorded, &self.predictor)
+                .unwrap_or([0.0; MAXIMUM_CHANNELS]);
+        }
+        if let Some(baseline) = self.predictor.baseline {
+            for (slope, carried) in row.environment.iter().zip(baseline.environment()) {
+                #[expect(clippy::needless_range_loop, reason = "channels of two vectors")]
+                for channel in 0..channels.count() {
+                    row.residual[channel] -= carried * slope[channel];
+                }
+            }
+        }
+        // A step is the same whenever it began, and nothing before.
+        let mut steps: BTreeMap<StepTarget, ByChannel> = BTreeMap::new();
+        for (column, difference) in library.columns.iter().zip(&differences.columns) {
+            let effect = &library.effects[column.effect];
+            let is_step = effect.id == EffectId::StepChange;
+            if is_step && row.point.date_s < column.hidden.step_from_s {
+                row.signatures.push([0.0; MAXIMUM_CHANNELS]);
+                continue;
+            }
+            if let Some(known) = steps.get(&column.hidden.step_target).filter(|_| is_step) {
+                row.signatures.push(*known);
+                continue;
+            }
+            let found = difference.signature(model, &row.known, row.is_recorded, &self.predictor);
+            // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
+            let found = found.unwrap_or([0.0; MAXIMUM_CHANNELS]);
+            if is_step {
+                steps.insert(column.hidden.step_target, found);
+            }
+            row.signatures.push(found);
+        }
+        Ok(row)
+    }
+
+    /// Where N2 is recorded but stands for no thrust near the predicted one: how often.
+    pub(crate) fn thrust_by_n2_note(&self, library: &Library) -> Option<String> {
+        let recorded = self.segments.iter().filter(|row| row.n2_percent.is_some()).count();
+        let silent = |row: &&SegmentRow| {
+            row.n2_percent.is_some() && row.point.corrected_thrust_by_n2_n.is_none()
+        };
+        let silent = self.segments.iter().filter(silent).count();
+        let looked_for = library.effects.iter().any(|e| e.id == EffectId::TsfcThrottle);
+        (self.channels.n2 && looked_for && silent > 0).then(|| {
+            format!(
+                "N2 of {silent} of {recorded} segments stands for no thrust near the predicted one: \
+                 tsfc_throttle is over corrected thrust there"
+            )
+        })
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        self.segments.first().map_or(0, |row| row.signatures.len())
+    }
+}
+
+/// Adds what wanders within a flight to the noise of its segments.
+pub(crate) fn add_wander_to(
+    segments: &mut [SegmentRow],
+    statistics: &Statistics,
+    model: &EffectModel<'_>,
+) {
+    let times_s: Vec<f64> = segments.iter().map(|row| row.point.date_s).collect();
+    let mut noises: Vec<&mut SegmentNoise> =
+        segments.iter_mut().map(|row| &mut row.noise).collect();
+    let engines = model.aircraft().engines();
+    add_wander(&mut noises, &times_s, statistics.fuel_flow_wander, engines);
+}
+
+fn channels_of(
+    model: &EffectModel<'_>,
+    inside: &[(Vec<Inside<'_>>, Option<GaugeBurn>)],
+) -> Channels {
+    let engines = model.aircraft().engines();
+    let segments = || inside.iter().flat_map(|(segments, _)| segments);
+    let total = segments().count();
+    let half = |count: usize| 2 * count > total;
+    let split = segments().filter(|kept| kept.means.fuel_flow_engine_kg_s.len() == engines).count();
+    let n2 = segments().filter(|kept| has_n2(&kept.means)).count();
+    Channels { contrasts: if engines > 1 && half(split) { engines - 1 } else { 0 }, n2: half(n2) }
+}
+
+/// The deck that a baseline learnt, else least squares over the data at hand.
+fn deck_of(
+    inside: &[(Vec<Inside<'_>>, Option<GaugeBurn>)],
+    channels: Channels,
+    baseline: Option<&Baseline>,
+) -> Deck {
+    if let Some(deck) = baseline.and_then(Baseline::deck) {
+        return deck;
+    }
+    let segments = inside.iter().flat_map(|(segments, _)| segments).filter(|_| channels.n2);
+    let recorded: Vec<(&Response, f64)> =
+        segments.filter_map(|kept| Some((&kept.response, mean_n2_percent(&kept.means)?))).collect();
+    Deck::fitted(&recorded)
+}

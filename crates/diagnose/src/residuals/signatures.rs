@@ -1,0 +1,82 @@
+//! Signatures: what one unit of an effect changes in every channel, by central differences.
+
+use flight::effect::EffectId;
+use perf_model::effects::{EffectModel, Effects, HiddenParameters, KnownPoint, Trial};
+
+use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::library::Library;
+use crate::residuals::predictor::Predictor;
+use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
+
+/// Central difference of every channel with an effect, made ready for many segments.
+pub(crate) struct Difference {
+    up: Trial,
+    down: Trial,
+    /// In the effect's unit.
+    step: f64,
+}
+
+impl Difference {
+    /// About `at`, whose other effects stay.
+    pub(crate) fn of(
+        model: &EffectModel<'_>,
+        at: &Effects,
+        id: EffectId,
+        hidden: HiddenParameters,
+        step: f64,
+    ) -> Self {
+        let size = at.size(id);
+        let trial = |size: f64| model.trial(&at.clone().with(id, size).with_hidden(hidden));
+        Self { up: trial(size + step), down: trial(size - step), step }
+    }
+
+    pub(crate) fn signature(
+        &self,
+        model: &EffectModel<'_>,
+        point: &KnownPoint,
+        is_recorded: [bool; MAXIMUM_CHANNELS],
+        predictor: &Predictor<'_>,
+    ) -> Result<ByChannel, perf_model::effects::EffectError> {
+        let up = predictor.predict(&model.response_at(point, &self.up)?);
+        let down = predictor.predict(&model.response_at(point, &self.down)?);
+        let mut slope = [0.0; MAXIMUM_CHANNELS];
+        for channel in 0..predictor.channels.count() {
+            if is_recorded[channel] {
+                slope[channel] = (up[channel] - down[channel]) / (2.0 * self.step);
+            }
+        }
+        Ok(slope)
+    }
+}
+
+/// Differences of every column of a library, and of what a baseline carries.
+pub(crate) struct Differences {
+    pub(crate) columns: Vec<Difference>,
+    pub(crate) environment: Vec<Difference>,
+}
+
+impl Differences {
+    pub(crate) fn of(model: &EffectModel<'_>, library: &Library, has_baseline: bool) -> Self {
+        let none = Effects::none();
+        let columns = library
+            .columns
+            .iter()
+            .map(|column| {
+                let effect = &library.effects[column.effect];
+                let hidden = column.hidden;
+                Difference::of(model, &none, effect.id, hidden, 0.5 * effect.typical)
+            })
+            .collect();
+        // Only where there is a baseline to carry them, or one to be taught (then there is no library).
+        let carries = has_baseline || library.columns.is_empty();
+        let environment = ENVIRONMENT
+            .iter()
+            .filter(|_| carries)
+            .map(|carried| {
+                let step = 0.5 * model.references().typical_size(carried.id);
+                Difference::of(model, &none, carried.id, carried.hidden, step)
+            })
+            .collect();
+        Self { columns, environment }
+    }
+}

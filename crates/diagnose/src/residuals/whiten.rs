@@ -1,0 +1,75 @@
+//! Whitening: rows of a flight scaled so that their noise is independent and of unit variance.
+//!
+//! Difficult: the covariance of a flight is block diagonal by segment plus a few common errors. Segments are whitened
+//! by their own small Cholesky factor, then the flight by (1 + UUᵀ)^(−1/2), which differs from 1 only in the span of the
+//! few columns of U. That is exact, and linear in segments.
+
+use faer::{Mat, Side};
+
+use crate::residuals::rows::SegmentRow;
+use crate::residuals::segments::Data;
+use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
+
+/// L⁻¹·values with the segment's own Cholesky factor.
+pub(crate) fn half_whitened(row: &SegmentRow, values: &ByChannel, channels: usize) -> ByChannel {
+    let mut white = [0.0; MAXIMUM_CHANNELS];
+    for channel in 0..channels {
+        let inner: f64 = (0..channel).map(|k| row.noise.factor[channel][k] * white[k]).sum();
+        white[channel] = (values[channel] - inner) / row.noise.factor[channel][channel];
+    }
+    white
+}
+
+/// Whitens what the segments of a flight have in common: rows ← (1 + UUᵀ)^(−1/2)·rows.
+///
+/// ```text
+/// UᵀU = QΛQᵀ,  V = UQΛ^(−1/2),  (1 + UUᵀ)^(−1/2) = 1 − V·diag(1 − (1 + λ)^(−1/2))·Vᵀ        [diagnosis.16]
+/// ```
+///
+/// Returns `ln|1 + UᵀU|`, what the common errors add to the ln of the covariance's determinant.
+pub(crate) fn whiten_flight(
+    data: &Data<'_>,
+    segments: &[SegmentRow],
+    matrix: &mut Mat<f64>,
+) -> f64 {
+    let channels = data.channels.count();
+    let Some(rank) = segments.first().map(|row| row.noise.common.len()) else { return 0.0 };
+    let mut common = Mat::<f64>::zeros(matrix.nrows(), rank);
+    for (index, row) in segments.iter().enumerate() {
+        for (column, loading) in row.noise.common.iter().enumerate() {
+            let white = half_whitened(row, loading, channels);
+            for channel in 0..channels {
+                common[(index * channels + channel, column)] = white[channel];
+            }
+        }
+    }
+    let inner = common.transpose() * &common;
+    let Ok(eigen) = inner.self_adjoint_eigen(Side::Lower) else { return 0.0 };
+    let rotated = &common * eigen.U();
+    let values = eigen.S().column_vector();
+    let mut basis = Mat::<f64>::zeros(matrix.nrows(), rank);
+    let mut shrunk = Mat::<f64>::zeros(matrix.nrows(), rank);
+    let mut ln_determinant = 0.0;
+    for column in 0..rank {
+        let value = values[column];
+        ln_determinant += value.max(0.0).ln_1p();
+        if value <= 1e-12 {
+            continue;
+        }
+        let shrink = 1.0 - 1.0 / (1.0 + value).sqrt();
+        for row in 0..matrix.nrows() {
+            basis[(row, column)] = rotated[(row, column)] / value.sqrt();
+            shrunk[(row, column)] = shrink * basis[(row, column)];
+        }
+    }
+    let projected = basis.transpose() * &*matrix;
+    faer::linalg::matmul::matmul(
+        matrix.as_mut(),
+        faer::Accum::Add,
+        shrunk.as_ref(),
+        projected.as_ref(),
+        -1.0,
+        faer::Par::Seq,
+    );
+    ln_determinant
+}

@@ -1,0 +1,116 @@
+//! One search, the leading models refined: the posterior that the verdict reads.
+
+use perf_model::effects::EffectModel;
+
+use crate::hypotheses::backgrounds::{Background, backgrounds, diagonals, smoothed};
+use crate::hypotheses::evidence::{HEATING_SIZES_PERCENT, Scored, Scorer};
+use crate::library::Library;
+use crate::math::eliminate::Reduced;
+use crate::math::mixture::ln_sum;
+use crate::search::refine::{Relinearised, refine};
+use crate::search::system::{Space, Stacked};
+
+/// Models that are refined.
+const REFINED: usize = 5;
+/// Models less probable than this are not worth refining.
+const WORTH_REFINING: f64 = 1e-4;
+
+/// The posterior over models.
+pub(crate) struct Analysis {
+    pub(crate) scorer: Scorer,
+    pub(crate) backgrounds: Vec<Background>,
+    /// Without nuisance, at every level of scatter between flights.
+    pub(crate) space: Space,
+    /// Models, most probable first, with their probabilities.
+    pub(crate) models: Vec<(Scored, f64)>,
+    pub(crate) refined: Vec<Relinearised>,
+    /// Without nuisance, with this much scatter between flights, per cent: where scatter alone is no hopeless cause.
+    pub(crate) heating: Vec<(f64, Reduced)>,
+    /// Probability of no effect in backgrounds that are no finding.
+    pub(crate) clean: f64,
+}
+
+/// Searches. `without` leaves a fold of flights out; `refining` says whether the leading models are refined.
+pub(crate) fn analyse(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    without: Option<usize>,
+    refining: bool,
+) -> Option<Analysis> {
+    let design = stacked.design;
+    let gram = stacked.gram(without);
+    let mut levels = Vec::with_capacity(stacked.scatters.len());
+    let mut reduced = Vec::with_capacity(stacked.scatters.len());
+    for &relative in &stacked.scatters {
+        let (level, left) = stacked.level(gram, relative, without, refining)?;
+        levels.push(level);
+        reduced.push(left);
+    }
+    let effects = library.columns.len();
+    let smooth_out = |reduced: &[Reduced]| {
+        smoothed(reduced, effects, design.smooth.len(), |tau| stacked.admits(tau))
+    };
+    let space = Space { smoothed: smooth_out(&reduced), levels, reduced };
+    let all = backgrounds(&space.smoothed, library);
+    let scorer = Scorer::of(library, gram.rows);
+    let search = scorer.search(&all, 2, |at| stacked.is_nothing(at));
+    let mut models = search.models;
+    if library.heating_value && without.is_none() {
+        for percent in HEATING_SIZES_PERCENT {
+            if stacked.scatters.iter().any(|&scatter| scatter >= percent / 100.0) {
+                continue; // part of the noise already
+            }
+            let relative = percent / 100.0;
+            let (_, left) = stacked.level(gram, relative, None, false)?;
+            let under = diagonals(&smooth_out(core::slice::from_ref(&left)), library);
+            models.extend(scorer.search_heating(&under, percent));
+        }
+    }
+    models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
+    let mut refined = Vec::new();
+    if refining {
+        let total = ln_sum(models.iter().map(|m| m.ln_weight));
+        let leading: Vec<usize> = (0..models.len())
+            .filter(|&k| {
+                let model = &models[k].model;
+                !model.columns.is_empty() && model.heating_percent.is_none()
+            })
+            .take(REFINED)
+            .take_while(|&k| (models[k].ln_weight - total).exp() >= WORTH_REFINING)
+            .collect();
+        let starts: Vec<_> =
+            leading.iter().map(|&k| (&models[k], &all[models[k].background])).collect();
+        let found = refine(stacked, model, library, &scorer, &space, &starts, without);
+        for (&k, found) in leading.iter().zip(found) {
+            if let Some(found) = found {
+                models[k] = found.scored.clone();
+                refined.push(found);
+            }
+        }
+        models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
+    }
+    let total = ln_sum(models.iter().map(|m| m.ln_weight));
+    let mut heating = Vec::new();
+    for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| refining) {
+        let scatter_alone = models.iter().any(|m| {
+            m.model.columns.is_empty()
+                && m.model.heating_percent.is_some_and(|p| p.total_cmp(&percent).is_eq())
+                && (m.ln_weight - total).exp() > WORTH_REFINING
+        });
+        if scatter_alone {
+            let relative = percent / 100.0;
+            let (_, reduced) = stacked.level(gram, relative, without, true)?;
+            heating.push((percent, reduced));
+        }
+    }
+    let clean = (search.ln_clean - total).exp();
+    let models = models
+        .into_iter()
+        .map(|m| {
+            let probability = (m.ln_weight - total).exp();
+            (m, probability)
+        })
+        .collect();
+    Some(Analysis { scorer, backgrounds: all, space, models, refined, heating, clean })
+}

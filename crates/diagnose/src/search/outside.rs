@@ -1,0 +1,271 @@
+//! Outside the library: agnostic functions of one variable compete with the named effects.
+
+use crate::hypotheses::backgrounds::{Background, spike_of};
+use crate::hypotheses::design::Acts;
+use crate::hypotheses::evidence::{Model, Scored, Scorer, Single};
+use crate::library::Library;
+use crate::math::eliminate::{Changed, Reduced, integrate_few_out, integrate_out};
+use crate::math::linear::gather;
+use crate::math::mixture::ln_sum;
+use crate::search::analyse::Analysis;
+use crate::search::system::Stacked;
+use crate::signals::variables::Variable;
+
+/// Prior probability that something outside the library acts.
+const PRIOR_OUTSIDE: f64 = 0.20;
+/// Amplitudes of an agnostic function, shares of fuel flow.
+const AMPLITUDES: [f64; 3] = [0.002, 0.005, 0.015];
+/// Spikes of every library effect behind it.
+const SPIKES: [f64; 2] = [0.0, 0.10];
+/// Named sets that agnostic functions are added to.
+const SETS: usize = 10;
+
+/// What the competition says.
+#[derive(Clone, Debug)]
+pub(crate) struct Outside {
+    /// Probability that an agnostic function is needed.
+    pub(crate) probability: f64,
+    /// The variable that it hangs on, and how it acts.
+    pub(crate) variable: Option<(Variable, Acts)>,
+    /// If one is needed: the probability of each companion to act beside it.
+    beside: Vec<(Companion, f64)>,
+}
+
+/// A named cause that an agnostic function may have beside it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Companion {
+    /// An effect of the library.
+    Effect(usize),
+    /// Scatter between flights.
+    Scatter,
+}
+
+impl Outside {
+    /// If an agnostic function is needed: the probability that this acts beside it.
+    pub(crate) fn beside(&self, companion: Companion) -> f64 {
+        self.beside.iter().filter(|b| b.0 == companion).map(|b| b.1).sum()
+    }
+}
+
+/// Lets agnostic functions compete with the most probable named sets.
+pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Outside {
+    let scorer = &analysis.scorer;
+    let empty = Model { columns: vec![], heating_percent: None };
+    let none =
+        Scored { model: empty, ln_weight: 0.0, sizes: vec![], deviations: vec![], background: 0 };
+    let mut sets: Vec<&Scored> =
+        core::iter::once(&none).chain(named_models(analysis).take(SETS)).collect();
+    add_singles(&mut sets, analysis, library);
+    let mut weights = Weights { named: Vec::new(), agnostic: Vec::new() };
+    for set in &sets {
+        let refined = analysis
+            .refined
+            .iter()
+            .find(|found| found.scored.model == set.model && !set.model.columns.is_empty());
+        let shifts =
+            refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
+        for (level, reduced) in analysis.space.reduced.iter().enumerate() {
+            let changed = refined.map(|found| &found.changed[level]);
+            weights.add(stacked, library, scorer, &set.model, (reduced, changed), &shifts, 0.0);
+        }
+    }
+    // Scatter between flights is a named cause too, and what hangs on a flight's conditions looks like it until a function
+    // of them competes. The other sets are summed over levels of scatter, which these replace.
+    let levels_ln = (analysis.space.reduced.len() as f64).ln();
+    for (percent, reduced) in &analysis.heating {
+        let model = Model { columns: vec![], heating_percent: Some(*percent) };
+        weights.add(stacked, library, scorer, &model, (reduced, None), &[], levels_ln);
+    }
+    let Weights { named, agnostic } = weights;
+    let inside = ln_sum(named);
+    let outside = ln_sum(agnostic.iter().map(|a| a.ln));
+    let probability = 1.0 / (1.0 + (inside - outside).clamp(-500.0, 500.0).exp());
+    // The variable: weights summed over sets and amplitudes.
+    let blocks = &stacked.design.blocks;
+    let best = (0..blocks.len())
+        .map(|block| {
+            let ln = ln_sum(agnostic.iter().filter(|a| a.block == block).map(|a| a.ln));
+            (ln, block)
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    Outside {
+        probability: if probability.is_finite() { probability } else { 0.0 },
+        variable: best.map(|(_, block)| (blocks[block].variable, blocks[block].acts)),
+        beside: (0..library.effects.len())
+            .map(Companion::Effect)
+            .chain([Companion::Scatter])
+            .map(|companion| {
+                let with = agnostic.iter().filter(|a| a.beside == Some(companion)).map(|a| a.ln);
+                (companion, (ln_sum(with) - outside).exp())
+            })
+            .filter(|(_, probability)| *probability > 0.0)
+            .collect(),
+    }
+}
+
+/// Models with a named effect and without scatter between flights, most probable first.
+fn named_models(analysis: &Analysis) -> impl Iterator<Item = &Scored> {
+    analysis
+        .models
+        .iter()
+        .map(|(scored, _)| scored)
+        .filter(|s| !s.model.columns.is_empty() && s.model.heating_percent.is_none())
+}
+
+/// Adds the best single model of every effect that a set holds: agnostic functions join at most one effect, and the sets may
+/// all be pairs.
+fn add_singles<'a>(sets: &mut Vec<&'a Scored>, analysis: &'a Analysis, library: &Library) {
+    let effect = |column: usize| library.columns[column].effect;
+    let mut wanted: Vec<usize> =
+        sets.iter().flat_map(|s| &s.model.columns).map(|&column| effect(column)).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    for set in sets.iter().filter(|s| s.model.columns.len() == 1) {
+        wanted.retain(|&e| e != effect(set.model.columns[0]));
+    }
+    for single in named_models(analysis).filter(|s| s.model.columns.len() == 1) {
+        let own = effect(single.model.columns[0]);
+        if wanted.contains(&own) {
+            wanted.retain(|&e| e != own);
+            sets.push(single);
+        }
+    }
+}
+
+/// ln weights of sets without an agnostic function, and of sets with one.
+struct Weights {
+    named: Vec<f64>,
+    agnostic: Vec<Agnostic>,
+}
+
+/// A set with an agnostic function.
+struct Agnostic {
+    ln: f64,
+    block: usize,
+    /// What the set names.
+    beside: Option<Companion>,
+}
+
+impl Weights {
+    /// Adds a named set at one level of scatter and every spike, alone and with each agnostic function.
+    #[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
+    fn add(
+        &mut self,
+        stacked: &Stacked<'_>,
+        library: &Library,
+        scorer: &Scorer,
+        model: &Model,
+        level: (&Reduced, Option<&Changed>),
+        shifts: &[f64],
+        ln_share: f64,
+    ) {
+        let prior = scorer.ln_prior(model) + ln_share;
+        for spike in SPIKES {
+            let Some(under) = spiked(stacked, library, level, &model.columns, spike) else {
+                continue;
+            };
+            let alone = under.evidence(scorer, None, shifts);
+            self.named.push(prior + (1.0 - PRIOR_OUTSIDE).ln() + alone);
+            if model.columns.len() > 1 {
+                continue;
+            }
+            let effect = model.columns.first().map(|&column| library.columns[column].effect);
+            let beside = match model.heating_percent {
+                Some(_) => Some(Companion::Scatter),
+                None => effect.map(Companion::Effect),
+            };
+            let blocks = stacked.design.blocks.len();
+            let share = (AMPLITUDES.len() * blocks).max(1) as f64;
+            for block in 0..blocks {
+                for amplitude in AMPLITUDES {
+                    let ln = under.evidence(scorer, Some((block, amplitude)), shifts);
+                    let ln = prior + PRIOR_OUTSIDE.ln() - share.ln() + ln;
+                    self.agnostic.push(Agnostic { ln, block, beside });
+                }
+            }
+        }
+    }
+}
+
+/// A named set over a spike of every effect: Gram of its columns, all blocks, and the residual.
+struct Under<'a> {
+    reduced: Reduced,
+    columns: &'a [usize],
+    blocks: Vec<core::ops::Range<usize>>,
+}
+
+fn spiked<'a>(
+    stacked: &Stacked<'_>,
+    library: &Library,
+    (reduced, changed): (&Reduced, Option<&Changed>),
+    columns: &'a [usize],
+    spike: f64,
+) -> Option<Under<'a>> {
+    let design = stacked.design;
+    // Columns of `reduced`: effects, smooth, blocks one after the other, residual.
+    let first_block = design.effects + design.smooth.len();
+    let residual = reduced.matrix.ncols() - 1;
+    let mut kept: Vec<usize> = columns.to_vec();
+    let mut blocks = Vec::new();
+    // Agnostic functions compete beside at most one effect.
+    if columns.len() <= 1 {
+        let mut at = first_block;
+        for block in &design.blocks {
+            let start = kept.len();
+            kept.extend(at..at + block.columns.len());
+            at += block.columns.len();
+            blocks.push(start..kept.len());
+        }
+    }
+    kept.push(residual);
+    let (mut out, mut deviations) = spike_of(library, spike);
+    // What a taught remainder may lack is no discovery.
+    let tau = stacked.clean_tau();
+    if tau > 0.0 {
+        out.extend(design.effects..first_block);
+        deviations.extend(vec![tau; design.smooth.len()]);
+    }
+    let own: Vec<usize> = columns.iter().copied().chain([residual]).collect();
+    let mut spiked = match changed {
+        Some(changed) => {
+            // Only what is looked at, with the columns that changed.
+            let used: Vec<usize> = kept.iter().chain(&out).copied().collect();
+            let mut matrix = gather(&reduced.matrix, &used, &used);
+            changed.write_used(&mut matrix, &own, &used);
+            let kept: Vec<usize> = (0..kept.len()).collect();
+            let out: Vec<usize> = (kept.len()..used.len()).collect();
+            integrate_out(&matrix, &kept, &out, &deviations)?
+        }
+        None => integrate_out(&reduced.matrix, &kept, &out, &deviations)?,
+    };
+    spiked.ln_determinant += reduced.ln_determinant;
+    Some(Under { reduced: spiked, columns, blocks })
+}
+
+impl Under<'_> {
+    fn evidence(&self, scorer: &Scorer, block: Option<(usize, f64)>, shifts: &[f64]) -> f64 {
+        let own = self.columns.len();
+        let residual = self.reduced.matrix.ncols() - 1;
+        let kept: Vec<usize> = (0..own).chain([residual]).collect();
+        let out = block.map_or(0..0, |(block, _)| self.blocks[block].clone());
+        let amplitude = block.map_or(0.0, |(_, amplitude)| amplitude);
+        let Some(left) = integrate_few_out(&self.reduced.matrix, &kept, out, amplitude) else {
+            return f64::NEG_INFINITY;
+        };
+        let ln_determinant = self.reduced.ln_determinant + left.ln_determinant;
+        let square = left.matrix[(own, own)];
+        match self.columns[..] {
+            [] => scorer.nothing(square, ln_determinant),
+            [a] => {
+                let (gram, product) = (left.matrix[(0, 0)], left.matrix[(0, 1)]);
+                let single = Single { gram, product, square, ln_determinant };
+                scorer.single(single, a, shifts[0]).ln
+            }
+            [a, b, ..] => {
+                let columns = scorer.columns();
+                let at = Background::small(&left.matrix, self.columns, columns, ln_determinant);
+                scorer.two(&at, [a, b], [shifts[0], shifts[1]]).ln
+            }
+        }
+    }
+}

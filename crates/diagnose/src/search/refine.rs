@@ -1,0 +1,414 @@
+//! Gauss–Newton: the leading models re-simulated at their own estimate, re-linearised, re-scored. Noise stays.
+//!
+//! Difficult: one step changes a model's own columns and the residual, and nothing else. All models step together, so that the
+//! rows are gone through once a step; what was integrated out before stays factored, and the changed columns follow.
+
+use faer::{Mat, MatMut, MatRef};
+use perf_model::effects::{EffectModel, Effects, HiddenParameters, Trial};
+
+use crate::hypotheses::backgrounds::Background;
+use crate::hypotheses::evidence::{Scored, Scorer};
+use crate::library::Library;
+use crate::math::eliminate::Changed;
+use crate::math::mixture::Mixture;
+use crate::residuals::rows::FlightRows;
+use crate::residuals::signatures::Difference;
+use crate::residuals::whiten::{half_whitened, whiten_flight};
+use crate::search::folds::fold_of;
+use crate::search::system::{Space, Stacked};
+use crate::signals::channels::MAXIMUM_CHANNELS;
+
+/// Largest number of re-linearisations of a model.
+const STEPS: usize = 3;
+/// A step shorter than this share of the typical size ends the iteration.
+const CONVERGED: f64 = 0.02;
+
+/// A model linearised at its own estimate.
+#[derive(Clone, Debug)]
+pub(crate) struct Relinearised {
+    pub(crate) scored: Scored,
+    /// Its own columns and the residual, in the Gram without nuisance at every level of scatter between flights.
+    pub(crate) changed: Vec<Changed>,
+    /// Where it was linearised.
+    pub(crate) shifts: Vec<f64>,
+}
+
+/// Effects of a model at these sizes.
+pub(crate) fn effects_of(library: &Library, columns: &[usize], sizes: &[f64]) -> Effects {
+    let mut effects = Effects::none();
+    let mut hidden = HiddenParameters::default();
+    for (&column, &size) in columns.iter().zip(sizes) {
+        let at = &library.columns[column];
+        effects = effects.with(library.effects[at.effect].id, size);
+        hidden = merged(hidden, at.hidden);
+    }
+    effects.with_hidden(hidden)
+}
+
+/// Hidden parameters of two columns together: each sets its own and leaves the others at their defaults.
+fn merged(a: HiddenParameters, b: HiddenParameters) -> HiddenParameters {
+    let default = HiddenParameters::default();
+    let number = |a: f64, b: f64, default: f64| {
+        if b.total_cmp(&default).is_eq() { a } else { b }
+    };
+    HiddenParameters {
+        throttle_pivot: number(a.throttle_pivot, b.throttle_pivot, default.throttle_pivot),
+        throttle_argument: if b.throttle_argument == default.throttle_argument {
+            a.throttle_argument
+        } else {
+            b.throttle_argument
+        },
+        drag_divergence_mach: number(
+            a.drag_divergence_mach,
+            b.drag_divergence_mach,
+            default.drag_divergence_mach,
+        ),
+        step_from_s: number(a.step_from_s, b.step_from_s, default.step_from_s),
+        step_target: if b.step_target == default.step_target {
+            a.step_target
+        } else {
+            b.step_target
+        },
+    }
+}
+
+/// One model on its way.
+struct Run<'a> {
+    start: &'a Scored,
+    at: &'a Background,
+    sizes: Vec<f64>,
+}
+
+/// Refines models, each with the background it was found in; `None` where a step leaves the domain of the physics.
+/// `without` leaves a fold of flights out.
+pub(crate) fn refine(
+    stacked: &Stacked<'_>,
+    model: &EffectModel<'_>,
+    library: &Library,
+    scorer: &Scorer,
+    space: &Space,
+    starts: &[(&Scored, &Background)],
+    without: Option<usize>,
+) -> Vec<Option<Relinearised>> {
+    // Agnostic functions compete once, at the end, and never on folds.
+    let agnostic = without.is_none();
+    let mut runs: Vec<Option<Run<'_>>> = starts
+        .iter()
+        .map(|&(start, at)| Some(Run { start, at, sizes: start.sizes.clone() }))
+        .collect();
+    let mut refined: Vec<Option<Relinearised>> = starts.iter().map(|_| None).collect();
+    for step in 0..=STEPS {
+        let running: Vec<usize> = (0..runs.len()).filter(|&k| runs[k].is_some()).collect();
+        if running.is_empty() {
+            break;
+        }
+        let linear: Vec<Linear> = running
+            .iter()
+            .filter_map(|&k| runs[k].as_ref())
+            .map(|run| Linear::of(model, library, &run.start.model.columns, &run.sizes))
+            .collect();
+        let mut fresh = Fresh::of(stacked, model, &linear, without);
+        let mut products = fresh.products(stacked, agnostic);
+        let mut finished = Vec::new();
+        for (place, &k) in running.iter().enumerate() {
+            let Some(run) = &mut runs[k] else { continue };
+            if step == STEPS {
+                finished.push(place);
+                continue;
+            }
+            let columns = &run.start.model.columns;
+            let changed = products.of(&fresh, place);
+            let found = estimate(space, scorer, library, run, &changed, &fresh.levels_of(place))
+                .filter(|found| found.iter().all(|size| size.is_finite()));
+            let Some(found) = found else {
+                runs[k] = None;
+                continue;
+            };
+            let converged =
+                columns.iter().zip(found.iter().zip(&run.sizes)).all(|(&column, (new, old))| {
+                    let typical = library.effects[library.columns[column].effect].typical;
+                    (new - old).abs() <= CONVERGED * typical
+                });
+            if converged {
+                finished.push(place);
+            } else {
+                run.sizes = found;
+            }
+        }
+        if agnostic && !finished.is_empty() {
+            products.add_agnostic(stacked, &fresh);
+        }
+        for place in finished {
+            let k = running[place];
+            let Some(run) = runs[k].take() else { continue };
+            let changed = products.of(&fresh, place);
+            let levels = fresh.levels_of(place);
+            refined[k] = Some(score_everywhere(library, scorer, space, run, &changed, &levels));
+        }
+    }
+    refined
+}
+
+fn score_everywhere(
+    library: &Library,
+    scorer: &Scorer,
+    space: &Space,
+    run: Run<'_>,
+    changed: &Changed,
+    levels: &Mat<f64>,
+) -> Relinearised {
+    let Run { start, sizes: shifts, .. } = run;
+    let columns = &start.model.columns;
+    let followed: Vec<Changed> =
+        space.levels.iter().map(|level| level.follow(changed.clone(), levels)).collect();
+    let all: Vec<Background> = space
+        .smoothed
+        .iter()
+        .flat_map(|under| under.changed(library, columns, &followed[under.scatter()], |_| true))
+        .collect();
+    let prior = scorer.ln_prior(&start.model) - (all.len() as f64).ln();
+    let mut best = (f64::NEG_INFINITY, 0);
+    let mut note = |k: usize, ln: f64| {
+        if ln > best.0 {
+            best = (ln, k);
+        }
+    };
+    let (ln_weight, sizes, deviations) = if let [a, b] = columns[..] {
+        let mut sum = Mixture::<2>::new();
+        for (k, at) in all.iter().enumerate() {
+            let one = scorer.two(at, [a, b], [shifts[0], shifts[1]]);
+            note(k, one.ln);
+            sum.add(one.ln + prior, one.sizes, one.deviations);
+        }
+        let mean = sum.mean();
+        (mean.ln, mean.sizes.to_vec(), mean.deviations.to_vec())
+    } else {
+        let mut sum = Mixture::<1>::new();
+        for (k, at) in all.iter().enumerate() {
+            let one = scorer.one(at, columns[0], shifts[0]);
+            note(k, one.ln);
+            sum.add(one.ln + prior, one.sizes, one.deviations);
+        }
+        let mean = sum.mean();
+        (mean.ln, mean.sizes.to_vec(), mean.deviations.to_vec())
+    };
+    let scored =
+        Scored { model: start.model.clone(), ln_weight, sizes, deviations, background: best.1 };
+    Relinearised { scored, changed: followed, shifts }
+}
+
+/// Sizes in the background that the model was found in; `None` where that cannot be made.
+fn estimate(
+    space: &Space,
+    scorer: &Scorer,
+    library: &Library,
+    run: &Run<'_>,
+    changed: &Changed,
+    levels: &Mat<f64>,
+) -> Option<Vec<f64>> {
+    let under = space.smoothed.iter().find(|under| under.is_of(run.at))?;
+    let followed = space.levels[under.scatter()].follow(changed.clone(), levels);
+    let columns = &run.start.model.columns;
+    let spike = |spike: f64| spike.total_cmp(&run.at.spike).is_eq();
+    let one = under.changed(library, columns, &followed, spike);
+    let at = one.first()?;
+    Some(match columns[..] {
+        [a, b] => scorer.two(at, [a, b], [run.sizes[0], run.sizes[1]]).sizes.to_vec(),
+        [a] => scorer.one(at, a, run.sizes[0]).sizes.to_vec(),
+        _ => vec![],
+    })
+}
+
+/// A model ready to be linearised at its sizes.
+struct Linear {
+    columns: Vec<usize>,
+    sizes: Vec<f64>,
+    trial: Trial,
+    differences: Vec<Difference>,
+}
+
+impl Linear {
+    fn of(model: &EffectModel<'_>, library: &Library, columns: &[usize], sizes: &[f64]) -> Self {
+        let effects = effects_of(library, columns, sizes);
+        let difference = |&column: &usize| {
+            let effect = &library.effects[library.columns[column].effect];
+            Difference::of(model, &effects, effect.id, *effects.hidden(), 0.5 * effect.typical)
+        };
+        Self {
+            columns: columns.to_vec(),
+            sizes: sizes.to_vec(),
+            trial: model.trial(&effects),
+            differences: columns.iter().map(difference).collect(),
+        }
+    }
+
+    /// Own columns and the residual.
+    fn width(&self) -> usize {
+        self.columns.len() + 1
+    }
+}
+
+/// The rows of all models' own columns and residuals, model after model.
+struct Fresh {
+    /// Of each flight; none of a fold that is left out.
+    flights: Vec<Option<Mat<f64>>>,
+    /// Products with each flight's fuel-flow level.
+    levels: Mat<f64>,
+    /// First column of each model, and the end.
+    starts: Vec<usize>,
+}
+
+impl Fresh {
+    fn of(
+        stacked: &Stacked<'_>,
+        model: &EffectModel<'_>,
+        linear: &[Linear],
+        without: Option<usize>,
+    ) -> Self {
+        let mut starts = vec![0];
+        for one in linear {
+            starts.push(starts[starts.len() - 1] + one.width());
+        }
+        let width = starts[linear.len()];
+        let flights = &stacked.data.flights;
+        let mut fresh = Self {
+            flights: Vec::with_capacity(flights.len()),
+            levels: Mat::zeros(flights.len(), width),
+            starts,
+        };
+        for (index, flight) in flights.iter().enumerate() {
+            let kept = (Some(fold_of(index)) != without)
+                .then(|| fresh.rows(stacked, model, linear, index, flight));
+            fresh.flights.push(kept);
+        }
+        fresh
+    }
+
+    /// Whitened rows of a flight. Residuals are less what the sizes explain, but not yet the residual itself.
+    fn rows(
+        &self,
+        stacked: &Stacked<'_>,
+        model: &EffectModel<'_>,
+        linear: &[Linear],
+        index: usize,
+        flight: &FlightRows,
+    ) -> Mat<f64> {
+        let data = stacked.data;
+        let channels = data.channels.count();
+        let segments = &data.segments[flight.segments.clone()];
+        let rows = segments.len() * channels + usize::from(flight.gauge.is_some());
+        let mut fresh = Mat::<f64>::zeros(rows, self.starts[linear.len()]);
+        for (place, row) in segments.iter().enumerate() {
+            let put = |fresh: &mut Mat<f64>, column: usize, values: &[f64; MAXIMUM_CHANNELS]| {
+                let white = half_whitened(row, values, channels);
+                for channel in 0..channels {
+                    fresh[(place * channels + channel, column)] = white[channel];
+                }
+            };
+            let plain = data.predictor.predict(&row.response);
+            for (one, &first) in linear.iter().zip(&self.starts) {
+                for (k, difference) in one.differences.iter().enumerate() {
+                    // A segment that cannot be flown with the effects says nothing about this one.
+                    let slope = difference
+                        .signature(model, &row.known, row.is_recorded, &data.predictor)
+                        .unwrap_or([0.0; MAXIMUM_CHANNELS]);
+                    put(&mut fresh, first + k, &slope);
+                }
+                let with = model.response_at(&row.known, &one.trial).unwrap_or(row.response);
+                let with = data.predictor.predict(&with);
+                let mut change = [0.0; MAXIMUM_CHANNELS];
+                for channel in 0..channels {
+                    if row.is_recorded[channel] {
+                        change[channel] = plain[channel] - with[channel];
+                    }
+                }
+                put(&mut fresh, first + one.columns.len(), &change);
+            }
+        }
+        if let Some(gauge) = &flight.gauge {
+            // Gauge signatures are linear in the size: slope as before, residual less what the sizes explain.
+            for (one, &first) in linear.iter().zip(&self.starts) {
+                let residual = first + one.columns.len();
+                for (k, &column) in one.columns.iter().enumerate() {
+                    let signature = gauge.signatures[column] / gauge.deviation;
+                    fresh[(rows - 1, first + k)] = signature;
+                    fresh[(rows - 1, residual)] -= signature * one.sizes[k];
+                }
+            }
+        }
+        whiten_flight(data, segments, &mut fresh);
+        stacked.weigh(index, &mut fresh);
+        fresh
+    }
+
+    /// Completes the residuals, and multiplies with all but the agnostic columns.
+    fn products(&mut self, stacked: &Stacked<'_>, agnostic: bool) -> Products {
+        let design = stacked.design;
+        let width = self.levels.ncols();
+        let end = design.smooth.end;
+        let last = if agnostic { design.residual() } else { end };
+        let mut products =
+            Products { cross: Mat::zeros(last + 1, width), own: Mat::zeros(width, width) };
+        for (index, rows) in self.flights.iter_mut().enumerate() {
+            let Some(rows) = rows else { continue };
+            let whitened = stacked.whitened(index);
+            let residual = whitened.subcols(design.residual(), 1);
+            for place in &self.starts[1..] {
+                for (value, of) in
+                    rows.col_as_slice_mut(place - 1).iter_mut().zip(residual.col(0).iter())
+                {
+                    *value += of;
+                }
+            }
+            let level = whitened.subcols(design.smooth.start, 1);
+            add_product(self.levels.subrows_mut(index, 1), level, rows);
+            add_product(products.cross.subrows_mut(0, end), whitened.subcols(0, end), rows);
+            add_product(products.cross.subrows_mut(last, 1), residual, rows);
+            add_product(products.own.as_mut(), rows.as_ref(), rows);
+        }
+        products
+    }
+
+    fn levels_of(&self, place: usize) -> Mat<f64> {
+        let range = self.starts[place]..self.starts[place + 1];
+        self.levels.subcols(range.start, range.len()).to_owned()
+    }
+}
+
+/// Products of all models' own columns and residuals with a design's columns, residual last, and with each other.
+struct Products {
+    cross: Mat<f64>,
+    own: Mat<f64>,
+}
+
+impl Products {
+    fn of(&self, fresh: &Fresh, place: usize) -> Changed {
+        let (start, end) = (fresh.starts[place], fresh.starts[place + 1]);
+        let width = end - start;
+        Changed {
+            cross: self.cross.subcols(start, width).to_owned(),
+            own: self.own.submatrix(start, start, width, width).to_owned(),
+        }
+    }
+
+    /// Products with agnostic columns, which were left open.
+    fn add_agnostic(&mut self, stacked: &Stacked<'_>, fresh: &Fresh) {
+        let design = stacked.design;
+        let (start, end) = (design.smooth.end, design.residual());
+        for (index, rows) in fresh.flights.iter().enumerate() {
+            let Some(rows) = rows else { continue };
+            let whitened = stacked.whitened(index);
+            add_product(
+                self.cross.subrows_mut(start, end - start),
+                whitened.subcols(start, end - start),
+                rows,
+            );
+        }
+    }
+}
+
+/// `C += AᵀB`, in place.
+fn add_product(into: MatMut<'_, f64>, a: MatRef<'_, f64>, b: &Mat<f64>) {
+    let add = faer::Accum::Add;
+    faer::linalg::matmul::matmul(into, add, a.transpose(), b.as_ref(), 1.0, faer::Par::Seq);
+}

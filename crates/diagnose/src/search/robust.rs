@@ -1,0 +1,73 @@
+//! Outliers: whitened residuals with heavy tails weigh segments down.
+
+use crate::library::Library;
+use crate::search::analyse::Analysis;
+use crate::search::system::Stacked;
+
+/// Kurtosis of whitened residuals above which weights are used; 3 for normal ones.
+const HEAVY: f64 = 4.0;
+/// Degrees of freedom of the Student distribution behind the weights.
+const STUDENT: f64 = 4.0;
+/// Median of |x| over the standard deviation of a normal distribution, inverted.
+const MEDIAN_TO_DEVIATION: f64 = 1.4826;
+
+/// Weights of segments, where the residuals of the best model have heavy tails.
+///
+/// ```text
+/// w = min(1, √(5/(4 + e²/s²))),  e the largest whitened residual of the segment, s their robust scale   [diagnosis.21]
+/// ```
+pub(crate) fn weights(
+    stacked: &Stacked<'_>,
+    analysis: &Analysis,
+    library: &Library,
+) -> Option<Vec<f64>> {
+    let best = analysis.models.first().map_or(&[][..], |(scored, _)| &scored.model.columns);
+    let design = stacked.design;
+    let (columns, deviations): (Vec<usize>, Vec<f64>) = best
+        .iter()
+        .map(|&column| (column, 3.0 * library.effects[library.columns[column].effect].typical))
+        .chain(design.nuisance.clone().map(|column| (column, 1.0)))
+        .chain(design.smooth.clone().map(|column| (column, 0.0015)))
+        .unzip();
+    let gram = stacked.gram(None);
+    let solution = gram.fit(&columns, &deviations, design.residual())?;
+
+    let data = stacked.data;
+    let channels = data.channels.count();
+    let mut worst = Vec::with_capacity(data.segments.len());
+    let mut all = Vec::with_capacity(data.segments.len() * channels);
+    for (index, flight) in data.flights.iter().enumerate() {
+        let rows = stacked.whitened(index);
+        let mut left = rows.col_as_slice(design.residual()).to_vec();
+        for (k, &column) in columns.iter().enumerate() {
+            let size = solution[(k, 0)];
+            for (left, value) in left.iter_mut().zip(rows.col_as_slice(column)) {
+                *left -= value * size;
+            }
+        }
+        left.truncate(flight.segments.len() * channels);
+        for segment in left.chunks(channels) {
+            worst.push(segment.iter().fold(0.0_f64, |largest, e| largest.max(e.abs())));
+        }
+        all.append(&mut left);
+    }
+    let count = all.len() as f64;
+    let second = all.iter().map(|e| e * e).sum::<f64>() / count;
+    let fourth = all.iter().map(|e| e.powi(4)).sum::<f64>() / count;
+    let kurtosis = fourth / (second * second);
+    if !kurtosis.is_finite() || kurtosis <= HEAVY {
+        return None;
+    }
+    let mut sizes: Vec<f64> = all.iter().map(|e| e.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let scale = (MEDIAN_TO_DEVIATION * sizes[sizes.len() / 2]).max(0.3);
+    Some(
+        worst
+            .into_iter()
+            .map(|e| {
+                let z = e / scale;
+                ((STUDENT + 1.0) / (STUDENT + z * z)).sqrt().min(1.0)
+            })
+            .collect(),
+    )
+}

@@ -1,0 +1,247 @@
+//! One pass over the data: Gram matrices of all flights and of folds of them, nuisance integrated out.
+
+use faer::Mat;
+
+use crate::hypotheses::backgrounds::{Background, Smoothed, without_nuisance};
+use crate::hypotheses::design::Design;
+use crate::math::eliminate::{Changed, Elimination, Reduced};
+use crate::math::gram::{Gram, Sum};
+use crate::math::linear::{gather, subtract_gram, symmetrize};
+use crate::residuals::segments::Data;
+use crate::search::folds::{FOLDS, Folds, fold_of};
+
+/// Scatter between flights beyond what a baseline learnt, relative: all integrated over.
+const TAUGHT_SCATTERS: [f64; 2] = [0.0, 0.003];
+/// Smooth discrepancy that a taught remainder may have, the smallest amplitude of the background.
+pub(crate) const TAUGHT_TAU: f64 = 0.0015;
+/// Largest smooth discrepancy that a taught remainder is given at all: it was fitted to what the fleet flies.
+const TAUGHT_LARGEST_TAU: f64 = 0.004;
+/// Spike of every other effect that still counts as nothing beside a taught remainder.
+const TAUGHT_SPIKE: f64 = 0.05;
+/// Whitened rows are kept in memory up to this many numbers (64 MB); beyond they are made again.
+const KEPT_NUMBERS: usize = 8_000_000;
+
+/// Data, columns, Gram matrices.
+pub(crate) struct Stacked<'a> {
+    pub(crate) data: &'a Data<'a>,
+    pub(crate) design: &'a Design<'a>,
+    gram: Gram,
+    folds: Folds,
+    pub(crate) weights: Option<Vec<f64>>,
+    kept: Option<Vec<Mat<f64>>>,
+    /// Levels of scatter between flights that are integrated over, relative.
+    pub(crate) scatters: Vec<f64>,
+    /// Of each flight: products of all columns with its own fuel-flow level, for flight-to-flight scatter.
+    levels: Vec<Vec<f64>>,
+}
+
+impl<'a> Stacked<'a> {
+    pub(crate) fn of(
+        data: &'a Data<'a>,
+        design: &'a Design<'a>,
+        weights: Option<Vec<f64>>,
+    ) -> Self {
+        // What a baseline says of the scatter between flights comes from few flights: it may be more.
+        let scatters =
+            if data.predictor.baseline.is_some() { TAUGHT_SCATTERS.to_vec() } else { vec![0.0] };
+        let rows = data.segments.len() * data.channels.count() + data.flights.len();
+        let keep = rows * design.columns <= KEPT_NUMBERS;
+        let kept = keep.then(|| {
+            data.flights
+                .iter()
+                .map(|flight| design.whitened(data, flight, weights.as_deref()))
+                .collect::<Vec<_>>()
+        });
+        let mut stacked = Self {
+            data,
+            design,
+            gram: Gram { matrix: Mat::zeros(0, 0), rows: 0 },
+            folds: Folds::default(),
+            weights,
+            kept,
+            scatters,
+            levels: Vec::with_capacity(data.flights.len()),
+        };
+        let mut sum = Sum::of(design.columns);
+        for index in 0..data.flights.len() {
+            let rows = stacked.whitened(index);
+            sum.add(&rows);
+            let products = rows.transpose() * rows.col(design.smooth.start);
+            let level = products.iter().copied().collect();
+            drop(rows);
+            stacked.levels.push(level);
+        }
+        stacked.gram = sum.finish();
+        stacked
+    }
+
+    /// The Gram of all flights but those of one fold; of all where none is left out.
+    pub(crate) fn gram(&self, without: Option<usize>) -> &Gram {
+        let Some(fold) = without else { return &self.gram };
+        self.folds.without(fold, || {
+            let of = |fold: usize| {
+                let mut sum = Sum::of(self.design.columns);
+                for index in (fold..self.data.flights.len()).step_by(FOLDS) {
+                    sum.add(&self.whitened(index));
+                }
+                sum.finish()
+            };
+            (0..FOLDS).map(of).collect()
+        })
+    }
+
+    /// Smooth discrepancy that no agnostic function and no place is found in: a taught remainder is not exact, a table is
+    /// taken at its word (its uncertainty is given apart).
+    pub(crate) const fn clean_tau(&self) -> f64 {
+        if self.data.predictor.baseline.is_some() { TAUGHT_TAU } else { 0.0 }
+    }
+
+    /// A level of scatter between flights, relative.
+    pub(crate) fn scatter(&self, level: usize) -> f64 {
+        self.scatters.get(level).copied().unwrap_or(0.0)
+    }
+
+    /// Whether a smooth discrepancy of this amplitude is among the backgrounds.
+    pub(crate) fn admits(&self, tau: f64) -> bool {
+        self.data.predictor.baseline.is_none() || tau <= TAUGHT_LARGEST_TAU
+    }
+
+    /// Whether a background without a named effect is no finding: nothing at all against a table; against a taught
+    /// remainder, small amounts of every other effect too. A smooth discrepancy is one: it has an amplitude for each of
+    /// some thirty functions, and together they hide most of a per cent.
+    pub(crate) fn is_nothing(&self, at: &Background) -> bool {
+        let spike = if self.data.predictor.baseline.is_some() { TAUGHT_SPIKE } else { 0.0 };
+        at.tau == 0.0 && at.spike <= spike
+    }
+
+    /// Whitened rows of a flight.
+    pub(crate) fn whitened(&self, flight: usize) -> std::borrow::Cow<'_, Mat<f64>> {
+        match &self.kept {
+            Some(kept) => std::borrow::Cow::Borrowed(&kept[flight]),
+            None => std::borrow::Cow::Owned(self.design.whitened(
+                self.data,
+                &self.data.flights[flight],
+                self.weights.as_deref(),
+            )),
+        }
+    }
+
+    /// Root mean square of the robust weights; 1 without.
+    pub(crate) fn mean_weight(&self) -> f64 {
+        self.weights.as_ref().map_or(1.0, |weights| {
+            let square: f64 = weights.iter().map(|weight| weight * weight).sum();
+            (square / weights.len().max(1) as f64).sqrt()
+        })
+    }
+
+    /// Applies the robust weights to rows of a flight.
+    pub(crate) fn weigh(&self, flight: usize, rows: &mut Mat<f64>) {
+        let Some(weights) = &self.weights else { return };
+        let channels = self.data.channels.count();
+        let range = self.data.flights[flight].segments.clone();
+        for (place, weight) in weights[range].iter().enumerate() {
+            for row in place * channels..(place + 1) * channels {
+                for column in 0..rows.ncols() {
+                    rows[(row, column)] *= weight;
+                }
+            }
+        }
+    }
+
+    /// Products of some columns with each flight's fuel-flow level, scaled to what `relative` more of scatter between flights
+    /// takes off the Gram: one column a flight.
+    ///
+    /// ```text
+    /// G' = G − Σ_f w_f z_f z_fᵀ,  w_f = θ²/(1 + θ² v_fᵀv_f),  ln det = Σ_f ln(1 + θ² v_fᵀv_f)     [diagnosis.20]
+    /// ```
+    fn scatter_of(
+        &self,
+        columns: &[usize],
+        relative: f64,
+        without: Option<usize>,
+    ) -> (Scatter, f64) {
+        let mut scaled = Mat::<f64>::zeros(columns.len(), self.levels.len());
+        let mut roots = vec![0.0; self.levels.len()];
+        let mut ln_determinant = 0.0;
+        for (flight, level) in self.levels.iter().enumerate() {
+            if Some(fold_of(flight)) == without {
+                continue;
+            }
+            let own = level[self.design.smooth.start];
+            let grown = 1.0 + relative * relative * own;
+            ln_determinant += grown.ln();
+            roots[flight] = relative / grown.sqrt();
+            for (value, &column) in scaled.col_as_slice_mut(flight).iter_mut().zip(columns) {
+                *value = roots[flight] * level[column];
+            }
+        }
+        (Scatter { scaled, roots }, ln_determinant)
+    }
+
+    /// Columns of a Gram without nuisance before it is taken out: all of the design, or all but the agnostic ones; the
+    /// residual is the last.
+    fn columns_of(&self, agnostic: bool) -> Vec<usize> {
+        let end = if agnostic { self.design.residual() } else { self.design.smooth.end };
+        (0..end).chain([self.design.residual()]).collect()
+    }
+
+    /// The Gram without nuisance, with this much scatter between flights, relative.
+    pub(crate) fn level(
+        &self,
+        gram: &Gram,
+        relative: f64,
+        without: Option<usize>,
+        agnostic: bool,
+    ) -> Option<(Level, Reduced)> {
+        let columns = self.columns_of(agnostic);
+        if relative == 0.0 && agnostic {
+            let (elimination, reduced) = without_nuisance(&gram.matrix, self.design)?;
+            return Some((Level { scatter: None, elimination }, reduced));
+        }
+        let mut matrix = gather(&gram.matrix, &columns, &columns);
+        if relative == 0.0 {
+            let (elimination, reduced) = without_nuisance(&matrix, self.design)?;
+            return Some((Level { scatter: None, elimination }, reduced));
+        }
+        let (scatter, ln_determinant) = self.scatter_of(&columns, relative, without);
+        subtract_gram(&mut matrix, &scatter.scaled);
+        symmetrize(&mut matrix);
+        let (elimination, mut reduced) = without_nuisance(&matrix, self.design)?;
+        reduced.ln_determinant += ln_determinant;
+        Some((Level { scatter: Some(scatter), elimination }, reduced))
+    }
+}
+
+/// What scatter between flights takes off a Gram: `[diagnosis.20]`.
+struct Scatter {
+    /// One column a flight.
+    scaled: Mat<f64>,
+    /// √w of each flight.
+    roots: Vec<f64>,
+}
+
+/// How a Gram without nuisance was made, at one level of scatter between flights.
+pub(crate) struct Level {
+    scatter: Option<Scatter>,
+    elimination: Elimination,
+}
+
+impl Level {
+    /// What becomes of changed columns; `levels` are their products with each flight's fuel-flow level, one row a flight.
+    pub(crate) fn follow(&self, mut changed: Changed, levels: &Mat<f64>) -> Changed {
+        if let Some(Scatter { scaled, roots }) = &self.scatter {
+            let fresh =
+                Mat::from_fn(levels.nrows(), levels.ncols(), |i, j| roots[i] * levels[(i, j)]);
+            changed.cross -= scaled * &fresh;
+            changed.own -= fresh.transpose() * &fresh;
+        }
+        self.elimination.follow(&changed)
+    }
+}
+
+/// Grams without nuisance at every level of scatter, and every smooth discrepancy over them: where columns that change follow.
+pub(crate) struct Space {
+    pub(crate) levels: Vec<Level>,
+    pub(crate) reduced: Vec<Reduced>,
+    pub(crate) smoothed: Vec<Smoothed>,
+}

@@ -1,0 +1,310 @@
+//! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
+
+use perf_model::aircraft::{FlightDeviations, FuelFlowWander, SensorDeviations};
+use perf_model::effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
+use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
+use serde::{Deserialize, Serialize};
+
+use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
+
+/// Flight-to-flight standard deviation of the split of thrust between engines, of ln(Wf1/Wf2): 1 %.
+const SPLIT_DEVIATION: f64 = 0.01;
+/// Place of the heating value among a segment's common loadings.
+pub(crate) const HEATING_LOADING: usize = 1;
+
+/// Factors on the sensors' standard deviations, learnt from clean flights; 1 before.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseFactors {
+    /// Of what differs from segment to segment: fuel flow, engine against engine, N2.
+    pub within: [f64; 3],
+    /// Of what all segments of one flight have in common, in the same order.
+    pub between: [f64; 3],
+}
+
+impl Default for NoiseFactors {
+    fn default() -> Self {
+        Self { within: [1.0; 3], between: [1.0; 3] }
+    }
+}
+
+/// What is said of the noise besides the sensors' deviations from segment to segment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Statistics {
+    pub(crate) factors: NoiseFactors,
+    pub(crate) through_flight: FlightDeviations,
+    pub(crate) fuel_flow_wander: FuelFlowWander,
+}
+
+/// Covariance of one segment's residuals: its own part, and its loadings on what the flight has in common.
+#[derive(Clone, Debug)]
+pub(crate) struct SegmentNoise {
+    /// Lower triangle, row by row, of the Cholesky factor of the segment's own covariance.
+    pub(crate) factor: [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
+    /// Loadings: mass, heating value, one split a contrast, Mach number, SAT, pressure altitude, N2, then the wander's.
+    pub(crate) common: Vec<ByChannel>,
+    /// What the recorded acceleration adds to each channel.
+    pub(crate) acceleration: ByChannel,
+}
+
+/// The prediction of every channel from a response.
+pub(crate) trait PredictChannels: Fn(&Response) -> ByChannel {}
+
+impl<F: Fn(&Response) -> ByChannel> PredictChannels for F {}
+
+/// Propagates the sensors' standard deviations.
+///
+/// ```text
+/// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
+/// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split,
+///                                          and Mach number, SAT, pressure altitude, N2 by `through_flight`  [diagnosis.14]
+/// ```
+#[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
+#[expect(clippy::needless_range_loop, reason = "rows and columns of a covariance")]
+pub(crate) fn segment_noise(
+    model: &EffectModel<'_>,
+    point: &EffectPoint,
+    effects: &Effects,
+    rows: &[u32],
+    extra_variance: f64,
+    recorded: [bool; MAXIMUM_CHANNELS],
+    channels: Channels,
+    statistics: &Statistics,
+    predict: &impl PredictChannels,
+) -> Result<SegmentNoise, EffectError> {
+    let factors = &statistics.factors;
+    let sensors = model.aircraft().sensors();
+    let count = channels.count();
+    let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
+        let up = predict(&model.response_beside(&moved(step), effects)?);
+        let down = predict(&model.response_beside(&moved(-step), effects)?);
+        let mut slope = [0.0; MAXIMUM_CHANNELS];
+        for channel in 0..count {
+            slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
+        }
+        Ok::<ByChannel, EffectError>(slope)
+    };
+    let by_mach = difference(sensors.mach.max(1e-6), &|step| EffectPoint {
+        mach: point.mach + step,
+        true_airspeed_m_s: point.true_airspeed_m_s * (1.0 + step / point.mach),
+        ..*point
+    })?;
+    let by_temperature = difference(sensors.static_air_temperature_k.max(1e-3), &|step| {
+        let sat_k = point.static_air_temperature_k + step;
+        EffectPoint {
+            static_air_temperature_k: sat_k,
+            true_airspeed_m_s: point.true_airspeed_m_s
+                * (sat_k / point.static_air_temperature_k).sqrt(),
+            ..*point
+        }
+    })?;
+    let by_altitude = difference(sensors.pressure_altitude_m.max(0.1), &|step| EffectPoint {
+        pressure_altitude_m: point.pressure_altitude_m + step,
+        ..*point
+    })?;
+    let by_acceleration = difference(1e-4, &|step| EffectPoint {
+        acceleration_m_s2: point.acceleration_m_s2 + step,
+        ..*point
+    })?;
+    let relative_mass = sensors.mass.relative_to(units::Mass::kilograms(point.mass_kg));
+    let by_mass =
+        difference(1e-3, &|step| EffectPoint { mass_kg: point.mass_kg * (1.0 + step), ..*point })?;
+    let acceleration = mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, rows.len());
+
+    let meter = sensors.fuel_flow_percent / 100.0;
+    let engines = model.aircraft().engines();
+    let mut covariance = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+    covariance[0][0] = total_fuel_flow_relative_variance(meter, &[], engines);
+    for contrast in 1..=channels.contrasts {
+        // Contrasts are normalized like ln(Wf1/Wf2): squares of the weights sum to 2.
+        // What wanders is taken as new in every segment here: half as many columns, and a contrast is seldom short of data.
+        let wander = statistics.fuel_flow_wander.percent / 100.0;
+        covariance[contrast][contrast] = 2.0 * (meter * meter + wander * wander);
+    }
+    if channels.n2 {
+        let n2 = sensors.n2_percent / 100.0;
+        covariance[channels.n2_row()][channels.n2_row()] = n2 * n2;
+    }
+    for (slope, deviation) in [
+        (&by_mach, sensors.mach),
+        (&by_temperature, sensors.static_air_temperature_k),
+        (&by_altitude, sensors.pressure_altitude_m),
+        (&by_acceleration, acceleration),
+    ] {
+        for a in 0..count {
+            for b in 0..count {
+                covariance[a][b] += slope[a] * slope[b] * deviation * deviation;
+            }
+        }
+    }
+    covariance[0][0] += extra_variance;
+    for a in 0..count {
+        for b in 0..count {
+            covariance[a][b] *= factors.within[channels.kind(a)] * factors.within[channels.kind(b)];
+        }
+    }
+    for channel in 0..count {
+        if !recorded[channel] {
+            for other in 0..count {
+                covariance[channel][other] = 0.0;
+                covariance[other][channel] = 0.0;
+            }
+            covariance[channel][channel] = 1.0; // the row is zero
+        }
+    }
+
+    let common = common_loadings(
+        &SharedSlopes {
+            mach: by_mach,
+            static_air_temperature: by_temperature,
+            pressure_altitude: by_altitude,
+            mass: by_mass,
+        },
+        sensors,
+        relative_mass,
+        recorded,
+        channels,
+        statistics,
+    );
+    let mut added = [0.0; MAXIMUM_CHANNELS];
+    for channel in (0..count).filter(|&channel| recorded[channel]) {
+        added[channel] = by_acceleration[channel] * point.acceleration_m_s2;
+    }
+    Ok(SegmentNoise { factor: cholesky(&covariance, count), common, acceleration: added })
+}
+
+/// Slopes of the channels that a flight's common errors act through.
+struct SharedSlopes {
+    mach: ByChannel,
+    static_air_temperature: ByChannel,
+    pressure_altitude: ByChannel,
+    mass: ByChannel,
+}
+
+/// Loadings on what all segments of a flight have in common: mass, heating value, one split a contrast, Mach number, SAT,
+/// pressure altitude, N2.
+fn common_loadings(
+    slopes: &SharedSlopes,
+    sensors: &SensorDeviations,
+    relative_mass: f64,
+    recorded: [bool; MAXIMUM_CHANNELS],
+    channels: Channels,
+    statistics: &Statistics,
+) -> Vec<ByChannel> {
+    let Statistics { factors, through_flight, .. } = statistics;
+    let unit = |row: usize| {
+        let mut slope = [0.0; MAXIMUM_CHANNELS];
+        slope[row] = 1.0;
+        slope
+    };
+    let mut sources =
+        vec![(slopes.mass, relative_mass), (unit(0), sensors.lower_heating_value_percent / 100.0)];
+    sources.extend((1..=channels.contrasts).map(|contrast| (unit(contrast), SPLIT_DEVIATION)));
+    sources.extend([
+        (slopes.mach, through_flight.mach),
+        (slopes.static_air_temperature, through_flight.static_air_temperature_k),
+        (slopes.pressure_altitude, through_flight.pressure_altitude_m),
+    ]);
+    if channels.n2 {
+        sources.push((unit(channels.n2_row()), through_flight.n2_percent / 100.0));
+    }
+    sources
+        .into_iter()
+        .map(|(slope, deviation)| {
+            let mut loading = [0.0; MAXIMUM_CHANNELS];
+            for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
+                let factor = factors.between[channels.kind(channel)];
+                loading[channel] = slope[channel] * deviation * factor;
+            }
+            loading
+        })
+        .collect()
+}
+
+/// Adds the flow meters' wander to what the segments of a flight have in common, one loading a segment.
+///
+/// ```text
+/// cov(i, j) = σ²/n·exp(−|t_i − t_j|/τ),  n engines                                    [diagnosis.47]
+/// ```
+///
+/// It is Markov: each value is ρ times the one before plus √(1 − ρ²) times something new, ρ the likeness of neighbours, which
+/// is its Cholesky factor row by row. `times_s` rise.
+pub(crate) fn add_wander(
+    noises: &mut [&mut SegmentNoise],
+    times_s: &[f64],
+    wander: FuelFlowWander,
+    engines: usize,
+) {
+    if wander.percent <= 0.0 {
+        return;
+    }
+    let deviation = wander.percent / 100.0 / (engines.max(1) as f64).sqrt();
+    let mut weights = vec![0.0; times_s.len()];
+    for (index, noise) in noises.iter_mut().enumerate() {
+        let likeness = match index {
+            0 => 0.0,
+            _ => (-(times_s[index] - times_s[index - 1]).abs() / wander.time_s).exp(),
+        };
+        for weight in &mut weights {
+            *weight *= likeness;
+        }
+        weights[index] = (1.0 - likeness * likeness).max(0.0).sqrt();
+        noise.common.extend(weights.iter().map(|weight| {
+            let mut loading = [0.0; MAXIMUM_CHANNELS];
+            loading[0] = deviation * weight;
+            loading
+        }));
+    }
+}
+
+/// Cholesky factor of a small covariance whose diagonal is positive.
+fn cholesky(
+    covariance: &[[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
+    count: usize,
+) -> [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS] {
+    let mut factor = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+    for row in 0..count {
+        for column in 0..=row {
+            let inner: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
+            let left = covariance[row][column] - inner;
+            factor[row][column] = if row == column {
+                // Every channel has its own meter noise; the floor only guards against a sensor declared perfect.
+                left.max(1e-14).sqrt()
+            } else {
+                left / factor[column][column]
+            };
+        }
+    }
+    factor
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wander_has_the_covariance_it_states() {
+        let noise = || SegmentNoise {
+            factor: [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
+            common: vec![],
+            acceleration: [0.0; MAXIMUM_CHANNELS],
+        };
+        let (mut a, mut b, mut c) = (noise(), noise(), noise());
+        let wander = FuelFlowWander { percent: 0.2, time_s: 1200.0 };
+        add_wander(&mut [&mut a, &mut b, &mut c], &[0.0, 600.0, 2400.0], wander, 2);
+        let covariance = |x: &SegmentNoise, y: &SegmentNoise| {
+            x.common.iter().zip(&y.common).map(|(x, y)| x[0] * y[0]).sum::<f64>()
+        };
+        // By hand: 0.002²/2 = 2e-6, e^(−1/2) = 0.606531, e^(−3/2) = 0.223130, e^(−2) = 0.135335.
+        for (found, expected) in [
+            (covariance(&a, &a), 2e-6),
+            (covariance(&b, &b), 2e-6),
+            (covariance(&c, &c), 2e-6),
+            (covariance(&a, &b), 2e-6 * 0.606531),
+            (covariance(&b, &c), 2e-6 * 0.223130),
+            (covariance(&a, &c), 2e-6 * 0.135335),
+        ] {
+            assert!((found - expected).abs() < 1e-11, "{found} {expected}");
+        }
+    }
+}

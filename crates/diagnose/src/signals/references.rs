@@ -1,0 +1,50 @@
+//! The conditions that effects are zero at, and why there may be no diagnosis.
+
+use perf_model::PerformanceModel;
+use perf_model::effects::{EffectModelError, EffectPoint, EffectReferences};
+
+use crate::signals::record::FlightRecord;
+
+/// Why there is no diagnosis.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiagnoseError {
+    /// The model takes no effects.
+    #[error(transparent)]
+    Model(#[from] EffectModelError),
+    /// Too few flights to learn a baseline from.
+    #[error("{found} flights inside the drag table, at least {needed} are needed")]
+    TooFewFlights {
+        /// Flights found.
+        found: usize,
+        /// Flights needed.
+        needed: usize,
+    },
+    /// A matrix that is not positive definite: columns beyond what doubles hold.
+    #[error("the linear model is degenerate")]
+    Degenerate,
+}
+
+/// References of the data at hand.
+///
+/// # Errors
+/// [`DiagnoseError::Model`] where nothing is inside the drag table.
+pub fn references_of(
+    model: &PerformanceModel,
+    drag_table: &lut::Table,
+    flights: &[FlightRecord<'_>],
+) -> Result<EffectReferences, DiagnoseError> {
+    let engines = model.aircraft().engines();
+    #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
+    let points: Vec<EffectPoint> = flights
+        .iter()
+        .flat_map(|flight| flight.segments)
+        .filter_map(|segment| {
+            // What cannot be corrected is left out of the diagnosis too, with its reason.
+            let means = model.corrected_means(&segment.means).ok()?;
+            let start_s = segment.identity.start.as_second() as f64;
+            Some(EffectPoint::of_means(&means, start_s, engines))
+        })
+        .collect();
+    Ok(EffectReferences::mean_of(model.aircraft(), drag_table, &points)?)
+}
