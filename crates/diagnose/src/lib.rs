@@ -42,9 +42,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(test)]
-extern crate self as diagnose; // the fleet of the tests names the crate
-
 mod addition;
 mod advice;
 mod analysis;
