@@ -4,12 +4,9 @@
 use std::collections::BTreeMap;
 
 use diagnose::trial::{Case, Planted, score};
-use diagnose::{Input, Options, diagnose};
+use diagnose::{FlightRecord, Input, Options, diagnose};
 use flight::effect::EffectId;
-
-#[path = "../tests/fleet/flown.rs"]
-mod flown;
-use flown::{Background, Random, Setup, exact_model, fly, plant};
+use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts typed by hand")]
 fn main() {
@@ -42,7 +39,7 @@ fn main() {
                 _ => vec![plant(id, times, &mut Random::new(case, 9))],
             };
             let fleet = fly(case, &setup, &planted, &background);
-            let records = fleet.records();
+            let records = records(&fleet);
             let input = Input::against(&model, &records);
             let options = Options {
                 without: if what == "struck" { vec![id] } else { vec![] },
@@ -99,4 +96,9 @@ fn main() {
         serde_json::to_string_pretty(&score(&cases, |name| distances.get(name).copied())).unwrap()
     );
     println!("{count} cases, {:.3} s a case", begin.elapsed().as_secs_f64() / f64::from(count));
+}
+
+/// What the fleet recorded, as the diagnosis takes it.
+fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
+    fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
 }

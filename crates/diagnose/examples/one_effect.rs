@@ -3,13 +3,11 @@
 use std::sync::Arc;
 
 use diagnose::{FlightRecord, Input, Options, VerdictKind, diagnose};
-
-#[path = "../tests/fleet/flown.rs"]
-mod flown;
+use test_support::fleet::{Background, Setup, exact_model, fly};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let model = flown::exact_model();
-    let clean = flown::fly(5, &flown::Setup::default(), &[], &flown::Background::default());
+    let model = exact_model();
+    let clean = fly(5, &Setup::default(), &[], &Background::default());
     let mut flights = clean.flights;
     for segment in flights.iter_mut().flatten() {
         segment.means.fuel_flow_total_kg_s *= 1.02;

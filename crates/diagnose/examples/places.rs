@@ -3,14 +3,11 @@
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a development tool")]
 
 use diagnose::trial::places::{names_driver, spread, worst_region_overlap};
-use diagnose::{Diagnosis, Input, Options, diagnose, references_of, slice_members};
+use diagnose::{Diagnosis, FlightRecord, Input, Options, diagnose, references_of, slice_members};
 use flight::effect::EffectId;
 use perf_model::PerformanceModel;
 use perf_model::effects::{EffectModel, EffectPoint, Effects};
-
-#[path = "../tests/fleet/flown.rs"]
-mod flown;
-use flown::{Background, Fleet, Random, Setup, exact_model, fly, plant};
+use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
 
 /// Effects that vary by less than this, in per cent of fuel flow, are not asked for.
 const LOCALISABLE_PERCENT: f64 = 0.35;
@@ -32,7 +29,7 @@ fn main() {
 }
 
 fn run(model: &PerformanceModel, fleet: &Fleet, closure: bool) -> (Diagnosis, f64) {
-    let records = fleet.records();
+    let records = records(fleet);
     let input = input(model, &records);
     let begin = std::time::Instant::now();
     let options = Options { skip_closure: !closure, skip_where: closure, ..Options::default() };
@@ -46,7 +43,7 @@ fn input<'a>(model: &'a PerformanceModel, records: &'a [diagnose::FlightRecord<'
 
 /// ln recorded − ln predicted, segment by segment; `None` outside the table.
 fn gaps(model: &PerformanceModel, fleet: &Fleet) -> Vec<Option<f64>> {
-    let records = fleet.records();
+    let records = records(fleet);
     let references = references_of(model, model.drag_table(), &records).unwrap();
     let with = EffectModel::new(model, model.drag_table(), references).unwrap();
     fleet
@@ -113,7 +110,7 @@ fn effects(model: &PerformanceModel, seed: u64, repeats: u64, closure: bool, onl
                 closed(id, &found, &with, &without, took);
                 continue;
             }
-            let records = fleet.records();
+            let records = records(&fleet);
             let inside: Vec<f64> = effect.iter().flatten().copied().collect();
             let spread_percent = 100.0 * spread(&inside);
             let first = found.r#where.first();
@@ -216,7 +213,7 @@ fn cost(model: &PerformanceModel, seed: u64, flights: u64) {
     let setup = Setup { flights, ..Setup::default() };
     let planted = plant(EffectId::WaveDrag, 1.0, &mut Random::new(seed, 9));
     let fleet = fly(seed, &setup, &[planted], &Background::default());
-    let records = fleet.records();
+    let records = records(&fleet);
     for (skip_where, skip_closure) in [(true, true), (false, true), (true, false)] {
         let options = Options { skip_closure, skip_where, ..Options::default() };
         let begin = std::time::Instant::now();
@@ -229,4 +226,9 @@ fn cost(model: &PerformanceModel, seed: u64, flights: u64) {
             begin.elapsed().as_secs_f64()
         );
     }
+}
+
+/// What the fleet recorded, as the diagnosis takes it.
+fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
+    fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
 }

@@ -14,10 +14,7 @@ use std::time::Instant;
 
 use diagnose::{FlightRecord, Input, Options, VerdictKind, diagnose};
 use flight::{FlightIdentity, Segment, SegmentMeans};
-
-#[path = "../tests/fleet/flown.rs"]
-mod flown;
-use flown::{Background, Random, Setup, exact_model, fly, plant};
+use test_support::fleet::{Background, Random, Setup, exact_model, fly, plant};
 
 const RUNS: usize = 7;
 const COLUMNS: usize = 18;

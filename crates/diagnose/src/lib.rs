@@ -42,9 +42,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(test)]
-extern crate self as diagnose; // the fleet of the tests names the crate
-
 // Floors, from the ground up: a module imports from its own floor or a lower one (`tests/floors.rs`).
 mod math;
 mod signals;

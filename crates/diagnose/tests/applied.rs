@@ -1,17 +1,19 @@
 //! Diagnosing the same flights with the model that was extended by what they showed finds nothing left.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use diagnose::{Diagnosis, Input, Options, VerdictKind, diagnose};
+use diagnose::{Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
 use flight::effect::EffectId;
 use perf_model::PerformanceModel;
 use perf_model::effects::AppliedEffects;
+use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly, typical};
 
-#[path = "fleet/flown.rs"]
-mod flown;
-use flown::{Background, Fleet, Planted, Setup, exact_model, fly, typical};
+/// What the fleet recorded, as the diagnosis takes it.
+fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
+    fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
+}
 
 fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
-    let records = fleet.records();
+    let records = records(fleet);
     let input = Input::against(model, &records);
     diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()
 }

@@ -1,16 +1,20 @@
 //! What is too little or too odd for a name gets none, and no number is ever NaN.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use diagnose::{Baseline, DiagnoseError, Diagnosis, Input, Options, VerdictKind, diagnose};
+use diagnose::{
+    Baseline, DiagnoseError, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose,
+};
 use flight::effect::EffectId;
 use perf_model::PerformanceModel;
+use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
 
-#[path = "fleet/flown.rs"]
-mod flown;
-use flown::{Background, Fleet, Planted, Setup, exact_model, fly};
+/// What the fleet recorded, as the diagnosis takes it.
+fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
+    fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
+}
 
 fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
-    let records = fleet.records();
+    let records = records(fleet);
     let input = Input::against(model, &records);
     let found = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();
     // serde_json writes a number that is not finite as null; every null must be one that the format knows.
@@ -129,7 +133,7 @@ fn numbers_that_are_none_are_left_out() {
 fn a_baseline_wants_flights_and_reads_back_to_the_same_bits() {
     let model = exact_model();
     let fleet = fly(12, &Setup { flights: 20, ..Setup::default() }, &[], &Background::default());
-    let records = fleet.records();
+    let records = records(&fleet);
     let error = Baseline::learn(&model, model.drag_table(), &records[..4]).unwrap_err();
     assert_eq!(error, DiagnoseError::TooFewFlights { found: 4, needed: 5 });
     let taught = Baseline::learn(&model, model.drag_table(), &records).unwrap();

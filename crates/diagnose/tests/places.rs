@@ -2,16 +2,18 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::trial::places::{names_driver, worst_region_overlap};
-use diagnose::{Diagnosis, Input, Options, SliceError, diagnose, slice_members};
+use diagnose::{Diagnosis, FlightRecord, Input, Options, SliceError, diagnose, slice_members};
 use flight::effect::EffectId;
+use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
 
-#[path = "fleet/flown.rs"]
-mod flown;
-use flown::{Background, Fleet, Planted, Setup, exact_model, fly};
+/// What the fleet recorded, as the diagnosis takes it.
+fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
+    fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
+}
 
 fn place(fleet: &Fleet, options: &Options) -> Diagnosis {
     let model = exact_model();
-    let records = fleet.records();
+    let records = records(fleet);
     let input = Input::against(&model, &records);
     let found = diagnose(&input, options).unwrap();
     for slice in &found.r#where {

@@ -4,16 +4,18 @@
 
 use std::sync::Arc;
 
-use diagnose::{Addition, Cause, Diagnosis, Input, Options, VerdictKind, diagnose};
+use diagnose::{Addition, Cause, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
 use flight::Segment;
 use flight::effect::EffectId;
 use lut::surface::{Basis, Surface};
 use perf_model::effects::{AppliedEffects, ThrottleArgument};
 use perf_model::{Aircraft, PerformanceModel};
+use test_support::fleet::{Background, Fleet, Planted, Random, Setup, exact_model, fly};
 
-#[path = "fleet/flown.rs"]
-mod flown;
-use flown::{Background, Fleet, Planted, Random, Setup, exact_model, fly};
+/// What the fleet recorded, as the diagnosis takes it.
+fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
+    fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
+}
 
 /// True corrected thrust over 60 kN, as a logarithm, by the fleet's own deck: 0.16 l − 0.05 l² = ln(N2/√θt) − 0.04 (M − 0.8).
 fn ln_thrust_by_deck(segment: &Segment) -> f64 {
@@ -54,7 +56,7 @@ fn with_parabola(seed: u64, percent: f64, errors: &Errors) -> Fleet {
 }
 
 fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
-    let records = fleet.records();
+    let records = records(fleet);
     let input = Input::against(model, &records);
     let options = Options { skip_closure: true, skip_where: true, ..Options::default() };
     diagnose(&input, &options).unwrap()

@@ -2,7 +2,6 @@ use super::envelope::SEGMENTS;
 use super::*;
 use flight::Segment;
 use flight::effect::EffectId;
-use flown::{Background, Setup, exact_model, fly};
 use perf_model::PerformanceModel;
 use perf_model::effects::{EffectReferences, Effects};
 
@@ -13,8 +12,7 @@ use crate::residuals::segments::Data;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::references_of;
 
-#[path = "../../../tests/fleet/flown.rs"]
-mod flown;
+use test_support::fleet::{Background, Setup, exact_model, fly, isa};
 
 /// Flights ready for advice; everything borrows, so it is handed on.
 fn with<R>(
@@ -65,10 +63,9 @@ fn every_candidate_keeps_to_what_was_flown() {
         let (lowest, highest) = range(&|m| m.pressure_altitude_m);
         let (lightest, heaviest) = range(&|m| m.mass_kg);
         // Lift coefficient by hand: m·g/(0.7·p·M²·S) with the fleet's own atmosphere and wing.
-        let lift =
-            |m: f64, h: f64, mach: f64| m * 9.80665 / (0.7 * flown::isa(h).1 * mach * mach * 48.96);
+        let lift = |m: f64, h: f64, mach: f64| m * 9.80665 / (0.7 * isa(h).1 * mach * mach * 48.96);
         let (_, most_lift) = range(&|m| lift(m.mass_kg, m.pressure_altitude_m, m.mach));
-        let pressure = |h: f64, mach: f64| flown::isa(h).1 * mach * mach;
+        let pressure = |h: f64, mach: f64| isa(h).1 * mach * mach;
         let (_, most_pressure) = range(&|m| pressure(m.pressure_altitude_m, m.mach));
         for flight in &candidates {
             assert_eq!(flight.points.len(), SEGMENTS, "{}", flight.words);
