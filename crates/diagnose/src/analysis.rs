@@ -1,7 +1,7 @@
 //! One pass over the data, one search, the leading models refined: the posterior that the verdict reads.
 
+use effects::EffectModel;
 use faer::Mat;
-use perf_model::effects::EffectModel;
 
 use crate::backgrounds::{
     Background, Smoothed, backgrounds, diagonals, smoothed, without_nuisance,

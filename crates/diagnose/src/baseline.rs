@@ -1,9 +1,9 @@
 //! What a model remembers of clean flights beside its table: a smooth remainder, the N2 deck, the split between engines,
 //! and how large the noise is. Each with its covariance.
 
+use effects::ExtendedModel;
+use effects::{EffectModel, EffectReferences, Response};
 use faer::Mat;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModel, EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 
 use crate::DiagnoseError;
@@ -101,7 +101,7 @@ impl Baseline {
     /// # Errors
     /// [`DiagnoseError`] where the model takes no effects, or fewer than five flights are inside the table.
     pub fn learn(
-        model: &PerformanceModel,
+        model: &ExtendedModel,
         drag_table: &lut::Table,
         flights: &[FlightRecord<'_>],
     ) -> Result<Self, DiagnoseError> {

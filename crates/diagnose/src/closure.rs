@@ -2,7 +2,7 @@
 
 mod cross_checks;
 
-use perf_model::effects::EffectModel;
+use effects::EffectModel;
 
 use crate::analysis::{Analysis, Stacked, analyse};
 use crate::diagnosis::CLEAN_PROBABILITY;

@@ -5,13 +5,13 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use flight::effect::EffectId;
-use flight::{MAXIMUM_ENGINES, SegmentMeans};
-use perf_model::aircraft::{FlightDeviations, FuelFlowWander};
-use perf_model::effects::{
+use effects::{
     AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, KnownPoint, Response,
     StepTarget, Trial,
 };
+use flight::effect::EffectId;
+use flight::{MAXIMUM_ENGINES, SegmentMeans};
+use perf_model::aircraft::{FlightDeviations, FuelFlowWander};
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
@@ -227,10 +227,9 @@ fn inside<'a>(
     for flight in flights {
         let mut kept = Vec::with_capacity(flight.segments.len());
         for segment in flight.segments {
-            #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
-            let start_s = segment.identity.start.as_second() as f64;
+            let start_s = segment.identity.start_s();
             let found = model.corrected_means(&segment.means).and_then(|means| {
-                let point = EffectPoint::of_means(&means, start_s, engines);
+                let point = EffectPoint::from_means(&means, start_s, engines);
                 let (known, response) = model.known_point(&point)?;
                 Ok(Inside { means, rows: &segment.rows, point, known, response })
             });
@@ -248,8 +247,8 @@ fn inside<'a>(
     all
 }
 
-fn reason(error: &perf_model::effects::EffectError) -> &'static str {
-    use perf_model::effects::EffectError;
+fn reason(error: &effects::EffectError) -> &'static str {
+    use effects::EffectError;
     match error {
         EffectError::OutsideTable { .. } => "outside the drag table",
         EffectError::OutOfDomain(_) => "a mean outside its domain",
@@ -354,7 +353,7 @@ impl<'a> Data<'a> {
         library: &Library,
         differences: &Differences,
         statistics: &Statistics,
-    ) -> Result<SegmentRow, perf_model::effects::EffectError> {
+    ) -> Result<SegmentRow, effects::EffectError> {
         let channels = self.channels;
         let deck = &self.predictor.deck;
         let predict = |response: &Response| self.predictor.predict(response);
@@ -489,7 +488,7 @@ impl Difference {
         point: &KnownPoint,
         is_recorded: [bool; MAXIMUM_CHANNELS],
         predictor: &Predictor<'_>,
-    ) -> Result<ByChannel, perf_model::effects::EffectError> {
+    ) -> Result<ByChannel, effects::EffectError> {
         let up = predictor.predict(&model.response_at(point, &self.up)?);
         let down = predictor.predict(&model.response_at(point, &self.down)?);
         let mut slope = [0.0; MAXIMUM_CHANNELS];

@@ -4,8 +4,8 @@
 //! by their own small Cholesky factor, then the flight by (1 + UUᵀ)^(−1/2), which differs from 1 only in the span of the
 //! few columns of U. That is exact, and linear in segments.
 
+use effects::EffectReferences;
 use faer::{Mat, Side};
-use perf_model::effects::EffectReferences;
 
 use crate::TableUncertainty;
 use crate::baseline::Baseline;

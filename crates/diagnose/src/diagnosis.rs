@@ -1,8 +1,8 @@
 //! From flights to a verdict.
 
+use effects::ExtendedModel;
+use effects::{EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects};
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects};
 
 use crate::TableUncertainty;
 use crate::addition::Addition;
@@ -42,7 +42,7 @@ const NORMAL_95: f64 = 1.96;
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
     /// The performance model.
-    pub model: &'a PerformanceModel,
+    pub model: &'a ExtendedModel,
     /// Its drag table: its own, or the adapted one.
     pub drag_table: &'a lut::Table,
     /// Flights in order of flying, none of which the table has learnt.
@@ -58,7 +58,7 @@ pub struct Input<'a> {
 impl<'a> Input<'a> {
     /// Flights against a model's own table, nothing taught and every node taken as known.
     #[must_use]
-    pub const fn against(model: &'a PerformanceModel, flights: &'a [FlightRecord<'a>]) -> Self {
+    pub const fn against(model: &'a ExtendedModel, flights: &'a [FlightRecord<'a>]) -> Self {
         Self {
             model,
             drag_table: model.drag_table(),
@@ -110,7 +110,7 @@ pub enum DiagnoseError {
 /// # Errors
 /// [`DiagnoseError::Model`] where nothing is inside the drag table.
 pub fn references_of(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     drag_table: &lut::Table,
     flights: &[FlightRecord<'_>],
 ) -> Result<EffectReferences, DiagnoseError> {
@@ -122,11 +122,11 @@ pub fn references_of(
         .filter_map(|segment| {
             // What cannot be corrected is left out of the diagnosis too, with its reason.
             let means = model.corrected_means(&segment.means).ok()?;
-            let start_s = segment.identity.start.as_second() as f64;
-            Some(EffectPoint::of_means(&means, start_s, engines))
+            let start_s = segment.identity.start_s();
+            Some(EffectPoint::from_means(&means, start_s, engines))
         })
         .collect();
-    Ok(EffectReferences::mean_of(model.aircraft(), drag_table, &points)?)
+    Ok(effects::mean_references(model.aircraft(), drag_table, &points)?)
 }
 
 /// Diagnoses one set of flights.

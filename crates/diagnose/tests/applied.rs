@@ -2,15 +2,15 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{Diagnosis, Input, Options, VerdictKind, diagnose};
+use effects::AppliedEffects;
+use effects::ExtendedModel;
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::AppliedEffects;
 
 #[path = "fleet/flown.rs"]
 mod flown;
 use flown::{Background, Fleet, Planted, Setup, exact_model, fly, typical};
 
-fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
+fn run(model: &ExtendedModel, fleet: &Fleet) -> Diagnosis {
     let records = fleet.records();
     let input = Input::against(model, &records);
     diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()

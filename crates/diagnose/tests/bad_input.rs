@@ -2,14 +2,14 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{Baseline, DiagnoseError, Diagnosis, Input, Options, VerdictKind, diagnose};
+use effects::ExtendedModel;
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
 
 #[path = "fleet/flown.rs"]
 mod flown;
 use flown::{Background, Fleet, Planted, Setup, exact_model, fly};
 
-fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
+fn run(model: &ExtendedModel, fleet: &Fleet) -> Diagnosis {
     let records = fleet.records();
     let input = Input::against(model, &records);
     let found = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();

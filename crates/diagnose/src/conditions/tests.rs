@@ -1,7 +1,7 @@
+use effects::ExtendedModel;
+use effects::{EffectReferences, Effects};
 use flight::Segment;
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectReferences, Effects};
 
 use super::*;
 use crate::classes::{CONFUSED, squared};
@@ -15,7 +15,7 @@ use flown::{Background, Setup, exact_model, fly};
 
 /// Flights ready for advice; everything borrows, so it is handed on.
 fn with<R>(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     flights: &[Vec<Segment>],
     then: impl FnOnce(&Stacked<'_>, &EffectModel<'_>, &Library, &Distances) -> R,
 ) -> R {

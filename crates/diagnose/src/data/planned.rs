@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use effects::{EffectModel, EffectPoint, Response};
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
-use perf_model::effects::{EffectModel, EffectPoint, Response};
 
 use super::{Against, Data, Differences, FlightRows, Inside, add_wander_to, gauge_row};
 use crate::library::Library;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use perf_model::effects::EffectReferences;
+use effects::EffectReferences;
 
 use crate::data::SegmentRow;
 use crate::variables::Variable;

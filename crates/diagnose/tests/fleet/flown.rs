@@ -11,6 +11,7 @@
 use std::sync::Arc;
 
 use diagnose::{FlightRecord, GaugeBurn};
+use effects::ExtendedModel;
 use flight::effect::{EffectId, TypicalSize};
 use flight::{FlightIdentity, Segment, SegmentMeans};
 use lut::surface::{Basis, Surface};
@@ -44,7 +45,7 @@ fn wave(mach: f64, lift: f64) -> f64 {
 }
 
 /// The model that the diagnosis gets: the truth without any effect on a fine grid ("exact").
-pub(crate) fn exact_model() -> PerformanceModel {
+pub(crate) fn exact_model() -> ExtendedModel {
     let aircraft = Aircraft::from_ron(
         r#"(
             name: "virtual", type_code: "VIRT", engines: 2, wing_area_m2: 48.96,
@@ -67,7 +68,7 @@ pub(crate) fn exact_model() -> PerformanceModel {
     let table = lut::Table::new(Arc::clone(&grid), values).unwrap();
     let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
     let marks = vec![false; grid.nodes()];
-    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap()
+    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap().into()
 }
 
 pub(crate) struct Random(ChaCha8Rng);
