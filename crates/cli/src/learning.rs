@@ -5,9 +5,9 @@
 use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
 use adapt::paper::{self, PaperLaw, State as PaperState, Update};
 use diagnose::{Baseline, FlightRecord};
+use effects::ExtendedModel;
 use flight::{Observation, Segment};
 use lut::{Outside, Table};
-use perf_model::PerformanceModel;
 use refit::RefitRule;
 
 use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
@@ -48,7 +48,7 @@ pub enum LawChoice {
 /// # Errors
 /// An initial table that the law cannot correct.
 pub fn begin(
-    initial: &PerformanceModel,
+    initial: &ExtendedModel,
     tail: &str,
     criteria: &str,
     law: LawChoice,
@@ -83,7 +83,7 @@ pub fn begin(
 /// # Errors
 /// A threshold that is none, or a table whose nodes no longer determine its polynomial; the flight is then not learnt.
 pub fn learn_flight(
-    initial: &PerformanceModel,
+    initial: &ExtendedModel,
     learnt: &mut Learnt,
     flight: &FlightToLearn<'_>,
 ) -> Result<FlightLearnt, LearningError> {
@@ -148,7 +148,7 @@ pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
 }
 
 /// Learns, from every segment of a tail, what no table can hold (law `bayes`). Fewer than five flights teach nothing.
-pub fn remember_remainder(initial: &PerformanceModel, learnt: &mut Learnt, segments: &[Segment]) {
+pub fn remember_remainder(initial: &ExtendedModel, learnt: &mut Learnt, segments: &[Segment]) {
     let LawState::Bayes { posterior, .. } = &learnt.law else { return };
     let flights: Vec<FlightRecord<'_>> = segments
         .chunk_by(|one, other| one.identity == other.identity)
@@ -210,7 +210,7 @@ pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
 }
 
 fn state_without_errors(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     segment: &Segment,
 ) -> Option<perf_model::SegmentState> {
     model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
@@ -222,7 +222,7 @@ fn state_without_errors(
 /// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
 /// the error, effects included.
 pub fn evaluate(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     table: &Table,
     segments: &[Segment],
 ) -> Vec<Option<Evaluated>> {

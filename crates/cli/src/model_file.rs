@@ -17,8 +17,8 @@ use std::sync::Arc;
 use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use adapt::paper::State as PaperState;
 use diagnose::Baseline;
+use effects::ExtendedModel;
 use lut::Table;
-use perf_model::PerformanceModel;
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
@@ -32,7 +32,7 @@ pub const FORMAT: u32 = 1;
 #[derive(Clone, Debug)]
 pub struct ModelFile {
     /// The initial model: aircraft, polynomial, drag table, extrapolated nodes, and the effects of `applied`.
-    pub initial: PerformanceModel,
+    pub initial: ExtendedModel,
     /// What the guide was like from which the initial model comes.
     pub guide: GuideRecord,
     /// Settings of the laws, fixed when the initial model is made.
@@ -252,7 +252,7 @@ impl ModelFile {
     ///
     /// # Errors
     /// A learnt table with a drag coefficient that is not positive (law `paper` takes what it is given).
-    pub fn current(&self) -> Result<PerformanceModel, perf_model::ModelError> {
+    pub fn current(&self) -> Result<ExtendedModel, effects::EffectModelError> {
         self.initial.with_drag_table(self.drag_coefficient().clone())
     }
 

@@ -89,6 +89,6 @@ impl References {
 
 /// Days since 1970-01-01 UTC of the segment's mean instant.
 fn unix_days(segment: &Segment) -> f64 {
-    let start_s = segment.identity.start.as_second() as f64;
+    let start_s = segment.identity.start_s();
     (start_s + segment.means.time_s) / units::convert::SECONDS_PER_DAY
 }

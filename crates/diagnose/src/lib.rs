@@ -34,7 +34,7 @@
 //!     )"#,
 //! )?;
 //! let guide = Guide::from_csv(include_bytes!("../../perf-model/tests/golden/guide.csv"))?;
-//! let model = initial_model(&aircraft, &guide)?.model;
+//! let model = effects::ExtendedModel::from(initial_model(&aircraft, &guide)?.model);
 //! let input = Input::against(&model, &[]);
 //! // No flights, no name.
 //! let found = diagnose(&input, &Options::default())?;

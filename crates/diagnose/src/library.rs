@@ -1,9 +1,7 @@
 //! The columns of the search: every testable effect, one column for each value of a hidden parameter.
 
+use effects::{EffectModel, EffectPoint, HiddenParameters, StepTarget, ThrottleArgument};
 use flight::effect::{EffectId, TypicalSize};
-use perf_model::effects::{
-    EffectModel, EffectPoint, HiddenParameters, StepTarget, ThrottleArgument,
-};
 
 /// Share of the segments that must have an effect's input.
 const RECORDED_SHARE: f64 = 0.9;
@@ -130,7 +128,7 @@ fn lacking(
     {
         return Some(vec!["WF(k)"]);
     }
-    let missing = points.iter().filter(|point| EffectModel::lacks(id, point).is_some()).count();
+    let missing = points.iter().filter(|point| point.lacks(id).is_some()).count();
     if (missing as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64 {
         return None;
     }

@@ -8,8 +8,9 @@
 use std::path::{Path, PathBuf};
 
 use diagnose::{Baseline, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
+use effects::ExtendedModel;
 use flight::Segment;
-use perf_model::{Aircraft, Guide, PerformanceModel, initial_model};
+use perf_model::{Aircraft, Guide, initial_model};
 use report::Reader;
 use segmenter::TrimCriteria;
 
@@ -23,7 +24,7 @@ fn data() -> Option<PathBuf> {
     found.then_some(folder)
 }
 
-fn model(folder: &Path) -> PerformanceModel {
+fn model(folder: &Path) -> ExtendedModel {
     let aircraft = Aircraft::from_ron(
         r#"(
             name: "JSBSim global5000", type_code: "GL5T", engines: 2, wing_area_m2: 94.94690688,
@@ -33,7 +34,7 @@ fn model(folder: &Path) -> PerformanceModel {
     )
     .unwrap();
     let guide = Guide::from_csv(&std::fs::read(folder.join("guide.csv")).unwrap()).unwrap();
-    initial_model(&aircraft, &guide).unwrap().model
+    initial_model(&aircraft, &guide).unwrap().model.into()
 }
 
 /// The fleet's segments, flight by flight in order of START.
@@ -59,11 +60,7 @@ fn records(flights: &[Vec<Segment>]) -> Vec<FlightRecord<'_>> {
     flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
 }
 
-fn run(
-    model: &PerformanceModel,
-    baseline: Option<&Baseline>,
-    flights: &[Vec<Segment>],
-) -> Diagnosis {
+fn run(model: &ExtendedModel, baseline: Option<&Baseline>, flights: &[Vec<Segment>]) -> Diagnosis {
     let records = records(flights);
     let input = Input { baseline, ..Input::against(model, &records) };
     diagnose(&input, &Options::default()).unwrap()

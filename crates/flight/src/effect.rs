@@ -117,6 +117,14 @@ pub enum NeededInput {
 }
 
 impl NeededInput {
+    /// Whether something stands in for the input where it is not recorded, so that effects that act through it can be
+    /// predicted and tested all the same: static air temperature above −40 °C for anti-ice bleed (our choice: bleed is
+    /// used in visible moisture, of which there is little below).
+    #[must_use]
+    pub const fn has_substitute(self) -> bool {
+        matches!(self, Self::AntiIce)
+    }
+
     /// The column's name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -141,7 +149,8 @@ pub struct EffectEntry {
     pub unit: &'static str,
     /// Usual size in that unit.
     pub typical: TypicalSize,
-    /// Inputs without which it cannot be tested.
+    /// Inputs beyond the required columns that it acts through. Without one of them it can neither be predicted nor tested,
+    /// unless something stands in ([`NeededInput::has_substitute`]).
     pub needs: &'static [NeededInput],
     /// What θ does to the model, in one line.
     pub perturbation: &'static str,

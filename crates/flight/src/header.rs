@@ -14,6 +14,21 @@ pub struct FlightIdentity {
     pub flight: String,
 }
 
+impl FlightIdentity {
+    /// The instant of TIME 0, s since 1970 (whole seconds).
+    #[must_use]
+    pub fn start_s(&self) -> f64 {
+        seconds_since_1970(self.start)
+    }
+}
+
+/// Whole seconds since 1970 of an instant.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
+pub fn seconds_since_1970(instant: Timestamp) -> f64 {
+    instant.as_second() as f64
+}
+
 /// Required columns that a recording may declare missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MissingColumn {

@@ -26,7 +26,7 @@ mod segment;
 mod track;
 
 pub use finding::{Finding, Severity};
-pub use header::{Assumption, FlightIdentity, MissingColumn, ReportHeader};
+pub use header::{Assumption, FlightIdentity, MissingColumn, ReportHeader, seconds_since_1970};
 pub use jiff::Timestamp;
 pub use observation::{Observation, ObservationVariance};
 pub use report::{FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportDataError};

@@ -43,7 +43,6 @@
 pub mod aircraft;
 mod columns;
 mod csv_text;
-pub mod effects;
 pub mod forces;
 pub mod fuel_flow;
 mod guide;

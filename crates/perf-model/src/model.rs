@@ -3,12 +3,11 @@
 use std::sync::Arc;
 
 use flight::Segment;
-use lut::surface::{FitError, Surface};
+use lut::surface::Surface;
 use lut::{Cell, Grid, Outside, OutsideGrid, Table};
 use units::OutOfDomain;
 
 use crate::Aircraft;
-use crate::effects::{AppliedEffects, Contained, EffectModelError};
 use crate::state::SegmentState;
 
 mod observe;
@@ -28,7 +27,6 @@ pub struct PerformanceModel {
     polynomial: Surface,
     drag_table: Table,
     extrapolated: Vec<bool>,
-    contained: Option<Box<Contained>>,
 }
 
 /// Why parts do not make a performance model.
@@ -66,9 +64,6 @@ pub enum ModelError {
         /// The table's value there.
         drag_coefficient: f64,
     },
-    /// A table that does not determine CD0(M) and K(M), of which an applied effect is a share.
-    #[error("CD0(M) and K(M) cannot be fitted to the drag table: {0}")]
-    Polar(#[from] FitError),
 }
 
 /// A point that the drag table does not hold. Nothing is extrapolated.
@@ -110,7 +105,7 @@ impl PerformanceModel {
             }
         }
         check_drag_table(&aircraft, &drag_table)?;
-        Ok(Self { aircraft, polynomial, drag_table, extrapolated, contained: None })
+        Ok(Self { aircraft, polynomial, drag_table, extrapolated })
     }
 
     /// The same model with another drag table, for example an adapted one.
@@ -119,35 +114,7 @@ impl PerformanceModel {
     /// [`ModelError`] where the table is not on the aircraft's grid or a drag coefficient is not positive.
     pub fn with_drag_table(&self, drag_table: Table) -> Result<Self, ModelError> {
         check_drag_table(&self.aircraft, &drag_table)?;
-        let mut changed = self.clone();
-        if let Some(contained) = &mut changed.contained {
-            contained.refit(&drag_table)?;
-        }
-        Ok(Self { drag_table, ..changed })
-    }
-
-    /// The same model containing these effects, in the place of those that it contained.
-    ///
-    /// Effects of the aircraft and its surroundings are from then on part of every prediction; effects of what is recorded
-    /// (sensors, load sheet, fuel quantity) are undone in every recorded segment, and never change a prediction for a
-    /// flight point.
-    ///
-    /// # Errors
-    /// [`EffectModelError`] for a size or reference that is not finite, and where the drag table does not determine the
-    /// polar that some effects are a share of.
-    pub fn with_effects(&self, applied: AppliedEffects) -> Result<Self, EffectModelError> {
-        let contained = Contained::of(applied, &self.drag_table)?.map(Box::new);
-        Ok(Self { contained, ..self.clone() })
-    }
-
-    /// The effects that the model contains; `None` for a model without any.
-    #[must_use]
-    pub fn effects(&self) -> Option<&AppliedEffects> {
-        self.contained().map(Contained::applied)
-    }
-
-    pub(crate) fn contained(&self) -> Option<&Contained> {
-        self.contained.as_deref()
+        Ok(Self { drag_table, ..self.clone() })
     }
 
     /// The aircraft.

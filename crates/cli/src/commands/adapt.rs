@@ -303,7 +303,7 @@ impl Job {
 }
 
 fn learn_one(
-    initial: &perf_model::PerformanceModel,
+    initial: &effects::ExtendedModel,
     learnt: &mut Learnt,
     flight: &FlightRead,
 ) -> Result<(), learning::LearningError> {

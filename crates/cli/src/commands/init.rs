@@ -63,7 +63,7 @@ pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
 /// The model file of a fresh initial model, with the laws' published settings.
 pub fn model_of(initial: &InitialModel, guide: &Guide) -> ModelFile {
     ModelFile {
-        initial: initial.model.clone(),
+        initial: initial.model.clone().into(),
         guide: GuideRecord {
             points: guide.points().len() as u64,
             lift_coefficient: initial.fit.lift_coefficients,

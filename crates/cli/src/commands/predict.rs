@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use effects::AppliedEffects;
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans, Timestamp};
 use parquet::file::reader::{FileReader, SerializedFileReader};
-use perf_model::effects::AppliedEffects;
 use perf_model::{FlightPointRow, FlightPoints};
 use units::FuelFlowTotal;
 
@@ -183,7 +183,7 @@ fn deviations(
 fn imagined_segment(
     point: &perf_model::FlightPoint,
     prediction: &perf_model::Prediction,
-    model: &perf_model::PerformanceModel,
+    model: &effects::ExtendedModel,
 ) -> Segment {
     let total = prediction.fuel_flow_total.to_kilograms_per_second();
     let engines = model.aircraft().engines();

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use diagnose::{AddedEffect, Addition};
+use effects::AppliedEffects;
 use flight::effect::EffectId;
-use perf_model::effects::AppliedEffects;
 use serde::{Deserialize, Serialize};
 
 use super::ModelFile;
@@ -69,8 +69,8 @@ fn told(added: &AddedEffect) -> String {
             words,
             ", of {}",
             match target {
-                perf_model::effects::StepTarget::FuelFlow => "fuel flow",
-                perf_model::effects::StepTarget::Drag => "drag",
+                effects::StepTarget::FuelFlow => "fuel flow",
+                effects::StepTarget::Drag => "drag",
             }
         );
     }

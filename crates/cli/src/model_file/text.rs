@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
 use diagnose::Baseline;
+use effects::ExtendedModel;
 use lut::Table;
 use lut::surface::Surface;
 use perf_model::aircraft::AircraftFile;
@@ -260,7 +261,7 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
     .map_err(|error| value("initial", error))?;
     let effects =
         super::applied::layers_of(&document.effects).map_err(|error| value("effects", error))?;
-    let initial = initial.with_effects(effects).map_err(|error| value("effects", error))?;
+    let initial = ExtendedModel::new(initial, effects).map_err(|error| value("effects", error))?;
     let settings = document.settings;
     let learnt = match document.learnt {
         None => None,
@@ -274,7 +275,7 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
 
 fn law_of(
     law: LawText,
-    initial: &PerformanceModel,
+    initial: &ExtendedModel,
     bayes: BayesSettings,
 ) -> Result<LawState, ModelTextError> {
     let grid = initial.drag_table().grid();

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use effects::ObserveError;
 use flight::Timestamp;
-use perf_model::ObserveError;
 
 use crate::model_file::ModelFile;
 use crate::results::TailResult;
@@ -83,7 +83,7 @@ impl TailView {
             let errors = flights.entry((identity.start, &identity.flight)).or_default();
             if row.evaluated.is_none_or(|evaluated| evaluated.error_percent.is_none()) {
                 match result.model.initial.observe(&row.segment) {
-                    Err(ObserveError::OutsideTable(at)) => {
+                    Err(ObserveError::Model(perf_model::ObserveError::OutsideTable(at))) => {
                         outside.push((at.lift_coefficient, at.mach));
                     }
                     Err(other) => not_observed.push(other.to_string()),
@@ -92,7 +92,7 @@ impl TailView {
             }
             let Some(evaluated) = row.evaluated else { continue };
             let point = Point {
-                start_s: identity.start.as_second() as f64,
+                start_s: identity.start_s(),
                 lift_coefficient: evaluated.lift_coefficient,
                 mach: row.segment.means.mach,
                 drag_coefficient: evaluated.drag_coefficient,

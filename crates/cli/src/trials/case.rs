@@ -93,7 +93,7 @@ pub enum CaseFailure {
     Slice(#[from] diagnose::SliceError),
     /// A model that takes no effects.
     #[error(transparent)]
-    Effects(#[from] perf_model::effects::EffectModelError),
+    Effects(#[from] effects::EffectModelError),
     /// Truth or result on disk.
     #[error(transparent)]
     Disk(#[from] Failure),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use diagnose::{
     Baseline, Diagnosis, FlightRecord, GaugeBurn, Input, Options, TableUncertainty, diagnose,
 };
+use effects::ExtendedModel;
 use flight::Segment;
 use flight::effect::EffectId;
 use lut::Table;
@@ -38,7 +39,7 @@ const COARSE: [(f64, f64, f64); 2] = [(0.10, 0.75, 0.05), (0.50, 0.95, 0.05)];
 /// What the diagnosis is given.
 #[derive(Clone, Debug)]
 pub struct Evidence {
-    model: PerformanceModel,
+    model: ExtendedModel,
     /// The adapted drag table; the model's own where nothing was learnt.
     drag_table: Table,
     baseline: Option<Baseline>,
@@ -158,7 +159,7 @@ fn denied_model(
     sensors: &Sensors,
     grid: &[(f64, f64, f64); 2],
     error: Option<&DragError>,
-) -> Result<PerformanceModel, CaseFailure> {
+) -> Result<ExtendedModel, CaseFailure> {
     let axis = |(from, to, step)| AxisFile::Step { from, to, step };
     let aircraft = Aircraft::new(AircraftFile {
         name: truth.name.clone(),
@@ -189,7 +190,7 @@ fn denied_model(
     let table = Table::new(Arc::clone(&grid), values)?;
     let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
     let extrapolated = vec![false; grid.nodes()];
-    Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?)
+    Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?.into())
 }
 
 /// What the aircraft file says of the fleet's sensors: what they do within a flight and from flight to flight, as an operator
@@ -280,7 +281,7 @@ fn sensor_deviations(
 
 /// Law `bayes` on clean flights with its remainder, as `cruisefit adapt` does it.
 fn adapted(
-    initial: PerformanceModel,
+    initial: ExtendedModel,
     lessons: &[FlightSegments],
     flights: Vec<FlightSegments>,
 ) -> Result<Evidence, CaseFailure> {
@@ -321,7 +322,7 @@ fn adapted(
 
 #[cfg(test)]
 mod tests {
-    use perf_model::effects::{EffectModel, EffectPoint, EffectReferences, Effects};
+    use effects::{EffectModel, EffectPoint, Effects};
     use simulate::{Earth, FleetDesign, Plan, SensorChoice, Weather};
 
     use super::*;
@@ -340,10 +341,10 @@ mod tests {
         let segments: Vec<Segment> = flights.into_iter().flat_map(|f| f.segments).collect();
         let points: Vec<EffectPoint> = segments
             .iter()
-            .map(|s| EffectPoint::of_means(&s.means, s.identity.start.as_second() as f64, 2))
+            .map(|s| EffectPoint::from_means(&s.means, s.identity.start_s(), 2))
             .collect();
         let references =
-            EffectReferences::mean_of(model.aircraft(), model.drag_table(), &points).unwrap();
+            effects::mean_references(model.aircraft(), model.drag_table(), &points).unwrap();
         let of = EffectModel::new(&model, model.drag_table(), references).unwrap();
         segments
             .iter()

@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 use diagnose::trial::Located;
 use diagnose::trial::places::{names_driver, spread, worst_region_overlap};
 use diagnose::{Diagnosis, Slice, slice_members};
+use effects::{EffectModel, EffectPoint, Effects};
 use flight::Segment;
 use flight::effect::EffectId;
-use perf_model::effects::{EffectModel, EffectPoint, Effects};
 
 use super::case::CaseFailure;
 use super::draw::Withheld;
@@ -136,8 +136,8 @@ fn gaps(evidence: &Evidence, effects: &Effects) -> Result<BTreeMap<Key, f64>, Ca
     let model = EffectModel::new(input.model, input.drag_table, references)?;
     let engines = model.aircraft().engines();
     let gap = |segment: &Segment| {
-        let start_s = segment.identity.start.as_second() as f64;
-        let point = EffectPoint::of_means(&segment.means, start_s, engines);
+        let start_s = segment.identity.start_s();
+        let point = EffectPoint::from_means(&segment.means, start_s, engines);
         let predicted = model.response(&point, effects).ok()?.ln_fuel_flow_total;
         Some((key(segment), segment.means.fuel_flow_total_kg_s.ln() - predicted))
     };

@@ -7,8 +7,8 @@
 //! What it is not: a flight planner. Weather, traffic and the aircraft's limits are not known here; nothing faster, higher,
 //! lower, heavier, lighter or with more thrust, lift coefficient or dynamic pressure than was flown is proposed.
 
+use effects::EffectModel;
 use faer::Mat;
-use perf_model::effects::EffectModel;
 
 use crate::advice::distances::{Distances, gains, squared_from_any};
 use crate::advice::flights::envelope::Envelope;

@@ -1,7 +1,7 @@
 //! The probability of each effect, and what is printed of it.
 
+use effects::StepTarget;
 use flight::effect::EffectId;
-use perf_model::effects::StepTarget;
 
 use crate::advice::distances::Distances;
 use crate::hypotheses::evidence::Scored;

@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 
-use perf_model::effects::EffectModel;
+use effects::EffectModel;
 
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;

@@ -1,9 +1,9 @@
 //! What a verdict would add to the model: its effects with sizes, hidden parameters and references, ready to be applied.
 
-use flight::effect::EffectId;
-use perf_model::effects::{
+use effects::{
     AppliedLayer, EffectReferences, Effects, HiddenParameters, StepTarget, ThrottleArgument,
 };
+use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
 
 /// Effects of a verdict and what they are zero at.

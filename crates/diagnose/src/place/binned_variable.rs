@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use perf_model::effects::EffectReferences;
+use effects::EffectReferences;
 
 use crate::residuals::rows::SegmentRow;
 use crate::signals::variables::Variable;

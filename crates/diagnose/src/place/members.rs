@@ -1,6 +1,6 @@
 //! Which segments lie in a place.
 
-use perf_model::effects::{EffectModel, EffectPoint, Effects};
+use effects::{EffectModel, EffectPoint, Effects};
 
 use crate::input::Input;
 use crate::output::Slice;
@@ -48,10 +48,9 @@ pub fn slice_members(input: &Input<'_>, slice: &Slice) -> Result<Vec<Vec<bool>>,
         .filter_map(|(name, &bounds)| Some((variable_named(name)?, bounds)))
         .collect();
     let is_member = |segment: &flight::Segment| {
-        #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
-        let start_s = segment.identity.start.as_second() as f64;
+        let start_s = segment.identity.start_s();
         let Ok(means) = model.corrected_means(&segment.means) else { return false };
-        let point = EffectPoint::of_means(&means, start_s, engines);
+        let point = EffectPoint::from_means(&means, start_s, engines);
         let Ok(response) = model.response(&point, &Effects::none()) else { return false };
         bounds.iter().all(|&(variable, bounds)| {
             let value = match variable {

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use effects::{EffectModel, EffectPoint, Response};
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
-use perf_model::effects::{EffectModel, EffectPoint, Response};
 
 use crate::library::Library;
 use crate::residuals::gauges::gauge_row;

@@ -3,8 +3,8 @@
 //! Difficult: one step changes a model's own columns and the residual, and nothing else. All models step together, so that the
 //! rows are gone through once a step; what was integrated out before stays factored, and the changed columns follow.
 
+use effects::{EffectModel, Effects, HiddenParameters, Trial};
 use faer::{Mat, MatMut, MatRef};
-use perf_model::effects::{EffectModel, Effects, HiddenParameters, Trial};
 
 use crate::hypotheses::backgrounds::Background;
 use crate::hypotheses::evidence::{Scored, Scorer};

@@ -1,6 +1,6 @@
 //! The N2 deck: which N2 stands for which corrected thrust, and the other way round.
 
-use perf_model::effects::Response;
+use effects::Response;
 
 /// Coefficients of the N2 deck: a full quadratic in four variables.
 pub(crate) const DECK_TERMS: usize = 15;

@@ -1,7 +1,7 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
+use effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
 use perf_model::aircraft::{FlightDeviations, FuelFlowWander, SensorDeviations};
-use perf_model::effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
 

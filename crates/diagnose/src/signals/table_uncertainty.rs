@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use effects::Response;
 use faer::Mat;
 use lut::{Grid, Outside};
-use perf_model::effects::Response;
 
 use crate::math::cholesky::Factor;
 

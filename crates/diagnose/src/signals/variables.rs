@@ -1,6 +1,6 @@
 //! The physical variables that a gap may hang on, and hat functions over them.
 
-use perf_model::effects::{EffectPoint, EffectReferences, Response};
+use effects::{EffectPoint, EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 use units::convert::RADIANS_PER_DEGREE;
 

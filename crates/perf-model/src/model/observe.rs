@@ -4,7 +4,6 @@ use flight::{Observation, Segment, Timestamp};
 use units::OutOfDomain;
 
 use super::{OutsideTable, PerformanceModel};
-use crate::effects::EffectError;
 use crate::variance::{self, TableSlopes};
 
 /// Why a segment is no observation.
@@ -29,9 +28,6 @@ pub enum ObserveError {
         /// Mass times recorded acceleration, N.
         inertia_n: f64,
     },
-    /// An applied effect has no prediction for the segment.
-    #[error(transparent)]
-    Effect(#[from] EffectError),
     /// The segment's instant is beyond what timestamps hold.
     #[error("{time_s} s after START is no instant")]
     NoInstant {
@@ -46,9 +42,6 @@ impl PerformanceModel {
     /// The variance includes how an error of Mach number, mass or pressure moves the point along *this model's* table;
     /// see [`variance`].
     ///
-    /// The effects that the model contains are taken away first ([`without_effects`](Self::without_effects)): what is left is
-    /// drag, and all that is not among them.
-    ///
     /// # Errors
     /// [`ObserveError`] where a mean is outside its domain, the table does not hold the point, or thrust and
     /// acceleration leave no drag.
@@ -56,7 +49,6 @@ impl PerformanceModel {
     /// # Source
     /// Book `[forces.6]`, `[forces.11]`, `[forces.14]`, `[uncertainty.1]`; Ghazi et al. 2020, equations (20)–(22).
     pub fn observe(&self, segment: &Segment) -> Result<Observation, ObserveError> {
-        let segment = &*self.without_effects(segment, self.drag_table())?;
         let means = &segment.means;
         let state = self.state_of(segment)?;
         let cell = self.locate(state.lift_coefficient, means.mach)?;

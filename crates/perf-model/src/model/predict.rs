@@ -10,7 +10,6 @@ use units::{
 
 use super::{OutsideTable, PerformanceModel, same_grid};
 use crate::FlightPoint;
-use crate::effects::EffectError;
 use crate::fuel_flow::{self, CruiseConditions};
 use crate::specific_range::specific_range;
 use crate::tsfc::tsfc;
@@ -26,9 +25,6 @@ pub enum PredictError {
     /// The table does not hold the point's lift coefficient and Mach number.
     #[error(transparent)]
     OutsideTable(#[from] OutsideTable),
-    /// An applied effect has no prediction.
-    #[error(transparent)]
-    Effect(#[from] EffectError),
     /// A table on another grid than the model's.
     #[error("the drag table is not on the grid of the aircraft file")]
     GridDiffers,
@@ -83,8 +79,7 @@ pub struct Prediction {
 
 impl PerformanceModel {
     /// Predicted fuel flow and error of a segment by a drag table, for example an adapted one or
-    /// [`drag_table`](Self::drag_table). The segment's acceleration is part of the prediction, and so are the effects that the
-    /// model contains: state and drag coefficient are those without them, fuel flow and error are as recorded.
+    /// [`drag_table`](Self::drag_table). The segment's acceleration is part of the prediction.
     ///
     /// # Errors
     /// [`PredictError`] where a mean is outside its domain, the table does not hold the point, or is on another grid
@@ -102,18 +97,13 @@ impl PerformanceModel {
         }
         let recorded =
             units::FuelFlowTotal::kilograms_per_second(segment.means.fuel_flow_total_kg_s);
-        let segment = &*self.without_effects(segment, drag_table)?;
         let state = self.state_of(segment)?;
         let cell = drag_table
             .grid()
             .locate(state.lift_coefficient, segment.means.mach, Outside::Error)
             .map_err(OutsideTable::from)?;
         let drag_coefficient = drag_table.interpolate(&cell);
-        let mut fuel_flow_total =
-            fuel_flow::predicted_fuel_flow(&state.conditions, drag_coefficient);
-        if self.contained().is_some() {
-            fuel_flow_total = fuel_flow_total * (recorded / state.fuel_flow_total);
-        }
+        let fuel_flow_total = fuel_flow::predicted_fuel_flow(&state.conditions, drag_coefficient);
         Ok(SegmentPrediction {
             state,
             drag_coefficient,
@@ -125,10 +115,6 @@ impl PerformanceModel {
     }
 
     /// Predicted fuel flow and specific range at a flight point: level flight without acceleration.
-    ///
-    /// Physical effects that the model contains are part of it: lift coefficient, drag coefficient, thrust and TSFC are then
-    /// those with them, at their reference where the point lacks an input
-    /// ([`AppliedEffects::at_reference`](crate::effects::AppliedEffects::at_reference)). Effects of what is recorded never are.
     ///
     /// # Errors
     /// [`PredictError`] where a number is outside its domain or the table does not hold the point. Nothing is
@@ -160,7 +146,7 @@ impl PerformanceModel {
         let cell = self.locate(lift_coefficient, point.mach.value())?;
         let drag_coefficient = self.drag_table().interpolate(&cell);
         let fuel_flow_total = fuel_flow::predicted_fuel_flow(&conditions, drag_coefficient);
-        let plain = Prediction {
+        Ok(Prediction {
             fuel_flow_total,
             specific_range: specific_range(true_airspeed, fuel_flow_total),
             true_airspeed,
@@ -181,44 +167,7 @@ impl PerformanceModel {
                 .measured_fuel_flow_total
                 .map(|measured| fuel_flow::fuel_flow_error_percent(measured, fuel_flow_total)),
             cell,
-        };
-        match self.contained().filter(|contained| contained.changes_predictions()) {
-            None => Ok(plain),
-            Some(_) => self.with_applied(point, plain, &conditions),
-        }
-    }
-
-    /// A prediction with the physical effects that the model contains.
-    fn with_applied(
-        &self,
-        point: &FlightPoint,
-        plain: Prediction,
-        conditions: &CruiseConditions,
-    ) -> Result<Prediction, PredictError> {
-        let response = self.response(point)?;
-        let fuel_flow_total =
-            FuelFlowTotal::kilograms_per_second(response.ln_fuel_flow_total.exp());
-        let net_thrust = Force::newtons(response.net_thrust_n);
-        let tsfc = Tsfc::kilograms_per_newton_second(
-            fuel_flow_total.to_kilograms_per_second() / net_thrust.to_newtons(),
-        );
-        let effective = CruiseConditions { tsfc, ..*conditions };
-        let drag = Force::newtons(response.net_thrust_n * response.drag_over_thrust);
-        Ok(Prediction {
-            lift_coefficient: response.lift_coefficient,
-            drag_coefficient: forces::drag_coefficient(
-                drag,
-                conditions.dynamic_pressure,
-                conditions.wing_area,
-            ),
-            net_thrust,
-            tsfc,
-            fuel_flow_per_drag_coefficient_kg_s: fuel_flow::fuel_flow_per_drag_coefficient_kg_s(
-                &effective,
-            ),
-            ..plain
-        }
-        .with_fuel_flow(fuel_flow_total, point))
+        })
     }
 }
 

@@ -1,7 +1,8 @@
 //! What a model remembers beside its table, at flight points.
 
 use diagnose::Baseline;
-use perf_model::{FlightPoint, PerformanceModel};
+use effects::ExtendedModel;
+use perf_model::FlightPoint;
 
 use crate::model_file::ModelFile;
 
@@ -17,7 +18,7 @@ impl<'a> Remainder<'a> {
     }
 
     /// Mean and standard deviation of ln fuel flow less the table's, where flown data informed them.
-    pub(super) fn at(self, current: &PerformanceModel, point: &FlightPoint) -> Option<(f64, f64)> {
+    pub(super) fn at(self, current: &ExtendedModel, point: &FlightPoint) -> Option<(f64, f64)> {
         self.0.known_remainder(&current.response(point).ok()?)
     }
 

@@ -1,6 +1,6 @@
 //! What the flights at hand show to be possible, and what is usual on them: the limits of a flight on purpose.
 
-use perf_model::effects::{EffectModel, EffectPoint, Effects};
+use effects::{EffectModel, EffectPoint, Effects};
 use units::convert::METERS_PER_FOOT;
 use units::{Mach, PressureAltitude, Temperature};
 

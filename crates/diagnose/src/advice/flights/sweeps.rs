@@ -1,6 +1,6 @@
 //! Flights that could be flown on purpose.
 
-use perf_model::effects::{EffectModel, EffectPoint};
+use effects::{EffectModel, EffectPoint};
 
 use crate::advice::flights::envelope::{Envelope, Loading, SEGMENTS};
 

@@ -1,25 +1,28 @@
 //! From what was recorded to what was flown: sensor, mass and fuel-quantity effects undone.
 
+use std::borrow::Cow;
+
 use atmos::{airspeed, isa, viscosity};
 use flight::SegmentMeans;
 use units::{Pressure, PressureAltitude, Temperature, TrueAirspeed, check_within};
 
-use super::{EffectError, EffectPoint};
-use crate::effects::terms::Terms;
+use crate::error::EffectError;
+use crate::point::EffectPoint;
+use crate::terms::Terms;
 
 /// The state that was flown if the recording erred as the effects say.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct AsFlown {
-    pub(super) mach: f64,
-    pub(super) static_air_temperature_k: f64,
-    pub(super) true_airspeed_m_s: f64,
-    pub(super) temperature_ratio: f64,
-    pub(super) pressure_ratio: f64,
-    pub(super) ln_temperature_ratio: f64,
-    pub(super) ln_pressure_ratio: f64,
-    pub(super) dynamic_pressure_pa: f64,
-    pub(super) mass_kg: f64,
-    pub(super) unit_reynolds_number_per_m: f64,
+pub(crate) struct AsFlown {
+    pub(crate) mach: f64,
+    pub(crate) static_air_temperature_k: f64,
+    pub(crate) true_airspeed_m_s: f64,
+    pub(crate) temperature_ratio: f64,
+    pub(crate) pressure_ratio: f64,
+    pub(crate) ln_temperature_ratio: f64,
+    pub(crate) ln_pressure_ratio: f64,
+    pub(crate) dynamic_pressure_pa: f64,
+    pub(crate) mass_kg: f64,
+    pub(crate) unit_reynolds_number_per_m: f64,
 }
 
 /// Undoes the errors of Mach number, static pressure, SAT, zero-fuel mass and fuel used, without linearising.
@@ -33,7 +36,7 @@ pub(super) struct AsFlown {
 ///
 /// [diagnosis.2] holds total pressure, which a static source does not touch. `s_k` is engine k's share of the recorded fuel
 /// flow; a meter that reads `θWF` high has counted `FU·θWF/(1 + θWF)` of fuel too much.
-pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, EffectError> {
+pub(crate) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, EffectError> {
     let recorded_mach = positive("Mach number", "Mach", point.mach)?;
     let recorded_sat_k = positive("static air temperature", "K", point.static_air_temperature_k)?;
     let recorded_tas_m_s = positive("true airspeed", "m/s", point.true_airspeed_m_s)?;
@@ -82,6 +85,19 @@ pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
     })
 }
 
+/// Undoes layers of recording errors, one after the other.
+pub(crate) fn corrected_by<'m>(
+    layers: &[Terms],
+    means: &'m SegmentMeans,
+    engines: usize,
+) -> Result<Cow<'m, SegmentMeans>, EffectError> {
+    let mut result = Cow::Borrowed(means);
+    for terms in layers {
+        result = Cow::Owned(corrected(&result, terms, engines)?);
+    }
+    Ok(result)
+}
+
 /// The means of a segment as they would have been recorded without the errors.
 ///
 /// What [`as_flown`] says of Mach number, TAS, SAT and mass; pressure altitude of the static pressure; and
@@ -91,12 +107,12 @@ pub(super) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
 /// ```
 ///
 /// Ground speed, acceleration, gauged fuel quantity and rotor speeds stay as recorded.
-pub(super) fn corrected(
+fn corrected(
     means: &SegmentMeans,
     terms: &Terms,
     engines: usize,
 ) -> Result<SegmentMeans, EffectError> {
-    let point = EffectPoint::of_means(means, 0.0, engines);
+    let point = EffectPoint::from_means(means, 0.0, engines);
     let flown = as_flown(&point, terms)?;
     let mut corrected = means.clone();
     corrected.mach = flown.mach;

@@ -1,12 +1,13 @@
 //! Effects on drag, on the weight that lift carries, and on the force along the path.
 
 use atmos::gravity;
+use lut::surface::Surface;
 use units::convert::{DAYS_PER_YEAR, RADIANS_PER_DEGREE, SECONDS_PER_DAY, STANDARD_GRAVITY_M_S2};
 use units::{Angle, GeometricAltitude};
 
-use super::recorded::AsFlown;
-use super::terms::{Layers, Terms};
-use super::{EffectModel, EffectPoint};
+use crate::point::EffectPoint;
+use crate::recorded::AsFlown;
+use crate::terms::{Layers, Terms};
 
 /// Height of the parabola of fourth degree by which drag rises, per Mach⁴: Lock's.
 const LOCK_FACTOR: f64 = 20.0;
@@ -21,6 +22,17 @@ const TRIM_LIFT_COEFFICIENT: f64 = 0.4;
 /// Roll angle up to which a segment counts as wings level, degrees.
 const WINGS_LEVEL_DEG: f64 = 5.0;
 
+/// A point of the drag table that effects change the drag coefficient at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtTable<'p> {
+    /// Drag coefficient without them.
+    pub(crate) drag_coefficient: f64,
+    /// Lift coefficient.
+    pub(crate) lift_coefficient: f64,
+    /// CD0(M) and K(M).
+    pub(crate) polar: &'p Surface,
+}
+
 /// Rise of drag with Mach number.
 ///
 /// ```text
@@ -28,8 +40,9 @@ const WINGS_LEVEL_DEG: f64 = 5.0;
 /// ```
 ///
 /// # Source
-/// Lock's fourth-power law with the drag-divergence condition ∂CD/∂M = 0.1; the contract's constants.
-pub(super) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
+/// Lock's fourth-power law, as in Hilderman and others' Korn–Lock form of the drag rise: the drag-divergence condition
+/// ∂CD/∂M = 0.1 gives the offset. The fall with lift coefficient is our choice: XXX
+pub(crate) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
     let divergence = divergence_mach
         - DIVERGENCE_FALL_PER_LIFT_COEFFICIENT * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);
     let beyond = (mach - divergence + LOCK_OFFSET_MACH).max(0.0);
@@ -37,7 +50,7 @@ pub(super) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) 
 }
 
 /// Years from the reference date to a segment.
-pub(super) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
+pub(crate) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
     (point.date_s - terms.references.date_s) / (DAYS_PER_YEAR * SECONDS_PER_DAY)
 }
 
@@ -49,7 +62,7 @@ pub(super) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
 ///
 /// Pressure altitude stands for height (1 km of difference is 0.03 % of gravity). Track is heading plus drift; heading
 /// where drift is not recorded. ϕ is the root of the mean squared roll angle.
-pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> f64 {
+pub(crate) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> f64 {
     let mut gravity_m_s2 = STANDARD_GRAVITY_M_S2;
     let local_gravity = layers.sum(|terms| terms.local_gravity);
     let rotating_earth = layers.sum(|terms| terms.rotating_earth);
@@ -91,7 +104,7 @@ pub(super) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> 
 ///
 /// `V_cross` is positive when the wind blows to the left of the track: in the north, high pressure is then ahead and a
 /// surface of constant pressure climbs. In geostrophic flow the Coriolis force on the cross-wind takes exactly as much.
-pub(super) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<'_>) -> f64 {
+pub(crate) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<'_>) -> f64 {
     let mut force_n = flown.mass_kg * point.acceleration_m_s2;
     let isobaric_slope = layers.sum(|terms| terms.isobaric_slope);
     if isobaric_slope != 0.0
@@ -104,74 +117,65 @@ pub(super) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<
     force_n
 }
 
-impl EffectModel<'_> {
-    /// The drag coefficient with effects.
-    ///
-    /// ```text
-    /// CD = (CD_table + θ0·1e-4 + θi K(M) CL² + w(Mdd − θw) − w(Mdd) + CD0(M)·((Re/Re_ref)^−θR − 1 + θa t)
-    ///       + θc·1e-4·(CG_ref − CG)/10·CL/0.4 + θϕ·1e-4·ϕ²)·(1 + θD)·(1 + θs from the date on)   [diagnosis.8]
-    /// ```
-    ///
-    /// Layer by layer: what the model contains comes first, and takes the place of the table for what is on top.
-    pub(super) fn drag_coefficient(
-        &self,
-        table: f64,
-        lift_coefficient: f64,
-        point: &EffectPoint,
-        flown: &AsFlown,
-        layers: Layers<'_>,
-    ) -> f64 {
-        layers.iter().fold(table, |below, terms| {
-            self.drag_with_layer(below, lift_coefficient, point, flown, terms)
-        })
-    }
+/// The drag coefficient with effects.
+///
+/// ```text
+/// CD = (CD_table + θ0·1e-4 + θi K(M) CL² + w(Mdd − θw) − w(Mdd) + CD0(M)·((Re/Re_ref)^−θR − 1 + θa t)
+///       + θc·1e-4·(CG_ref − CG)/10·CL/0.4 + θϕ·1e-4·ϕ²)·(1 + θD)·(1 + θs from the date on)   [diagnosis.8]
+/// ```
+///
+/// Layer by layer: what the model contains comes first, and takes the place of the table for what is on top.
+pub(crate) fn drag_coefficient(
+    at: AtTable<'_>,
+    point: &EffectPoint,
+    flown: &AsFlown,
+    layers: Layers<'_>,
+) -> f64 {
+    let drag = layers.iter().fold(at, |below, terms| AtTable {
+        drag_coefficient: drag_with_layer(below, point, flown, terms),
+        ..below
+    });
+    drag.drag_coefficient
+}
 
-    fn drag_with_layer(
-        &self,
-        below: f64,
-        lift_coefficient: f64,
-        point: &EffectPoint,
-        flown: &AsFlown,
-        terms: &Terms,
-    ) -> f64 {
-        let references = &terms.references;
-        let mach = flown.mach;
-        let mut drag = below + terms.zero_lift_drag;
-        if terms.induced_drag != 0.0 {
-            let [_, _, _, k0, k1, k2] = self.polar.coefficients;
-            let factor = k0 + k1 * mach + k2 * mach * mach;
-            drag += terms.induced_drag * factor * lift_coefficient * lift_coefficient;
-        }
-        if terms.wave_drag_mach != 0.0 {
-            let divergence = terms.hidden.drag_divergence_mach;
-            drag += drag_rise(mach, lift_coefficient, divergence - terms.wave_drag_mach)
-                - drag_rise(mach, lift_coefficient, divergence);
-        }
-        if terms.reynolds_exponent != 0.0 || terms.airframe_ageing_per_year != 0.0 {
-            let zero_lift = self.polar.value(0.0, mach);
-            let ratio = flown.unit_reynolds_number_per_m / references.unit_reynolds_number_per_m;
-            drag += zero_lift
-                * (ratio.powf(-terms.reynolds_exponent) - 1.0
-                    + terms.airframe_ageing_per_year * years_since_reference(point, terms));
-        }
-        if terms.trim_drag_per_10_percent_mac != 0.0
-            && let (Some(center), Some(reference)) =
-                (point.center_of_gravity_percent_mac, references.center_of_gravity_percent_mac)
-        {
-            drag += terms.trim_drag_per_10_percent_mac * (reference - center) / 10.0
-                * lift_coefficient
-                / TRIM_LIFT_COEFFICIENT;
-        }
-        if terms.asymmetry_drag_per_deg2 != 0.0
-            && let Some(roll_squared_deg2) = point.roll_squared_deg2
-            && roll_squared_deg2 < WINGS_LEVEL_DEG * WINGS_LEVEL_DEG
-        {
-            drag += terms.asymmetry_drag_per_deg2 * roll_squared_deg2;
-        }
-        drag *= 1.0 + terms.drag_factor;
-        if terms.step_drag != 0.0 && point.date_s >= terms.hidden.step_from_s {
-            drag *= 1.0 + terms.step_drag;
-        }
-        drag
+fn drag_with_layer(below: AtTable<'_>, point: &EffectPoint, flown: &AsFlown, terms: &Terms) -> f64 {
+    let AtTable { drag_coefficient, lift_coefficient, polar } = below;
+    let references = &terms.references;
+    let mach = flown.mach;
+    let mut drag = drag_coefficient + terms.zero_lift_drag;
+    if terms.induced_drag != 0.0 {
+        let [_, _, _, k0, k1, k2] = polar.coefficients;
+        let factor = k0 + k1 * mach + k2 * mach * mach;
+        drag += terms.induced_drag * factor * lift_coefficient * lift_coefficient;
     }
+    if terms.wave_drag_mach != 0.0 {
+        let divergence = terms.hidden.drag_divergence_mach;
+        drag += drag_rise(mach, lift_coefficient, divergence - terms.wave_drag_mach)
+            - drag_rise(mach, lift_coefficient, divergence);
+    }
+    if terms.reynolds_exponent != 0.0 || terms.airframe_ageing_per_year != 0.0 {
+        let zero_lift = polar.value(0.0, mach);
+        let ratio = flown.unit_reynolds_number_per_m / references.unit_reynolds_number_per_m;
+        drag += zero_lift
+            * (ratio.powf(-terms.reynolds_exponent) - 1.0
+                + terms.airframe_ageing_per_year * years_since_reference(point, terms));
+    }
+    if terms.trim_drag_per_10_percent_mac != 0.0
+        && let (Some(center), Some(reference)) =
+            (point.center_of_gravity_percent_mac, references.center_of_gravity_percent_mac)
+    {
+        drag += terms.trim_drag_per_10_percent_mac * (reference - center) / 10.0 * lift_coefficient
+            / TRIM_LIFT_COEFFICIENT;
+    }
+    if terms.asymmetry_drag_per_deg2 != 0.0
+        && let Some(roll_squared_deg2) = point.roll_squared_deg2
+        && roll_squared_deg2 < WINGS_LEVEL_DEG * WINGS_LEVEL_DEG
+    {
+        drag += terms.asymmetry_drag_per_deg2 * roll_squared_deg2;
+    }
+    drag *= 1.0 + terms.drag_factor;
+    if terms.step_drag != 0.0 && point.date_s >= terms.hidden.step_from_s {
+        drag *= 1.0 + terms.step_drag;
+    }
+    drag
 }

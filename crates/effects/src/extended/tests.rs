@@ -1,18 +1,20 @@
 use std::sync::Arc;
 
+use flight::effect::EffectId;
 use flight::{FlightIdentity, MAXIMUM_ENGINES};
 use lut::surface::Basis;
 use units::{Angle, Mach, Mass, PressureAltitude};
 
 use super::*;
-use crate::Aircraft;
-use crate::effects::StepTarget;
+use crate::applied::AppliedLayer;
+use crate::model::EffectModel;
+use crate::set::{HiddenParameters, StepTarget, ThrottleArgument};
 
 const DATE_S: f64 = 1.5e9;
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
 /// CD0 0.0188, K 0.056, a drag rise: nothing that a test depends on.
-fn bare() -> PerformanceModel {
+fn bare() -> ExtendedModel {
     let aircraft = Aircraft::from_ron(
         r#"(
             name: "test", type_code: "TEST", engines: 2, wing_area_m2: 48.96,
@@ -29,7 +31,7 @@ fn bare() -> PerformanceModel {
     let table = Table::new(Arc::clone(grid), values).unwrap();
     let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
     let marks = vec![false; grid.nodes()];
-    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap()
+    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap().into()
 }
 
 fn references() -> EffectReferences {
@@ -59,7 +61,7 @@ fn layer(effects: Effects) -> AppliedLayer {
     AppliedLayer { effects: effects.with_hidden(hidden()), references: references() }
 }
 
-fn with(effects: Effects) -> PerformanceModel {
+fn with(effects: Effects) -> ExtendedModel {
     bare().with_effects(AppliedEffects::new(vec![layer(effects)])).unwrap()
 }
 
@@ -130,7 +132,7 @@ fn ids(of_recordings: bool) -> impl Iterator<Item = EffectId> {
 
 #[test]
 fn effects_of_recordings_never_change_a_prediction() {
-    // The contract: sensor, mass and fuel-quantity effects correct recordings, and never a prediction for the planner.
+    // A planner asks what will be burnt, not what an erring sensor will say of it.
     let plain = bare().predict(&flight_point()).unwrap();
     let mut seen = 0;
     for id in ids(true) {
@@ -160,7 +162,7 @@ fn recorded_with(id: EffectId, size: f64) -> Segment {
     let effects = Effects::one(id, size).with_hidden(hidden());
     // Shares of the engines count in the mass: the recorded ones are those of the response.
     for _ in 0..3 {
-        let point = EffectPoint::of_means(&segment.means, DATE_S, 2);
+        let point = EffectPoint::from_means(&segment.means, DATE_S, 2);
         let response = effect_model.response(&point, &effects).unwrap();
         segment.means.fuel_flow_total_kg_s = response.ln_fuel_flow_total.exp();
         segment.means.fuel_flow_engine_kg_s =
@@ -197,7 +199,7 @@ fn a_throttle_effect_that_n2_told_acts_over_corrected_thrust() {
         references: references(),
     };
     let model = bare().with_effects(AppliedEffects::new(vec![layer])).unwrap();
-    let flow = |model: &PerformanceModel| {
+    let flow = |model: &ExtendedModel| {
         model.predict(&flight_point()).unwrap().fuel_flow_total.to_kilograms_per_second()
     };
     assert_eq!(flow(&model).to_bits(), flow(&by_thrust).to_bits());
@@ -205,9 +207,9 @@ fn a_throttle_effect_that_n2_told_acts_over_corrected_thrust() {
     // Nor does a point that knows what its N2 stands for make a difference: every command says the same.
     let at = EffectPoint {
         corrected_thrust_by_n2_n: Some(80_000.0),
-        ..EffectPoint::of_means(&segment().means, DATE_S, 2)
+        ..EffectPoint::from_means(&segment().means, DATE_S, 2)
     };
-    let response = |model: &PerformanceModel| {
+    let response = |model: &ExtendedModel| {
         let effects = EffectModel::new(model, model.drag_table(), references()).unwrap();
         effects.response(&at, &Effects::none()).unwrap()
     };
@@ -239,7 +241,7 @@ fn corrections_by_hand() {
 
 #[test]
 fn physical_effects_change_predictions_by_what_they_say() {
-    let flow = |model: &PerformanceModel, point: &FlightPoint| {
+    let flow = |model: &ExtendedModel, point: &FlightPoint| {
         model.predict(point).unwrap().fuel_flow_total.to_kilograms_per_second()
     };
     let ratio =
@@ -267,7 +269,7 @@ fn physical_effects_change_predictions_by_what_they_say() {
     let found = 1e4 * (trimmed.drag_coefficient - plain.drag_coefficient);
     assert!((found - counts).abs() < 1e-9, "{found} {counts}");
     // Specific range and thrust go with it.
-    let range = |p: &crate::Prediction| {
+    let range = |p: &Prediction| {
         p.true_airspeed.to_meters_per_second() / p.fuel_flow_total.to_kilograms_per_second()
     };
     assert!((trimmed.specific_range.to_meters_per_kilogram() - range(&trimmed)).abs() < 1e-9);
@@ -313,7 +315,7 @@ fn layers_come_one_on_top_of_the_other() {
         layer(Effects::one(EffectId::DragFactor, 3.0).with(EffectId::FuelFlowGain, 1.0)),
     ]);
     let model = bare().with_effects(applied).unwrap();
-    let flow = |model: &PerformanceModel| {
+    let flow = |model: &ExtendedModel| {
         model.predict(&flight_point()).unwrap().fuel_flow_total.to_kilograms_per_second()
     };
     assert!((flow(&model) / flow(&bare()) - 1.02 * 1.03).abs() < 1e-12);
@@ -331,7 +333,7 @@ fn trial_effects_come_on_top_and_known_ones_are_settled() {
     let plain = bare();
     let on_top = EffectModel::new(&model, model.drag_table(), references()).unwrap();
     let alone = EffectModel::new(&plain, plain.drag_table(), references()).unwrap();
-    let point = EffectPoint::of_means(&segment().means, DATE_S, 2);
+    let point = EffectPoint::from_means(&segment().means, DATE_S, 2);
     let contained = Effects::one(EffectId::DragFactor, 2.0).with(EffectId::LocalGravity, 1.0);
     // What is contained acts exactly as the same trial effects did.
     assert_eq!(

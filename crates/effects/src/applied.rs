@@ -6,21 +6,17 @@
 //! predicted. Effects of what is recorded (sensors, load sheet, fuel quantity) correct recordings before anything looks at
 //! them, and no prediction knows of them.
 
-use std::borrow::Cow;
-
 use flight::effect::{EffectId, NeededInput, TypicalSize};
-use flight::{Segment, SegmentMeans};
 use lut::Table;
 use lut::surface::{FitError, Surface};
+use perf_model::FlightPoint;
 use serde::{Deserialize, Serialize};
 
-use super::recorded::corrected;
-use super::terms::{Layers, Terms, ThrottleArgument};
-use super::{
-    EffectError, EffectModel, EffectModelError, EffectPoint, EffectReferences, Effects,
-    HiddenParameters, Response, polar_of,
-};
-use crate::{FlightPoint, PerformanceModel};
+use crate::error::EffectModelError;
+use crate::references::EffectReferences;
+use crate::response::fit_polar;
+use crate::set::{Effects, HiddenParameters, ThrottleArgument};
+use crate::terms::Terms;
 
 /// What a flight point says a date in.
 const DATE: &str = "date";
@@ -110,7 +106,7 @@ impl AppliedEffects {
         lacking
     }
 
-    fn terms(&self, of: impl Fn(EffectId) -> bool, dated: bool) -> Vec<Terms> {
+    fn terms(&self, of: impl Fn(EffectId) -> bool, dated: Dated) -> Vec<Terms> {
         self.layers
             .iter()
             .filter_map(|layer| {
@@ -127,12 +123,22 @@ impl AppliedEffects {
                     ..*layer.effects.hidden()
                 };
                 let effects = effects.with_hidden(hidden);
-                let effects =
-                    if dated { effects } else { on_reference_date(&effects, &layer.references) };
-                Some(Terms::of(&effects, &layer.references))
+                let effects = match dated {
+                    Dated::Yes => effects,
+                    Dated::No => on_reference_date(&effects, &layer.references),
+                };
+                Some(Terms::new(&effects, &layer.references))
             })
             .collect()
     }
+}
+
+/// Whether points say a date.
+#[derive(Clone, Copy, Debug)]
+enum Dated {
+    Yes,
+    /// Effects are as they were on the date of their references.
+    No,
 }
 
 /// The column of flight points that an effect's input would be in, where the point lacks it. Roll and drift are no columns
@@ -168,26 +174,26 @@ fn on_reference_date(effects: &Effects, references: &EffectReferences) -> Effect
 
 /// Applied effects made ready for a drag table.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Contained {
-    pub(super) applied: AppliedEffects,
+pub(crate) struct Prepared {
+    effects: AppliedEffects,
     /// Effects that predictions have.
-    pub(super) physical: Vec<Terms>,
+    pub(crate) physical: Vec<Terms>,
     /// The same on the date of their references.
-    undated: Vec<Terms>,
+    pub(crate) undated: Vec<Terms>,
     /// Effects that recordings are corrected by.
-    pub(super) recorded: Vec<Terms>,
-    polar: Surface,
+    pub(crate) recorded: Vec<Terms>,
+    pub(crate) polar: Surface,
 }
 
-impl Contained {
-    pub(crate) fn of(
-        applied: AppliedEffects,
+impl Prepared {
+    pub(crate) fn new(
+        effects: AppliedEffects,
         drag_table: &Table,
     ) -> Result<Option<Self>, EffectModelError> {
-        if applied.is_empty() {
+        if effects.is_empty() {
             return Ok(None);
         }
-        for layer in &applied.layers {
+        for layer in &effects.layers {
             layer.references.check()?;
             for (effect, size) in layer.effects.iter() {
                 if !size.is_finite() {
@@ -197,16 +203,16 @@ impl Contained {
         }
         let is_physical = |id: EffectId| !id.is_of_recordings();
         Ok(Some(Self {
-            physical: applied.terms(is_physical, true),
-            undated: applied.terms(is_physical, false),
-            recorded: applied.terms(EffectId::is_of_recordings, true),
-            polar: polar_of(drag_table)?,
-            applied,
+            physical: effects.terms(is_physical, Dated::Yes),
+            undated: effects.terms(is_physical, Dated::No),
+            recorded: effects.terms(EffectId::is_of_recordings, Dated::Yes),
+            polar: fit_polar(drag_table)?,
+            effects,
         }))
     }
 
-    pub(crate) const fn applied(&self) -> &AppliedEffects {
-        &self.applied
+    pub(crate) const fn effects(&self) -> &AppliedEffects {
+        &self.effects
     }
 
     pub(crate) fn changes_predictions(&self) -> bool {
@@ -214,127 +220,7 @@ impl Contained {
     }
 
     pub(crate) fn refit(&mut self, drag_table: &Table) -> Result<(), FitError> {
-        self.polar = polar_of(drag_table)?;
+        self.polar = fit_polar(drag_table)?;
         Ok(())
     }
 }
-
-/// Undoes layers of recording errors, one after the other.
-pub(super) fn corrected_by<'m>(
-    layers: &[Terms],
-    means: &'m SegmentMeans,
-    engines: usize,
-) -> Result<Cow<'m, SegmentMeans>, EffectError> {
-    let mut result = Cow::Borrowed(means);
-    for terms in layers {
-        result = Cow::Owned(corrected(&result, terms, engines)?);
-    }
-    Ok(result)
-}
-
-impl PerformanceModel {
-    /// A segment as it would have been recorded without the errors that were applied; the same where none was.
-    ///
-    /// # Errors
-    /// [`EffectError`] where a correction leaves the domain of a quantity.
-    pub fn corrected<'s>(&self, segment: &'s Segment) -> Result<Cow<'s, Segment>, EffectError> {
-        Ok(match self.corrected_means(&segment.means)? {
-            Cow::Borrowed(_) => Cow::Borrowed(segment),
-            Cow::Owned(means) => Cow::Owned(Segment { means, ..segment.clone() }),
-        })
-    }
-
-    /// The same of a segment's means.
-    ///
-    /// # Errors
-    /// As for [`corrected`](Self::corrected).
-    pub fn corrected_means<'s>(
-        &self,
-        means: &'s SegmentMeans,
-    ) -> Result<Cow<'s, SegmentMeans>, EffectError> {
-        let recorded = self.contained().map_or(&[][..], |contained| &contained.recorded);
-        corrected_by(recorded, means, self.aircraft().engines())
-    }
-
-    /// A segment as an aircraft without any of the applied effects would have recorded it: errors undone, then fuel flow
-    /// brought to the model without effects.
-    ///
-    /// ```text
-    /// Wf → Wf·Ŵf_without/Ŵf_with,  both predicted over the drag table at the corrected means          [applying.2]
-    /// ```
-    ///
-    /// Engines recorded apart each by their own ratio, their sum by that of the total. The same segment where nothing is
-    /// applied, or where the table does not hold the point (which the caller then meets).
-    ///
-    /// # Errors
-    /// [`EffectError`] where a correction leaves the domain of a quantity, or no thrust is left.
-    pub fn without_effects<'s>(
-        &self,
-        segment: &'s Segment,
-        drag_table: &Table,
-    ) -> Result<Cow<'s, Segment>, EffectError> {
-        let corrected = self.corrected(segment)?;
-        let Some(contained) = self.contained().filter(|c| c.changes_predictions()) else {
-            return Ok(corrected);
-        };
-        #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
-        let start_s = segment.identity.start.as_second() as f64;
-        let point = EffectPoint::of_means(&corrected.means, start_s, self.aircraft().engines());
-        let without = match self.predicted(&point, drag_table, &[]) {
-            Err(EffectError::OutsideTable { .. }) => return Ok(corrected),
-            result => result?,
-        };
-        let with = self.predicted(&point, drag_table, &contained.physical)?;
-        let mut bare = corrected.into_owned();
-        let means = &mut bare.means;
-        means.fuel_flow_total_kg_s *= (without.ln_fuel_flow_total - with.ln_fuel_flow_total).exp();
-        let mut sum = 0.0;
-        for (engine, flow) in means.fuel_flow_engine_kg_s.iter_mut().enumerate() {
-            *flow *= (without.ln_fuel_flow_engine[engine] - with.ln_fuel_flow_engine[engine]).exp();
-            sum += *flow;
-        }
-        for flow in &mut means.fuel_flow_engine_kg_s {
-            *flow *= means.fuel_flow_total_kg_s / sum;
-        }
-        Ok(Cow::Owned(bare))
-    }
-
-    /// The response at a flight point with the physical effects that were applied; those whose input the point lacks at
-    /// their reference ([`AppliedEffects::at_reference`]).
-    ///
-    /// # Errors
-    /// [`EffectError`] for a quantity outside its domain, a point outside the table, or no thrust left.
-    pub fn response(&self, point: &FlightPoint) -> Result<Response, EffectError> {
-        let terms = self.contained().map_or(&[][..], |contained| {
-            if point.date.is_some() { &contained.physical } else { &contained.undated }
-        });
-        let point = EffectPoint::of_flight_point(point, self.aircraft().engines())?;
-        self.predicted(&point, self.drag_table(), terms)
-    }
-
-    fn predicted(
-        &self,
-        point: &EffectPoint,
-        drag_table: &Table,
-        contained: &[Terms],
-    ) -> Result<Response, EffectError> {
-        let polar = self.contained().map_or(*self.polynomial(), |contained| contained.polar);
-        let model = EffectModel {
-            aircraft: self.aircraft(),
-            drag_table,
-            polar,
-            // Those of trial effects, and there are none.
-            references: EffectReferences::UNUSED,
-            applied: None,
-            contained,
-            recorded: &[],
-        };
-        let trial = Terms::of(&Effects::none(), &EffectReferences::UNUSED);
-        let layers = Layers { contained, trial: &trial };
-        let (response, _) = model.evaluate(point, layers, layers.moves_the_point(), None)?;
-        Ok(response)
-    }
-}
-
-#[cfg(test)]
-mod tests;

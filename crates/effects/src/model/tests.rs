@@ -1,8 +1,12 @@
 use std::sync::Arc;
 
-use lut::Table;
+use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment};
+use lut::surface::{Basis, Surface};
+use perf_model::PerformanceModel;
 
 use super::*;
+use crate::mean::mean_references;
+use crate::set::{HiddenParameters, StepTarget, ThrottleArgument};
 
 /// Constants of the numerical prototype whose signature table is the oracle: CD0 0.0188, K 0.056, Lock's wave drag with
 /// Mdd 0.797 + 0.1077 at lift coefficient 0.35, TSFC exponent 0.8.
@@ -14,7 +18,7 @@ fn wave(mach: f64, lift: f64) -> f64 {
     20.0 * (mach - (0.797 - 0.085 * (lift - 0.35))).max(0.0).powi(4)
 }
 
-fn model(with_wave: bool) -> PerformanceModel {
+fn model(with_wave: bool) -> ExtendedModel {
     let aircraft = Aircraft::from_ron(
         r#"(
             name: "test", type_code: "TEST", engines: 2, wing_area_m2: 48.96,
@@ -31,7 +35,7 @@ fn model(with_wave: bool) -> PerformanceModel {
     let table = Table::new(Arc::clone(grid), values).unwrap();
     let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
     let marks = vec![false; grid.nodes()];
-    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap()
+    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap().into()
 }
 
 fn point(mach: f64) -> EffectPoint {
@@ -117,7 +121,7 @@ fn every_signature_against_its_formula_by_hand() {
     let performance = model(true);
     let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
     // The fitted polar stands for CD0(M) and K(M) where an effect scales them.
-    let [p0, p1, p2, p3, p4, p5] = effects.polar.coefficients;
+    let [p0, p1, p2, p3, p4, p5] = effects.bare.polar.coefficients;
     for mach in [0.7613, 0.8471] {
         let at = point(mach);
         let h = hand(&at);
@@ -199,14 +203,53 @@ fn every_signature_against_its_formula_by_hand() {
     }
 }
 
+fn segment() -> Segment {
+    let identity = FlightIdentity {
+        tail: "T-001".into(),
+        start: "2018-05-20T14:14:21Z".parse().unwrap(),
+        flight: "0007".into(),
+    };
+    Segment {
+        identity: Arc::new(identity),
+        rows: vec![3, 4, 5, 7, 8, 9, 10, 12],
+        means: SegmentMeans {
+            time_s: 570.25,
+            pressure_altitude_m: 12_496.8,
+            static_air_temperature_k: 220.4,
+            mach: 0.803,
+            true_airspeed_m_s: 239.4,
+            ground_speed_m_s: 215.0,
+            acceleration_m_s2: 0.004,
+            vertical_speed_m_s: 0.0,
+            mass_kg: 13_500.0,
+            fuel_flow_total_kg_s: 0.5,
+            fuel_flow_engine_kg_s: vec![0.26, 0.24],
+            fuel_used_kg: 1000.0,
+            drift_deg: None,
+            roll_deg: None,
+            roll_squared_deg2: None,
+            n2_percent: vec![],
+            latitude_deg: None,
+            longitude_deg: None,
+            true_heading_deg: None,
+            center_of_gravity_percent_mac: None,
+            total_air_temperature_k: None,
+            n1_percent: [None; MAXIMUM_ENGINES],
+            exhaust_gas_temperature_k: [None; MAXIMUM_ENGINES],
+            fuel_quantity_kg: None,
+            anti_ice: None,
+        },
+        temperature_assumed: false,
+    }
+}
+
 #[test]
 fn without_effects_it_is_the_models_own_prediction() {
     let performance = model(true);
     let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
-    let mut segment = crate::variance::tests::segment();
-    segment.means.mass_kg = 13_500.0;
+    let segment = segment();
     let predicted = performance.predict_segment(&segment, performance.drag_table()).unwrap();
-    let at = EffectPoint::of_means(&segment.means, 0.0, 2);
+    let at = EffectPoint::from_means(&segment.means, 0.0, 2);
     let response = effects.response(&at, &Effects::none()).unwrap();
     let flow = predicted.fuel_flow_total.to_kilograms_per_second();
     assert!((response.ln_fuel_flow_total.exp() / flow - 1.0).abs() < 1e-13);
@@ -398,7 +441,7 @@ fn references_are_means_and_read_back_to_the_same_bits() {
     let performance = model(true);
     let points = [point(0.76), EffectPoint { mass_kg: 14_500.0, ..point(0.80) }];
     let table = performance.drag_table();
-    let found = EffectReferences::mean_of(performance.aircraft(), table, &points).unwrap();
+    let found = mean_references(performance.aircraft(), table, &points).unwrap();
     assert!((found.mach - 0.78).abs() < 1e-15);
     assert!((found.mass_kg - 14_000.0).abs() < 1e-9);
     assert!((found.date_s - 1.5e9).abs() < 1e-6);
@@ -407,7 +450,7 @@ fn references_are_means_and_read_back_to_the_same_bits() {
     assert!((found.typical_size(EffectId::ZeroFuelMassBias) - 210.0).abs() < 1e-9);
     let text = ron::to_string(&found).unwrap();
     assert_eq!(ron::from_str::<EffectReferences>(&text).unwrap(), found);
-    let nothing = EffectReferences::mean_of(performance.aircraft(), table, &[]).unwrap_err();
+    let nothing = mean_references(performance.aircraft(), table, &[]).unwrap_err();
     assert_eq!(nothing, EffectModelError::NothingInside { segments: 0 });
     let effects = Effects::one(EffectId::TsfcEngine(2), 3.0);
     let text = ron::to_string(&effects).unwrap();

@@ -1,0 +1,110 @@
+//! Effects on TSFC and fuel flow, and on what the flow meters say.
+
+use flight::MAXIMUM_ENGINES;
+
+use crate::drag::years_since_reference;
+use crate::point::EffectPoint;
+use crate::recorded::AsFlown;
+use crate::set::ThrottleArgument;
+use crate::terms::{Layers, Terms};
+
+/// Static air temperature above which anti-ice bleed is taken as on where it is not recorded, K: −40 °C.
+pub const ANTI_ICE_PROXY_K: f64 = 233.15;
+/// Width of the throttle effect's parabola, of corrected thrust over its reference.
+const THROTTLE_WIDTH: f64 = 0.25;
+
+/// Thrust, and what it costs without effects.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Thrust {
+    /// Net thrust of all engines, N.
+    pub(crate) net_thrust_n: f64,
+    /// The same over pressure ratio, N.
+    pub(crate) corrected_thrust_n: f64,
+    /// TSFC by the aircraft's law, kg/(N s).
+    pub(crate) tsfc_kg_per_n_s: f64,
+    /// Number of engines.
+    pub(crate) engines: usize,
+}
+
+/// Fuel flow that would be recorded: of all engines, and of each.
+///
+/// ```text
+/// e = (1 + θf)·((1 + M)/(1 + M_ref))^θM·(θT/θT,ref)^θt·(1 + θx((x − xp)/0.25)²)·(1 + θa t)    [diagnosis.9]
+/// Wf_k = (F/n·TSFC·e·(1 + θ_k) + θo·W̄f/n)·(1 + θb·on)·(1 + θs from the date on)               [diagnosis.10]
+/// recorded Wf_k = Wf_k·(1 + θWF,k)                                                             [diagnosis.11]
+/// ```
+///
+/// x is corrected thrust over its reference, or that which N2 stands for ([`ThrottleArgument`]); TSFC the aircraft's law.
+/// Engines give equal thrust. Factors of all layers multiply, offtakes add.
+pub(crate) fn recorded_fuel_flow(
+    thrust: &Thrust,
+    point: &EffectPoint,
+    flown: &AsFlown,
+    layers: Layers<'_>,
+) -> (f64, [f64; MAXIMUM_ENGINES]) {
+    let Thrust { net_thrust_n, corrected_thrust_n, tsfc_kg_per_n_s, engines } = *thrust;
+    let (mut factor, mut all) = (1.0, 1.0);
+    for terms in layers.iter() {
+        factor *= tsfc_factor(corrected_thrust_n, point, flown, terms);
+        if terms.anti_ice_bleed != 0.0 {
+            all *= 1.0 + terms.anti_ice_bleed * anti_ice_on(point, flown);
+        }
+        if terms.step_fuel_flow != 0.0 && point.date_s >= terms.hidden.step_from_s {
+            all *= 1.0 + terms.step_fuel_flow;
+        }
+    }
+    let share = 1.0 / engines as f64;
+    let thrust_flow_kg_s = net_thrust_n * tsfc_kg_per_n_s * factor * share;
+    let aside_kg_s =
+        layers.sum(|terms| terms.power_offtake * terms.references.fuel_flow_total_kg_s) * share;
+    let mut each = [0.0; MAXIMUM_ENGINES];
+    let mut total = 0.0;
+    for (engine, flow) in each.iter_mut().enumerate().take(engines) {
+        let own: f64 = layers.iter().map(|terms| 1.0 + terms.tsfc_engine[engine]).product();
+        // Meters are of the trial layer alone: recordings are corrected before by what the model contains.
+        let meter = 1.0 + layers.trial.fuel_flow_gain[engine];
+        *flow = (thrust_flow_kg_s * own + aside_kg_s) * all * meter;
+        total += *flow;
+    }
+    (total, each)
+}
+
+/// What one layer multiplies TSFC of all engines by, `[diagnosis.9]`.
+fn tsfc_factor(
+    corrected_thrust_n: f64,
+    point: &EffectPoint,
+    flown: &AsFlown,
+    terms: &Terms,
+) -> f64 {
+    let references = &terms.references;
+    let mut factor = 1.0 + terms.tsfc_factor;
+    if terms.tsfc_mach_exponent != 0.0 {
+        factor *= ((1.0 + flown.mach) / (1.0 + references.mach)).powf(terms.tsfc_mach_exponent);
+    }
+    if terms.tsfc_temperature_exponent != 0.0 {
+        factor *= (flown.temperature_ratio / references.temperature_ratio)
+            .powf(terms.tsfc_temperature_exponent);
+    }
+    if terms.tsfc_throttle != 0.0 {
+        let by_n2_n = match terms.hidden.throttle_argument {
+            ThrottleArgument::CorrectedThrust => None,
+            ThrottleArgument::N2 => point.corrected_thrust_by_n2_n,
+        };
+        let x = by_n2_n.unwrap_or(corrected_thrust_n) / references.corrected_thrust_n;
+        let distance = (x - terms.hidden.throttle_pivot) / THROTTLE_WIDTH;
+        factor *= 1.0 + terms.tsfc_throttle * distance * distance;
+    }
+    if terms.engine_ageing_per_year != 0.0 {
+        factor *= 1.0 + terms.engine_ageing_per_year * years_since_reference(point, terms);
+    }
+    factor
+}
+
+/// Share of a segment with anti-ice bleed on: recorded, else all of it above −40 °C.
+fn anti_ice_on(point: &EffectPoint, flown: &AsFlown) -> f64 {
+    point.anti_ice.unwrap_or(if flown.static_air_temperature_k > ANTI_ICE_PROXY_K {
+        1.0
+    } else {
+        0.0
+    })
+}

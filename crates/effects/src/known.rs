@@ -1,0 +1,33 @@
+//! Many trial effects at one point: what an effect leaves alone is computed once.
+
+use flight::effect::EffectId;
+
+use crate::point::EffectPoint;
+use crate::response::Known;
+use crate::terms::Terms;
+
+/// Trial effects made ready for many points: [`EffectModel::trial`](crate::EffectModel::trial).
+#[derive(Clone, Debug)]
+pub struct Trial {
+    pub(crate) terms: Terms,
+    /// Effects with a size.
+    pub(crate) acting: Vec<EffectId>,
+}
+
+/// A recorded point with what stays the same when effects that do not touch it are switched on:
+/// [`EffectModel::known_point`](crate::EffectModel::known_point).
+#[derive(Clone, Copy, Debug)]
+pub struct KnownPoint {
+    pub(crate) point: EffectPoint,
+    pub(crate) known: Known,
+}
+
+impl KnownPoint {
+    /// The same point with the corrected thrust that its N2 stands for
+    /// ([`EffectPoint::corrected_thrust_by_n2_n`]): of trial effects alone, so that what is known stays.
+    #[must_use]
+    pub const fn with_corrected_thrust_by_n2(mut self, newtons: Option<f64>) -> Self {
+        self.point.corrected_thrust_by_n2_n = newtons;
+        self
+    }
+}

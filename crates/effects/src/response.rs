@@ -1,0 +1,177 @@
+//! From a recorded point and the effects that act there to what would be recorded: one road for all of them.
+
+use flight::MAXIMUM_ENGINES;
+use lut::surface::{Basis, FitError, Surface, fit};
+use lut::{Outside, Table};
+use perf_model::Aircraft;
+use perf_model::tsfc::tsfc;
+use units::Mach;
+
+use crate::drag::{self, AtTable};
+use crate::engine::{self, Thrust};
+use crate::error::EffectError;
+use crate::point::EffectPoint;
+use crate::recorded::{self, AsFlown};
+use crate::terms::Layers;
+
+/// The prediction for one segment, with everything the residual channels ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response {
+    /// Natural logarithm of the fuel flow of all engines that would be recorded, kg/s.
+    pub ln_fuel_flow_total: f64,
+    /// The same of each engine; equal thrust is assumed. −∞ beyond the aircraft's engines.
+    pub ln_fuel_flow_engine: [f64; MAXIMUM_ENGINES],
+    /// ln(F/δ), F the net thrust of all engines in N, δ the pressure ratio.
+    pub ln_corrected_thrust: f64,
+    /// ln δ.
+    pub ln_pressure_ratio: f64,
+    /// ln θ, θ the ratio of static air temperature.
+    pub ln_temperature_ratio: f64,
+    /// Mach number as it truly was.
+    pub mach: f64,
+    /// Lift coefficient.
+    pub lift_coefficient: f64,
+    /// Drag over net thrust: how much of a change of drag arrives in fuel flow.
+    pub drag_over_thrust: f64,
+    /// Net thrust of all engines, N.
+    pub net_thrust_n: f64,
+    /// Reynolds number over one meter.
+    pub unit_reynolds_number_per_m: f64,
+    /// Gross mass as it truly was, kg.
+    pub mass_kg: f64,
+}
+
+/// A model without any effect: what effects act upon.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bare<'a> {
+    pub(crate) aircraft: &'a Aircraft,
+    pub(crate) drag_table: &'a Table,
+    /// CD0(M) and K(M), of which some effects are a share.
+    pub(crate) polar: Surface,
+}
+
+/// What is known of a point without trial effects.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known {
+    flown: AsFlown,
+    gravity_m_s2: f64,
+    table: f64,
+    tsfc_kg_per_n_s: f64,
+}
+
+/// What holds beyond the edge of the drag table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Edge {
+    /// No value: the point was recorded there.
+    Refuse,
+    /// The table is continued in a straight line: an effect, or a derivative's step, moved the point there.
+    Continue,
+}
+
+impl Edge {
+    /// The rule for a recorded point with these effects.
+    pub(crate) fn under(layers: Layers<'_>) -> Self {
+        if layers.moves_the_point() { Self::Continue } else { Self::Refuse }
+    }
+}
+
+/// What would be recorded at a point. What is known of it without trial effects is not computed again.
+pub(crate) fn evaluate(
+    bare: &Bare<'_>,
+    point: &EffectPoint,
+    layers: Layers<'_>,
+    edge: Edge,
+    known: Option<&Known>,
+) -> Result<(Response, Known), EffectError> {
+    let uncorrected = known.filter(|_| !layers.trial.corrects_recordings());
+    let (flown, tsfc_kg_per_n_s) = if let Some(known) = uncorrected {
+        (known.flown, known.tsfc_kg_per_n_s)
+    } else {
+        let flown = recorded::as_flown(point, layers.trial)?;
+        let law = tsfc(bare.aircraft.tsfc_law(), flown.temperature_ratio, Mach::new(flown.mach));
+        (flown, law.to_kilograms_per_newton_second())
+    };
+    let gravity_m_s2 = match known {
+        Some(known) if !layers.trial.changes_weight() => known.gravity_m_s2,
+        _ => drag::apparent_gravity_m_s2(point, layers),
+    };
+    let surface_n = flown.dynamic_pressure_pa * bare.aircraft.wing_area().to_square_meters();
+    let lift_coefficient = flown.mass_kg * gravity_m_s2 / surface_n;
+    let table = match uncorrected {
+        Some(known) if !layers.trial.moves_the_point() => known.table,
+        _ => table_value(bare.drag_table, lift_coefficient, flown.mach, edge)?,
+    };
+    let at = AtTable { drag_coefficient: table, lift_coefficient, polar: &bare.polar };
+    let drag_coefficient = drag::drag_coefficient(at, point, &flown, layers);
+    let drag_n = surface_n * drag_coefficient;
+    let net_thrust_n = drag_n + drag::path_force_n(point, &flown, layers);
+    // Written so that NaN is refused too.
+    if net_thrust_n.is_nan() || net_thrust_n <= 0.0 {
+        return Err(EffectError::ThrustNotPositive { net_thrust_n });
+    }
+    let corrected_thrust_n = net_thrust_n / flown.pressure_ratio;
+    let thrust = Thrust {
+        net_thrust_n,
+        corrected_thrust_n,
+        tsfc_kg_per_n_s,
+        engines: bare.aircraft.engines(),
+    };
+    let (total_kg_s, engines_kg_s) = engine::recorded_fuel_flow(&thrust, point, &flown, layers);
+    let mut ln_fuel_flow_engine = [f64::NEG_INFINITY; MAXIMUM_ENGINES];
+    for (ln, flow_kg_s) in
+        ln_fuel_flow_engine.iter_mut().zip(engines_kg_s).take(bare.aircraft.engines())
+    {
+        *ln = flow_kg_s.ln();
+    }
+    let response = Response {
+        ln_fuel_flow_total: total_kg_s.ln(),
+        ln_fuel_flow_engine,
+        ln_corrected_thrust: corrected_thrust_n.ln(),
+        ln_pressure_ratio: flown.ln_pressure_ratio,
+        ln_temperature_ratio: flown.ln_temperature_ratio,
+        mach: flown.mach,
+        lift_coefficient,
+        drag_over_thrust: drag_n / net_thrust_n,
+        net_thrust_n,
+        unit_reynolds_number_per_m: flown.unit_reynolds_number_per_m,
+        mass_kg: flown.mass_kg,
+    };
+    Ok((response, Known { flown, gravity_m_s2, table, tsfc_kg_per_n_s }))
+}
+
+/// The table's drag coefficient, continued in a straight line beyond the edge where an effect moved the point there.
+fn table_value(
+    drag_table: &Table,
+    lift_coefficient: f64,
+    mach: f64,
+    edge: Edge,
+) -> Result<f64, EffectError> {
+    let grid = drag_table.grid();
+    let outside = |_| EffectError::OutsideTable { lift_coefficient, mach };
+    if edge == Edge::Refuse {
+        let cell = grid.locate(lift_coefficient, mach, Outside::Error).map_err(outside)?;
+        return Ok(drag_table.interpolate(&cell));
+    }
+    let clamped_lift = lift_coefficient.clamp(grid.x().first(), grid.x().last());
+    let clamped_mach = mach.clamp(grid.y().first(), grid.y().last());
+    let cell = grid.locate(clamped_lift, clamped_mach, Outside::Hold).map_err(outside)?;
+    let (along_lift, along_mach) = drag_table.gradient(&cell);
+    Ok(drag_table.interpolate(&cell)
+        + along_lift * (lift_coefficient - clamped_lift)
+        + along_mach * (mach - clamped_mach))
+}
+
+/// CD0(M) and K(M) of a table.
+pub(crate) fn fit_polar(drag_table: &Table) -> Result<Surface, FitError> {
+    let grid = drag_table.grid();
+    let points: Vec<_> = drag_table
+        .values()
+        .iter()
+        .enumerate()
+        .map(|(node, &drag_coefficient)| {
+            let (lift_coefficient, mach) = grid.coordinates(node);
+            (lift_coefficient, mach, drag_coefficient, 1.0)
+        })
+        .collect();
+    Ok(fit(Basis::SeparableQuadratic, &points)?.surface)
+}
