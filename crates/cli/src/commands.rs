@@ -42,13 +42,13 @@ impl Outcome {
 }
 
 /// Collects, reads and segments the reports of a command.
-fn prepare(arguments: &ReportsArgs, progress: bool) -> Result<Reading, Failure> {
+fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failure> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
     let inputs = inputs::collect(&arguments.reports, mapping.is_some())?;
     if inputs.skipped > 0 {
         tracing::info!(skipped = inputs.skipped, "files that are no reports by their ending");
     }
-    let bar = Progress::new(inputs.files.len(), "reading reports", progress);
+    let bar = progress.bar(inputs.files.len(), "reading reports");
     let criteria =
         TrimCriteria::preset(&arguments.criteria).ok_or_else(|| Failure::BadArgument {
             argument: "--criteria",

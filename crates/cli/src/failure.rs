@@ -3,6 +3,8 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
+use pipeline::summary::RefusedSummary;
+
 /// Exit status 0: everything asked for was done.
 pub const DONE: u8 = 0;
 /// Exit status 1: done, but some input was refused.
@@ -145,6 +147,17 @@ impl RefusedReport {
     /// A report refused as a whole: no place in it is to blame.
     pub fn whole(path: PathBuf, reason: impl Display) -> Self {
         Self { path, line: None, column: None, reason: reason.to_string() }
+    }
+}
+
+impl From<&RefusedReport> for RefusedSummary {
+    fn from(refused: &RefusedReport) -> Self {
+        Self {
+            path: refused.path.display().to_string(),
+            line: refused.line,
+            column: refused.column,
+            reason: refused.reason.clone(),
+        }
     }
 }
 

@@ -7,8 +7,9 @@ use flight::Segment;
 
 use crate::failure::Failure;
 use crate::files::{file_stem_of_tail, make_folder, write_atomically};
-use crate::model_file::ModelFile;
-use crate::segments_table::{self, SegmentRow};
+use crate::models::{read_model, write_model};
+use pipeline::model_file::ModelFile;
+use pipeline::segments_table::{self, SegmentRow};
 
 /// A tail as the folder holds it.
 #[derive(Clone, Debug)]
@@ -56,7 +57,7 @@ impl Folder {
             if path.extension().is_none_or(|ending| ending != "ron") {
                 continue;
             }
-            let model = ModelFile::read(&path)?;
+            let model = read_model(&path)?;
             let Some(learnt) = &model.learnt else {
                 return Err(Failure::bad_file(&path, "a model that has learnt nothing"));
             };
@@ -70,7 +71,7 @@ impl Folder {
     fn load_segments(&self, tail: &str, model: &ModelFile) -> Result<Vec<Segment>, Failure> {
         let path = self.segments_path(tail);
         let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-        let all = segments_table::read(&path, &bytes)?;
+        let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
         let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
         // Segments are written before the model. A run that was cut off in between leaves segments of flights that
         // the ledger does not know: they are not learnt, and are learnt when their report comes again.
@@ -101,7 +102,7 @@ impl Folder {
         let engines = model.initial.aircraft().engines();
         let table = segments_table::table(rows, engines);
         write_atomically(&self.segments_path(tail), &table.to_csv())?;
-        model.write(&self.model_path(tail))
+        write_model(model, &self.model_path(tail))
     }
 
     /// Writes a file of the folder's top level.

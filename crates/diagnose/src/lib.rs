@@ -70,7 +70,6 @@ mod record;
 mod refine;
 mod robust;
 mod slices;
-pub mod trial;
 mod uncertainty;
 mod variables;
 

@@ -3,30 +3,26 @@
 use diagnose::{Cause, Diagnosis, Separation, VerdictKind};
 use maud::{Markup, html};
 
-use super::{fleet, framed};
-use crate::failure::RefusedReport;
-use crate::summary::{RefusedSummary, ReportsSummary, counted};
-use crate::words;
+use crate::fleet;
+use crate::frame::framed;
+use pipeline::diagnosis_text;
+use pipeline::summary::{ReportsSummary, counted};
 
 /// Causes shown of each tail.
 const CAUSES_SHOWN: usize = 8;
 /// Measurements or flights shown of each effect, whatever is found.
 const SEPARATIONS_SHOWN: usize = 2;
 
-/// The page of diagnoses.
-pub fn diagnosis(read: usize, refused: &[RefusedReport], diagnoses: &[Diagnosis]) -> String {
+/// The page of diagnoses, and what became of the reports that they are of.
+#[must_use]
+pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[Diagnosis]) -> String {
     let title = "Diagnosis of performance models";
-    let reports = ReportsSummary {
-        read,
-        already_known: 0,
-        refused: refused.iter().map(RefusedSummary::from).collect(),
-    };
     let body = html! {
         p.run {
-            (counted(read, "report")) " read, " (refused.len()) " refused. Gap: ln recorded − ln predicted "
+            (counted(reports.read, "report")) " read, " (reports.refused.len()) " refused. Gap: ln recorded − ln predicted "
             "total fuel flow, in %; positive, the aircraft burns more than the model says."
         }
-        (fleet::refused(&reports))
+        (fleet::refused(reports))
         @for one in diagnoses { (section(one)) }
     };
     framed(title, true, &body)
@@ -36,7 +32,7 @@ fn section(diagnosis: &Diagnosis) -> Markup {
     html! {
         section {
             h2 { @if diagnosis.tail == "*" { "All tails" } @else { (diagnosis.tail) } }
-            @for (place, line) in words::lines(diagnosis).iter().skip(1).enumerate() {
+            @for (place, line) in diagnosis_text::lines(diagnosis).iter().skip(1).enumerate() {
                 p { @if place == 0 {
                     (counted(diagnosis.flights, "flight")) ", " (counted(diagnosis.segments, "segment")) ". "
                 } (line) }

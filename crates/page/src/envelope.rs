@@ -2,8 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::text::{breakpoint, counted, signed_tenths};
-use super::view::{Point, TailView};
+use crate::text::{breakpoint, counted, signed_tenths};
+use crate::view::{Point, TailView};
 
 /// Columns and rows that fit a page; cells of a finer grid are put together.
 const MOST_COLUMNS: usize = 12;
@@ -33,7 +33,7 @@ struct Envelope {
 }
 
 /// The table of cells, lift coefficient upwards and Mach number to the right.
-pub(super) fn envelope(view: &TailView) -> Markup {
+pub(crate) fn envelope(view: &TailView) -> Markup {
     let Some(envelope) = Envelope::of(view) else {
         return html! { p.note { "No segment inside the table: no map of where it flew." } };
     };
@@ -173,7 +173,7 @@ fn edges(first: usize, last: usize, step: usize) -> Vec<usize> {
 }
 
 /// What lies outside the table, in words.
-pub(super) fn outside(view: &TailView) -> Option<String> {
+pub(crate) fn outside(view: &TailView) -> Option<String> {
     if view.outside.is_empty() {
         return None;
     }
@@ -198,7 +198,7 @@ pub(super) fn outside(view: &TailView) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::samples;
+    use crate::samples;
 
     #[test]
     fn every_segment_inside_is_in_one_cell() {

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use maud::{Markup, html};
 
-use super::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
-use super::text::{counted, plain, signed};
-use super::view::{Flight, TailView};
-use super::{BEFORE, Place};
-use crate::statistics::ErrorStatistics;
+use crate::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
+use crate::place::{BEFORE, Place};
+use crate::text::{counted, plain, signed};
+use crate::view::{Flight, TailView};
+use pipeline::statistics::ErrorStatistics;
 
 /// Width of a bin where 60 of them suffice, %.
 const BIN_PERCENT: f64 = 0.5;
@@ -18,14 +18,14 @@ const WIDTH: f64 = 500.0;
 const HEIGHT: f64 = 290.0;
 
 /// Bins for all errors of a tail; their range is also that of the error over time.
-pub(super) fn bins(view: &TailView) -> Bins {
+pub(crate) fn bins(view: &TailView) -> Bins {
     let mut all = view.before();
     all.extend(view.after());
     Bins::of(&all, BIN_PERCENT)
 }
 
 /// Histogram of segment errors, before and after on one scale.
-pub(super) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Markup {
+pub(crate) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Markup {
     let (before, after) = (view.before(), view.after());
     let (counted_before, counted_after) = (bins.histogram(&before), bins.histogram(&after));
     let words_before = words(view.before_label(), &ErrorStatistics::of(&before));
@@ -81,7 +81,7 @@ pub(super) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
 }
 
 /// Errors over START of the flight: segments and the means of flights.
-pub(super) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Markup {
+pub(crate) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Markup {
     let starts = view.flights.iter().map(|flight| flight.start_s);
     let first = starts.clone().fold(f64::INFINITY, f64::min);
     let last = starts.fold(f64::NEG_INFINITY, f64::max);
@@ -101,7 +101,7 @@ pub(super) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
         y_label: "error, %".to_owned(),
     };
     let shown = thinned(view.points.len(), place.most_points);
-    let segments = |of: fn(&super::view::Point) -> Option<f64>| {
+    let segments = |of: fn(&crate::view::Point) -> Option<f64>| {
         let points = shown.iter().filter_map(|k| {
             let point = &view.points[*k];
             Some((point.start_s, of(point)?))
@@ -159,7 +159,7 @@ pub(super) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
 }
 
 /// The flights whose mean error is furthest from the others': where to look for a wrong load sheet.
-pub(super) fn flights_apart(view: &TailView) -> Markup {
+pub(crate) fn flights_apart(view: &TailView) -> Markup {
     let (median, flights) = apart(view);
     html! {
         @if !flights.is_empty() {
@@ -232,7 +232,7 @@ fn told_span(view: &TailView) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::samples;
+    use crate::samples;
 
     #[test]
     fn a_wrong_flight_is_named_first() {

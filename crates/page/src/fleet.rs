@@ -4,15 +4,15 @@ use std::fmt::Write;
 
 use maud::{Markup, html};
 
-use super::text::{count, percent, plain, signed};
-use crate::statistics::ErrorStatistics;
-use crate::summary::{RefusedSummary, ReportsSummary, Summary, TailSummary};
+use crate::text::{count, percent, plain, signed};
+use pipeline::statistics::ErrorStatistics;
+use pipeline::summary::{RefusedSummary, ReportsSummary, Summary, TailSummary};
 
 /// Refused reports that are listed; more make the page unreadable.
 const MOST_REFUSED: usize = 200;
 
 /// Table of all tails, in the order given. `id_of` is where a tail's section is, if it has one.
-pub(super) fn table(summary: &Summary, id_of: impl Fn(&str) -> Option<String>) -> Markup {
+pub(crate) fn table(summary: &Summary, id_of: impl Fn(&str) -> Option<String>) -> Markup {
     let adapted = summary.tails.iter().any(|tail| tail.fuel_flow_error_percent.after.is_some());
     html! {
         div.scroll {
@@ -100,7 +100,7 @@ fn totals(tails: &[TailSummary], adapted: bool) -> Markup {
 }
 
 /// The refused reports, with place and reason.
-pub(super) fn refused(reports: &ReportsSummary) -> Markup {
+pub(crate) fn refused(reports: &ReportsSummary) -> Markup {
     html! {
         @if !reports.refused.is_empty() {
             section {

@@ -3,10 +3,10 @@
 
 use maud::{Markup, html};
 
-use super::Place;
-use super::chart::{Axis, Chart, Key, Mark, legend, thinned};
-use super::text::{breakpoint, counted};
-use super::view::{Point, TailView};
+use crate::chart::{Axis, Chart, Key, Mark, legend, thinned};
+use crate::place::Place;
+use crate::text::{breakpoint, counted};
+use crate::view::{Point, TailView};
 
 /// Panels at most.
 const PANELS: usize = 4;
@@ -25,7 +25,7 @@ struct Frame {
 }
 
 /// Polars in panels, one for each Mach number.
-pub(super) fn polars(view: &TailView, place: &Place<'_>) -> Markup {
+pub(crate) fn polars(view: &TailView, place: &Place<'_>) -> Markup {
     let machs = mach_numbers(view);
     let shown = thinned(view.points.len(), place.most_points);
     let frame = Frame::of(view, &machs);

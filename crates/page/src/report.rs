@@ -1,38 +1,17 @@
-//! `report.html`: what a run came to, as one plain page for a performance engineer to read, print and forward.
-//!
-//! One file without network, script or clock: the same results give the same bytes. Figures come from the results as
-//! they are; the page computes nothing but counts and means for drawing.
-//!
-//! Limits: the page of a large fleet draws a share of the segments, and says so; figures and tables are of all.
+//! `report.html`: what a run came to.
 
 use std::collections::BTreeMap;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
+use pipeline::evaluation::TailResult;
+use pipeline::model_file::Learnt;
+use pipeline::summary::Summary;
 
-use crate::model_file::Learnt;
-use crate::results::TailResult;
-use crate::summary::Summary;
+use crate::frame::framed;
+use crate::place::Place;
+use crate::text::counted;
+use crate::{fleet, tail};
 
-mod chart;
-mod diagnosis;
-mod envelope;
-mod errors;
-mod fleet;
-mod polars;
-#[cfg(test)]
-mod samples;
-mod style;
-mod tail;
-#[cfg(test)]
-mod tests;
-mod text;
-mod view;
-
-pub use diagnosis::diagnosis;
-use text::counted;
-
-/// Class of what belongs to the initial (or given) table.
-const BEFORE: &str = "before";
 /// Points of a chart at most.
 const MOST_POINTS: usize = 2000;
 /// Points of a chart at least, however many tails there are.
@@ -41,31 +20,6 @@ const FEWEST_POINTS: usize = 200;
 const POINTS_OF_PAGE: usize = 60_000;
 /// Up to this many tails all are printed, folded or not.
 const TAILS_PRINTED: usize = 8;
-
-/// Where a tail's section is, and how much may be drawn in it.
-struct Place<'a> {
-    tail: &'a str,
-    /// Unique on the page.
-    id: String,
-    /// Points of a chart at most.
-    most_points: usize,
-}
-
-impl Place<'_> {
-    /// An id for something in this section.
-    fn id(&self, what: &str) -> String {
-        format!("{}-{what}", self.id)
-    }
-
-    /// Says that not everything is drawn.
-    fn thinned_words(&self, shown: usize, all: usize, what: &str) -> String {
-        format!(
-            "Drawn are {shown} of {all} {what}, evenly chosen, at most {} a chart to keep the page small. Figures and \
-             tables are of all.",
-            self.most_points
-        )
-    }
-}
 
 /// The page: `summary` and what is known of each tail under a title.
 pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
@@ -95,31 +49,6 @@ pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
         }
     };
     framed(title, tails.len() <= TAILS_PRINTED, &body)
-}
-
-/// A whole page: `body` under a title, without scripts or network. `prints_all` also unfolds for print what is folded.
-fn framed(title: &str, prints_all: bool, body: &Markup) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="generator" content=(concat!("cruisefit ", env!("CARGO_PKG_VERSION")));
-                title { (title) }
-                style { (PreEscaped(style::STYLE)) }
-            }
-            body.print-all[prints_all] {
-                main {
-                    h1 { (title) }
-                    (body)
-                }
-            }
-        }
-    };
-    let mut page = page.into_string();
-    page.push('\n');
-    page
 }
 
 /// Anchors by tail: its name as far as an anchor can hold it, and a number where that is not unique.

@@ -2,11 +2,11 @@
 
 use flight::Timestamp;
 
-use super::view::{Flight, Point, Polars, TailView};
-use crate::statistics::ErrorStatistics;
+use crate::view::{Flight, Point, Polars, TailView};
+use pipeline::statistics::ErrorStatistics;
 
 /// Ordinary, with wild values, all alike, a single segment, nothing at all; each adapted and not.
-pub(super) fn views() -> Vec<TailView> {
+pub(crate) fn views() -> Vec<TailView> {
     let ordinary: Vec<Point> = (0..240).map(|k| point(k, 4.0, Some(1.0))).collect();
     let mut wild = ordinary.clone();
     wild[7].before = Some(420.0);

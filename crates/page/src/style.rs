@@ -2,7 +2,7 @@
 //! words say the same again for print in black and white.
 
 /// The whole sheet.
-pub(super) const STYLE: &str = r#"
+pub(crate) const STYLE: &str = r#"
 :root { color-scheme: light; --before: #d55e00; --after: #0072b2; --ink: #1b1b1b; --soft: #5a5a5a; --line: #c9c9c9; }
 html { font-size: 15px; }
 * { box-sizing: border-box; }

@@ -2,14 +2,15 @@
 
 use maud::{Markup, html};
 
-use super::text::{counted, plain, signed};
-use super::view::TailView;
-use super::{Place, envelope, errors, polars};
-use crate::results::TailResult;
-use crate::statistics::ErrorStatistics;
+use crate::place::Place;
+use crate::text::{counted, plain, signed};
+use crate::view::TailView;
+use crate::{envelope, errors, polars};
+use pipeline::evaluation::TailResult;
+use pipeline::statistics::ErrorStatistics;
 
 /// A tail's section, folded unless `open`.
-pub(super) fn section(result: &TailResult, place: &Place<'_>, open: bool) -> Markup {
+pub(crate) fn section(result: &TailResult, place: &Place<'_>, open: bool) -> Markup {
     let view = TailView::of(result);
     html! {
         details.tail open[open] {
@@ -25,7 +26,7 @@ pub(super) fn section(result: &TailResult, place: &Place<'_>, open: bool) -> Mar
 }
 
 /// All charts and tables of a tail.
-pub(super) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
+pub(crate) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
     let bins = errors::bins(view);
     html! {
         div.figures {

@@ -3,22 +3,26 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::*;
-use crate::model_file::ModelFile;
-use crate::results::TailCounts;
-use crate::segments_table;
-use crate::summary::{RefusedSummary, ReportsSummary, SCHEMA};
+use pipeline::evaluation::{TailCounts, TailData, TailResult};
+use pipeline::model_file::ModelFile;
+use pipeline::segments_table;
+use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+
+use crate::place::Place;
+use crate::{report, samples, tail as section};
 
 /// What was learnt from the flights in `fixtures`, under some tail's name.
 fn tail(name: &str, adapted: bool) -> TailResult {
     let folder =
         Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/global5000/expected"));
-    let model = ModelFile::read(&folder.join("SIM-01.ron")).unwrap();
-    let segments = folder.join("SIM-01_segments.csv");
-    let segments = segments_table::read(&segments, &std::fs::read(&segments).unwrap()).unwrap();
+    let text = std::fs::read_to_string(folder.join("SIM-01.ron")).unwrap();
+    let model = ModelFile::from_text(&text).unwrap();
+    let segments = std::fs::read(folder.join("SIM-01_segments.csv")).unwrap();
+    let segments = segments_table::read(&segments).unwrap();
     let counts = TailCounts { flights: 12, flights_new: 12, samples: 900 };
     let notes = vec!["roll <not> recorded".to_owned()];
-    TailResult::new(name.to_owned(), model, segments, counts, adapted, notes)
+    let data = TailData { tail: name.to_owned(), model, segments, counts, notes };
+    if adapted { TailResult::adapted(data) } else { TailResult::as_given(data) }
 }
 
 fn page(tails: &[TailResult], refused: Vec<RefusedSummary>) -> String {
@@ -98,7 +102,7 @@ fn nothing_sent_is_markup() {
 fn odd_tails_are_drawn_too() {
     for (k, view) in samples::views().iter().enumerate() {
         let place = Place { tail: "T", id: format!("t{k}"), most_points: 100 };
-        let figures = tail::figures(view, &place).into_string();
+        let figures = section::figures(view, &place).into_string();
         check(&figures);
         let thinned = view.points.len() > 100;
         assert_eq!(figures.contains("evenly chosen"), thinned, "what is left out is said");

@@ -1,37 +1,37 @@
 //! Numbers as the page writes them. A hyphen is the minus sign, no separators: figures can be pasted into a spreadsheet.
 
 /// With sign and two decimals, a dash for no value.
-pub(super) fn signed(value: Option<f64>) -> String {
+pub(crate) fn signed(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{:+.2}", not_minus_zero(value, 2)))
 }
 
 /// With sign and one decimal.
-pub(super) fn signed_tenths(value: f64) -> String {
+pub(crate) fn signed_tenths(value: f64) -> String {
     format!("{:+.1}", not_minus_zero(value, 1))
 }
 
 /// Two decimals, a dash for no value.
-pub(super) fn plain(value: Option<f64>) -> String {
+pub(crate) fn plain(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{:.2}", not_minus_zero(value, 2)))
 }
 
 /// A share as whole per cent, a dash for no value.
-pub(super) fn percent(share: Option<f64>) -> String {
+pub(crate) fn percent(share: Option<f64>) -> String {
     share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share))
 }
 
 /// A count, a dash for none.
-pub(super) fn count(count: Option<u32>) -> String {
+pub(crate) fn count(count: Option<u32>) -> String {
     count.map_or_else(|| "–".to_owned(), |count| count.to_string())
 }
 
 /// Number and noun, in the plural where it belongs.
-pub(super) fn counted(count: usize, noun: &str) -> String {
+pub(crate) fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
 /// A breakpoint or coefficient: two decimals, more where it has more, four at most.
-pub(super) fn breakpoint(value: f64) -> String {
+pub(crate) fn breakpoint(value: f64) -> String {
     let text = format!("{value:.4}");
     let mut text = text.as_str();
     for _ in 0..2 {

@@ -5,75 +5,75 @@ use std::collections::BTreeMap;
 use flight::Timestamp;
 use perf_model::ObserveError;
 
-use crate::model_file::ModelFile;
-use crate::results::TailResult;
-use crate::statistics::ErrorStatistics;
+use pipeline::evaluation::TailResult;
+use pipeline::model_file::ModelFile;
+use pipeline::statistics::ErrorStatistics;
 
 /// A tail as plain numbers.
 #[derive(Clone, Debug)]
-pub(super) struct TailView {
+pub(crate) struct TailView {
     /// Segments that could be reduced to a lift and a drag coefficient, in the results' order.
-    pub(super) points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
     /// Lift coefficients and Mach numbers of segments outside the table.
-    pub(super) outside: Vec<(f64, f64)>,
+    pub(crate) outside: Vec<(f64, f64)>,
     /// Why other segments say nothing about drag, one reason a segment.
-    pub(super) not_observed: Vec<String>,
+    pub(crate) not_observed: Vec<String>,
     /// Flights with segments, by START.
-    pub(super) flights: Vec<Flight>,
+    pub(crate) flights: Vec<Flight>,
     /// Its drag tables.
-    pub(super) polars: Polars,
+    pub(crate) polars: Polars,
     /// Whether there is an "after".
-    pub(super) adapted: bool,
+    pub(crate) adapted: bool,
 }
 
 /// A segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Point {
+pub(crate) struct Point {
     /// START of its flight, seconds since 1970-01-01 UTC.
-    pub(super) start_s: f64,
-    pub(super) lift_coefficient: f64,
-    pub(super) mach: f64,
+    pub(crate) start_s: f64,
+    pub(crate) lift_coefficient: f64,
+    pub(crate) mach: f64,
     /// Observed.
-    pub(super) drag_coefficient: f64,
+    pub(crate) drag_coefficient: f64,
     /// Error of the initial (or given) table, %; `None` outside it.
-    pub(super) before: Option<f64>,
+    pub(crate) before: Option<f64>,
     /// Error of the final table, %; `None` outside it, or where nothing is adapted.
-    pub(super) after: Option<f64>,
+    pub(crate) after: Option<f64>,
 }
 
 /// A flight's errors.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Flight {
+pub(crate) struct Flight {
     /// As sent.
-    pub(super) name: String,
-    pub(super) start: Timestamp,
+    pub(crate) name: String,
+    pub(crate) start: Timestamp,
     /// START, seconds since 1970-01-01 UTC.
-    pub(super) start_s: f64,
+    pub(crate) start_s: f64,
     /// Of its segments inside the table.
-    pub(super) before: ErrorStatistics,
+    pub(crate) before: ErrorStatistics,
     /// Of its segments inside the table.
-    pub(super) after: ErrorStatistics,
+    pub(crate) after: ErrorStatistics,
 }
 
 /// The drag tables, lift coefficient outer and Mach number inner.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Polars {
-    pub(super) lift_coefficient: Vec<f64>,
-    pub(super) mach: Vec<f64>,
+pub(crate) struct Polars {
+    pub(crate) lift_coefficient: Vec<f64>,
+    pub(crate) mach: Vec<f64>,
     /// Drag coefficient of the initial table.
-    pub(super) initial: Vec<f64>,
+    pub(crate) initial: Vec<f64>,
     /// Drag coefficient as it stands.
-    pub(super) current: Vec<f64>,
+    pub(crate) current: Vec<f64>,
     /// Whether anything was learnt; if not, both are the same.
-    pub(super) learnt: bool,
+    pub(crate) learnt: bool,
     /// Nodes that a segment ever adapted.
-    pub(super) informed: Vec<bool>,
+    pub(crate) informed: Vec<bool>,
     /// Nodes outside the range of the guide.
-    pub(super) extrapolated: Vec<bool>,
+    pub(crate) extrapolated: Vec<bool>,
 }
 
 impl TailView {
-    pub(super) fn of(result: &TailResult) -> Self {
+    pub(crate) fn of(result: &TailResult) -> Self {
         let adapted = result.summary.fuel_flow_error_percent.after.is_some();
         let after = result.errors_after();
         let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
@@ -121,17 +121,17 @@ impl TailView {
     }
 
     /// What "before" is called: there is one only where there is an "after".
-    pub(super) fn before_label(&self) -> &'static str {
+    pub(crate) fn before_label(&self) -> &'static str {
         if self.adapted { "before" } else { "model as given" }
     }
 
     /// Errors of the initial (or given) table.
-    pub(super) fn before(&self) -> Vec<f64> {
+    pub(crate) fn before(&self) -> Vec<f64> {
         self.points.iter().filter_map(|point| point.before).collect()
     }
 
     /// Errors of the final table; none where nothing is adapted.
-    pub(super) fn after(&self) -> Vec<f64> {
+    pub(crate) fn after(&self) -> Vec<f64> {
         self.points.iter().filter_map(|point| point.after).collect()
     }
 }
@@ -162,7 +162,7 @@ impl Polars {
     }
 
     /// Node of two breakpoints.
-    pub(super) fn node(&self, lift_coefficient: usize, mach: usize) -> usize {
+    pub(crate) fn node(&self, lift_coefficient: usize, mach: usize) -> usize {
         lift_coefficient * self.mach.len() + mach
     }
 }

@@ -19,9 +19,9 @@ pub struct Reference {
 /// Means by signal, the unit in the name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct References(BTreeMap<String, Reference>);
+pub struct ConditionMeans(BTreeMap<String, Reference>);
 
-impl References {
+impl ConditionMeans {
     /// Adds a segment: Welford's running mean, so that learning in two runs gives the same bits as in one.
     pub fn add(&mut self, segment: &Segment, lift_coefficient: f64) {
         let means = &segment.means;

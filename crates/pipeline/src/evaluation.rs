@@ -1,6 +1,10 @@
-//! What a run knows of each tail at its end: the material of summary, tables and pages.
+//! What a table says of segments, and what a run knows of each tail at its end: the material of summary, tables, pages.
 
-use crate::learning;
+use adapt::paper;
+use flight::{Observation, Segment};
+use lut::{Outside, Table};
+use perf_model::PerformanceModel;
+
 use crate::model_file::ModelFile;
 use crate::segments_table::{Evaluated, SegmentRow};
 use crate::statistics::ErrorStatistics;
@@ -34,40 +38,48 @@ pub struct TailCounts {
     pub samples: u64,
 }
 
+/// A tail's model and segments, before anything is said of their errors.
+#[derive(Clone, Debug)]
+pub struct TailData {
+    /// Tail.
+    pub tail: String,
+    /// Its model, with what it has learnt.
+    pub model: ModelFile,
+    /// Its segments, in the order of the table that is written.
+    pub segments: Vec<Segment>,
+    /// Counts that the segments do not tell.
+    pub counts: TailCounts,
+    /// What is worth knowing about its data, each once.
+    pub notes: Vec<String>,
+}
+
 impl TailResult {
-    /// Puts together what is known of a tail. `rows` get what the model's initial table says, or, where nothing is
-    /// adapted, its current table.
-    pub fn new(
-        tail: String,
-        model: ModelFile,
-        segments: Vec<flight::Segment>,
-        counts: TailCounts,
-        adapted: bool,
-        notes: Vec<String>,
+    /// The result of an adaptation: errors of the initial table before, of the learnt one after.
+    pub fn adapted(data: TailData) -> Self {
+        let before = evaluate(&data.model.initial, data.model.initial.drag_table(), &data.segments);
+        let after = evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments);
+        let mut summary = summary_of(&data, &before);
+        summary.informed_nodes = Some(data.model.informed_nodes());
+        summary.refits = data.model.refits();
+        summary.fuel_flow_error_percent.after = Some(statistics(&after));
+        Self::put_together(data, before, after, summary)
+    }
+
+    /// The result of a model as it was given: errors of its current table, nothing adapted.
+    pub fn as_given(data: TailData) -> Self {
+        let before = evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments);
+        let mut summary = summary_of(&data, &before);
+        summary.interval95_coverage = coverage(&data.model, &data.segments);
+        Self::put_together(data, before, Vec::new(), summary)
+    }
+
+    fn put_together(
+        data: TailData,
+        before: Vec<Option<Evaluated>>,
+        after: Vec<Option<Evaluated>>,
+        summary: TailSummary,
     ) -> Self {
-        let before_table =
-            if adapted { model.initial.drag_table() } else { model.drag_coefficient() };
-        let before = learning::evaluate(&model.initial, before_table, &segments);
-        let after = if adapted {
-            learning::evaluate(&model.initial, model.drag_coefficient(), &segments)
-        } else {
-            Vec::new()
-        };
-        let summary = TailSummary {
-            tail: tail.clone(),
-            flights: counts.flights,
-            flights_new: counts.flights_new,
-            samples: counts.samples,
-            segments: segments.len(),
-            outside_table: errors(&before).iter().filter(|error| error.is_none()).count(),
-            informed_nodes: adapted.then(|| model.informed_nodes()),
-            refits: if adapted { model.refits() } else { None },
-            interval95_coverage: if adapted { None } else { coverage(&model, &segments) },
-            fuel_flow_error_percent: ErrorsSummary {
-                before: statistics(&before),
-                after: adapted.then(|| statistics(&after)),
-            },
-        };
+        let TailData { tail, model, segments, notes, .. } = data;
         let rows = segments
             .into_iter()
             .zip(before)
@@ -76,15 +88,76 @@ impl TailResult {
         Self { tail, model, rows, after, summary, notes }
     }
 
-    /// Errors of the initial (or given) table in per cent, segment by segment; `None` outside the table.
-    pub fn errors_before(&self) -> Vec<Option<f64>> {
-        self.rows.iter().map(|row| row.evaluated.and_then(|e| e.error_percent)).collect()
-    }
-
     /// Errors of the final table in per cent, segment by segment; empty where nothing is adapted.
     pub fn errors_after(&self) -> Vec<Option<f64>> {
         errors(&self.after)
     }
+}
+
+/// What a table on the model's grid says of each segment; `None` for a state that the model is not defined for. A
+/// segment outside the grid keeps its coefficients and has no error.
+///
+/// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
+/// the error, effects included.
+pub fn evaluate(
+    model: &PerformanceModel,
+    table: &Table,
+    segments: &[Segment],
+) -> Vec<Option<Evaluated>> {
+    // Some effects are shares of the table's own drag: they are those of the table that is asked.
+    let moved = model.effects().and_then(|_| model.with_drag_table(table.clone()).ok());
+    let model = moved.as_ref().unwrap_or(model);
+    segments
+        .iter()
+        .map(|segment| match model.observe(segment) {
+            Ok(observation) => {
+                let error = error_percent(table, &observation);
+                Some(Evaluated {
+                    lift_coefficient: observation.lift_coefficient,
+                    drag_coefficient: observation.drag_coefficient,
+                    predicted_fuel_flow_kg_s: error
+                        .map(|error| segment.means.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
+                    error_percent: error,
+                })
+            }
+            Err(_) => state_without_errors(model, segment).map(|state| Evaluated {
+                lift_coefficient: state.lift_coefficient,
+                drag_coefficient: state.drag_coefficient,
+                predicted_fuel_flow_kg_s: None,
+                error_percent: None,
+            }),
+        })
+        .collect()
+}
+
+/// What a table says of an observation; `None` outside its grid.
+pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
+    let cell =
+        table.grid().locate(observation.lift_coefficient, observation.mach, Outside::Error).ok()?;
+    Some(paper::error_percent(table, &cell, observation))
+}
+
+/// What both kinds of results have in common.
+fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
+    TailSummary {
+        tail: data.tail.clone(),
+        flights: data.counts.flights,
+        flights_new: data.counts.flights_new,
+        samples: data.counts.samples,
+        segments: data.segments.len(),
+        outside_table: errors(before).iter().filter(|error| error.is_none()).count(),
+        informed_nodes: None,
+        refits: None,
+        interval95_coverage: None,
+        fuel_flow_error_percent: ErrorsSummary { before: statistics(before), after: None },
+    }
+}
+
+fn state_without_errors(
+    model: &PerformanceModel,
+    segment: &Segment,
+) -> Option<perf_model::SegmentState> {
+    model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
 }
 
 /// Two-sided 95 % of a standard normal distribution.
@@ -92,7 +165,7 @@ const STANDARD_DEVIATIONS_OF_95_PERCENT: f64 = 1.959_963_984_540_054;
 
 /// Share of segments whose error lies within the interval that law `bayes` states for them; `None` by another law, or
 /// without a segment inside the table.
-fn coverage(model: &ModelFile, segments: &[flight::Segment]) -> Option<f64> {
+fn coverage(model: &ModelFile, segments: &[Segment]) -> Option<f64> {
     let posterior = model.posterior()?;
     let mut inside = 0_usize;
     let mut all = 0_usize;

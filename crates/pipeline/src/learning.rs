@@ -1,18 +1,14 @@
-//! One tail's flights, learnt one after the other; and what a table says of segments.
-//!
-//! Everything here is a function of model and segments: no file, no thread, no clock.
+//! One tail's flights, learnt one after the other.
 
 use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
 use adapt::paper::{self, PaperLaw, State as PaperState, Update};
 use diagnose::{Baseline, FlightRecord};
 use flight::{Observation, Segment};
-use lut::{Outside, Table};
 use perf_model::PerformanceModel;
 use refit::RefitRule;
 
+use crate::condition_means::ConditionMeans;
 use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
-use crate::references::References;
-use crate::segments_table::Evaluated;
 
 /// A flight to learn.
 #[derive(Clone, Debug)]
@@ -71,7 +67,7 @@ pub fn begin(
         tail: tail.to_owned(),
         criteria: criteria.to_owned(),
         law,
-        references: References::default(),
+        references: ConditionMeans::default(),
         baseline: None,
         ledger: Vec::new(),
     })
@@ -200,54 +196,4 @@ pub enum LearningError {
     /// The solution of law `bayes`.
     #[error(transparent)]
     Solve(#[from] SolveError),
-}
-
-/// What a table says of an observation; `None` outside its grid.
-pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
-    let cell =
-        table.grid().locate(observation.lift_coefficient, observation.mach, Outside::Error).ok()?;
-    Some(paper::error_percent(table, &cell, observation))
-}
-
-fn state_without_errors(
-    model: &PerformanceModel,
-    segment: &Segment,
-) -> Option<perf_model::SegmentState> {
-    model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
-}
-
-/// What a table on the model's grid says of each segment; `None` for a state that the model is not defined for. A
-/// segment outside the grid keeps its coefficients and has no error.
-///
-/// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
-/// the error, effects included.
-pub fn evaluate(
-    model: &PerformanceModel,
-    table: &Table,
-    segments: &[Segment],
-) -> Vec<Option<Evaluated>> {
-    // Some effects are shares of the table's own drag: they are those of the table that is asked.
-    let moved = model.effects().and_then(|_| model.with_drag_table(table.clone()).ok());
-    let model = moved.as_ref().unwrap_or(model);
-    segments
-        .iter()
-        .map(|segment| match model.observe(segment) {
-            Ok(observation) => {
-                let error = error_percent(table, &observation);
-                Some(Evaluated {
-                    lift_coefficient: observation.lift_coefficient,
-                    drag_coefficient: observation.drag_coefficient,
-                    predicted_fuel_flow_kg_s: error
-                        .map(|error| segment.means.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
-                    error_percent: error,
-                })
-            }
-            Err(_) => state_without_errors(model, segment).map(|state| Evaluated {
-                lift_coefficient: state.lift_coefficient,
-                drag_coefficient: state.drag_coefficient,
-                predicted_fuel_flow_kg_s: None,
-                error_percent: None,
-            }),
-        })
-        .collect()
 }

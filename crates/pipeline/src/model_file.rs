@@ -8,22 +8,19 @@
 mod applied;
 mod text;
 
-pub use applied::{AppliedRecord, DiagnosisRecord};
-pub(crate) use text::hex;
+pub use applied::{AppliedRecord, DiagnosisRecord, ExtendError};
+pub use text::ModelTextError;
 
-use std::path::Path;
 use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use adapt::paper::State as PaperState;
 use diagnose::Baseline;
 use lut::Table;
-use perf_model::PerformanceModel;
+use perf_model::{Guide, InitialModel, PerformanceModel};
 use serde::{Deserialize, Serialize};
 
-use crate::failure::Failure;
-use crate::files::{read_text, write_atomically};
-use crate::references::References;
+use crate::condition_means::ConditionMeans;
 
 /// The format that this program writes.
 pub const FORMAT: u32 = 1;
@@ -100,7 +97,7 @@ pub struct Learnt {
     /// The law and its state.
     pub law: LawState,
     /// Mean conditions.
-    pub references: References,
+    pub references: ConditionMeans,
     /// What no table over lift coefficient and Mach number can hold: smooth remainder, rotor-speed deck, noise levels
     /// (law `bayes`, five flights or more).
     pub baseline: Option<Baseline>,
@@ -199,25 +196,29 @@ pub struct LedgerEntry {
 }
 
 impl ModelFile {
-    /// Reads a model file.
-    ///
-    /// # Errors
-    /// A file that cannot be read, is no model, is of a newer format, or whose checksum does not match.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
-        text::parse(&read_text(path)?).map_err(|error| Failure::BadFile {
-            path: path.display().to_string(),
-            help: error.help(),
-            reason: error.to_string(),
-        })
+    /// The model file of a fresh initial model, with the laws' published settings.
+    pub fn from_initial(initial: &InitialModel, guide: &Guide) -> Self {
+        Self {
+            initial: initial.model.clone(),
+            guide: GuideRecord {
+                points: guide.points().len() as u64,
+                lift_coefficient: initial.fit.lift_coefficients,
+                mach: initial.fit.machs,
+                residual_rms: initial.fit.residual_rms,
+                condition_number: initial.fit.condition_number,
+            },
+            settings: LawSettings::published(),
+            learnt: None,
+            applied: Vec::new(),
+        }
     }
 
-    /// Writes a model file: whole or not at all.
+    /// A model from the text of its file.
     ///
     /// # Errors
-    /// A place that cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), Failure> {
-        let text = self.to_text().map_err(|error| Failure::unwritable(path, error))?;
-        write_atomically(path, text.as_bytes())
+    /// A text that is no model, is of a newer format, or whose checksum does not match.
+    pub fn from_text(text: &str) -> Result<Self, ModelTextError> {
+        text::parse(text)
     }
 
     /// The file's text.

@@ -1,12 +1,10 @@
 //! `segments/TAIL.csv`: every segment with its mean state, and back.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans};
 
 use crate::columns::Columns;
-use crate::failure::Failure;
 
 /// What a model says of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +26,33 @@ pub struct SegmentRow {
     pub segment: Segment,
     /// With a model.
     pub evaluated: Option<Evaluated>,
+}
+
+/// Why a text is no table of segments.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SegmentsTableError {
+    /// Not a table of comma-separated values.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+    /// A column that every table of segments has is not there.
+    #[error("column {column} is missing")]
+    MissingColumn {
+        /// Its name.
+        column: &'static str,
+    },
+    /// A field that is not what its column holds.
+    #[error("line {line}, column {column}: found {found:?}, expected {expected}")]
+    Field {
+        /// Physical line from 1.
+        line: u64,
+        /// Name of the column.
+        column: String,
+        /// The field as it is.
+        found: String,
+        /// What such a field holds.
+        expected: &'static str,
+    },
 }
 
 type RequiredGetter = fn(&SegmentMeans) -> f64;
@@ -152,15 +177,15 @@ pub fn engines_of(rows: &[SegmentRow]) -> usize {
 ///
 /// # Errors
 /// A missing column, or a field that is not what its column holds, with line and column name.
-pub fn read(path: &Path, bytes: &[u8]) -> Result<Vec<Segment>, Failure> {
+pub fn read(bytes: &[u8]) -> Result<Vec<Segment>, SegmentsTableError> {
     let mut reader = csv::ReaderBuilder::new().from_reader(bytes);
-    let header = reader.headers().map_err(|error| Failure::bad_file(path, error))?.clone();
-    let places = Places::find(path, &header)?;
+    let header = reader.headers()?.clone();
+    let places = Places::find(&header)?;
     let mut segments = Vec::new();
     let mut identity: Option<Arc<FlightIdentity>> = None;
     for record in reader.records() {
-        let record = record.map_err(|error| Failure::bad_file(path, error))?;
-        let row = Row { path, places: &places, record: &record };
+        let record = record?;
+        let row = Row { places: &places, record: &record };
         let this = FlightIdentity {
             tail: row.text("tail")?.to_owned(),
             start: row.parse("start", "an instant")?,
@@ -176,20 +201,20 @@ pub fn read(path: &Path, bytes: &[u8]) -> Result<Vec<Segment>, Failure> {
     Ok(segments)
 }
 
-/// Where each named column stands.
+/// The names of the columns, in file order.
 struct Places {
     names: Vec<String>,
 }
 
 impl Places {
-    fn find(path: &Path, header: &csv::StringRecord) -> Result<Self, Failure> {
+    fn find(header: &csv::StringRecord) -> Result<Self, SegmentsTableError> {
         let places = Self { names: header.iter().map(str::to_owned).collect() };
         for name in ["tail", "flight", "start", "temperature_assumed", "rows"]
             .into_iter()
             .chain(REQUIRED.iter().map(|(name, _, _)| *name))
         {
             if places.of(name).is_none() {
-                return Err(Failure::bad_file(path, format!("column {name} is missing")));
+                return Err(SegmentsTableError::MissingColumn { column: name });
             }
         }
         Ok(places)
@@ -201,37 +226,41 @@ impl Places {
 }
 
 struct Row<'a> {
-    path: &'a Path,
     places: &'a Places,
     record: &'a csv::StringRecord,
 }
 
 impl Row<'_> {
-    fn text(&self, name: &str) -> Result<&str, Failure> {
+    fn text(&self, name: &str) -> Result<&str, SegmentsTableError> {
         self.places
             .of(name)
             .and_then(|place| self.record.get(place))
             .ok_or_else(|| self.wrong(name, "nothing", "a field"))
     }
 
-    fn wrong(&self, name: &str, found: &str, expected: &str) -> Failure {
-        let line = self.record.position().map_or(0, csv::Position::line);
-        Failure::bad_file(
-            self.path,
-            format!("line {line}, column {name}: found {found:?}, expected {expected}"),
-        )
+    fn wrong(&self, name: &str, found: &str, expected: &'static str) -> SegmentsTableError {
+        SegmentsTableError::Field {
+            line: self.record.position().map_or(0, csv::Position::line),
+            column: name.to_owned(),
+            found: found.to_owned(),
+            expected,
+        }
     }
 
-    fn parse<T: std::str::FromStr>(&self, name: &str, expected: &str) -> Result<T, Failure> {
+    fn parse<T: std::str::FromStr>(
+        &self,
+        name: &str,
+        expected: &'static str,
+    ) -> Result<T, SegmentsTableError> {
         let text = self.text(name)?;
         text.parse().map_err(|_| self.wrong(name, text, expected))
     }
 
-    fn number(&self, name: &str) -> Result<f64, Failure> {
+    fn number(&self, name: &str) -> Result<f64, SegmentsTableError> {
         self.optional(name)?.ok_or_else(|| self.wrong(name, "", "a finite number"))
     }
 
-    fn optional(&self, name: &str) -> Result<Option<f64>, Failure> {
+    fn optional(&self, name: &str) -> Result<Option<f64>, SegmentsTableError> {
         let Some(place) = self.places.of(name) else {
             return Ok(None);
         };
@@ -244,7 +273,7 @@ impl Row<'_> {
         }
     }
 
-    fn engines(&self, name: impl Fn(usize) -> String) -> Result<Vec<f64>, Failure> {
+    fn engines(&self, name: impl Fn(usize) -> String) -> Result<Vec<f64>, SegmentsTableError> {
         let mut values = Vec::new();
         for k in 1..=MAXIMUM_ENGINES {
             match self.optional(&name(k))? {
@@ -258,7 +287,7 @@ impl Row<'_> {
     fn each_engine(
         &self,
         name: impl Fn(usize) -> String,
-    ) -> Result<[Option<f64>; MAXIMUM_ENGINES], Failure> {
+    ) -> Result<[Option<f64>; MAXIMUM_ENGINES], SegmentsTableError> {
         let mut values = [None; MAXIMUM_ENGINES];
         for (k, value) in values.iter_mut().enumerate() {
             *value = self.optional(&name(k + 1))?;
@@ -266,7 +295,7 @@ impl Row<'_> {
         Ok(values)
     }
 
-    fn segment(&self, identity: Arc<FlightIdentity>) -> Result<Segment, Failure> {
+    fn segment(&self, identity: Arc<FlightIdentity>) -> Result<Segment, SegmentsTableError> {
         let mut means = SegmentMeans {
             time_s: 0.0,
             pressure_altitude_m: 0.0,
@@ -305,7 +334,7 @@ impl Row<'_> {
         let rows = rows
             .split(';')
             .map(|row| row.parse().map_err(|_| self.wrong("rows", rows, "numbers and semicolons")))
-            .collect::<Result<Vec<u32>, Failure>>()?;
+            .collect::<Result<Vec<u32>, SegmentsTableError>>()?;
         Ok(Segment {
             identity,
             rows,

@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::failure::RefusedReport;
 use crate::statistics::ErrorStatistics;
 
 /// Schema of [`Summary`].
@@ -43,17 +42,6 @@ pub struct RefusedSummary {
     pub column: Option<usize>,
     /// Found and expected.
     pub reason: String,
-}
-
-impl From<&RefusedReport> for RefusedSummary {
-    fn from(refused: &RefusedReport) -> Self {
-        Self {
-            path: refused.path.display().to_string(),
-            line: refused.line,
-            column: refused.column,
-            reason: refused.reason.clone(),
-        }
-    }
 }
 
 /// One tail.

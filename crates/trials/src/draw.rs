@@ -8,24 +8,24 @@ use simulate::{
     TruthEffect,
 };
 
-use super::plan::{Background, CaseSpec, Denied, Kind, TrialPlan};
-use super::seal::{CaseTruth, SEALED_SCHEMA};
+use crate::plan::{Background, CaseSpec, Kind, ReferenceModel, TrialPlan};
+use crate::seal::{CaseTruth, SEALED_SCHEMA};
 
 /// Tail of every case: a name that gives nothing away.
-pub(super) const TAIL: &str = "TRIAL";
+pub(crate) const TAIL: &str = "TRIAL";
 /// Dates of sixty flights, s since 1970: 1.6 years, as the fleets of the virtual aircraft have them by default.
 const FIRST_DATE_S: i64 = 1_515_153_600;
 const SIXTY_FLIGHTS_S: i64 = 50_716_800;
 
 /// A case, drawn: flights, effects, clutter.
 #[derive(Clone, Debug)]
-pub struct Withheld {
-    /// Flights with everything that is withheld, after `clean` ones.
+pub struct DrawnCase {
+    /// Flights with everything that is drawn, after `clean` ones.
     flown: Simulation,
     /// The same flights and clutter without what is planted.
     twin: Simulation,
-    /// The same flights with nothing withheld: what an adapted model learns.
-    lessons: Simulation,
+    /// The same flights with nothing drawn: what an adapted model learns.
+    training_flights: Simulation,
     /// How many flights the model may learn: the first ones, of the twin.
     clean: usize,
     aircraft: AircraftTruth,
@@ -33,15 +33,15 @@ pub struct Withheld {
     truth: CaseTruth,
 }
 
-impl Withheld {
+impl DrawnCase {
     /// Draws a case.
     ///
     /// # Errors
     /// What the simulator refuses.
     pub fn draw(plan: &TrialPlan, spec: &CaseSpec) -> Result<Self, simulate::PlanError> {
-        let (richness, earth, clean) = match spec.part.denied {
-            Denied::Exact => (Richness::plain(), Earth::plain(), 0),
-            Denied::Adapted => (learnable(), Earth::full(), plan.clean_flights),
+        let (richness, earth, clean) = match spec.part.reference_model {
+            ReferenceModel::Exact => (Richness::plain(), Earth::plain(), 0),
+            ReferenceModel::Adapted => (learnable(), Earth::full(), plan.clean_flights),
         };
         let all = plan.flights + clean;
         let span_s = SIXTY_FLIGHTS_S * i64::try_from(all).unwrap_or(60) / 60;
@@ -99,13 +99,13 @@ impl Withheld {
             .map(|effect| PlannedEffect { size: Some(0.0), ..*effect })
             .collect();
         let (flown, twin) = (with(effects)?, with(nothing)?);
-        let lessons = Simulation::new(Plan { tails: vec![listed(vec![])], ..bare })?;
+        let training_flights = Simulation::new(Plan { tails: vec![listed(vec![])], ..bare })?;
         let truth = truth(&flown, spec);
         Ok(Self {
             aircraft: flown.aircraft().clone(),
             flown,
             twin,
-            lessons,
+            training_flights,
             clean,
             richness,
             truth,
@@ -117,29 +117,29 @@ impl Withheld {
         &self.truth
     }
 
-    pub(super) const fn aircraft(&self) -> &AircraftTruth {
+    pub(crate) const fn aircraft(&self) -> &AircraftTruth {
         &self.aircraft
     }
 
-    pub(super) const fn richness(&self) -> Richness {
+    pub(crate) const fn richness(&self) -> Richness {
         self.richness
     }
 
     /// Flights that the model may learn, and those that are diagnosed.
-    pub(super) const fn clean_flights(&self) -> usize {
+    pub(crate) const fn clean_flights(&self) -> usize {
         self.clean
     }
 
-    pub(super) const fn flown(&self) -> &Simulation {
+    pub(crate) const fn flown(&self) -> &Simulation {
         &self.flown
     }
 
-    pub(super) const fn twin(&self) -> &Simulation {
+    pub(crate) const fn twin(&self) -> &Simulation {
         &self.twin
     }
 
-    pub(super) const fn lessons(&self) -> &Simulation {
-        &self.lessons
+    pub(crate) const fn training_flights(&self) -> &Simulation {
+        &self.training_flights
     }
 }
 
@@ -225,7 +225,7 @@ fn truth(flown: &Simulation, spec: &CaseSpec) -> CaseTruth {
     CaseTruth {
         schema: SEALED_SCHEMA.to_owned(),
         case: spec.number,
-        denied: spec.part.denied,
+        reference_model: spec.part.reference_model,
         background: spec.part.background,
         kind: spec.part.kind,
         times: spec.part.times,

@@ -1,6 +1,6 @@
-//! Blind trials of the diagnosis: the virtual aircraft flies with an effect that the model is denied.
+//! Blind trials of the diagnosis: the virtual aircraft flies with an effect that its model lacks.
 //!
-//! Three worlds, kept apart by types. [`Withheld`] knows what was planted and flies it; [`Evidence`] is all that the
+//! Three worlds, kept apart by types. [`DrawnCase`] knows what was planted and flies it; [`DiagnosisInputs`] is all that the
 //! diagnosis is given, and nothing in it names an effect; the truth lies on disk, sealed by its hash before the first
 //! diagnosis begins, and [`Seal::open`] is the only way back to it, for the scorer, after the verdict.
 //!
@@ -8,18 +8,28 @@
 //! threads, today or after an interruption.
 
 mod case;
+mod diagnosis_inputs;
 mod draw;
-mod evidence;
+mod failure;
+mod flown_case;
+mod markdown;
+pub mod places;
 mod plan;
 mod planted;
+mod reference_model;
+mod scores;
 mod seal;
+mod stated_sensors;
 mod summary;
-mod text;
 
-pub use case::{CaseFailure, CaseResult, run_case};
-pub use draw::Withheld;
-pub use evidence::Evidence;
-pub use plan::{Background, CaseSpec, Denied, Floor, Kind, Part, ScoreName, TrialPlan};
-pub use seal::{CaseTruth, Seal};
+pub use case::{CaseResult, DiagnosedCase};
+pub use diagnosis_inputs::DiagnosisInputs;
+pub use draw::DrawnCase;
+pub use failure::CaseFailure;
+pub use markdown::{markdown, terminal};
+pub use plan::{
+    Background, CaseSpec, Floor, Kind, Part, ReferenceModel, ScoreName, TrialPlan, TrialPlanError,
+};
+pub use scores::{Case, Located, Planted, Scores, Share, score};
+pub use seal::{CaseTruth, Seal, SealError};
 pub use summary::{FloorMissed, Goal, Group, Trials, floors_missed, summarize};
-pub use text::{markdown, terminal};

@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use diagnose::trial::Share;
+use crate::scores::Share;
 
-use super::plan::{Background, Denied, ScoreName};
-use super::summary::{Goal, Group, Reached, Trials};
+use crate::plan::{Background, ReferenceModel, ScoreName};
+use crate::summary::{Goal, Group, Reached, Trials};
 
 /// Scores of the table of sizes, each a row.
 const ROWS: [ScoreName; 25] = [
@@ -53,7 +53,7 @@ pub fn markdown(trials: &Trials) -> String {
             let _ = writeln!(
                 text,
                 "| {}, {} | {} | {} {} | {} | {} |",
-                denied(goal.denied),
+                denied(goal.reference_model),
                 background(goal.background),
                 goal.words,
                 if goal.at_least { "≥" } else { "≤" },
@@ -80,12 +80,12 @@ pub fn terminal(trials: &Trials) -> String {
         let _ = writeln!(
             text,
             "{} model, {}, {} x typical: {single} single effects, {null} without, {struck} struck, {outside} outside, {pair} pairs",
-            denied(group.denied),
+            denied(group.reference_model),
             background(group.background),
             group.times
         );
         let goals = trials.goals.iter().filter(|goal| {
-            (goal.denied, goal.background) == (group.denied, group.background)
+            (goal.reference_model, goal.background) == (group.reference_model, group.background)
                 && goal.reached.is_some()
         });
         #[expect(clippy::float_cmp, reason = "the number 1 as a plan writes it")]
@@ -112,7 +112,7 @@ fn group_table(group: &Group, text: &mut String) {
         text,
         "\n## {} model, {}, {} × typical\n\n{single} single effects, {null} without effect, {struck} struck, {outside} \
          outside the library, {pair} pairs; {:.0} segments a case, noise floor {:.2} %.\n\n| score | |\n|---|---|",
-        denied(group.denied),
+        denied(group.reference_model),
         background(group.background),
         group.times,
         group.segments_mean,
@@ -170,10 +170,10 @@ fn verdict(goal: &Goal) -> String {
     }
 }
 
-const fn denied(denied: Denied) -> &'static str {
+const fn denied(denied: ReferenceModel) -> &'static str {
     match denied {
-        Denied::Exact => "exact",
-        Denied::Adapted => "adapted",
+        ReferenceModel::Exact => "exact",
+        ReferenceModel::Adapted => "adapted",
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use flight::effect::EffectId;
 
-use crate::output::Slice;
+use diagnose::Slice;
 
 /// The truly worst segments: as many as asked for, those where the effect is largest in the direction of its sign.
 /// Of equal ones the first.

@@ -5,10 +5,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use simulate::{AircraftChoice, Columns, OutsideEffect, SensorChoice, TruthEffect};
 
-use crate::failure::Failure;
-
-const SHORT: &str = include_str!("../../embedded/TRIAL-SHORT.ron");
-const LONG: &str = include_str!("../../embedded/TRIAL-LONG.ron");
+const SHORT: &str = include_str!("../embedded/TRIAL-SHORT.ron");
+const LONG: &str = include_str!("../embedded/TRIAL-LONG.ron");
 /// Most cases of one plan: numbers of cases have five digits.
 const MOST_CASES: usize = 99_999;
 
@@ -33,7 +31,7 @@ pub struct TrialPlan {
     /// Optional columns that are recorded.
     #[serde(default)]
     pub columns: Columns,
-    /// Sensors of the virtual aircraft. The aircraft file of the denied model states them as they are.
+    /// Sensors of the virtual aircraft. The aircraft file of the reference model states them as they are.
     #[serde(default)]
     pub sensors: SensorChoice,
     /// Clutter: standard deviation of every other effect over its typical size.
@@ -79,7 +77,7 @@ const fn once() -> f64 {
 /// What the model that is diagnosed was made from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Denied {
+pub enum ReferenceModel {
     /// The truth without the effect, sampled on a fine grid.
     Exact,
     /// A wrong initial model, taught by law `bayes` on clean flights.
@@ -117,7 +115,8 @@ pub enum Kind {
 #[serde(deny_unknown_fields)]
 pub struct Part {
     /// Which model.
-    pub denied: Denied,
+    #[serde(rename = "denied")]
+    pub reference_model: ReferenceModel,
     /// Which background.
     pub background: Background,
     /// What is planted.
@@ -231,7 +230,8 @@ impl ScoreName {
 #[serde(deny_unknown_fields)]
 pub struct Floor {
     /// Of which model.
-    pub denied: Denied,
+    #[serde(rename = "denied")]
+    pub reference_model: ReferenceModel,
     /// On which background.
     pub background: Background,
     /// At which size.
@@ -245,6 +245,31 @@ pub struct Floor {
     /// Largest value that passes.
     #[serde(default)]
     pub most: Option<f64>,
+}
+
+/// Why a text is no plan of trials.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrialPlanError {
+    /// Not the notation of a plan, with line and column.
+    #[error(transparent)]
+    Syntax(#[from] ron::error::SpannedError),
+    /// A value that makes no trial.
+    #[error("{field}: found {found}, expected {expected}")]
+    Value {
+        /// Field of the plan.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// The range, or the kind, that makes a trial.
+        expected: &'static str,
+    },
+    /// Two parts of one model, background, kind and size.
+    #[error("the part {label} occurs twice")]
+    PartTwice {
+        /// What tells a part from every other.
+        label: String,
+    },
 }
 
 /// One case before it is drawn.
@@ -265,31 +290,26 @@ impl TrialPlan {
     ///
     /// # Errors
     /// None in practice: a test parses it.
-    pub fn short() -> Result<Self, Failure> {
-        Self::embedded(SHORT)
+    pub fn short() -> Result<Self, TrialPlanError> {
+        Self::from_ron(SHORT)
     }
 
     /// The plan behind published scores.
     ///
     /// # Errors
     /// None in practice: a test parses it.
-    pub fn long() -> Result<Self, Failure> {
-        Self::embedded(LONG)
-    }
-
-    fn embedded(text: &str) -> Result<Self, Failure> {
-        Self::from_ron(text)
-            .map_err(|reason| Failure::BadArgument { argument: "embedded plan", reason })
+    pub fn long() -> Result<Self, TrialPlanError> {
+        Self::from_ron(LONG)
     }
 
     /// From the text of a plan.
     ///
     /// # Errors
     /// What is wrong, with line and column, or the first value that makes no trial.
-    pub fn from_ron(text: &str) -> Result<Self, String> {
+    pub fn from_ron(text: &str) -> Result<Self, TrialPlanError> {
         let options = ron::Options::default()
             .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-        let plan: Self = options.from_str(text).map_err(|error| error.to_string())?;
+        let plan: Self = options.from_str(text)?;
         plan.check()?;
         Ok(plan)
     }
@@ -304,9 +324,9 @@ impl TrialPlan {
         options.to_string_pretty(self, ron::ser::PrettyConfig::default())
     }
 
-    fn check(&self) -> Result<(), String> {
-        let wrong = |what: &str, found: &dyn std::fmt::Display, expected: &str| {
-            Err(format!("{what}: found {found}, expected {expected}"))
+    fn check(&self) -> Result<(), TrialPlanError> {
+        let wrong = |field: &'static str, found: &dyn std::fmt::Display, expected: &'static str| {
+            Err(TrialPlanError::Value { field, found: found.to_string(), expected })
         };
         if !(1..=5000).contains(&self.flights) {
             return wrong("flights", &self.flights, "1 to 5000");
@@ -328,7 +348,7 @@ impl TrialPlan {
                 return wrong("times", &part.times, "0.01 to 10");
             }
             if self.parts[..index].iter().any(|other| other.label() == part.label()) {
-                return Err(format!("the part {} occurs twice", part.label()));
+                return Err(TrialPlanError::PartTwice { label: part.label() });
             }
         }
         for effect in &self.effects {
@@ -383,7 +403,10 @@ impl TrialPlan {
             .filter(|id| {
                 // What is known is all or nothing; and an Earth does not begin to turn between two flights.
                 let known = id.entry().typical == TypicalSize::Known;
-                !known || (typical && part.denied == Denied::Exact && part.kind != Kind::Pair)
+                !known
+                    || (typical
+                        && part.reference_model == ReferenceModel::Exact
+                        && part.kind != Kind::Pair)
             })
             .map(TruthEffect::Library)
             .filter(|id| self.effects.is_empty() || self.effects.contains(id))
@@ -399,7 +422,7 @@ impl TrialPlan {
 impl Part {
     /// What tells it from every other part of a plan.
     pub fn label(&self) -> String {
-        format!("{:?}/{:?}/{:?}/{}", self.denied, self.background, self.kind, self.times)
+        format!("{:?}/{:?}/{:?}/{}", self.reference_model, self.background, self.kind, self.times)
     }
 }
 
@@ -474,7 +497,7 @@ mod tests {
                 "outside_mach_bump",
             ),
         ] {
-            let error = TrialPlan::from_ron(text).unwrap_err();
+            let error = TrialPlan::from_ron(text).unwrap_err().to_string();
             assert!(error.contains(says), "{error}");
         }
     }

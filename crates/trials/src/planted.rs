@@ -5,18 +5,19 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::trial::Located;
-use diagnose::trial::places::{names_driver, spread, worst_region_overlap};
+use crate::places::{names_driver, spread, worst_region_overlap};
+use crate::scores::Located;
 use diagnose::{Diagnosis, Slice, slice_members};
 use flight::Segment;
 use flight::effect::EffectId;
 use perf_model::effects::{EffectModel, EffectPoint, Effects};
 
-use super::case::CaseFailure;
-use super::draw::Withheld;
-use super::evidence::{Evidence, fly};
-use super::plan::Kind;
-use super::seal::CaseTruth;
+use crate::diagnosis_inputs::DiagnosisInputs;
+use crate::draw::DrawnCase;
+use crate::failure::CaseFailure;
+use crate::flown_case::fly;
+use crate::plan::Kind;
+use crate::seal::CaseTruth;
 
 /// Largest p-value of a place that is reported.
 const SIGNIFICANT: f64 = 0.05;
@@ -26,23 +27,23 @@ type Key = (String, u32);
 
 /// Gap that the planted effect makes, ln of fuel flow, of every segment that both flights have.
 #[derive(Debug)]
-pub(super) struct PlantedGap(BTreeMap<Key, f64>);
+pub(crate) struct PlantedGap(BTreeMap<Key, f64>);
 
 impl PlantedGap {
     /// Flies the twin and takes the difference; empty where nothing was planted.
-    pub(super) fn measure(
-        withheld: &Withheld,
-        evidence: &Evidence,
+    pub(crate) fn measure(
+        drawn: &DrawnCase,
+        inputs: &DiagnosisInputs,
         truth: &CaseTruth,
     ) -> Result<Self, CaseFailure> {
         if truth.effects.is_empty() {
             return Ok(Self(BTreeMap::new()));
         }
-        let range = withheld.clean_flights()..withheld.twin().len();
-        let twin = evidence.against(fly(withheld.twin(), range)?);
+        let range = drawn.clean_flights()..drawn.twin().len();
+        let twin = inputs.against(fly(drawn.twin(), range)?);
         let none = Effects::none();
         let mut without = gaps(&twin, &none)?;
-        let with = gaps(evidence, &none)?;
+        let with = gaps(inputs, &none)?;
         let difference = with
             .into_iter()
             .filter_map(|(key, gap)| Some((key.clone(), gap - without.remove(&key)?)));
@@ -50,13 +51,13 @@ impl PlantedGap {
     }
 
     /// Share of its mean square that the named effects remove; `None` where none is named.
-    pub(super) fn closure(&self, evidence: &Evidence, found: &Diagnosis) -> Option<f64> {
+    pub(crate) fn closure(&self, inputs: &DiagnosisInputs, found: &Diagnosis) -> Option<f64> {
         let effects = found.effects();
         if self.0.is_empty() || effects.is_empty() {
             return None;
         }
-        let before = gaps(evidence, &Effects::none()).ok()?;
-        let after = gaps(evidence, &effects).ok()?;
+        let before = gaps(inputs, &Effects::none()).ok()?;
+        let after = gaps(inputs, &effects).ok()?;
         let (mut whole, mut left) = (0.0, 0.0);
         for (key, planted) in &self.0 {
             let removed = before.get(key)? - after.get(key)?;
@@ -67,9 +68,9 @@ impl PlantedGap {
     }
 
     /// Where the gap was said to lie against where it lies.
-    pub(super) fn located(
+    pub(crate) fn located(
         &self,
-        evidence: &Evidence,
+        inputs: &DiagnosisInputs,
         found: &Diagnosis,
         truth: &CaseTruth,
     ) -> Result<Option<Located>, CaseFailure> {
@@ -91,7 +92,7 @@ impl PlantedGap {
         }
         let effect: Vec<f64> = self.0.values().copied().collect();
         let overlap = match place {
-            Some(slice) => self.overlap(evidence, slice)?,
+            Some(slice) => self.overlap(inputs, slice)?,
             None => None,
         };
         Ok(Some(Located {
@@ -102,9 +103,9 @@ impl PlantedGap {
         }))
     }
 
-    fn overlap(&self, evidence: &Evidence, slice: &Slice) -> Result<Option<f64>, CaseFailure> {
-        let records = evidence.records();
-        let members = slice_members(&evidence.input(&records), slice)?;
+    fn overlap(&self, inputs: &DiagnosisInputs, slice: &Slice) -> Result<Option<f64>, CaseFailure> {
+        let records = inputs.records();
+        let members = slice_members(&inputs.input(&records), slice)?;
         let mut effect = Vec::new();
         let mut inside = Vec::new();
         for (record, members) in records.iter().zip(&members) {
@@ -126,9 +127,9 @@ fn is_place(slice: &Slice) -> bool {
 }
 
 /// ln recorded − ln predicted fuel flow of every segment that the model can predict with these effects.
-fn gaps(evidence: &Evidence, effects: &Effects) -> Result<BTreeMap<Key, f64>, CaseFailure> {
-    let records = evidence.records();
-    let input = evidence.input(&records);
+fn gaps(inputs: &DiagnosisInputs, effects: &Effects) -> Result<BTreeMap<Key, f64>, CaseFailure> {
+    let records = inputs.records();
+    let input = inputs.input(&records);
     let references = match input.references {
         Some(references) => references,
         None => diagnose::references_of(input.model, input.drag_table, input.flights)?,

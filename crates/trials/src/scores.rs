@@ -1,13 +1,12 @@
 //! Scores of blind trials: what was planted against what was diagnosed. The planting is the caller's.
 
-pub mod places;
-
 use std::collections::BTreeMap;
 
+use diagnose::{Diagnosis, VerdictKind};
 use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
 
-use crate::output::{Diagnosis, VerdictKind};
+use crate::places;
 
 /// A probability from which a name counts as sure.
 const SURE: f64 = 0.9;

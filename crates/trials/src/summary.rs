@@ -1,10 +1,10 @@
 //! Scores of a run: by model, background and size, each beside its goal.
 
-use diagnose::trial::{Case, Scores, Share, score};
+use crate::scores::{Case, Scores, Share, score};
 use serde::Serialize;
 
-use super::case::CaseResult;
-use super::plan::{Background, Denied, Floor, Kind, ScoreName, TrialPlan};
+use crate::case::CaseResult;
+use crate::plan::{Background, Floor, Kind, ReferenceModel, ScoreName, TrialPlan};
 
 /// Schema of `trials.json`.
 const SCHEMA: &str = "cruisefit.trials/1";
@@ -31,7 +31,8 @@ pub struct Trials {
 #[derive(Clone, Debug, Serialize)]
 pub struct Group {
     /// Which model.
-    pub denied: Denied,
+    #[serde(rename = "denied")]
+    pub reference_model: ReferenceModel,
     /// On which background.
     pub background: Background,
     /// Size over the typical size.
@@ -50,7 +51,8 @@ pub struct Group {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Goal {
     /// Which model.
-    pub denied: Denied,
+    #[serde(rename = "denied")]
+    pub reference_model: ReferenceModel,
     /// On which background.
     pub background: Background,
     /// Which score.
@@ -108,9 +110,9 @@ pub fn summarize(
 ) -> Trials {
     cases.sort_by_key(|case| case.case);
     failed.sort();
-    let mut keys: Vec<(Denied, Background, f64)> = Vec::new();
+    let mut keys: Vec<(ReferenceModel, Background, f64)> = Vec::new();
     for case in &cases {
-        let key = (case.denied, case.background, case.times);
+        let key = (case.reference_model, case.background, case.times);
         if !keys.contains(&key) {
             keys.push(key);
         }
@@ -118,12 +120,12 @@ pub fn summarize(
     keys.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
     let groups: Vec<Group> = keys
         .into_iter()
-        .map(|(denied, background, times)| {
+        .map(|(reference_model, background, times)| {
             let own = |case: &&CaseResult| {
-                (case.denied, case.background) == (denied, background)
+                (case.reference_model, case.background) == (reference_model, background)
                     && case.times.total_cmp(&times).is_eq()
             };
-            group(denied, background, times, &cases.iter().filter(own).collect::<Vec<_>>())
+            group(reference_model, background, times, &cases.iter().filter(own).collect::<Vec<_>>())
         })
         .collect();
     let goals = groups.iter().flat_map(goals_of).collect();
@@ -134,7 +136,7 @@ pub fn summarize(
 pub fn floors_missed(plan: &TrialPlan, trials: &Trials) -> Vec<FloorMissed> {
     let missed = |floor: &Floor| {
         let group = trials.groups.iter().find(|group| {
-            (group.denied, group.background) == (floor.denied, floor.background)
+            (group.reference_model, group.background) == (floor.reference_model, floor.background)
                 && group.times.total_cmp(&floor.times).is_eq()
         });
         let reached = group.and_then(|group| Reached::of(&group.scores, floor.score).value);
@@ -147,14 +149,19 @@ pub fn floors_missed(plan: &TrialPlan, trials: &Trials) -> Vec<FloorMissed> {
     plan.floors.iter().filter_map(missed).collect()
 }
 
-fn group(denied: Denied, background: Background, times: f64, own: &[&CaseResult]) -> Group {
+fn group(
+    reference_model: ReferenceModel,
+    background: Background,
+    times: f64,
+    own: &[&CaseResult],
+) -> Group {
     let count = |kind| own.iter().filter(|case| case.kind == kind).count();
     let mean = |of: &dyn Fn(&CaseResult) -> f64| {
         own.iter().map(|case| of(case)).sum::<f64>() / own.len() as f64
     };
     let scored: Vec<Case> = own.iter().map(|case| case.scored.clone()).collect();
     Group {
-        denied,
+        reference_model,
         background,
         times,
         cases: [Kind::Single, Kind::Null, Kind::Struck, Kind::Outside, Kind::Pair].map(count),
@@ -177,7 +184,7 @@ fn goals_of(group: &Group) -> Vec<Goal> {
         .map(|&(score, at_least, goal)| {
             let Reached { value, share } = Reached::of(&group.scores, score);
             Goal {
-                denied: group.denied,
+                reference_model: group.reference_model,
                 background: group.background,
                 score,
                 words: score.words(),
@@ -194,13 +201,13 @@ fn goals_of(group: &Group) -> Vec<Goal> {
 
 /// A score as a number, with its share where it is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Reached {
-    pub(super) value: Option<f64>,
-    pub(super) share: Option<Share>,
+pub(crate) struct Reached {
+    pub(crate) value: Option<f64>,
+    pub(crate) share: Option<Share>,
 }
 
 impl Reached {
-    pub(super) fn of(scores: &Scores, name: ScoreName) -> Self {
+    pub(crate) fn of(scores: &Scores, name: ScoreName) -> Self {
         let number = |value| Self { value, share: None };
         let share = |share: Share| {
             let any = share.of > 0;
@@ -241,8 +248,8 @@ impl Reached {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scores::Planted;
     use diagnose::VerdictKind;
-    use diagnose::trial::Planted;
 
     fn result(case: usize, kind: Kind, verdict: VerdictKind) -> CaseResult {
         let effects = match kind {
@@ -252,7 +259,7 @@ mod tests {
         CaseResult {
             case,
             truth_sha256: String::new(),
-            denied: Denied::Exact,
+            reference_model: ReferenceModel::Exact,
             background: Background::Clean,
             kind,
             times: 1.0,

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use diagnose::{AddedEffect, Addition};
+use diagnose::{AddedEffect, Addition, UnknownEffect};
 use flight::effect::EffectId;
-use perf_model::effects::AppliedEffects;
+use perf_model::effects::{AppliedEffects, EffectModelError};
 use serde::{Deserialize, Serialize};
 
 use super::ModelFile;
@@ -37,6 +37,18 @@ pub struct DiagnosisRecord {
     pub probability: f64,
     /// Effects that the flights could not tell from it.
     pub class: Vec<String>,
+}
+
+/// Why a model cannot contain what a diagnosis found.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExtendError {
+    /// A name that no effect has.
+    #[error(transparent)]
+    Unknown(#[from] UnknownEffect),
+    /// An effect that the model cannot take.
+    #[error(transparent)]
+    Effect(#[from] EffectModelError),
 }
 
 impl AppliedRecord {
@@ -81,11 +93,11 @@ fn told(added: &AddedEffect) -> String {
 ///
 /// # Errors
 /// A name that no effect has.
-pub(super) fn layers_of(applied: &[AppliedRecord]) -> Result<AppliedEffects, String> {
+pub(super) fn layers_of(applied: &[AppliedRecord]) -> Result<AppliedEffects, UnknownEffect> {
     let layers = applied
         .iter()
-        .map(|record| record.addition.layer().map_err(|error| error.to_string()))
-        .collect::<Result<Vec<_>, String>>()?;
+        .map(|record| record.addition.layer())
+        .collect::<Result<Vec<_>, UnknownEffect>>()?;
     Ok(AppliedEffects::new(layers))
 }
 
@@ -93,12 +105,11 @@ impl ModelFile {
     /// The model with the effects of one more diagnosis.
     ///
     /// # Errors
-    /// Effects that the model cannot take, in words.
-    pub fn extended(&self, record: AppliedRecord) -> Result<Self, String> {
+    /// An effect of an unknown name, or one that the model cannot take.
+    pub fn extended(&self, record: AppliedRecord) -> Result<Self, ExtendError> {
         let mut applied = self.applied.clone();
         applied.push(record);
-        let initial =
-            self.initial.with_effects(layers_of(&applied)?).map_err(|error| error.to_string())?;
+        let initial = self.initial.with_effects(layers_of(&applied)?)?;
         Ok(Self { initial, applied, ..self.clone() })
     }
 

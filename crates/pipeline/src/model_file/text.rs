@@ -1,6 +1,6 @@
 //! The text of `MODEL.ron`, both ways.
 
-use std::fmt::{Display, Write};
+use std::fmt::Display;
 use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
@@ -17,7 +17,8 @@ use super::{
     AppliedRecord, FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile,
     PaperSettings, PaperState,
 };
-use crate::references::References;
+use crate::checksum::hexadecimal;
+use crate::condition_means::ConditionMeans;
 
 /// Begins the last line but one; everything before it is what the checksum is of.
 const CHECKSUM: &str = "\n    checksum: \"";
@@ -25,7 +26,7 @@ const CHECKSUM: &str = "\n    checksum: \"";
 /// Why a text is no model.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub(super) enum ModelTextError {
+pub enum ModelTextError {
     /// Some other file.
     #[error("not a model file: it has no `format:` field")]
     NoModel,
@@ -63,7 +64,7 @@ pub(super) enum ModelTextError {
 
 impl ModelTextError {
     /// What may be done about it.
-    pub(super) fn help(&self) -> Option<String> {
+    pub fn help(&self) -> Option<String> {
         match self {
             Self::Newer { .. } => Some("use a newer cruisefit".to_owned()),
             Self::CutOff | Self::Damaged { .. } => {
@@ -113,7 +114,7 @@ struct LearntText {
     tail: String,
     criteria: String,
     law: LawText,
-    references: References,
+    references: ConditionMeans,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     baseline: Option<Baseline>,
     ledger: Vec<LedgerEntry>,
@@ -178,15 +179,7 @@ fn checksum_of(body: &str) -> String {
         hash.update(line.as_bytes());
         hash.update(b"\n");
     }
-    format!("sha256:{}", hex(&hash.finalize()))
-}
-
-/// Bytes in hexadecimal.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    format!("sha256:{}", hexadecimal(&hash.finalize()))
 }
 
 fn document_of(model: &ModelFile) -> Document {

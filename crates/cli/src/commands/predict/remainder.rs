@@ -3,7 +3,7 @@
 use diagnose::Baseline;
 use perf_model::{FlightPoint, PerformanceModel};
 
-use crate::model_file::ModelFile;
+use pipeline::model_file::ModelFile;
 
 /// The remainder of a model that remembers one.
 #[derive(Clone, Copy, Debug)]
