@@ -13,16 +13,16 @@ use pipeline::segments_table::{self, SegmentRow};
 
 /// A tail as the folder holds it.
 #[derive(Clone, Debug)]
-pub struct StoredTail {
+pub(crate) struct StoredTail {
     /// Its model.
-    pub model: ModelFile,
+    pub(crate) model: ModelFile,
     /// Segments of the flights in its ledger, in the order in which they were learnt.
-    pub segments: Vec<Segment>,
+    pub(crate) segments: Vec<Segment>,
 }
 
 /// An output folder of `adapt`.
 #[derive(Clone, Debug)]
-pub struct Folder {
+pub(crate) struct Folder {
     path: PathBuf,
 }
 
@@ -31,7 +31,7 @@ impl Folder {
     ///
     /// # Errors
     /// A place that cannot be written.
-    pub fn open(path: &Path, restart: bool) -> Result<Self, Failure> {
+    pub(crate) fn open(path: &Path, restart: bool) -> Result<Self, Failure> {
         if restart {
             keep_aside(path)?;
         }
@@ -47,7 +47,7 @@ impl Folder {
     ///
     /// # Errors
     /// A model or segment file that cannot be read or was damaged.
-    pub fn load(&self) -> Result<BTreeMap<String, StoredTail>, Failure> {
+    pub(crate) fn load(&self) -> Result<BTreeMap<String, StoredTail>, Failure> {
         let folder = self.path.join("models");
         let entries =
             std::fs::read_dir(&folder).map_err(|error| Failure::unreadable(&folder, error))?;
@@ -98,7 +98,12 @@ impl Folder {
     ///
     /// # Errors
     /// A place that cannot be written.
-    pub fn store(&self, tail: &str, model: &ModelFile, rows: &[SegmentRow]) -> Result<(), Failure> {
+    pub(crate) fn store(
+        &self,
+        tail: &str,
+        model: &ModelFile,
+        rows: &[SegmentRow],
+    ) -> Result<(), Failure> {
         let engines = model.initial.aircraft().engines();
         let table = segments_table::table(rows, engines);
         write_atomically(&self.segments_path(tail), &table.to_csv())?;
@@ -109,17 +114,17 @@ impl Folder {
     ///
     /// # Errors
     /// A place that cannot be written.
-    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         write_atomically(&self.path.join(name), bytes)
     }
 
     /// Where a tail's model is.
-    pub fn model_path(&self, tail: &str) -> PathBuf {
+    pub(crate) fn model_path(&self, tail: &str) -> PathBuf {
         self.path.join("models").join(format!("{}.ron", file_stem_of_tail(tail)))
     }
 
     /// Where a tail's segments are.
-    pub fn segments_path(&self, tail: &str) -> PathBuf {
+    pub(crate) fn segments_path(&self, tail: &str) -> PathBuf {
         self.path.join("segments").join(format!("{}.csv", file_stem_of_tail(tail)))
     }
 }
@@ -128,7 +133,7 @@ impl Folder {
 ///
 /// # Errors
 /// A place that cannot be written.
-pub fn keep_aside(path: &Path) -> Result<(), Failure> {
+pub(crate) fn keep_aside(path: &Path) -> Result<(), Failure> {
     if path.exists() {
         let aside = free_name(path);
         std::fs::rename(path, &aside).map_err(|error| Failure::unwritable(path, error))?;

@@ -30,7 +30,7 @@ pub(crate) fn write_model(model: &ModelFile, path: &Path) -> Result<(), Failure>
 
 /// The models of a run.
 #[derive(Clone, Debug)]
-pub struct Models(Vec<(PathBuf, ModelFile)>);
+pub(crate) struct Models(Vec<(PathBuf, ModelFile)>);
 
 impl Models {
     /// Reads model files, and those of folders (files ending in `.ron`), in path order.
@@ -38,7 +38,7 @@ impl Models {
     /// # Errors
     /// A file that is no model, a folder without one, or two models that claim the same tail or, both without a tail,
     /// the same type.
-    pub fn read(arguments: &[PathBuf]) -> Result<Self, Failure> {
+    pub(crate) fn read(arguments: &[PathBuf]) -> Result<Self, Failure> {
         let mut models: Vec<(PathBuf, ModelFile)> = Vec::new();
         for argument in arguments {
             for path in files_of(argument)? {
@@ -60,7 +60,7 @@ impl Models {
     ///
     /// # Errors
     /// Why there is none, in words for a refusal.
-    pub fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, String> {
+    pub(crate) fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, String> {
         let model =
             self.for_report(&flight.reduced.identity.tail, &flight.reduced.aircraft_type)?;
         let engines = model.initial.aircraft().engines();

@@ -16,23 +16,23 @@ use crate::progress::Bar;
 
 /// One flight, reduced to its segments.
 #[derive(Clone, Debug)]
-pub struct FlightRead {
+pub(crate) struct FlightRead {
     /// File it came from.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
     /// SHA-256 of the uncompressed content, hexadecimal.
-    pub content: String,
+    pub(crate) content: String,
     /// What it was reduced to.
-    pub reduced: ReducedFlight,
+    pub(crate) reduced: ReducedFlight,
 }
 
 impl FlightRead {
     /// The order of flying; of two reports of one flight, the order of their paths.
-    pub fn order(&self, other: &Self) -> std::cmp::Ordering {
+    pub(crate) fn order(&self, other: &Self) -> std::cmp::Ordering {
         (&self.reduced.identity, &self.path).cmp(&(&other.reduced.identity, &other.path))
     }
 
     /// Adds this flight's notes to those of its tail, each sentence once.
-    pub fn add_notes(&self, notes: &mut Vec<String>) {
+    pub(crate) fn add_notes(&self, notes: &mut Vec<String>) {
         for note in &self.reduced.notes {
             if !notes.contains(note) {
                 notes.push(note.clone());
@@ -43,22 +43,22 @@ impl FlightRead {
 
 /// Everything that came of a set of files, in the order of the files.
 #[derive(Clone, Debug, Default)]
-pub struct Reading {
+pub(crate) struct Reading {
     /// Flights.
-    pub flights: Vec<FlightRead>,
+    pub(crate) flights: Vec<FlightRead>,
     /// Files, or parts of them, that were refused.
-    pub refused: Vec<RefusedReport>,
+    pub(crate) refused: Vec<RefusedReport>,
 }
 
 impl Reading {
     /// Reports that were met, used or refused.
-    pub fn files(&self) -> usize {
+    pub(crate) fn files(&self) -> usize {
         self.flights.len() + self.refused.len()
     }
 }
 
 /// Reads files and finds their segments; file by file in parallel, results in the order of the files.
-pub fn read_all(
+pub(crate) fn read_all(
     files: &[PathBuf],
     mapping: Option<&Mapping>,
     criteria: &TrimCriteria,

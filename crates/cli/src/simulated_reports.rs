@@ -20,7 +20,7 @@ const COMMENT: &str = "simulated with cruisefit, not a real aircraft";
 
 /// The aircraft file of the study: what a performance engineer knows of the Cessna Citation X. The TSFC constants are
 /// those that reproduce its published fuel burn (static TSFC of the AE 3007C1 from its emission certification).
-pub const CITATION_X: &str = include_str!("../embedded/CITATION-X.ron");
+pub(crate) const CITATION_X: &str = include_str!("../embedded/CITATION-X.ron");
 
 /// The plan of the demonstration.
 const DEMONSTRATION: &str = include_str!("../embedded/DEMO-PLAN.ron");
@@ -33,22 +33,22 @@ const GHAZI_2020_SEED: u64 = 2020;
 
 /// Data that belong together: what `init`, `adapt` and `predict` are given.
 #[derive(Debug)]
-pub struct Study {
+pub(crate) struct Study {
     /// Text of the aircraft file.
-    pub aircraft: &'static str,
+    pub(crate) aircraft: &'static str,
     /// Text of the flight-planning guide.
-    pub guide: String,
+    pub(crate) guide: String,
     /// Text of the static points, with measured fuel flow.
-    pub static_points: String,
+    pub(crate) static_points: String,
     /// The flights.
-    pub plan: Plan,
+    pub(crate) plan: Plan,
 }
 
 /// The study of Ghazi et al. 2020: ten flights of table 5, 45 static points, a guide whose drag is wrong in a known way.
 ///
 /// # Errors
 /// What the simulator refuses.
-pub fn ghazi_2020() -> Result<Study, Failure> {
+pub(crate) fn ghazi_2020() -> Result<Study, Failure> {
     study_with(study::paper_study_plan(GHAZI_2020_SEED))
 }
 
@@ -56,7 +56,7 @@ pub fn ghazi_2020() -> Result<Study, Failure> {
 ///
 /// # Errors
 /// What the simulator refuses.
-pub fn demonstration() -> Result<Study, Failure> {
+pub(crate) fn demonstration() -> Result<Study, Failure> {
     study_with(Plan::from_ron(DEMONSTRATION).map_err(|error| wrong(&error))?)
 }
 
@@ -64,7 +64,7 @@ pub fn demonstration() -> Result<Study, Failure> {
 ///
 /// # Errors
 /// What the simulator refuses.
-pub fn demonstration_later() -> Result<Simulation, Failure> {
+pub(crate) fn demonstration_later() -> Result<Simulation, Failure> {
     let plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
     Simulation::new(plan).map_err(|error| wrong(&error))
 }
@@ -73,7 +73,11 @@ pub fn demonstration_later() -> Result<Simulation, Failure> {
 ///
 /// # Errors
 /// A flight that cannot be flown, or a place that cannot be written.
-pub fn write(simulation: &Simulation, folder: &Path, progress: Progress) -> Result<usize, Failure> {
+pub(crate) fn write(
+    simulation: &Simulation,
+    folder: &Path,
+    progress: Progress,
+) -> Result<usize, Failure> {
     make_folder(folder)?;
     for index in 0..simulation.len() {
         if let Some((tail, _)) = simulation.flight(index) {
@@ -138,7 +142,7 @@ impl Study {
     ///
     /// # Errors
     /// A place that cannot be written, or a flight that cannot be flown.
-    pub fn write(self, folder: &Path, progress: Progress) -> Result<usize, Failure> {
+    pub(crate) fn write(self, folder: &Path, progress: Progress) -> Result<usize, Failure> {
         make_folder(folder)?;
         write_atomically(&folder.join("AIRCRAFT.ron"), self.aircraft.as_bytes())?;
         write_atomically(&folder.join("guide.csv"), self.guide.as_bytes())?;

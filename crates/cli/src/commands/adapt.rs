@@ -20,7 +20,7 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models = Models::read(&arguments.models.models)?;
     check_threshold(arguments)?;
     let mut reading = prepare(&arguments.reports, progress)?;

@@ -22,7 +22,7 @@ const TEACHING_FLIGHTS: usize = 30;
 ///
 /// # Errors
 /// A place that cannot be written.
-pub fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, Failure> {
     let folder = &arguments.output;
     let mut text = String::new();
     let flights = simulated_reports::demonstration()?.write(folder, progress)?;

@@ -25,7 +25,7 @@ use pipeline::{diagnosis_text, table_uncertainty};
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
     let options = Options {
         effects: effects("--effects", &arguments.effects)?,
         without: effects("--without", &arguments.without)?,

@@ -17,7 +17,7 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Failure> {
     let (summary, refused) = evaluate(arguments, progress)?;
     if let Some(path) = &arguments.json {
         write_atomically(path, &summary.to_json())?;
@@ -29,7 +29,7 @@ pub fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Fail
 ///
 /// # Errors
 /// What leaves nothing to evaluate.
-pub fn evaluate(
+pub(crate) fn evaluate(
     arguments: &EvaluateArgs,
     progress: Progress,
 ) -> Result<(Summary, Vec<RefusedReport>), Failure> {

@@ -15,7 +15,7 @@ use pipeline::model_file::ModelFile;
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     if !model.applied.is_empty() {
         tracing::warn!(
@@ -33,7 +33,7 @@ pub fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
 }
 
 /// One row a node: coordinates, drag coefficients, confidence, and whether the guide left it extrapolated.
-pub fn table(model: &ModelFile) -> Columns {
+pub(crate) fn table(model: &ModelFile) -> Columns {
     let drag = model.drag_coefficient();
     let grid = model.grid();
     let nodes = || 0..grid.nodes();

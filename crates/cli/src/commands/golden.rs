@@ -48,7 +48,7 @@ enum Law {
 ///
 /// # Errors
 /// A folder that cannot be run, or, for `check`, values out of tolerance.
-pub fn run(command: &GoldenCommand) -> Result<Outcome, Failure> {
+pub(crate) fn run(command: &GoldenCommand) -> Result<Outcome, Failure> {
     match command {
         GoldenCommand::Check { folders } => check_all(folders),
         GoldenCommand::Bless { folders } => bless_all(folders),

@@ -16,7 +16,7 @@ use pipeline::model_file::ModelFile;
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?).map_err(|error| {
         Failure::bad_file(&arguments.aircraft, format!("not an aircraft file: {error}"))
     })?;

@@ -13,7 +13,7 @@ use pipeline::model_file::{LawState, Learnt, LedgerEntry, ModelFile};
 ///
 /// # Errors
 /// Models that do not add up: another initial model, law, setting, trim criterion, or a flight that two have learnt.
-pub fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
     let mut models = Vec::with_capacity(arguments.models.len());
     for path in &arguments.models {
         models.push((path, read_model(path)?));

@@ -25,7 +25,7 @@ use remainder::Remainder;
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     let current = model.current().map_err(|error| Failure::bad_file(&arguments.model, error))?;
     let text = points_text(&arguments.points)?;

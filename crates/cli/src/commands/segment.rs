@@ -17,7 +17,7 @@ use pipeline::summary::{NO_SEGMENT, aligned, counted};
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome, Failure> {
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     let nothing_left = reading.flights.is_empty();

@@ -15,7 +15,7 @@ use pipeline::summary::aligned;
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     let mut text = String::new();
     describe_initial(&model, &mut text);

@@ -13,7 +13,7 @@ use crate::simulated_reports;
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcome, Failure> {
     if arguments.plan.as_os_str() == "ghazi-2020" {
         let flights = simulated_reports::ghazi_2020()?.write(&arguments.output, progress)?;
         return Ok(Outcome::text(format!(

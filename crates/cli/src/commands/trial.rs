@@ -25,7 +25,7 @@ use folder::TruthFolder;
 ///
 /// # Errors
 /// What leaves nothing done; with `--check` a score below its floor.
-pub fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, Failure> {
     let plan = read_plan(arguments)?;
     let begun = Instant::now();
     if arguments.restart {
@@ -79,8 +79,8 @@ fn read_plan(arguments: &TrialArgs) -> Result<TrialPlan, Failure> {
     let mut plan = match &arguments.plan {
         Some(path) => TrialPlan::from_ron(&read_text(path)?)
             .map_err(|reason| Failure::bad_file(path, reason))?,
-        None if arguments.long => TrialPlan::long().map_err(embedded)?,
-        None => TrialPlan::short().map_err(embedded)?,
+        None if arguments.long => TrialPlan::long().map_err(|error| embedded(&error))?,
+        None => TrialPlan::short().map_err(|error| embedded(&error))?,
     };
     if let Some(seed) = arguments.seed {
         plan.seed = seed;
@@ -88,7 +88,7 @@ fn read_plan(arguments: &TrialArgs) -> Result<TrialPlan, Failure> {
     Ok(plan)
 }
 
-fn embedded(error: trials::TrialPlanError) -> Failure {
+fn embedded(error: &trials::TrialPlanError) -> Failure {
     Failure::BadArgument { argument: "embedded plan", reason: error.to_string() }
 }
 

@@ -17,7 +17,7 @@ use crate::reading::FlightRead;
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, Failure> {
     let mut model = read_model(&arguments.model)?;
     if model.learnt.is_some() {
         return Err(Failure::bad_file(
