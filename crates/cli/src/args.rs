@@ -12,32 +12,32 @@ use segmenter::TrimCriteria;
 /// positive, the aircraft burns more than the model says.
 #[derive(Debug, Parser)]
 #[command(name = "cruisefit", version, max_term_width = 100)]
-pub struct Cli {
+pub(crate) struct Cli {
     /// What to do.
     #[command(subcommand)]
-    pub command: Command,
+    pub(crate) command: Command,
     /// Options of every command.
     #[command(flatten)]
-    pub common: Common,
+    pub(crate) common: Common,
 }
 
 /// Options of every command.
 #[derive(Clone, Debug, Args)]
-pub struct Common {
+pub(crate) struct Common {
     /// Worker threads; results are the same bytes for any number [default: one a processor]
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
+    pub(crate) threads: Option<u16>,
     /// Show no progress on the terminal
     #[arg(long, global = true)]
-    pub no_progress: bool,
+    pub(crate) no_progress: bool,
     /// Log more to stderr (-v: what was done, -vv: why); `RUST_LOG` overrides
     #[arg(long, short, global = true, action = clap::ArgAction::Count)]
-    pub verbose: u8,
+    pub(crate) verbose: u8,
 }
 
 /// The commands.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Initial model of an aircraft from its flight-planning guide
     Init(InitArgs),
     /// Adapt models to cruise reports, one model a tail
@@ -71,47 +71,47 @@ pub enum Command {
 
 /// Where reports come from.
 #[derive(Clone, Debug, Args)]
-pub struct ReportsArgs {
+pub(crate) struct ReportsArgs {
     /// Cruise reports: files, folders (searched recursively for .txt, .rpt, .gz) and globs
     #[arg(required = true, value_name = "REPORTS")]
-    pub reports: Vec<PathBuf>,
+    pub(crate) reports: Vec<PathBuf>,
     /// Mapping file (RON), or the name of a preset, for recordings of another layout
     #[arg(long, value_name = "MAPPING")]
-    pub mapping: Option<String>,
+    pub(crate) mapping: Option<String>,
     /// Trim criteria by which samples are steady
     #[arg(long, value_name = "NAME", default_value = TrimCriteria::PRESETS[0], value_parser = TrimCriteria::PRESETS)]
-    pub criteria: String,
+    pub(crate) criteria: String,
     /// A refused report stops the batch before anything is written
     #[arg(long)]
-    pub strict: bool,
+    pub(crate) strict: bool,
 }
 
 /// Models to choose from.
 #[derive(Clone, Debug, Args)]
-pub struct ModelArgs {
+pub(crate) struct ModelArgs {
     /// Model file, or folder of them; may be given several times. A report takes the model of its tail, else that of
     /// its type
     #[arg(long = "model", required = true, value_name = "MODEL.ron")]
-    pub models: Vec<PathBuf>,
+    pub(crate) models: Vec<PathBuf>,
 }
 
 /// `init`
 #[derive(Debug, Args)]
-pub struct InitArgs {
+pub(crate) struct InitArgs {
     /// Aircraft file (RON)
     #[arg(long, value_name = "AIRCRAFT.ron")]
-    pub aircraft: PathBuf,
+    pub(crate) aircraft: PathBuf,
     /// Flight-planning guide (CSV)
     #[arg(long, value_name = "GUIDE.csv")]
-    pub guide: PathBuf,
+    pub(crate) guide: PathBuf,
     /// Model file to write
     #[arg(long, short, value_name = "MODEL.ron")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
 }
 
 /// The adaptation laws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LawName {
+pub(crate) enum LawName {
     /// The Gaussian law: a smooth correction with a standard deviation at every node
     Bayes,
     /// The local law of Ghazi et al. 2020 with its global refit
@@ -120,52 +120,52 @@ pub enum LawName {
 
 /// `adapt`
 #[derive(Debug, Args)]
-pub struct AdaptArgs {
+pub(crate) struct AdaptArgs {
     /// Reports.
     #[command(flatten)]
-    pub reports: ReportsArgs,
+    pub(crate) reports: ReportsArgs,
     /// Models.
     #[command(flatten)]
-    pub models: ModelArgs,
+    pub(crate) models: ModelArgs,
     /// Folder to write to; a folder that exists is gone on from
     #[arg(long, short, value_name = "DIR")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Adaptation law
     #[arg(long, value_enum, default_value_t = LawName::Bayes)]
-    pub law: LawName,
+    pub(crate) law: LawName,
     /// Law `paper`: adapt where the error exceeds this, in per cent [default: the model's]
     #[arg(long, value_name = "PCT")]
-    pub threshold: Option<f64>,
+    pub(crate) threshold: Option<f64>,
     /// Law `bayes`: do not learn what no table can hold (smooth remainder, rotor-speed deck, noise levels); `diagnose`
     /// then counts it as gap
     #[arg(long)]
-    pub no_remainder: bool,
+    pub(crate) no_remainder: bool,
     /// Begin anew: an existing folder is kept aside under another name
     #[arg(long)]
-    pub restart: bool,
+    pub(crate) restart: bool,
 }
 
 /// `tune`
 #[derive(Debug, Args)]
-pub struct TuneArgs {
+pub(crate) struct TuneArgs {
     /// Reports.
     #[command(flatten)]
-    pub reports: ReportsArgs,
+    pub(crate) reports: ReportsArgs,
     /// Initial model
     #[arg(long, value_name = "MODEL.ron")]
-    pub model: PathBuf,
+    pub(crate) model: PathBuf,
     /// Initial model to write, with the settings found
     #[arg(long, short, value_name = "MODEL2.ron")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Calendar days after which knowledge counts half; none: it does not age; search: what predicts each report best
     /// from those before. The model's own without this option. With a half-life, noise is not searched
     #[arg(long, value_name = "DAYS|none|search")]
-    pub half_life: Option<HalfLifeChoice>,
+    pub(crate) half_life: Option<HalfLifeChoice>,
 }
 
 /// What `tune` does about the half-life.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum HalfLifeChoice {
+pub(crate) enum HalfLifeChoice {
     /// Knowledge does not age.
     Never,
     /// So many calendar days.
@@ -190,118 +190,118 @@ impl std::str::FromStr for HalfLifeChoice {
 
 /// `merge`
 #[derive(Debug, Args)]
-pub struct MergeArgs {
+pub(crate) struct MergeArgs {
     /// Models that learnt by law `bayes` from the same initial model with the same settings
     #[arg(required = true, num_args = 2.., value_name = "MODEL.ron")]
-    pub models: Vec<PathBuf>,
+    pub(crate) models: Vec<PathBuf>,
     /// Model file to write
     #[arg(long, short, value_name = "MODEL.ron")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
 }
 
 /// `segment`
 #[derive(Debug, Args)]
-pub struct SegmentArgs {
+pub(crate) struct SegmentArgs {
     /// Reports.
     #[command(flatten)]
-    pub reports: ReportsArgs,
+    pub(crate) reports: ReportsArgs,
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "SEGMENTS")]
-    pub output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
     /// Print what each criterion cost, flight by flight
     #[arg(long)]
-    pub explain: bool,
+    pub(crate) explain: bool,
 }
 
 /// `predict`
 #[derive(Debug, Args)]
-pub struct PredictArgs {
+pub(crate) struct PredictArgs {
     /// Model file
     #[arg(long, value_name = "MODEL.ron")]
-    pub model: PathBuf,
+    pub(crate) model: PathBuf,
     /// Flight points, .csv or .parquet
     #[arg(value_name = "POINTS")]
-    pub points: PathBuf,
+    pub(crate) points: PathBuf,
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "OUT")]
-    pub output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
     /// Predict by the drag table alone, without the remainder that the model remembers
     #[arg(long)]
-    pub table_only: bool,
+    pub(crate) table_only: bool,
 }
 
 /// `evaluate`
 #[derive(Debug, Args)]
-pub struct EvaluateArgs {
+pub(crate) struct EvaluateArgs {
     /// Reports.
     #[command(flatten)]
-    pub reports: ReportsArgs,
+    pub(crate) reports: ReportsArgs,
     /// Models.
     #[command(flatten)]
-    pub models: ModelArgs,
+    pub(crate) models: ModelArgs,
     /// Write the summary as JSON too
     #[arg(long, value_name = "OUT.json")]
-    pub json: Option<PathBuf>,
+    pub(crate) json: Option<PathBuf>,
 }
 
 /// `diagnose`
 #[derive(Debug, Args)]
-pub struct DiagnoseArgs {
+pub(crate) struct DiagnoseArgs {
     /// Reports.
     #[command(flatten)]
-    pub reports: ReportsArgs,
+    pub(crate) reports: ReportsArgs,
     /// Models.
     #[command(flatten)]
-    pub models: ModelArgs,
+    pub(crate) models: ModelArgs,
     /// Folder to write to: diagnosis.json, diagnosis.html
     #[arg(long, short, value_name = "DIR")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Look for these effects only
     #[arg(long, value_name = "ID", value_delimiter = ',')]
-    pub effects: Vec<String>,
+    pub(crate) effects: Vec<String>,
     /// Leave these effects out
     #[arg(long, value_name = "ID", value_delimiter = ',')]
-    pub without: Vec<String>,
+    pub(crate) without: Vec<String>,
     /// Write to this folder, as TAIL.ron, each tail's model extended by the effects found; where flights cannot tell
     /// several effects apart, name the one with --effects
     #[arg(long, value_name = "DIR")]
-    pub apply: Option<PathBuf>,
+    pub(crate) apply: Option<PathBuf>,
     /// One diagnosis for all tails together
     #[arg(long)]
-    pub pool: bool,
+    pub(crate) pool: bool,
     /// Count what the model's remainder explains as gap
     #[arg(long)]
-    pub table_only: bool,
+    pub(crate) table_only: bool,
     /// Diagnose flights that the model has learnt, too
     #[arg(long)]
-    pub allow_learnt: bool,
+    pub(crate) allow_learnt: bool,
 }
 
 /// `show`
 #[derive(Debug, Args)]
-pub struct ShowArgs {
+pub(crate) struct ShowArgs {
     /// Model file
     #[arg(value_name = "MODEL.ron")]
-    pub model: PathBuf,
+    pub(crate) model: PathBuf,
 }
 
 /// `export`
 #[derive(Debug, Args)]
-pub struct ExportArgs {
+pub(crate) struct ExportArgs {
     /// Model file
     #[arg(value_name = "MODEL.ron")]
-    pub model: PathBuf,
+    pub(crate) model: PathBuf,
     /// CSV file to write [default: standard output]
     #[arg(long, short, value_name = "TABLE.csv")]
-    pub output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
     /// Instead of the table, the six-coefficient polynomial nearest to it, with covariance where the law knows it
     #[arg(long)]
-    pub polynomial: bool,
+    pub(crate) polynomial: bool,
 }
 
 /// `golden`
 #[derive(Debug, Subcommand)]
-pub enum GoldenCommand {
+pub(crate) enum GoldenCommand {
     /// Run what DIR/golden.ron says and print each value out of tolerance
     Check {
         /// Folder with golden.ron and expected files
@@ -318,47 +318,47 @@ pub enum GoldenCommand {
 
 /// `simulate`
 #[derive(Debug, Args)]
-pub struct SimulateArgs {
+pub(crate) struct SimulateArgs {
     /// Plan file (RON): aircraft, fleet, dates, effects, sensors, seed; or `ghazi-2020`: the study of the paper, with
     /// aircraft file, guide and static points
     #[arg(value_name = "PLAN.ron")]
-    pub plan: PathBuf,
+    pub(crate) plan: PathBuf,
     /// Folder to write to: TAIL/FLIGHT.txt and TRUTH.json
     #[arg(long, short, value_name = "DIR")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Write the true state of each sample too: TAIL/FLIGHT-states.csv
     #[arg(long)]
-    pub states: bool,
+    pub(crate) states: bool,
 }
 
 /// `trial`
 #[derive(Debug, Args)]
-pub struct TrialArgs {
+pub(crate) struct TrialArgs {
     /// Plan of the trials (RON) [default: a short one that comes with the program]
     #[arg(value_name = "PLAN.ron")]
-    pub plan: Option<PathBuf>,
+    pub(crate) plan: Option<PathBuf>,
     /// Folder to write to: trials.json, trials.md, truth/, cases/; a folder that was begun with the same plan is gone on
     /// from
     #[arg(long, short, value_name = "DIR")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     /// The long plan that comes with the program: hours
     #[arg(long, conflicts_with = "plan")]
-    pub long: bool,
+    pub(crate) long: bool,
     /// Another seed than the plan's
     #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
+    pub(crate) seed: Option<u64>,
     /// End with status 2 where a score is below the plan's floor
     #[arg(long)]
-    pub check: bool,
+    pub(crate) check: bool,
     /// Begin anew: an existing folder is kept aside under another name
     #[arg(long)]
-    pub restart: bool,
+    pub(crate) restart: bool,
 }
 
 /// `demo`
 #[derive(Debug, Args)]
-pub struct DemoArgs {
+pub(crate) struct DemoArgs {
     /// Folder to write to
     #[arg(long, short, value_name = "DIR", default_value = "cruisefit-demo")]
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
 }

@@ -1,19 +1,19 @@
 //! The commands: each turns its arguments into an [`Outcome`], or says why nothing was done.
 
-pub mod adapt;
-pub mod demo;
-pub mod diagnose;
-pub mod evaluate;
-pub mod export;
-pub mod golden;
-pub mod init;
-pub mod merge;
-pub mod predict;
-pub mod segment;
-pub mod show;
-pub mod simulate;
-pub mod trial;
-pub mod tune;
+pub(crate) mod adapt;
+pub(crate) mod demo;
+pub(crate) mod diagnose;
+pub(crate) mod evaluate;
+pub(crate) mod export;
+pub(crate) mod golden;
+pub(crate) mod init;
+pub(crate) mod merge;
+pub(crate) mod predict;
+pub(crate) mod segment;
+pub(crate) mod show;
+pub(crate) mod simulate;
+pub(crate) mod trial;
+pub(crate) mod tune;
 
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;
@@ -27,28 +27,28 @@ use crate::reading::{self, Reading};
 
 /// What a command that did something came to.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outcome {
+pub(crate) struct Outcome {
     /// For standard output.
-    pub text: String,
+    pub(crate) text: String,
     /// What was refused while the rest went on.
-    pub refused: Vec<RefusedReport>,
+    pub(crate) refused: Vec<RefusedReport>,
 }
 
 impl Outcome {
     /// Done, with this text for standard output.
-    pub fn text(text: impl Into<String>) -> Self {
+    pub(crate) fn text(text: impl Into<String>) -> Self {
         Self { text: text.into(), refused: Vec::new() }
     }
 }
 
 /// Collects, reads and segments the reports of a command.
-fn prepare(arguments: &ReportsArgs, progress: bool) -> Result<Reading, Failure> {
+fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failure> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
     let inputs = inputs::collect(&arguments.reports, mapping.is_some())?;
     if inputs.skipped > 0 {
         tracing::info!(skipped = inputs.skipped, "files that are no reports by their ending");
     }
-    let bar = Progress::new(inputs.files.len(), "reading reports", progress);
+    let bar = progress.bar(inputs.files.len(), "reading reports");
     let criteria =
         TrimCriteria::preset(&arguments.criteria).ok_or_else(|| Failure::BadArgument {
             argument: "--criteria",

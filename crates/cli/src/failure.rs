@@ -3,17 +3,19 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
+use pipeline::summary::RefusedSummary;
+
 /// Exit status 0: everything asked for was done.
-pub const DONE: u8 = 0;
+pub(crate) const DONE: u8 = 0;
 /// Exit status 1: done, but some input was refused.
-pub const SOME_REFUSED: u8 = 1;
+pub(crate) const SOME_REFUSED: u8 = 1;
 /// Exit status 2: nothing was done.
-pub const NOTHING_DONE: u8 = 2;
+pub(crate) const NOTHING_DONE: u8 = 2;
 
 /// A reason for which nothing was done.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[non_exhaustive]
-pub enum Failure {
+pub(crate) enum Failure {
     /// A file or folder that cannot be read.
     #[error("{path}: {reason}")]
     Unreadable {
@@ -108,43 +110,54 @@ pub enum Failure {
 
 impl Failure {
     /// An unreadable path.
-    pub fn unreadable(path: &Path, reason: impl Display) -> Self {
+    pub(crate) fn unreadable(path: &Path, reason: impl Display) -> Self {
         Self::Unreadable { path: show(path), reason: reason.to_string() }
     }
 
     /// An unwritable path.
-    pub fn unwritable(path: &Path, reason: impl Display) -> Self {
+    pub(crate) fn unwritable(path: &Path, reason: impl Display) -> Self {
         Self::Unwritable { path: show(path), reason: reason.to_string() }
     }
 
     /// A file with wrong content.
-    pub fn bad_file(path: &Path, reason: impl Display) -> Self {
+    pub(crate) fn bad_file(path: &Path, reason: impl Display) -> Self {
         Self::BadFile { path: show(path), reason: reason.to_string(), help: None }
     }
 }
 
 /// A path for a message: as given, with forward slashes left as they are.
-pub fn show(path: &Path) -> String {
+pub(crate) fn show(path: &Path) -> String {
     path.display().to_string()
 }
 
 /// A report that was refused, while the batch went on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RefusedReport {
+pub(crate) struct RefusedReport {
     /// File.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
     /// Physical line from 1, where the refusal has one.
-    pub line: Option<usize>,
+    pub(crate) line: Option<usize>,
     /// Column (character) from 1, where the refusal has one.
-    pub column: Option<usize>,
+    pub(crate) column: Option<usize>,
     /// What was found and what was expected.
-    pub reason: String,
+    pub(crate) reason: String,
 }
 
 impl RefusedReport {
     /// A report refused as a whole: no place in it is to blame.
-    pub fn whole(path: PathBuf, reason: impl Display) -> Self {
+    pub(crate) fn whole(path: PathBuf, reason: impl Display) -> Self {
         Self { path, line: None, column: None, reason: reason.to_string() }
+    }
+}
+
+impl From<&RefusedReport> for RefusedSummary {
+    fn from(refused: &RefusedReport) -> Self {
+        Self {
+            path: refused.path.display().to_string(),
+            line: refused.line,
+            column: refused.column,
+            reason: refused.reason.clone(),
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 ///
 /// # Errors
 /// Whatever the operating system refuses; `path` then is as it was.
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -43,7 +43,7 @@ fn set_ordinary_permissions(_path: &Path) -> std::io::Result<()> {
 ///
 /// # Errors
 /// A file that cannot be read or is not UTF-8.
-pub fn read_text(path: &Path) -> Result<String, Failure> {
+pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     std::fs::read_to_string(path).map_err(|error| {
         if error.kind() == std::io::ErrorKind::InvalidData {
             Failure::bad_file(path, "not a text file (invalid UTF-8)")
@@ -57,13 +57,13 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 ///
 /// # Errors
 /// Whatever the operating system refuses.
-pub fn make_folder(path: &Path) -> Result<(), Failure> {
+pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(path).map_err(|error| Failure::unwritable(path, error))
 }
 
 /// A tail as a file name: letters, digits, `-` and `_` stay, any other character becomes `%` and its hexadecimal
 /// bytes, so that two tails never share a file.
-pub fn file_stem_of_tail(tail: &str) -> String {
+pub(crate) fn file_stem_of_tail(tail: &str) -> String {
     let mut stem = String::new();
     for byte in tail.bytes() {
         if byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_' {

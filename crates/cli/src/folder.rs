@@ -7,21 +7,22 @@ use flight::Segment;
 
 use crate::failure::Failure;
 use crate::files::{file_stem_of_tail, make_folder, write_atomically};
-use crate::model_file::ModelFile;
-use crate::segments_table::{self, SegmentRow};
+use crate::models::{read_model, write_model};
+use pipeline::model_file::ModelFile;
+use pipeline::segments_table::{self, SegmentRow};
 
 /// A tail as the folder holds it.
 #[derive(Clone, Debug)]
-pub struct StoredTail {
+pub(crate) struct StoredTail {
     /// Its model.
-    pub model: ModelFile,
+    pub(crate) model: ModelFile,
     /// Segments of the flights in its ledger, in the order in which they were learnt.
-    pub segments: Vec<Segment>,
+    pub(crate) segments: Vec<Segment>,
 }
 
 /// An output folder of `adapt`.
 #[derive(Clone, Debug)]
-pub struct Folder {
+pub(crate) struct Folder {
     path: PathBuf,
 }
 
@@ -30,7 +31,7 @@ impl Folder {
     ///
     /// # Errors
     /// A place that cannot be written.
-    pub fn open(path: &Path, restart: bool) -> Result<Self, Failure> {
+    pub(crate) fn open(path: &Path, restart: bool) -> Result<Self, Failure> {
         if restart {
             keep_aside(path)?;
         }
@@ -46,7 +47,7 @@ impl Folder {
     ///
     /// # Errors
     /// A model or segment file that cannot be read or was damaged.
-    pub fn load(&self) -> Result<BTreeMap<String, StoredTail>, Failure> {
+    pub(crate) fn load(&self) -> Result<BTreeMap<String, StoredTail>, Failure> {
         let folder = self.path.join("models");
         let entries =
             std::fs::read_dir(&folder).map_err(|error| Failure::unreadable(&folder, error))?;
@@ -56,7 +57,7 @@ impl Folder {
             if path.extension().is_none_or(|ending| ending != "ron") {
                 continue;
             }
-            let model = ModelFile::read(&path)?;
+            let model = read_model(&path)?;
             let Some(learnt) = &model.learnt else {
                 return Err(Failure::bad_file(&path, "a model that has learnt nothing"));
             };
@@ -70,7 +71,7 @@ impl Folder {
     fn load_segments(&self, tail: &str, model: &ModelFile) -> Result<Vec<Segment>, Failure> {
         let path = self.segments_path(tail);
         let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-        let all = segments_table::read(&path, &bytes)?;
+        let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
         let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
         // Segments are written before the model. A run that was cut off in between leaves segments of flights that
         // the ledger does not know: they are not learnt, and are learnt when their report comes again.
@@ -97,28 +98,33 @@ impl Folder {
     ///
     /// # Errors
     /// A place that cannot be written.
-    pub fn store(&self, tail: &str, model: &ModelFile, rows: &[SegmentRow]) -> Result<(), Failure> {
+    pub(crate) fn store(
+        &self,
+        tail: &str,
+        model: &ModelFile,
+        rows: &[SegmentRow],
+    ) -> Result<(), Failure> {
         let engines = model.initial.aircraft().engines();
         let table = segments_table::table(rows, engines);
         write_atomically(&self.segments_path(tail), &table.to_csv())?;
-        model.write(&self.model_path(tail))
+        write_model(model, &self.model_path(tail))
     }
 
     /// Writes a file of the folder's top level.
     ///
     /// # Errors
     /// A place that cannot be written.
-    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         write_atomically(&self.path.join(name), bytes)
     }
 
     /// Where a tail's model is.
-    pub fn model_path(&self, tail: &str) -> PathBuf {
+    pub(crate) fn model_path(&self, tail: &str) -> PathBuf {
         self.path.join("models").join(format!("{}.ron", file_stem_of_tail(tail)))
     }
 
     /// Where a tail's segments are.
-    pub fn segments_path(&self, tail: &str) -> PathBuf {
+    pub(crate) fn segments_path(&self, tail: &str) -> PathBuf {
         self.path.join("segments").join(format!("{}.csv", file_stem_of_tail(tail)))
     }
 }
@@ -127,7 +133,7 @@ impl Folder {
 ///
 /// # Errors
 /// A place that cannot be written.
-pub fn keep_aside(path: &Path) -> Result<(), Failure> {
+pub(crate) fn keep_aside(path: &Path) -> Result<(), Failure> {
     if path.exists() {
         let aside = free_name(path);
         std::fs::rename(path, &aside).map_err(|error| Failure::unwritable(path, error))?;

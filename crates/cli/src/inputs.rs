@@ -7,11 +7,11 @@ use crate::failure::{Failure, show};
 
 /// The files to read, sorted and each once, and how many others were passed over.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Inputs {
+pub(crate) struct Inputs {
     /// Files, in path order.
-    pub files: Vec<PathBuf>,
+    pub(crate) files: Vec<PathBuf>,
     /// Files of folders that are no reports by their ending.
-    pub skipped: usize,
+    pub(crate) skipped: usize,
 }
 
 /// Endings of a folder's files that are read.
@@ -24,7 +24,7 @@ const RECORDING_ENDINGS: [&str; 2] = ["csv", "gz"];
 ///
 /// # Errors
 /// An argument that names nothing, a folder that cannot be listed, or no file at all.
-pub fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Inputs, Failure> {
+pub(crate) fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Inputs, Failure> {
     let endings: &[&str] = if with_mapping { &RECORDING_ENDINGS } else { &REPORT_ENDINGS };
     let mut files = BTreeSet::new();
     let mut skipped = 0;

@@ -10,28 +10,17 @@
     reason = "the command line talks to the world"
 )]
 
-pub mod args;
-pub mod columns;
-pub mod commands;
-pub mod difference;
-pub mod failure;
-pub mod files;
-pub mod folder;
-pub mod inputs;
-pub mod learning;
-pub mod model_file;
-pub mod models;
-pub mod page;
-pub mod progress;
-pub mod reading;
-pub mod references;
-pub mod results;
-pub mod segments_table;
-pub mod statistics;
-pub mod studies;
-pub mod summary;
-pub mod trials;
-pub mod words;
+mod args;
+mod columns;
+mod commands;
+mod failure;
+mod files;
+mod folder;
+mod inputs;
+mod models;
+mod progress;
+mod reading;
+mod simulated_reports;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -42,6 +31,7 @@ use tracing_subscriber::EnvFilter;
 use args::{Cli, Command, Common};
 use commands::Outcome;
 use failure::{DONE, Failure, NOTHING_DONE, SOME_REFUSED};
+use progress::Progress;
 
 /// Reads the command line, runs the command, tells what came of it.
 pub fn run() -> ExitCode {
@@ -51,11 +41,12 @@ pub fn run() -> ExitCode {
     let _ = miette::set_hook(Box::new(|_| {
         Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
     }));
-    let result = in_pool(&cli.common, || run_command(&cli.command, !cli.common.no_progress));
+    let progress = if cli.common.no_progress { Progress::Hidden } else { Progress::Shown };
+    let result = in_pool(&cli.common, || run_command(&cli.command, progress));
     ExitCode::from(tell(result))
 }
 
-fn run_command(command: &Command, progress: bool) -> Result<Outcome, Failure> {
+fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure> {
     match command {
         Command::Init(arguments) => commands::init::run(arguments),
         Command::Adapt(arguments) => commands::adapt::run(arguments, progress),

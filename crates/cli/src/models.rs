@@ -2,13 +2,35 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
-use crate::model_file::ModelFile;
+use crate::failure::{Failure, show};
+use crate::files::{read_text, write_atomically};
 use crate::reading::FlightRead;
+use pipeline::model_file::ModelFile;
+
+/// Reads a model file.
+///
+/// # Errors
+/// A file that cannot be read, is no model, is of a newer format, or whose checksum does not match.
+pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
+    ModelFile::from_text(&read_text(path)?).map_err(|error| Failure::BadFile {
+        path: show(path),
+        help: error.help(),
+        reason: error.to_string(),
+    })
+}
+
+/// Writes a model file: whole or not at all.
+///
+/// # Errors
+/// A place that cannot be written.
+pub(crate) fn write_model(model: &ModelFile, path: &Path) -> Result<(), Failure> {
+    let text = model.to_text().map_err(|error| Failure::unwritable(path, error))?;
+    write_atomically(path, text.as_bytes())
+}
 
 /// The models of a run.
 #[derive(Clone, Debug)]
-pub struct Models(Vec<(PathBuf, ModelFile)>);
+pub(crate) struct Models(Vec<(PathBuf, ModelFile)>);
 
 impl Models {
     /// Reads model files, and those of folders (files ending in `.ron`), in path order.
@@ -16,11 +38,11 @@ impl Models {
     /// # Errors
     /// A file that is no model, a folder without one, or two models that claim the same tail or, both without a tail,
     /// the same type.
-    pub fn read(arguments: &[PathBuf]) -> Result<Self, Failure> {
+    pub(crate) fn read(arguments: &[PathBuf]) -> Result<Self, Failure> {
         let mut models: Vec<(PathBuf, ModelFile)> = Vec::new();
         for argument in arguments {
             for path in files_of(argument)? {
-                let model = ModelFile::read(&path)?;
+                let model = read_model(&path)?;
                 if let Some((other, _)) = models.iter().find(|(_, known)| same_claim(known, &model))
                 {
                     return Err(Failure::bad_file(
@@ -38,10 +60,11 @@ impl Models {
     ///
     /// # Errors
     /// Why there is none, in words for a refusal.
-    pub fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, String> {
-        let model = self.for_report(&flight.identity.tail, &flight.aircraft_type)?;
+    pub(crate) fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, String> {
+        let model =
+            self.for_report(&flight.reduced.identity.tail, &flight.reduced.aircraft_type)?;
         let engines = model.initial.aircraft().engines();
-        match flight.engines {
+        match flight.reduced.engines {
             Some(found) if found != engines => Err(format!(
                 "found {found} engines, expected {engines} as the model's aircraft has"
             )),

@@ -1,18 +1,22 @@
-//! Progress on the terminal: count, rate, time left. Nothing where stderr is no terminal.
+//! Progress on the terminal: count, rate, time left. None where stderr is no terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// A progress bar, or nothing.
-#[derive(Clone, Debug)]
-pub struct Progress(ProgressBar);
+/// Whether a run shows its progress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Progress {
+    /// Bars on stderr, where it is a terminal.
+    Shown,
+    /// No bars.
+    Hidden,
+}
 
 impl Progress {
-    /// A bar over `total` things; hidden when not wanted or stderr is no terminal.
-    pub fn new(total: usize, what: &'static str, wanted: bool) -> Self {
-        let target = if wanted {
-            ProgressDrawTarget::stderr_with_hz(5)
-        } else {
-            ProgressDrawTarget::hidden()
+    /// A bar over `total` things.
+    pub(crate) fn bar(self, total: usize, what: &'static str) -> Bar {
+        let target = match self {
+            Self::Shown => ProgressDrawTarget::stderr_with_hz(5),
+            Self::Hidden => ProgressDrawTarget::hidden(),
         };
         let bar = ProgressBar::with_draw_target(Some(total as u64), target);
         if let Ok(style) =
@@ -21,16 +25,22 @@ impl Progress {
             bar.set_style(style);
         }
         bar.set_prefix(what);
-        Self(bar)
+        Bar(bar)
     }
+}
 
+/// One bar.
+#[derive(Clone, Debug)]
+pub(crate) struct Bar(ProgressBar);
+
+impl Bar {
     /// One more is done.
-    pub fn step(&self) {
+    pub(crate) fn step(&self) {
         self.0.inc(1);
     }
 
     /// All are done: the bar goes.
-    pub fn finish(&self) {
+    pub(crate) fn finish(&self) {
         self.0.finish_and_clear();
     }
 }

@@ -2,54 +2,38 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use diagnose::GaugeBurn;
-use flight::{FlightIdentity, Report, Segment, Severity};
+use flight::Severity;
+use pipeline::checksum::sha256;
+use pipeline::reduction::ReducedFlight;
 use rayon::prelude::*;
 use report::mapping::Mapping;
 use report::{Parsed, Reader};
-use segmenter::{Tally, TrimCriteria};
-use sha2::{Digest, Sha256};
+use segmenter::TrimCriteria;
 
 use crate::failure::RefusedReport;
-use crate::model_file::hex;
-use crate::progress::Progress;
+use crate::progress::Bar;
 
 /// One flight, reduced to its segments.
 #[derive(Clone, Debug)]
-pub struct FlightRead {
+pub(crate) struct FlightRead {
     /// File it came from.
-    pub path: PathBuf,
-    /// Who and when.
-    pub identity: Arc<FlightIdentity>,
-    /// Type code of the aircraft.
-    pub aircraft_type: String,
-    /// Engines recorded apart.
-    pub engines: Option<usize>,
+    pub(crate) path: PathBuf,
     /// SHA-256 of the uncompressed content, hexadecimal.
-    pub content: String,
-    /// Samples as sent.
-    pub samples: usize,
-    /// Segments in time order.
-    pub segments: Vec<Segment>,
-    /// Fuel burned by gauges and by meters, where fuel quantity is recorded.
-    pub gauges: Option<GaugeBurn>,
-    /// What became of every sample, counted.
-    pub tally: Tally,
-    /// What is worth knowing, each a sentence.
-    pub notes: Vec<String>,
+    pub(crate) content: String,
+    /// What it was reduced to.
+    pub(crate) reduced: ReducedFlight,
 }
 
 impl FlightRead {
     /// The order of flying; of two reports of one flight, the order of their paths.
-    pub fn order(&self, other: &Self) -> std::cmp::Ordering {
-        (&self.identity, &self.path).cmp(&(&other.identity, &other.path))
+    pub(crate) fn order(&self, other: &Self) -> std::cmp::Ordering {
+        (&self.reduced.identity, &self.path).cmp(&(&other.reduced.identity, &other.path))
     }
 
     /// Adds this flight's notes to those of its tail, each sentence once.
-    pub fn add_notes(&self, notes: &mut Vec<String>) {
-        for note in &self.notes {
+    pub(crate) fn add_notes(&self, notes: &mut Vec<String>) {
+        for note in &self.reduced.notes {
             if !notes.contains(note) {
                 notes.push(note.clone());
             }
@@ -59,26 +43,26 @@ impl FlightRead {
 
 /// Everything that came of a set of files, in the order of the files.
 #[derive(Clone, Debug, Default)]
-pub struct Reading {
+pub(crate) struct Reading {
     /// Flights.
-    pub flights: Vec<FlightRead>,
+    pub(crate) flights: Vec<FlightRead>,
     /// Files, or parts of them, that were refused.
-    pub refused: Vec<RefusedReport>,
+    pub(crate) refused: Vec<RefusedReport>,
 }
 
 impl Reading {
     /// Reports that were met, used or refused.
-    pub fn files(&self) -> usize {
+    pub(crate) fn files(&self) -> usize {
         self.flights.len() + self.refused.len()
     }
 }
 
 /// Reads files and finds their segments; file by file in parallel, results in the order of the files.
-pub fn read_all(
+pub(crate) fn read_all(
     files: &[PathBuf],
     mapping: Option<&Mapping>,
     criteria: &TrimCriteria,
-    progress: &Progress,
+    progress: &Bar,
 ) -> Reading {
     let read: Vec<(Vec<FlightRead>, Vec<RefusedReport>)> = files
         .par_iter()
@@ -139,7 +123,7 @@ fn read_file(
         Ok(parsed) => parsed,
         Err(refusal) => return of_refusal(&refusal),
     };
-    let content = hex(&Sha256::digest(bytes));
+    let content = sha256(bytes);
     let mut flights = Vec::new();
     let mut refused = Vec::new();
     for Parsed { report, findings } in parsed {
@@ -150,49 +134,16 @@ fn read_file(
             }
             notes.push(finding.message);
         }
-        match reduce(path, report, &content, criteria, notes) {
-            Ok(flight) => flights.push(flight),
+        match ReducedFlight::from_report(report, criteria, notes) {
+            Ok(reduced) => {
+                flights.push(FlightRead {
+                    path: path.to_owned(),
+                    content: content.clone(),
+                    reduced,
+                });
+            }
             Err(error) => refused.push(refuse(None, None, error.to_string())),
         }
     }
     (flights, refused)
-}
-
-fn reduce(
-    path: &Path,
-    report: Report,
-    content: &str,
-    criteria: &TrimCriteria,
-    mut notes: Vec<String>,
-) -> Result<FlightRead, track::TrackError> {
-    let samples = report.len();
-    let engines = report.engines();
-    let header = report.header();
-    let aircraft_type = header.aircraft_type.clone();
-    let identity = Arc::new(header.identity.clone());
-    let track = track::derive(report)?;
-    if let flight::TemperatureSource::AssumedIsa { isa_deviation_k } = track.temperature_source() {
-        // A mapping that assumes it has said so already.
-        if !notes.iter().any(|note| note.contains("static air temperature")) {
-            notes.push(format!("static air temperature assumed: ISA {isa_deviation_k:+} K"));
-        }
-    }
-    let segmentation = segmenter::segment(&track, criteria);
-    let not_evaluated = segmentation.not_evaluated();
-    if !not_evaluated.is_empty() {
-        notes
-            .push(format!("trim criteria not evaluated, for want of a recording: {not_evaluated}"));
-    }
-    Ok(FlightRead {
-        path: path.to_owned(),
-        identity,
-        aircraft_type,
-        engines,
-        content: content.to_owned(),
-        samples,
-        segments: segmentation.segments,
-        gauges: GaugeBurn::of_track(&track),
-        tally: segmentation.tally,
-        notes,
-    })
 }

@@ -63,7 +63,6 @@ mod place;
 
 mod diagnosis;
 mod judge;
-pub mod trial;
 
 pub use baseline::{Baseline, BaselineLengthError};
 pub use diagnosis::diagnose;

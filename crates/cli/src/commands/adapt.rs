@@ -8,19 +8,19 @@ use crate::args::{AdaptArgs, LawName};
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::folder::{Folder, StoredTail};
-use crate::learning::{self, FlightToLearn, LawChoice};
-use crate::model_file::{Learnt, LedgerEntry, ModelFile, PaperSettings};
 use crate::models::Models;
-use crate::page;
+use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
-use crate::results::{TailCounts, TailResult};
-use crate::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+use pipeline::evaluation::{TailCounts, TailData, TailResult};
+use pipeline::learning::{self, FlightToLearn, LawChoice};
+use pipeline::model_file::{Learnt, LedgerEntry, ModelFile, PaperSettings};
+use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models = Models::read(&arguments.models.models)?;
     check_threshold(arguments)?;
     let mut reading = prepare(&arguments.reports, progress)?;
@@ -37,7 +37,7 @@ pub fn run(arguments: &AdaptArgs, progress: bool) -> Result<Outcome, Failure> {
     }
     let mut by_tail: BTreeMap<String, Vec<FlightRead>> = BTreeMap::new();
     for flight in reading.flights {
-        by_tail.entry(flight.identity.tail.clone()).or_default().push(flight);
+        by_tail.entry(flight.reduced.identity.tail.clone()).or_default().push(flight);
     }
     let mut refused = reading.refused;
     let mut already_known = 0;
@@ -126,7 +126,7 @@ fn choose_models(
     for flight in flights {
         match models.for_flight(&flight) {
             Ok(model) => {
-                let tail = &flight.identity.tail;
+                let tail = &flight.reduced.identity.tail;
                 if !chosen.contains_key(tail) {
                     chosen.insert(tail.clone(), beginning(model, tail, arguments)?);
                 }
@@ -181,7 +181,7 @@ fn check_begun_alike(
 /// A tail that this run has nothing new for.
 fn at_rest(tail: String, model: ModelFile, segments: Vec<flight::Segment>) -> TailResult {
     let counts = counts_of(&model, 0);
-    TailResult::new(tail, model, segments, counts, true, Vec::new())
+    TailResult::adapted(TailData { tail, model, segments, counts, notes: Vec::new() })
 }
 
 fn counts_of(model: &ModelFile, flights_new: usize) -> TailCounts {
@@ -220,7 +220,8 @@ fn sort_out(
     let mut sorted =
         Sorted { new: Vec::new(), refused: Vec::new(), already_known: 0, warnings: Vec::new() };
     for flight in flights {
-        let key = (flight.identity.start.to_string(), flight.identity.flight.clone());
+        let key =
+            (flight.reduced.identity.start.to_string(), flight.reduced.identity.flight.clone());
         let refuse = |reason: String| RefusedReport::whole(flight.path.clone(), reason);
         match known.get(&key) {
             Some(content) if *content == flight.content => {
@@ -236,7 +237,7 @@ fn sort_out(
             }
             None => {}
         }
-        if newest.is_some_and(|newest| flight.identity.start < newest) {
+        if newest.is_some_and(|newest| flight.reduced.identity.start < newest) {
             let said = format!(
                 "flight {} of {} is older than the newest that tail {tail} has learnt",
                 key.1, key.0
@@ -278,7 +279,7 @@ impl Job {
                 Ok(()) => {
                     flights_new += 1;
                     flight.add_notes(&mut notes);
-                    segments.extend(flight.segments);
+                    segments.extend(flight.reduced.segments);
                 }
                 Err(error) => refused.push(RefusedReport::whole(flight.path, error)),
             }
@@ -298,7 +299,8 @@ impl Job {
             learning::remember_remainder(&model.initial, learnt, &segments);
         }
         let counts = counts_of(&model, flights_new);
-        (TailResult::new(self.tail, model, segments, counts, true, notes), refused)
+        let data = TailData { tail: self.tail, model, segments, counts, notes };
+        (TailResult::adapted(data), refused)
     }
 }
 
@@ -308,23 +310,23 @@ fn learn_one(
     flight: &FlightRead,
 ) -> Result<(), learning::LearningError> {
     let entry = LedgerEntry {
-        tail: flight.identity.tail.clone(),
-        flight: flight.identity.flight.clone(),
-        start: flight.identity.start.to_string(),
+        tail: flight.reduced.identity.tail.clone(),
+        flight: flight.reduced.identity.flight.clone(),
+        start: flight.reduced.identity.start.to_string(),
         content: flight.content.clone(),
-        samples: flight.samples as u64,
+        samples: flight.reduced.samples as u64,
         segments: 0,
         outside_table: 0,
     };
     let result = learning::learn_flight(
         initial,
         learnt,
-        &FlightToLearn { entry, segments: &flight.segments },
+        &FlightToLearn { entry, segments: &flight.reduced.segments },
     )?;
     tracing::debug!(
-        tail = flight.identity.tail,
-        flight = flight.identity.flight,
-        segments = flight.segments.len(),
+        tail = flight.reduced.identity.tail,
+        flight = flight.reduced.identity.flight,
+        segments = flight.reduced.segments.len(),
         adapted = result.adapted,
         outside = result.outside_table,
         refitted = result.refitted,

@@ -3,18 +3,17 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
-
 use crate::args::{
     AdaptArgs, DemoArgs, DiagnoseArgs, EvaluateArgs, InitArgs, LawName, ModelArgs, PredictArgs,
     ReportsArgs,
 };
-use crate::commands::{Outcome, adapt, diagnose, evaluate, init, predict, simulate};
+use crate::commands::{Outcome, adapt, diagnose, evaluate, init, predict};
 use crate::failure::{Failure, show};
 use crate::files::read_text;
-use crate::model_file::hex;
-use crate::statistics::ErrorStatistics;
-use crate::studies;
+use crate::progress::Progress;
+use crate::simulated_reports;
+use pipeline::checksum::sha256;
+use pipeline::statistics::ErrorStatistics;
 
 /// Flights that teach; the later ones judge.
 const TEACHING_FLIGHTS: usize = 30;
@@ -23,10 +22,10 @@ const TEACHING_FLIGHTS: usize = 30;
 ///
 /// # Errors
 /// A place that cannot be written.
-pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, Failure> {
     let folder = &arguments.output;
     let mut text = String::new();
-    let flights = studies::demonstration()?.write(folder, progress)?;
+    let flights = simulated_reports::demonstration()?.write(folder, progress)?;
     let _ = writeln!(
         text,
         "A virtual Citation X, tail N750CF: {flights} cruise reports, a flight-planning guide whose drag is wrong, and \
@@ -113,9 +112,10 @@ pub fn run(arguments: &DemoArgs, progress: bool) -> Result<Outcome, Failure> {
 
 /// Flies the tail a year later with an effect that its model does not know, diagnoses it against the adapted model, and only
 /// then opens what was true.
-fn later_period(folder: &Path, progress: bool, text: &mut String) -> Result<(), Failure> {
+fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<(), Failure> {
     let later = folder.join("later");
-    let flights = simulate::write(&studies::demonstration_later()?, &later, progress)?;
+    let flights =
+        simulated_reports::write(&simulated_reports::demonstration_later()?, &later, progress)?;
     let sealed = later.join("TRUTH.json");
     let hash = hash_of(&sealed)?;
     let _ = writeln!(
@@ -158,7 +158,7 @@ fn later_period(folder: &Path, progress: bool, text: &mut String) -> Result<(), 
 }
 
 fn hash_of(path: &Path) -> Result<String, Failure> {
-    Ok(hex(&Sha256::digest(read_text(path)?.as_bytes())))
+    Ok(sha256(read_text(path)?.as_bytes()))
 }
 
 fn reports_arguments(reports: &[PathBuf]) -> ReportsArgs {
@@ -183,7 +183,7 @@ fn unseen_errors(
         models: ModelArgs { models: vec![model.to_owned()] },
         json: None,
     };
-    let (summary, _) = evaluate::evaluate(&arguments, false)?;
+    let (summary, _) = evaluate::evaluate(&arguments, Progress::Hidden)?;
     Ok(summary.tails.first().map_or((ErrorStatistics::of(&[]), None), |tail| {
         (tail.fuel_flow_error_percent.before, tail.interval95_coverage)
     }))

@@ -4,49 +4,28 @@ mod apply;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::sync::Arc;
 
-use adapt::bayes::Posterior;
-use diagnose::{Diagnosis, FlightRecord, Input, Options, TableUncertainty, diagnose};
+use diagnose::{Diagnosis, FlightRecord, Input, Options, diagnose};
 use flight::effect::EffectId;
 use rayon::prelude::*;
-use serde::Serialize;
 
 use crate::args::DiagnoseArgs;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{make_folder, write_atomically};
-use crate::model_file::ModelFile;
 use crate::models::Models;
-use crate::page;
+use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
-use crate::summary::{RefusedSummary, counted};
-use crate::words;
-
-/// Schema of `diagnosis.json`.
-const SCHEMA: &str = "cruisefit.diagnosis/1";
-/// Most nodes of a table whose full covariance is taken; beyond, the nodes' standard deviations alone.
-const NODES_WITH_COVARIANCE: usize = 700;
-
-/// `diagnosis.json`.
-#[derive(Debug, Serialize)]
-struct Document<'a> {
-    schema: &'static str,
-    reports: DocumentReports,
-    diagnoses: &'a [Diagnosis],
-}
-
-#[derive(Debug, Serialize)]
-struct DocumentReports {
-    read: usize,
-    refused: Vec<RefusedSummary>,
-}
+use pipeline::diagnosis_document::DiagnosisDocument;
+use pipeline::model_file::ModelFile;
+use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
+use pipeline::{diagnosis_text, table_uncertainty};
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &DiagnoseArgs, progress: bool) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
     let options = Options {
         effects: effects("--effects", &arguments.effects)?,
         without: effects("--without", &arguments.without)?,
@@ -64,20 +43,17 @@ pub fn run(arguments: &DiagnoseArgs, progress: bool) -> Result<Outcome, Failure>
         .map(|group| diagnose_group(group, &options, arguments.table_only))
         .collect::<Result<Vec<_>, Failure>>()?;
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
-    let document = Document {
-        schema: SCHEMA,
-        reports: DocumentReports {
-            read,
-            refused: reading.refused.iter().map(RefusedSummary::from).collect(),
-        },
-        diagnoses: &diagnoses,
+    let reports = ReportsSummary {
+        read,
+        already_known: 0,
+        refused: reading.refused.iter().map(RefusedSummary::from).collect(),
     };
     let path = arguments.output.join("diagnosis.json");
-    let mut json = serde_json::to_string_pretty(&document)
+    let json = DiagnosisDocument::new(&reports, &diagnoses)
+        .to_json()
         .map_err(|error| Failure::unwritable(&path, error))?;
-    json.push('\n');
     write_atomically(&path, json.as_bytes())?;
-    let html = page::diagnosis(read, &reading.refused, &diagnoses);
+    let html = page::diagnosis(&reports, &diagnoses);
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();
     for diagnosis in &diagnoses {
@@ -144,7 +120,9 @@ fn group<'a>(
         if has_learnt(model, &flight) {
             let said = format!(
                 "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",
-                flight.identity.tail, flight.identity.flight, flight.identity.start
+                flight.reduced.identity.tail,
+                flight.reduced.identity.flight,
+                flight.reduced.identity.start
             );
             if !arguments.allow_learnt {
                 let reason = format!("{said} (--allow-learnt diagnoses it all the same)");
@@ -157,7 +135,7 @@ fn group<'a>(
         let (key, name) = if arguments.pool {
             (model.initial.aircraft().type_code().to_owned(), "*".to_owned())
         } else {
-            (flight.identity.tail.clone(), flight.identity.tail.clone())
+            (flight.reduced.identity.tail.clone(), flight.reduced.identity.tail.clone())
         };
         let group = groups.entry(key).or_insert_with(|| Group { name, model, flights: Vec::new() });
         if std::ptr::eq(group.model, model) {
@@ -173,11 +151,11 @@ fn group<'a>(
 }
 
 fn has_learnt(model: &ModelFile, flight: &FlightRead) -> bool {
-    let start = flight.identity.start.to_string();
+    let start = flight.reduced.identity.start.to_string();
     model.learnt.as_ref().is_some_and(|learnt| {
         learnt.ledger.iter().any(|entry| {
-            entry.tail == flight.identity.tail
-                && entry.flight == flight.identity.flight
+            entry.tail == flight.reduced.identity.tail
+                && entry.flight == flight.reduced.identity.flight
                 && entry.start == start
         })
     })
@@ -195,10 +173,13 @@ fn diagnose_group(
     let records: Vec<FlightRecord<'_>> = group
         .flights
         .iter()
-        .filter(|flight| !flight.segments.is_empty())
-        .map(|flight| FlightRecord { segments: &flight.segments, gauges: flight.gauges })
+        .filter(|flight| !flight.reduced.segments.is_empty())
+        .map(|flight| FlightRecord {
+            segments: &flight.reduced.segments,
+            gauges: flight.reduced.gauges,
+        })
         .collect();
-    let table = uncertainty(group.model).map_err(|error| wrong(&error))?;
+    let table = table_uncertainty::of_model(group.model).map_err(|error| wrong(&error))?;
     let baseline = group.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     let input = Input {
         model: &group.model.initial,
@@ -218,7 +199,7 @@ fn diagnose_group(
         );
     }
     let mut seen = BTreeSet::new();
-    for note in group.flights.iter().flat_map(|flight| &flight.notes) {
+    for note in group.flights.iter().flat_map(|flight| &flight.reduced.notes) {
         if seen.insert(note) {
             diagnosis.notes.push(note.clone());
         }
@@ -226,42 +207,9 @@ fn diagnose_group(
     Ok(diagnosis)
 }
 
-/// What the table does not know; `None` by a law that does not say.
-fn uncertainty(
-    model: &ModelFile,
-) -> Result<Option<TableUncertainty>, diagnose::TableUncertaintyError> {
-    let Some(posterior) = model.posterior() else { return Ok(None) };
-    table_uncertainty(posterior, model.grid()).map(Some)
-}
-
-/// What a table learnt by law `bayes` does not know.
-///
-/// # Errors
-/// A covariance that is none.
-pub(crate) fn table_uncertainty(
-    posterior: &Posterior,
-    grid: &Arc<lut::Grid>,
-) -> Result<TableUncertainty, diagnose::TableUncertaintyError> {
-    let nodes = grid.nodes();
-    if nodes > NODES_WITH_COVARIANCE {
-        let mut factor = vec![0.0; nodes * nodes];
-        for (node, deviation) in posterior.standard_deviation().iter().enumerate() {
-            factor[node * nodes + node] = *deviation;
-        }
-        return TableUncertainty::new(Arc::clone(grid), nodes, factor);
-    }
-    let cells: Vec<lut::Cell> = (0..nodes)
-        .filter_map(|node| {
-            let (x, y) = grid.coordinates(node);
-            grid.locate(x, y, lut::Outside::Hold).ok()
-        })
-        .collect();
-    TableUncertainty::from_covariance(Arc::clone(grid), &posterior.relative_covariances(&cells))
-}
-
 /// The diagnosis in a dozen lines, and what was assumed.
 fn tell(diagnosis: &Diagnosis, text: &mut String) {
-    for (place, line) in words::lines(diagnosis).into_iter().enumerate() {
+    for (place, line) in diagnosis_text::lines(diagnosis).into_iter().enumerate() {
         let _ = writeln!(text, "{}{line}", if place == 0 { "" } else { "  " });
     }
     for note in &diagnosis.notes {

@@ -6,17 +6,18 @@ use crate::args::EvaluateArgs;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport};
 use crate::files::write_atomically;
-use crate::model_file::ModelFile;
 use crate::models::Models;
+use crate::progress::Progress;
 use crate::reading::FlightRead;
-use crate::results::{TailCounts, TailResult};
-use crate::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+use pipeline::evaluation::{TailCounts, TailData, TailResult};
+use pipeline::model_file::ModelFile;
+use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &EvaluateArgs, progress: bool) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Failure> {
     let (summary, refused) = evaluate(arguments, progress)?;
     if let Some(path) = &arguments.json {
         write_atomically(path, &summary.to_json())?;
@@ -28,9 +29,9 @@ pub fn run(arguments: &EvaluateArgs, progress: bool) -> Result<Outcome, Failure>
 ///
 /// # Errors
 /// What leaves nothing to evaluate.
-pub fn evaluate(
+pub(crate) fn evaluate(
     arguments: &EvaluateArgs,
-    progress: bool,
+    progress: Progress,
 ) -> Result<(Summary, Vec<RefusedReport>), Failure> {
     let models = Models::read(&arguments.models.models)?;
     let reading = prepare(&arguments.reports, progress)?;
@@ -40,7 +41,7 @@ pub fn evaluate(
     for flight in reading.flights {
         match models.for_flight(&flight) {
             Ok(model) => by_tail
-                .entry(flight.identity.tail.clone())
+                .entry(flight.reduced.identity.tail.clone())
                 .or_insert_with(|| (model.clone(), Vec::new()))
                 .1
                 .push(flight),
@@ -71,12 +72,12 @@ fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -
     let counts = TailCounts {
         flights: flights.len(),
         flights_new: flights.len(),
-        samples: flights.iter().map(|flight| flight.samples as u64).sum(),
+        samples: flights.iter().map(|flight| flight.reduced.samples as u64).sum(),
     };
     let mut notes: Vec<String> = model.note_of_effects().into_iter().collect();
     for flight in &flights {
         flight.add_notes(&mut notes);
     }
-    let segments = flights.into_iter().flat_map(|flight| flight.segments).collect();
-    TailResult::new(tail, model, segments, counts, false, notes)
+    let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
+    TailResult::as_given(TailData { tail, model, segments, counts, notes })
 }

@@ -4,17 +4,19 @@ use adapt::bayes::polynomial_export;
 use lut::surface;
 
 use crate::args::ExportArgs;
-use crate::columns::Columns;
+use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::Failure;
-use crate::model_file::ModelFile;
+use crate::models::read_model;
+use pipeline::columns::Columns;
+use pipeline::model_file::ModelFile;
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
-    let model = ModelFile::read(&arguments.model)?;
+pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
+    let model = read_model(&arguments.model)?;
     if !model.applied.is_empty() {
         tracing::warn!(
             "a table holds drag alone; effects that the model contains are not in it: {}",
@@ -26,12 +28,12 @@ pub fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
     } else {
         table(&model)
     };
-    columns.write(arguments.output.as_deref())?;
+    columns::write(&columns, arguments.output.as_deref())?;
     Ok(Outcome::default())
 }
 
 /// One row a node: coordinates, drag coefficients, confidence, and whether the guide left it extrapolated.
-pub fn table(model: &ModelFile) -> Columns {
+pub(crate) fn table(model: &ModelFile) -> Columns {
     let drag = model.drag_coefficient();
     let grid = model.grid();
     let nodes = || 0..grid.nodes();

@@ -7,10 +7,11 @@ use serde::Deserialize;
 
 use crate::args::{AdaptArgs, GoldenCommand, InitArgs, LawName, ModelArgs, ReportsArgs};
 use crate::commands::{Outcome, adapt, export, init};
-use crate::difference::{Tolerance, differences};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, read_text, write_atomically};
-use crate::model_file::ModelFile;
+use crate::models::read_model;
+use crate::progress::Progress;
+use pipeline::difference::{Tolerance, differences};
 
 /// `golden.ron`: a run and how exactly its results must come again.
 #[derive(Debug, Deserialize)]
@@ -47,7 +48,7 @@ enum Law {
 ///
 /// # Errors
 /// A folder that cannot be run, or, for `check`, values out of tolerance.
-pub fn run(command: &GoldenCommand) -> Result<Outcome, Failure> {
+pub(crate) fn run(command: &GoldenCommand) -> Result<Outcome, Failure> {
     match command {
         GoldenCommand::Check { folders } => check_all(folders),
         GoldenCommand::Bless { folders } => bless_all(folders),
@@ -154,17 +155,17 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             no_remainder: true,
             restart: false,
         },
-        false,
+        Progress::Hidden,
     )?;
     tracing::debug!("{}", outcome.text);
-    let initial = ModelFile::read(&model_path)?;
+    let initial = read_model(&model_path)?;
     let mut files = vec![
         ("initial_table.csv".to_owned(), text_of(&export::table(&initial).to_csv())),
         ("summary.json".to_owned(), read_text(&output.join("summary.json"))?),
     ];
     for name in names_in(&output.join("models"))? {
         let path = output.join("models").join(&name);
-        let model = ModelFile::read(&path)?;
+        let model = read_model(&path)?;
         let stem = name.trim_end_matches(".ron");
         files.push((format!("{stem}_table.csv"), text_of(&export::table(&model).to_csv())));
         files.push((format!("{stem}.ron"), read_text(&path)?));

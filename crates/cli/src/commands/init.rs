@@ -3,19 +3,20 @@
 use std::fmt::Write;
 
 use flight::Severity;
-use perf_model::{Aircraft, Guide, InitialModel};
+use perf_model::{Aircraft, Guide};
 
 use crate::args::InitArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::read_text;
-use crate::model_file::{GuideRecord, LawSettings, ModelFile};
+use crate::models::write_model;
+use pipeline::model_file::ModelFile;
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?).map_err(|error| {
         Failure::bad_file(&arguments.aircraft, format!("not an aircraft file: {error}"))
     })?;
@@ -23,8 +24,8 @@ pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
         .map_err(|error| Failure::bad_file(&arguments.guide, error))?;
     let initial = perf_model::initial_model(&aircraft, &guide)
         .map_err(|error| Failure::bad_file(&arguments.guide, chain(&error)))?;
-    let model = model_of(&initial, &guide);
-    model.write(&arguments.output)?;
+    let model = ModelFile::from_initial(&initial, &guide);
+    write_model(&model, &arguments.output)?;
     let mut text = String::new();
     let grid = model.grid();
     let _ = writeln!(
@@ -58,23 +59,6 @@ pub fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     }
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
     Ok(Outcome::text(text))
-}
-
-/// The model file of a fresh initial model, with the laws' published settings.
-pub fn model_of(initial: &InitialModel, guide: &Guide) -> ModelFile {
-    ModelFile {
-        initial: initial.model.clone().into(),
-        guide: GuideRecord {
-            points: guide.points().len() as u64,
-            lift_coefficient: initial.fit.lift_coefficients,
-            mach: initial.fit.machs,
-            residual_rms: initial.fit.residual_rms,
-            condition_number: initial.fit.condition_number,
-        },
-        settings: LawSettings::published(),
-        learnt: None,
-        applied: Vec::new(),
-    }
 }
 
 /// An error with its causes, in one sentence.

@@ -5,17 +5,18 @@ use std::collections::BTreeSet;
 use crate::args::MergeArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
-use crate::learning;
-use crate::model_file::{LawState, Learnt, LedgerEntry, ModelFile};
+use crate::models::{read_model, write_model};
+use pipeline::learning;
+use pipeline::model_file::{LawState, Learnt, LedgerEntry, ModelFile};
 
 /// Runs the command.
 ///
 /// # Errors
 /// Models that do not add up: another initial model, law, setting, trim criterion, or a flight that two have learnt.
-pub fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
     let mut models = Vec::with_capacity(arguments.models.len());
     for path in &arguments.models {
-        models.push((path, ModelFile::read(path)?));
+        models.push((path, read_model(path)?));
     }
     let Some(((_, first), others)) = models.split_first() else {
         return Err(Failure::BadArgument {
@@ -35,7 +36,7 @@ pub fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         .sort_by(|one, other| (&one.start, &one.flight).cmp(&(&other.start, &other.flight)));
     learning::settle(learnt).map_err(|error| Failure::bad_file(&arguments.models[0], error))?;
     let flights = learnt.ledger.len();
-    merged.write(&arguments.output)?;
+    write_model(&merged, &arguments.output)?;
     Ok(Outcome::text(format!(
         "{flights} flights of {} models merged, written to {}\n",
         arguments.models.len(),

@@ -10,10 +10,12 @@ use perf_model::{FlightPointRow, FlightPoints};
 use units::FuelFlowTotal;
 
 use crate::args::PredictArgs;
-use crate::columns::Columns;
+use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
-use crate::model_file::ModelFile;
+use crate::models::read_model;
+use pipeline::columns::Columns;
+use pipeline::model_file::ModelFile;
 
 mod remainder;
 
@@ -23,8 +25,8 @@ use remainder::Remainder;
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
-    let model = ModelFile::read(&arguments.model)?;
+pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
+    let model = read_model(&arguments.model)?;
     let current = model.current().map_err(|error| Failure::bad_file(&arguments.model, error))?;
     let text = points_text(&arguments.points)?;
     let points = FlightPoints::from_csv(&text)
@@ -66,7 +68,7 @@ pub fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
             remainders.iter().map(|known| known.map(|(mean, _)| 100.0 * mean.exp_m1())),
         );
     }
-    columns.write(arguments.output.as_deref())?;
+    columns::write(&columns, arguments.output.as_deref())?;
     tell_references(&model, points.rows());
     let text = arguments.output.as_ref().map_or_else(String::new, |path| {
         let known = remainders.iter().flatten().count();

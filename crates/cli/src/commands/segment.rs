@@ -5,17 +5,19 @@ use std::fmt::Write;
 use segmenter::{Criterion, Tally};
 
 use crate::args::SegmentArgs;
+use crate::columns;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
+use crate::progress::Progress;
 use crate::reading::FlightRead;
-use crate::segments_table::{self, SegmentRow};
-use crate::summary::{NO_SEGMENT, aligned, counted};
+use pipeline::segments_table::{self, SegmentRow};
+use pipeline::summary::{NO_SEGMENT, aligned, counted};
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &SegmentArgs, progress: bool) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome, Failure> {
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     let nothing_left = reading.flights.is_empty();
@@ -27,13 +29,13 @@ pub fn run(arguments: &SegmentArgs, progress: bool) -> Result<Outcome, Failure> 
     let rows: Vec<SegmentRow> = reading
         .flights
         .into_iter()
-        .flat_map(|flight| flight.segments)
+        .flat_map(|flight| flight.reduced.segments)
         .map(|segment| SegmentRow { segment, evaluated: None })
         .collect();
     let table = segments_table::table(&rows, segments_table::engines_of(&rows));
     let mut text = String::new();
     if let Some(path) = &arguments.output {
-        table.write(Some(path))?;
+        columns::write(&table, Some(path))?;
         text.push_str(&explained);
         let _ = writeln!(
             text,
@@ -48,7 +50,7 @@ pub fn run(arguments: &SegmentArgs, progress: bool) -> Result<Outcome, Failure> 
     } else {
         // Standard output carries the table; the explanation goes where it does not get into it.
         eprint!("{explained}");
-        table.write(None)?;
+        columns::write(&table, None)?;
     }
     Ok(Outcome { text, refused: reading.refused })
 }
@@ -58,10 +60,13 @@ fn explain(flights: &[FlightRead]) -> String {
     let mut text = String::new();
     let mut total = Tally::NOTHING;
     for flight in flights {
-        total += flight.tally;
-        let _ =
-            writeln!(text, "{} {}: {}", flight.identity.tail, flight.identity.flight, flight.tally);
-        for note in &flight.notes {
+        total += flight.reduced.tally;
+        let _ = writeln!(
+            text,
+            "{} {}: {}",
+            flight.reduced.identity.tail, flight.reduced.identity.flight, flight.reduced.tally
+        );
+        for note in &flight.reduced.notes {
             let _ = writeln!(text, "    {note}");
         }
     }

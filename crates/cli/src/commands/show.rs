@@ -7,15 +7,16 @@ use lut::surface::Basis;
 use crate::args::ShowArgs;
 use crate::commands::Outcome;
 use crate::failure::Failure;
-use crate::model_file::{LawState, Learnt, ModelFile};
-use crate::summary::aligned;
+use crate::models::read_model;
+use pipeline::model_file::{LawState, Learnt, ModelFile};
+use pipeline::summary::aligned;
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
-    let model = ModelFile::read(&arguments.model)?;
+pub(crate) fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
+    let model = read_model(&arguments.model)?;
     let mut text = String::new();
     describe_initial(&model, &mut text);
     match &model.learnt {

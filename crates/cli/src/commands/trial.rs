@@ -6,6 +6,9 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 use simulate::{AircraftChoice, AircraftTruth};
+use trials::{
+    CaseSpec, DrawnCase, TrialPlan, Trials, floors_missed, markdown, summarize, terminal,
+};
 
 use crate::args::TrialArgs;
 use crate::commands::Outcome;
@@ -13,16 +16,16 @@ use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{make_folder, read_text, write_atomically};
 use crate::folder::keep_aside;
 use crate::progress::Progress;
-use crate::trials::{
-    CaseSpec, Seal, TrialPlan, Trials, Withheld, floors_missed, markdown, run_case, summarize,
-    terminal,
-};
+
+mod folder;
+
+use folder::TruthFolder;
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done; with `--check` a score below its floor.
-pub fn run(arguments: &TrialArgs, progress: bool) -> Result<Outcome, Failure> {
+pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, Failure> {
     let plan = read_plan(arguments)?;
     let begun = Instant::now();
     if arguments.restart {
@@ -31,14 +34,14 @@ pub fn run(arguments: &TrialArgs, progress: bool) -> Result<Outcome, Failure> {
     make_folder(&arguments.output.join("cases"))?;
     begin(&arguments.output, &plan)?;
     let cases = plan.cases(engines(&plan)?);
-    let seal = seal(&arguments.output, &plan, &cases, progress)?;
+    let truths = seal(&arguments.output, &plan, &cases, progress)?;
     // Told before the first diagnosis, also where nobody watches the progress.
-    eprintln!("{} cases, truth sealed: sha256 {}", cases.len(), seal.hash());
-    let bar = Progress::new(cases.len(), "trials", progress);
+    eprintln!("{} cases, truth sealed: sha256 {}", cases.len(), truths.seal().hash());
+    let bar = progress.bar(cases.len(), "trials");
     let results: Vec<_> = cases
         .par_iter()
         .map(|case| {
-            let result = run_case(&arguments.output, &plan, case, &seal);
+            let result = folder::run_case(&arguments.output, &plan, case, &truths);
             bar.step();
             result.map_err(|error| (case.number, error.to_string()))
         })
@@ -51,7 +54,7 @@ pub fn run(arguments: &TrialArgs, progress: bool) -> Result<Outcome, Failure> {
             Err(reason) => failed.push(reason),
         }
     }
-    let trials = summarize(&plan, seal.hash(), done, failed);
+    let trials = summarize(&plan, truths.seal().hash(), done, failed);
     write(&arguments.output, &trials)?;
     if arguments.check {
         check(&plan, &trials)?;
@@ -76,13 +79,17 @@ fn read_plan(arguments: &TrialArgs) -> Result<TrialPlan, Failure> {
     let mut plan = match &arguments.plan {
         Some(path) => TrialPlan::from_ron(&read_text(path)?)
             .map_err(|reason| Failure::bad_file(path, reason))?,
-        None if arguments.long => TrialPlan::long()?,
-        None => TrialPlan::short()?,
+        None if arguments.long => TrialPlan::long().map_err(|error| embedded(&error))?,
+        None => TrialPlan::short().map_err(|error| embedded(&error))?,
     };
     if let Some(seed) = arguments.seed {
         plan.seed = seed;
     }
     Ok(plan)
+}
+
+fn embedded(error: &trials::TrialPlanError) -> Failure {
+    Failure::BadArgument { argument: "embedded plan", reason: error.to_string() }
 }
 
 fn engines(plan: &TrialPlan) -> Result<usize, Failure> {
@@ -122,19 +129,19 @@ fn seal(
     folder: &Path,
     plan: &TrialPlan,
     cases: &[CaseSpec],
-    progress: bool,
-) -> Result<Seal, Failure> {
-    let bar = Progress::new(cases.len(), "sealing", progress);
+    progress: Progress,
+) -> Result<TruthFolder, Failure> {
+    let bar = progress.bar(cases.len(), "sealing");
     let truths = cases
         .par_iter()
         .map(|case| {
-            let truth = Withheld::draw(plan, case).map_err(|error| wrong(&error))?.truth().clone();
+            let truth = DrawnCase::draw(plan, case).map_err(|error| wrong(&error))?.truth().clone();
             bar.step();
             Ok(truth)
         })
         .collect::<Result<Vec<_>, Failure>>()?;
     bar.finish();
-    Seal::write(folder, &truths)
+    TruthFolder::write(folder, &truths)
 }
 
 fn write(folder: &Path, trials: &Trials) -> Result<(), Failure> {
@@ -152,7 +159,7 @@ fn check(plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
         let floor = &one.floor;
         eprintln!(
             "floor missed: {:?} model, {:?}, {} x typical, {:?}: {}, allowed {}{}",
-            floor.denied,
+            floor.reference_model,
             floor.background,
             floor.times,
             floor.score,

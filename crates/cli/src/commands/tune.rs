@@ -9,15 +9,16 @@ use flight::Observation;
 use crate::args::{HalfLifeChoice, TuneArgs};
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
-use crate::model_file::ModelFile;
+use crate::models::{read_model, write_model};
+use crate::progress::Progress;
 use crate::reading::FlightRead;
 
 /// Runs the command.
 ///
 /// # Errors
 /// What leaves nothing done.
-pub fn run(arguments: &TuneArgs, progress: bool) -> Result<Outcome, Failure> {
-    let mut model = ModelFile::read(&arguments.model)?;
+pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, Failure> {
+    let mut model = read_model(&arguments.model)?;
     if model.learnt.is_some() {
         return Err(Failure::bad_file(
             &arguments.model,
@@ -30,7 +31,7 @@ pub fn run(arguments: &TuneArgs, progress: bool) -> Result<Outcome, Failure> {
     reading.flights.sort_by(FlightRead::order);
     let mut by_tail: BTreeMap<&str, usize> = BTreeMap::new();
     for flight in &reading.flights {
-        *by_tail.entry(&flight.identity.tail).or_default() += 1;
+        *by_tail.entry(&flight.reduced.identity.tail).or_default() += 1;
     }
     if by_tail.len() > 1 {
         return Err(Failure::BadArgument {
@@ -46,6 +47,7 @@ pub fn run(arguments: &TuneArgs, progress: bool) -> Result<Outcome, Failure> {
         .iter()
         .map(|flight| {
             flight
+                .reduced
                 .segments
                 .iter()
                 .filter_map(|segment| model.initial.observe(segment).ok())
@@ -88,7 +90,7 @@ pub fn run(arguments: &TuneArgs, progress: bool) -> Result<Outcome, Failure> {
             );
         }
     }
-    model.write(&arguments.output)?;
+    write_model(&model, &arguments.output)?;
     let _ = writeln!(text, "Settings: {:#?}", model.settings.bayes.values());
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
     Ok(Outcome { text, refused: reading.refused })

@@ -208,11 +208,11 @@ fn the_study_is_simulated_as_it_is_kept() {
     cruisefit(&["simulate".as_ref(), "ghazi-2020".as_ref(), "-o".as_ref(), folder.as_os_str()])
         .expect(0);
     let kept = bytes_below(&root().join("fixtures/ghazi-2020"));
-    let tolerance = cli::difference::Tolerance { relative: 1e-3, absolute: 1.0 };
+    let tolerance = pipeline::difference::Tolerance { relative: 1e-3, absolute: 1.0 };
     for (name, bytes) in bytes_below(&folder) {
         let (expected, found) =
             (String::from_utf8_lossy(&kept[&name]), String::from_utf8_lossy(&bytes));
-        let differences = cli::difference::differences(&expected, &found, tolerance);
+        let differences = pipeline::difference::differences(&expected, &found, tolerance);
         assert!(differences.is_empty(), "{name}: {:?}", differences.first());
     }
 }

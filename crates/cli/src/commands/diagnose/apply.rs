@@ -9,7 +9,8 @@ use super::Group;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{file_stem_of_tail, make_folder};
-use crate::model_file::{AppliedRecord, DiagnosisRecord};
+use crate::models::write_model;
+use pipeline::model_file::{AppliedRecord, DiagnosisRecord};
 
 /// Writes the extended model of every group whose verdict names effects without doubt which; the others are said, or
 /// refused where a person has to choose.
@@ -33,7 +34,7 @@ pub(super) fn apply(
             }
             Choice::Record(record) => match group.model.extended(record) {
                 Ok(model) => {
-                    model.write(&path)?;
+                    write_model(&model, &path)?;
                     let told = model.applied.last().map_or_else(String::new, AppliedRecord::told);
                     format!("applied {told}; written to {}", show(&path))
                 }
@@ -87,7 +88,7 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
             verdict.effects.join(" and ")
         ));
     };
-    let starts = || group.flights.iter().map(|flight| flight.identity.start);
+    let starts = || group.flights.iter().map(|flight| flight.reduced.identity.start);
     let word = |start: Option<flight::Timestamp>| start.map_or_else(String::new, |s| s.to_string());
     Choice::Record(AppliedRecord {
         addition,

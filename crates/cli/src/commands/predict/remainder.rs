@@ -4,7 +4,7 @@ use diagnose::Baseline;
 use effects::ExtendedModel;
 use perf_model::FlightPoint;
 
-use crate::model_file::ModelFile;
+use pipeline::model_file::ModelFile;
 
 /// The remainder of a model that remembers one.
 #[derive(Clone, Copy, Debug)]

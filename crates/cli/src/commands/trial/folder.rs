@@ -1,0 +1,150 @@
+//! The folder of a run of trials: sealed truths, and the result of every case.
+
+use std::path::{Path, PathBuf};
+
+use trials::{CaseFailure, CaseResult, CaseSpec, CaseTruth, DiagnosedCase, Seal, TrialPlan};
+
+use crate::failure::{Failure, show};
+use crate::files::{make_folder, write_atomically};
+
+/// Truths on disk, and their seal.
+#[derive(Clone, Debug)]
+pub(super) struct TruthFolder {
+    folder: PathBuf,
+    seal: Seal,
+}
+
+impl TruthFolder {
+    /// Writes the truths of all cases, in the order of their numbers, below `DIR/truth`. Truths that are there already
+    /// must be the same bytes: then the run continues from what it had.
+    ///
+    /// # Errors
+    /// A place that cannot be written; a folder whose truths are others.
+    pub(super) fn write(folder: &Path, truths: &[CaseTruth]) -> Result<Self, Failure> {
+        let folder = folder.join("truth");
+        make_folder(&folder)?;
+        let mut texts = Vec::with_capacity(truths.len());
+        for truth in truths {
+            let path = path_of(&folder, truth.case);
+            let text = truth.to_text().map_err(|error| Failure::unwritable(&path, error))?;
+            match std::fs::read(&path) {
+                Ok(bytes) if bytes == text.as_bytes() => {}
+                Ok(_) => {
+                    return Err(Failure::BegunOtherwise {
+                        folder: show(&folder),
+                        what: "truth",
+                        difference: format!(
+                            "case {}: another version of the program drew it, or the file was changed",
+                            truth.case
+                        ),
+                    });
+                }
+                Err(_) => write_atomically(&path, text.as_bytes())?,
+            }
+            texts.push(text);
+        }
+        let seal = Seal::of_texts(texts.iter().map(String::as_str));
+        Ok(Self { folder, seal })
+    }
+
+    /// The seal.
+    pub(super) const fn seal(&self) -> &Seal {
+        &self.seal
+    }
+
+    /// Opens the truth of a case, for the scorer.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is no longer what was sealed.
+    pub(super) fn open(&self, case: usize) -> Result<CaseTruth, Failure> {
+        let path = path_of(&self.folder, case);
+        let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
+        self.seal.open(case, &bytes).map_err(|error| Failure::bad_file(&path, error))
+    }
+}
+
+/// Why a case has no result: it failed, or its files did.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum CaseError {
+    /// The case.
+    #[error(transparent)]
+    Case(#[from] CaseFailure),
+    /// Truth or result on disk.
+    #[error(transparent)]
+    Disk(#[from] Failure),
+}
+
+/// Runs one case: flies it, diagnoses it, opens its truth, scores it, and writes the result below `DIR/cases` at once, so
+/// that an interruption loses no finished case. A result that is there already is taken.
+///
+/// # Errors
+/// [`CaseError`]; other cases are not touched by it.
+pub(super) fn run_case(
+    folder: &Path,
+    plan: &TrialPlan,
+    spec: &CaseSpec,
+    truths: &TruthFolder,
+) -> Result<CaseResult, CaseError> {
+    let path = folder.join("cases").join(format!("{:05}.json", spec.number));
+    let sealed = truths.seal().hash_of(spec.number);
+    if let Some(known) = finished(&path, sealed) {
+        return Ok(known);
+    }
+    let diagnosed = DiagnosedCase::run(plan, spec)?;
+    let truth = truths.open(spec.number)?;
+    let result = diagnosed.score(&truth, sealed)?;
+    let mut text =
+        serde_json::to_string_pretty(&result).map_err(|error| Failure::unwritable(&path, error))?;
+    text.push('\n');
+    write_atomically(&path, text.as_bytes())?;
+    // As a later run would read it: a run that continues from a folder shall come to the same bytes.
+    serde_json::from_str(&text).map_err(|error| CaseError::Disk(Failure::bad_file(&path, error)))
+}
+
+/// A result of an earlier run, if it is of this truth.
+fn finished(path: &Path, truth_sha256: &str) -> Option<CaseResult> {
+    let bytes = std::fs::read(path).ok()?;
+    let known: CaseResult = serde_json::from_slice(&bytes).ok()?;
+    (known.truth_sha256 == truth_sha256).then_some(known)
+}
+
+fn path_of(folder: &Path, case: usize) -> PathBuf {
+    folder.join(format!("{case:05}.json"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trials::{Background, Kind, ReferenceModel};
+
+    fn truth(case: usize, times: f64) -> CaseTruth {
+        CaseTruth {
+            schema: "cruisefit.trial-truth/1".to_owned(),
+            case,
+            reference_model: ReferenceModel::Exact,
+            background: Background::Clean,
+            kind: Kind::Null,
+            times,
+            struck: vec![],
+            effects: vec![],
+            clutter: vec![],
+        }
+    }
+
+    #[test]
+    fn a_broken_seal_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |times| TruthFolder::write(folder.path(), &[truth(1, 1.0), truth(2, times)]);
+        let truths = write(0.5).unwrap();
+        assert_eq!(truths.open(2).unwrap(), truth(2, 0.5));
+        // The same again is the same seal; another truth in the same place is refused.
+        assert_eq!(write(0.5).unwrap().seal(), truths.seal());
+        assert!(write(0.6).is_err());
+        let path = folder.path().join("truth/00002.json");
+        let text = std::fs::read_to_string(&path).unwrap().replace("0.5", "0.6");
+        std::fs::write(&path, text).unwrap();
+        let error = truths.open(2).unwrap_err().to_string();
+        assert!(error.contains("sealed was"), "{error}");
+        assert!(truths.open(1).is_ok());
+    }
+}

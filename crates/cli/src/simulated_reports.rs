@@ -1,0 +1,206 @@
+//! Reports of virtual aircraft on disk: any simulation, and the data that come with the program (the paper's study, the
+//! fleet of the demonstration).
+
+use std::fmt::Write;
+use std::path::Path;
+
+use pipeline::columns::Columns;
+use rayon::prelude::*;
+use report::TextLayout;
+use serde_json::Value;
+use simulate::{AircraftTruth, Flown, Plan, Preset, Richness, Simulation, TrueState, study};
+use units::FuelFlowTotal;
+
+use crate::failure::Failure;
+use crate::files::{file_stem_of_tail, make_folder, write_atomically};
+use crate::progress::Progress;
+
+/// First comment of every report: nobody shall take it for a recording.
+const COMMENT: &str = "simulated with cruisefit, not a real aircraft";
+
+/// The aircraft file of the study: what a performance engineer knows of the Cessna Citation X. The TSFC constants are
+/// those that reproduce its published fuel burn (static TSFC of the AE 3007C1 from its emission certification).
+pub(crate) const CITATION_X: &str = include_str!("../embedded/CITATION-X.ron");
+
+/// The plan of the demonstration.
+const DEMONSTRATION: &str = include_str!("../embedded/DEMO-PLAN.ron");
+
+/// The later period of the demonstration, with an effect that the model does not know.
+const DEMONSTRATION_LATER: &str = include_str!("../embedded/DEMO-LATER.ron");
+
+/// Seed of the study, fixed before anything was run.
+const GHAZI_2020_SEED: u64 = 2020;
+
+/// Data that belong together: what `init`, `adapt` and `predict` are given.
+#[derive(Debug)]
+pub(crate) struct Study {
+    /// Text of the aircraft file.
+    pub(crate) aircraft: &'static str,
+    /// Text of the flight-planning guide.
+    pub(crate) guide: String,
+    /// Text of the static points, with measured fuel flow.
+    pub(crate) static_points: String,
+    /// The flights.
+    pub(crate) plan: Plan,
+}
+
+/// The study of Ghazi et al. 2020: ten flights of table 5, 45 static points, a guide whose drag is wrong in a known way.
+///
+/// # Errors
+/// What the simulator refuses.
+pub(crate) fn ghazi_2020() -> Result<Study, Failure> {
+    study_with(study::paper_study_plan(GHAZI_2020_SEED))
+}
+
+/// The demonstration: the same aircraft and guide, one tail with airline-like sensors, wind, turbulence.
+///
+/// # Errors
+/// What the simulator refuses.
+pub(crate) fn demonstration() -> Result<Study, Failure> {
+    study_with(Plan::from_ron(DEMONSTRATION).map_err(|error| wrong(&error))?)
+}
+
+/// The demonstration's tail a year later, with an effect that its model has not learnt.
+///
+/// # Errors
+/// What the simulator refuses.
+pub(crate) fn demonstration_later() -> Result<Simulation, Failure> {
+    let plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
+    Simulation::new(plan).map_err(|error| wrong(&error))
+}
+
+/// Flies every flight of a simulation and writes reports, true states where the plan asks for them, and the truth.
+///
+/// # Errors
+/// A flight that cannot be flown, or a place that cannot be written.
+pub(crate) fn write(
+    simulation: &Simulation,
+    folder: &Path,
+    progress: Progress,
+) -> Result<usize, Failure> {
+    make_folder(folder)?;
+    for index in 0..simulation.len() {
+        if let Some((tail, _)) = simulation.flight(index) {
+            make_folder(&folder.join(file_stem_of_tail(tail)))?;
+        }
+    }
+    let bar = progress.bar(simulation.len(), "flying");
+    let truths = (0..simulation.len())
+        .into_par_iter()
+        .map(|index| {
+            let failed = |error: &dyn std::fmt::Display| Failure::BadArgument {
+                argument: "PLAN.ron",
+                reason: error.to_string(),
+            };
+            let Flown { report, truth, states } =
+                simulation.fly(index).map_err(|error| failed(&error))?;
+            let text = report::write(&report, &TextLayout::industry(), &[COMMENT])
+                .map_err(|error| failed(&error))?;
+            let identity = &report.header().identity;
+            let base = folder.join(file_stem_of_tail(&identity.tail));
+            let stem = file_stem_of_tail(&identity.flight);
+            write_atomically(&base.join(format!("{stem}.txt")), text.as_bytes())?;
+            if !states.is_empty() {
+                let table = states_table(&states).map_err(|error| failed(&error))?;
+                write_atomically(&base.join(format!("{stem}-states.csv")), &table.to_csv())?;
+            }
+            bar.step();
+            Ok(truth)
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bar.finish();
+    let flights = truths.len();
+    let truth = simulation.truth(truths);
+    let path = folder.join("TRUTH.json");
+    let mut text =
+        serde_json::to_string_pretty(&truth).map_err(|error| Failure::unwritable(&path, error))?;
+    text.push('\n');
+    write_atomically(&path, text.as_bytes())?;
+    Ok(flights)
+}
+
+fn study_with(plan: Plan) -> Result<Study, Failure> {
+    let aircraft = AircraftTruth::preset(Preset::CitationX).map_err(|error| wrong(&error))?;
+    let richness = Richness::full();
+    let (rows, _) = study::flight_planning_guide(
+        &aircraft,
+        richness,
+        &study::GuideGrid::paper(),
+        &study::DragError::study(),
+    )
+    .map_err(|error| wrong(&error))?;
+    Ok(Study {
+        aircraft: CITATION_X,
+        guide: study::guide_csv(&rows),
+        static_points: static_points(&aircraft, richness)?,
+        plan,
+    })
+}
+
+impl Study {
+    /// Writes `AIRCRAFT.ron`, `guide.csv`, `static.csv` and the reports (a folder a tail below `reports`).
+    ///
+    /// # Errors
+    /// A place that cannot be written, or a flight that cannot be flown.
+    pub(crate) fn write(self, folder: &Path, progress: Progress) -> Result<usize, Failure> {
+        make_folder(folder)?;
+        write_atomically(&folder.join("AIRCRAFT.ron"), self.aircraft.as_bytes())?;
+        write_atomically(&folder.join("guide.csv"), self.guide.as_bytes())?;
+        write_atomically(&folder.join("static.csv"), self.static_points.as_bytes())?;
+        let simulation = Simulation::new(self.plan).map_err(|error| wrong(&error))?;
+        write(&simulation, &folder.join("reports"), progress)
+    }
+}
+
+/// The static points that the aircraft can fly, as flight points with measured fuel flow.
+fn static_points(aircraft: &AircraftTruth, richness: Richness) -> Result<String, Failure> {
+    let mut text =
+        String::from("weight_lb,pressure_altitude_ft,mach,isa_deviation_c,fuel_flow_lb_h\n");
+    for condition in study::static_conditions() {
+        let point =
+            study::static_point(aircraft, richness, &condition).map_err(|error| wrong(&error))?;
+        let measured = FuelFlowTotal::kilograms_per_second(point.measured_fuel_flow_kg_s);
+        let _ = writeln!(
+            text,
+            "{},{},{},0,{:.1}",
+            condition.weight_lb,
+            condition.pressure_altitude_ft,
+            condition.mach,
+            measured.to_pounds_per_hour()
+        );
+    }
+    Ok(text)
+}
+
+fn wrong(error: &dyn std::fmt::Display) -> Failure {
+    Failure::BadArgument { argument: "embedded study", reason: error.to_string() }
+}
+
+/// True states as columns; what is one number an engine becomes a column an engine.
+fn states_table(states: &[TrueState]) -> Result<Columns, serde_json::Error> {
+    let rows = states.iter().map(flattened).collect::<Result<Vec<_>, _>>()?;
+    let mut columns = Columns::default();
+    let names: Vec<String> =
+        rows.first().into_iter().flatten().map(|(name, _)| name.clone()).collect();
+    for (column, name) in names.into_iter().enumerate() {
+        columns.number(name, rows.iter().map(|row| row.get(column).and_then(|(_, value)| *value)));
+    }
+    Ok(columns)
+}
+
+fn flattened(state: &TrueState) -> Result<Vec<(String, Option<f64>)>, serde_json::Error> {
+    let mut flat = Vec::new();
+    if let Value::Object(fields) = serde_json::to_value(state)? {
+        for (name, value) in fields {
+            match value {
+                Value::Array(engines) => {
+                    for (engine, value) in engines.iter().enumerate() {
+                        flat.push((format!("{name}_{}", engine + 1), value.as_f64()));
+                    }
+                }
+                value => flat.push((name, value.as_f64())),
+            }
+        }
+    }
+    Ok(flat)
+}

@@ -1,0 +1,187 @@
+//! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be seen.
+
+use diagnose::{Cause, Diagnosis, Separation, VerdictKind};
+use maud::{Markup, html};
+
+use crate::fleet;
+use crate::frame::framed;
+use pipeline::diagnosis_text;
+use pipeline::summary::{ReportsSummary, counted};
+
+/// Causes shown of each tail.
+const CAUSES_SHOWN: usize = 8;
+/// Measurements or flights shown of each effect, whatever is found.
+const SEPARATIONS_SHOWN: usize = 2;
+
+/// The page of diagnoses, and what became of the reports that they are of.
+#[must_use]
+pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[Diagnosis]) -> String {
+    let title = "Diagnosis of performance models";
+    let body = html! {
+        p.run {
+            (counted(reports.read, "report")) " read, " (reports.refused.len()) " refused. Gap: ln recorded − ln predicted "
+            "total fuel flow, in %; positive, the aircraft burns more than the model says."
+        }
+        (fleet::refused(reports))
+        @for one in diagnoses { (section(one)) }
+    };
+    framed(title, true, &body)
+}
+
+fn section(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        section {
+            h2 { @if diagnosis.tail == "*" { "All tails" } @else { (diagnosis.tail) } }
+            @for (place, line) in diagnosis_text::lines(diagnosis).iter().skip(1).enumerate() {
+                p { @if place == 0 {
+                    (counted(diagnosis.flights, "flight")) ", " (counted(diagnosis.segments, "segment")) ". "
+                } (line) }
+            }
+            (places(diagnosis))
+            @if diagnosis.verdict.kind != VerdictKind::InsufficientData {
+                (causes(&diagnosis.causes))
+                p {
+                    "Something that no effect of the library is: probability "
+                    (format!("{:.3}", diagnosis.outside.probability))
+                    ". The causes' probabilities share one whole with this one."
+                }
+                (floors(diagnosis))
+            }
+            @if !diagnosis.verdict.separations.is_empty() {
+                h3 { "What would separate them" }
+                (separations(diagnosis.verdict.separations.iter().map(|one| (None, one))))
+            }
+            (detectable(diagnosis))
+            (beforehand(diagnosis))
+            @if !diagnosis.notes.is_empty() {
+                h3 { "Notes" }
+                ul { @for note in &diagnosis.notes { li { (note) } } }
+            }
+        }
+    }
+}
+
+fn places(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        @if !diagnosis.r#where.is_empty() {
+            h3 { "Where the gap lies" }
+            table {
+                thead { tr {
+                    th scope="col" { "place" } th scope="col" { "segments" } th scope="col" { "mean gap, %" }
+                    th scope="col" { "95 % interval by flight, %" } th scope="col" { "share of the explainable gap" }
+                    th scope="col" { "p, search accounted for" }
+                } }
+                tbody { @for place in &diagnosis.r#where { tr {
+                    th scope="row" { (place.slice) }
+                    td { (place.segments) }
+                    td { (format!("{:+.2}", place.mean_gap_percent)) }
+                    td { (format!("{:+.2} to {:+.2}", place.ci95[0], place.ci95[1])) }
+                    td { (format!("{:.0} %", 100.0 * place.share_of_gap)) }
+                    td { (format!("{:.3}", place.p_value)) }
+                } } }
+            }
+        }
+    }
+}
+
+fn floors(diagnosis: &Diagnosis) -> Markup {
+    let gap = &diagnosis.gap;
+    html! {
+        @if gap.floor_by_replicates_rms_percent.is_some() || gap.floor_by_held_out_fit_rms_percent.is_some() {
+            p {
+                "Noise floor " (format!("{:.2} %", gap.noise_floor_rms_percent)) " by the sensors' standard deviations"
+                @if let Some(floor) = gap.floor_by_replicates_rms_percent {
+                    "; " (format!("{floor:.2} %")) " by like segments of one flight"
+                }
+                @if let Some(floor) = gap.floor_by_held_out_fit_rms_percent {
+                    "; at most " (format!("{floor:.2} %")) " by a flexible model on flights it was not fitted to"
+                }
+                "."
+            }
+        }
+    }
+}
+
+fn causes(causes: &[Cause]) -> Markup {
+    html! {
+        h3 { "Causes by probability" }
+        table {
+            thead { tr {
+                th scope="col" { "effect" } th scope="col" { "probability" } th scope="col" { "size" }
+                th scope="col" { "95 % interval" } th scope="col" { "unit" } th scope="col" { "closes, unseen flights" }
+                th scope="col" { "cannot be told from" }
+            } }
+            tbody { @for cause in causes.iter().take(CAUSES_SHOWN) { tr {
+                th scope="row" { (cause.effect) }
+                td { (format!("{:.3}", cause.probability)) }
+                td { (format!("{:+.4}", cause.magnitude.value)) }
+                td { (format!("{:+.4} to {:+.4}", cause.magnitude.ci95[0], cause.magnitude.ci95[1])) }
+                td { (cause.magnitude.unit) @if !cause.hidden.is_empty() { "; " (cause.hidden) } }
+                td { @if let Some(share) = cause.closure { (format!("{:.0} %", 100.0 * share)) } @else { "–" } }
+                td { (others(cause)) }
+            } } }
+        }
+    }
+}
+
+fn others(cause: &Cause) -> String {
+    let others: Vec<&str> =
+        cause.class.iter().filter(|name| **name != cause.effect).map(String::as_str).collect();
+    if others.is_empty() { "–".to_owned() } else { others.join(", ") }
+}
+
+fn detectable(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        @if !diagnosis.detectable.is_empty() {
+            h3 { "What would just be seen with this data" }
+            table {
+                thead { tr {
+                    th scope="col" { "effect" } th scope="col" { "smallest size" } th scope="col" { "unit" }
+                } }
+                tbody { @for one in &diagnosis.detectable { tr {
+                    th scope="row" { (one.effect) }
+                    td { @if let Some(size) = one.smallest { (format!("{size:.4}")) } @else { "–" } }
+                    td { (one.unit) }
+                } } }
+            }
+        }
+    }
+}
+
+/// Effects that share a class at their typical sizes, whatever was found, and what would tell each from the nearest.
+fn beforehand(diagnosis: &Diagnosis) -> Markup {
+    let told: Vec<_> = diagnosis
+        .detectable
+        .iter()
+        .flat_map(|one| {
+            let shown = one.separations.iter().take(SEPARATIONS_SHOWN);
+            shown.map(|separation| (Some(one.effect.as_str()), separation))
+        })
+        .collect();
+    html! {
+        @if !told.is_empty() {
+            h3 { "What these flights could not tell apart, at typical sizes, and what could" }
+            (separations(told.into_iter()))
+        }
+    }
+}
+
+fn separations<'a>(all: impl Iterator<Item = (Option<&'a str>, &'a Separation)> + Clone) -> Markup {
+    let named = all.clone().any(|(effect, _)| effect.is_some());
+    html! {
+        table {
+            thead { tr {
+                @if named { th scope="col" { "effect" } }
+                th scope="col" { "measurement or flights" } th scope="col" { "tells it from" }
+                th scope="col" { "distance now, σ" } th scope="col" { "distance then, σ" }
+                th scope="col" { "with six ordinary flights, σ" }
+            } }
+            tbody { @for (effect, one) in all { tr {
+                @if let Some(effect) = effect { th scope="row" { (effect) } }
+                td { (one.measurement) } td { (one.from) }
+                td { (format!("{:.1}", one.distance_now)) } td { (format!("{:.1}", one.distance_then)) }
+                td { @if let Some(distance) = one.distance_ordinary_flights { (format!("{distance:.1}")) } @else { "–" } }
+            } } }
+        }
+    }
+}

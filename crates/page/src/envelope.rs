@@ -1,0 +1,233 @@
+//! Where the aircraft flew: segments and mean error in each cell of lift coefficient and Mach number.
+
+use maud::{Markup, html};
+
+use crate::text::{breakpoint, counted, signed_tenths};
+use crate::view::{Point, TailView};
+
+/// Columns and rows that fit a page; cells of a finer grid are put together.
+const MOST_COLUMNS: usize = 12;
+const MOST_ROWS: usize = 24;
+/// A coordinate this near below a breakpoint is on it, as for the table itself.
+const SNAP: f64 = lut::SNAP;
+/// Mean error of full color, %.
+const FULL_COLOR_PERCENT: f64 = 5.0;
+/// Shades on each side of zero.
+const SHADES: f64 = 5.0;
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Cell {
+    segments: usize,
+    sum_percent: f64,
+}
+
+/// Cells between breakpoints, and what lies in them.
+struct Envelope {
+    lift_coefficient: Vec<f64>,
+    mach: Vec<f64>,
+    /// Lift coefficient outer, Mach number inner.
+    cells: Vec<Cell>,
+    /// Cells of the table in one of these, along lift coefficient and Mach number.
+    merged: (usize, usize),
+}
+
+/// The table of cells, lift coefficient upwards and Mach number to the right.
+pub(crate) fn envelope(view: &TailView) -> Markup {
+    let Some(envelope) = Envelope::of(view) else {
+        return html! { p.note { "No segment inside the table: no map of where it flew." } };
+    };
+    let which = if view.adapted { "after" } else { view.before_label() };
+    let columns = envelope.mach.len() - 1;
+    html! {
+        figure {
+            figcaption {
+                b { "Where it flew." }
+                " Mean error " (which)
+                ", %, and number n of segments in each cell of lift coefficient CL and Mach number. Blue burns less than \
+                 the model says, orange more; full color from "
+                (FULL_COLOR_PERCENT) " %."
+            }
+            div.scroll {
+                table.heat {
+                    thead {
+                        tr {
+                            td {}
+                            th scope="colgroup" colspan=(columns) { "Mach number" }
+                        }
+                        tr {
+                            th scope="col" { "CL" }
+                            @for pair in envelope.mach.windows(2) {
+                                th scope="col" { (breakpoint(pair[0])) "–" (breakpoint(pair[1])) }
+                            }
+                        }
+                    }
+                    tbody {
+                        @for (row, pair) in envelope.lift_coefficient.windows(2).enumerate().rev() {
+                            tr {
+                                th scope="row" { (breakpoint(pair[0])) "–" (breakpoint(pair[1])) }
+                                @for column in 0..columns {
+                                    (cell(&envelope.cells[row * columns + column]))
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            p.note {
+                "Empty cells: no segment. The table goes on beyond the outer cells, where nobody flew."
+                @if envelope.merged != (1, 1) {
+                    " A cell here is " (envelope.merged.0) " by " (envelope.merged.1) " cells of the table."
+                }
+            }
+        }
+    }
+}
+
+fn cell(cell: &Cell) -> Markup {
+    if cell.segments == 0 {
+        return html! { td {} };
+    }
+    let mean = cell.sum_percent / cell.segments as f64;
+    html! {
+        td class=(shade(mean)) {
+            b { (signed_tenths(mean)) } " " span { "n\u{a0}" (cell.segments) }
+        }
+    }
+}
+
+/// Class of a mean error: `more1` … `more5`, `less1` … `less5`, or `even` within half a shade.
+fn shade(mean_percent: f64) -> String {
+    let shade = (mean_percent / FULL_COLOR_PERCENT * SHADES).clamp(-SHADES, SHADES).round();
+    if shade > 0.0 {
+        format!("more{shade}")
+    } else if shade < 0.0 {
+        format!("less{}", -shade)
+    } else {
+        "even".to_owned()
+    }
+}
+
+impl Envelope {
+    fn of(view: &TailView) -> Option<Self> {
+        let error = |point: &Point| {
+            if view.adapted { point.after } else { point.before }
+        };
+        let (rows, columns) = (&view.polars.lift_coefficient, &view.polars.mach);
+        let mut cells = vec![Cell::default(); (rows.len() - 1) * (columns.len() - 1)];
+        let mut bounds: Option<[usize; 4]> = None;
+        for point in &view.points {
+            let Some(error) = error(point) else { continue };
+            let (row, column) =
+                (between(rows, point.lift_coefficient), between(columns, point.mach));
+            let cell = &mut cells[row * (columns.len() - 1) + column];
+            cell.segments += 1;
+            cell.sum_percent += error;
+            let [top, bottom, left, right] = bounds.unwrap_or([row, row, column, column]);
+            bounds = Some([top.min(row), bottom.max(row), left.min(column), right.max(column)]);
+        }
+        let [top, bottom, left, right] = bounds?;
+        let along_rows = (bottom - top + 1).div_ceil(MOST_ROWS);
+        let along_columns = (right - left + 1).div_ceil(MOST_COLUMNS);
+        let row_edges = edges(top, bottom, along_rows);
+        let column_edges = edges(left, right, along_columns);
+        let mut merged = Vec::new();
+        for row in row_edges.windows(2) {
+            for column in column_edges.windows(2) {
+                let mut sum = Cell::default();
+                for one in (row[0]..row[1])
+                    .flat_map(|r| (column[0]..column[1]).map(move |c| (r, c)))
+                    .map(|(r, c)| &cells[r * (columns.len() - 1) + c])
+                {
+                    sum.segments += one.segments;
+                    sum.sum_percent += one.sum_percent;
+                }
+                merged.push(sum);
+            }
+        }
+        Some(Self {
+            lift_coefficient: row_edges.iter().map(|k| rows[*k]).collect(),
+            mach: column_edges.iter().map(|k| columns[*k]).collect(),
+            cells: merged,
+            merged: (along_rows, along_columns),
+        })
+    }
+
+    #[cfg(test)]
+    fn segments(&self) -> usize {
+        self.cells.iter().map(|cell| cell.segments).sum()
+    }
+}
+
+/// Index of the cell that holds a value; the last breakpoint belongs to the last cell.
+fn between(breakpoints: &[f64], value: f64) -> usize {
+    let above = breakpoints.partition_point(|breakpoint| *breakpoint - SNAP <= value);
+    above.saturating_sub(1).min(breakpoints.len() - 2)
+}
+
+/// Breakpoints from the cell `first` to the end of the cell `last`, every `step`.
+fn edges(first: usize, last: usize, step: usize) -> Vec<usize> {
+    let mut edges: Vec<usize> = (first..=last).step_by(step.max(1)).collect();
+    edges.push(last + 1);
+    edges
+}
+
+/// What lies outside the table, in words.
+pub(crate) fn outside(view: &TailView) -> Option<String> {
+    if view.outside.is_empty() {
+        return None;
+    }
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        let low = view.outside.iter().map(of).fold(f64::INFINITY, f64::min);
+        let high = view.outside.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+        format!("{low:.3} to {high:.3}")
+    };
+    let ends =
+        |axis: &[f64]| format!("{} to {}", breakpoint(axis[0]), breakpoint(axis[axis.len() - 1]));
+    Some(format!(
+        "{} outside the table, so without an error and in no figure: lift coefficient {}, Mach number {}. The table \
+         holds lift coefficient {} and Mach number {}.",
+        counted(view.outside.len(), "segment"),
+        range(|(lift_coefficient, _)| *lift_coefficient),
+        range(|(_, mach)| *mach),
+        ends(&view.polars.lift_coefficient),
+        ends(&view.polars.mach)
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples;
+
+    #[test]
+    fn every_segment_inside_is_in_one_cell() {
+        for view in samples::views() {
+            let inside = view.points.iter().filter(|point| {
+                if view.adapted { point.after.is_some() } else { point.before.is_some() }
+            });
+            let told = Envelope::of(&view).map_or(0, |envelope| envelope.segments());
+            assert_eq!(told, inside.count());
+        }
+    }
+
+    #[test]
+    fn cells_are_half_open() {
+        let breakpoints = [0.3, 0.4, 0.5];
+        let cells = [0.3, 0.35, 0.4 - 1e-10, 0.4, 0.5].map(|value| between(&breakpoints, value));
+        assert_eq!(cells, [0, 0, 1, 1, 1]);
+    }
+
+    #[test]
+    fn shades_follow_the_sign() {
+        assert_eq!(
+            [-9.0, -1.2, 0.4, 0.6, 5.0].map(shade),
+            ["less5", "less1", "even", "more1", "more5"]
+        );
+    }
+
+    #[test]
+    fn a_fine_grid_is_put_together() {
+        assert_eq!(edges(2, 8, 3), [2, 5, 8, 9]);
+    }
+}

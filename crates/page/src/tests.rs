@@ -1,0 +1,126 @@
+//! The page as a whole, of the flights in `fixtures` and of tails made up.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use pipeline::evaluation::{TailCounts, TailData, TailResult};
+use pipeline::model_file::ModelFile;
+use pipeline::segments_table;
+use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+
+use crate::place::Place;
+use crate::{report, samples, tail as section};
+
+/// What was learnt from the flights in `fixtures`, under some tail's name.
+fn tail(name: &str, adapted: bool) -> TailResult {
+    let folder =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/global5000/expected"));
+    let text = std::fs::read_to_string(folder.join("SIM-01.ron")).unwrap();
+    let model = ModelFile::from_text(&text).unwrap();
+    let segments = std::fs::read(folder.join("SIM-01_segments.csv")).unwrap();
+    let segments = segments_table::read(&segments).unwrap();
+    let counts = TailCounts { flights: 12, flights_new: 12, samples: 900 };
+    let notes = vec!["roll <not> recorded".to_owned()];
+    let data = TailData { tail: name.to_owned(), model, segments, counts, notes };
+    if adapted { TailResult::adapted(data) } else { TailResult::as_given(data) }
+}
+
+fn page(tails: &[TailResult], refused: Vec<RefusedSummary>) -> String {
+    let reports = ReportsSummary { read: 12, already_known: 0, refused };
+    let tails_summary = tails.iter().map(|tail| tail.summary.clone()).collect();
+    report(&Summary { schema: SCHEMA, reports, tails: tails_summary }, tails, "A <run>")
+}
+
+/// Values of an attribute, in order.
+fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
+    let begin = format!(" {attribute}=\"");
+    page.split(begin.as_str()).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+fn check(page: &str) {
+    for word in ["NaN", "inf\"", "inf ", "<script", "src=", "http", "@import", "url("] {
+        assert!(!page.contains(word), "{word}");
+    }
+    let ids = values(page, "id");
+    let unique: BTreeSet<&str> = ids.iter().copied().collect();
+    assert_eq!(ids.len(), unique.len(), "ids repeat");
+    for link in values(page, "href") {
+        assert!(unique.contains(link.trim_start_matches('#')), "{link}");
+    }
+    let drawings = page.matches("<svg").count() - page.matches("aria-hidden").count();
+    assert_eq!(page.matches("role=\"img\"").count(), drawings);
+    for label in values(page, "aria-labelledby").iter().flat_map(|labels| labels.split(' ')) {
+        assert!(unique.contains(label), "{label}");
+    }
+    let header_cells = page.matches("<th").count() - page.matches("<thead").count();
+    assert_eq!(page.matches(" scope=\"").count(), header_cells);
+}
+
+#[test]
+fn a_page_of_real_flights() {
+    let tails = [tail("SIM-01", true), tail("SIM-02", true)];
+    let page = page(&tails, Vec::new());
+    check(&page);
+    assert!(page.starts_with("<!DOCTYPE html><html lang=\"en\">"));
+    assert!(page.contains("href=\"#tail-SIM-01\"") && page.contains("id=\"tail-SIM-01\""));
+    assert!(page.contains("law paper, threshold 1 %"));
+    assert_eq!(page.matches("<details").count(), 2);
+    assert_eq!(page.matches("<details class=\"tail\" open>").count(), 1);
+    assert!(!page.contains("Refused reports"));
+}
+
+#[test]
+fn same_results_same_bytes() {
+    assert_eq!(page(&[tail("A", true)], Vec::new()), page(&[tail("A", true)], Vec::new()));
+}
+
+#[test]
+fn a_model_as_given_has_no_after() {
+    let page = page(&[tail("A", false)], Vec::new());
+    check(&page);
+    assert!(!page.contains("error after") && !page.contains("final table"));
+}
+
+#[test]
+fn nothing_sent_is_markup() {
+    let refused = RefusedSummary {
+        path: "x/<b>.txt".to_owned(),
+        line: Some(3),
+        column: Some(1),
+        reason: "found \"<i>\", expected TIME".to_owned(),
+    };
+    let page = page(&[tail("<T>&\"", true), tail("-T---", true)], vec![refused]);
+    check(&page);
+    assert!(page.contains("x/&lt;b&gt;.txt:3:1") && page.contains("found &quot;&lt;i&gt;"));
+    assert!(page.contains("roll &lt;not&gt; recorded"));
+    for raw in ["<T>", "<b>.txt", "<i>", "A <run>", "<not>"] {
+        assert!(!page.contains(raw), "{raw}");
+    }
+}
+
+#[test]
+fn odd_tails_are_drawn_too() {
+    for (k, view) in samples::views().iter().enumerate() {
+        let place = Place { tail: "T", id: format!("t{k}"), most_points: 100 };
+        let figures = section::figures(view, &place).into_string();
+        check(&figures);
+        let thinned = view.points.len() > 100;
+        assert_eq!(figures.contains("evenly chosen"), thinned, "what is left out is said");
+    }
+}
+
+#[test]
+fn a_large_fleet_stays_readable() {
+    let one = tail("T", true);
+    let tails: Vec<TailResult> = (0..300)
+        .map(|k| {
+            let mut tail = one.clone();
+            tail.tail = format!("T-{k:03}");
+            tail.summary.tail.clone_from(&tail.tail);
+            tail
+        })
+        .collect();
+    let page = page(&tails, Vec::new());
+    assert_eq!(page.matches("<details").count(), 300);
+    assert!(page.len() < 300 * 40_000, "{} bytes", page.len());
+}

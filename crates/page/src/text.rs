@@ -1,0 +1,72 @@
+//! Numbers as the page writes them. A hyphen is the minus sign, no separators: figures can be pasted into a spreadsheet.
+
+/// With sign and two decimals, a dash for no value.
+pub(crate) fn signed(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{:+.2}", not_minus_zero(value, 2)))
+}
+
+/// With sign and one decimal.
+pub(crate) fn signed_tenths(value: f64) -> String {
+    format!("{:+.1}", not_minus_zero(value, 1))
+}
+
+/// Two decimals, a dash for no value.
+pub(crate) fn plain(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| format!("{:.2}", not_minus_zero(value, 2)))
+}
+
+/// A share as whole per cent, a dash for no value.
+pub(crate) fn percent(share: Option<f64>) -> String {
+    share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share))
+}
+
+/// A count, a dash for none.
+pub(crate) fn count(count: Option<u32>) -> String {
+    count.map_or_else(|| "–".to_owned(), |count| count.to_string())
+}
+
+/// Number and noun, in the plural where it belongs.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+/// A breakpoint or coefficient: two decimals, more where it has more, four at most.
+pub(crate) fn breakpoint(value: f64) -> String {
+    let text = format!("{value:.4}");
+    let mut text = text.as_str();
+    for _ in 0..2 {
+        text = text.strip_suffix('0').unwrap_or(text);
+    }
+    text.to_owned()
+}
+
+/// What rounds to zero has no sign of its own.
+fn not_minus_zero(value: f64, decimals: i32) -> f64 {
+    if value.abs() < 0.5 * 10_f64.powi(-decimals) { 0.0 } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_words() {
+        assert_eq!(signed(Some(4.406)), "+4.41");
+        assert_eq!(signed(Some(-0.841)), "-0.84");
+        assert_eq!(signed(Some(-0.001)), "+0.00");
+        assert_eq!(signed(None), "–");
+        assert_eq!(signed_tenths(-0.04), "+0.0");
+        assert_eq!(plain(Some(1.0675)), "1.07");
+        assert_eq!(percent(Some(0.41)), "41 %");
+        assert_eq!(counted(1, "segment"), "1 segment");
+        assert_eq!(counted(0, "flight"), "0 flights");
+    }
+
+    #[test]
+    fn breakpoints_keep_their_digits() {
+        assert_eq!(breakpoint(0.8), "0.80");
+        assert_eq!(breakpoint(0.825), "0.825");
+        assert_eq!(breakpoint(0.30000000000000004), "0.30");
+        assert_eq!(breakpoint(0.76125), "0.7612");
+    }
+}

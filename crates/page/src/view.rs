@@ -1,0 +1,168 @@
+//! A tail as plain numbers: what the charts draw, taken out of the results once.
+
+use std::collections::BTreeMap;
+
+use effects::ObserveError;
+use flight::Timestamp;
+
+use pipeline::evaluation::TailResult;
+use pipeline::model_file::ModelFile;
+use pipeline::statistics::ErrorStatistics;
+
+/// A tail as plain numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct TailView {
+    /// Segments that could be reduced to a lift and a drag coefficient, in the results' order.
+    pub(crate) points: Vec<Point>,
+    /// Lift coefficients and Mach numbers of segments outside the table.
+    pub(crate) outside: Vec<(f64, f64)>,
+    /// Why other segments say nothing about drag, one reason a segment.
+    pub(crate) not_observed: Vec<String>,
+    /// Flights with segments, by START.
+    pub(crate) flights: Vec<Flight>,
+    /// Its drag tables.
+    pub(crate) polars: Polars,
+    /// Whether there is an "after".
+    pub(crate) adapted: bool,
+}
+
+/// A segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Point {
+    /// START of its flight, seconds since 1970-01-01 UTC.
+    pub(crate) start_s: f64,
+    pub(crate) lift_coefficient: f64,
+    pub(crate) mach: f64,
+    /// Observed.
+    pub(crate) drag_coefficient: f64,
+    /// Error of the initial (or given) table, %; `None` outside it.
+    pub(crate) before: Option<f64>,
+    /// Error of the final table, %; `None` outside it, or where nothing is adapted.
+    pub(crate) after: Option<f64>,
+}
+
+/// A flight's errors.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Flight {
+    /// As sent.
+    pub(crate) name: String,
+    pub(crate) start: Timestamp,
+    /// START, seconds since 1970-01-01 UTC.
+    pub(crate) start_s: f64,
+    /// Of its segments inside the table.
+    pub(crate) before: ErrorStatistics,
+    /// Of its segments inside the table.
+    pub(crate) after: ErrorStatistics,
+}
+
+/// The drag tables, lift coefficient outer and Mach number inner.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Polars {
+    pub(crate) lift_coefficient: Vec<f64>,
+    pub(crate) mach: Vec<f64>,
+    /// Drag coefficient of the initial table.
+    pub(crate) initial: Vec<f64>,
+    /// Drag coefficient as it stands.
+    pub(crate) current: Vec<f64>,
+    /// Whether anything was learnt; if not, both are the same.
+    pub(crate) learnt: bool,
+    /// Nodes that a segment ever adapted.
+    pub(crate) informed: Vec<bool>,
+    /// Nodes outside the range of the guide.
+    pub(crate) extrapolated: Vec<bool>,
+}
+
+impl TailView {
+    pub(crate) fn of(result: &TailResult) -> Self {
+        let adapted = result.summary.fuel_flow_error_percent.after.is_some();
+        let after = result.errors_after();
+        let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
+        let mut flights: BTreeMap<(Timestamp, &str), Errors> = BTreeMap::new();
+        for (k, row) in result.rows.iter().enumerate() {
+            let identity = &row.segment.identity;
+            let errors = flights.entry((identity.start, &identity.flight)).or_default();
+            if row.evaluated.is_none_or(|evaluated| evaluated.error_percent.is_none()) {
+                match result.model.initial.observe(&row.segment) {
+                    Err(ObserveError::Model(perf_model::ObserveError::OutsideTable(at))) => {
+                        outside.push((at.lift_coefficient, at.mach));
+                    }
+                    Err(other) => not_observed.push(other.to_string()),
+                    Ok(_) => {}
+                }
+            }
+            let Some(evaluated) = row.evaluated else { continue };
+            let point = Point {
+                start_s: identity.start_s(),
+                lift_coefficient: evaluated.lift_coefficient,
+                mach: row.segment.means.mach,
+                drag_coefficient: evaluated.drag_coefficient,
+                before: evaluated.error_percent,
+                after: after.get(k).copied().flatten(),
+            };
+            errors.before.extend(point.before);
+            errors.after.extend(point.after);
+            points.push(point);
+        }
+        let flights = flights.into_iter().map(|((start, flight), errors)| Flight {
+            name: flight.to_owned(),
+            start,
+            start_s: start.as_second() as f64,
+            before: ErrorStatistics::of(&errors.before),
+            after: ErrorStatistics::of(&errors.after),
+        });
+        Self {
+            points,
+            outside,
+            not_observed,
+            flights: flights.collect(),
+            polars: Polars::of(&result.model),
+            adapted,
+        }
+    }
+
+    /// What "before" is called: there is one only where there is an "after".
+    pub(crate) fn before_label(&self) -> &'static str {
+        if self.adapted { "before" } else { "model as given" }
+    }
+
+    /// Errors of the initial (or given) table.
+    pub(crate) fn before(&self) -> Vec<f64> {
+        self.points.iter().filter_map(|point| point.before).collect()
+    }
+
+    /// Errors of the final table; none where nothing is adapted.
+    pub(crate) fn after(&self) -> Vec<f64> {
+        self.points.iter().filter_map(|point| point.after).collect()
+    }
+}
+
+#[derive(Default)]
+struct Errors {
+    before: Vec<f64>,
+    after: Vec<f64>,
+}
+
+impl Polars {
+    fn of(model: &ModelFile) -> Self {
+        let grid = model.grid();
+        let initial = model.initial.drag_table().values().to_vec();
+        let informed = model
+            .learnt
+            .as_ref()
+            .map_or_else(|| vec![false; initial.len()], |learnt| learnt.law.informed());
+        Self {
+            lift_coefficient: grid.x().breakpoints().to_vec(),
+            mach: grid.y().breakpoints().to_vec(),
+            initial,
+            current: model.drag_coefficient().values().to_vec(),
+            learnt: model.learnt.is_some(),
+            informed,
+            extrapolated: model.initial.extrapolated().to_vec(),
+        }
+    }
+
+    /// Node of two breakpoints.
+    pub(crate) fn node(&self, lift_coefficient: usize, mach: usize) -> usize {
+        lift_coefficient * self.mach.len() + mach
+    }
+}

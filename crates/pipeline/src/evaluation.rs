@@ -1,0 +1,196 @@
+//! What a table says of segments, and what a run knows of each tail at its end: the material of summary, tables, pages.
+
+use adapt::paper;
+use flight::{Observation, Segment};
+use lut::{Outside, Table};
+use perf_model::PerformanceModel;
+
+use crate::model_file::ModelFile;
+use crate::segments_table::{Evaluated, SegmentRow};
+use crate::statistics::ErrorStatistics;
+use crate::summary::{ErrorsSummary, TailSummary};
+
+/// One tail at the end of a run.
+#[derive(Clone, Debug)]
+pub struct TailResult {
+    /// Tail.
+    pub tail: String,
+    /// Its model, with what it has learnt.
+    pub model: ModelFile,
+    /// Every segment, with what the initial (or given) table says of it.
+    pub rows: Vec<SegmentRow>,
+    /// What the final table says of each segment, as long as `rows`; empty where nothing is adapted.
+    pub after: Vec<Option<Evaluated>>,
+    /// The figures.
+    pub summary: TailSummary,
+    /// What is worth knowing about this tail's data ("roll not recorded: criterion not evaluated", …), each once.
+    pub notes: Vec<String>,
+}
+
+/// Counts that the segments do not tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TailCounts {
+    /// All flights.
+    pub flights: usize,
+    /// Flights that this run added.
+    pub flights_new: usize,
+    /// Samples of all flights.
+    pub samples: u64,
+}
+
+/// A tail's model and segments, before anything is said of their errors.
+#[derive(Clone, Debug)]
+pub struct TailData {
+    /// Tail.
+    pub tail: String,
+    /// Its model, with what it has learnt.
+    pub model: ModelFile,
+    /// Its segments, in the order of the table that is written.
+    pub segments: Vec<Segment>,
+    /// Counts that the segments do not tell.
+    pub counts: TailCounts,
+    /// What is worth knowing about its data, each once.
+    pub notes: Vec<String>,
+}
+
+impl TailResult {
+    /// The result of an adaptation: errors of the initial table before, of the learnt one after.
+    pub fn adapted(data: TailData) -> Self {
+        let before = evaluate(&data.model.initial, data.model.initial.drag_table(), &data.segments);
+        let after = evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments);
+        let mut summary = summary_of(&data, &before);
+        summary.informed_nodes = Some(data.model.informed_nodes());
+        summary.refits = data.model.refits();
+        summary.fuel_flow_error_percent.after = Some(statistics(&after));
+        Self::put_together(data, before, after, summary)
+    }
+
+    /// The result of a model as it was given: errors of its current table, nothing adapted.
+    pub fn as_given(data: TailData) -> Self {
+        let before = evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments);
+        let mut summary = summary_of(&data, &before);
+        summary.interval95_coverage = coverage(&data.model, &data.segments);
+        Self::put_together(data, before, Vec::new(), summary)
+    }
+
+    fn put_together(
+        data: TailData,
+        before: Vec<Option<Evaluated>>,
+        after: Vec<Option<Evaluated>>,
+        summary: TailSummary,
+    ) -> Self {
+        let TailData { tail, model, segments, notes, .. } = data;
+        let rows = segments
+            .into_iter()
+            .zip(before)
+            .map(|(segment, evaluated)| SegmentRow { segment, evaluated })
+            .collect();
+        Self { tail, model, rows, after, summary, notes }
+    }
+
+    /// Errors of the final table in per cent, segment by segment; empty where nothing is adapted.
+    pub fn errors_after(&self) -> Vec<Option<f64>> {
+        errors(&self.after)
+    }
+}
+
+/// What a table on the model's grid says of each segment; `None` for a state that the model is not defined for. A
+/// segment outside the grid keeps its coefficients and has no error.
+///
+/// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
+/// the error, effects included.
+pub fn evaluate(
+    model: &PerformanceModel,
+    table: &Table,
+    segments: &[Segment],
+) -> Vec<Option<Evaluated>> {
+    // Some effects are shares of the table's own drag: they are those of the table that is asked.
+    let moved = model.effects().and_then(|_| model.with_drag_table(table.clone()).ok());
+    let model = moved.as_ref().unwrap_or(model);
+    segments
+        .iter()
+        .map(|segment| match model.observe(segment) {
+            Ok(observation) => {
+                let error = error_percent(table, &observation);
+                Some(Evaluated {
+                    lift_coefficient: observation.lift_coefficient,
+                    drag_coefficient: observation.drag_coefficient,
+                    predicted_fuel_flow_kg_s: error
+                        .map(|error| segment.means.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
+                    error_percent: error,
+                })
+            }
+            Err(_) => state_without_errors(model, segment).map(|state| Evaluated {
+                lift_coefficient: state.lift_coefficient,
+                drag_coefficient: state.drag_coefficient,
+                predicted_fuel_flow_kg_s: None,
+                error_percent: None,
+            }),
+        })
+        .collect()
+}
+
+/// What a table says of an observation; `None` outside its grid.
+pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
+    let cell =
+        table.grid().locate(observation.lift_coefficient, observation.mach, Outside::Error).ok()?;
+    Some(paper::error_percent(table, &cell, observation))
+}
+
+/// What both kinds of results have in common.
+fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
+    TailSummary {
+        tail: data.tail.clone(),
+        flights: data.counts.flights,
+        flights_new: data.counts.flights_new,
+        samples: data.counts.samples,
+        segments: data.segments.len(),
+        outside_table: errors(before).iter().filter(|error| error.is_none()).count(),
+        informed_nodes: None,
+        refits: None,
+        interval95_coverage: None,
+        fuel_flow_error_percent: ErrorsSummary { before: statistics(before), after: None },
+    }
+}
+
+fn state_without_errors(
+    model: &PerformanceModel,
+    segment: &Segment,
+) -> Option<perf_model::SegmentState> {
+    model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
+}
+
+/// Two-sided 95 % of a standard normal distribution.
+const STANDARD_DEVIATIONS_OF_95_PERCENT: f64 = 1.959_963_984_540_054;
+
+/// Share of segments whose error lies within the interval that law `bayes` states for them; `None` by another law, or
+/// without a segment inside the table.
+fn coverage(model: &ModelFile, segments: &[Segment]) -> Option<f64> {
+    let posterior = model.posterior()?;
+    let mut inside = 0_usize;
+    let mut all = 0_usize;
+    for segment in segments {
+        let Ok(observation) = model.initial.observe(segment) else { continue };
+        let grid = posterior.drag().grid();
+        let Ok(cell) =
+            grid.locate(observation.lift_coefficient, observation.mach, lut::Outside::Error)
+        else {
+            continue;
+        };
+        let deviation = posterior.segment_variance(&cell, &observation.variance).sqrt();
+        let initial = posterior.initial().interpolate(&cell);
+        let excess = (observation.drag_coefficient - posterior.drag().interpolate(&cell)) / initial;
+        all += 1;
+        inside += usize::from(excess.abs() <= STANDARD_DEVIATIONS_OF_95_PERCENT * deviation);
+    }
+    (all > 0).then(|| inside as f64 / all as f64)
+}
+
+fn errors(evaluated: &[Option<Evaluated>]) -> Vec<Option<f64>> {
+    evaluated.iter().map(|evaluated| evaluated.and_then(|e| e.error_percent)).collect()
+}
+
+fn statistics(evaluated: &[Option<Evaluated>]) -> ErrorStatistics {
+    let errors: Vec<f64> = errors(evaluated).into_iter().flatten().collect();
+    ErrorStatistics::of(&errors)
+}

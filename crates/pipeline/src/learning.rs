@@ -1,0 +1,200 @@
+//! One tail's flights, learnt one after the other.
+
+use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
+use adapt::paper::{self, PaperLaw, State as PaperState, Update};
+use diagnose::{Baseline, FlightRecord};
+use effects::ExtendedModel;
+use flight::{Observation, Segment};
+use perf_model::PerformanceModel;
+use refit::RefitRule;
+
+use crate::condition_means::ConditionMeans;
+use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
+
+/// A flight to learn.
+#[derive(Clone, Debug)]
+pub struct FlightToLearn<'a> {
+    /// Its entry in the ledger, but for what learning counts.
+    pub entry: LedgerEntry,
+    /// Its segments in time order.
+    pub segments: &'a [Segment],
+}
+
+/// What learning one flight came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlightLearnt {
+    /// Segments that adapted the table.
+    pub adapted: usize,
+    /// Segments outside the grid, or that could not be reduced to an observation.
+    pub outside_table: usize,
+    /// Whether the polynomial was fitted anew.
+    pub refitted: bool,
+}
+
+/// The law by which a tail learns, with what the caller may set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LawChoice {
+    /// Law `paper`.
+    Paper(PaperSettings),
+    /// Law `bayes` with the model's settings.
+    Bayes(BayesSettings),
+}
+
+/// The state in which a tail begins: the initial table, nothing learnt.
+///
+/// # Errors
+/// An initial table that the law cannot correct.
+pub fn begin(
+    initial: &ExtendedModel,
+    tail: &str,
+    criteria: &str,
+    law: LawChoice,
+) -> Result<Learnt, LearningError> {
+    let table = initial.drag_table();
+    let law = match law {
+        LawChoice::Paper(settings) => LawState::Paper {
+            settings,
+            state: PaperState::new(table.clone()),
+            ever_adapted: vec![false; table.values().len()],
+            refits: 0,
+        },
+        LawChoice::Bayes(settings) => {
+            let state = BayesState::new(table, settings)?;
+            let posterior = Box::new(state.solve()?);
+            LawState::Bayes { state: Box::new(state), posterior }
+        }
+    };
+    Ok(Learnt {
+        tail: tail.to_owned(),
+        criteria: criteria.to_owned(),
+        law,
+        references: ConditionMeans::default(),
+        baseline: None,
+        ledger: Vec::new(),
+    })
+}
+
+/// Learns one flight. Law `paper`: each segment in time order, then, perhaps, the global refit. Law `bayes`: all its
+/// segments at once; [`settle`] brings the table up to date.
+///
+/// # Errors
+/// A threshold that is none, or a table whose nodes no longer determine its polynomial; the flight is then not learnt.
+pub fn learn_flight(
+    initial: &ExtendedModel,
+    learnt: &mut Learnt,
+    flight: &FlightToLearn<'_>,
+) -> Result<FlightLearnt, LearningError> {
+    let mut observations = Vec::with_capacity(flight.segments.len());
+    let mut result = FlightLearnt::default();
+    for segment in flight.segments {
+        match (initial.observe(segment), initial.corrected(segment)) {
+            (Ok(observation), Ok(corrected)) => {
+                learnt.references.add(&corrected, observation.lift_coefficient);
+                observations.push(observation);
+            }
+            _ => result.outside_table += 1,
+        }
+    }
+    match &mut learnt.law {
+        LawState::Paper { settings, state, ever_adapted, refits } => {
+            let law = PaperLaw::new(settings.threshold_percent)?;
+            learn_by_paper(law, state, ever_adapted, &observations, &mut result);
+            let (drag_coefficient, confidence) = state.tables_mut();
+            let basis = initial.polynomial().basis;
+            let report =
+                refit::refit(RefitRule::ghazi_2020(), basis, drag_coefficient, confidence)?;
+            if report.fit.is_some() {
+                result.refitted = true;
+                *refits += 1;
+            }
+        }
+        LawState::Bayes { state, .. } => {
+            let update = state.learn_flight(&observations);
+            for observation in &update.observations {
+                match observation {
+                    ObservationUpdate::Learnt { .. } => result.adapted += 1,
+                    _ => result.outside_table += 1,
+                }
+            }
+        }
+    }
+    learnt.ledger.push(LedgerEntry {
+        segments: flight.segments.len() as u64,
+        outside_table: result.outside_table as u64,
+        ..flight.entry.clone()
+    });
+    Ok(result)
+}
+
+/// Brings the table up to date with what was learnt: the one solve of law `bayes`, nothing for law `paper`.
+///
+/// # Errors
+/// A state that is no information (a damaged file).
+pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
+    if let LawState::Bayes { state, posterior } = &mut learnt.law {
+        **posterior = state.solve()?;
+        if let Some(guard) = posterior.guard() {
+            tracing::warn!(
+                tail = learnt.tail,
+                nodes = guard.nodes.len(),
+                "drag was kept physical at nodes where what was learnt was not"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Learns, from every segment of a tail, what no table can hold (law `bayes`). Fewer than five flights teach nothing.
+pub fn remember_remainder(initial: &ExtendedModel, learnt: &mut Learnt, segments: &[Segment]) {
+    let LawState::Bayes { posterior, .. } = &learnt.law else { return };
+    let flights: Vec<FlightRecord<'_>> = segments
+        .chunk_by(|one, other| one.identity == other.identity)
+        .map(|segments| FlightRecord { segments, gauges: None })
+        .collect();
+    learnt.baseline = match Baseline::learn(initial, posterior.drag(), &flights) {
+        Ok(baseline) => Some(baseline),
+        Err(reason) => {
+            tracing::info!(tail = learnt.tail, "no remainder is remembered: {reason}");
+            None
+        }
+    };
+}
+
+fn learn_by_paper(
+    law: PaperLaw,
+    state: &mut PaperState,
+    ever_adapted: &mut [bool],
+    observations: &[Observation],
+    result: &mut FlightLearnt,
+) {
+    for observation in observations {
+        match law.adapt(state, observation) {
+            update @ Update::Adapted { .. } => {
+                result.adapted += 1;
+                for change in update.changes() {
+                    ever_adapted[change.node] = true;
+                }
+            }
+            Update::WithinDeadBand { .. } => {}
+            Update::OutsideGrid(_) | Update::Unusable { .. } => result.outside_table += 1,
+        }
+    }
+}
+
+/// Why a flight was not learnt.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LearningError {
+    /// The threshold of law `paper`.
+    #[error(transparent)]
+    Threshold(#[from] paper::ThresholdError),
+    /// The global refit of law `paper`.
+    #[error(transparent)]
+    Refit(#[from] refit::RefitError),
+    /// The initial table, for law `bayes`.
+    #[error(transparent)]
+    Initial(#[from] InitialError),
+    /// The solution of law `bayes`.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+}

@@ -1,0 +1,328 @@
+//! `MODEL.ron`: what an aircraft's model is and what it has learnt.
+//!
+//! BE ADVISED: other programs, and older and newer versions of this one, read these files. `format` counts up when the
+//! meaning of a field changes; a field may be added with a default. Every number is written with the shortest decimals
+//! that read back to the same bits. The last field is a checksum of all bytes before it: a digit that a disk, a mail
+//! program or an editor changed is noticed before anybody acts on it.
+
+mod applied;
+mod text;
+
+pub use applied::{AppliedRecord, DiagnosisRecord, ExtendError};
+pub use text::ModelTextError;
+
+use std::sync::Arc;
+
+use adapt::bayes::{BayesSettings, BayesState, Posterior};
+use adapt::paper::State as PaperState;
+use diagnose::Baseline;
+use effects::ExtendedModel;
+use lut::Table;
+use perf_model::{Guide, InitialModel, PerformanceModel};
+use serde::{Deserialize, Serialize};
+
+use crate::condition_means::ConditionMeans;
+
+/// The format that this program writes.
+pub const FORMAT: u32 = 1;
+
+/// A model, and what it has learnt.
+#[derive(Clone, Debug)]
+pub struct ModelFile {
+    /// The initial model: aircraft, polynomial, drag table, extrapolated nodes, and the effects of `applied`.
+    pub initial: ExtendedModel,
+    /// What the guide was like from which the initial model comes.
+    pub guide: GuideRecord,
+    /// Settings of the laws, fixed when the initial model is made.
+    pub settings: LawSettings,
+    /// What was learnt; `None` in an initial model.
+    pub learnt: Option<Learnt>,
+    /// Diagnoses whose effects the model contains, in the order in which they were applied.
+    pub applied: Vec<AppliedRecord>,
+}
+
+/// What the initial model's guide was like, and how well the polynomial fits it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GuideRecord {
+    /// Rows.
+    pub points: u64,
+    /// Smallest and largest lift coefficient.
+    pub lift_coefficient: (f64, f64),
+    /// Smallest and largest Mach number.
+    pub mach: (f64, f64),
+    /// Root mean square of the fit's residuals in drag coefficient.
+    pub residual_rms: f64,
+    /// Condition number of the fit's design.
+    pub condition_number: f64,
+}
+
+/// Settings of the adaptation laws.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LawSettings {
+    /// Of law `paper`.
+    pub paper: PaperSettings,
+    /// Of law `bayes`; the defaults where the file does not say.
+    #[serde(default = "BayesSettings::physical_2026")]
+    pub bayes: BayesSettings,
+}
+
+impl LawSettings {
+    /// The settings that the laws were published with.
+    pub const fn published() -> Self {
+        Self {
+            paper: PaperSettings {
+                threshold_percent: adapt::paper::PaperLaw::ghazi_2020().threshold_percent(),
+            },
+            bayes: BayesSettings::physical_2026(),
+        }
+    }
+}
+
+/// Settings of law `paper`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaperSettings {
+    /// A segment adapts the table where its absolute error exceeds this.
+    pub threshold_percent: f64,
+}
+
+/// What a model has learnt from one tail.
+#[derive(Clone, Debug)]
+pub struct Learnt {
+    /// Whose flights.
+    pub tail: String,
+    /// Name of the trim criteria by which its segments were found.
+    pub criteria: String,
+    /// The law and its state.
+    pub law: LawState,
+    /// Mean conditions.
+    pub references: ConditionMeans,
+    /// What no table over lift coefficient and Mach number can hold: smooth remainder, rotor-speed deck, noise levels
+    /// (law `bayes`, five flights or more).
+    pub baseline: Option<Baseline>,
+    /// Flights, in the order in which they were learnt.
+    pub ledger: Vec<LedgerEntry>,
+}
+
+/// State of the law by which a model learns.
+#[derive(Clone, Debug)]
+pub enum LawState {
+    /// The local law of Ghazi et al. 2020 with its global refit.
+    Paper {
+        /// Settings in force.
+        settings: PaperSettings,
+        /// Drag and confidence tables.
+        state: PaperState,
+        /// Nodes that a segment ever adapted (the refit sets confidences back).
+        ever_adapted: Vec<bool>,
+        /// Global refits so far.
+        refits: u32,
+    },
+    /// The Gaussian law, with the initial model's settings.
+    Bayes {
+        /// What was learnt.
+        state: Box<BayesState>,
+        /// Its solution.
+        posterior: Box<Posterior>,
+    },
+}
+
+impl LawState {
+    /// The law's name in arguments and files.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Paper { .. } => "paper",
+            Self::Bayes { .. } => "bayes",
+        }
+    }
+
+    /// The drag table as it stands.
+    pub const fn drag_coefficient(&self) -> &Table {
+        match self {
+            Self::Paper { state, .. } => state.drag_coefficient(),
+            Self::Bayes { posterior, .. } => posterior.drag(),
+        }
+    }
+
+    /// How much was learnt at each node: the confidence λ of law `paper`, the effective number of observations of law
+    /// `bayes`.
+    pub fn confidence(&self) -> &[f64] {
+        match self {
+            Self::Paper { state, .. } => state.confidence().values(),
+            Self::Bayes { posterior, .. } => posterior.observations(),
+        }
+    }
+
+    /// Which nodes were ever informed by a segment.
+    pub fn informed(&self) -> Vec<bool> {
+        match self {
+            Self::Paper { ever_adapted, .. } => ever_adapted.clone(),
+            Self::Bayes { posterior, .. } => {
+                posterior.observations().iter().map(|count| *count >= 1.0).collect()
+            }
+        }
+    }
+
+    /// The law and its settings in words.
+    pub fn told(&self) -> String {
+        match self {
+            Self::Paper { settings, .. } => {
+                format!("law paper, threshold {} %", settings.threshold_percent)
+            }
+            Self::Bayes { .. } => "law bayes".to_owned(),
+        }
+    }
+}
+
+/// A flight that was learnt.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LedgerEntry {
+    /// Tail as sent.
+    pub tail: String,
+    /// Flight as sent.
+    pub flight: String,
+    /// START, an instant.
+    pub start: String,
+    /// SHA-256 of the report's bytes (uncompressed).
+    pub content: String,
+    /// Samples of the report.
+    pub samples: u64,
+    /// Stabilised segments.
+    pub segments: u64,
+    /// Segments that the grid refused.
+    pub outside_table: u64,
+}
+
+impl ModelFile {
+    /// The model file of a fresh initial model, with the laws' published settings.
+    pub fn from_initial(initial: &InitialModel, guide: &Guide) -> Self {
+        Self {
+            initial: initial.model.clone(),
+            guide: GuideRecord {
+                points: guide.points().len() as u64,
+                lift_coefficient: initial.fit.lift_coefficients,
+                mach: initial.fit.machs,
+                residual_rms: initial.fit.residual_rms,
+                condition_number: initial.fit.condition_number,
+            },
+            settings: LawSettings::published(),
+            learnt: None,
+            applied: Vec::new(),
+        }
+    }
+
+    /// A model from the text of its file.
+    ///
+    /// # Errors
+    /// A text that is no model, is of a newer format, or whose checksum does not match.
+    pub fn from_text(text: &str) -> Result<Self, ModelTextError> {
+        text::parse(text)
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// None that is known: what RON refuses to write.
+    pub fn to_text(&self) -> Result<String, ron::Error> {
+        text::print(self)
+    }
+
+    /// The drag table as it stands: learnt, or initial.
+    pub fn drag_coefficient(&self) -> &Table {
+        self.learnt
+            .as_ref()
+            .map_or(self.initial.drag_table(), |learnt| learnt.law.drag_coefficient())
+    }
+
+    /// How much was learnt at each node, where something was learnt.
+    pub fn confidence(&self) -> Option<&[f64]> {
+        self.learnt.as_ref().map(|learnt| learnt.law.confidence())
+    }
+
+    /// The solution of law `bayes`, where that is the law.
+    pub fn posterior(&self) -> Option<&Posterior> {
+        match &self.learnt {
+            Some(Learnt { law: LawState::Bayes { posterior, .. }, .. }) => Some(posterior),
+            _ => None,
+        }
+    }
+
+    /// The model that predicts: the initial one with the learnt table in its place.
+    ///
+    /// # Errors
+    /// A learnt table with a drag coefficient that is not positive (law `paper` takes what it is given).
+    pub fn current(&self) -> Result<ExtendedModel, effects::EffectModelError> {
+        self.initial.with_drag_table(self.drag_coefficient().clone())
+    }
+
+    /// Global refits, where the law makes them.
+    pub fn refits(&self) -> Option<u32> {
+        match &self.learnt {
+            Some(Learnt { law: LawState::Paper { refits, .. }, .. }) => Some(*refits),
+            _ => None,
+        }
+    }
+
+    /// Share of nodes ever adapted (law `paper`), or with at least one effective observation (law `bayes`).
+    pub fn informed_nodes(&self) -> f64 {
+        self.learnt.as_ref().map_or(0.0, |learnt| {
+            let informed = learnt.law.informed();
+            let count = informed.iter().filter(|informed| **informed).count();
+            count as f64 / informed.len() as f64
+        })
+    }
+
+    /// Whether two files hold the same initial model and settings; if not, what differs and how.
+    pub fn difference_of_initial(&self, other: &Self) -> Option<(&'static str, String)> {
+        if self.initial.aircraft() != other.initial.aircraft() {
+            return Some((
+                "aircraft",
+                format!(
+                    "{:?} against {:?}",
+                    other.initial.aircraft().name(),
+                    self.initial.aircraft().name()
+                ),
+            ));
+        }
+        if self.initial.effects() != other.initial.effects() {
+            return Some((
+                "set of applied effects",
+                format!("{} against {}", other.told_effects(), self.told_effects()),
+            ));
+        }
+        if self.initial != other.initial {
+            return Some((
+                "initial model",
+                format!(
+                    "polynomial {:?} against {:?}",
+                    other.initial.polynomial().coefficients,
+                    self.initial.polynomial().coefficients
+                ),
+            ));
+        }
+        if self.settings != other.settings {
+            return Some(("setting", format!("{:?} against {:?}", other.settings, self.settings)));
+        }
+        None
+    }
+
+    /// Whether two files learn by the same law with the same settings; if not, how they differ.
+    pub fn difference_of_law(&self, other: &Self) -> Option<String> {
+        let told = |model: &Self| {
+            model
+                .learnt
+                .as_ref()
+                .map(|learnt| format!("{}, criteria {}", learnt.law.told(), learnt.criteria))
+        };
+        let (one, other) = (told(self)?, told(other)?);
+        (one != other).then(|| format!("{other} against {one}"))
+    }
+
+    /// A grid shared by the model's tables.
+    pub fn grid(&self) -> &Arc<lut::Grid> {
+        self.initial.drag_table().grid()
+    }
+}

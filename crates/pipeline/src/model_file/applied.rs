@@ -1,0 +1,136 @@
+//! Effects of diagnoses that a model file contains, and from where.
+
+use std::fmt::Write;
+
+use diagnose::{AddedEffect, Addition, UnknownEffect};
+use flight::effect::EffectId;
+use perf_model::effects::{AppliedEffects, EffectModelError};
+use serde::{Deserialize, Serialize};
+
+use super::ModelFile;
+
+/// What one diagnosis added to the model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AppliedRecord {
+    /// Effects with sizes and hidden parameters, and what they are zero at.
+    pub addition: Addition,
+    /// Where they come from.
+    pub diagnosis: DiagnosisRecord,
+}
+
+/// A diagnosis that was applied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DiagnosisRecord {
+    /// Whose; `*` for a pool.
+    pub tail: String,
+    /// Flights that were diagnosed.
+    pub flights: u64,
+    /// Their segments.
+    pub segments: u64,
+    /// START of the first of them.
+    pub first: String,
+    /// START of the last of them.
+    pub last: String,
+    /// Probability of the first effect.
+    pub probability: f64,
+    /// Effects that the flights could not tell from it.
+    pub class: Vec<String>,
+}
+
+/// Why a model cannot contain what a diagnosis found.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExtendError {
+    /// A name that no effect has.
+    #[error(transparent)]
+    Unknown(#[from] UnknownEffect),
+    /// An effect that the model cannot take.
+    #[error(transparent)]
+    Effect(#[from] EffectModelError),
+}
+
+impl AppliedRecord {
+    /// The effects with sizes and units, in words.
+    pub fn told(&self) -> String {
+        self.addition.effects.iter().map(told).collect::<Vec<_>>().join(" and ")
+    }
+}
+
+/// One effect with size and unit, in words.
+fn told(added: &AddedEffect) -> String {
+    let unit = EffectId::from_name(&added.effect).map_or("", |id| id.entry().unit);
+    let mut words =
+        format!("{} {:+.4} ± {:.4} {unit}", added.effect, added.size, added.standard_deviation);
+    if let Some(pivot) = added.throttle_pivot {
+        let argument = added.throttle_argument.unwrap_or_default().words();
+        let _ = write!(words, ", over {argument}, pivot {pivot:.1}");
+    }
+    if let Some(mach) = added.drag_divergence_mach {
+        let _ = write!(words, ", Mdd {mach}");
+    }
+    if let Some(from_s) = added.step_from_s {
+        #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
+        let from = flight::Timestamp::from_second(from_s as i64)
+            .map_or_else(|_| from_s.to_string(), |instant| instant.to_string());
+        let _ = write!(words, ", from {from} on");
+    }
+    if let Some(target) = added.step_target {
+        let _ = write!(
+            words,
+            ", of {}",
+            match target {
+                effects::StepTarget::FuelFlow => "fuel flow",
+                effects::StepTarget::Drag => "drag",
+            }
+        );
+    }
+    words
+}
+
+/// Applied effects as the performance model takes them.
+///
+/// # Errors
+/// A name that no effect has.
+pub(super) fn layers_of(applied: &[AppliedRecord]) -> Result<AppliedEffects, UnknownEffect> {
+    let layers = applied
+        .iter()
+        .map(|record| record.addition.layer())
+        .collect::<Result<Vec<_>, UnknownEffect>>()?;
+    Ok(AppliedEffects::new(layers))
+}
+
+impl ModelFile {
+    /// The model with the effects of one more diagnosis.
+    ///
+    /// # Errors
+    /// An effect of an unknown name, or one that the model cannot take.
+    pub fn extended(&self, record: AppliedRecord) -> Result<Self, ExtendError> {
+        let mut applied = self.applied.clone();
+        applied.push(record);
+        let initial = self.initial.with_effects(layers_of(&applied)?)?;
+        Ok(Self { initial, applied, ..self.clone() })
+    }
+
+    /// The tail that the model is of: whose diagnosis was applied to it, else whose flights it has learnt.
+    pub fn tail(&self) -> Option<&str> {
+        let applied = self.applied.last().map(|record| record.diagnosis.tail.as_str());
+        let learnt = self.learnt.as_ref().map(|learnt| learnt.tail.as_str());
+        applied.filter(|tail| *tail != "*").or(learnt)
+    }
+
+    /// The effects that the model contains in words; "none" for none.
+    pub fn told_effects(&self) -> String {
+        if self.applied.is_empty() {
+            return "none".to_owned();
+        }
+        self.applied.iter().map(AppliedRecord::told).collect::<Vec<_>>().join("; ")
+    }
+
+    /// What to say of the effects where recordings are held against the model; `None` without any.
+    pub fn note_of_effects(&self) -> Option<String> {
+        (!self.applied.is_empty())
+            .then(|| format!("the model contains applied effects: {}", self.told_effects()))
+    }
+}

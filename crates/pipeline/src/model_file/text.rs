@@ -1,0 +1,322 @@
+//! The text of `MODEL.ron`, both ways.
+
+use std::fmt::Display;
+use std::sync::Arc;
+
+use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
+use diagnose::Baseline;
+use effects::ExtendedModel;
+use lut::Table;
+use lut::surface::Surface;
+use perf_model::aircraft::AircraftFile;
+use perf_model::{Aircraft, PerformanceModel};
+use ron::ser::PrettyConfig;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::{
+    AppliedRecord, FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile,
+    PaperSettings, PaperState,
+};
+use crate::checksum::hexadecimal;
+use crate::condition_means::ConditionMeans;
+
+/// Begins the last line but one; everything before it is what the checksum is of.
+const CHECKSUM: &str = "\n    checksum: \"";
+
+/// Why a text is no model.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelTextError {
+    /// Some other file.
+    #[error("not a model file: it has no `format:` field")]
+    NoModel,
+    /// Written by a newer program.
+    #[error("model format {found}, this program reads up to {FORMAT}")]
+    Newer {
+        /// Its format.
+        found: u32,
+    },
+    /// No checksum at the end.
+    #[error("the file has no checksum: it is cut off")]
+    CutOff,
+    /// The bytes are not those that were written.
+    #[error(
+        "checksum {found} does not match the content ({computed}): the file was changed or damaged"
+    )]
+    Damaged {
+        /// As written in the file.
+        found: String,
+        /// Of the bytes before it.
+        computed: String,
+    },
+    /// Not what a model file holds.
+    #[error("{0}")]
+    Syntax(#[from] ron::error::SpannedError),
+    /// A value that makes no model.
+    #[error("{field}: {reason}")]
+    Value {
+        /// The field.
+        field: &'static str,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+impl ModelTextError {
+    /// What may be done about it.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Newer { .. } => Some("use a newer cruisefit".to_owned()),
+            Self::CutOff | Self::Damaged { .. } => {
+                Some("take the file from a backup, or adapt again from the reports".to_owned())
+            }
+            _ => None,
+        }
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    format: u32,
+    aircraft: AircraftFile,
+    guide: GuideRecord,
+    polynomial: Surface,
+    grid: GridText,
+    initial: InitialText,
+    settings: LawSettings,
+    learnt: Option<LearntText>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    effects: Vec<AppliedRecord>,
+    #[serde(default)]
+    checksum: String,
+}
+
+/// Breakpoints of the two axes; tables list the Mach numbers of the first lift coefficient, then of the second, …
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GridText {
+    lift_coefficient: Vec<f64>,
+    mach: Vec<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct InitialText {
+    drag_coefficient: Vec<f64>,
+    /// 1 for a node outside the range of the guide.
+    extrapolated: Vec<u8>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LearntText {
+    tail: String,
+    criteria: String,
+    law: LawText,
+    references: ConditionMeans,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    baseline: Option<Baseline>,
+    ledger: Vec<LedgerEntry>,
+}
+
+#[derive(Serialize, Deserialize)]
+enum LawText {
+    Paper {
+        settings: PaperSettings,
+        refits: u32,
+        drag_coefficient: Vec<f64>,
+        confidence: Vec<f64>,
+        ever_adapted: Vec<u8>,
+    },
+    /// The first three lists follow from the state and are for readers of the file.
+    Bayes {
+        drag_coefficient: Vec<f64>,
+        /// Relative to the initial drag coefficient.
+        standard_deviation: Vec<f64>,
+        observations: Vec<f64>,
+        state: BayesStateData,
+    },
+}
+
+/// The text of a model file.
+pub(super) fn print(model: &ModelFile) -> Result<String, ron::Error> {
+    let document = document_of(model);
+    let config = PrettyConfig::new().compact_arrays(true).new_line("\n");
+    let text = ron::ser::to_string_pretty(&document, config)?;
+    // The checksum field is written empty and last; the text before it is what is summed.
+    let Some(end) = text.rfind(CHECKSUM) else { return Ok(text) };
+    let body = &text[..end];
+    Ok(format!("{body}{CHECKSUM}{}\",\n)\n", checksum_of(body)))
+}
+
+/// A model from its text.
+pub(super) fn parse(text: &str) -> Result<ModelFile, ModelTextError> {
+    let format = format_of(text).ok_or(ModelTextError::NoModel)?;
+    if format > FORMAT {
+        return Err(ModelTextError::Newer { found: format });
+    }
+    let end = text.rfind(CHECKSUM).ok_or(ModelTextError::CutOff)?;
+    let found = text[end + CHECKSUM.len()..].split('"').next().unwrap_or_default();
+    let computed = checksum_of(&text[..end]);
+    if found != computed {
+        return Err(ModelTextError::Damaged { found: found.to_owned(), computed });
+    }
+    model_of(ron::from_str(text)?)
+}
+
+/// The number behind the first `format:`.
+fn format_of(text: &str) -> Option<u32> {
+    let (_, after) = text.split_once("format:")?;
+    let digits: String = after.trim_start().chars().take_while(char::is_ascii_digit).collect();
+    digits.parse().ok()
+}
+
+fn checksum_of(body: &str) -> String {
+    // Line ends do not count: a checkout may turn them.
+    let mut hash = Sha256::new();
+    for line in body.lines() {
+        hash.update(line.as_bytes());
+        hash.update(b"\n");
+    }
+    format!("sha256:{}", hexadecimal(&hash.finalize()))
+}
+
+fn document_of(model: &ModelFile) -> Document {
+    let grid = model.grid();
+    Document {
+        format: FORMAT,
+        aircraft: model.initial.aircraft().file().clone(),
+        guide: model.guide,
+        polynomial: *model.initial.polynomial(),
+        grid: GridText {
+            lift_coefficient: grid.x().breakpoints().to_vec(),
+            mach: grid.y().breakpoints().to_vec(),
+        },
+        initial: InitialText {
+            drag_coefficient: model.initial.drag_table().values().to_vec(),
+            extrapolated: flags_to_text(model.initial.extrapolated()),
+        },
+        settings: model.settings,
+        learnt: model.learnt.as_ref().map(learnt_to_text),
+        effects: model.applied.clone(),
+        checksum: String::new(),
+    }
+}
+
+fn learnt_to_text(learnt: &Learnt) -> LearntText {
+    let law = match &learnt.law {
+        LawState::Paper { settings, state, ever_adapted, refits } => LawText::Paper {
+            settings: *settings,
+            refits: *refits,
+            drag_coefficient: state.drag_coefficient().values().to_vec(),
+            confidence: state.confidence().values().to_vec(),
+            ever_adapted: flags_to_text(ever_adapted),
+        },
+        LawState::Bayes { state, posterior } => LawText::Bayes {
+            drag_coefficient: posterior.drag().values().to_vec(),
+            standard_deviation: posterior.standard_deviation().to_vec(),
+            observations: posterior.observations().to_vec(),
+            state: state.to_data(),
+        },
+    };
+    LearntText {
+        tail: learnt.tail.clone(),
+        criteria: learnt.criteria.clone(),
+        law,
+        references: learnt.references.clone(),
+        baseline: learnt.baseline.clone(),
+        ledger: learnt.ledger.clone(),
+    }
+}
+
+fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
+    let aircraft = Aircraft::new(document.aircraft).map_err(|error| value("aircraft", error))?;
+    // The breakpoints are written out for readers of the file; the aircraft's own are in force.
+    let grid = Arc::clone(aircraft.grid());
+    if grid.x().breakpoints() != document.grid.lift_coefficient {
+        return Err(value("grid.lift_coefficient", "not the breakpoints of the aircraft's table"));
+    }
+    if grid.y().breakpoints() != document.grid.mach {
+        return Err(value("grid.mach", "not the breakpoints of the aircraft's table"));
+    }
+    let table = |field, values: Vec<f64>| {
+        Table::new(Arc::clone(&grid), values).map_err(|error| value(field, error))
+    };
+    let nodes = grid.nodes();
+    let initial = PerformanceModel::new(
+        aircraft,
+        document.polynomial,
+        table("initial.drag_coefficient", document.initial.drag_coefficient)?,
+        flags_from_text("initial.extrapolated", &document.initial.extrapolated, nodes)?,
+    )
+    .map_err(|error| value("initial", error))?;
+    let effects =
+        super::applied::layers_of(&document.effects).map_err(|error| value("effects", error))?;
+    let initial = ExtendedModel::new(initial, effects).map_err(|error| value("effects", error))?;
+    let settings = document.settings;
+    let learnt = match document.learnt {
+        None => None,
+        Some(LearntText { tail, criteria, law, references, baseline, ledger }) => {
+            let law = law_of(law, &initial, settings.bayes)?;
+            Some(Learnt { tail, criteria, law, references, baseline, ledger })
+        }
+    };
+    Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied: document.effects })
+}
+
+fn law_of(
+    law: LawText,
+    initial: &ExtendedModel,
+    bayes: BayesSettings,
+) -> Result<LawState, ModelTextError> {
+    let grid = initial.drag_table().grid();
+    let table = |field, values: Vec<f64>| {
+        Table::new(Arc::clone(grid), values).map_err(|error| value(field, error))
+    };
+    match law {
+        LawText::Paper { settings, refits, drag_coefficient, confidence, ever_adapted } => {
+            let state = PaperState::from_tables(
+                table("learnt.law.drag_coefficient", drag_coefficient)?,
+                table("learnt.law.confidence", confidence)?,
+            )
+            .map_err(|error| value("learnt.law", error))?;
+            let ever_adapted =
+                flags_from_text("learnt.law.ever_adapted", &ever_adapted, grid.nodes())?;
+            Ok(LawState::Paper { settings, state, ever_adapted, refits })
+        }
+        LawText::Bayes { state, .. } => {
+            let state = BayesState::from_data(initial.drag_table(), bayes, state)
+                .map_err(|error| value("learnt.law.state", error))?;
+            let posterior = state.solve().map_err(|error| value("learnt.law.state", error))?;
+            Ok(LawState::Bayes { state: Box::new(state), posterior: Box::new(posterior) })
+        }
+    }
+}
+
+fn flags_to_text(flags: &[bool]) -> Vec<u8> {
+    flags.iter().map(|flag| u8::from(*flag)).collect()
+}
+
+fn flags_from_text(
+    field: &'static str,
+    flags: &[u8],
+    nodes: usize,
+) -> Result<Vec<bool>, ModelTextError> {
+    if flags.len() != nodes {
+        return Err(value(field, format!("{} flags for {nodes} nodes", flags.len())));
+    }
+    flags
+        .iter()
+        .map(|flag| match flag {
+            0 => Ok(false),
+            1 => Ok(true),
+            other => Err(value(field, format!("found {other}, expected 0 or 1"))),
+        })
+        .collect()
+}
+
+fn value(field: &'static str, reason: impl Display) -> ModelTextError {
+    ModelTextError::Value { field, reason: reason.to_string() }
+}

@@ -1,0 +1,133 @@
+//! What the diagnosis of a case is given: a model that knows nothing of what was planted, and segments. No name of an
+//! effect, no size.
+
+use diagnose::{Baseline, Diagnosis, FlightRecord, Input, Options, TableUncertainty, diagnose};
+use flight::effect::EffectId;
+use lut::Table;
+use perf_model::PerformanceModel;
+use pipeline::learning::{self, FlightToLearn, LawChoice};
+use pipeline::model_file::{LawState, LedgerEntry};
+use pipeline::reduction::ReducedFlight;
+use pipeline::table_uncertainty;
+use segmenter::TrimCriteria;
+use simulate::study::DragError;
+
+use crate::draw::{DrawnCase, TAIL};
+use crate::failure::CaseFailure;
+use crate::flown_case::{fly, records};
+use crate::reference_model::{COARSE, FINE, reference_model};
+
+/// What the diagnosis is given.
+#[derive(Clone, Debug)]
+pub struct DiagnosisInputs {
+    model: PerformanceModel,
+    /// The adapted drag table; the model's own where nothing was learnt.
+    drag_table: Table,
+    baseline: Option<Baseline>,
+    uncertainty: Option<TableUncertainty>,
+    flights: Vec<ReducedFlight>,
+}
+
+impl DiagnosisInputs {
+    /// Flies a case and makes the model that lacks what is planted.
+    ///
+    /// # Errors
+    /// What the simulator, the segmenter or the law of adaptation refuses.
+    pub fn gather(drawn: &DrawnCase) -> Result<Self, CaseFailure> {
+        let clean = drawn.clean_flights();
+        let sensors = drawn.flown().plan().sensors.sensors();
+        let flights = fly(drawn.flown(), clean..drawn.flown().len())?;
+        if clean == 0 {
+            let model = reference_model(drawn.aircraft(), drawn.richness(), &sensors, &FINE, None)?;
+            let drag_table = model.drag_table().clone();
+            return Ok(Self { model, drag_table, baseline: None, uncertainty: None, flights });
+        }
+        let training_flights = fly(drawn.training_flights(), 0..clean)?;
+        let error = DragError::study();
+        let initial =
+            reference_model(drawn.aircraft(), drawn.richness(), &sensors, &COARSE, Some(&error))?;
+        adapted(initial, &training_flights, flights)
+    }
+
+    /// The diagnosis, with these effects struck from the library.
+    ///
+    /// # Errors
+    /// What the diagnosis refuses.
+    pub fn diagnose(&self, without: &[EffectId]) -> Result<Diagnosis, CaseFailure> {
+        self.diagnose_with(&Options { without: without.to_vec(), ..Options::default() })
+    }
+
+    /// The diagnosis with the whole library, closure and places left out.
+    ///
+    /// # Errors
+    /// What the diagnosis refuses.
+    pub fn diagnose_quickly(&self) -> Result<Diagnosis, CaseFailure> {
+        self.diagnose_with(&Options { skip_closure: true, skip_where: true, ..Options::default() })
+    }
+
+    fn diagnose_with(&self, options: &Options) -> Result<Diagnosis, CaseFailure> {
+        let records = self.records();
+        Ok(diagnose(&self.input(&records), options)?)
+    }
+
+    /// The same model held against other flights, for the scorer.
+    pub(crate) fn against(&self, flights: Vec<ReducedFlight>) -> Self {
+        Self { flights, ..self.clone() }
+    }
+
+    pub(crate) fn records(&self) -> Vec<FlightRecord<'_>> {
+        records(&self.flights)
+    }
+
+    pub(crate) fn input<'a>(&'a self, records: &'a [FlightRecord<'a>]) -> Input<'a> {
+        Input {
+            model: &self.model,
+            drag_table: &self.drag_table,
+            flights: records,
+            baseline: self.baseline.as_ref(),
+            table: self.uncertainty.as_ref(),
+            references: self.baseline.as_ref().map(|baseline| *baseline.references()),
+        }
+    }
+}
+
+/// Law `bayes` on clean flights with its remainder, as `cruisefit adapt` does it.
+fn adapted(
+    initial: PerformanceModel,
+    training_flights: &[ReducedFlight],
+    flights: Vec<ReducedFlight>,
+) -> Result<DiagnosisInputs, CaseFailure> {
+    let law = LawChoice::Bayes(adapt::bayes::BayesSettings::physical_2026());
+    let mut learnt = learning::begin(&initial, TAIL, TrimCriteria::PRESETS[0], law)?;
+    let mut all = Vec::new();
+    for (index, flight) in training_flights.iter().enumerate() {
+        let Some(first) = flight.segments.first() else { continue };
+        let entry = LedgerEntry {
+            tail: TAIL.to_owned(),
+            flight: first.identity.flight.clone(),
+            start: first.identity.start.to_string(),
+            content: format!("flight {index}"),
+            samples: flight.samples as u64,
+            segments: 0,
+            outside_table: 0,
+        };
+        let lesson = FlightToLearn { entry, segments: &flight.segments };
+        learning::learn_flight(&initial, &mut learnt, &lesson)?;
+        all.extend(flight.segments.iter().cloned());
+    }
+    learning::settle(&mut learnt)?;
+    learning::remember_remainder(&initial, &mut learnt, &all);
+    let uncertainty = match &learnt.law {
+        LawState::Bayes { posterior, .. } => {
+            Some(table_uncertainty::of_posterior(posterior, initial.drag_table().grid())?)
+        }
+        LawState::Paper { .. } => None,
+    };
+    Ok(DiagnosisInputs {
+        drag_table: learnt.law.drag_coefficient().clone(),
+        baseline: learnt.baseline,
+        uncertainty,
+        model: initial,
+        flights,
+    })
+}

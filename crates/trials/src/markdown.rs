@@ -1,0 +1,185 @@
+//! Scores for people: `trials.md`, and what the terminal shows.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use crate::scores::Share;
+
+use crate::plan::{Background, ReferenceModel, ScoreName};
+use crate::summary::{Goal, Group, Reached, Trials};
+
+/// Scores of the table of sizes, each a row.
+const ROWS: [ScoreName; 25] = [
+    ScoreName::Reported,
+    ScoreName::TopOne,
+    ScoreName::TopOneSeparable,
+    ScoreName::TopThree,
+    ScoreName::Class,
+    ScoreName::SureAndWrong,
+    ScoreName::Credible,
+    ScoreName::CalibrationError,
+    ScoreName::Intervals,
+    ScoreName::SizeErrorMedian,
+    ScoreName::ClosureMedian,
+    ScoreName::PlantedClosureMedian,
+    ScoreName::Silent,
+    ScoreName::NullAndSure,
+    ScoreName::Abstained,
+    ScoreName::StruckAndSure,
+    ScoreName::Outside,
+    ScoreName::OutsideAndSure,
+    ScoreName::PairExact,
+    ScoreName::PairClass,
+    ScoreName::PairTop,
+    ScoreName::PlaceSignificant,
+    ScoreName::PlaceDriver,
+    ScoreName::PlaceOverlapMedian,
+    ScoreName::PlaceAlarm,
+];
+
+/// `trials.md`.
+pub fn markdown(trials: &Trials) -> String {
+    let mut text = format!(
+        "# Blind trials, seed {}\n\n{} cases, {} that came to nothing. SHA-256 over the sealed truths: `{}`.\nShares with \
+         Wilson's 95 % interval and the number of cases behind them.\n",
+        trials.seed,
+        trials.cases.len(),
+        trials.failed.len(),
+        trials.seal_sha256
+    );
+    if !trials.goals.is_empty() {
+        text.push_str("\n## Goals at typical sizes\n\n| model, background | score | goal | reached | |\n|---|---|---|---|---|\n");
+        for goal in trials.goals.iter().filter(|goal| goal.reached.is_some()) {
+            let _ = writeln!(
+                text,
+                "| {}, {} | {} | {} {} | {} | {} |",
+                denied(goal.reference_model),
+                background(goal.background),
+                goal.words,
+                if goal.at_least { "≥" } else { "≤" },
+                goal.goal,
+                reached(goal),
+                verdict(goal)
+            );
+        }
+    }
+    for group in &trials.groups {
+        group_table(group, &mut text);
+    }
+    for (case, reason) in &trials.failed {
+        let _ = writeln!(text, "\nCase {case} came to nothing: {reason}");
+    }
+    text
+}
+
+/// The goals in a dozen lines or two.
+pub fn terminal(trials: &Trials) -> String {
+    let mut text = String::new();
+    for group in &trials.groups {
+        let [single, null, struck, outside, pair] = group.cases;
+        let _ = writeln!(
+            text,
+            "{} model, {}, {} x typical: {single} single effects, {null} without, {struck} struck, {outside} outside, {pair} pairs",
+            denied(group.reference_model),
+            background(group.background),
+            group.times
+        );
+        let goals = trials.goals.iter().filter(|goal| {
+            (goal.reference_model, goal.background) == (group.reference_model, group.background)
+                && goal.reached.is_some()
+        });
+        #[expect(clippy::float_cmp, reason = "the number 1 as a plan writes it")]
+        if group.times == 1.0 {
+            for goal in goals {
+                let _ = writeln!(
+                    text,
+                    "  {:<7} {} {} {}: {}",
+                    verdict(goal),
+                    goal.words,
+                    if goal.at_least { ">=" } else { "<=" },
+                    goal.goal,
+                    reached(goal)
+                );
+            }
+        }
+    }
+    text
+}
+
+fn group_table(group: &Group, text: &mut String) {
+    let [single, null, struck, outside, pair] = group.cases;
+    let _ = writeln!(
+        text,
+        "\n## {} model, {}, {} × typical\n\n{single} single effects, {null} without effect, {struck} struck, {outside} \
+         outside the library, {pair} pairs; {:.0} segments a case, noise floor {:.2} %.\n\n| score | |\n|---|---|",
+        denied(group.reference_model),
+        background(group.background),
+        group.times,
+        group.segments_mean,
+        group.noise_floor_rms_percent
+    );
+    for name in ROWS {
+        let Reached { value, share } = Reached::of(&group.scores, name);
+        let Some(value) = value else { continue };
+        let _ = writeln!(text, "| {} | {} |", name.words(), number(value, share));
+    }
+    confusion(group, text);
+}
+
+fn confusion(group: &Group, text: &mut String) {
+    let table = &group.scores.confusion;
+    if table.is_empty() {
+        return;
+    }
+    let said: BTreeSet<&String> = table.values().flat_map(|row| row.keys()).collect();
+    let _ = writeln!(text, "\n| planted | said |\n|---|---|");
+    for (truth, row) in table {
+        let mut entries: Vec<(&String, usize)> =
+            said.iter().filter_map(|name| Some((*name, *row.get(*name)?))).collect();
+        entries.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));
+        let words: Vec<String> =
+            entries.into_iter().map(|(name, count)| format!("{name} {count}")).collect();
+        let _ = writeln!(text, "| {truth} | {} |", words.join(", "));
+    }
+}
+
+fn number(value: f64, share: Option<Share>) -> String {
+    match share {
+        Some(share) => {
+            format!("{value:.3} [{:.3}, {:.3}] of {}", share.ci95[0], share.ci95[1], share.of)
+        }
+        None => format!("{value:.3}"),
+    }
+}
+
+fn reached(goal: &Goal) -> String {
+    match (goal.reached, goal.ci95, goal.of) {
+        (Some(value), Some(ci95), Some(of)) => {
+            format!("{value:.3} [{:.3}, {:.3}] of {of}", ci95[0], ci95[1])
+        }
+        (Some(value), ..) => format!("{value:.3}"),
+        _ => "no case".to_owned(),
+    }
+}
+
+fn verdict(goal: &Goal) -> String {
+    match (goal.met, goal.reached) {
+        (Some(true), _) => "met".to_owned(),
+        (Some(false), Some(_)) => "missed".to_owned(),
+        _ => "–".to_owned(),
+    }
+}
+
+const fn denied(denied: ReferenceModel) -> &'static str {
+    match denied {
+        ReferenceModel::Exact => "exact",
+        ReferenceModel::Adapted => "adapted",
+    }
+}
+
+const fn background(background: Background) -> &'static str {
+    match background {
+        Background::Clean => "clean",
+        Background::Clutter => "clutter",
+    }
+}
