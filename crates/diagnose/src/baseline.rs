@@ -1,8 +1,8 @@
 //! What a model remembers of clean flights beside its table: a smooth remainder, the N2 deck, the split between engines,
 //! and how large the noise is. Each with its covariance.
 
+use effects::{EffectReferences, Response};
 use faer::Mat;
-use perf_model::effects::{EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::standing_effects::ENVIRONMENT;

@@ -1,7 +1,7 @@
 //! From flights to a verdict.
 
+use effects::{EffectModel, EffectModelError};
 use flight::effect::EffectId;
-use perf_model::effects::{EffectModel, EffectModelError};
 
 use crate::advice::distances::{Distances, leading_columns};
 use crate::hypotheses::design::{Acts, Design};

@@ -1,8 +1,8 @@
 //! What is diagnosed, against what, and what to look for.
 
+use effects::EffectReferences;
+use effects::ExtendedModel;
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::EffectReferences;
 
 use crate::baseline::Baseline;
 use crate::signals::record::FlightRecord;
@@ -12,7 +12,7 @@ use crate::signals::table_uncertainty::TableUncertainty;
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
     /// The performance model.
-    pub model: &'a PerformanceModel,
+    pub model: &'a ExtendedModel,
     /// Its drag table: its own, or the adapted one.
     pub drag_table: &'a lut::Table,
     /// Flights in order of flying, none of which the table has learnt.
@@ -28,7 +28,7 @@ pub struct Input<'a> {
 impl<'a> Input<'a> {
     /// Flights against a model's own table, nothing taught and every node taken as known.
     #[must_use]
-    pub const fn against(model: &'a PerformanceModel, flights: &'a [FlightRecord<'a>]) -> Self {
+    pub const fn against(model: &'a ExtendedModel, flights: &'a [FlightRecord<'a>]) -> Self {
         Self {
             model,
             drag_table: model.drag_table(),

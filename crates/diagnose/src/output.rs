@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use perf_model::effects::Effects;
+use effects::Effects;
 use serde::{Deserialize, Serialize};
 
 use crate::output::addition::Addition;

@@ -2,9 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
+use effects::AppliedEffects;
+use effects::ExtendedModel;
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::AppliedEffects;
 use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly, typical};
 
 /// What the fleet recorded, as the diagnosis takes it.
@@ -12,7 +12,7 @@ fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
     fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
 }
 
-fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
+fn run(model: &ExtendedModel, fleet: &Fleet) -> Diagnosis {
     let records = records(fleet);
     let input = Input::against(model, &records);
     diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()

@@ -4,8 +4,8 @@
 use diagnose::{
     Baseline, DiagnoseError, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose,
 };
+use effects::ExtendedModel;
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
 use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
 
 /// What the fleet recorded, as the diagnosis takes it.
@@ -13,7 +13,7 @@ fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
     fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
 }
 
-fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
+fn run(model: &ExtendedModel, fleet: &Fleet) -> Diagnosis {
     let records = records(fleet);
     let input = Input::against(model, &records);
     let found = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();

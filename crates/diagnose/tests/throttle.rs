@@ -5,10 +5,11 @@
 use std::sync::Arc;
 
 use diagnose::{Addition, Cause, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
+use effects::ExtendedModel;
+use effects::{AppliedEffects, ThrottleArgument};
 use flight::Segment;
 use flight::effect::EffectId;
 use lut::surface::{Basis, Surface};
-use perf_model::effects::{AppliedEffects, ThrottleArgument};
 use perf_model::{Aircraft, PerformanceModel};
 use test_support::fleet::{Background, Fleet, Planted, Random, Setup, exact_model, fly};
 
@@ -55,7 +56,7 @@ fn with_parabola(seed: u64, percent: f64, errors: &Errors) -> Fleet {
     fleet
 }
 
-fn run(model: &PerformanceModel, fleet: &Fleet) -> Diagnosis {
+fn run(model: &ExtendedModel, fleet: &Fleet) -> Diagnosis {
     let records = records(fleet);
     let input = Input::against(model, &records);
     let options = Options { skip_closure: true, skip_where: true, ..Options::default() };
@@ -67,7 +68,7 @@ fn throttle(found: &Diagnosis) -> &Cause {
 }
 
 /// The model of [`exact_model`] with other sensors.
-fn with_sensors(sensors: &str) -> PerformanceModel {
+fn with_sensors(sensors: &str) -> ExtendedModel {
     let text = format!(
         r#"(
             name: "virtual", type_code: "VIRT", engines: 2, wing_area_m2: 48.96,
@@ -81,7 +82,7 @@ fn with_sensors(sensors: &str) -> PerformanceModel {
     let table = lut::Table::new(Arc::clone(aircraft.grid()), values).unwrap();
     let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
     let marks = vec![false; aircraft.grid().nodes()];
-    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap()
+    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap().into()
 }
 
 /// Truth in another form than the library's, sensors as declared.

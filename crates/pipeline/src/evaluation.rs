@@ -1,9 +1,9 @@
 //! What a table says of segments, and what a run knows of each tail at its end: the material of summary, tables, pages.
 
 use adapt::paper;
+use effects::ExtendedModel;
 use flight::{Observation, Segment};
 use lut::{Outside, Table};
-use perf_model::PerformanceModel;
 
 use crate::model_file::ModelFile;
 use crate::segments_table::{Evaluated, SegmentRow};
@@ -100,7 +100,7 @@ impl TailResult {
 /// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
 /// the error, effects included.
 pub fn evaluate(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     table: &Table,
     segments: &[Segment],
 ) -> Vec<Option<Evaluated>> {
@@ -154,7 +154,7 @@ fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
 }
 
 fn state_without_errors(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     segment: &Segment,
 ) -> Option<perf_model::SegmentState> {
     model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())

@@ -5,7 +5,6 @@ use adapt::paper::{self, PaperLaw, State as PaperState, Update};
 use diagnose::{Baseline, FlightRecord};
 use effects::ExtendedModel;
 use flight::{Observation, Segment};
-use perf_model::PerformanceModel;
 use refit::RefitRule;
 
 use crate::condition_means::ConditionMeans;

@@ -18,7 +18,7 @@ use adapt::paper::State as PaperState;
 use diagnose::Baseline;
 use effects::ExtendedModel;
 use lut::Table;
-use perf_model::{Guide, InitialModel, PerformanceModel};
+use perf_model::{Guide, InitialModel};
 use serde::{Deserialize, Serialize};
 
 use crate::condition_means::ConditionMeans;
@@ -200,7 +200,7 @@ impl ModelFile {
     /// The model file of a fresh initial model, with the laws' published settings.
     pub fn from_initial(initial: &InitialModel, guide: &Guide) -> Self {
         Self {
-            initial: initial.model.clone(),
+            initial: initial.model.clone().into(),
             guide: GuideRecord {
                 points: guide.points().len() as u64,
                 lift_coefficient: initial.fit.lift_coefficients,

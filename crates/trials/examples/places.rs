@@ -4,9 +4,9 @@
 
 use diagnose::trial::places::{names_driver, spread, worst_region_overlap};
 use diagnose::{Diagnosis, FlightRecord, Input, Options, diagnose, references_of, slice_members};
+use effects::ExtendedModel;
+use effects::{EffectModel, EffectPoint, Effects};
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModel, EffectPoint, Effects};
 use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
 
 /// Effects that vary by less than this, in per cent of fuel flow, are not asked for.
@@ -28,7 +28,7 @@ fn main() {
     }
 }
 
-fn run(model: &PerformanceModel, fleet: &Fleet, closure: bool) -> (Diagnosis, f64) {
+fn run(model: &ExtendedModel, fleet: &Fleet, closure: bool) -> (Diagnosis, f64) {
     let records = records(fleet);
     let input = input(model, &records);
     let begin = std::time::Instant::now();
@@ -37,12 +37,12 @@ fn run(model: &PerformanceModel, fleet: &Fleet, closure: bool) -> (Diagnosis, f6
     (found, begin.elapsed().as_secs_f64())
 }
 
-fn input<'a>(model: &'a PerformanceModel, records: &'a [diagnose::FlightRecord<'a>]) -> Input<'a> {
+fn input<'a>(model: &'a ExtendedModel, records: &'a [diagnose::FlightRecord<'a>]) -> Input<'a> {
     Input::against(model, records)
 }
 
 /// ln recorded − ln predicted, segment by segment; `None` outside the table.
-fn gaps(model: &PerformanceModel, fleet: &Fleet) -> Vec<Option<f64>> {
+fn gaps(model: &ExtendedModel, fleet: &Fleet) -> Vec<Option<f64>> {
     let records = records(fleet);
     let references = references_of(model, model.drag_table(), &records).unwrap();
     let with = EffectModel::new(model, model.drag_table(), references).unwrap();
@@ -51,15 +51,15 @@ fn gaps(model: &PerformanceModel, fleet: &Fleet) -> Vec<Option<f64>> {
         .iter()
         .flatten()
         .map(|segment| {
-            let start_s = segment.identity.start.as_second() as f64;
-            let point = EffectPoint::of_means(&segment.means, start_s, 2);
+            let start_s = segment.identity.start_s();
+            let point = EffectPoint::from_means(&segment.means, start_s, 2);
             let response = with.response(&point, &Effects::none()).ok()?;
             Some(segment.means.fuel_flow_total_kg_s.ln() - response.ln_fuel_flow_total)
         })
         .collect()
 }
 
-fn nulls(model: &PerformanceModel, seed: u64, repeats: u64) {
+fn nulls(model: &ExtendedModel, seed: u64, repeats: u64) {
     let (mut alarms, mut two, mut everywhere, mut seconds) = (0, 0, 0, 0.0);
     for repeat in 0..repeats {
         let fleet = fly(seed * 1_000_000 + repeat, &Setup::default(), &[], &Background::default());
@@ -89,7 +89,7 @@ struct Tally {
     overlap: f64,
 }
 
-fn effects(model: &PerformanceModel, seed: u64, repeats: u64, closure: bool, only: Option<&str>) {
+fn effects(model: &ExtendedModel, seed: u64, repeats: u64, closure: bool, only: Option<&str>) {
     let (mut large, mut all) = (Tally::default(), Tally::default());
     for (k, &id) in EffectId::library(2).iter().enumerate() {
         if only.is_some_and(|name| name != id.to_string()) {
@@ -208,7 +208,7 @@ fn rounded(percent: f64) -> f64 {
 }
 
 /// Seconds with and without the search for places.
-fn cost(model: &PerformanceModel, seed: u64, flights: u64) {
+fn cost(model: &ExtendedModel, seed: u64, flights: u64) {
     let flights = usize::try_from(flights).unwrap();
     let setup = Setup { flights, ..Setup::default() };
     let planted = plant(EffectId::WaveDrag, 1.0, &mut Random::new(seed, 9));

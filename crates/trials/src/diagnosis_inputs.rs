@@ -2,9 +2,9 @@
 //! effect, no size.
 
 use diagnose::{Baseline, Diagnosis, FlightRecord, Input, Options, TableUncertainty, diagnose};
+use effects::ExtendedModel;
 use flight::effect::EffectId;
 use lut::Table;
-use perf_model::PerformanceModel;
 use pipeline::learning::{self, FlightToLearn, LawChoice};
 use pipeline::model_file::{LawState, LedgerEntry};
 use pipeline::reduction::ReducedFlight;
@@ -20,7 +20,7 @@ use crate::reference_model::{COARSE, FINE, reference_model};
 /// What the diagnosis is given.
 #[derive(Clone, Debug)]
 pub struct DiagnosisInputs {
-    model: PerformanceModel,
+    model: ExtendedModel,
     /// The adapted drag table; the model's own where nothing was learnt.
     drag_table: Table,
     baseline: Option<Baseline>,
@@ -93,7 +93,7 @@ impl DiagnosisInputs {
 
 /// Law `bayes` on clean flights with its remainder, as `cruisefit adapt` does it.
 fn adapted(
-    initial: PerformanceModel,
+    initial: ExtendedModel,
     training_flights: &[ReducedFlight],
     flights: Vec<ReducedFlight>,
 ) -> Result<DiagnosisInputs, CaseFailure> {

@@ -44,5 +44,5 @@ pub enum CaseFailure {
     Slice(#[from] diagnose::SliceError),
     /// A model that takes no effects.
     #[error(transparent)]
-    Effects(#[from] perf_model::effects::EffectModelError),
+    Effects(#[from] effects::EffectModelError),
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use effects::ExtendedModel;
 use lut::Table;
 use lut::surface::{Basis, Surface};
 use perf_model::aircraft::{AircraftFile, AxisFile, TableFile, TsfcFile};
@@ -26,7 +27,7 @@ pub(crate) fn reference_model(
     sensors: &Sensors,
     grid: &[(f64, f64, f64); 2],
     error: Option<&DragError>,
-) -> Result<PerformanceModel, CaseFailure> {
+) -> Result<ExtendedModel, CaseFailure> {
     let axis = |(from, to, step)| AxisFile::Step { from, to, step };
     let aircraft = Aircraft::new(AircraftFile {
         name: truth.name.clone(),
@@ -57,13 +58,13 @@ pub(crate) fn reference_model(
     let table = Table::new(Arc::clone(&grid), values)?;
     let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
     let extrapolated = vec![false; grid.nodes()];
-    Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?)
+    Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?.into())
 }
 
 #[cfg(test)]
 mod tests {
+    use effects::{EffectModel, EffectPoint, EffectReferences, Effects};
     use flight::Segment;
-    use perf_model::effects::{EffectModel, EffectPoint, EffectReferences, Effects};
     use simulate::{Earth, FleetDesign, Plan, SensorChoice, Simulation, Weather};
 
     use super::*;
@@ -84,10 +85,10 @@ mod tests {
         let segments: Vec<Segment> = flights.into_iter().flat_map(|f| f.segments).collect();
         let points: Vec<EffectPoint> = segments
             .iter()
-            .map(|s| EffectPoint::of_means(&s.means, s.identity.start.as_second() as f64, 2))
+            .map(|s| EffectPoint::from_means(&s.means, s.identity.start_s(), 2))
             .collect();
         let references =
-            EffectReferences::mean_of(model.aircraft(), model.drag_table(), &points).unwrap();
+            effects::mean_references(model.aircraft(), model.drag_table(), &points).unwrap();
         let of = EffectModel::new(&model, model.drag_table(), references).unwrap();
         segments
             .iter()

@@ -1,6 +1,6 @@
 //! What would tell confused effects apart: measurements and flights on purpose, in one list by the distance they put.
 
-use perf_model::effects::EffectModel;
+use effects::EffectModel;
 
 use crate::advice::distances::{CONFUSED, Distances};
 use crate::advice::flights::Conditions;

@@ -1,7 +1,7 @@
 //! Effects that a fleet shows at all times.
 
+use effects::HiddenParameters;
 use flight::effect::EffectId;
-use perf_model::effects::HiddenParameters;
 
 /// An effect that a baseline carries.
 pub(crate) struct Carried {

@@ -1,7 +1,7 @@
 //! The whitened linear model of a flight: which columns there are, and their rows.
 
+use effects::EffectReferences;
 use faer::Mat;
-use perf_model::effects::EffectReferences;
 
 use crate::baseline::Baseline;
 use crate::residuals::rows::{FlightRows, SegmentRow};

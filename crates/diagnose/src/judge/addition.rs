@@ -1,7 +1,7 @@
 //! What the verdict adds to the model.
 
+use effects::{EffectReferences, ThrottleArgument};
 use flight::effect::EffectId;
-use perf_model::effects::{EffectReferences, ThrottleArgument};
 
 use crate::hypotheses::evidence::Scored;
 use crate::library::Library;

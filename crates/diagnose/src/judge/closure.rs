@@ -1,6 +1,6 @@
 //! How far the gap shrinks: choice and fit on four fifths of the flights, judged on the rest.
 
-use perf_model::effects::EffectModel;
+use effects::EffectModel;
 
 use crate::judge::thresholds::{CLEAN_PROBABILITY, SMALLEST_GAP};
 use crate::library::Library;

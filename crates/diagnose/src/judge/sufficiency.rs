@@ -1,6 +1,6 @@
 //! Whether the data is enough for any name.
 
-use perf_model::effects::EffectPoint;
+use effects::EffectPoint;
 
 use crate::library::Library;
 use crate::output::{Diagnosis, Gap, OutsideLibrary, Verdict, VerdictKind};

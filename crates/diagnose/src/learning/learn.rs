@@ -1,8 +1,8 @@
 //! From clean flights to a baseline.
 
+use effects::ExtendedModel;
+use effects::{EffectModel, EffectReferences};
 use faer::Mat;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModel, EffectReferences};
 
 use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::baseline::{Baseline, Parts};
@@ -39,7 +39,7 @@ impl Baseline {
     /// # Errors
     /// [`DiagnoseError`] where the model takes no effects, or fewer than five flights are inside the table.
     pub fn learn(
-        model: &PerformanceModel,
+        model: &ExtendedModel,
         drag_table: &lut::Table,
         flights: &[FlightRecord<'_>],
     ) -> Result<Self, DiagnoseError> {

@@ -1,6 +1,6 @@
 //! How far the chords of a drag table may be off.
 
-use perf_model::effects::{EffectModel, Response};
+use effects::{EffectModel, Response};
 
 /// How far a chord of the drag table may be off, relative to drag: ½·u(1 − u)·Δ², Δ² the mean of the second differences
 /// at the cell's ends, along each axis. `[diagnosis.15]`

@@ -1,7 +1,7 @@
 //! Tank gauges against flow meters, flight by flight.
 
+use effects::EffectModel;
 use flight::effect::EffectId;
-use perf_model::effects::EffectModel;
 
 use crate::library::Library;
 use crate::residuals::rows::{GaugeRow, SegmentRow};

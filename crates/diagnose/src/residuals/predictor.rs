@@ -1,6 +1,6 @@
 //! From a response of the model to the prediction of every channel.
 
-use perf_model::effects::Response;
+use effects::Response;
 
 use crate::baseline::Baseline;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS, contrasts};

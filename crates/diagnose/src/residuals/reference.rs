@@ -1,7 +1,7 @@
 //! What flights are held against.
 
+use effects::EffectModel;
 use perf_model::aircraft::{FlightDeviations, FuelFlowWander};
-use perf_model::effects::EffectModel;
 
 use crate::baseline::Baseline;
 use crate::signals::noise::{NoiseFactors, Statistics};

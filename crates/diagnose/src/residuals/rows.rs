@@ -1,6 +1,6 @@
 //! One segment, one flight, as the search sees them.
 
-use perf_model::effects::{EffectPoint, KnownPoint, Response};
+use effects::{EffectPoint, KnownPoint, Response};
 
 use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};

@@ -5,11 +5,11 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use flight::SegmentMeans;
-use flight::effect::EffectId;
-use perf_model::effects::{
+use effects::{
     AppliedEffects, EffectModel, EffectPoint, Effects, KnownPoint, Response, StepTarget,
 };
+use flight::SegmentMeans;
+use flight::effect::EffectId;
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
@@ -71,10 +71,9 @@ fn inside<'a>(
     for flight in flights {
         let mut kept = Vec::with_capacity(flight.segments.len());
         for segment in flight.segments {
-            #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
-            let start_s = segment.identity.start.as_second() as f64;
+            let start_s = segment.identity.start_s();
             let found = model.corrected_means(&segment.means).and_then(|means| {
-                let point = EffectPoint::of_means(&means, start_s, engines);
+                let point = EffectPoint::from_means(&means, start_s, engines);
                 let (known, response) = model.known_point(&point)?;
                 Ok(Inside { means, rows: &segment.rows, point, known, response })
             });
@@ -92,8 +91,8 @@ fn inside<'a>(
     all
 }
 
-pub(crate) fn reason(error: &perf_model::effects::EffectError) -> &'static str {
-    use perf_model::effects::EffectError;
+pub(crate) fn reason(error: &effects::EffectError) -> &'static str {
+    use effects::EffectError;
     match error {
         EffectError::OutsideTable { .. } => "outside the drag table",
         EffectError::OutOfDomain(_) => "a mean outside its domain",
@@ -162,7 +161,7 @@ impl<'a> Data<'a> {
         library: &Library,
         differences: &Differences,
         statistics: &Statistics,
-    ) -> Result<SegmentRow, perf_model::effects::EffectError> {
+    ) -> Result<SegmentRow, effects::EffectError> {
         let channels = self.channels;
         let deck = &self.predictor.deck;
         let predict = |response: &Response| self.predictor.predict(response);

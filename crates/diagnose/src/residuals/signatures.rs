@@ -1,7 +1,7 @@
 //! Signatures: what one unit of an effect changes in every channel, by central differences.
 
+use effects::{EffectModel, Effects, HiddenParameters, KnownPoint, Trial};
 use flight::effect::EffectId;
-use perf_model::effects::{EffectModel, Effects, HiddenParameters, KnownPoint, Trial};
 
 use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::library::Library;
@@ -36,7 +36,7 @@ impl Difference {
         point: &KnownPoint,
         is_recorded: [bool; MAXIMUM_CHANNELS],
         predictor: &Predictor<'_>,
-    ) -> Result<ByChannel, perf_model::effects::EffectError> {
+    ) -> Result<ByChannel, effects::EffectError> {
         let up = predictor.predict(&model.response_at(point, &self.up)?);
         let down = predictor.predict(&model.response_at(point, &self.down)?);
         let mut slope = [0.0; MAXIMUM_CHANNELS];

@@ -1,6 +1,6 @@
 //! One search, the leading models refined: the posterior that the verdict reads.
 
-use perf_model::effects::EffectModel;
+use effects::EffectModel;
 
 use crate::hypotheses::backgrounds::{Background, backgrounds, diagonals, smoothed};
 use crate::hypotheses::evidence::{HEATING_SIZES_PERCENT, Scored, Scorer};

@@ -1,6 +1,5 @@
 //! One pass over the data: Gram matrices of all flights and of folds of them, nuisance integrated out.
 
-use effects::EffectModel;
 use faer::Mat;
 
 use crate::hypotheses::backgrounds::{Background, Smoothed, without_nuisance};

@@ -1,7 +1,7 @@
 //! The conditions that effects are zero at, and why there may be no diagnosis.
 
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectModelError, EffectPoint, EffectReferences};
+use effects::ExtendedModel;
+use effects::{EffectModelError, EffectPoint, EffectReferences};
 
 use crate::signals::record::FlightRecord;
 
@@ -30,7 +30,7 @@ pub enum DiagnoseError {
 /// # Errors
 /// [`DiagnoseError::Model`] where nothing is inside the drag table.
 pub fn references_of(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     drag_table: &lut::Table,
     flights: &[FlightRecord<'_>],
 ) -> Result<EffectReferences, DiagnoseError> {
@@ -42,9 +42,9 @@ pub fn references_of(
         .filter_map(|segment| {
             // What cannot be corrected is left out of the diagnosis too, with its reason.
             let means = model.corrected_means(&segment.means).ok()?;
-            let start_s = segment.identity.start.as_second() as f64;
-            Some(EffectPoint::of_means(&means, start_s, engines))
+            let start_s = segment.identity.start_s();
+            Some(EffectPoint::from_means(&means, start_s, engines))
         })
         .collect();
-    Ok(EffectReferences::mean_of(model.aircraft(), drag_table, &points)?)
+    Ok(effects::mean_references(model.aircraft(), drag_table, &points)?)
 }

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use diagnose::{AddedEffect, Addition, UnknownEffect};
+use effects::{AppliedEffects, EffectModelError};
 use flight::effect::EffectId;
-use perf_model::effects::{AppliedEffects, EffectModelError};
 use serde::{Deserialize, Serialize};
 
 use super::ModelFile;

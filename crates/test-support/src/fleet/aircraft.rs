@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use effects::ExtendedModel;
 use lut::surface::{Basis, Surface};
 use perf_model::{Aircraft, PerformanceModel};
 
@@ -38,7 +39,7 @@ pub(super) fn wave(mach: f64, lift: f64) -> f64 {
 ///
 /// Never: its numbers are constants.
 #[must_use]
-pub fn exact_model() -> PerformanceModel {
+pub fn exact_model() -> ExtendedModel {
     let aircraft = Aircraft::from_ron(
         r#"(
             name: "virtual", type_code: "VIRT", engines: 2, wing_area_m2: 48.96,
@@ -61,5 +62,5 @@ pub fn exact_model() -> PerformanceModel {
     let table = lut::Table::new(Arc::clone(&grid), values).unwrap();
     let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
     let marks = vec![false; grid.nodes()];
-    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap()
+    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap().into()
 }

@@ -1,9 +1,9 @@
 use super::envelope::SEGMENTS;
 use super::*;
+use effects::ExtendedModel;
+use effects::{EffectReferences, Effects};
 use flight::Segment;
 use flight::effect::EffectId;
-use perf_model::PerformanceModel;
-use perf_model::effects::{EffectReferences, Effects};
 
 use crate::advice::distances::{CONFUSED, squared};
 use crate::hypotheses::design::Design;
@@ -16,7 +16,7 @@ use test_support::fleet::{Background, Setup, exact_model, fly, isa};
 
 /// Flights ready for advice; everything borrows, so it is handed on.
 fn with<R>(
-    model: &PerformanceModel,
+    model: &ExtendedModel,
     flights: &[Vec<Segment>],
     then: impl FnOnce(&Stacked<'_>, &EffectModel<'_>, &Library, &Distances) -> R,
 ) -> R {

@@ -1,10 +1,10 @@
 //! Where a gap lies, on the virtual fleet: planted effects by their place, engines and dates, and what has no place.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use diagnose::trial::places::{names_driver, worst_region_overlap};
 use diagnose::{Diagnosis, FlightRecord, Input, Options, SliceError, diagnose, slice_members};
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
+use trials::places::{names_driver, worst_region_overlap};
 
 /// What the fleet recorded, as the diagnosis takes it.
 fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
