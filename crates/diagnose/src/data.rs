@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use flight::effect::EffectId;
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
-use perf_model::aircraft::{FlightDeviations, FuelFlowWander};
+use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 use perf_model::effects::{
     AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, KnownPoint, Response,
     StepTarget, Trial,
@@ -135,11 +135,11 @@ impl<'a> Against<'a> {
         Statistics {
             factors: self.baseline().map_or_else(NoiseFactors::default, |b| *b.noise()),
             // What a flight keeps is learnt as a factor on mass, heating value and split, what wanders as one on the rest.
-            through_flight: if stated { sensors.through_flight } else { FlightDeviations::none() },
-            fuel_flow_wander: if stated {
-                sensors.fuel_flow_wander
+            flight_bias: if stated { sensors.flight_bias } else { FlightBias::none() },
+            fuel_flow_drift: if stated {
+                sensors.fuel_flow_drift
             } else {
-                FuelFlowWander::default()
+                FuelFlowDrift::default()
             },
         }
     }
@@ -508,7 +508,7 @@ fn add_wander_to(segments: &mut [SegmentRow], statistics: &Statistics, model: &E
     let mut noises: Vec<&mut SegmentNoise> =
         segments.iter_mut().map(|row| &mut row.noise).collect();
     let engines = model.aircraft().engines();
-    add_wander(&mut noises, &times_s, statistics.fuel_flow_wander, engines);
+    add_wander(&mut noises, &times_s, statistics.fuel_flow_drift, engines);
 }
 
 /// Differences of every column of a library, and of what a baseline carries.

@@ -4,8 +4,8 @@ use flight::Timestamp;
 use flight::effect::{EffectId, TypicalSize};
 use simulate::{
     AircraftTruth, Earth, FleetDesign, FlightPlan, Flights, OutsideEffect, Plan, PlannedEffect,
-    References, Richness, Simulation, SmoothErrorSizes, StepTarget, Switch, TailPlan, TailTruth,
-    TruthEffect,
+    References, Simulation, SmoothErrorSizes, StepTarget, Switch, TailPlan, TailTruth, TruthEffect,
+    TruthPhysics,
 };
 
 use super::plan::{Background, CaseSpec, Denied, Kind, TrialPlan};
@@ -29,7 +29,7 @@ pub struct Withheld {
     /// How many flights the model may learn: the first ones, of the twin.
     clean: usize,
     aircraft: AircraftTruth,
-    richness: Richness,
+    physics: TruthPhysics,
     truth: CaseTruth,
 }
 
@@ -39,8 +39,8 @@ impl Withheld {
     /// # Errors
     /// What the simulator refuses.
     pub fn draw(plan: &TrialPlan, spec: &CaseSpec) -> Result<Self, simulate::PlanError> {
-        let (richness, earth, clean) = match spec.part.denied {
-            Denied::Exact => (Richness::plain(), Earth::plain(), 0),
+        let (physics, earth, clean) = match spec.part.denied {
+            Denied::Exact => (TruthPhysics::plain(), Earth::plain(), 0),
             Denied::Adapted => (learnable(), Earth::full(), plan.clean_flights),
         };
         let all = plan.flights + clean;
@@ -55,7 +55,7 @@ impl Withheld {
         let seed = u64::from_le_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|byte: usize| spec.draws[byte]));
         let bare = Plan {
             aircraft: plan.aircraft.clone(),
-            richness,
+            physics,
             earth,
             columns: plan.columns,
             sensors: plan.sensors,
@@ -101,15 +101,7 @@ impl Withheld {
         let (flown, twin) = (with(effects)?, with(nothing)?);
         let lessons = Simulation::new(Plan { tails: vec![listed(vec![])], ..bare })?;
         let truth = truth(&flown, spec);
-        Ok(Self {
-            aircraft: flown.aircraft().clone(),
-            flown,
-            twin,
-            lessons,
-            clean,
-            richness,
-            truth,
-        })
+        Ok(Self { aircraft: flown.aircraft().clone(), flown, twin, lessons, clean, physics, truth })
     }
 
     /// What is sealed.
@@ -121,8 +113,8 @@ impl Withheld {
         &self.aircraft
     }
 
-    pub(super) const fn richness(&self) -> Richness {
-        self.richness
+    pub(super) const fn physics(&self) -> TruthPhysics {
+        self.physics
     }
 
     /// Flights that the model may learn, and those that are diagnosed.
@@ -145,8 +137,8 @@ impl Withheld {
 
 /// Everything beyond the model's equations that an adapted model can learn. Trim drag with the center of gravity and drag of
 /// a wing held low it cannot: with them in the truth, a flight without a planted effect would not be without effect.
-fn learnable() -> Richness {
-    Richness { trim_drag: Switch::Off, asymmetry: Switch::Off, ..Richness::full() }
+fn learnable() -> TruthPhysics {
+    TruthPhysics { trim_drag: Switch::Off, asymmetry: Switch::Off, ..TruthPhysics::full() }
 }
 
 /// Where effects are nothing: means over the flights that the model knows; of an exact model, over those diagnosed. Dates

@@ -10,16 +10,16 @@ use flight::effect::EffectId;
 use lut::Table;
 use lut::surface::{Basis, Surface};
 use perf_model::aircraft::{
-    AircraftFile, AxisFile, FlightDeviations, FuelFlowWander, MassDeviation, SensorDeviations,
-    TableFile, TsfcFile,
+    AircraftFile, AxisFile, FlightBias, FuelFlowDrift, MassDeviation, SensorDeviations, TableFile,
+    TsfcFile,
 };
 use perf_model::{Aircraft, PerformanceModel};
 use rayon::prelude::*;
 use segmenter::TrimCriteria;
 use simulate::study::DragError;
 use simulate::{
-    AircraftTruth, ChannelSensor, Richness, SLOW_TIME_S, Scatter, Sensors, Simulation,
-    SimulationError,
+    AircraftTruth, ChannelSensor, DRIFT_TIME_CONSTANT_S, Scatter, Sensors, Simulation,
+    SimulationError, TruthPhysics,
 };
 use units::Mach;
 use units::convert::TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR;
@@ -65,19 +65,14 @@ impl Evidence {
         let flights = fly(withheld.flown(), clean..withheld.flown().len())?;
         if clean == 0 {
             let model =
-                denied_model(withheld.aircraft(), withheld.richness(), &sensors, &FINE, None)?;
+                denied_model(withheld.aircraft(), withheld.physics(), &sensors, &FINE, None)?;
             let drag_table = model.drag_table().clone();
             return Ok(Self { model, drag_table, baseline: None, uncertainty: None, flights });
         }
         let lessons = fly(withheld.lessons(), 0..clean)?;
         let error = DragError::study();
-        let initial = denied_model(
-            withheld.aircraft(),
-            withheld.richness(),
-            &sensors,
-            &COARSE,
-            Some(&error),
-        )?;
+        let initial =
+            denied_model(withheld.aircraft(), withheld.physics(), &sensors, &COARSE, Some(&error))?;
         adapted(initial, &lessons, flights)
     }
 
@@ -154,7 +149,7 @@ pub(super) fn fly(
 /// The truth's drag at its reference conditions, and its TSFC law at the best part load, as a model's table.
 fn denied_model(
     truth: &AircraftTruth,
-    richness: Richness,
+    physics: TruthPhysics,
     sensors: &Sensors,
     grid: &[(f64, f64, f64); 2],
     error: Option<&DragError>,
@@ -182,7 +177,7 @@ fn denied_model(
     let values = (0..grid.nodes())
         .map(|node| grid.coordinates(node))
         .map(|(lift, mach)| {
-            let drag = truth.drag_coefficient(lift, Mach::new(mach), &at, richness);
+            let drag = truth.drag_coefficient(lift, Mach::new(mach), &at, physics);
             drag * (1.0 + error.map_or(0.0, |error| error.at(mach, lift)))
         })
         .collect();
@@ -227,7 +222,7 @@ fn sensor_deviations(
     // The quiet end of what is seen at 60 s in turbulence; the virtual air is turbulent now and then.
     const ACCELERATION_M_S2: f64 = 0.003;
     let of_mean = |over_s: f64| {
-        let x = over_s / SLOW_TIME_S;
+        let x = over_s / DRIFT_TIME_CONSTANT_S;
         2.0 / x * (1.0 - (1.0 - (-x).exp()) / x)
     };
     let within = |slow: f64, noise: f64| {
@@ -235,9 +230,9 @@ fn sensor_deviations(
         wander.hypot(noise / SAMPLES.sqrt())
     };
     let through = |slow: f64, flight: f64| (of_mean(FLIGHT_S).sqrt() * slow).hypot(flight);
-    let added = |sensor: &ChannelSensor| within(sensor.slow_sd, sensor.noise_sd);
-    let kept = |sensor: &ChannelSensor| through(sensor.slow_sd, sensor.flight_sd);
-    let gained = |sensor: &ChannelSensor| within(sensor.gain_slow_sd, sensor.gain_noise_sd);
+    let added = |sensor: &ChannelSensor| within(sensor.drift_sd, sensor.noise_sd);
+    let kept = |sensor: &ChannelSensor| through(sensor.drift_sd, sensor.flight_sd);
+    let gained = |sensor: &ChannelSensor| within(sensor.gain_drift_sd, sensor.gain_noise_sd);
     let heating = 1.0 + 0.2 * MACH * MACH;
     let of_pressures = |deviation: &dyn Fn(&ChannelSensor) -> f64| {
         let of_static = deviation(&sensors.static_pressure) / STATIC_PRESSURE_HPA;
@@ -252,7 +247,7 @@ fn sensor_deviations(
     // Engines err independently; the N2 channel is their mean.
     let engines = f64::from(truth.engine.count).sqrt();
     let kept_by_all = 100.0 * meter.gain_flight_sd / engines;
-    let rotor_kept = (100.0 * through(sensors.n2.gain_slow_sd, sensors.n2.gain_flight_sd))
+    let rotor_kept = (100.0 * through(sensors.n2.gain_drift_sd, sensors.n2.gain_flight_sd))
         .hypot(kept(&sensors.n2));
     SensorDeviations {
         fuel_flow_percent: 100.0 * meter.gain_noise_sd / SAMPLES.sqrt(),
@@ -265,11 +260,11 @@ fn sensor_deviations(
         lower_heating_value_percent: scatter.heating_value_percent.hypot(kept_by_all),
         n2_percent: (100.0 * gained(&sensors.n2)).hypot(added(&sensors.n2)),
         pressure_altitude_m,
-        fuel_flow_wander: FuelFlowWander {
-            percent: 100.0 * of_mean(SEGMENT_S).sqrt() * meter.gain_slow_sd,
-            time_s: SLOW_TIME_S,
+        fuel_flow_drift: FuelFlowDrift {
+            percent: 100.0 * of_mean(SEGMENT_S).sqrt() * meter.gain_drift_sd,
+            time_s: DRIFT_TIME_CONSTANT_S,
         },
-        through_flight: FlightDeviations {
+        flight_bias: FlightBias {
             mach: mach_kept,
             static_air_temperature_k: kept(&sensors.total_air_temperature) / heating,
             n2_percent: rotor_kept / engines,
@@ -330,7 +325,7 @@ mod tests {
         let simulation = Simulation::new(plan).unwrap();
         let model = denied_model(
             simulation.aircraft(),
-            Richness::plain(),
+            TruthPhysics::plain(),
             &Sensors::transport(),
             &FINE,
             None,
@@ -358,7 +353,7 @@ mod tests {
     fn plan(flights: usize) -> Plan {
         let design = FleetDesign { flights, ..FleetDesign::default() };
         Plan {
-            richness: Richness::plain(),
+            physics: TruthPhysics::plain(),
             earth: Earth::plain(),
             sensors: SensorChoice::Perfect,
             scatter: Scatter::none(),
@@ -390,11 +385,11 @@ mod tests {
         let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
         let stated = sensor_deviations(&Sensors::transport(), &Scatter::default(), &truth);
         assert!((stated.fuel_flow_percent - 0.094868).abs() < 1e-5, "{stated:?}");
-        assert!((stated.fuel_flow_wander.percent - 0.184634).abs() < 1e-5, "{stated:?}");
+        assert!((stated.fuel_flow_drift.percent - 0.184634).abs() < 1e-5, "{stated:?}");
         assert!((stated.static_air_temperature_k - 0.068632).abs() < 1e-5, "{stated:?}");
         assert!((stated.lower_heating_value_percent - 0.318198).abs() < 1e-5, "{stated:?}");
         assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
-        let kept = stated.through_flight;
+        let kept = stated.flight_bias;
         assert!((kept.static_air_temperature_k - 0.183361).abs() < 1e-5, "{kept:?}");
         assert!((kept.n2_percent - 0.021213).abs() < 1e-5, "{kept:?}");
         assert!((kept.mach - 7.1630e-4).abs() < 1e-6, "{kept:?}");
