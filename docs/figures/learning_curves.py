@@ -51,7 +51,7 @@ EXACT_RECORDINGS = """    sensors: Perfect,
 """
 # A truth that the model can hold: CD0 + K CL^2 and TSFC0 sqrt(theta) (1 + M)^n with the aircraft file's numbers.
 EXACT_DRAG = (0.0230, 0.060)
-PLAIN = """    richness: (reynolds_number: Off, trim_drag: Off, asymmetry: Off, part_load: Off, temperature_exponent: Off, offtake: Off),
+PLAIN = """    physics: (reynolds_number: Off, trim_drag: Off, asymmetry: Off, part_load: Off, temperature_exponent: Off, offtake: Off),
     earth: (load_factor: Off, local_gravity: Off, rotating_earth: Off, isobaric_slope: Off, coriolis_along_path: Off),
 """
 

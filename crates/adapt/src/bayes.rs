@@ -50,7 +50,7 @@ mod evidence;
 mod guard;
 mod half_life;
 mod information;
-mod judge;
+mod outlier_weights;
 mod polynomial;
 mod posterior;
 mod prior;
@@ -67,7 +67,7 @@ pub use posterior::{Posterior, SolveError};
 pub use settings::{BayesSettings, SettingValues, SettingsError};
 
 use information::{Information, Row};
-use judge::{Case, Judge, Rules};
+use outlier_weights::{ExpectedResidual, SegmentResidual, WeightSettings};
 
 /// Drag of more than this many times the initial table's is no observation of drag.
 pub const MAXIMUM_DRAG_RATIO: f64 = 10.0;
@@ -79,9 +79,9 @@ const SECONDS_A_DAY: f64 = 86_400.0;
 pub struct BayesState {
     initial: Table,
     settings: BayesSettings,
-    rules: Rules,
+    weight_settings: WeightSettings,
     information: Information,
-    judge: Judge,
+    expected_residual: ExpectedResidual,
     /// The newest observation learnt; with a half-life, the instant that the sums are for.
     newest: Option<Timestamp>,
     flights: u64,
@@ -176,9 +176,9 @@ impl BayesState {
         let (x, y) = (initial.grid().x(), initial.grid().y());
         let middle = (x.first().midpoint(x.last()), y.first().midpoint(y.last()));
         Ok(Self {
-            rules: Rules::new(&settings, middle),
+            weight_settings: WeightSettings::new(&settings, middle),
             information: Information::new(initial.grid().nodes()),
-            judge: Judge::new(),
+            expected_residual: ExpectedResidual::new(),
             initial: initial.clone(), // shares the grid
             settings,
             newest: None,
@@ -196,9 +196,14 @@ impl BayesState {
     /// Book `[bayes.3]`–`[bayes.8]`.
     pub fn learn_flight(&mut self, observations: &[Observation]) -> FlightUpdate {
         let flight = self.read(observations);
-        let verdict = self.judge.weigh(&self.rules, &flight.cases, flight.common_variance);
-        self.learn_judged(&flight, &verdict);
-        let mut learnt = verdict.weights.iter().zip(&verdict.surprises).zip(&flight.cases);
+        let flight_weights = self.expected_residual.weigh(
+            &self.weight_settings,
+            &flight.residuals,
+            flight.common_variance,
+        );
+        self.learn_weighted(&flight, &flight_weights);
+        let mut learnt =
+            flight_weights.weights.iter().zip(&flight_weights.surprises).zip(&flight.residuals);
         let updates = flight
             .refused
             .iter()
@@ -211,7 +216,7 @@ impl BayesState {
             .collect::<Option<Vec<_>>>();
         FlightUpdate {
             observations: updates.unwrap_or_default(),
-            flight_weight: (!flight.cases.is_empty()).then_some(verdict.flight_weight),
+            flight_weight: (!flight.residuals.is_empty()).then_some(flight_weights.flight_weight),
         }
     }
 
@@ -248,7 +253,7 @@ impl BayesState {
             self.decay_to(newest);
         }
         self.information.merge(&other.information);
-        self.judge.merge(&other.judge);
+        self.expected_residual.merge(&other.expected_residual);
         self.flights += other.flights;
         self.segments += other.segments;
         Ok(())
@@ -266,7 +271,7 @@ impl BayesState {
         let share = self.settings.decay(days_between(newest, instant));
         if share < 1.0 {
             self.information.scale(share);
-            self.judge.scale(share);
+            self.expected_residual.scale(share);
         }
         self.newest = Some(instant);
     }
@@ -320,7 +325,7 @@ impl BayesState {
         for observation in observations {
             match located(&self.initial, observation) {
                 Ok((cell, residual)) => {
-                    flight.cases.push(Case {
+                    flight.residuals.push(SegmentResidual {
                         lift_coefficient: observation.lift_coefficient,
                         mach: observation.mach,
                         residual,
@@ -342,18 +347,18 @@ impl BayesState {
             }
         }
         // Segments of a flight may differ a little in what they say about their common error.
-        flight.common_variance = common_variance / flight.cases.len().max(1) as f64;
+        flight.common_variance = common_variance / flight.residuals.len().max(1) as f64;
         flight
     }
 
-    fn learn_judged(&mut self, flight: &Flight, verdict: &judge::Verdict) {
+    fn learn_weighted(&mut self, flight: &Flight, flight_weights: &outlier_weights::FlightWeights) {
         let Some(time) = flight.newest else { return };
         self.decay_to(time);
         let newest = self.newest.unwrap_or(time);
         self.newest = Some(newest);
         let share = self.settings.decay(days_between(time, newest));
 
-        let weighted = flight.rows.iter().zip(&flight.cases).zip(&verdict.weights);
+        let weighted = flight.rows.iter().zip(&flight.residuals).zip(&flight_weights.weights);
         let rows: Vec<Row> = weighted
             .map(|((row, case), weight)| Row {
                 precision: weight / case.variance,
@@ -361,11 +366,17 @@ impl BayesState {
                 ..*row
             })
             .collect();
-        let common = flight.common_variance / verdict.flight_weight;
+        let common = flight.common_variance / flight_weights.flight_weight;
         self.information.add_flight(&rows, common, share);
-        self.judge.learn(&self.rules, &flight.cases, verdict, flight.common_variance, share);
+        self.expected_residual.learn(
+            &self.weight_settings,
+            &flight.residuals,
+            flight_weights,
+            flight.common_variance,
+            share,
+        );
         self.flights += 1;
-        self.segments += flight.cases.len() as u64;
+        self.segments += flight.residuals.len() as u64;
     }
 }
 
@@ -374,7 +385,7 @@ impl BayesState {
 struct Flight {
     /// One an observation; `None` for those that can be learnt, which follow in the same order.
     refused: Vec<Option<ObservationUpdate>>,
-    cases: Vec<Case>,
+    residuals: Vec<SegmentResidual>,
     rows: Vec<Row>,
     common_variance: f64,
     newest: Option<Timestamp>,
@@ -384,7 +395,7 @@ impl Flight {
     fn with_capacity(observations: usize) -> Self {
         Self {
             refused: Vec::with_capacity(observations),
-            cases: Vec::with_capacity(observations),
+            residuals: Vec::with_capacity(observations),
             rows: Vec::with_capacity(observations),
             common_variance: 0.0,
             newest: None,

@@ -8,7 +8,7 @@ use pipeline::columns::Columns;
 use rayon::prelude::*;
 use report::TextLayout;
 use serde_json::Value;
-use simulate::{AircraftTruth, Flown, Plan, Preset, Richness, Simulation, TrueState, study};
+use simulate::{AircraftTruth, Flown, Plan, Preset, Simulation, TrueState, TruthPhysics, study};
 use units::FuelFlowTotal;
 
 use crate::failure::Failure;
@@ -121,10 +121,10 @@ pub(crate) fn write(
 
 fn study_with(plan: Plan) -> Result<Study, Failure> {
     let aircraft = AircraftTruth::preset(Preset::CitationX).map_err(|error| wrong(&error))?;
-    let richness = Richness::full();
+    let physics = TruthPhysics::full();
     let (rows, _) = study::flight_planning_guide(
         &aircraft,
-        richness,
+        physics,
         &study::GuideGrid::paper(),
         &study::DragError::study(),
     )
@@ -132,7 +132,7 @@ fn study_with(plan: Plan) -> Result<Study, Failure> {
     Ok(Study {
         aircraft: CITATION_X,
         guide: study::guide_csv(&rows),
-        static_points: static_points(&aircraft, richness)?,
+        static_points: static_points(&aircraft, physics)?,
         plan,
     })
 }
@@ -153,12 +153,12 @@ impl Study {
 }
 
 /// The static points that the aircraft can fly, as flight points with measured fuel flow.
-fn static_points(aircraft: &AircraftTruth, richness: Richness) -> Result<String, Failure> {
+fn static_points(aircraft: &AircraftTruth, physics: TruthPhysics) -> Result<String, Failure> {
     let mut text =
         String::from("weight_lb,pressure_altitude_ft,mach,isa_deviation_c,fuel_flow_lb_h\n");
     for condition in study::static_conditions() {
         let point =
-            study::static_point(aircraft, richness, &condition).map_err(|error| wrong(&error))?;
+            study::static_point(aircraft, physics, &condition).map_err(|error| wrong(&error))?;
         let measured = FuelFlowTotal::kilograms_per_second(point.measured_fuel_flow_kg_s);
         let _ = writeln!(
             text,

@@ -209,7 +209,7 @@ pub fn initial_model(
         pressure_altitudes,
         extrapolated_nodes,
     };
-    let findings = findings::of(&fit, guide, grid.nodes());
+    let findings = findings::from_fit(&fit, guide, grid.nodes());
     Ok(InitialModel { model, fit, findings })
 }
 

@@ -85,7 +85,7 @@ impl FlightPoints {
     /// [`CsvError`] at the first fault, as for [`Guide::from_csv`](crate::Guide::from_csv).
     pub fn from_csv(text: &[u8]) -> Result<Self, CsvError> {
         let file = CsvText::read(text, &COLUMNS)?;
-        let columns = Columns::of(&file)?;
+        let columns = Columns::find_in(&file)?;
         let points =
             file.rows.iter().map(|row| columns.point(&file, row)).collect::<Result<Vec<_>, _>>()?;
         let CsvText { header, rows, .. } = file;
@@ -152,7 +152,7 @@ struct Columns<'c> {
 }
 
 impl Columns<'static> {
-    fn of(file: &CsvText) -> Result<Self, CsvError> {
+    fn find_in(file: &CsvText) -> Result<Self, CsvError> {
         Ok(Self {
             mass: file.require_either([&WEIGHT_LB, &MASS_KG])?,
             pressure_altitude: file.require(&PRESSURE_ALTITUDE_FT)?,

@@ -72,7 +72,7 @@ impl ResidualSensitivity {
     ///
     /// # Source
     /// Book, page on uncertainty; checked by finite differences.
-    pub fn of(
+    pub fn new(
         aircraft: &Aircraft,
         pressure_altitude: PressureAltitude,
         state: &SegmentState,
@@ -117,7 +117,7 @@ pub fn observation_variance(
     let means = &segment.means;
     let sensors = aircraft.sensors();
     let pressure_altitude = PressureAltitude::meters(means.pressure_altitude_m);
-    let sensitivity = ResidualSensitivity::of(aircraft, pressure_altitude, state, slopes)?;
+    let sensitivity = ResidualSensitivity::new(aircraft, pressure_altitude, state, slopes)?;
     let square = |x: f64| x * x;
     let segment_variance = square(sensitivity.ln_fuel_flow)
         * total_fuel_flow_relative_variance(

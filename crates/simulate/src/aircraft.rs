@@ -107,7 +107,7 @@ impl Switch {
 /// What the truth has beyond CD(CL, M) and TSFC0·√θ·(1 + M)^n. All off, a performance model of that form can be exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Richness {
+pub struct TruthPhysics {
     /// Zero-lift drag follows the Reynolds number by the Prandtl–Schlichting law.
     pub reynolds_number: Switch,
     /// Trim drag with the center of gravity.
@@ -122,7 +122,7 @@ pub struct Richness {
     pub offtake: Switch,
 }
 
-impl Richness {
+impl TruthPhysics {
     /// Nothing beyond the model's own equations.
     #[must_use]
     pub const fn plain() -> Self {
@@ -280,9 +280,9 @@ impl AircraftTruth {
         lift_coefficient: f64,
         mach: Mach,
         at: &DragConditions,
-        richness: Richness,
+        physics: TruthPhysics,
     ) -> f64 {
-        Terms::of(self, richness).drag_coefficient(
+        Terms::new(self, physics).drag_coefficient(
             &self.airframe,
             &DragInputs {
                 lift_coefficient,
@@ -301,7 +301,7 @@ impl AircraftTruth {
         mach: Mach,
         sat: Temperature,
         corrected_thrust: Force,
-        richness: Richness,
+        physics: TruthPhysics,
     ) -> Tsfc {
         let mach = mach.value();
         let temperature_ratio = atmos::isa::temperature_ratio(sat);
@@ -316,10 +316,10 @@ impl AircraftTruth {
             );
         let load = corrected_thrust.to_newtons() / maximum_n;
         let mut tsfc = tsfc_kg_n_s(&self.engine.tsfc, mach, temperature_ratio);
-        if richness.temperature_exponent.is_on() {
+        if physics.temperature_exponent.is_on() {
             tsfc *= temperature_ratio.powf(self.engine.extra_temperature_exponent);
         }
-        if richness.part_load.is_on() {
+        if physics.part_load.is_on() {
             tsfc *= part_load_factor(&self.engine.part_load, load);
         }
         Tsfc::kilograms_per_newton_second(tsfc)
@@ -371,19 +371,19 @@ mod tests {
             center_of_gravity_percent_mac: 20.0,
             roll_deg: 0.7,
         };
-        let drag = |at, richness| aircraft.drag_coefficient(0.35, Mach::new(0.8), at, richness);
-        let plain = Richness::plain();
+        let drag = |at, physics| aircraft.drag_coefficient(0.35, Mach::new(0.8), at, physics);
+        let plain = TruthPhysics::plain();
         assert_eq!(drag(&reference, plain).to_bits(), drag(&other, plain).to_bits());
-        assert!(drag(&other, Richness::full()) > drag(&reference, Richness::full()));
+        assert!(drag(&other, TruthPhysics::full()) > drag(&reference, TruthPhysics::full()));
         let sat = Temperature::kelvin(216.65);
-        let tsfc = |newtons, richness| {
+        let tsfc = |newtons, physics| {
             aircraft
-                .tsfc(Mach::new(0.8), sat, Force::newtons(newtons), richness)
+                .tsfc(Mach::new(0.8), sat, Force::newtons(newtons), physics)
                 .to_pounds_per_pound_force_hour()
         };
         assert_eq!(tsfc(40e3, plain).to_bits(), tsfc(70e3, plain).to_bits());
         // Ghazi et al. reconstruction, n = 1.25 at M 0.80, θ 0.7519: 0.654 lb/(lbf h).
         assert!((tsfc(60e3, plain) - 0.654).abs() < 6e-4, "{}", tsfc(60e3, plain));
-        assert!(tsfc(20e3, Richness::full()) > tsfc(60e3, Richness::full()));
+        assert!(tsfc(20e3, TruthPhysics::full()) > tsfc(60e3, TruthPhysics::full()));
     }
 }

@@ -51,8 +51,8 @@ mod weather;
 
 pub use aircraft::{
     AircraftError, AircraftTruth, Airframe, DragConditions, DragRise, Engine, Envelope, Friction,
-    InducedDrag, MassLimits, PartLoad, Preset, Richness, RotorDeck, Switch, ThrustLapse, TrimDrag,
-    TsfcLaw, ZeroLiftDrag,
+    InducedDrag, MassLimits, PartLoad, Preset, RotorDeck, Switch, ThrustLapse, TrimDrag,
+    TruthPhysics, TsfcLaw, ZeroLiftDrag,
 };
 pub use effect::{OutsideEffect, PlannedEffect, StepTarget, TruthEffect, UnknownEffect};
 pub use fly::FlightError;
@@ -61,7 +61,7 @@ pub use plan::{
     SmoothErrorSizes, TailPlan,
 };
 pub use route::{Autopilot, Change, Earth, FlightPlan, Loading};
-pub use sensor::{ChannelSensor, Columns, Faults, SLOW_TIME_S, Sensors};
+pub use sensor::{ChannelSensor, Columns, DRIFT_TIME_CONSTANT_S, Faults, Sensors};
 pub use simulation::{Flown, Simulation, SimulationError};
 pub use state::{EnergyBook, MassBook, TrueState};
 pub use terms::References;

@@ -6,7 +6,7 @@ use flight::Timestamp;
 use serde::{Deserialize, Serialize};
 use units::OutOfDomain;
 
-use crate::aircraft::{AircraftError, AircraftTruth, Preset, Richness, Switch};
+use crate::aircraft::{AircraftError, AircraftTruth, Preset, Switch, TruthPhysics};
 use crate::effect::PlannedEffect;
 use crate::route::{Autopilot, Earth, FlightPlan};
 use crate::sensor::{Columns, Sensors};
@@ -26,8 +26,8 @@ pub struct Plan {
     #[serde(default)]
     pub aircraft: AircraftChoice,
     /// What the truth has beyond the model's equations.
-    #[serde(default = "Richness::full")]
-    pub richness: Richness,
+    #[serde(default = "TruthPhysics::full", alias = "physics")]
+    pub physics: TruthPhysics,
     /// What of the Earth the truth knows.
     #[serde(default = "Earth::full")]
     pub earth: Earth,
@@ -305,7 +305,7 @@ impl Plan {
         Self {
             seed,
             aircraft: AircraftChoice::default(),
-            richness: Richness::full(),
+            physics: TruthPhysics::full(),
             earth: Earth::full(),
             weather: Weather::default(),
             autopilot: Autopilot::default(),

@@ -2,7 +2,7 @@
 
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
-use crate::aircraft::{AircraftTruth, Richness};
+use crate::aircraft::{AircraftTruth, TruthPhysics};
 use crate::plan::{legs, seconds};
 use crate::route::{FlightPlan, Loading};
 use crate::terms::{References, Terms};
@@ -13,11 +13,11 @@ use crate::weather::Weather;
 /// that of trimmed points.
 pub(crate) fn references_of(
     aircraft: &AircraftTruth,
-    richness: Richness,
+    physics: TruthPhysics,
     weather: &Weather,
     flights: &[FlightPlan],
 ) -> Result<References, OutOfDomain> {
-    let terms = Terms::of(aircraft, richness);
+    let terms = Terms::new(aircraft, physics);
     let deviation = TemperatureDifference::kelvin(weather.isa_deviation_k.mean);
     let mut sums = Sums::default();
     let mut dates_s: Vec<f64> = Vec::with_capacity(flights.len());

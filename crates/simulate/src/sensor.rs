@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::aircraft::Switch;
 
 pub(crate) use bank::{RecordedLoading, SensorBank};
-pub use channel::{ChannelSensor, Faults, SLOW_TIME_S};
+pub use channel::{ChannelSensor, DRIFT_TIME_CONSTANT_S, Faults};
 
 /// The sensors of an aircraft. Units are those that reports usually carry.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,21 +114,21 @@ impl Sensors {
         Self {
             static_pressure: ChannelSensor {
                 flight_sd: 0.10,
-                slow_sd: 0.03,
+                drift_sd: 0.03,
                 noise_sd: 0.01,
                 lag_s: 0.5,
                 ..r.static_pressure
             },
             total_pressure: ChannelSensor {
                 flight_sd: 0.15,
-                slow_sd: 0.05,
+                drift_sd: 0.05,
                 noise_sd: 0.03,
                 lag_s: 0.5,
                 ..r.total_pressure
             },
             total_air_temperature: ChannelSensor {
                 flight_sd: 0.20,
-                slow_sd: 0.10,
+                drift_sd: 0.10,
                 noise_sd: 0.05,
                 lag_s: 4.0,
                 ..r.total_air_temperature
@@ -145,7 +145,7 @@ impl Sensors {
             },
             fuel_flow: ChannelSensor {
                 gain_flight_sd: 0.0015,
-                gain_slow_sd: 0.0020,
+                gain_drift_sd: 0.0020,
                 gain_noise_sd: 0.0030,
                 lag_s: 1.5,
                 ..r.fuel_flow

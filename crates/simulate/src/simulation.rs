@@ -136,7 +136,7 @@ impl Simulation {
             check_flights(&tail_plan.tail, &flights)?;
             let references = match tail_plan.references {
                 Some(references) => references,
-                None => references_of(&aircraft, plan.richness, &plan.weather, &flights)?,
+                None => references_of(&aircraft, plan.physics, &plan.weather, &flights)?,
             };
             let effects = plan
                 .effects

@@ -9,7 +9,7 @@ use flight::Timestamp;
 use serde::Serialize;
 use units::{Mach, Mass, PressureAltitude};
 
-use crate::aircraft::{AircraftTruth, Richness};
+use crate::aircraft::{AircraftTruth, TruthPhysics};
 use crate::plan::{
     AircraftChoice, FleetDesign, Flights, Plan, PlanError, Recording, Scatter, SensorChoice,
     TailPlan,
@@ -191,7 +191,7 @@ pub enum StaticPointError {
 /// [`StaticPointError`] where the aircraft cannot be flown there.
 pub fn static_point(
     aircraft: &AircraftTruth,
-    richness: Richness,
+    physics: TruthPhysics,
     condition: &StaticCondition,
 ) -> Result<StaticPoint, StaticPointError> {
     let pressure_altitude = PressureAltitude::feet(condition.pressure_altitude_ft);
@@ -205,10 +205,10 @@ pub fn static_point(
         sat,
         center_of_gravity_percent_mac,
     };
-    let trimmed = aircraft.trim(&point, richness)?;
+    let trimmed = aircraft.trim(&point, physics)?;
     let plan = Plan {
         aircraft: AircraftChoice::Custom(Box::new(aircraft.clone())),
-        richness,
+        physics,
         earth: Earth::plain(),
         weather: Weather::still(),
         sensors: SensorChoice::Rounded,
@@ -290,7 +290,7 @@ mod tests {
         let conditions = static_conditions();
         assert_eq!(conditions.len(), 45);
         for condition in conditions {
-            let point = static_point(&aircraft, Richness::full(), &condition).unwrap();
+            let point = static_point(&aircraft, TruthPhysics::full(), &condition).unwrap();
             // Rounded to 1 lb/h an engine, six times: 0.1 % of 1 200 lb/h at most.
             let ratio = point.measured_fuel_flow_kg_s / point.trimmed.fuel_flow_kg_s;
             assert!((ratio - 1.0).abs() < 1e-3, "{condition:?}: {ratio}");

@@ -1,4 +1,4 @@
-//! Everything that makes one flight's drag and fuel: the aircraft, its richness, and the effects it carries.
+//! Everything that makes one flight's drag and fuel: the aircraft, its physics, and the effects it carries.
 //!
 //! An effect is written here in the truth's own form, which is *not* the library's: saturating ageing for a rate a year, a
 //! log law for a power law, two half-parabolas for one. A diagnosis that found only its own formulas would prove nothing.
@@ -7,7 +7,7 @@ mod drag;
 mod fuel;
 mod resolve;
 
-use crate::aircraft::{AircraftTruth, Richness};
+use crate::aircraft::{AircraftTruth, TruthPhysics};
 
 pub(crate) use drag::DragInputs;
 pub(crate) use fuel::{FuelInputs, FuelShares};
@@ -71,10 +71,10 @@ impl Default for RecordedTerms {
 
 impl Terms {
     /// The terms of an aircraft without effects.
-    pub(crate) fn of(aircraft: &AircraftTruth, richness: Richness) -> Self {
+    pub(crate) fn new(aircraft: &AircraftTruth, physics: TruthPhysics) -> Self {
         Self {
-            drag: drag::DragTerms::of(aircraft, richness),
-            fuel: fuel::FuelTerms::of(aircraft, richness),
+            drag: drag::DragTerms::new(aircraft, physics),
+            fuel: fuel::FuelTerms::new(aircraft, physics),
             earth: EarthTerms::default(),
             recorded: RecordedTerms::default(),
         }

@@ -5,7 +5,7 @@ use units::convert::STANDARD_GRAVITY_M_S2;
 use units::{FuelFlowTotal, Mach, Mass, OutOfDomain, PressureAltitude, Temperature};
 
 use crate::aircraft::{
-    AircraftTruth, HEATING_FACTOR, Richness, maximum_thrust_n, n2_percent, pressure_rise,
+    AircraftTruth, HEATING_FACTOR, TruthPhysics, maximum_thrust_n, n2_percent, pressure_rise,
 };
 use crate::state::FUEL_TEMPERATURE_AT_START_K;
 use crate::terms::{DragInputs, FuelInputs, MAXIMUM_ENGINES, Terms};
@@ -78,8 +78,8 @@ impl AircraftTruth {
     ///
     /// # Errors
     /// [`TrimError`] outside the atmosphere's or the aircraft's limits.
-    pub fn trim(&self, point: &TrimPoint, richness: Richness) -> Result<Trimmed, TrimError> {
-        let trimmed = trim_with(self, &Terms::of(self, richness), point)?;
+    pub fn trim(&self, point: &TrimPoint, physics: TruthPhysics) -> Result<Trimmed, TrimError> {
+        let trimmed = trim_with(self, &Terms::new(self, physics), point)?;
         let maximum = self.envelope.maximum_lift_coefficient;
         if trimmed.lift_coefficient > maximum {
             return Err(TrimError::LiftCoefficient {
@@ -249,7 +249,7 @@ mod tests {
                 sat,
                 center_of_gravity_percent_mac: 27.0,
             };
-            let trimmed = aircraft.trim(&point, Richness::plain()).unwrap();
+            let trimmed = aircraft.trim(&point, TruthPhysics::plain()).unwrap();
             let near = |found: f64, expected: f64, tolerance: f64| {
                 assert!((found - expected).abs() <= tolerance, "{point:?}: {found} {expected}");
             };
@@ -278,7 +278,7 @@ mod tests {
             sat: Temperature::kelvin(216.65),
             center_of_gravity_percent_mac: 27.0,
         };
-        let trimmed = aircraft.trim(&point, Richness::plain()).unwrap();
+        let trimmed = aircraft.trim(&point, TruthPhysics::plain()).unwrap();
         assert!((trimmed.lift_coefficient - 0.300680).abs() < 2e-6, "{trimmed:?}");
         assert!((trimmed.drag_coefficient - 0.0265450).abs() < 2e-7, "{trimmed:?}");
         assert!((trimmed.thrust_n - 11255.0).abs() < 0.2, "{trimmed:?}");
@@ -301,7 +301,7 @@ mod tests {
                 sat,
                 center_of_gravity_percent_mac: 27.0,
             };
-            aircraft.trim(&point, Richness::full())
+            aircraft.trim(&point, TruthPhysics::full())
         };
         assert!(fits(32_000.0, 370.0, 0.91).is_ok(), "{:?}", fits(32_000.0, 370.0, 0.91));
         assert!(fits(26_500.0, 510.0, 0.82).is_ok(), "{:?}", fits(26_500.0, 510.0, 0.82));
@@ -331,7 +331,7 @@ mod tests {
                 sat,
                 center_of_gravity_percent_mac: 28.0,
             };
-            let trimmed = aircraft.trim(&point, Richness::full()).unwrap();
+            let trimmed = aircraft.trim(&point, TruthPhysics::full()).unwrap();
             let found = 3600.0 * trimmed.fuel_flow_kg_s;
             assert!(
                 (found / kilograms_per_hour - 1.0).abs() < 0.015,
@@ -357,7 +357,7 @@ mod tests {
                 sat,
                 center_of_gravity_percent_mac: 20.0,
             };
-            let trimmed = aircraft.trim(&point, Richness::full()).unwrap();
+            let trimmed = aircraft.trim(&point, TruthPhysics::full()).unwrap();
             nautical_miles += 60.0 * trimmed.true_airspeed_m_s / 1852.0;
             kilograms -= 60.0 * trimmed.fuel_flow_kg_s;
         }
@@ -371,9 +371,9 @@ mod tests {
             center_of_gravity_percent_mac: 20.0,
         };
         assert!(
-            aircraft.trim(&point, Richness::full()).is_ok(),
+            aircraft.trim(&point, TruthPhysics::full()).is_ok(),
             "{:?}",
-            aircraft.trim(&point, Richness::full())
+            aircraft.trim(&point, TruthPhysics::full())
         );
     }
 }

@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::trial::{Case, Planted, score};
 use diagnose::{FlightRecord, Input, Options, diagnose};
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
+use trials::{Case, Planted, score};
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts typed by hand")]
 fn main() {

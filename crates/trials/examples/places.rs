@@ -2,12 +2,12 @@
 //! `places SEED REPEATS [null | effects | closure | cost] [effect]`; of `cost` REPEATS is the number of flights.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a development tool")]
 
-use diagnose::trial::places::{names_driver, spread, worst_region_overlap};
 use diagnose::{Diagnosis, FlightRecord, Input, Options, diagnose, references_of, slice_members};
 use effects::ExtendedModel;
 use effects::{EffectModel, EffectPoint, Effects};
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
+use trials::places::{names_driver, spread, worst_region_overlap};
 
 /// Effects that vary by less than this, in per cent of fuel flow, are not asked for.
 const LOCALISABLE_PERCENT: f64 = 0.35;

@@ -38,14 +38,14 @@ impl DiagnosisInputs {
         let sensors = drawn.flown().plan().sensors.sensors();
         let flights = fly(drawn.flown(), clean..drawn.flown().len())?;
         if clean == 0 {
-            let model = reference_model(drawn.aircraft(), drawn.richness(), &sensors, &FINE, None)?;
+            let model = reference_model(drawn.aircraft(), drawn.physics(), &sensors, &FINE, None)?;
             let drag_table = model.drag_table().clone();
             return Ok(Self { model, drag_table, baseline: None, uncertainty: None, flights });
         }
         let training_flights = fly(drawn.training_flights(), 0..clean)?;
         let error = DragError::study();
         let initial =
-            reference_model(drawn.aircraft(), drawn.richness(), &sensors, &COARSE, Some(&error))?;
+            reference_model(drawn.aircraft(), drawn.physics(), &sensors, &COARSE, Some(&error))?;
         adapted(initial, &training_flights, flights)
     }
 

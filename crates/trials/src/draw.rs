@@ -4,8 +4,8 @@ use flight::Timestamp;
 use flight::effect::{EffectId, TypicalSize};
 use simulate::{
     AircraftTruth, Earth, FleetDesign, FlightPlan, Flights, OutsideEffect, Plan, PlannedEffect,
-    References, Richness, Simulation, SmoothErrorSizes, StepTarget, Switch, TailPlan, TailTruth,
-    TruthEffect,
+    References, Simulation, SmoothErrorSizes, StepTarget, Switch, TailPlan, TailTruth, TruthEffect,
+    TruthPhysics,
 };
 
 use crate::plan::{Background, CaseSpec, Kind, ReferenceModel, TrialPlan};
@@ -29,7 +29,7 @@ pub struct DrawnCase {
     /// How many flights the model may learn: the first ones, of the twin.
     clean: usize,
     aircraft: AircraftTruth,
-    richness: Richness,
+    physics: TruthPhysics,
     truth: CaseTruth,
 }
 
@@ -39,8 +39,8 @@ impl DrawnCase {
     /// # Errors
     /// What the simulator refuses.
     pub fn draw(plan: &TrialPlan, spec: &CaseSpec) -> Result<Self, simulate::PlanError> {
-        let (richness, earth, clean) = match spec.part.reference_model {
-            ReferenceModel::Exact => (Richness::plain(), Earth::plain(), 0),
+        let (physics, earth, clean) = match spec.part.reference_model {
+            ReferenceModel::Exact => (TruthPhysics::plain(), Earth::plain(), 0),
             ReferenceModel::Adapted => (learnable(), Earth::full(), plan.clean_flights),
         };
         let all = plan.flights + clean;
@@ -55,7 +55,7 @@ impl DrawnCase {
         let seed = u64::from_le_bytes([0, 1, 2, 3, 4, 5, 6, 7].map(|byte: usize| spec.draws[byte]));
         let bare = Plan {
             aircraft: plan.aircraft.clone(),
-            richness,
+            physics,
             earth,
             columns: plan.columns,
             sensors: plan.sensors,
@@ -107,7 +107,7 @@ impl DrawnCase {
             twin,
             training_flights,
             clean,
-            richness,
+            physics,
             truth,
         })
     }
@@ -121,8 +121,8 @@ impl DrawnCase {
         &self.aircraft
     }
 
-    pub(crate) const fn richness(&self) -> Richness {
-        self.richness
+    pub(crate) const fn physics(&self) -> TruthPhysics {
+        self.physics
     }
 
     /// Flights that the model may learn, and those that are diagnosed.
@@ -145,8 +145,8 @@ impl DrawnCase {
 
 /// Everything beyond the model's equations that an adapted model can learn. Trim drag with the center of gravity and drag of
 /// a wing held low it cannot: with them in the truth, a flight without a planted effect would not be without effect.
-fn learnable() -> Richness {
-    Richness { trim_drag: Switch::Off, asymmetry: Switch::Off, ..Richness::full() }
+fn learnable() -> TruthPhysics {
+    TruthPhysics { trim_drag: Switch::Off, asymmetry: Switch::Off, ..TruthPhysics::full() }
 }
 
 /// Where effects are nothing: means over the flights that the model knows; of an exact model, over those diagnosed. Dates

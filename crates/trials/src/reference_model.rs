@@ -8,7 +8,7 @@ use lut::surface::{Basis, Surface};
 use perf_model::aircraft::{AircraftFile, AxisFile, TableFile, TsfcFile};
 use perf_model::{Aircraft, PerformanceModel};
 use simulate::study::DragError;
-use simulate::{AircraftTruth, Richness, Scatter, Sensors};
+use simulate::{AircraftTruth, Scatter, Sensors, TruthPhysics};
 use units::Mach;
 use units::convert::TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR;
 
@@ -23,7 +23,7 @@ pub(crate) const COARSE: [(f64, f64, f64); 2] = [(0.10, 0.75, 0.05), (0.50, 0.95
 /// The truth's drag at its reference conditions, and its TSFC law at the best part load, as a model's table.
 pub(crate) fn reference_model(
     truth: &AircraftTruth,
-    richness: Richness,
+    physics: TruthPhysics,
     sensors: &Sensors,
     grid: &[(f64, f64, f64); 2],
     error: Option<&DragError>,
@@ -51,7 +51,7 @@ pub(crate) fn reference_model(
     let values = (0..grid.nodes())
         .map(|node| grid.coordinates(node))
         .map(|(lift, mach)| {
-            let drag = truth.drag_coefficient(lift, Mach::new(mach), &at, richness);
+            let drag = truth.drag_coefficient(lift, Mach::new(mach), &at, physics);
             drag * (1.0 + error.map_or(0.0, |error| error.at(mach, lift)))
         })
         .collect();
@@ -75,7 +75,7 @@ mod tests {
         let simulation = Simulation::new(plan).unwrap();
         let model = reference_model(
             simulation.aircraft(),
-            Richness::plain(),
+            TruthPhysics::plain(),
             &Sensors::transport(),
             &FINE,
             None,
@@ -103,7 +103,7 @@ mod tests {
     fn plan(flights: usize) -> Plan {
         let design = FleetDesign { flights, ..FleetDesign::default() };
         Plan {
-            richness: Richness::plain(),
+            physics: TruthPhysics::plain(),
             earth: Earth::plain(),
             sensors: SensorChoice::Perfect,
             scatter: Scatter::none(),

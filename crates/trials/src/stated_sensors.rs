@@ -1,8 +1,8 @@
 //! What the aircraft file of a case says of the virtual aircraft's sensors.
 
 use atmos::constants::ISOTHERMAL_SCALE_HEIGHT_M;
-use perf_model::aircraft::{FlightDeviations, FuelFlowWander, MassDeviation, SensorDeviations};
-use simulate::{AircraftTruth, ChannelSensor, SLOW_TIME_S, Scatter, Sensors};
+use perf_model::aircraft::{FlightBias, FuelFlowDrift, MassDeviation, SensorDeviations};
+use simulate::{AircraftTruth, ChannelSensor, DRIFT_TIME_CONSTANT_S, Scatter, Sensors};
 
 /// What the aircraft file says of the fleet's sensors: what they do within a flight and from flight to flight, as an operator
 /// sees it in past reports.
@@ -38,7 +38,7 @@ pub(crate) fn stated_sensors(
     // The quiet end of what is seen at 60 s in turbulence; the virtual air is turbulent now and then.
     const ACCELERATION_M_S2: f64 = 0.003;
     let of_mean = |over_s: f64| {
-        let x = over_s / SLOW_TIME_S;
+        let x = over_s / DRIFT_TIME_CONSTANT_S;
         2.0 / x * (1.0 - (1.0 - (-x).exp()) / x)
     };
     let within = |slow: f64, noise: f64| {
@@ -46,9 +46,9 @@ pub(crate) fn stated_sensors(
         wander.hypot(noise / SAMPLES.sqrt())
     };
     let through = |slow: f64, flight: f64| (of_mean(FLIGHT_S).sqrt() * slow).hypot(flight);
-    let added = |sensor: &ChannelSensor| within(sensor.slow_sd, sensor.noise_sd);
-    let kept = |sensor: &ChannelSensor| through(sensor.slow_sd, sensor.flight_sd);
-    let gained = |sensor: &ChannelSensor| within(sensor.gain_slow_sd, sensor.gain_noise_sd);
+    let added = |sensor: &ChannelSensor| within(sensor.drift_sd, sensor.noise_sd);
+    let kept = |sensor: &ChannelSensor| through(sensor.drift_sd, sensor.flight_sd);
+    let gained = |sensor: &ChannelSensor| within(sensor.gain_drift_sd, sensor.gain_noise_sd);
     let heating = 1.0 + 0.2 * MACH * MACH;
     let of_pressures = |deviation: &dyn Fn(&ChannelSensor) -> f64| {
         let of_static = deviation(&sensors.static_pressure) / STATIC_PRESSURE_HPA;
@@ -63,7 +63,7 @@ pub(crate) fn stated_sensors(
     // Engines err independently; the N2 channel is their mean.
     let engines = f64::from(truth.engine.count).sqrt();
     let kept_by_all = 100.0 * meter.gain_flight_sd / engines;
-    let rotor_kept = (100.0 * through(sensors.n2.gain_slow_sd, sensors.n2.gain_flight_sd))
+    let rotor_kept = (100.0 * through(sensors.n2.gain_drift_sd, sensors.n2.gain_flight_sd))
         .hypot(kept(&sensors.n2));
     SensorDeviations {
         fuel_flow_percent: 100.0 * meter.gain_noise_sd / SAMPLES.sqrt(),
@@ -76,11 +76,11 @@ pub(crate) fn stated_sensors(
         lower_heating_value_percent: scatter.heating_value_percent.hypot(kept_by_all),
         n2_percent: (100.0 * gained(&sensors.n2)).hypot(added(&sensors.n2)),
         pressure_altitude_m,
-        fuel_flow_wander: FuelFlowWander {
-            percent: 100.0 * of_mean(SEGMENT_S).sqrt() * meter.gain_slow_sd,
-            time_s: SLOW_TIME_S,
+        fuel_flow_drift: FuelFlowDrift {
+            percent: 100.0 * of_mean(SEGMENT_S).sqrt() * meter.gain_drift_sd,
+            time_s: DRIFT_TIME_CONSTANT_S,
         },
-        through_flight: FlightDeviations {
+        flight_bias: FlightBias {
             mach: mach_kept,
             static_air_temperature_k: kept(&sensors.total_air_temperature) / heating,
             n2_percent: rotor_kept / engines,
@@ -103,11 +103,11 @@ mod tests {
         let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
         let stated = stated_sensors(&Sensors::transport(), &Scatter::default(), &truth);
         assert!((stated.fuel_flow_percent - 0.094868).abs() < 1e-5, "{stated:?}");
-        assert!((stated.fuel_flow_wander.percent - 0.184634).abs() < 1e-5, "{stated:?}");
+        assert!((stated.fuel_flow_drift.percent - 0.184634).abs() < 1e-5, "{stated:?}");
         assert!((stated.static_air_temperature_k - 0.068632).abs() < 1e-5, "{stated:?}");
         assert!((stated.lower_heating_value_percent - 0.318198).abs() < 1e-5, "{stated:?}");
         assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
-        let kept = stated.through_flight;
+        let kept = stated.flight_bias;
         assert!((kept.static_air_temperature_k - 0.183361).abs() < 1e-5, "{kept:?}");
         assert!((kept.n2_percent - 0.021213).abs() < 1e-5, "{kept:?}");
         assert!((kept.mach - 7.1630e-4).abs() < 1e-6, "{kept:?}");

@@ -5,7 +5,7 @@ use lut::Table;
 use serde::{Deserialize, Serialize};
 
 use super::information::{Information, Parts};
-use super::judge::{Judge, TERMS, TRIANGLE};
+use super::outlier_weights::{ExpectedResidual, TERMS, TRIANGLE};
 use super::{BayesSettings, BayesState, InitialError};
 
 /// What a [`BayesState`] has learnt, without grid, initial table and settings, which the model keeps anyway.
@@ -29,7 +29,7 @@ pub struct BayesStateData {
     pub vector: Vec<f64>,
     /// Effective number of observations.
     pub observations: Vec<f64>,
-    /// The outlier judge's information: 21 numbers of a triangle, 6 of a vector.
+    /// What outlier weights are judged by, the expected residual: 21 numbers of a triangle, 6 of a vector. The name is the file format's.
     pub judge: Vec<f64>,
 }
 
@@ -94,7 +94,13 @@ impl BayesState {
             information: rows,
             vector,
             observations,
-            judge: self.judge.matrix.iter().chain(&self.judge.vector).copied().collect(),
+            judge: self
+                .expected_residual
+                .matrix
+                .iter()
+                .chain(&self.expected_residual.vector)
+                .copied()
+                .collect(),
         }
     }
 
@@ -114,8 +120,9 @@ impl BayesState {
             None if data.flights == 0 && data.nodes.is_empty() => None,
             None => return Err(StateDataError::Newest),
         };
-        state.judge = Judge::new();
-        let numbers = state.judge.matrix.iter_mut().chain(&mut state.judge.vector);
+        state.expected_residual = ExpectedResidual::new();
+        let numbers =
+            state.expected_residual.matrix.iter_mut().chain(&mut state.expected_residual.vector);
         numbers.zip(&data.judge).for_each(|(number, value)| *number = *value);
         state.flights = data.flights;
         state.segments = data.segments;

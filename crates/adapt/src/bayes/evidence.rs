@@ -6,7 +6,7 @@ use flight::Observation;
 use lut::Table;
 
 use super::information::Information;
-use super::judge::Verdict;
+use super::outlier_weights::FlightWeights;
 use super::posterior::precision;
 use super::settings::SettingValues;
 use super::{BayesSettings, BayesState, InitialError, SolveError};
@@ -50,7 +50,7 @@ pub struct Tuned {
 /// An improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TuneStep {
-    /// What was changed; "outlier weights" where the flights were judged anew, after which evidences compare no longer
+    /// What was changed; "outlier weights" where outlier weights were computed anew, after which evidences compare no longer
     /// with those before.
     pub changed: &'static str,
     /// The settings after it.
@@ -129,8 +129,8 @@ pub fn log_evidence(
     settings: BayesSettings,
     flights: &[Vec<Observation>],
 ) -> Result<f64, TuneError> {
-    let verdicts = judge(initial, settings, flights)?;
-    evidence(initial, settings, flights, &verdicts)
+    let weights = outlier_weights_of(initial, settings, flights)?;
+    evidence(initial, settings, flights, &weights)
 }
 
 /// Searches for the settings of the largest evidence times [`Search::prior_factor`]'s prior, one after the other by
@@ -153,15 +153,15 @@ pub fn tune(
     flights: &[Vec<Observation>],
     search: &Search,
 ) -> Result<Tuned, TuneError> {
-    let mut verdicts = judge(initial, start, flights)?;
-    let mut best = (start, evidence(initial, start, flights, &verdicts)?);
+    let mut weights = outlier_weights_of(initial, start, flights)?;
+    let mut best = (start, evidence(initial, start, flights, &weights)?);
     let mut factors = [1.0; CHANGES.len()];
     let mut evaluations = 1;
     let mut path = vec![TuneStep { changed: "start", settings: start, log_evidence: best.1 }];
     for round in 0..ROUNDS {
         if round > 0 {
-            verdicts = judge(initial, best.0, flights)?;
-            best.1 = evidence(initial, best.0, flights, &verdicts)?;
+            weights = outlier_weights_of(initial, best.0, flights)?;
+            best.1 = evidence(initial, best.0, flights, &weights)?;
             evaluations += 1;
             path.push(TuneStep {
                 changed: "outlier weights",
@@ -183,7 +183,7 @@ pub fn tune(
                     }
                     let Some(settings) = changed_by(&start, &candidate) else { continue };
                     evaluations += 1;
-                    let log_evidence = evidence(initial, settings, flights, &verdicts)?;
+                    let log_evidence = evidence(initial, settings, flights, &weights)?;
                     let gain = log_evidence - best.1 + search.log_prior(&candidate)
                         - search.log_prior(&factors);
                     if gain > 0.0 {
@@ -227,19 +227,23 @@ fn ageless(settings: BayesSettings) -> BayesSettings {
 }
 
 /// Outlier weights of all flights, learnt one after the other.
-fn judge(
+fn outlier_weights_of(
     initial: &Table,
     settings: BayesSettings,
     flights: &[Vec<Observation>],
-) -> Result<Vec<Verdict>, TuneError> {
+) -> Result<Vec<FlightWeights>, TuneError> {
     let mut state = BayesState::new(initial, ageless(settings))?;
-    let verdicts = flights.iter().map(|observations| {
+    let weights = flights.iter().map(|observations| {
         let flight = state.read(observations);
-        let verdict = state.judge.weigh(&state.rules, &flight.cases, flight.common_variance);
-        state.learn_judged(&flight, &verdict);
-        verdict
+        let flight_weights = state.expected_residual.weigh(
+            &state.weight_settings,
+            &flight.residuals,
+            flight.common_variance,
+        );
+        state.learn_weighted(&flight, &flight_weights);
+        flight_weights
     });
-    Ok(verdicts.collect())
+    Ok(weights.collect())
 }
 
 /// Natural logarithm of the evidence with given weights:
@@ -251,25 +255,25 @@ fn evidence(
     initial: &Table,
     settings: BayesSettings,
     flights: &[Vec<Observation>],
-    verdicts: &[Verdict],
+    weights: &[FlightWeights],
 ) -> Result<f64, TuneError> {
     let mut state = BayesState::new(initial, ageless(settings))?;
     let mut sum = 0.0;
-    for (observations, verdict) in flights.iter().zip(verdicts) {
+    for (observations, flight_weights) in flights.iter().zip(weights) {
         let flight = state.read(observations);
-        let common = flight.common_variance / verdict.flight_weight;
+        let common = flight.common_variance / flight_weights.flight_weight;
         let (mut precisions, mut residuals) = (0.0, 0.0);
-        for (case, weight) in flight.cases.iter().zip(&verdict.weights) {
+        for (case, weight) in flight.residuals.iter().zip(&flight_weights.weights) {
             let precision = weight / case.variance;
             precisions += precision;
             residuals += precision * case.residual;
             sum += precision * case.residual * case.residual - precision.ln() + TAU.ln();
         }
-        if !flight.cases.is_empty() {
+        if !flight.residuals.is_empty() {
             sum += (common * precisions).ln_1p();
             sum -= residuals * residuals / (1.0 / common + precisions);
         }
-        state.learn_judged(&flight, verdict);
+        state.learn_weighted(&flight, flight_weights);
     }
     let solve = |information: &Information| {
         let matrix = precision(initial, &settings, information);

@@ -109,7 +109,7 @@ fn log_density(state: &BayesState, flight: &Flight) -> Result<f64, TuneError> {
         .map(|row| row.nodes.into_iter().zip(row.coefficients).collect())
         .collect();
     let mut covariance = posterior.covariances_of(&columns);
-    for (k, (row, case)) in covariance.iter_mut().zip(&flight.cases).enumerate() {
+    for (k, (row, case)) in covariance.iter_mut().zip(&flight.residuals).enumerate() {
         for entry in row.iter_mut() {
             *entry += flight.common_variance;
         }
@@ -117,7 +117,7 @@ fn log_density(state: &BayesState, flight: &Flight) -> Result<f64, TuneError> {
     }
     let residuals: Vec<f64> = columns
         .iter()
-        .zip(&flight.cases)
+        .zip(&flight.residuals)
         .map(|(column, case)| {
             let expected: f64 = column.iter().map(|(node, by)| by * correction[*node]).sum();
             case.residual - expected
@@ -126,7 +126,7 @@ fn log_density(state: &BayesState, flight: &Flight) -> Result<f64, TuneError> {
     let (log_determinant, square) =
         whitened(covariance, residuals).ok_or(super::SolveError::NotPositiveDefinite)?;
     let degrees = state.settings.values().student_degrees_of_freedom;
-    let count = flight.cases.len() as f64;
+    let count = flight.residuals.len() as f64;
     Ok(-0.5 * (log_determinant + (degrees + count) * (square / degrees).ln_1p()))
 }
 

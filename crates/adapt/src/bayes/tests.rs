@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-use super::judge::Verdict;
+use super::outlier_weights::FlightWeights;
 use super::*;
 
 type Field = fn(f64, f64) -> f64;
@@ -95,7 +95,7 @@ fn dense_prior(grid: &Grid, settings: &BayesSettings) -> DMatrix<f64> {
 fn dense_observations(
     state: &BayesState,
     flights: &[Vec<Observation>],
-    verdicts: &[Verdict],
+    weights: &[FlightWeights],
 ) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
     let read: Vec<Flight> = flights.iter().map(|flight| state.read(flight)).collect();
     let count = read.iter().map(|flight| flight.rows.len()).sum();
@@ -103,30 +103,35 @@ fn dense_observations(
     let mut residuals = DVector::zeros(count);
     let mut variance = DMatrix::zeros(count, count);
     let mut start = 0;
-    for (flight, verdict) in read.iter().zip(verdicts) {
+    for (flight, flight_weights) in read.iter().zip(weights) {
         let end = start + flight.rows.len();
         for (k, row) in flight.rows.iter().enumerate() {
             for (&node, coefficient) in row.nodes.iter().zip(row.coefficients) {
                 rows[(start + k, node)] += coefficient;
             }
             residuals[start + k] = row.residual;
-            variance[(start + k, start + k)] += flight.cases[k].variance / verdict.weights[k];
+            variance[(start + k, start + k)] +=
+                flight.residuals[k].variance / flight_weights.weights[k];
         }
-        let common = flight.common_variance / verdict.flight_weight;
+        let common = flight.common_variance / flight_weights.flight_weight;
         variance.view_mut((start, start), (end - start, end - start)).add_scalar_mut(common);
         start = end;
     }
     (rows, residuals, variance)
 }
 
-fn judged(state: &mut BayesState, flights: &[Vec<Observation>]) -> Vec<Verdict> {
+fn weighted(state: &mut BayesState, flights: &[Vec<Observation>]) -> Vec<FlightWeights> {
     flights
         .iter()
         .map(|observations| {
             let flight = state.read(observations);
-            let verdict = state.judge.weigh(&state.rules, &flight.cases, flight.common_variance);
-            state.learn_judged(&flight, &verdict);
-            verdict
+            let flight_weights = state.expected_residual.weigh(
+                &state.weight_settings,
+                &flight.residuals,
+                flight.common_variance,
+            );
+            state.learn_weighted(&flight, &flight_weights);
+            flight_weights
         })
         .collect()
 }
@@ -145,11 +150,11 @@ fn solve_agrees_with_dense_conditioning() {
         let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
         let flights = flights(&mut random, &initial, 12, (0.01, 0.005), some_correction);
         let mut state = BayesState::new(&initial, BayesSettings::physical_2026()).unwrap();
-        let verdicts = judged(&mut state, &flights);
+        let weights = weighted(&mut state, &flights);
         let posterior = state.solve().unwrap();
 
         let prior = dense_prior(&grid, state.settings()).try_inverse().unwrap();
-        let (rows, residuals, variance) = dense_observations(&state, &flights, &verdicts);
+        let (rows, residuals, variance) = dense_observations(&state, &flights, &weights);
         let of_residuals = (&rows * &prior * rows.transpose() + variance).try_inverse().unwrap();
         let gain = &prior * rows.transpose() * of_residuals;
         let mean = &gain * residuals;
@@ -186,10 +191,10 @@ fn evidence_is_a_dense_normal_density() {
     let flights = flights(&mut random, &initial, 9, (0.01, 0.005), some_correction);
     let settings = BayesSettings::physical_2026();
     let mut state = BayesState::new(&initial, settings).unwrap();
-    let verdicts = judged(&mut state, &flights);
+    let weights = weighted(&mut state, &flights);
 
     let prior = dense_prior(&grid, &settings).try_inverse().unwrap();
-    let (rows, residuals, variance) = dense_observations(&state, &flights, &verdicts);
+    let (rows, residuals, variance) = dense_observations(&state, &flights, &weights);
     let covariance = Cholesky::new(&rows * prior * rows.transpose() + variance).unwrap();
     let log_determinant: f64 =
         2.0 * covariance.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>();
@@ -260,15 +265,19 @@ fn outlier_weights_are_the_fixed_point() {
     flights.sort_by_key(Vec::len);
     let last = flights.pop().unwrap();
     let mut state = BayesState::new(&initial, settings).unwrap();
-    let _ = judged(&mut state, &flights);
+    let _ = weighted(&mut state, &flights);
 
     let mut flight = state.read(&last);
-    assert!(flight.cases.len() > 3, "{}", flight.cases.len());
-    flight.cases[1].residual += 0.10; // gross
-    let verdict = state.judge.weigh(&state.rules, &flight.cases, flight.common_variance);
+    assert!(flight.residuals.len() > 3, "{}", flight.residuals.len());
+    flight.residuals[1].residual += 0.10; // gross
+    let flight_weights = state.expected_residual.weigh(
+        &state.weight_settings,
+        &flight.residuals,
+        flight.common_variance,
+    );
 
     // Unknowns: six coefficients in patches of 0.3 × 0.1 from the grid's middle (0.45, 0.725), and the common error.
-    let terms = |case: &Case| {
+    let terms = |case: &SegmentResidual| {
         let (u, v) = ((case.lift_coefficient - 0.45) / 0.3, (case.mach - 0.725) / 0.1);
         DVector::from_vec(vec![1.0, u, v, u * u, u * v, v * v, 1.0])
     };
@@ -277,7 +286,7 @@ fn outlier_weights_are_the_fixed_point() {
     let common = flight.common_variance + (0.0675 * 0.0675 + 0.01 * 0.01) / 16.0;
     let mut matrix = DMatrix::zeros(7, 7);
     let mut vector = DVector::zeros(7);
-    let mut entries = state.judge.matrix.iter();
+    let mut entries = state.expected_residual.matrix.iter();
     for i in 0..6 {
         for j in 0..=i {
             let entry = *entries.next().unwrap();
@@ -287,17 +296,17 @@ fn outlier_weights_are_the_fixed_point() {
             }
         }
         matrix[(i, i)] += 1.0 / (stds[i] * stds[i]);
-        vector[i] = state.judge.vector[i];
+        vector[i] = state.expected_residual.vector[i];
     }
-    matrix[(6, 6)] = verdict.flight_weight / common;
-    for (case, weight) in flight.cases.iter().zip(&verdict.weights) {
+    matrix[(6, 6)] = flight_weights.flight_weight / common;
+    for (case, weight) in flight.residuals.iter().zip(&flight_weights.weights) {
         let row = terms(case);
         matrix += &row * row.transpose() * (weight / case.variance);
         vector += row * (case.residual * weight / case.variance);
     }
     let covariance = matrix.try_inverse().unwrap();
     let mean = &covariance * vector;
-    for (case, weight) in flight.cases.iter().zip(&verdict.weights) {
+    for (case, weight) in flight.residuals.iter().zip(&flight_weights.weights) {
         let row = terms(case);
         let error = case.residual - row.dot(&mean);
         let square = (error * error + row.dot(&(&covariance * &row))) / case.variance;
@@ -305,11 +314,11 @@ fn outlier_weights_are_the_fixed_point() {
         assert!((weight / expected - 1.0).abs() < 0.06, "{weight} {expected}");
     }
     let expected = 5.0 / (4.0 + (mean[6] * mean[6] + covariance[(6, 6)]) / common);
-    assert!((verdict.flight_weight / expected - 1.0).abs() < 0.06);
+    assert!((flight_weights.flight_weight / expected - 1.0).abs() < 0.06);
     // The outlier has the least weight by far.
-    assert!(verdict.weights[1] < 0.1, "{:?}", verdict.weights);
-    let others = verdict.weights.iter().enumerate().filter(|(k, _)| *k != 1);
-    assert!(others.into_iter().all(|(_, weight)| *weight > 3.0 * verdict.weights[1]));
+    assert!(flight_weights.weights[1] < 0.1, "{:?}", flight_weights.weights);
+    let others = flight_weights.weights.iter().enumerate().filter(|(k, _)| *k != 1);
+    assert!(others.into_iter().all(|(_, weight)| *weight > 3.0 * flight_weights.weights[1]));
 }
 
 /// Truth drawn from the prior, noise as the settings have it: 95 % intervals of nodes and of unseen segments cover 92
@@ -338,7 +347,7 @@ fn intervals_cover_what_they_say() {
         let learnt = flights(&mut random, &initial, 20, noise, correction);
         let unseen = flights(&mut random, &initial, 20, noise, correction);
         let mut state = BayesState::new(&initial, settings).unwrap();
-        let _ = judged(&mut state, &learnt);
+        let _ = weighted(&mut state, &learnt);
         let posterior = state.solve().unwrap();
         for node in 0..grid.nodes() {
             let miss = (truth[node] - posterior.correction()[node]).abs();

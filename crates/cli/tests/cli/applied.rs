@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use simulate::{AircraftTruth, Preset, Richness};
+use simulate::{AircraftTruth, Preset, TruthPhysics};
 use units::Mach;
 
 use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers};
@@ -12,7 +12,7 @@ use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initia
 /// that only round, no scatter between flights.
 const PLAN: &str = r#"(
     seed: 6,
-    richness: (reynolds_number: Off, trim_drag: Off, asymmetry: Off, part_load: Off, temperature_exponent: Off, offtake: Off),
+    physics: (reynolds_number: Off, trim_drag: Off, asymmetry: Off, part_load: Off, temperature_exponent: Off, offtake: Off),
     earth: (load_factor: Off, local_gravity: Off, rotating_earth: Off, isobaric_slope: Off, coriolis_along_path: Off),
     sensors: Rounded,
     scatter: (heating_value_percent: 0, zero_fuel_mass_percent: 0, throttle_split_percent: 0),
@@ -57,7 +57,8 @@ fn against_truth(folder: &Path) -> [f64; 3] {
         .map(|(&lift, &mach)| {
             let cell = table.grid().locate(lift, mach, lut::Outside::Error).unwrap();
             let at = truth.reference_conditions();
-            let true_drag = truth.drag_coefficient(lift, Mach::new(mach), &at, Richness::plain());
+            let true_drag =
+                truth.drag_coefficient(lift, Mach::new(mach), &at, TruthPhysics::plain());
             100.0 * (table.interpolate(&cell) / true_drag - 1.0)
         })
         .collect();

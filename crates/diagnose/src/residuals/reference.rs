@@ -1,7 +1,7 @@
 //! What flights are held against.
 
 use effects::EffectModel;
-use perf_model::aircraft::{FlightDeviations, FuelFlowWander};
+use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 
 use crate::baseline::Baseline;
 use crate::signals::noise::{NoiseFactors, Statistics};
@@ -36,11 +36,11 @@ impl<'a> Against<'a> {
         Statistics {
             factors: self.baseline().map_or_else(NoiseFactors::default, |b| *b.noise()),
             // What a flight keeps is learnt as a factor on mass, heating value and split, what wanders as one on the rest.
-            through_flight: if stated { sensors.through_flight } else { FlightDeviations::none() },
-            fuel_flow_wander: if stated {
-                sensors.fuel_flow_wander
+            flight_bias: if stated { sensors.flight_bias } else { FlightBias::none() },
+            fuel_flow_drift: if stated {
+                sensors.fuel_flow_drift
             } else {
-                FuelFlowWander::default()
+                FuelFlowDrift::default()
             },
         }
     }

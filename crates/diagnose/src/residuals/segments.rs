@@ -278,7 +278,7 @@ pub(crate) fn add_wander_to(
     let mut noises: Vec<&mut SegmentNoise> =
         segments.iter_mut().map(|row| &mut row.noise).collect();
     let engines = model.aircraft().engines();
-    add_wander(&mut noises, &times_s, statistics.fuel_flow_wander, engines);
+    add_wander(&mut noises, &times_s, statistics.fuel_flow_drift, engines);
 }
 
 fn channels_of(

@@ -1,7 +1,7 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
 use effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
-use perf_model::aircraft::{FlightDeviations, FuelFlowWander, SensorDeviations};
+use perf_model::aircraft::{FlightBias, FuelFlowDrift, SensorDeviations};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
 
@@ -32,8 +32,8 @@ impl Default for NoiseFactors {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Statistics {
     pub(crate) factors: NoiseFactors,
-    pub(crate) through_flight: FlightDeviations,
-    pub(crate) fuel_flow_wander: FuelFlowWander,
+    pub(crate) flight_bias: FlightBias,
+    pub(crate) fuel_flow_drift: FuelFlowDrift,
 }
 
 /// Covariance of one segment's residuals: its own part, and its loadings on what the flight has in common.
@@ -57,7 +57,7 @@ impl<F: Fn(&Response) -> ByChannel> PredictChannels for F {}
 /// ```text
 /// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
 /// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split,
-///                                          and Mach number, SAT, pressure altitude, N2 by `through_flight`  [diagnosis.14]
+///                                          and Mach number, SAT, pressure altitude, N2 by `flight_bias`  [diagnosis.14]
 /// ```
 #[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
 #[expect(clippy::needless_range_loop, reason = "rows and columns of a covariance")]
@@ -118,7 +118,7 @@ pub(crate) fn segment_noise(
     for contrast in 1..=channels.contrasts {
         // Contrasts are normalized like ln(Wf1/Wf2): squares of the weights sum to 2.
         // What wanders is taken as new in every segment here: half as many columns, and a contrast is seldom short of data.
-        let wander = statistics.fuel_flow_wander.percent / 100.0;
+        let wander = statistics.fuel_flow_drift.percent / 100.0;
         covariance[contrast][contrast] = 2.0 * (meter * meter + wander * wander);
     }
     if channels.n2 {
@@ -191,7 +191,7 @@ fn common_loadings(
     channels: Channels,
     statistics: &Statistics,
 ) -> Vec<ByChannel> {
-    let Statistics { factors, through_flight, .. } = statistics;
+    let Statistics { factors, flight_bias, .. } = statistics;
     let unit = |row: usize| {
         let mut slope = [0.0; MAXIMUM_CHANNELS];
         slope[row] = 1.0;
@@ -201,12 +201,12 @@ fn common_loadings(
         vec![(slopes.mass, relative_mass), (unit(0), sensors.lower_heating_value_percent / 100.0)];
     sources.extend((1..=channels.contrasts).map(|contrast| (unit(contrast), SPLIT_DEVIATION)));
     sources.extend([
-        (slopes.mach, through_flight.mach),
-        (slopes.static_air_temperature, through_flight.static_air_temperature_k),
-        (slopes.pressure_altitude, through_flight.pressure_altitude_m),
+        (slopes.mach, flight_bias.mach),
+        (slopes.static_air_temperature, flight_bias.static_air_temperature_k),
+        (slopes.pressure_altitude, flight_bias.pressure_altitude_m),
     ]);
     if channels.n2 {
-        sources.push((unit(channels.n2_row()), through_flight.n2_percent / 100.0));
+        sources.push((unit(channels.n2_row()), flight_bias.n2_percent / 100.0));
     }
     sources
         .into_iter()
@@ -232,7 +232,7 @@ fn common_loadings(
 pub(crate) fn add_wander(
     noises: &mut [&mut SegmentNoise],
     times_s: &[f64],
-    wander: FuelFlowWander,
+    wander: FuelFlowDrift,
     engines: usize,
 ) {
     if wander.percent <= 0.0 {
@@ -290,7 +290,7 @@ mod tests {
             acceleration: [0.0; MAXIMUM_CHANNELS],
         };
         let (mut a, mut b, mut c) = (noise(), noise(), noise());
-        let wander = FuelFlowWander { percent: 0.2, time_s: 1200.0 };
+        let wander = FuelFlowDrift { percent: 0.2, time_s: 1200.0 };
         add_wander(&mut [&mut a, &mut b, &mut c], &[0.0, 600.0, 2400.0], wander, 2);
         let covariance = |x: &SegmentNoise, y: &SegmentNoise| {
             x.common.iter().zip(&y.common).map(|(x, y)| x[0] * y[0]).sum::<f64>()

@@ -55,9 +55,9 @@ bounded!(mass_percent, "standard deviation of mass", "%", 0.0, 20.0);
 bounded!(mass_kg, "standard deviation of mass", "kg", 0.0, 50_000.0);
 bounded!(lower_heating_value_percent, "standard deviation of heating value", "%", 0.0, 10.0);
 bounded!(n2_percent, "standard deviation of N2", "%", 0.001, 10.0);
-bounded!(n2_through_flight_percent, "standard deviation of N2 through a flight", "%", 0.0, 10.0);
-bounded!(fuel_flow_wander_percent, "wander of fuel flow", "%", 0.0, 20.0);
-bounded!(wander_time_s, "time of the wander", "s", 1.0, 1e6);
+bounded!(n2_flight_bias_percent, "per-flight bias of N2", "%", 0.0, 10.0);
+bounded!(fuel_flow_drift_percent, "drift of fuel flow", "%", 0.0, 20.0);
+bounded!(drift_time_s, "correlation time of the drift", "s", 1.0, 1e6);
 bounded!(pressure_altitude_m, "standard deviation of pressure altitude", "m", 0.0, 500.0);
 
 /// Limits of the table's lift-coefficient axis.

@@ -39,39 +39,40 @@ pub struct SensorDeviations {
     /// Pressure altitude, m. Default 8: the resolution and repeatability of an air-data computer.
     #[serde(deserialize_with = "limits::pressure_altitude_m::deserialize")]
     pub pressure_altitude_m: f64,
-    /// What air data and rotor speed keep through a flight. Not written where it is the default.
-    #[serde(skip_serializing_if = "FlightDeviations::is_default")]
-    pub through_flight: FlightDeviations,
-    /// What flow meters wander within a flight, slower than a segment lasts. Not written where it is none.
-    #[serde(skip_serializing_if = "FuelFlowWander::is_none")]
-    pub fuel_flow_wander: FuelFlowWander,
+    /// Per-flight bias of air data and rotor speed. Not written where it is the default.
+    #[serde(alias = "flight_bias", skip_serializing_if = "FlightBias::is_default")]
+    pub flight_bias: FlightBias,
+    /// Drift of flow meters within a flight, slower than a segment lasts. Not written where it is the default.
+    #[serde(alias = "fuel_flow_drift", skip_serializing_if = "FuelFlowDrift::is_default")]
+    pub fuel_flow_drift: FuelFlowDrift,
 }
 
-/// A slow wander of flow meters within a flight, on top of what differs from segment to segment: neighbours err alike.
+/// Drift of flow meters within a flight, on top of what differs from segment to segment: a first-order Gauss–Markov process,
+/// so that the errors of neighbouring segments are correlated.
 ///
-/// It is not known for real meters and none by default. Where meters wander and it is not stated, functions of what changes
-/// slowly through a flight seem to explain it.
+/// No figure for real meters is known to us, so the default is no drift. Where meters drift and the file does not say so,
+/// functions of anything that changes slowly through a flight seem to explain it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct FuelFlowWander {
+pub struct FuelFlowDrift {
     /// Standard deviation of one engine's segment means, % of the reading; engines err independently. Default 0.
-    #[serde(deserialize_with = "limits::fuel_flow_wander_percent::deserialize")]
+    #[serde(deserialize_with = "limits::fuel_flow_drift_percent::deserialize")]
     pub percent: f64,
-    /// Time in which the likeness of two means falls to 1/e, s. Default 1200.
-    #[serde(deserialize_with = "limits::wander_time_s::deserialize")]
+    /// Correlation time: the correlation of two means falls to 1/e in it, s. Default 1200.
+    #[serde(deserialize_with = "limits::drift_time_s::deserialize")]
     pub time_s: f64,
 }
 
-/// Standard deviations of what stays the same through one flight and differs in the next: calibration drift, hysteresis,
-/// the way a computer was aligned. They come on top of what differs from segment to segment.
+/// Standard deviations of the per-flight biases, constant within a flight and independent between flights: calibration,
+/// hysteresis, the alignment of a computer. They come on top of what differs from segment to segment.
 ///
-/// Ten segments of one flight that err together say no more than one of them. Without this, a diagnosis without a learnt
-/// remainder takes three warm flights for a step, or for scatter between flights.
+/// Ten segments of one flight that share an error carry no more information than one of them. Without this, a diagnosis
+/// without a learnt remainder takes three warm flights for a step, or for scatter between flights.
 ///
 /// The defaults are our choice: 0.7 of what the handbook says of one reading, so that half of its variance stays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct FlightDeviations {
+pub struct FlightBias {
     /// Mach number; true airspeed errs with it. Default 0.0007.
     #[serde(deserialize_with = "limits::mach::deserialize")]
     pub mach: f64,
@@ -79,7 +80,7 @@ pub struct FlightDeviations {
     #[serde(deserialize_with = "limits::static_air_temperature_k::deserialize")]
     pub static_air_temperature_k: f64,
     /// High-pressure rotor speed, % of the reading. Default 0.056.
-    #[serde(deserialize_with = "limits::n2_through_flight_percent::deserialize")]
+    #[serde(deserialize_with = "limits::n2_flight_bias_percent::deserialize")]
     pub n2_percent: f64,
     /// Pressure altitude, m. Default 5.6.
     #[serde(deserialize_with = "limits::pressure_altitude_m::deserialize")]
@@ -117,31 +118,31 @@ impl Default for SensorDeviations {
             lower_heating_value_percent: 0.3,
             n2_percent: 0.08,
             pressure_altitude_m: 8.0,
-            through_flight: FlightDeviations::default(),
-            fuel_flow_wander: FuelFlowWander::default(),
+            flight_bias: FlightBias::default(),
+            fuel_flow_drift: FuelFlowDrift::default(),
         }
     }
 }
 
-impl Default for FuelFlowWander {
+impl Default for FuelFlowDrift {
     fn default() -> Self {
         Self { percent: 0.0, time_s: 1200.0 }
     }
 }
 
-impl FuelFlowWander {
-    fn is_none(&self) -> bool {
+impl FuelFlowDrift {
+    fn is_default(&self) -> bool {
         *self == Self::default()
     }
 
     fn check(&self) -> Result<(), AircraftError> {
-        limits::fuel_flow_wander_percent::check(self.percent)?;
-        limits::wander_time_s::check(self.time_s)?;
+        limits::fuel_flow_drift_percent::check(self.percent)?;
+        limits::drift_time_s::check(self.time_s)?;
         Ok(())
     }
 }
 
-impl Default for FlightDeviations {
+impl Default for FlightBias {
     fn default() -> Self {
         Self {
             mach: 0.0007,
@@ -152,8 +153,8 @@ impl Default for FlightDeviations {
     }
 }
 
-impl FlightDeviations {
-    /// Nothing stays the same through a flight.
+impl FlightBias {
+    /// No per-flight bias.
     #[must_use]
     pub const fn none() -> Self {
         Self { mach: 0.0, static_air_temperature_k: 0.0, n2_percent: 0.0, pressure_altitude_m: 0.0 }
@@ -166,7 +167,7 @@ impl FlightDeviations {
     fn check(&self) -> Result<(), AircraftError> {
         limits::mach::check(self.mach)?;
         limits::static_air_temperature_k::check(self.static_air_temperature_k)?;
-        limits::n2_through_flight_percent::check(self.n2_percent)?;
+        limits::n2_flight_bias_percent::check(self.n2_percent)?;
         limits::pressure_altitude_m::check(self.pressure_altitude_m)?;
         Ok(())
     }
@@ -185,8 +186,8 @@ impl SensorDeviations {
         limits::lower_heating_value_percent::check(self.lower_heating_value_percent)?;
         limits::n2_percent::check(self.n2_percent)?;
         limits::pressure_altitude_m::check(self.pressure_altitude_m)?;
-        self.through_flight.check()?;
-        self.fuel_flow_wander.check()
+        self.flight_bias.check()?;
+        self.fuel_flow_drift.check()
     }
 }
 

@@ -14,7 +14,7 @@ const LARGE_RESIDUAL_PERCENT: f64 = 5.0;
 /// A row this many times the root mean square away is probably mistyped.
 const ODD_ROW_FACTOR: f64 = 5.0;
 
-pub(super) fn of(fit: &GuideFit, guide: &Guide, nodes: usize) -> Vec<Finding> {
+pub(super) fn from_fit(fit: &GuideFit, guide: &Guide, nodes: usize) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut find = |severity, code, message, line| {
         findings.push(Finding { severity, code, message, line });

@@ -86,7 +86,7 @@ fn sensitivity(model: &PerformanceModel) -> ResidualSensitivity {
     let cell = grid.locate(state.lift_coefficient, 0.803, lut::Outside::Error).unwrap();
     let slopes = TableSlopes::at(model.drag_table(), &cell, state.lift_coefficient);
     let pressure_altitude = PressureAltitude::meters(12_496.8);
-    ResidualSensitivity::of(model.aircraft(), pressure_altitude, &state, slopes).unwrap()
+    ResidualSensitivity::new(model.aircraft(), pressure_altitude, &state, slopes).unwrap()
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn rows_in_range(
     for row in rows {
         let outside = plan.recorded.iter().find(|(column, conversion)| {
             let value = conversion.apply(&recording.numbers, row);
-            !Limits::of(*column, None).admit(value)
+            !Limits::new(*column, None).admit(value)
         });
         match outside {
             None => kept.push(row),
@@ -141,7 +141,7 @@ struct Limits {
 }
 
 impl Limits {
-    fn of(column: Column, maximum: Option<f64>) -> Self {
+    fn new(column: Column, maximum: Option<f64>) -> Self {
         let range = column.range();
         let minimum = range.minimum.unwrap_or(f64::MIN);
         let maximum = maximum.or(range.maximum).unwrap_or(f64::MAX);
@@ -225,7 +225,7 @@ impl Part<'_, '_> {
         series: &Series,
         maximum: Option<f64>,
     ) -> Result<(), Refusal> {
-        let limits = Limits::of(column, maximum);
+        let limits = Limits::new(column, maximum);
         match series.values.iter().position(|value| !limits.admit(*value)) {
             None => Ok(()),
             Some(row) => {

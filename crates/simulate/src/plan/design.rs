@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use units::{CalibratedAirspeed, Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
 use super::PlanError;
-use crate::aircraft::{AircraftTruth, Richness};
+use crate::aircraft::{AircraftTruth, TruthPhysics};
 use crate::random::{Purpose, Stream, Streams};
 use crate::route::{Change, FlightPlan, Loading};
 use crate::terms::Terms;
@@ -307,7 +307,7 @@ fn can_be_flown(aircraft: &AircraftTruth, plan: &FlightPlan) -> Result<bool, Out
     let Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } = plan.loading else {
         return Ok(true);
     };
-    let terms = Terms::of(aircraft, Richness::full());
+    let terms = Terms::new(aircraft, TruthPhysics::full());
     let mass = Mass::kilograms(zero_fuel_mass_kg + fuel_on_board_kg);
     let envelope = &aircraft.envelope;
     let mut flow_kg_s: f64 = 0.0;

@@ -235,7 +235,7 @@ impl<'a> SensorBank<'a> {
 
     fn write_row(&mut self, seen: &Instant, state: &TrueState) -> Result<(), OutOfDomain> {
         if let Some(last_s) = self.last_sample_s {
-            self.wander(state.time_s - last_s);
+            self.advance_drift(state.time_s - last_s);
         }
         self.rows.time_s.push(state.time_s);
         self.write_air_data(seen)?;
@@ -339,7 +339,7 @@ impl<'a> SensorBank<'a> {
         Ok(())
     }
 
-    fn wander(&mut self, interval_s: f64) {
+    fn advance_drift(&mut self, interval_s: f64) {
         let random = &mut self.random;
         for channel in [
             &mut self.static_pressure,
@@ -352,13 +352,13 @@ impl<'a> SensorBank<'a> {
             &mut self.center_of_gravity,
             &mut self.fuel_quantity,
         ] {
-            channel.wander(interval_s, random);
+            channel.advance_drift(interval_s, random);
         }
         for channels in
             [&mut self.n2, &mut self.n1, &mut self.exhaust_gas_temperature, &mut self.fuel_flow]
         {
             for channel in channels {
-                channel.wander(interval_s, random);
+                channel.advance_drift(interval_s, random);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! One channel: bias, gain, slow wander, noise, lag, rounding, and its faults.
+//! One channel: bias, gain, slow drift, noise, lag, rounding, and its faults.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::random::Stream;
 
 /// How one channel is wrong: measured = true·(1 + gain) + bias, rounded.
 ///
-/// Every part is the sum of a constant, a draw for the tail, a draw for the flight, a slow wander and a draw for the sample.
+/// Every part is the sum of a constant, a draw for the tail, a draw for the flight, a slow drift and a draw for the sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChannelSensor {
@@ -16,8 +16,9 @@ pub struct ChannelSensor {
     pub tail_sd: f64,
     /// Standard deviation of the flight's bias.
     pub flight_sd: f64,
-    /// Standard deviation of the bias that wanders within a flight.
-    pub slow_sd: f64,
+    /// Standard deviation of the bias that drifts within a flight.
+    #[serde(alias = "drift_sd")]
+    pub drift_sd: f64,
     /// Standard deviation of a sample's noise.
     pub noise_sd: f64,
     /// Constant gain error, relative.
@@ -26,8 +27,9 @@ pub struct ChannelSensor {
     pub gain_tail_sd: f64,
     /// Standard deviation of the flight's gain error.
     pub gain_flight_sd: f64,
-    /// Standard deviation of the gain error that wanders within a flight.
-    pub gain_slow_sd: f64,
+    /// Standard deviation of the gain error that drifts within a flight.
+    #[serde(alias = "gain_drift_sd")]
+    pub gain_drift_sd: f64,
     /// Standard deviation of a sample's relative noise.
     pub gain_noise_sd: f64,
     /// Time constant of the sensor, s.
@@ -36,8 +38,8 @@ pub struct ChannelSensor {
     pub resolution: f64,
 }
 
-/// Time constant of the slow wander, s: our choice, longer than a segment.
-pub const SLOW_TIME_S: f64 = 1200.0;
+/// Time constant of the drift within a flight, a first-order Gauss–Markov process, s: our choice, longer than a segment.
+pub const DRIFT_TIME_CONSTANT_S: f64 = 1200.0;
 
 /// Faults of the recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,8 +61,8 @@ pub(crate) struct Channel {
     sensor: ChannelSensor,
     bias: f64,
     gain: f64,
-    slow: f64,
-    gain_slow: f64,
+    drifting_bias: f64,
+    drifting_gain: f64,
 }
 
 impl Channel {
@@ -76,22 +78,24 @@ impl Channel {
         let gain = sensor.gain
             + sensor.gain_tail_sd * of_tail.normal()
             + sensor.gain_flight_sd * of_flight.normal();
-        let slow = sensor.slow_sd * of_flight.normal();
-        let gain_slow = sensor.gain_slow_sd * of_flight.normal();
-        Self { sensor: *sensor, bias, gain, slow, gain_slow }
+        let drifting_bias = sensor.drift_sd * of_flight.normal();
+        let drifting_gain = sensor.gain_drift_sd * of_flight.normal();
+        Self { sensor: *sensor, bias, gain, drifting_bias, drifting_gain }
     }
 
-    /// Lets the slow errors wander over an interval.
-    pub(crate) fn wander(&mut self, interval_s: f64, random: &mut Stream) {
-        let keep = (-interval_s / SLOW_TIME_S).exp();
+    /// Advances the drifting errors by an interval: a first-order Gauss–Markov process.
+    pub(crate) fn advance_drift(&mut self, interval_s: f64, random: &mut Stream) {
+        let keep = (-interval_s / DRIFT_TIME_CONSTANT_S).exp();
         let fresh = (1.0 - keep * keep).sqrt();
-        self.slow = keep * self.slow + fresh * self.sensor.slow_sd * random.normal();
-        self.gain_slow = keep * self.gain_slow + fresh * self.sensor.gain_slow_sd * random.normal();
+        self.drifting_bias =
+            keep * self.drifting_bias + fresh * self.sensor.drift_sd * random.normal();
+        self.drifting_gain =
+            keep * self.drifting_gain + fresh * self.sensor.gain_drift_sd * random.normal();
     }
 
     /// Without the noise of a sample: what a meter integrates.
     pub(crate) fn steady(&self, value: f64) -> f64 {
-        value * (1.0 + self.gain + self.gain_slow) + self.bias + self.slow
+        value * (1.0 + self.gain + self.drifting_gain) + self.bias + self.drifting_bias
     }
 
     /// With it, not rounded.
@@ -167,19 +171,19 @@ mod tests {
     }
 
     #[test]
-    fn wander_keeps_its_size_and_forgets_in_its_time() {
-        let sensor = ChannelSensor { slow_sd: 1.0, ..ChannelSensor::default() };
+    fn drift_keeps_its_size_and_forgets_in_its_time_constant() {
+        let sensor = ChannelSensor { drift_sd: 1.0, ..ChannelSensor::default() };
         let (mut channel, mut random) = draw(&sensor, 0);
         let series: Vec<f64> = (0..200_000)
             .map(|_| {
-                channel.wander(60.0, &mut random);
+                channel.advance_drift(60.0, &mut random);
                 channel.steady(0.0)
             })
             .collect();
         let n = series.len() as f64;
         let variance = series.iter().map(|v| v * v).sum::<f64>() / n;
         let lag = 20;
-        assert_eq!(SLOW_TIME_S, 60.0 * 20.0);
+        assert_eq!(DRIFT_TIME_CONSTANT_S, 60.0 * 20.0);
         let covariance = series.windows(lag + 1).map(|w| w[0] * w[lag]).sum::<f64>() / n;
         assert!((variance - 1.0).abs() < 0.05, "{variance}");
         // e⁻¹ after one time constant.

@@ -118,7 +118,7 @@ impl Simulation {
     }
 
     fn terms_of(&self, tail: &Tail, plan: &FlightPlan) -> Terms {
-        let mut terms = Terms::of(&self.aircraft, self.plan.richness);
+        let mut terms = Terms::new(&self.aircraft, self.plan.physics);
         for (factor, percent) in
             terms.fuel.engine_factor.iter_mut().zip(&tail.deterioration_percent)
         {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TrueAirspeed};
 
-use crate::aircraft::{AircraftTruth, Richness};
+use crate::aircraft::{AircraftTruth, TruthPhysics};
 use crate::terms::Terms;
 use crate::trim::{TrimPoint, trim_with};
 
@@ -107,11 +107,11 @@ pub struct GuideRow {
 /// [`OutOfDomain`] for a pressure altitude outside the atmosphere.
 pub fn flight_planning_guide(
     aircraft: &AircraftTruth,
-    richness: Richness,
+    physics: TruthPhysics,
     grid: &GuideGrid,
     error: &DragError,
 ) -> Result<(Vec<GuideRow>, usize), OutOfDomain> {
-    let terms = Terms::of(aircraft, richness);
+    let terms = Terms::new(aircraft, physics);
     let mut rows = Vec::new();
     let mut blank = 0;
     for weight_lb in &grid.weights_lb {
@@ -182,7 +182,7 @@ mod tests {
     fn plain_guide_gives_the_drag_error_back() {
         // Inverting each row by Ghazi et al., equation (14), with the truth's own TSFC law must give CD·(1 + e).
         let aircraft = AircraftTruth::preset(Preset::CitationX).unwrap();
-        let plain = Richness::plain();
+        let plain = TruthPhysics::plain();
         let error = DragError::study();
         let (rows, blank) =
             flight_planning_guide(&aircraft, plain, &GuideGrid::paper(), &error).unwrap();

@@ -2,7 +2,7 @@
 
 use super::Terms;
 use crate::aircraft::{
-    AircraftTruth, Airframe, DRAG_COEFFICIENT_PER_COUNT, Richness, drag_rise_coefficient,
+    AircraftTruth, Airframe, DRAG_COEFFICIENT_PER_COUNT, TruthPhysics, drag_rise_coefficient,
     induced_drag_factor, local_friction_exponent, skin_friction_coefficient, trim_drag_shape,
     zero_lift_drag_coefficient,
 };
@@ -77,17 +77,17 @@ impl FrictionTerm {
 }
 
 impl DragTerms {
-    pub(super) fn of(aircraft: &AircraftTruth, richness: Richness) -> Self {
+    pub(super) fn new(aircraft: &AircraftTruth, physics: TruthPhysics) -> Self {
         let airframe = &aircraft.airframe;
         let mut friction = Vec::new();
-        if richness.reynolds_number.is_on() {
+        if physics.reynolds_number.is_on() {
             friction.push(FrictionTerm::share(
                 airframe.friction.share_of_zero_lift,
                 airframe.friction.reference_reynolds_number,
             ));
         }
         let mut trim = Vec::new();
-        if richness.trim_drag.is_on() {
+        if physics.trim_drag.is_on() {
             trim.push((
                 airframe.trim.counts_per_10_percent_mac * DRAG_COEFFICIENT_PER_COUNT,
                 airframe.trim.reference_percent_mac,
@@ -101,7 +101,7 @@ impl DragTerms {
             induced: 0.0,
             earlier_by_mach: 0.0,
             trim,
-            asymmetry: richness.asymmetry.factor()
+            asymmetry: physics.asymmetry.factor()
                 * airframe.asymmetry_counts_per_deg2
                 * DRAG_COEFFICIENT_PER_COUNT,
             asymmetry_effect: 0.0,

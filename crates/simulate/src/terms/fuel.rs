@@ -1,7 +1,7 @@
 //! Fuel flow for thrust, assembled.
 
 use super::{MAXIMUM_ENGINES, Terms};
-use crate::aircraft::{AircraftTruth, Engine, Richness, part_load_factor, tsfc_kg_n_s};
+use crate::aircraft::{AircraftTruth, Engine, TruthPhysics, part_load_factor, tsfc_kg_n_s};
 
 /// Static pressures between which the combustor loses: none above the first, all below the second, Pa (FL340, FL475).
 const COMBUSTOR_PRESSURES_PA: (f64, f64) = (25_000.0, 13_000.0);
@@ -63,17 +63,17 @@ pub(crate) struct FuelTerms {
 }
 
 impl FuelTerms {
-    pub(super) fn of(aircraft: &AircraftTruth, richness: Richness) -> Self {
+    pub(super) fn new(aircraft: &AircraftTruth, physics: TruthPhysics) -> Self {
         let engine = &aircraft.engine;
         Self {
             engine_factor: [1.0; MAXIMUM_ENGINES],
             mach_power: None,
-            temperature_power: richness.temperature_exponent.factor()
+            temperature_power: physics.temperature_exponent.factor()
                 * engine.extra_temperature_exponent,
             temperature_line: None,
-            part_load: richness.part_load.is_on(),
+            part_load: physics.part_load.is_on(),
             throttle: Vec::new(),
-            offtake_kg_s: richness.offtake.factor() * engine.offtake_fuel_flow_kg_s,
+            offtake_kg_s: physics.offtake.factor() * engine.offtake_fuel_flow_kg_s,
             power_offtake: None,
             anti_ice: None,
             combustor_loss: 0.0,

@@ -94,7 +94,7 @@ struct StepMatrices {
 
 impl StepMatrices {
     /// States y1' = −y1 + ξ, y2' = −y2 + y1: covariance of a step by integration of e^−2u·(1, u, u²).
-    fn of(length: f64) -> Self {
+    fn new(length: f64) -> Self {
         let decay = (-length).exp();
         let squared = decay * decay;
         let q11 = (1.0 - squared) / 2.0;
@@ -125,9 +125,9 @@ const SQRT_3: f64 = 1.732_050_807_568_877_2;
 impl DrydenFilters {
     /// In their stationary distribution, for an airspeed and a time step.
     pub(crate) fn new(true_airspeed_m_s: f64, step_s: f64, random: &mut Stream) -> Self {
-        let stationary = StepMatrices::of(50.0);
+        let stationary = StepMatrices::new(50.0);
         let mut filters = Self {
-            step: StepMatrices::of(true_airspeed_m_s * step_s / SCALE_M),
+            step: StepMatrices::new(true_airspeed_m_s * step_s / SCALE_M),
             longitudinal: random.normal(),
             lateral: [0.0; 2],
             vertical: [0.0; 2],

@@ -2,8 +2,8 @@
 
 use flight::Report;
 use simulate::{
-    Columns, Earth, FleetDesign, FlightPlan, Flights, Flown, Loading, Plan, Recording, Richness,
-    Scatter, SensorChoice, Simulation, Switch, Weather,
+    Columns, Earth, FleetDesign, FlightPlan, Flights, Flown, Loading, Plan, Recording, Scatter,
+    SensorChoice, Simulation, Switch, TruthPhysics, Weather,
 };
 
 /// One hour at FL390, M 0.80, northbound from 45° N, 13.6 t at the start.
@@ -26,7 +26,7 @@ pub(crate) fn northbound() -> FlightPlan {
 /// Plain truth, still air, perfect sensors that record everything, no scatter, true states kept.
 pub(crate) fn quiet_plan(flights: Vec<FlightPlan>) -> Plan {
     let mut plan = Plan {
-        richness: Richness::plain(),
+        physics: TruthPhysics::plain(),
         earth: Earth::plain(),
         weather: Weather::still(),
         sensors: SensorChoice::Perfect,

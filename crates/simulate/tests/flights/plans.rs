@@ -358,7 +358,7 @@ fn recordings_that_the_format_refuses_are_refused_here() {
 fn the_example_plan_shows_the_defaults_and_flies() {
     let plan = Plan::from_ron(include_str!("../../examples/plan.ron")).unwrap();
     let defaults = Plan::of_one_tail(2020, "T-001", FleetDesign::default());
-    assert_eq!(plan.richness, defaults.richness);
+    assert_eq!(plan.physics, defaults.physics);
     assert_eq!(plan.earth, defaults.earth);
     assert_eq!(plan.weather, defaults.weather);
     assert_eq!(plan.columns, defaults.columns);

@@ -49,7 +49,7 @@ pub fn exact_model() -> ExtendedModel {
                 fuel_flow_percent: 0.7071,
                 mass: Percent(0.6),
                 // These sensors keep nothing through a flight.
-                through_flight: (mach: 0, static_air_temperature_k: 0, n2_percent: 0, pressure_altitude_m: 0),
+                flight_bias: (mach: 0, static_air_temperature_k: 0, n2_percent: 0, pressure_altitude_m: 0),
             ),
         )"#,
     )

@@ -1,4 +1,4 @@
-//! Who is an outlier: Student weights of a flight and of its segments, fixed when the flight is learnt.
+//! Outlier weights: Student weights of a flight and of its segments, fixed when the flight is learnt.
 //!
 //! A difficult file. The weights need a prediction with its variance, for every flight; a solve over the grid would
 //! cost a thousand times the rest. A quadratic in lift coefficient and Mach number, learnt along with the grid's
@@ -31,16 +31,16 @@ const WEIGHT_TOLERANCE: f64 = 0.05;
 /// Clean flights need 2 or 3.
 const MAXIMUM_ITERATIONS: usize = 30;
 
-/// What the judge knows: information about the quadratic's coefficients, without prior.
+/// What has been learnt of the expected residual: information about the quadratic's coefficients, without prior.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Judge {
+pub(super) struct ExpectedResidual {
     pub(super) matrix: [f64; TRIANGLE],
     pub(super) vector: [f64; TERMS],
 }
 
-/// The judge's constants, from the settings and the middle of the grid.
+/// Constants of the outlier weights, from the settings and the middle of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rules {
+pub(super) struct WeightSettings {
     middle: (f64, f64),
     /// Prior precisions of the coefficients.
     precisions: [f64; TERMS],
@@ -49,9 +49,9 @@ pub(super) struct Rules {
     degrees_of_freedom: f64,
 }
 
-/// A segment before the judge.
+/// A segment whose outlier weight is sought.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Case {
+pub(super) struct SegmentResidual {
     pub(super) lift_coefficient: f64,
     pub(super) mach: f64,
     /// Observed relative excess of drag over the initial table.
@@ -60,9 +60,9 @@ pub(super) struct Case {
     pub(super) variance: f64,
 }
 
-/// The judgement of a flight.
+/// Outlier weights of one flight.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Verdict {
+pub(super) struct FlightWeights {
     /// Of each segment; around 1 for an ordinary one, at most 1 + 1/ν.
     pub(super) weights: Vec<f64>,
     /// Of the flight's common error.
@@ -71,7 +71,7 @@ pub(super) struct Verdict {
     pub(super) surprises: Vec<f64>,
 }
 
-impl Rules {
+impl WeightSettings {
     pub(super) fn new(settings: &BayesSettings, middle: (f64, f64)) -> Self {
         let values = settings.values();
         let (c, m) = (PATCH_LIFT_COEFFICIENT, PATCH_MACH);
@@ -96,9 +96,9 @@ impl Rules {
     }
 
     /// The quadratic's terms, and 1 for the flight's common error.
-    fn terms(&self, case: &Case) -> [f64; UNKNOWNS] {
-        let u = (case.lift_coefficient - self.middle.0) / PATCH_LIFT_COEFFICIENT;
-        let v = (case.mach - self.middle.1) / PATCH_MACH;
+    fn terms(&self, segment: &SegmentResidual) -> [f64; UNKNOWNS] {
+        let u = (segment.lift_coefficient - self.middle.0) / PATCH_LIFT_COEFFICIENT;
+        let v = (segment.mach - self.middle.1) / PATCH_MACH;
         [1.0, u, v, u * u, u * v, v * v, 1.0]
     }
 
@@ -108,7 +108,7 @@ impl Rules {
     }
 }
 
-impl Judge {
+impl ExpectedResidual {
     pub(super) const fn new() -> Self {
         Self { matrix: [0.0; TRIANGLE], vector: [0.0; TERMS] }
     }
@@ -117,70 +117,79 @@ impl Judge {
     ///
     /// # Source
     /// Book `[bayes.6]`, `[bayes.7]`.
-    pub(super) fn weigh(&self, rules: &Rules, cases: &[Case], flight_variance: f64) -> Verdict {
-        let terms: Vec<[f64; UNKNOWNS]> = cases.iter().map(|case| rules.terms(case)).collect();
-        let flight_variance = flight_variance + rules.remainder;
-        let mut before = System::new(self, rules);
+    pub(super) fn weigh(
+        &self,
+        settings: &WeightSettings,
+        residuals: &[SegmentResidual],
+        flight_variance: f64,
+    ) -> FlightWeights {
+        let terms: Vec<[f64; UNKNOWNS]> =
+            residuals.iter().map(|segment| settings.terms(segment)).collect();
+        let flight_variance = flight_variance + settings.remainder;
+        let mut before = System::new(self, settings);
         before.matrix[UNKNOWNS - 1][UNKNOWNS - 1] = 1.0 / flight_variance;
 
         let mut expected = before.clone();
         expected.factor();
         let known = expected.solve();
-        let surprises =
-            cases.iter().zip(&terms).map(|(case, row)| case.residual - dot(row, &known)).collect();
+        let surprises = residuals
+            .iter()
+            .zip(&terms)
+            .map(|(segment, row)| segment.residual - dot(row, &known))
+            .collect();
 
-        let mut weights = vec![1.0; cases.len()];
+        let mut weights = vec![1.0; residuals.len()];
         let mut flight_weight = 1.0;
         for _ in 0..MAXIMUM_ITERATIONS {
             let mut system = before.clone();
             system.matrix[UNKNOWNS - 1][UNKNOWNS - 1] = flight_weight / flight_variance;
-            for ((case, row), weight) in cases.iter().zip(&terms).zip(&weights) {
-                system.add(row, case.residual, weight / case.variance);
+            for ((segment, row), weight) in residuals.iter().zip(&terms).zip(&weights) {
+                system.add(row, segment.residual, weight / segment.variance);
             }
             system.factor();
             let solution = system.solve();
             let mut change: f64 = 0.0;
-            for ((case, row), weight) in cases.iter().zip(&terms).zip(&mut weights) {
-                let error = case.residual - dot(row, &solution);
-                let square = (error * error + system.variance(row)) / case.variance;
-                let new = rules.weight(square);
+            for ((segment, row), weight) in residuals.iter().zip(&terms).zip(&mut weights) {
+                let error = segment.residual - dot(row, &solution);
+                let square = (error * error + system.variance(row)) / segment.variance;
+                let new = settings.weight(square);
                 change = change.max((new - *weight).abs() / *weight);
                 *weight = new;
             }
             let common = solution[UNKNOWNS - 1];
             let square = (common * common + system.variance_of_last()) / flight_variance;
-            let new = rules.weight(square);
+            let new = settings.weight(square);
             change = change.max((new - flight_weight).abs() / flight_weight);
             flight_weight = new;
             if change <= WEIGHT_TOLERANCE {
                 break;
             }
         }
-        Verdict { weights, flight_weight, surprises }
+        FlightWeights { weights, flight_weight, surprises }
     }
 
     /// Learns a flight with its weights, all times `share`.
     pub(super) fn learn(
         &mut self,
-        rules: &Rules,
-        cases: &[Case],
-        verdict: &Verdict,
+        settings: &WeightSettings,
+        residuals: &[SegmentResidual],
+        flight_weights: &FlightWeights,
         flight_variance: f64,
         share: f64,
     ) {
         let mut common = [0.0; TERMS];
         let (mut precision_sum, mut residual_sum) = (0.0, 0.0);
-        for (case, weight) in cases.iter().zip(&verdict.weights) {
-            let row = rules.terms(case);
-            let precision = weight / case.variance;
-            self.add(&row, share * precision, case.residual);
+        for (segment, weight) in residuals.iter().zip(&flight_weights.weights) {
+            let row = settings.terms(segment);
+            let precision = weight / segment.variance;
+            self.add(&row, share * precision, segment.residual);
             for (sum, term) in common.iter_mut().zip(&row) {
                 *sum += precision * term;
             }
             precision_sum += precision;
-            residual_sum += precision * case.residual;
+            residual_sum += precision * segment.residual;
         }
-        let variance = (flight_variance + rules.remainder) / verdict.flight_weight;
+        let variance = (flight_variance + settings.remainder) / flight_weights.flight_weight;
         let factor = share / (1.0 / variance + precision_sum);
         let mut entries = self.matrix.iter_mut();
         for (i, sum) in common.iter().enumerate() {
@@ -222,15 +231,15 @@ struct System {
 
 impl System {
     /// Prior and what was learnt before; nothing about the flight's common error yet.
-    fn new(judge: &Judge, rules: &Rules) -> Self {
+    fn new(expected: &ExpectedResidual, settings: &WeightSettings) -> Self {
         let mut system = Self { matrix: [[0.0; UNKNOWNS]; UNKNOWNS], vector: [0.0; UNKNOWNS] };
-        let mut entries = judge.matrix.iter();
+        let mut entries = expected.matrix.iter();
         for i in 0..TERMS {
             for (entry, &value) in system.matrix[i][..=i].iter_mut().zip(entries.by_ref()) {
                 *entry = value;
             }
-            system.matrix[i][i] += rules.precisions[i];
-            system.vector[i] = judge.vector[i];
+            system.matrix[i][i] += settings.precisions[i];
+            system.vector[i] = expected.vector[i];
         }
         system
     }
