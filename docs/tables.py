@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Takes tables out of a Markdown file and writes them as CSV.
 
-    python3 docs/tables.py FILE.md DIR NAME=HEADER [NAME=HEADER …]
+    python3 docs/tables.py FILE.md DIR NAME=HEADER|NUMBER …
 
-Writes DIR/NAME.csv from all tables whose first column is headed HEADER; where a file has several, a first column `part` holds the
-heading that each stands below. For the full tables of docs/src/validation/tables, from what `cruisefit trial` and the scripts in
+Writes DIR/NAME.csv from all tables whose first column is headed HEADER, or from table NUMBER, counted from 1; where a file has
+several of a header, a first column `part` holds the heading above each. For the full tables of docs/src/validation/tables, from what `cruisefit trial` and the scripts in
 docs/figures print. Standard library only.
 """
 
@@ -34,7 +34,8 @@ def main():
     found = list(tables(Path(source).read_text(encoding="utf-8")))
     for want in wanted:
         name, header = want.split("=")
-        of_it = [(heading, rows) for heading, rows in found if rows[0][0] == header]
+        numbered = found[int(header) - 1 : int(header)] if header.isdigit() else []
+        of_it = numbered or [table for table in found if table[1][0][0] == header]
         if not of_it:
             sys.exit(f"{source}: no table whose first column is headed {header!r}")
         with open(Path(folder) / f"{name}.csv", "w", newline="", encoding="utf-8") as output:
