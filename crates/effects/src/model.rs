@@ -121,7 +121,7 @@ impl<'a> EffectModel<'a> {
     /// when no thrust is left.
     ///
     /// # Source
-    /// Book, page on diagnosis, `[diagnosis.1]` to `[diagnosis.12]`.
+    /// Book, page on diagnosis, `[diagnosis.1]` to `[diagnosis.11]`.
     pub fn response(
         &self,
         point: &EffectPoint,

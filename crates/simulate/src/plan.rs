@@ -26,7 +26,7 @@ pub struct Plan {
     #[serde(default)]
     pub aircraft: AircraftChoice,
     /// What the truth has beyond the model's equations.
-    #[serde(default = "TruthPhysics::full", alias = "physics")]
+    #[serde(default = "TruthPhysics::full", alias = "richness")]
     pub physics: TruthPhysics,
     /// What of the Earth the truth knows.
     #[serde(default = "Earth::full")]

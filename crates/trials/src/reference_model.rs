@@ -63,7 +63,7 @@ pub(crate) fn reference_model(
 
 #[cfg(test)]
 mod tests {
-    use effects::{EffectModel, EffectPoint, EffectReferences, Effects};
+    use effects::{EffectModel, EffectPoint, Effects};
     use flight::Segment;
     use simulate::{Earth, FleetDesign, Plan, SensorChoice, Simulation, Weather};
 

@@ -40,10 +40,10 @@ pub struct SensorDeviations {
     #[serde(deserialize_with = "limits::pressure_altitude_m::deserialize")]
     pub pressure_altitude_m: f64,
     /// Per-flight bias of air data and rotor speed. Not written where it is the default.
-    #[serde(alias = "flight_bias", skip_serializing_if = "FlightBias::is_default")]
+    #[serde(alias = "through_flight", skip_serializing_if = "FlightBias::is_default")]
     pub flight_bias: FlightBias,
     /// Drift of flow meters within a flight, slower than a segment lasts. Not written where it is the default.
-    #[serde(alias = "fuel_flow_drift", skip_serializing_if = "FuelFlowDrift::is_default")]
+    #[serde(alias = "fuel_flow_wander", skip_serializing_if = "FuelFlowDrift::is_default")]
     pub fuel_flow_drift: FuelFlowDrift,
 }
 

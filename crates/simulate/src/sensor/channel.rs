@@ -17,7 +17,7 @@ pub struct ChannelSensor {
     /// Standard deviation of the flight's bias.
     pub flight_sd: f64,
     /// Standard deviation of the bias that drifts within a flight.
-    #[serde(alias = "drift_sd")]
+    #[serde(alias = "slow_sd")]
     pub drift_sd: f64,
     /// Standard deviation of a sample's noise.
     pub noise_sd: f64,
@@ -28,7 +28,7 @@ pub struct ChannelSensor {
     /// Standard deviation of the flight's gain error.
     pub gain_flight_sd: f64,
     /// Standard deviation of the gain error that drifts within a flight.
-    #[serde(alias = "gain_drift_sd")]
+    #[serde(alias = "gain_slow_sd")]
     pub gain_drift_sd: f64,
     /// Standard deviation of a sample's relative noise.
     pub gain_noise_sd: f64,

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Builds the book to docs/book and checks it: no warning, every internal link and anchor, every page in SUMMARY.md.
+#
+#     docs/build.sh            # build and check
+#     docs/build.sh serve      # the same, then `mdbook serve`
+#
+# What is missing is installed to target/book-tools, in the versions below, which belong together (mdbook-katex brings
+# KaTeX 0.16.4). Needs cargo, python3, and npm for the fonts of the equations; a network at the first run only.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+MDBOOK=0.5.3
+MDBOOK_KATEX=0.10.0
+KATEX=0.16.4
+
+tools="${BOOK_TOOLS:-$PWD/target/book-tools}"
+export PATH="$tools/bin:$PATH"
+
+[ "$(mdbook --version 2>/dev/null)" = "mdbook v$MDBOOK" ] ||
+  cargo install mdbook --version "$MDBOOK" --locked --no-default-features --features search,serve --root "$tools"
+[ "$(mdbook-katex --version 2>/dev/null)" = "mdbook-katex $MDBOOK_KATEX" ] ||
+  cargo install mdbook-katex --version "$MDBOOK_KATEX" --locked --root "$tools"
+if ! grep -qs "KaTeX $KATEX" docs/katex.css; then
+  mkdir -p "$tools"
+  (cd "$tools" && npm pack --silent "katex@$KATEX" >/dev/null)
+  python3 docs/katex_css.py "$tools/katex-$KATEX.tgz" docs/katex.css
+fi
+
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+mdbook build docs 2>&1 | tee "$log"
+if grep -Eq 'WARN|ERROR' "$log"; then
+  echo "the book was built with warnings" >&2
+  exit 1
+fi
+python3 docs/check_book.py docs/book
+
+if [ "${1:-}" = serve ]; then
+  exec mdbook serve docs
+fi
