@@ -2,13 +2,13 @@
 //! `places SEED REPEATS [null | effects | closure | cost] [effect]`; of `cost` REPEATS is the number of flights.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a development tool")]
 
-use diagnose::trial::places::{names_driver, spread, worst_region_overlap};
 use diagnose::{Diagnosis, Input, Options, diagnose, references_of, slice_members};
 use flight::effect::EffectId;
 use perf_model::PerformanceModel;
 use perf_model::effects::{EffectModel, EffectPoint, Effects};
+use trials::places::{names_driver, spread, worst_region_overlap};
 
-#[path = "../tests/fleet/flown.rs"]
+#[path = "../../diagnose/tests/fleet/flown.rs"]
 mod flown;
 use flown::{Background, Fleet, Random, Setup, exact_model, fly, plant};
 
