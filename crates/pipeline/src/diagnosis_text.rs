@@ -6,6 +6,7 @@
 use diagnose::{Diagnosis, Verdict, VerdictKind};
 use flight::effect::{EffectGroup, EffectId};
 
+use crate::statistics::NORMAL_95;
 use crate::summary::counted;
 
 /// Effects whose smallest visible size is told where nothing was found: one of each kind that a person would think of.
@@ -24,8 +25,6 @@ const LEAST_TOLD: f64 = 0.02;
 const SEPARATIONS_TOLD: usize = 2;
 /// Probability below which no cause is told as one.
 const PROBABLE: f64 = 0.5;
-/// Half width of a 95 % interval in standard deviations.
-const NORMAL_95: f64 = 1.96;
 
 /// What an effect does, by its sign.
 pub fn phrase(effect: EffectId, size: f64) -> String {

@@ -7,7 +7,7 @@ use lut::{Outside, Table};
 
 use crate::model_file::ModelFile;
 use crate::segments_table::{Evaluated, SegmentRow};
-use crate::statistics::ErrorStatistics;
+use crate::statistics::{ErrorStatistics, NORMAL_95};
 use crate::summary::{ErrorsSummary, TailSummary};
 
 /// One tail at the end of a run.
@@ -160,9 +160,6 @@ fn state_without_errors(
     model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
 }
 
-/// Two-sided 95 % of a standard normal distribution.
-const STANDARD_DEVIATIONS_OF_95_PERCENT: f64 = 1.959_963_984_540_054;
-
 /// Share of segments whose error lies within the interval that law `bayes` states for them; `None` by another law, or
 /// without a segment inside the table.
 fn coverage(model: &ModelFile, segments: &[Segment]) -> Option<f64> {
@@ -181,7 +178,7 @@ fn coverage(model: &ModelFile, segments: &[Segment]) -> Option<f64> {
         let initial = posterior.initial().interpolate(&cell);
         let excess = (observation.drag_coefficient - posterior.drag().interpolate(&cell)) / initial;
         all += 1;
-        inside += usize::from(excess.abs() <= STANDARD_DEVIATIONS_OF_95_PERCENT * deviation);
+        inside += usize::from(excess.abs() <= NORMAL_95 * deviation);
     }
     (all > 0).then(|| inside as f64 / all as f64)
 }

@@ -2,6 +2,10 @@
 
 use serde::Serialize;
 
+/// Half width of a two-sided 95 % interval of a normal distribution, in standard deviations; two decimals, as tables and
+/// text books have it, so that intervals can be checked by hand.
+pub const NORMAL_95: f64 = 1.96;
+
 /// Mean, standard deviation (n − 1), largest absolute value and number of errors, all in per cent.
 ///
 /// An empty set has no mean, a single error no standard deviation: `None`, `null` in JSON.

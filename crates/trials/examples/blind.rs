@@ -1,12 +1,10 @@
 //! Blind trials on the virtual fleet of the tests, for development: `blind SEED REPEATS [times] [clutter] [what]`.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a development tool")]
 
-use std::collections::BTreeMap;
-
 use diagnose::{FlightRecord, Input, Options, diagnose};
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
-use trials::{Case, Planted, score};
+use trials::{Case, Planted, Scores};
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts typed by hand")]
 fn main() {
@@ -24,7 +22,6 @@ fn main() {
     let background = Background { clutter, field: if clutter > 0.0 { 0.0025 } else { 0.0 } };
     let setup = Setup::default();
     let mut cases = Vec::new();
-    let mut distances: BTreeMap<String, f64> = BTreeMap::new();
     let effects: Vec<EffectId> = EffectId::library(2);
     let begin = std::time::Instant::now();
     let mut count = 0_u32;
@@ -51,20 +48,20 @@ fn main() {
             let p = found.causes.first().map_or(0.0, |c| c.probability);
             let size = planted.first().map_or(0.0, |p| p.size);
             let own = found.causes.iter().find(|c| c.effect == id.to_string());
-            if what == "struck" {
-                let whole = diagnose(&input, &Options { skip_closure: true, ..Options::default() })
-                    .unwrap();
-                if let Some(d) = whole.detectable.iter().find(|d| d.effect == id.to_string()) {
-                    distances.entry(id.to_string()).or_insert(d.nearest_pair);
-                }
-            }
-            cases.push(Case::of(
+            let whole = (what == "struck").then(|| {
+                diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()
+            });
+            let mut case = Case::from_diagnosis(
                 Planted {
                     effects: planted.iter().map(|p| (p.id.to_string(), p.size)).collect(),
                     struck: options.without.iter().map(ToString::to_string).collect(),
                 },
                 &found,
-            ));
+            );
+            if let Some(whole) = &whole {
+                case.take_distance(whole);
+            }
+            cases.push(case);
             println!(
                 "{:<26} {:+.4} | {:?} top {:<24} p {:.3} est {:+.4} pout {:.2} {:?} closure {:?} gap {:.2}/{:.2} pval {:.1e} class {:?} | {} | ci {:?} near {:?} closures {:?}",
                 id.to_string(),
@@ -87,14 +84,11 @@ fn main() {
                     .iter()
                     .find(|d| d.effect == id.to_string())
                     .map(|d| (d.nearest_other, d.nearest_pair)),
-                distances.get(&id.to_string()),
+                cases.last().and_then(|case| case.nearest),
             );
         }
     }
-    println!(
-        "{}",
-        serde_json::to_string_pretty(&score(&cases, |name| distances.get(name).copied())).unwrap()
-    );
+    println!("{}", serde_json::to_string_pretty(&Scores::from_cases(&cases)).unwrap());
     println!("{count} cases, {:.3} s a case", begin.elapsed().as_secs_f64() / f64::from(count));
 }
 

@@ -9,7 +9,7 @@ use crate::draw::DrawnCase;
 use crate::failure::CaseFailure;
 use crate::plan::{Background, CaseSpec, Kind, ReferenceModel, TrialPlan};
 use crate::planted::PlantedGap;
-use crate::scores::Case;
+use crate::scored_case::Case;
 use crate::seal::CaseTruth;
 
 /// Distance beyond which none is told.
@@ -86,7 +86,7 @@ impl DiagnosedCase {
     /// What flying the same flights without the planted effects, or diagnosing with the whole library, refuses.
     pub fn score(&self, truth: &CaseTruth, truth_sha256: &str) -> Result<CaseResult, CaseFailure> {
         let Self { drawn, inputs, struck, found } = self;
-        let mut scored = Case::of(truth.planted(), found);
+        let mut scored = Case::from_diagnosis(truth.planted(), found);
         let planted = PlantedGap::measure(drawn, inputs, truth)?;
         scored.planted_closure = planted.closure(inputs, found);
         scored.located = planted.located(inputs, found, truth)?;

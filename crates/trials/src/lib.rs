@@ -17,8 +17,10 @@ pub mod places;
 mod plan;
 mod planted;
 mod reference_model;
+mod scored_case;
 mod scores;
 mod seal;
+mod share;
 mod stated_sensors;
 mod summary;
 
@@ -28,8 +30,10 @@ pub use draw::DrawnCase;
 pub use failure::CaseFailure;
 pub use markdown::{markdown, terminal};
 pub use plan::{
-    Background, CaseSpec, Floor, Kind, Part, ReferenceModel, ScoreName, TrialPlan, TrialPlanError,
+    Background, CaseSpec, Floor, Kind, Part, ReferenceModel, TrialPlan, TrialPlanError,
 };
-pub use scores::{Case, Located, Planted, Scores, Share, score};
+pub use scored_case::{Case, Located, Planted};
+pub use scores::{Reached, SCORES, Score, ScoreName, Scores};
 pub use seal::{CaseTruth, Seal, SealError};
+pub use share::Share;
 pub use summary::{FloorMissed, Goal, Group, Trials, floors_missed, summarize};

@@ -3,39 +3,10 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use crate::scores::Share;
-
-use crate::plan::{Background, ReferenceModel, ScoreName};
-use crate::summary::{Goal, Group, Reached, Trials};
-
-/// Scores of the table of sizes, each a row.
-const ROWS: [ScoreName; 25] = [
-    ScoreName::Reported,
-    ScoreName::TopOne,
-    ScoreName::TopOneSeparable,
-    ScoreName::TopThree,
-    ScoreName::Class,
-    ScoreName::SureAndWrong,
-    ScoreName::Credible,
-    ScoreName::CalibrationError,
-    ScoreName::Intervals,
-    ScoreName::SizeErrorMedian,
-    ScoreName::ClosureMedian,
-    ScoreName::PlantedClosureMedian,
-    ScoreName::Silent,
-    ScoreName::NullAndSure,
-    ScoreName::Abstained,
-    ScoreName::StruckAndSure,
-    ScoreName::Outside,
-    ScoreName::OutsideAndSure,
-    ScoreName::PairExact,
-    ScoreName::PairClass,
-    ScoreName::PairTop,
-    ScoreName::PlaceSignificant,
-    ScoreName::PlaceDriver,
-    ScoreName::PlaceOverlapMedian,
-    ScoreName::PlaceAlarm,
-];
+use crate::plan::{Background, ReferenceModel};
+use crate::scores::{SCORES, Score};
+use crate::share::Share;
+use crate::summary::{Goal, Group, Trials};
 
 /// `trials.md`.
 pub fn markdown(trials: &Trials) -> String {
@@ -118,10 +89,12 @@ fn group_table(group: &Group, text: &mut String) {
         group.segments_mean,
         group.noise_floor_rms_percent
     );
-    for name in ROWS {
-        let Reached { value, share } = Reached::of(&group.scores, name);
-        let Some(value) = value else { continue };
-        let _ = writeln!(text, "| {} | {} |", name.words(), number(value, share));
+    let mut rows: Vec<&Score> = SCORES.iter().filter(|score| score.row.is_some()).collect();
+    rows.sort_by_key(|score| score.row);
+    for score in rows {
+        let reached = group.scores.reached(score.name);
+        let Some(value) = reached.value() else { continue };
+        let _ = writeln!(text, "| {} | {} |", score.words, number(value, reached.share()));
     }
     confusion(group, text);
 }

@@ -52,7 +52,7 @@ pub fn spread(effect: &[f64]) -> f64 {
     (effect.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / count).sqrt()
 }
 
-/// Variables that an effect's size in fuel flow hangs on, by the names of bounds; none for a level.
+/// Variables that an effect's size in fuel flow depends on, by the names of bounds; none for a level.
 #[must_use]
 pub const fn driving_variables(id: EffectId) -> &'static [&'static str] {
     match id {
@@ -105,7 +105,11 @@ fn has_driver(id: EffectId, bounds: &BTreeMap<String, [Option<f64>; 2]>) -> bool
 
 #[cfg(test)]
 mod tests {
+    use diagnose::{Input, SliceError, slice_members};
+    use simulate::{AircraftTruth, Preset, Sensors, TruthPhysics};
+
     use super::*;
+    use crate::reference_model::{COARSE, reference_model};
 
     #[test]
     fn overlap_by_hand() {
@@ -123,15 +127,42 @@ mod tests {
 
     #[test]
     fn drivers_are_names_of_bounds() {
+        let truth = AircraftTruth::preset(Preset::CitationX).unwrap();
+        let model =
+            reference_model(&truth, TruthPhysics::plain(), &Sensors::transport(), &COARSE, None)
+                .unwrap();
+        let input = Input::against(&model, &[]);
+        let is_known = |name: &str| {
+            let place = Slice {
+                slice: String::new(),
+                bounds: BTreeMap::from([(name.to_owned(), [None, Some(1.0)])]),
+                segments: 0,
+                mean_gap_percent: 0.0,
+                ci95: [0.0; 2],
+                share_of_gap: 0.0,
+                p_value: 1.0,
+            };
+            // Without flights there are no members either; only an unknown name is refused as such.
+            !matches!(slice_members(&input, &place), Err(SliceError::UnknownVariable { .. }))
+        };
+        assert!(!is_known("phase_of_moon"));
         for id in EffectId::library(2) {
             for name in driving_variables(id) {
-                let known = *name == "engine"
-                    || crate::place::binned_variable::variable_named(name).is_some();
-                assert!(known, "{id}: {name}");
+                assert!(is_known(name), "{id}: {name}");
             }
         }
         let bounds = BTreeMap::from([("mach".to_owned(), [Some(0.86), None])]);
         assert!(has_driver(EffectId::WaveDrag, &bounds));
         assert!(!has_driver(EffectId::TrimDragCg, &bounds));
+        let engine = BTreeMap::from([("engine".to_owned(), [Some(2.0), Some(2.0)])]);
+        assert!(has_driver(EffectId::TsfcEngine(2), &engine));
+    }
+
+    #[test]
+    fn overlap_of_a_place_by_hand() {
+        // Two of the three worst were said, and one that is not: 2 of 4.
+        let effect = [0.0, 1.0, 2.0, 3.0, 0.5];
+        let said = [true, false, true, true, false];
+        assert_eq!(worst_region_overlap(&effect, &said), Some(0.5));
     }
 }

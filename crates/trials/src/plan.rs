@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use simulate::{AircraftChoice, Columns, OutsideEffect, SensorChoice, TruthEffect};
 
+use crate::scores::ScoreName;
+
 const SHORT: &str = include_str!("../embedded/TRIAL-SHORT.ron");
 const LONG: &str = include_str!("../embedded/TRIAL-LONG.ron");
 /// Most cases of one plan: numbers of cases have five digits.
@@ -126,103 +128,6 @@ pub struct Part {
     pub times: f64,
     /// How often.
     pub repeats: usize,
-}
-
-/// A score.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ScoreName {
-    /// A gap is reported where an effect is planted.
-    Reported,
-    /// The planted effect is on top, of all reported.
-    TopOne,
-    /// The planted effect is on top where the nearest other is 4 standard deviations away.
-    TopOneSeparable,
-    /// The planted effect is among the first three.
-    TopThree,
-    /// The planted effect is on top or in the class of what is.
-    Class,
-    /// Named with probability 0.9 or more, and wrong.
-    SureAndWrong,
-    /// 90 % credible sets that hold the planted effect.
-    Credible,
-    /// 95 % intervals of size that hold the truth.
-    Intervals,
-    /// No effect planted: no gap reported.
-    Silent,
-    /// No effect planted: one named with probability 0.9 or more.
-    NullAndSure,
-    /// Effect struck from the library, no pair within 5 standard deviations: outside the library.
-    Abstained,
-    /// Of those: another named with probability 0.9 or more.
-    StruckAndSure,
-    /// Effect that no library has: outside the library.
-    Outside,
-    /// Of those: one named with probability 0.9 or more.
-    OutsideAndSure,
-    /// Pairs of which both are named and nothing else.
-    PairExact,
-    /// Pairs of which both are named or in the class.
-    PairClass,
-    /// Pairs of which one is on top.
-    PairTop,
-    /// Expected calibration error.
-    CalibrationError,
-    /// Closure on unseen flights, median over gaps above 0.5 %.
-    ClosureMedian,
-    /// Share of the planted gap that the named effects remove, median over gaps above 0.5 %.
-    PlantedClosureMedian,
-    /// Error of size, median.
-    SizeErrorMedian,
-    /// Gaps that vary by 0.35 %: a place is reported.
-    PlaceSignificant,
-    /// Of those: the variable that drives the gap is named.
-    PlaceDriver,
-    /// Of those: overlap with the truly worst region, median.
-    PlaceOverlapMedian,
-    /// No effect planted: a place is reported.
-    PlaceAlarm,
-}
-
-impl ScoreName {
-    /// What it is, for people.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Reported => "A gap is reported where an effect is planted",
-            Self::TopOne => "The planted effect is on top, of all reported",
-            Self::TopOneSeparable => {
-                "The planted effect is on top where the nearest other is 4 standard deviations away"
-            }
-            Self::TopThree => "The planted effect is among the first three",
-            Self::Class => "The planted effect is on top or in the class of what is",
-            Self::SureAndWrong => "Named with probability 0.9 or more, and wrong",
-            Self::Credible => "90 % credible sets that hold the planted effect",
-            Self::Intervals => "95 % intervals of size that hold the truth",
-            Self::Silent => "No effect planted: no gap reported",
-            Self::NullAndSure => "No effect planted: one named with probability 0.9 or more",
-            Self::Abstained => {
-                "Effect struck from the library, no pair within 5 standard deviations: outside the library"
-            }
-            Self::StruckAndSure => "Of those: another named with probability 0.9 or more",
-            Self::Outside => "Effect that no library has: outside the library",
-            Self::OutsideAndSure => "Of those: one named with probability 0.9 or more",
-            Self::PairExact => "Pairs of which both are named and nothing else",
-            Self::PairClass => "Pairs of which both are named or in the class",
-            Self::PairTop => "Pairs of which one is on top",
-            Self::CalibrationError => "Expected calibration error",
-            Self::ClosureMedian => "Closure on unseen flights, median over gaps above 0.5 %",
-            Self::PlantedClosureMedian => {
-                "Share of the planted gap that the named effects remove, median over gaps above 0.5 %"
-            }
-            Self::SizeErrorMedian => "Error of size, median",
-            Self::PlaceSignificant => {
-                "Gaps that vary by 0.35 % with a variable: a place is reported"
-            }
-            Self::PlaceDriver => "Of those: the variable that drives the gap is named",
-            Self::PlaceOverlapMedian => "Of those: overlap with the truly worst region, median",
-            Self::PlaceAlarm => "No effect planted: a place is reported",
-        }
-    }
 }
 
 /// A score that must be reached.

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use crate::places::{names_driver, spread, worst_region_overlap};
-use crate::scores::Located;
+use crate::scored_case::Located;
 use diagnose::{Diagnosis, Slice, slice_members};
 use effects::{EffectModel, EffectPoint, Effects};
 use flight::Segment;

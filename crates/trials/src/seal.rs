@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use simulate::EffectTruth;
 
 use crate::plan::{Background, Kind, ReferenceModel};
-use crate::scores::Planted;
+use crate::scored_case::Planted;
 
 /// Schema of a case's truth.
 pub(crate) const SEALED_SCHEMA: &str = "cruisefit.trial-truth/1";

@@ -1,10 +1,11 @@
 //! Scores of a run: by model, background and size, each beside its goal.
 
-use crate::scores::{Case, Scores, Share, score};
 use serde::Serialize;
 
 use crate::case::CaseResult;
-use crate::plan::{Background, Floor, Kind, ReferenceModel, ScoreName, TrialPlan};
+use crate::plan::{Background, Floor, Kind, ReferenceModel, TrialPlan};
+use crate::scored_case::Case;
+use crate::scores::{ScoreName, Scores};
 
 /// Schema of `trials.json`.
 const SCHEMA: &str = "cruisefit.trials/1";
@@ -82,7 +83,8 @@ pub struct FloorMissed {
     pub reached: Option<f64>,
 }
 
-/// The goals of the specification at typical sizes.
+/// The goals at typical sizes on a clean background: the score, whether more is better, the goal. Our choice: they are what
+/// the diagnosis is developed against, and a goal that is missed is printed as missed.
 const CLEAN: [(ScoreName, bool, f64); 13] = [
     (ScoreName::Class, true, 0.97),
     (ScoreName::TopOneSeparable, true, 0.95),
@@ -98,6 +100,7 @@ const CLEAN: [(ScoreName, bool, f64); 13] = [
     (ScoreName::PlaceOverlapMedian, true, 0.80),
     (ScoreName::PlaceAlarm, false, 0.07),
 ];
+/// The same on a background of small other effects and smooth errors of the table.
 const CLUTTER: [(ScoreName, bool, f64); 2] =
     [(ScoreName::TopOne, true, 0.65), (ScoreName::Credible, true, 0.92)];
 
@@ -139,7 +142,7 @@ pub fn floors_missed(plan: &TrialPlan, trials: &Trials) -> Vec<FloorMissed> {
             (group.reference_model, group.background) == (floor.reference_model, floor.background)
                 && group.times.total_cmp(&floor.times).is_eq()
         });
-        let reached = group.and_then(|group| Reached::of(&group.scores, floor.score).value);
+        let reached = group.and_then(|group| group.scores.reached(floor.score).value());
         let holds = reached.is_some_and(|value| {
             floor.least.is_none_or(|least| value >= least)
                 && floor.most.is_none_or(|most| value <= most)
@@ -167,7 +170,7 @@ fn group(
         cases: [Kind::Single, Kind::Null, Kind::Struck, Kind::Outside, Kind::Pair].map(count),
         segments_mean: mean(&|case| case.segments as f64),
         noise_floor_rms_percent: mean(&|case| case.noise_floor_rms_percent),
-        scores: score(&scored, |_| None),
+        scores: Scores::from_cases(&scored),
     }
 }
 
@@ -182,12 +185,13 @@ fn goals_of(group: &Group) -> Vec<Goal> {
     goals
         .iter()
         .map(|&(score, at_least, goal)| {
-            let Reached { value, share } = Reached::of(&group.scores, score);
+            let reached = group.scores.reached(score);
+            let (value, share) = (reached.value(), reached.share());
             Goal {
                 reference_model: group.reference_model,
                 background: group.background,
                 score,
-                words: score.words(),
+                words: score.score().words,
                 at_least,
                 goal,
                 reached: value,
@@ -199,56 +203,10 @@ fn goals_of(group: &Group) -> Vec<Goal> {
         .collect()
 }
 
-/// A score as a number, with its share where it is one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reached {
-    pub(crate) value: Option<f64>,
-    pub(crate) share: Option<Share>,
-}
-
-impl Reached {
-    pub(crate) fn of(scores: &Scores, name: ScoreName) -> Self {
-        let number = |value| Self { value, share: None };
-        let share = |share: Share| {
-            let any = share.of > 0;
-            Self { value: any.then_some(share.share), share: any.then_some(share) }
-        };
-        match name {
-            ScoreName::Reported => share(scores.reported),
-            ScoreName::TopOne => share(scores.top_one),
-            ScoreName::TopOneSeparable => share(scores.top_one_separable),
-            ScoreName::TopThree => share(scores.top_three),
-            ScoreName::Class => share(scores.class),
-            ScoreName::SureAndWrong => share(scores.sure_and_wrong),
-            ScoreName::Credible => share(scores.credible),
-            ScoreName::Intervals => share(scores.intervals),
-            ScoreName::Silent => share(scores.silent),
-            ScoreName::NullAndSure => share(scores.null_and_sure),
-            ScoreName::Abstained => share(scores.abstained),
-            ScoreName::StruckAndSure => share(scores.struck_and_sure),
-            ScoreName::Outside => share(scores.outside),
-            ScoreName::OutsideAndSure => share(scores.outside_and_sure),
-            ScoreName::PairExact => share(scores.pair_exact),
-            ScoreName::PairClass => share(scores.pair_class),
-            ScoreName::PairTop => share(scores.pair_top),
-            ScoreName::PlaceSignificant => share(scores.place_significant),
-            ScoreName::PlaceDriver => share(scores.place_driver),
-            ScoreName::PlaceAlarm => share(scores.place_alarm),
-            ScoreName::CalibrationError => {
-                number((scores.reported.count > 0).then_some(scores.calibration_error))
-            }
-            ScoreName::ClosureMedian => number(scores.closure_median),
-            ScoreName::PlantedClosureMedian => number(scores.planted_closure_median),
-            ScoreName::SizeErrorMedian => number(scores.size_error_median),
-            ScoreName::PlaceOverlapMedian => number(scores.place_overlap_median),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scores::Planted;
+    use crate::scored_case::Planted;
     use diagnose::VerdictKind;
 
     fn result(case: usize, kind: Kind, verdict: VerdictKind) -> CaseResult {

@@ -41,7 +41,6 @@ fn an_engine_is_a_place() {
     assert_eq!(first.bounds["engine"], [Some(2.0), Some(2.0)]);
     assert!(first.ci95[0] < 3.0 && first.ci95[1] > 3.0, "{first:?}");
     assert!((first.share_of_gap - 1.0).abs() < 0.15, "{first:?}");
-    assert!(names_driver(EffectId::TsfcEngine(2), first));
 }
 
 #[test]
@@ -84,12 +83,4 @@ fn bounds_that_are_no_variable_are_refused() {
     let input = Input::against(&model, &[]);
     let error = slice_members(&input, &found.r#where[0]).unwrap_err();
     assert_eq!(error, SliceError::UnknownVariable { name: "phase_of_moon".to_owned() });
-}
-
-#[test]
-fn overlap_of_a_place_by_hand() {
-    // Two of the three worst were said, and one that is not: 2 of 4.
-    let effect = [0.0, 1.0, 2.0, 3.0, 0.5];
-    let said = [true, false, true, true, false];
-    assert_eq!(worst_region_overlap(&effect, &said), Some(0.5));
 }

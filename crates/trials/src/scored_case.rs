@@ -1,0 +1,181 @@
+//! What counts of one case: what was planted against what was diagnosed.
+
+use diagnose::{Diagnosis, VerdictKind};
+use flight::effect::EffectId;
+use serde::{Deserialize, Serialize};
+
+/// A probability from which a name counts as sure.
+const SURE: f64 = 0.9;
+
+/// What was planted in one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Planted {
+    /// Names and sizes of the effects; empty for a null. An effect outside the library has a name that no library has.
+    pub effects: Vec<(String, f64)>,
+    /// Names that were struck from the library for the diagnosis.
+    pub struck: Vec<String>,
+}
+
+/// What counts of one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// What was planted.
+    pub planted: Planted,
+    /// The verdict.
+    pub verdict: VerdictKind,
+    /// The most probable effect, and how probable it is.
+    pub top: Option<(String, f64)>,
+    /// The three most probable effects.
+    pub top_three: Vec<String>,
+    /// The verdict's class, and the class of the top effect at typical sizes.
+    pub class: Vec<String>,
+    /// The 90 % credible set.
+    pub credible: Vec<String>,
+    /// Effects that the verdict names.
+    pub named: Vec<String>,
+    /// Estimated over true size − 1 of the first planted effect, where it is on top.
+    pub size_error: Option<f64>,
+    /// Whether the 95 % interval holds the true size.
+    pub interval_holds: Option<bool>,
+    /// Closure of the whole explainable gap on unseen flights.
+    pub closure: Option<f64>,
+    /// Share of the planted effect's own gap that the named effects remove, where the caller knows it: it takes the same
+    /// flights flown without the effect.
+    #[serde(default)]
+    pub planted_closure: Option<f64>,
+    /// Where the gap was said to lie, where the caller knows where it truly lies.
+    #[serde(default)]
+    pub located: Option<Located>,
+    /// Rms of the gap before, %.
+    pub gap_rms_percent: f64,
+    /// Distance of the planted effect from the nearest other one, and from the nearest pair, at typical size.
+    pub nearest: Option<(f64, f64)>,
+}
+
+/// Where the gap was said to lie against where it truly lies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Located {
+    /// Standard deviation of the planted gap within the data, %: how much of it has a place at all.
+    pub spread_percent: f64,
+    /// Whether a place was reported that is none by chance (p ≤ 0.05), "everywhere" being no place.
+    pub significant: bool,
+    /// Whether its first place is along the variable that the planted gap follows closest.
+    pub driver_named: bool,
+    /// Overlap of the first place with the truly worst region of equal size: intersection over union.
+    pub overlap: f64,
+}
+
+impl Case {
+    /// Takes from a diagnosis what counts.
+    #[must_use]
+    pub fn from_diagnosis(planted: Planted, found: &Diagnosis) -> Self {
+        let top = found.causes.first().map(|cause| (cause.effect.clone(), cause.probability));
+        let own = planted.effects.first();
+        let detectable =
+            own.and_then(|(name, _)| found.detectable.iter().find(|d| d.effect == *name));
+        let mut class = found.verdict.class.clone();
+        if let Some((name, _)) = &top {
+            let typical = found.detectable.iter().find(|d| d.effect == *name);
+            class.extend(typical.into_iter().flat_map(|d| d.class.iter().cloned()));
+        }
+        let total: f64 = found.causes.iter().map(|cause| cause.probability).sum();
+        let mut sum = 0.0;
+        let mut credible = Vec::new();
+        for cause in &found.causes {
+            if sum >= 0.9 * total {
+                break;
+            }
+            sum += cause.probability;
+            credible.push(cause.effect.clone());
+        }
+        let magnitude = own
+            .zip(found.causes.first())
+            .filter(|((name, _), cause)| *name == cause.effect)
+            .map(|((_, size), cause)| (*size, &cause.magnitude));
+        Self {
+            verdict: found.verdict.kind,
+            top,
+            top_three: found.causes.iter().take(3).map(|cause| cause.effect.clone()).collect(),
+            class,
+            credible,
+            named: found.verdict.effects.clone(),
+            planted_closure: None,
+            located: None,
+            size_error: magnitude.map(|(size, found)| found.value / size - 1.0),
+            interval_holds: magnitude
+                .map(|(size, found)| found.ci95[0] <= size && size <= found.ci95[1]),
+            closure: found.verdict.closure,
+            gap_rms_percent: found.gap.rms_percent,
+            nearest: detectable.map(|d| (d.nearest_other, d.nearest_pair)),
+            planted,
+        }
+    }
+
+    /// Takes the distance of the planted effect from others out of a diagnosis with the whole library: one that was struck
+    /// does not know it.
+    pub fn take_distance(&mut self, whole: &Diagnosis) {
+        let name = self.truth();
+        let own = whole.detectable.iter().find(|d| d.effect == name);
+        self.nearest = own.map(|d| (d.nearest_other, d.nearest_pair));
+    }
+
+    pub(crate) fn is_null(&self) -> bool {
+        self.planted.effects.is_empty()
+    }
+
+    pub(crate) fn is_pair(&self) -> bool {
+        self.planted.effects.len() > 1
+    }
+
+    /// No library has what was planted.
+    pub(crate) fn is_outside(&self) -> bool {
+        self.planted.effects.iter().any(|(name, _)| EffectId::from_name(name).is_none())
+    }
+
+    pub(crate) fn is_single(&self) -> bool {
+        !self.is_null() && !self.is_pair() && !self.is_outside() && !self.is_struck()
+    }
+
+    pub(crate) fn is_named(&self, name: &str) -> bool {
+        self.verdict == VerdictKind::Effects && self.named.iter().any(|n| n == name)
+    }
+
+    pub(crate) fn is_struck(&self) -> bool {
+        self.planted.effects.iter().any(|(name, _)| self.planted.struck.contains(name))
+    }
+
+    pub(crate) fn truth(&self) -> &str {
+        self.planted.effects.first().map_or("nothing", |(name, _)| name)
+    }
+
+    pub(crate) fn top_is(&self, name: &str) -> bool {
+        self.top.as_ref().is_some_and(|(top, _)| top == name)
+    }
+
+    pub(crate) fn on_top(&self) -> bool {
+        self.top_is(self.truth())
+    }
+
+    pub(crate) fn is_sure(&self) -> bool {
+        self.verdict == VerdictKind::Effects && self.top.as_ref().is_some_and(|t| t.1 >= SURE)
+    }
+
+    /// The verdict names effects, and the planted one is the most probable.
+    pub(crate) fn names_first(&self) -> bool {
+        self.names_effects() && self.on_top()
+    }
+
+    pub(crate) fn names_effects(&self) -> bool {
+        self.verdict == VerdictKind::Effects
+    }
+
+    /// What the verdict says in one name, for the table of confusions.
+    pub(crate) fn said(&self) -> String {
+        match self.verdict {
+            VerdictKind::NoGap => "no_gap".to_owned(),
+            VerdictKind::OutsideLibrary => "outside_library".to_owned(),
+            VerdictKind::InsufficientData => "insufficient_data".to_owned(),
+            VerdictKind::Effects => self.top.as_ref().map_or_else(String::new, |t| t.0.clone()),
+        }
+    }
+}
