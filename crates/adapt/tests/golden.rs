@@ -2,11 +2,10 @@
 //!
 //! The two runs in `tests/golden` always run; all twelve run where the reference folder is present.
 #![expect(clippy::disallowed_methods, reason = "the reference folder is not in every checkout")]
-#![expect(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test")]
 #![expect(clippy::float_cmp, reason = "numbers read from the same text")]
 
 use std::fs::read_to_string;
-use std::path::Path;
 use std::sync::Arc;
 
 use adapt::paper::{PaperLaw, State, Update, error_percent};
@@ -14,10 +13,10 @@ use flight::{Observation, ObservationVariance, Timestamp};
 use lut::surface::Basis;
 use lut::{Axis, Grid, Outside, Table};
 use refit::{RefitRule, refit};
+use test_support::outside_data;
 use units::convert::TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR;
 use units::{PressureAltitude, Temperature, TrueAirspeed};
 
-const REFERENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/golden");
 const WING_AREA_M2: f64 = 94.94690688;
 const TSFC_STATIC_LB_LBF_H: f64 = 0.657;
 /// The files carry 13 significant digits and a run multiplies a few dozen gains.
@@ -230,11 +229,8 @@ fn compact_grid_at_one_percent_with_refits() {
 
 #[test]
 fn every_reference_run() {
-    if !Path::new(REFERENCE).is_dir() {
-        eprintln!("skipped: no reference folder {REFERENCE}");
-        return;
-    }
-    let read = |name: &str| read_to_string(format!("{REFERENCE}/{name}")).unwrap();
+    let Some(golden) = outside_data("golden") else { return };
+    let read = |name: &str| read_to_string(golden.join(name)).unwrap();
     for fleet in ["SIM-01", "SIM-02", "SIM-05"] {
         for grid in ["wide", "compact"] {
             for threshold in ["5", "1"] {

@@ -1,7 +1,7 @@
 //! Fleets flown in JSBSim (6 degrees of freedom, rotating Earth, own engine law): what was changed is found.
 //!
 //! SIM-02 is SIM-01 with zero-lift drag +3 % (7.2 counts), SIM-05 with an indicated Mach number 0.004 too high. The data
-//! are not in the repository; without them the tests are skipped aloud.
+//! are not in the repository; without them the tests are skipped visibly.
 #![expect(clippy::disallowed_methods, reason = "the flights are not in the repository")]
 #![expect(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "a test")]
 
@@ -13,16 +13,7 @@ use flight::Segment;
 use perf_model::{Aircraft, Guide, initial_model};
 use report::Reader;
 use segmenter::TrimCriteria;
-
-fn data() -> Option<PathBuf> {
-    let folder =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/jsbsim-global5000");
-    let found = folder.join("SIM-01").is_dir();
-    if !found {
-        eprintln!("skipped: {} is not there", folder.display());
-    }
-    found.then_some(folder)
-}
+use test_support::outside_data;
 
 fn model(folder: &Path) -> ExtendedModel {
     let aircraft = Aircraft::from_ron(
@@ -86,7 +77,7 @@ fn print(name: &str, found: &Diagnosis) {
 
 #[test]
 fn what_was_changed_is_found_and_the_baseline_is_silent() {
-    let Some(folder) = data() else { return };
+    let Some(folder) = outside_data("data/jsbsim-global5000") else { return };
     let model = model(&folder);
     let clean = fleet(&folder, "SIM-01");
     let taught = Baseline::learn(&model, model.drag_table(), &records(&clean)).unwrap();

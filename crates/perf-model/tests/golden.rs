@@ -3,15 +3,14 @@
 #![expect(
     clippy::disallowed_methods,
     clippy::unwrap_used,
-    clippy::print_stderr,
-    reason = "a test reads files, stops at what is broken, and says what it skipped"
+    reason = "a test reads files and stops at what is broken"
 )]
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans};
 use perf_model::{Aircraft, FlightPoints, Guide, InitialModel, initial_model};
+use test_support::outside_data;
 
 const WIDE: &str = "lift_coefficient: (0.10, 0.80, 0.05), mach: (0.50, 0.95, 0.05)";
 const COMPACT: &str = "lift_coefficient: (0.30, 0.60, 0.05), mach: (0.76, 0.88, 0.02)";
@@ -26,16 +25,6 @@ fn initial(table: &str) -> InitialModel {
     .unwrap();
     let guide = Guide::from_csv(include_bytes!("golden/guide.csv")).unwrap();
     initial_model(&aircraft, &guide).unwrap()
-}
-
-/// The reference folder of the working copy, where there is one.
-fn shared(folder: &str) -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared")).join(folder);
-    if !path.is_dir() {
-        eprintln!("skipped: no {}", path.display());
-        return None;
-    }
-    Some(path)
 }
 
 /// Header and rows of a simple file.
@@ -161,7 +150,7 @@ fn twenty_segments() {
 
 #[test]
 fn wide_table_and_all_segments_of_three_fleets() {
-    let Some(golden) = shared("golden") else { return };
+    let Some(golden) = outside_data("golden") else { return };
     let read = |name: &str| std::fs::read_to_string(golden.join(name)).unwrap();
     check_table(&initial(WIDE), &read("initial_wide_table.csv"));
     let counts = ["SIM-01", "SIM-02", "SIM-05"]
@@ -171,7 +160,7 @@ fn wide_table_and_all_segments_of_three_fleets() {
 
 #[test]
 fn static_points_of_the_simulator_read_and_predict() {
-    let Some(data) = shared("data/jsbsim-global5000") else { return };
+    let Some(data) = outside_data("data/jsbsim-global5000") else { return };
     let text = std::fs::read(data.join("static.csv")).unwrap();
     let points = FlightPoints::from_csv(&text).unwrap();
     assert_eq!(points.rows().len(), 45);
@@ -189,7 +178,7 @@ fn static_points_of_the_simulator_read_and_predict() {
 #[test]
 fn a_real_handbook_table_gives_a_model() {
     // Cirrus SF50: one engine, off ISA, published. Another aircraft, another layout of the same quantities.
-    let Some(tables) = shared("data/real/sf50_afm_tables") else { return };
+    let Some(tables) = outside_data("data/real/sf50_afm_tables") else { return };
     let text = std::fs::read_to_string(tables.join("Cirrus_SF50_VisionJet_G2_cruise.csv")).unwrap();
     let (header, rows) = rows(&text);
     let column = |name: &str| header.iter().position(|column| column == name).unwrap();

@@ -357,15 +357,12 @@ fn level_parts_become_reports() {
     );
 }
 
-/// Folder of recordings that are not part of this repository.
+/// One of the recordings that are not part of this repository.
 fn outside(name: &str) -> Option<Vec<u8>> {
-    let path = format!("{}/../../../shared/data/real/{name}", env!("CARGO_MANIFEST_DIR"));
+    let path = test_support::outside_data(&format!("data/real/{name}"))?;
     #[expect(clippy::disallowed_methods, reason = "tests read data from files")]
-    let bytes = std::fs::read(&path).ok();
-    if bytes.is_none() {
-        eprintln!("skipped: {path} is not there");
-    }
-    bytes
+    let bytes = std::fs::read(path).unwrap();
+    Some(bytes)
 }
 
 /// Oracle: what the recording's own description says of its cruise: one level part of 8604 s at FL360, Mach number

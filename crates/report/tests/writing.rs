@@ -9,23 +9,8 @@ use flight::{
 };
 use proptest::prelude::*;
 use report::{Decimals, Reader, TextLayout, WriteError, write};
+use test_support::reports::FORMAT_SAMPLE as SAMPLE;
 use units::Mass;
-
-/// As on the format's page.
-const SAMPLE: &str = "\
-CRUISE-REPORT 1
-AIRCRAFT C750
-TAIL     T-001
-FLIGHT   0007
-START    2018-05-20T14:14:21Z
-ZFW      24283 lb
-FOB      7219 lb
-TIME ALT SAT MACH VTAS GSPD ROLL DRIFT N2(1) N2(2) WF(1) WF(2) FU LAT LON HDG CG A/I
-s ft degC - kt kt deg deg % % lb/h lb/h lb deg deg deg %MAC -
-0 43008 -56.6 0.8030 460.5 451.5 -0.1 4.2 89.4 89.4 654 658 1353 41.516 -69.976 118.7 27.2 0
-60 43003 -56.5 0.8025 460.5 451.0 0.0 4.4 89.4 89.3 653 648 1375 41.456 -69.829 118.7 27.2 0
-120 43003 -56.8 0.8025 460.0 450.5 0.0 4.6 89.5 89.5 659 658 1396 41.395 -69.683 118.7 27.1 0
-";
 
 fn read(text: &str) -> Report {
     Reader::new().read(text.as_bytes()).unwrap().report

@@ -11,12 +11,8 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use segmenter::TrimCriteria;
 
-#[path = "../tests/it/support.rs"]
-#[expect(dead_code, reason = "helpers of the tests, of which a benchmark needs one")]
-mod support;
-
 fn reports(criterion: &mut Criterion) {
-    let report = support::read(include_str!("../tests/golden/SIM-01_0001.txt"));
+    let report = test_support::reports::read(include_str!("../tests/golden/SIM-01_0001.txt"));
     let track = track::derive(report.clone()).unwrap();
     let criteria = TrimCriteria::ghazi_2020_table_4();
     assert_eq!(segmenter::segment(&track, &criteria).segments.len(), 8);

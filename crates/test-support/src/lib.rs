@@ -1,11 +1,12 @@
 //! What the tests of several crates share. A development dependency only; never published.
 //!
 //! - [`fleet`]: a virtual fleet on the level of segments, whose truth has other functional forms than the library's.
+//! - [`reports`]: the format's sample report, and reports made from a few numbers.
 //! - [`outside`]: material that cannot be shipped with the repository, and visible skips where it is absent.
 //!
-//! It depends on `flight`, `lut` and `perf-model` and on no crate above them: a crate that `diagnose` tests itself with
+//! It depends on `flight`, `lut`, `perf-model` and `units` and on no crate above them: a crate that `diagnose` tests itself with
 //! cannot name `diagnose`, whose types would then exist twice. For the same reason the unit tests inside `src/` of those
-//! three crates can use only what is plain text or plain numbers here.
+//! four crates can use only what is plain text or plain numbers here.
 //!
 //! ```
 //! use test_support::fleet::{Background, Setup, fly};
@@ -18,6 +19,7 @@
 pub mod fleet;
 pub mod outside;
 mod random;
+pub mod reports;
 
 pub use outside::outside_data;
 pub use random::Random;

@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests; clippy.toml covers test functions only")]
 
 use flight::{
-    Assumption, DroppedRun, DroppedRunReason, FlightIdentity, FuelFlowColumns, Report,
-    ReportColumns, ReportHeader, Sampling, TemperatureSource, Track,
+    Assumption, DroppedRun, DroppedRunReason, FuelFlowColumns, Report, ReportColumns, ReportHeader,
+    Sampling, TemperatureSource, Track,
 };
 use proptest::prelude::*;
 use track::{TrackError, derive};
@@ -12,18 +12,9 @@ use units::Mass;
 
 fn header() -> ReportHeader {
     ReportHeader {
-        aircraft_type: "C750".to_owned(),
-        identity: FlightIdentity {
-            tail: "T-001".to_owned(),
-            start: "2018-05-20T14:14:21Z".parse().unwrap(),
-            flight: "0007".to_owned(),
-        },
         zero_fuel_mass: Mass::kilograms(11_000.0),
         fuel_on_board: Mass::kilograms(3_000.0),
-        lower_heating_value_mj_kg: None,
-        missing: vec![],
-        assumed: vec![],
-        notes: vec![],
+        ..test_support::reports::header()
     }
 }
 

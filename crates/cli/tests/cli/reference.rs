@@ -6,7 +6,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::support::{adapt, cruisefit, csv_columns, fixture, numbers, shared};
+use test_support::outside_data;
+
+use crate::support::{adapt, cruisefit, csv_columns, fixture, numbers};
 
 const FLEETS: [&str; 3] = ["SIM-01", "SIM-02", "SIM-05"];
 const GRIDS: [(&str, &str); 2] = [
@@ -35,7 +37,9 @@ const SEGMENT_COLUMNS: [(&str, &str); 14] = [
 
 #[test]
 fn three_fleets_two_grids_two_thresholds() {
-    let (Some(golden), Some(data)) = (shared("golden"), shared("data/jsbsim-global5000")) else {
+    let (Some(golden), Some(data)) =
+        (outside_data("golden"), outside_data("data/jsbsim-global5000"))
+    else {
         return;
     };
     let scratch = tempfile::tempdir().unwrap();
@@ -80,7 +84,7 @@ fn three_fleets_two_grids_two_thresholds() {
 
 #[test]
 fn the_initial_polynomial() {
-    let Some(golden) = shared("golden") else { return };
+    let Some(golden) = outside_data("golden") else { return };
     let scratch = tempfile::tempdir().unwrap();
     let model = crate::support::initial_model(scratch.path());
     let text = std::fs::read_to_string(model).unwrap();

@@ -14,17 +14,6 @@ pub(crate) fn fixture(name: &str) -> PathBuf {
     root().join("fixtures/global5000").join(name)
 }
 
-/// Material beside the repository that a clone does not have; `None`, said aloud, where it is absent.
-pub(crate) fn shared(path: &str) -> Option<PathBuf> {
-    let path = root().join("../shared").join(path);
-    if path.exists() {
-        Some(path)
-    } else {
-        eprintln!("skipped: {} is not there", path.display());
-        None
-    }
-}
-
 /// How a run ended.
 #[derive(Debug)]
 pub(crate) struct Ran {

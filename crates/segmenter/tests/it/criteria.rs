@@ -2,9 +2,10 @@
 
 use flight::ReportColumns;
 use segmenter::{Criterion, CriterionSet, SampleVerdict, Segmentation};
+use test_support::reports::{header, steady};
 use units::convert::{METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT};
 
-use crate::support::{all, rows, segmented, steady};
+use crate::support::{all, rows, segmented};
 
 /// Samples that fail a criterion, and only that one.
 fn failing(segmentation: &Segmentation, criterion: Criterion) -> Vec<usize> {
@@ -128,7 +129,7 @@ fn vertical_speed_on_its_limit() {
         for sample in 5..10 {
             sent.pressure_altitude_m[sample] += climb_ft * METERS_PER_FOOT;
         }
-        let report = flight::Report::new(crate::support::header(), sent).unwrap();
+        let report = flight::Report::new(header(), sent).unwrap();
         let segmentation = segmenter::segment(&track::derive(report).unwrap(), &criteria);
         let cost = segmentation.tally.cost(Criterion::VerticalSpeed);
         assert_eq!(cost.unsteady, failing_samples, "{climb_ft}");

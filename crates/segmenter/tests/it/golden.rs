@@ -9,8 +9,7 @@ use std::path::{Path, PathBuf};
 
 use flight::Segment;
 use segmenter::{Tally, TrimCriteria};
-
-use crate::support;
+use test_support::{outside_data, reports};
 
 /// Columns of the reference that a segment itself holds, in their order.
 const MEANS: [&str; 10] = [
@@ -48,7 +47,7 @@ fn read_expected(path: &Path) -> BTreeMap<String, Vec<Expected>> {
 }
 
 fn compare(path: &Path, flights: &BTreeMap<String, Vec<Expected>>) -> Tally {
-    let report = support::read(&fs::read_to_string(path).unwrap());
+    let report = reports::read(&fs::read_to_string(path).unwrap());
     let track = track::derive(report).unwrap();
     let segmentation = segmenter::segment(&track, &TrimCriteria::ghazi_2020_table_4());
     let flight = &track.report().header().identity.flight;
@@ -94,14 +93,14 @@ fn two_shipped_flights() {
 
 #[test]
 fn all_flights_of_three_fleets() {
-    let shared = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared"));
-    if !shared.join("golden").is_dir() {
-        eprintln!("skipped: no reference results in {}", shared.display());
+    let (Some(golden), Some(data)) =
+        (outside_data("golden"), outside_data("data/jsbsim-global5000"))
+    else {
         return;
-    }
+    };
     for (fleet, segments) in [("SIM-01", 248), ("SIM-02", 249), ("SIM-05", 247)] {
-        let expected = read_expected(&shared.join(format!("golden/{fleet}_segments.csv")));
-        let folder = shared.join("data/jsbsim-global5000").join(fleet);
+        let expected = read_expected(&golden.join(format!("{fleet}_segments.csv")));
+        let folder = data.join(fleet);
         let mut reports: Vec<PathBuf> =
             fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
         reports.sort();

@@ -2,8 +2,9 @@
 
 use flight::{Assumption, FuelFlowColumns, Report};
 use segmenter::{Criterion, Tally, TrimCriteria, segment};
+use test_support::reports::{header, steady};
 
-use crate::support::{all, header, rows, segmented, steady};
+use crate::support::{all, rows, segmented};
 
 #[test]
 fn a_missing_channel_is_not_evaluated() {

@@ -2,9 +2,10 @@
 
 use flight::FuelFlowColumns;
 use segmenter::{Criterion, DroppedPiece, PieceDropReason, SampleVerdict};
+use test_support::reports::{header, steady};
 use units::convert::{METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT};
 
-use crate::support::{all, rows, segmented, steady};
+use crate::support::{all, rows, segmented};
 
 #[test]
 fn sixteen_samples_make_ten_and_six() {
@@ -155,7 +156,7 @@ fn two_deviations_exactly_are_kept() {
         criteria.outlier_standard_deviations = k;
         let mut sent = steady(60.0, 9);
         sent.mach[4] += 0.002;
-        let report = flight::Report::new(crate::support::header(), sent).unwrap();
+        let report = flight::Report::new(header(), sent).unwrap();
         let segmentation = segmenter::segment(&track::derive(report).unwrap(), &criteria);
         assert_eq!(segmentation.tally.samples_outlying, outliers, "{k}");
     }
@@ -171,7 +172,7 @@ fn a_filtered_piece_may_become_too_short() {
     let mut sent = steady(60.0, 5);
     sent.mach[3] += 0.002;
     sent.mach[4] += 0.002;
-    let report = flight::Report::new(crate::support::header(), sent).unwrap();
+    let report = flight::Report::new(header(), sent).unwrap();
     let segmentation = segmenter::segment(&track::derive(report).unwrap(), &criteria);
     let reason = PieceDropReason::TooShort;
     let expected = DroppedPiece { samples: 0..5, kept: 3, needed: 4, reason };

@@ -3,9 +3,10 @@
 use flight::{Report, ReportColumns};
 use proptest::prelude::*;
 use segmenter::{SampleVerdict, Segmentation};
+use test_support::reports::{header, steady};
 use units::convert::{METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT};
 
-use crate::support::{segmented, steady};
+use crate::support::segmented;
 
 /// A cruise whose channels wander around their limits, at regular minutes but for some gaps.
 fn restless() -> impl Strategy<Value = ReportColumns> {
@@ -105,7 +106,7 @@ proptest! {
 
     #[test]
     fn same_report_same_segments(columns in restless()) {
-        let report = Report::new(crate::support::header(), columns.clone()).unwrap();
+        let report = Report::new(header(), columns.clone()).unwrap();
         prop_assert_eq!(report.columns(), &columns);
         prop_assert_eq!(segmented(columns.clone()).1, segmented(columns).1);
     }

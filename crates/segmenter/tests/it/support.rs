@@ -1,14 +1,10 @@
-//! Reports for tests: read from well-formed text, or made from a few numbers.
+//! Segments of hand-made reports.
 
 use core::ops::Range;
 
-use flight::column::Column;
-use flight::{
-    FlightIdentity, FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportHeader, Track,
-};
+use flight::{Report, ReportColumns, Track};
 use segmenter::{Segmentation, TrimCriteria};
-use units::Mass;
-use units::convert::{KELVIN_AT_ZERO_CELSIUS, METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT};
+use test_support::reports::header;
 
 /// Segments by the published criteria.
 pub(crate) fn segmented(columns: ReportColumns) -> (Track, Segmentation) {
@@ -25,116 +21,4 @@ pub(crate) fn rows(segmentation: &Segmentation) -> Vec<Vec<u32>> {
 /// Rows of a segment without discarded samples.
 pub(crate) fn all(rows: Range<u32>) -> Vec<u32> {
     rows.collect()
-}
-
-pub(crate) fn header() -> ReportHeader {
-    ReportHeader {
-        aircraft_type: "C750".to_owned(),
-        identity: FlightIdentity {
-            tail: "T-001".to_owned(),
-            start: "2018-05-20T14:14:21Z".parse().unwrap(),
-            flight: "0007".to_owned(),
-        },
-        zero_fuel_mass: Mass::pounds(24_283.0),
-        fuel_on_board: Mass::pounds(7_219.0),
-        lower_heating_value_mj_kg: None,
-        missing: vec![],
-        assumed: vec![],
-        notes: vec![],
-    }
-}
-
-/// A twin in perfectly steady cruise at FL430.
-pub(crate) fn steady(step_s: f64, samples: usize) -> ReportColumns {
-    let of = |value: f64| vec![value; samples];
-    ReportColumns {
-        time_s: (0..samples).map(|sample| step_s * sample as f64).collect(),
-        pressure_altitude_m: of(43_000.0 * METERS_PER_FOOT),
-        static_air_temperature_k: Some(of(-56.5 + KELVIN_AT_ZERO_CELSIUS)),
-        mach: of(0.8025),
-        true_airspeed_m_s: of(460.5 * METERS_PER_SECOND_PER_KNOT),
-        ground_speed_m_s: of(451.5 * METERS_PER_SECOND_PER_KNOT),
-        roll_deg: Some(of(0.1)),
-        drift_deg: Some(of(4.2)),
-        n2_percent: Some(vec![of(89.4), of(89.4)]),
-        fuel_flow: FuelFlowColumns::PerEngine(vec![of(0.083), of(0.083)]),
-        fuel_used_kg: of(600.0),
-        latitude_deg: None,
-        longitude_deg: None,
-        true_heading_deg: None,
-        center_of_gravity_percent_mac: None,
-        total_air_temperature_k: None,
-        n1_percent: [const { None }; 4],
-        exhaust_gas_temperature_k: [const { None }; 4],
-        fuel_quantity_kg: None,
-        anti_ice: None,
-    }
-}
-
-/// Reads a report that is known to be well-formed; anything else panics.
-pub(crate) fn read(text: &str) -> Report {
-    let mut header = header();
-    let mut lines = text
-        .lines()
-        .map(|line| line.split('#').next().unwrap().trim())
-        .filter(|line| !line.is_empty());
-    assert_eq!(lines.next(), Some("CRUISE-REPORT 1"));
-    let names = loop {
-        let line = lines.next().unwrap();
-        if line.starts_with("TIME ") {
-            break line;
-        }
-        let (key, value) = line.split_once(char::is_whitespace).unwrap();
-        let value = value.trim();
-        let pounds = || Mass::pounds(value.strip_suffix(" lb").unwrap().parse().unwrap());
-        match key {
-            "AIRCRAFT" => value.clone_into(&mut header.aircraft_type),
-            "TAIL" => value.clone_into(&mut header.identity.tail),
-            "FLIGHT" => value.clone_into(&mut header.identity.flight),
-            "START" => header.identity.start = value.parse().unwrap(),
-            "ZFW" => header.zero_fuel_mass = pounds(),
-            "FOB" => header.fuel_on_board = pounds(),
-            _ => panic!("{key} is not expected here"),
-        }
-    };
-    let units: Vec<&str> = lines.next().unwrap().split_whitespace().collect();
-    let rows: Vec<Vec<&str>> = lines.map(|line| line.split_whitespace().collect()).collect();
-    let mut columns = steady(60.0, rows.len());
-    for (index, name) in names.split_whitespace().enumerate() {
-        let column = Column::from_name(name).unwrap();
-        let unit = column.units().iter().find(|unit| unit.name == units[index]).unwrap();
-        let optional: OptionalColumn = rows
-            .iter()
-            .map(|row| row[index].parse::<f64>().ok())
-            .map(|number| number.map(|number| number * unit.factor + unit.offset))
-            .collect();
-        put(&mut columns, column, optional);
-    }
-    Report::new(header, columns).unwrap()
-}
-
-fn put(columns: &mut ReportColumns, column: Column, optional: OptionalColumn) {
-    let full = || -> Vec<f64> { optional.iter().map(|value| value.unwrap()).collect() };
-    let engine = |k: u8| usize::from(k) - 1;
-    match column {
-        Column::Time => columns.time_s = full(),
-        Column::PressureAltitude => columns.pressure_altitude_m = full(),
-        Column::StaticAirTemperature => columns.static_air_temperature_k = Some(full()),
-        Column::Mach => columns.mach = full(),
-        Column::TrueAirspeed => columns.true_airspeed_m_s = full(),
-        Column::GroundSpeed => columns.ground_speed_m_s = full(),
-        Column::Roll => columns.roll_deg = Some(full()),
-        Column::Drift => columns.drift_deg = Some(full()),
-        Column::N2(k) => columns.n2_percent.as_mut().unwrap()[engine(k)] = full(),
-        Column::FuelFlowEngine(k) => {
-            let FuelFlowColumns::PerEngine(flows) = &mut columns.fuel_flow else { unreachable!() };
-            flows[engine(k)] = full();
-        }
-        Column::FuelUsed => columns.fuel_used_kg = full(),
-        Column::Latitude => columns.latitude_deg = Some(optional),
-        Column::Longitude => columns.longitude_deg = Some(optional),
-        Column::TrueHeading => columns.true_heading_deg = Some(optional),
-        Column::CenterOfGravity => columns.center_of_gravity_percent_mac = Some(optional),
-        _ => panic!("{column:?} is not expected here"),
-    }
 }
