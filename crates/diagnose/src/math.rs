@@ -1,9 +1,11 @@
 //! Numerical methods without a word of aviation.
 
+pub(crate) mod bootstrap;
 pub(crate) mod cholesky;
 pub(crate) mod eliminate;
 pub(crate) mod gram;
 pub(crate) mod linear;
 pub(crate) mod mixture;
+pub(crate) mod quantile;
 pub(crate) mod random;
 pub(crate) mod vector_ln_exp;

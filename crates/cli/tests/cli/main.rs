@@ -8,6 +8,7 @@
 )]
 
 mod applied;
+mod architecture;
 mod bad_input;
 mod commands;
 mod diagnosis;

@@ -6,7 +6,7 @@ use faer::Mat;
 use crate::baseline::Baseline;
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::Data;
-use crate::residuals::whiten::{half_whitened, whiten_flight};
+use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::table_uncertainty::TableUncertainty;
@@ -275,7 +275,7 @@ impl<'a> Design<'a> {
     ) {
         let channels = data.channels.count();
         let put = |matrix: &mut Mat<f64>, column: usize, values: &ByChannel| {
-            let white = half_whitened(row, values, channels);
+            let white = whiten_within_segment(row, values, channels);
             for channel in 0..channels {
                 matrix[(first + channel, column)] = white[channel];
             }
@@ -290,8 +290,8 @@ impl<'a> Design<'a> {
         if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
             on_thrust[data.channels.n2_row()] = row.n2_slope * row.drag_over_thrust;
         }
-        let fuel = half_whitened(row, &on_fuel, channels);
-        let thrust = half_whitened(row, &on_thrust, channels);
+        let fuel = whiten_within_segment(row, &on_fuel, channels);
+        let thrust = whiten_within_segment(row, &on_thrust, channels);
         let scaled = |matrix: &mut Mat<f64>, column: usize, unit: &ByChannel, by: f64| {
             for channel in 0..channels {
                 matrix[(first + channel, column)] = unit[channel] * by;

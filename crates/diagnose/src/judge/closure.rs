@@ -4,15 +4,16 @@ use effects::EffectModel;
 
 use crate::judge::thresholds::{CLEAN_PROBABILITY, SMALLEST_GAP};
 use crate::library::Library;
-use crate::math::random::Source;
+use crate::math::bootstrap::interval_95;
+use crate::math::random::RandomStream;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::folds::FOLDS;
 use crate::search::folds::fold_of;
 use crate::search::refine::{effects_of, refine};
 use crate::search::system::Stacked;
 
-/// Resamples of flights.
-const RESAMPLES: usize = 1000;
+/// Stream of random numbers behind the interval of closure.
+const CLOSURE_STREAM: u64 = 3;
 
 /// Sums of squares of the gap, flight by flight: before, after, and expected of the noise.
 #[derive(Clone, Debug)]
@@ -58,27 +59,14 @@ impl Shrinkage {
             return None;
         }
         let closure = (before - after) / (before - floor);
-        let mut source = Source::new(self.seed, 3);
-        let flights = self.before.len();
-        let mut closures: Vec<f64> = (0..RESAMPLES)
-            .map(|_| {
-                let (mut closed, mut explainable) = (0.0, 0.0);
-                for _ in 0..flights {
-                    let k = source.below(flights);
-                    closed += self.before[k] - self.after[k];
-                    explainable += self.before[k] - self.floor[k];
-                }
-                // Where as good as nothing is explainable, the ratio says nothing: it counts as unbounded.
-                if explainable > 0.0 {
-                    closed / explainable
-                } else {
-                    f64::INFINITY.copysign(closed)
-                }
-            })
+        let by_flight: Vec<(f64, f64)> = (0..self.before.len())
+            .map(|k| (self.before[k] - self.after[k], self.before[k] - self.floor[k]))
             .collect();
-        closures.sort_by(f64::total_cmp);
-        let last = RESAMPLES - 1;
-        let [low, high] = [closures[last / 40], closures[last - last / 40]];
+        let mut stream = RandomStream::new(self.seed, CLOSURE_STREAM);
+        // Where as good as nothing is explainable, the ratio says nothing: it counts as unbounded.
+        let [low, high] = interval_95(&by_flight, &mut stream, |closed, explainable| {
+            if explainable > 0.0 { closed / explainable } else { f64::INFINITY.copysign(closed) }
+        });
         (low.is_finite() && high.is_finite()).then_some((closure, [low, high]))
     }
 }

@@ -9,7 +9,7 @@ use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::moments::FOLDS;
 use crate::learning::moments::{KINDS, LeftOut, Moments, Part};
-use crate::math::cholesky::Factor;
+use crate::math::cholesky::Cholesky;
 use crate::residuals::segments::Data;
 use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::noise::NoiseFactors;
@@ -122,7 +122,7 @@ impl Baseline {
             let mut loadings =
                 Mat::from_fn(width, judged.len(), |k, flight| judged[flight].loading[k]);
             let expected = loadings.transpose() * &solution;
-            factor.half_solve(&mut loadings);
+            factor.solve_lower(&mut loadings);
             for (k, flight) in judged.into_iter().enumerate() {
                 let error = flight.residual - expected[(k, 0)];
                 let of_model: f64 =
@@ -162,14 +162,14 @@ impl Baseline {
     }
 
     /// Coefficients and precision factor from a Gram matrix and the prior.
-    fn posterior(&self, gram: &Mat<f64>) -> Option<(Mat<f64>, Factor)> {
+    fn posterior(&self, gram: &Mat<f64>) -> Option<(Mat<f64>, Cholesky)> {
         let width = self.factor.nrows();
         let mut precision = gram.submatrix(0, 0, width, width).to_owned();
         for k in 0..width {
             let deviation = self.prior_deviation(k);
             precision[(k, k)] += 1.0 / (deviation * deviation);
         }
-        let factor = Factor::of(&precision)?;
+        let factor = Cholesky::new(&precision)?;
         let mut solution = Mat::from_fn(width, 1, |i, _| gram[(i, width)]);
         factor.solve(&mut solution);
         Some((solution, factor))
@@ -197,7 +197,7 @@ impl Baseline {
         for k in 0..width {
             covariance[(k, k)] *= 1.0 + 1e-12;
         }
-        let lower = Factor::of(&covariance).ok_or(DiagnoseError::Degenerate)?;
+        let lower = Cholesky::new(&covariance).ok_or(DiagnoseError::Degenerate)?;
         self.factor = lower.lower().to_owned();
         self.parts.factor = lower_triangle(&self.factor);
         let squares: f64 = data
@@ -264,9 +264,9 @@ impl Baseline {
             }
             into[0] += 1.0;
         }
-        let Some(factor) = Factor::of(&inner) else { return f64::NEG_INFINITY };
+        let Some(factor) = Cholesky::new(&inner) else { return f64::NEG_INFINITY };
         let mut projected = Mat::from_fn(width, 1, |k, _| gram[(width, k)] * deviations[k]);
-        factor.half_solve(&mut projected);
+        factor.solve_lower(&mut projected);
         let explained: f64 = projected.col_as_slice(0).iter().map(|value| value * value).sum();
         -0.5 * (ln_noise + factor.ln_determinant() + gram[(width, width)] - explained)
     }

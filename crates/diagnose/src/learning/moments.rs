@@ -16,10 +16,11 @@ use faer::Mat;
 
 use crate::baseline::Baseline;
 use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::math::cholesky::factor_and_project;
 use crate::math::linear::{subtract_gram, symmetrize};
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::Data;
-use crate::residuals::whiten::half_whitened;
+use crate::residuals::whiten::whiten_within_segment;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 use crate::signals::noise::NoiseFactors;
 
@@ -101,7 +102,7 @@ impl Moments {
                 let white: [ByChannel; MAXIMUM_CHANNELS] = core::array::from_fn(|channel| {
                     let mut unit = [0.0; MAXIMUM_CHANNELS];
                     unit[channel] = 1.0;
-                    half_whitened(row, &unit, count)
+                    whiten_within_segment(row, &unit, count)
                 });
                 rows.push(Row {
                     flight,
@@ -346,30 +347,7 @@ impl Common {
                 *slot += share * value;
             }
         }
-        let mut ln_determinant = 0.0;
-        for column in 0..self.rank {
-            for k in 0..column {
-                let by = inner[(column, k)];
-                for row in column..self.rank {
-                    let left = inner[(row, k)] * by;
-                    inner[(row, column)] -= left;
-                }
-                for row in 0..into.nrows() {
-                    let left = into[(row, at + k)] * by;
-                    into[(row, at + column)] -= left;
-                }
-            }
-            // 1 + UᵀC⁻¹U: its pivots are not below 1.
-            let pivot = inner[(column, column)].max(1.0).sqrt();
-            ln_determinant += 2.0 * pivot.ln();
-            for row in column..self.rank {
-                inner[(row, column)] /= pivot;
-            }
-            for row in 0..into.nrows() {
-                into[(row, at + column)] /= pivot;
-            }
-        }
-        ln_determinant
+        factor_and_project(&mut inner, into, at)
     }
 }
 

@@ -7,13 +7,13 @@ use faer::{Mat, Par, Side};
 
 /// Cholesky factor of a symmetric positive definite matrix.
 #[derive(Debug)]
-pub(crate) struct Factor {
+pub(crate) struct Cholesky {
     lower: Mat<f64>,
 }
 
-impl Factor {
+impl Cholesky {
     /// Factors a matrix by its lower triangle; `None` where it is not positive definite.
-    pub(crate) fn of(matrix: &Mat<f64>) -> Option<Self> {
+    pub(crate) fn new(matrix: &Mat<f64>) -> Option<Self> {
         let llt = matrix.llt(Side::Lower).ok()?;
         let lower = llt.L().to_owned();
         (0..lower.nrows()).all(|k| lower[(k, k)].is_finite()).then_some(Self { lower })
@@ -25,13 +25,13 @@ impl Factor {
     }
 
     /// L⁻¹·B in place.
-    pub(crate) fn half_solve(&self, right: &mut Mat<f64>) {
+    pub(crate) fn solve_lower(&self, right: &mut Mat<f64>) {
         solve_lower_triangular_in_place(self.lower.as_ref(), right.as_mut(), Par::Seq);
     }
 
     /// A⁻¹·B in place.
     pub(crate) fn solve(&self, right: &mut Mat<f64>) {
-        self.half_solve(right);
+        self.solve_lower(right);
         solve_upper_triangular_in_place(self.lower.transpose(), right.as_mut(), Par::Seq);
     }
 
@@ -39,6 +39,72 @@ impl Factor {
     pub(crate) const fn lower(&self) -> &Mat<f64> {
         &self.lower
     }
+}
+
+/// Lower Cholesky factor of the first `count` rows of a small covariance whose diagonal is positive, on the stack. Its sums
+/// run in another order than faer's, so that the two agree to rounding only.
+pub(crate) fn small_cholesky<const N: usize>(
+    covariance: &[[f64; N]; N],
+    count: usize,
+) -> [[f64; N]; N] {
+    let mut factor = [[0.0; N]; N];
+    for row in 0..count {
+        for column in 0..=row {
+            let inner: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
+            let left = covariance[row][column] - inner;
+            factor[row][column] = if row == column {
+                // Every row has a variance of its own; the floor only guards against a sensor declared perfect.
+                left.max(1e-14).sqrt()
+            } else {
+                left / factor[column][column]
+            };
+        }
+    }
+    factor
+}
+
+/// `L⁻¹·values` with a factor of [`small_cholesky`].
+pub(crate) fn solve_small_lower<const N: usize>(
+    factor: &[[f64; N]; N],
+    values: &[f64; N],
+    count: usize,
+) -> [f64; N] {
+    let mut solved = [0.0; N];
+    for row in 0..count {
+        let inner: f64 = (0..row).map(|k| factor[row][k] * solved[k]).sum();
+        solved[row] = (values[row] - inner) / factor[row][row];
+    }
+    solved
+}
+
+/// Factors `inner` = LLᵀ in place and turns the columns of `into` from `at` on, as many as `inner` has, into themselves times
+/// `L⁻ᵀ`; returns `ln|inner|`. For matrices of the form 1 + UᵀC⁻¹U, whose pivots are not below 1. Both steps go column by
+/// column together: a factor by faer would sum in another order.
+pub(crate) fn factor_and_project(inner: &mut Mat<f64>, into: &mut Mat<f64>, at: usize) -> f64 {
+    let rank = inner.nrows();
+    let mut ln_determinant = 0.0;
+    for column in 0..rank {
+        for k in 0..column {
+            let by = inner[(column, k)];
+            for row in column..rank {
+                let left = inner[(row, k)] * by;
+                inner[(row, column)] -= left;
+            }
+            for row in 0..into.nrows() {
+                let left = into[(row, at + k)] * by;
+                into[(row, at + column)] -= left;
+            }
+        }
+        let pivot = inner[(column, column)].max(1.0).sqrt();
+        ln_determinant += 2.0 * pivot.ln();
+        for row in column..rank {
+            inner[(row, column)] /= pivot;
+        }
+        for row in 0..into.nrows() {
+            into[(row, at + column)] /= pivot;
+        }
+    }
+    ln_determinant
 }
 
 #[cfg(test)]
@@ -49,11 +115,11 @@ mod tests {
     fn factor_by_hand() {
         // [[4, 2], [2, 5]]: L = [[2, 0], [1, 2]], determinant 16, solution of [8, 9] is [1.375, 1.25].
         let matrix = Mat::from_fn(2, 2, |i, j| [[4.0, 2.0], [2.0, 5.0]][i][j]);
-        let factor = Factor::of(&matrix).unwrap();
+        let factor = Cholesky::new(&matrix).unwrap();
         assert!((factor.ln_determinant() - 16.0_f64.ln()).abs() < 1e-15);
         let mut right = Mat::from_fn(2, 1, |i, _| [8.0, 9.0][i]);
         factor.solve(&mut right);
         assert!((right[(0, 0)] - 1.375).abs() < 1e-15 && (right[(1, 0)] - 1.25).abs() < 1e-15);
-        assert!(Factor::of(&Mat::from_fn(2, 2, |_, _| -1.0)).is_none());
+        assert!(Cholesky::new(&Mat::from_fn(2, 2, |_, _| -1.0)).is_none());
     }
 }

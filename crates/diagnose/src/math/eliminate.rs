@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::math::cholesky::Factor;
+use crate::math::cholesky::Cholesky;
 use crate::math::linear::{gather, subtract_product};
 
 /// A Gram matrix from which columns of known prior were integrated out, over the columns that are left.
@@ -24,7 +24,7 @@ pub(crate) struct Elimination {
     kept: Vec<usize>,
     out: Vec<usize>,
     deviations: Vec<f64>,
-    factor: Option<Factor>,
+    factor: Option<Cholesky>,
     /// `L⁻¹·S·G_zk`, L the Cholesky factor of `1 + S G_zz S`.
     projected: Mat<f64>,
 }
@@ -70,19 +70,19 @@ impl Elimination {
             }
             inner[(j, j)] += 1.0;
         }
-        let factor = Factor::of(&inner)?;
+        let factor = Cholesky::new(&inner)?;
         let mut projected = gather(gram, &out, &kept);
         for j in 0..kept.len() {
             for (value, deviation) in projected.col_as_slice_mut(j).iter_mut().zip(&deviations) {
                 *value *= deviation;
             }
         }
-        factor.half_solve(&mut projected);
+        factor.solve_lower(&mut projected);
         Some(Self { kept, out, deviations, factor: Some(factor), projected })
     }
 
     pub(crate) fn ln_determinant(&self) -> f64 {
-        self.factor.as_ref().map_or(0.0, Factor::ln_determinant)
+        self.factor.as_ref().map_or(0.0, Cholesky::ln_determinant)
     }
 
     /// What the columns that are out explain of the product of two kept ones.
@@ -108,7 +108,7 @@ impl Elimination {
                     *value *= deviation;
                 }
             }
-            factor.half_solve(&mut projected);
+            factor.solve_lower(&mut projected);
             subtract_product(&mut cross, &self.projected, &projected);
             subtract_product(&mut own, &projected, &projected);
         }

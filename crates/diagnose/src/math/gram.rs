@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::math::cholesky::Factor;
+use crate::math::cholesky::Cholesky;
 use crate::math::linear::{add_gram, symmetrize};
 
 /// Rows that are multiplied together: a flight alone has too few for fast products.
@@ -79,7 +79,7 @@ impl Gram {
             normal[(k, k)] += 1.0 / (deviation * deviation);
         }
         let mut sizes = Mat::from_fn(columns.len(), 1, |i, _| gram[(columns[i], residual)]);
-        Factor::of(&normal)?.solve(&mut sizes);
+        Cholesky::new(&normal)?.solve(&mut sizes);
         Some(sizes)
     }
 }

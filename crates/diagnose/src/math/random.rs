@@ -5,9 +5,9 @@ use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// A source of standard normal numbers: the same for the same seed and stream on every machine.
-pub(crate) struct Source(ChaCha8Rng);
+pub(crate) struct RandomStream(ChaCha8Rng);
 
-impl Source {
+impl RandomStream {
     pub(crate) fn new(seed: u64, stream: u64) -> Self {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());

@@ -6,8 +6,8 @@
 use faer::Mat;
 use lut::Outside;
 
-use crate::math::cholesky::Factor;
-use crate::math::random::Source;
+use crate::math::cholesky::Cholesky;
+use crate::math::random::RandomStream;
 use crate::residuals::rows::SegmentRow;
 use crate::search::system::Stacked;
 
@@ -28,7 +28,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn normal(source: &mut Source, rows: usize, width: usize) -> Self {
+    fn normal(source: &mut RandomStream, rows: usize, width: usize) -> Self {
         let mut numbers = vec![0.0; rows * width];
         source.fill(&mut numbers);
         Self { width, numbers }
@@ -58,7 +58,7 @@ struct Model {
 }
 
 impl Model {
-    fn draw(stacked: &Stacked<'_>, source: &mut Source, width: usize) -> Self {
+    fn draw(stacked: &Stacked<'_>, source: &mut RandomStream, width: usize) -> Self {
         let design = stacked.design;
         let taught = design.baseline().map(|baseline| {
             let factor = baseline.factor();
@@ -176,7 +176,7 @@ pub(crate) fn chords(stacked: &Stacked<'_>) -> Vec<[f64; 2]> {
     for i in 0..count {
         normal[(i, i)] += 1e-6 * segments.len() as f64;
     }
-    let Some(factor) = Factor::of(&normal) else { return chords };
+    let Some(factor) = Cholesky::new(&normal) else { return chords };
     factor.solve(&mut right);
     for (row, chord) in segments.iter().zip(&mut chords) {
         baseline.write_remainder(&row.response, &mut terms);
@@ -198,7 +198,7 @@ pub(crate) fn draw(
     stacked: &Stacked<'_>,
     level: Level,
     chords: &[[f64; 2]],
-    source: &mut Source,
+    source: &mut RandomStream,
     width: usize,
     mut each: impl FnMut(usize, &[Vec<f64>]),
 ) {

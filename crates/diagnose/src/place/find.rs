@@ -6,7 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::math::random::Source;
+use crate::math::bootstrap::interval_95;
+use crate::math::random::RandomStream;
 use crate::output::Slice;
 use crate::place::binned_variable::{ENGINE, Place, places};
 use crate::place::draws::{Level, chords, draw};
@@ -27,8 +28,9 @@ const MOST: usize = 3;
 const SIGNIFICANT: f64 = 0.05;
 /// Fewest flights in a place.
 const FEWEST_FLIGHTS: usize = 3;
-/// Resamples of flights.
-const RESAMPLES: usize = 1000;
+/// Streams of random numbers: draws of noise, and resamples of flights behind intervals.
+const NOISE_STREAM: u64 = 1;
+const INTERVAL_STREAM: u64 = 2;
 /// Places whose statistic is at least this share of the largest are told apart by how well a step over them fits.
 const NEARLY: f64 = 0.9;
 /// At most as many of them.
@@ -64,7 +66,7 @@ pub(crate) fn find(
     let places = places(&data.segments, stacked.design.references());
     let engines = if data.channels.contrasts > 0 { data.channels.contrasts + 1 } else { 0 };
     let search = Search::of(&places, data.segments.len(), engines);
-    let mut source = Source::new(seed, 1);
+    let mut source = RandomStream::new(seed, NOISE_STREAM);
     let level = level(stacked, analysis, noise_scale);
     let (null, variances) = null_of(stacked, &search, level, &mut source);
 
@@ -116,14 +118,14 @@ fn null_of(
     stacked: &Stacked<'_>,
     search: &Search<'_>,
     level: Level,
-    source: &mut Source,
+    source: &mut RandomStream,
 ) -> (Null, Vec<f64>) {
     let engines = stacked.data.channels.contrasts + 1;
     let chords = chords(stacked);
     let mut squares = vec![0.0; search.candidates.len()];
     let mut variances = vec![0.0; stacked.data.segments.len()];
     let mut values = vec![vec![0.0; GROUP]; search.series().len()];
-    let mut group = |source: &mut Source| {
+    let mut group = |source: &mut RandomStream| {
         let mut sums = search.sums(GROUP);
         draw(stacked, level, &chords, source, GROUP, |segment, channels| {
             values[0].copy_from_slice(&channels[0]);
@@ -418,21 +420,8 @@ impl Told<'_> {
 
 /// 95 % interval of a mean, whole flights drawn with replacement.
 fn bootstrap_mean(by_flight: &[(f64, f64)], seed: u64) -> [f64; 2] {
-    let mut source = Source::new(seed, 2);
-    let mut means: Vec<f64> = (0..RESAMPLES)
-        .map(|_| {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for _ in 0..by_flight.len() {
-                let (of_flight, segments) = by_flight[source.below(by_flight.len())];
-                sum += of_flight;
-                count += segments;
-            }
-            sum / count
-        })
-        .collect();
-    means.sort_by(f64::total_cmp);
-    let last = RESAMPLES - 1;
-    [means[last / 40], means[last - last / 40]]
+    let mut stream = RandomStream::new(seed, INTERVAL_STREAM);
+    interval_95(by_flight, &mut stream, |sum, count| sum / count)
 }
 
 #[cfg(test)]

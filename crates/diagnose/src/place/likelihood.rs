@@ -2,7 +2,7 @@
 
 use faer::Mat;
 
-use crate::math::cholesky::Factor;
+use crate::math::cholesky::Cholesky;
 use crate::place::draws::Level;
 use crate::search::system::Stacked;
 
@@ -18,7 +18,7 @@ struct OfFlight {
     /// Loadings of what is common, scaled by 1/σ²: one row a segment.
     loadings: Vec<Vec<f64>>,
     /// Of 1 + UᵀD⁻¹U.
-    inner: Option<Factor>,
+    inner: Option<Cholesky>,
 }
 
 /// A vector ready for products: C⁻¹·v needs its loadings only once.
@@ -56,7 +56,7 @@ impl<'a> Noise<'a> {
                     .zip(&weights)
                     .map(|(u, w)| u.iter().map(|u| u * w).collect())
                     .collect();
-                OfFlight { weights, loadings, inner: Factor::of(&inner) }
+                OfFlight { weights, loadings, inner: Cholesky::new(&inner) }
             })
             .collect();
         Self { flights, stacked }
@@ -77,7 +77,7 @@ impl<'a> Noise<'a> {
                     }
                 }
                 if let Some(inner) = &flight.inner {
-                    inner.half_solve(&mut sums);
+                    inner.solve_lower(&mut sums);
                 }
                 (0..rank).map(|k| sums[(k, 0)]).collect()
             })

@@ -6,18 +6,18 @@
 
 use faer::{Mat, Side};
 
+use crate::math::cholesky::solve_small_lower;
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::Data;
-use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
+use crate::signals::channels::ByChannel;
 
 /// L⁻¹·values with the segment's own Cholesky factor.
-pub(crate) fn half_whitened(row: &SegmentRow, values: &ByChannel, channels: usize) -> ByChannel {
-    let mut white = [0.0; MAXIMUM_CHANNELS];
-    for channel in 0..channels {
-        let inner: f64 = (0..channel).map(|k| row.noise.factor[channel][k] * white[k]).sum();
-        white[channel] = (values[channel] - inner) / row.noise.factor[channel][channel];
-    }
-    white
+pub(crate) fn whiten_within_segment(
+    row: &SegmentRow,
+    values: &ByChannel,
+    channels: usize,
+) -> ByChannel {
+    solve_small_lower(&row.noise.factor, values, channels)
 }
 
 /// Whitens what the segments of a flight have in common: rows ← (1 + UUᵀ)^(−1/2)·rows.
@@ -37,7 +37,7 @@ pub(crate) fn whiten_flight(
     let mut common = Mat::<f64>::zeros(matrix.nrows(), rank);
     for (index, row) in segments.iter().enumerate() {
         for (column, loading) in row.noise.common.iter().enumerate() {
-            let white = half_whitened(row, loading, channels);
+            let white = whiten_within_segment(row, loading, channels);
             for channel in 0..channels {
                 common[(index * channels + channel, column)] = white[channel];
             }

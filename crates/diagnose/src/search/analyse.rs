@@ -8,6 +8,7 @@ use crate::library::Library;
 use crate::math::eliminate::Reduced;
 use crate::math::mixture::ln_sum;
 use crate::search::refine::{Relinearised, refine};
+use crate::search::singles::{search_all, search_flight_scatter};
 use crate::search::system::{Space, Stacked};
 
 /// Models that are refined.
@@ -54,7 +55,7 @@ pub(crate) fn analyse(
     let space = Space { smoothed: smooth_out(&reduced), levels, reduced };
     let all = backgrounds(&space.smoothed, library);
     let scorer = Scorer::of(library, gram.rows);
-    let search = scorer.search(&all, 2, |at| stacked.is_nothing(at));
+    let search = search_all(&scorer, &all, 2, |at| stacked.is_nothing(at));
     let mut models = search.models;
     if library.heating_value && without.is_none() {
         for percent in HEATING_SIZES_PERCENT {
@@ -64,7 +65,7 @@ pub(crate) fn analyse(
             let relative = percent / 100.0;
             let (_, left) = stacked.level(gram, relative, None, false)?;
             let under = diagonals(&smooth_out(core::slice::from_ref(&left)), library);
-            models.extend(scorer.search_heating(&under, percent));
+            models.extend(search_flight_scatter(&scorer, &under, percent));
         }
     }
     models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));

@@ -13,7 +13,7 @@ use crate::math::eliminate::Changed;
 use crate::math::mixture::Mixture;
 use crate::residuals::rows::FlightRows;
 use crate::residuals::signatures::Difference;
-use crate::residuals::whiten::{half_whitened, whiten_flight};
+use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::search::folds::fold_of;
 use crate::search::system::{Space, Stacked};
 use crate::signals::channels::MAXIMUM_CHANNELS;
@@ -300,7 +300,7 @@ impl Fresh {
         let mut fresh = Mat::<f64>::zeros(rows, self.starts[linear.len()]);
         for (place, row) in segments.iter().enumerate() {
             let put = |fresh: &mut Mat<f64>, column: usize, values: &[f64; MAXIMUM_CHANNELS]| {
-                let white = half_whitened(row, values, channels);
+                let white = whiten_within_segment(row, values, channels);
                 for channel in 0..channels {
                     fresh[(place * channels + channel, column)] = white[channel];
                 }

@@ -1,6 +1,7 @@
 //! Outliers: whitened residuals with heavy tails weigh segments down.
 
 use crate::library::Library;
+use crate::math::quantile::{QuantileType, quantile};
 use crate::search::analyse::Analysis;
 use crate::search::system::Stacked;
 
@@ -60,7 +61,7 @@ pub(crate) fn weights(
     }
     let mut sizes: Vec<f64> = all.iter().map(|e| e.abs()).collect();
     sizes.sort_by(f64::total_cmp);
-    let scale = (MEDIAN_TO_DEVIATION * sizes[sizes.len() / 2]).max(0.3);
+    let scale = (MEDIAN_TO_DEVIATION * quantile(&sizes, 0.5, QuantileType::UpperType1)).max(0.3);
     Some(
         worst
             .into_iter()

@@ -12,80 +12,82 @@ pub(crate) struct Search {
     pub(crate) ln_clean: f64,
 }
 
-impl Scorer {
-    /// Every model of at most `largest` effects. `is_nothing` says which backgrounds without an effect are no finding.
-    pub(crate) fn search(
-        &self,
-        backgrounds: &[Background],
-        largest: usize,
-        is_nothing: impl Fn(&Background) -> bool,
-    ) -> Search {
-        let ln_background = -(backgrounds.len() as f64).ln();
-        let columns = self.priors.len();
-        let mut models = Vec::new();
-        let mut ln_clean = f64::NEG_INFINITY;
+/// Every model of at most `largest` effects. `is_nothing` says which backgrounds without an effect are no finding.
+pub(crate) fn search_all(
+    scorer: &Scorer,
+    backgrounds: &[Background],
+    largest: usize,
+    is_nothing: impl Fn(&Background) -> bool,
+) -> Search {
+    let ln_background = -(backgrounds.len() as f64).ln();
+    let columns = scorer.priors.len();
+    let mut models = Vec::new();
+    let mut ln_clean = f64::NEG_INFINITY;
 
-        let none = Model { columns: vec![], heating_percent: None };
-        let prior = self.ln_prior(&none) + ln_background;
-        let mut sum = Mixture::<0>::new();
-        let mut best = (f64::NEG_INFINITY, 0);
-        for (k, at) in backgrounds.iter().enumerate() {
-            let ln = self.none(at) + prior;
-            if is_nothing(at) {
-                ln_clean = ln_sum([ln_clean, ln]);
-            }
-            best = if ln > best.0 { (ln, k) } else { best };
-            sum.add(ln, [], []);
+    let none = Model { columns: vec![], heating_percent: None };
+    let prior = scorer.ln_prior(&none) + ln_background;
+    let mut sum = Mixture::<0>::new();
+    let mut best = (f64::NEG_INFINITY, 0);
+    for (k, at) in backgrounds.iter().enumerate() {
+        let ln = scorer.none(at) + prior;
+        if is_nothing(at) {
+            ln_clean = ln_sum([ln_clean, ln]);
         }
-        models.push(scored(none, &sum, best.1));
-
-        for column in 0..columns {
-            let model = Model { columns: vec![column], heating_percent: None };
-            let prior = self.ln_prior(&model) + ln_background;
-            models.push(over(backgrounds, model, |at| {
-                let mut evidence = self.one(at, column, 0.0);
-                evidence.ln += prior;
-                evidence
-            }));
-        }
-        if largest >= 2 {
-            let best = models.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
-            models.extend(crate::search::pairs::search(self, backgrounds, best));
-        }
-        Search { models, ln_clean }
+        best = if ln > best.0 { (ln, k) } else { best };
+        sum.add(ln, [], []);
     }
+    models.push(scored(none, &sum, best.1));
 
-    /// Models with flight-to-flight scatter: alone and with one effect.
-    pub(crate) fn search_heating(&self, backgrounds: &[Diagonal], percent: f64) -> Vec<Scored> {
-        let ln_background = -(backgrounds.len() as f64).ln();
-        let mut models = Vec::new();
-        let alone = Model { columns: vec![], heating_percent: Some(percent) };
-        let prior = self.ln_prior(&alone) + ln_background;
-        models.push(over(backgrounds, alone, |at| Evidence {
-            ln: self.nothing(at.square, at.ln_determinant) + prior,
-            sizes: [],
-            deviations: [],
+    for column in 0..columns {
+        let model = Model { columns: vec![column], heating_percent: None };
+        let prior = scorer.ln_prior(&model) + ln_background;
+        models.push(over(backgrounds, model, |at| {
+            let mut evidence = scorer.one(at, column, 0.0);
+            evidence.ln += prior;
+            evidence
         }));
-        for column in 0..self.priors.len() {
-            let model = Model { columns: vec![column], heating_percent: Some(percent) };
-            let prior = self.ln_prior(&model) + ln_background;
-            models.push(over(backgrounds, model, |at| {
-                let mut evidence = self.single(
-                    Single {
-                        gram: at.gram[column],
-                        product: at.product[column],
-                        square: at.square,
-                        ln_determinant: at.ln_determinant,
-                    },
-                    column,
-                    0.0,
-                );
-                evidence.ln += prior;
-                evidence
-            }));
-        }
-        models
     }
+    if largest >= 2 {
+        let best = models.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
+        models.extend(crate::search::pairs::search(scorer, backgrounds, best));
+    }
+    Search { models, ln_clean }
+}
+
+/// Models with flight-to-flight scatter: alone and with one effect.
+pub(crate) fn search_flight_scatter(
+    scorer: &Scorer,
+    backgrounds: &[Diagonal],
+    percent: f64,
+) -> Vec<Scored> {
+    let ln_background = -(backgrounds.len() as f64).ln();
+    let mut models = Vec::new();
+    let alone = Model { columns: vec![], heating_percent: Some(percent) };
+    let prior = scorer.ln_prior(&alone) + ln_background;
+    models.push(over(backgrounds, alone, |at| Evidence {
+        ln: scorer.nothing(at.square, at.ln_determinant) + prior,
+        sizes: [],
+        deviations: [],
+    }));
+    for column in 0..scorer.priors.len() {
+        let model = Model { columns: vec![column], heating_percent: Some(percent) };
+        let prior = scorer.ln_prior(&model) + ln_background;
+        models.push(over(backgrounds, model, |at| {
+            let mut evidence = scorer.single(
+                Single {
+                    gram: at.gram[column],
+                    product: at.product[column],
+                    square: at.square,
+                    ln_determinant: at.ln_determinant,
+                },
+                column,
+                0.0,
+            );
+            evidence.ln += prior;
+            evidence
+        }));
+    }
+    models
 }
 
 fn over<B, const K: usize>(

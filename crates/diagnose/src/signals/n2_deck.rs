@@ -46,7 +46,7 @@ impl Deck {
         for a in 0..DECK_TERMS {
             normal[(a, a)] += 1e-6 * recorded.len() as f64;
         }
-        if let Some(factor) = crate::math::cholesky::Factor::of(&normal) {
+        if let Some(factor) = crate::math::cholesky::Cholesky::new(&normal) {
             factor.solve(&mut right);
             for a in 0..DECK_TERMS {
                 deck.coefficients[a] = right[(a, 0)];

@@ -5,6 +5,7 @@ use perf_model::aircraft::{FlightBias, FuelFlowDrift, SensorDeviations};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
 
+use crate::math::cholesky::small_cholesky;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 
 /// Flight-to-flight standard deviation of the split of thrust between engines, of ln(Wf1/Wf2): 1 %.
@@ -170,7 +171,7 @@ pub(crate) fn segment_noise(
     for channel in (0..count).filter(|&channel| recorded[channel]) {
         added[channel] = by_acceleration[channel] * point.acceleration_m_s2;
     }
-    Ok(SegmentNoise { factor: cholesky(&covariance, count), common, acceleration: added })
+    Ok(SegmentNoise { factor: small_cholesky(&covariance, count), common, acceleration: added })
 }
 
 /// Slopes of the channels that a flight's common errors act through.
@@ -255,27 +256,6 @@ pub(crate) fn add_wander(
             loading
         }));
     }
-}
-
-/// Cholesky factor of a small covariance whose diagonal is positive.
-fn cholesky(
-    covariance: &[[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
-    count: usize,
-) -> [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS] {
-    let mut factor = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
-    for row in 0..count {
-        for column in 0..=row {
-            let inner: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
-            let left = covariance[row][column] - inner;
-            factor[row][column] = if row == column {
-                // Every channel has its own meter noise; the floor only guards against a sensor declared perfect.
-                left.max(1e-14).sqrt()
-            } else {
-                left / factor[column][column]
-            };
-        }
-    }
-    factor
 }
 
 #[cfg(test)]

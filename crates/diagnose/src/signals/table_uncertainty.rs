@@ -6,7 +6,7 @@ use effects::Response;
 use faer::Mat;
 use lut::{Grid, Outside};
 
-use crate::math::cholesky::Factor;
+use crate::math::cholesky::Cholesky;
 
 /// Uncertainty of a drag table: a factor of the covariance of its nodes' relative errors, one row a node.
 ///
@@ -77,7 +77,7 @@ impl TableUncertainty {
             return Err(TableUncertaintyError::Length { found, nodes, rank: nodes });
         }
         let matrix = Mat::from_fn(nodes, nodes, |row, column| covariance[row][column]);
-        let factor = Factor::of(&matrix).ok_or(TableUncertaintyError::NotPositiveDefinite)?;
+        let factor = Cholesky::new(&matrix).ok_or(TableUncertaintyError::NotPositiveDefinite)?;
         let lower = factor.lower();
         let values = (0..nodes)
             .flat_map(|row| {

@@ -4,6 +4,8 @@ use effects::{EffectPoint, EffectReferences, Response};
 use serde::{Deserialize, Serialize};
 use units::convert::RADIANS_PER_DEGREE;
 
+use crate::math::quantile::{QuantileType, quantile};
+
 /// A variable of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -188,15 +190,7 @@ impl Hats {
         }
         let mut knots: Vec<f64> = Vec::new();
         for &share in quantiles {
-            let at = share * (sorted.len() - 1) as f64;
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a share of a length"
-            )]
-            let low = at.floor() as usize;
-            let high = (low + 1).min(sorted.len() - 1);
-            let knot = sorted[low] + (at - low as f64) * (sorted[high] - sorted[low]);
+            let knot = quantile(&sorted, share, QuantileType::Type7);
             if knots.last().is_none_or(|&before| knot > before + 1e-3 * span) {
                 knots.push(knot);
             }

@@ -4,6 +4,7 @@ use effects::{EffectModel, EffectPoint, Effects};
 use units::convert::METERS_PER_FOOT;
 use units::{Mach, PressureAltitude, Temperature};
 
+use crate::math::quantile::{QuantileType, quantile};
 use crate::residuals::planned::Recorded;
 use crate::residuals::segments::Data;
 use crate::signals::variables::Variable;
@@ -97,7 +98,8 @@ impl Envelope {
         let mut envelope = Self {
             levels: levels(*pressure_altitude_m.first()?, *pressure_altitude_m.last()?),
             slowest: hundredths(mach.first()? + 1e-9, f64::floor),
-            usual: [LIGHT, 0.5, HEAVY].map(|share| hundredths(quantile(&mach, share), f64::round)),
+            usual: [LIGHT, 0.5, HEAVY]
+                .map(|share| hundredths(flown_quantile(&mach, share), f64::round)),
             fastest: hundredths(mach.last()? + 1e-9, f64::floor)
                 .min(hundredths(table.last() + 1e-9, f64::floor).saturating_sub(EDGE_MACH)),
             table_from: hundredths(table.first() - 1e-9, f64::ceil) + EDGE_MACH,
@@ -108,8 +110,8 @@ impl Envelope {
                 reason = "a number of samples"
             )]
             recorded: Recorded {
-                samples: quantile(&samples, 0.5) as usize,
-                gauge_deviation: gauged.then(|| quantile(&sorted(gauges), 0.5)),
+                samples: flown_quantile(&samples, 0.5) as usize,
+                gauge_deviation: gauged.then(|| flown_quantile(&sorted(gauges), 0.5)),
             },
             burn_kg: SEGMENT_EVERY_S * references.fuel_flow_total_kg_s,
             largest_lift_coefficient: largest(&mut rows().map(|r| r.lift_coefficient)),
@@ -122,7 +124,7 @@ impl Envelope {
             ),
             take_off_mass_kg: [*take_off_mass_kg.first()?, *take_off_mass_kg.last()?],
             mass_kg: [*mass_kg.first()?, *mass_kg.last()?],
-            isa_deviation_k: quantile(&isa_deviation_k, 0.5),
+            isa_deviation_k: flown_quantile(&isa_deviation_k, 0.5),
             template: template(data, model)?,
         };
         envelope.loadings = envelope.loadings(&mass_kg, &fuel_used_kg);
@@ -135,21 +137,21 @@ impl Envelope {
         let round = |mass_kg: f64| (mass_kg / MASS_STEP_KG).round() * MASS_STEP_KG;
         let heavy = Loading {
             name: "heavy",
-            mass_kg: round(quantile(mass_kg, HEAVY)),
-            fuel_used_kg: quantile(fuel_used_kg, LIGHT),
+            mass_kg: round(flown_quantile(mass_kg, HEAVY)),
+            fuel_used_kg: flown_quantile(fuel_used_kg, LIGHT),
         };
         let light = Loading {
             name: "light",
-            mass_kg: round(quantile(mass_kg, LIGHT) + burned_kg),
-            fuel_used_kg: (quantile(fuel_used_kg, HEAVY) - burned_kg).max(0.0),
+            mass_kg: round(flown_quantile(mass_kg, LIGHT) + burned_kg),
+            fuel_used_kg: (flown_quantile(fuel_used_kg, HEAVY) - burned_kg).max(0.0),
         };
         if light.mass_kg < heavy.mass_kg {
             return vec![heavy, light];
         }
         let usual = Loading {
             name: "of usual mass",
-            mass_kg: round(quantile(mass_kg, 0.5) + 0.5 * burned_kg),
-            fuel_used_kg: (quantile(fuel_used_kg, 0.5) - 0.5 * burned_kg).max(0.0),
+            mass_kg: round(flown_quantile(mass_kg, 0.5) + 0.5 * burned_kg),
+            fuel_used_kg: (flown_quantile(fuel_used_kg, 0.5) - 0.5 * burned_kg).max(0.0),
         };
         vec![usual]
     }
@@ -217,7 +219,7 @@ impl Envelope {
 fn template(data: &Data<'_>, model: &EffectModel<'_>) -> Option<EffectPoint> {
     let median = |value: &dyn Fn(&EffectPoint) -> Option<f64>| {
         let found: Vec<f64> = data.segments.iter().filter_map(|row| value(&row.point)).collect();
-        (2 * found.len() > data.segments.len()).then(|| quantile(&sorted(found), 0.5))
+        (2 * found.len() > data.segments.len()).then(|| flown_quantile(&sorted(found), 0.5))
     };
     let mut by_eastward_speed: Vec<(f64, &EffectPoint)> = data
         .segments
@@ -282,11 +284,9 @@ pub(crate) fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// The value below which a share of sorted values lies, the nearest one of them; NaN for none.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
-pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let last = sorted.len().saturating_sub(1) as f64;
-    sorted.get((share * last).round() as usize).copied().unwrap_or(f64::NAN)
+/// The value below which a share of sorted values lies: one that was flown; NaN for none.
+fn flown_quantile(sorted: &[f64], share: f64) -> f64 {
+    quantile(sorted, share, QuantileType::NearestToType7)
 }
 
 #[cfg(test)]
@@ -299,14 +299,5 @@ mod tests {
         assert_eq!(levels(11_887.0, 13_716.0), [390, 400, 410, 430, 450]);
         // A fleet that keeps to one level within a few feet.
         assert_eq!(levels(10_668.5, 10_671.0), [350]);
-    }
-
-    #[test]
-    fn quantiles_by_hand() {
-        let values = sorted(vec![3.0, 1.0, 2.0, 5.0, 4.0]);
-        for (share, value) in [(0.0, 1.0), (0.1, 1.0), (0.5, 3.0), (0.9, 5.0), (1.0, 5.0)] {
-            assert!((quantile(&values, share) - value).abs() < f64::EPSILON, "{share}");
-        }
-        assert!(quantile(&[], 0.5).is_nan());
     }
 }

@@ -2,12 +2,12 @@
 
 use faer::{Mat, Par};
 
-use crate::math::cholesky::Factor;
+use crate::math::cholesky::Cholesky;
 
 /// What the data at hand know of the nuisance: `LLᵀ = 1 + G_zz`, and how the nuisance imitates the columns,
 /// `T = (1 + G_zz)⁻¹ G_zk`.
 pub(crate) struct Known {
-    factor: Option<Factor>,
+    factor: Option<Cholesky>,
     imitation: Mat<f64>,
 }
 
@@ -29,7 +29,7 @@ impl Known {
         if count == 0 {
             return Some(Self { factor: None, imitation });
         }
-        let factor = Factor::of(&Mat::from_fn(count, count, |i, j| {
+        let factor = Cholesky::new(&Mat::from_fn(count, count, |i, j| {
             gram[(first + i, first + j)] + if i == j { 1.0 } else { 0.0 }
         }))?;
         factor.solve(&mut imitation);
@@ -44,7 +44,7 @@ impl Known {
         let mut reach = nuisance.transpose().to_owned();
         if let Some(factor) = &self.factor {
             columns -= nuisance * &self.imitation;
-            factor.half_solve(&mut reach);
+            factor.solve_lower(&mut reach);
         }
         FlightInformation { columns, reach }
     }
@@ -86,7 +86,7 @@ pub(crate) fn added(flights: &[(&FlightInformation, f64)]) -> Option<Mat<f64>> {
         1.0,
         Par::Seq,
     );
-    Factor::of(&covariance)?.half_solve(&mut columns);
+    Cholesky::new(&covariance)?.solve_lower(&mut columns);
     Some(columns.transpose() * &columns)
 }
 

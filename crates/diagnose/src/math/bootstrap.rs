@@ -1,0 +1,28 @@
+//! Bootstrap over groups: intervals of a ratio of two sums.
+
+use crate::math::quantile::central_95;
+use crate::math::random::RandomStream;
+
+/// Resamples behind an interval.
+const RESAMPLES: usize = 1000;
+
+/// 95 % interval of a ratio of sums over groups, groups drawn with replacement; `ratio` divides the two sums.
+pub(crate) fn interval_95(
+    groups: &[(f64, f64)],
+    stream: &mut RandomStream,
+    ratio: impl Fn(f64, f64) -> f64,
+) -> [f64; 2] {
+    let mut ratios: Vec<f64> = (0..RESAMPLES)
+        .map(|_| {
+            let (mut above, mut below) = (0.0, 0.0);
+            for _ in 0..groups.len() {
+                let (numerator, denominator) = groups[stream.below(groups.len())];
+                above += numerator;
+                below += denominator;
+            }
+            ratio(above, below)
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    central_95(&ratios)
+}
