@@ -478,8 +478,12 @@ def points_csv(path, rows):
 
 
 def predicted(run, model, points):
-    table = csv.DictReader(run("predict", "--model", model, points, text=True).splitlines())
-    return [float(row["fuel_flow_kg_s"]) if row["fuel_flow_kg_s"] else None for row in table]
+    """Fuel flow of the points: by the table alone, and by the table with what the model remembers that no table can hold."""
+    flows = {}
+    for kind, options in (("table", ["--table-only"]), ("with remainder", [])):
+        table = csv.DictReader(run("predict", "--model", model, points, *options, text=True).splitlines())
+        flows[kind] = [float(row["fuel_flow_kg_s"]) if row["fuel_flow_kg_s"] else None for row in table]
+    return flows
 
 
 def grid(run, folder):
@@ -501,15 +505,17 @@ def grid(run, folder):
                 model = run.init("grid", stepped(step), fixture / "guide.csv")
                 adapted = run.adapt("grid", model, LAWS["bayes"], reports[:count])
                 flows.append((predicted(run, model, points), predicted(run, adapted, points)))
-            (a0, a1), (b0, b1) = flows
-            x = [100 * (b / p - d / q) for p, b, q, d in zip(a0, a1, b0, b1)]
-            y = [100 * (d / b - 1) for b, d in zip(a1, b1)]
-            start = [100 * (q / p - 1) for p, q in zip(a0, b0)]
-            print(
-                f"grid {steps[0]} to {steps[1]}, {tail}, {count} taught, {len(x)} points: "
-                f"correction rms {rms(x):.3f}, largest {biggest(x):.3f} points; "
-                f"prediction rms {rms(y):.3f} %, largest {biggest(y):.3f} %; initial rms {rms(start):.3f} %, largest {biggest(start):.3f} %"
-            )
+            for kind in ("table", "with remainder"):
+                (a0, a1), (b0, b1) = [(before[kind], after[kind]) for before, after in flows]
+                x = [100 * (b / p - d / q) for p, b, q, d in zip(a0, a1, b0, b1)]
+                y = [100 * (d / b - 1) for b, d in zip(a1, b1)]
+                start = [100 * (q / p - 1) for p, q in zip(a0, b0)]
+                print(
+                    f"grid {steps[0]} to {steps[1]}, {tail}, {count} taught, {kind}, {len(x)} points: "
+                    f"correction rms {rms(x):.3f}, largest {biggest(x):.3f} points; prediction rms {rms(y):.3f} %, "
+                    f"largest {biggest(y):.3f} %; initial rms {rms(start):.3f} %, largest {biggest(start):.3f} %",
+                    flush=True,
+                )
 
 
 def rms(values):
@@ -533,7 +539,7 @@ def outliers(run, folder):
             taught = {path.stem for path in reports[:count]}
             mine = [row for row in rows if row["flight"] in taught]
             clean = predicted(run, run.adapt("clean", model, LAWS["bayes"], reports[:count]), points)
-            worst, all_rms, number = [], [], max(1, round(0.02 * len(mine)))
+            worst, all_rms, number = {}, {}, max(1, round(0.02 * len(mine)))
             for seed in range(1, 11):
                 hit = {}
                 for row in random.Random(seed).sample(mine, number):
@@ -545,14 +551,17 @@ def outliers(run, folder):
                     copy.write_text(raised(path.read_text(), hit.get(path.stem, set())))
                     spoilt.append(copy)
                 dirty = predicted(run, run.adapt("dirty", model, LAWS["bayes"], spoilt), points)
-                change = [100 * (d / c - 1) for c, d in zip(clean, dirty)]
-                worst.append(biggest(change))
-                all_rms.append(rms(change))
-            print(
-                f"outliers {tail}, {count} taught: {number} of {len(mine)} segments, {len(points.read_text().splitlines()) - 1} points, "
-                f"10 draws: rms {statistics.mean(all_rms):.3f} %, largest of a draw: median {statistics.median(worst):.3f} %, "
-                f"worst {max(worst):.3f} %; draws with all below 0.2 %: {sum(w < 0.2 for w in worst)}"
-            )
+                for kind in clean:
+                    change = [100 * (d / c - 1) for c, d in zip(clean[kind], dirty[kind])]
+                    worst.setdefault(kind, []).append(biggest(change))
+                    all_rms.setdefault(kind, []).append(rms(change))
+            for kind in clean:
+                print(
+                    f"outliers {tail}, {count} taught, {kind}: {number} of {len(mine)} segments, 10 draws: "
+                    f"rms {statistics.mean(all_rms[kind]):.3f} %, largest of a draw: median {statistics.median(worst[kind]):.3f} %, "
+                    f"worst {max(worst[kind]):.3f} %; draws with all below 0.2 %: {sum(w < 0.2 for w in worst[kind])}",
+                    flush=True,
+                )
 
 
 def raised(text, rows):
