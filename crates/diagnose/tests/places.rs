@@ -4,7 +4,6 @@
 use diagnose::{Diagnosis, FlightRecord, Input, Options, SliceError, diagnose, slice_members};
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
-use trials::places::{names_driver, worst_region_overlap};
 
 /// What the fleet recorded, as the diagnosis takes it.
 fn records(fleet: &Fleet) -> Vec<FlightRecord<'_>> {
