@@ -134,7 +134,7 @@ impl<'a> Data<'a> {
             segments: Vec::with_capacity(points.len()),
             left_out,
         };
-        let differences = Differences::of(model, &library, baseline.is_some());
+        let differences = Differences::of(model, &library, baseline);
         for (segments, gauges) in inside {
             let first = data.segments.len();
             for segment in segments {
