@@ -3,6 +3,7 @@
 use effects::{EffectModel, EffectModelError};
 use flight::effect::EffectId;
 
+use crate::advice::advisor::Advisor;
 use crate::advice::distances::{Distances, leading_columns};
 use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
@@ -13,7 +14,7 @@ use crate::judge::gap::{
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
-use crate::judge::verdict::{advisor, beside, closed, credit, verdict};
+use crate::judge::verdict::{Findings, advisor, beside, closed, credit, verdict};
 use crate::library::Library;
 use crate::output::addition::Addition;
 use crate::output::{Detectable, Diagnosis, NotTestable, OutsideLibrary};
@@ -22,7 +23,7 @@ use crate::residuals::reference::Against;
 use crate::residuals::segments::Data;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::outside::compete;
-use crate::search::system::Stacked;
+use crate::search::system::{Problem, Stacked};
 use crate::signals::references::{DiagnoseError, references_of};
 
 /// Diagnoses one set of flights.
@@ -77,13 +78,21 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     if input.references.is_none() && input.baseline.is_none() {
         notes.push("references of effects are the means of these flights".to_owned());
     }
-    let mut result = conclude(&stacked, &model, &library, options, &mut notes)?;
+    let mut result = conclude(
+        Problem { stacked: &stacked, model: &model, library: &library },
+        options,
+        &mut notes,
+    )?;
     // Heavy tails show only beside the best model; then everything is done again with weights.
     if let Some(weights) = crate::search::robust::weights(&stacked, &result.1, &library) {
         notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
         drop(result);
         let stacked = Stacked::of(&data, &design, Some(weights));
-        result = conclude(&stacked, &model, &library, options, &mut notes)?;
+        result = conclude(
+            Problem { stacked: &stacked, model: &model, library: &library },
+            options,
+            &mut notes,
+        )?;
     }
     let mut diagnosis = result.0;
     diagnosis.not_testable = not_testable;
@@ -93,13 +102,12 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
 }
 
 fn conclude(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &Library,
+    problem: Problem<'_>,
     options: &Options,
     notes: &mut Vec<String>,
 ) -> Result<(Diagnosis, Analysis), DiagnoseError> {
-    let analysis = analyse(stacked, model, library, None, true).ok_or(DiagnoseError::Degenerate)?;
+    let Problem { stacked, model, library } = problem;
+    let analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
     let mut outside = compete(stacked, &analysis, library);
     let gram = stacked.gram(None);
     let leading = leading_columns(library, &analysis.models);
@@ -108,12 +116,10 @@ fn conclude(
     let best = &analysis.models[0].0;
     let scale = noise_scale(&analysis, best, gram.rows);
     let posteriors = dominant(stacked, &analysis, library);
-    let own =
-        in_sample(stacked, model, library, &best.model.columns, &best.sizes, scale, options.seed);
+    let own = in_sample(problem, &best.model.columns, &best.sizes, scale, options.seed);
     let mut gap = gap_of(stacked, &analysis, &own, scale);
     let real = is_real(&analysis, &outside) || exceeds_uncertainty(&gap, unknown_square(stacked));
-    let unseen = (!options.skip_closure && real)
-        .then(|| nested(stacked, model, library, scale, options.seed));
+    let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
     // What a taught remainder leaves need not be noise; but a name that makes other flights worse is none.
     let makes_worse = stacked.data.predictor.baseline.is_some()
         && unseen.as_ref().and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0);
@@ -131,45 +137,28 @@ fn conclude(
     };
     let found_outside = outside.probability;
     let top = posteriors.first();
+    let is_scatter = top.is_some_and(|top| top.effect.is_none());
     outside.probability *= 1.0
         - credit(
             beside(&outside, &distances, library, top),
-            top.is_some_and(|top| top.effect.is_none()),
-            closed(unseen.as_ref(), &own),
+            closed(unseen.as_ref(), &own).filter(|_| !is_scatter),
         );
     let classes = distances.classes(library);
-    let advisor = advisor(stacked, model, library, &distances, &classes, &posteriors, gap.detected);
-    let verdict = verdict(
-        &analysis,
-        &outside,
-        found_outside,
-        &distances,
-        &advisor,
+    let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
+    let findings = Findings {
+        analysis: &analysis,
         library,
-        &posteriors,
-        &own,
-        unseen.as_ref(),
-        gap.detected,
-        notes,
-    );
+        distances: &distances,
+        advisor: &advisor,
+        outside: &outside,
+        smooth_term: found_outside,
+        posteriors: if gap.detected { &posteriors } else { &[] },
+        own: &own,
+        unseen: unseen.as_ref(),
+    };
+    let verdict = verdict(&findings, notes);
     let causes = causes(&analysis, &outside, &distances, library, &posteriors, unseen.as_ref());
-    let name = |effect: usize| library.effects[effect].id.to_string();
-    let detectable = (0..library.effects.len())
-        .map(|effect| {
-            let smallest = distances.smallest_detectable(effect);
-            let class = classes.iter().find(|class| class.contains(&effect));
-            Detectable {
-                effect: name(effect),
-                smallest: smallest.is_finite().then_some(smallest),
-                unit: library.effects[effect].id.entry().unit.to_owned(),
-                class: class
-                    .map_or_else(Vec::new, |class| class.iter().map(|&e| name(e)).collect()),
-                nearest_other: distances.nearest_other(library, effect),
-                nearest_pair: distances.nearest_pair(library, effect),
-                separations: class.map_or_else(Vec::new, |class| advisor.beforehand(effect, class)),
-            }
-        })
-        .collect();
+    let detectable = detectable(library, &distances, &classes, &advisor);
     let diagnosis = Diagnosis {
         tail: String::new(),
         flights: stacked.data.flights.len(),
@@ -191,6 +180,32 @@ fn conclude(
         notes: vec![],
     };
     Ok((diagnosis, analysis))
+}
+
+/// Of every effect the size that would just be seen, what it cannot be told from, and what would tell it.
+fn detectable(
+    library: &Library,
+    distances: &Distances,
+    classes: &[Vec<usize>],
+    advisor: &Advisor<'_>,
+) -> Vec<Detectable> {
+    let name = |effect: usize| library.effects[effect].id.to_string();
+    (0..library.effects.len())
+        .map(|effect| {
+            let smallest = distances.smallest_detectable(effect);
+            let class = classes.iter().find(|class| class.contains(&effect));
+            Detectable {
+                effect: name(effect),
+                smallest: smallest.is_finite().then_some(smallest),
+                unit: library.effects[effect].id.entry().unit.to_owned(),
+                class: class
+                    .map_or_else(Vec::new, |class| class.iter().map(|&e| name(e)).collect()),
+                nearest_other: distances.nearest_other(library, effect),
+                nearest_pair: distances.nearest_pair(library, effect),
+                separations: class.map_or_else(Vec::new, |class| advisor.beforehand(effect, class)),
+            }
+        })
+        .collect()
 }
 
 const fn acts_words(acts: Acts) -> &'static str {

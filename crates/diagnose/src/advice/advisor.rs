@@ -1,12 +1,10 @@
 //! What would tell confused effects apart: measurements and flights on purpose, in one list by the distance they put.
 
-use effects::EffectModel;
-
 use crate::advice::distances::{CONFUSED, Distances};
 use crate::advice::flights::Conditions;
 use crate::library::Library;
 use crate::output::Separation;
-use crate::search::system::Stacked;
+use crate::search::system::Problem;
 
 /// Everything that advice is made of.
 pub(crate) struct Advisor<'a> {
@@ -18,15 +16,14 @@ pub(crate) struct Advisor<'a> {
 impl<'a> Advisor<'a> {
     /// For the columns of a verdict, the effects that may be in its class, and those confused at typical sizes. Flights are
     /// only looked at for these.
-    pub(crate) fn of(
-        stacked: &Stacked<'_>,
-        model: &EffectModel<'_>,
-        library: &'a Library,
+    pub(crate) fn new(
+        problem: Problem<'a>,
         distances: &'a Distances,
         classes: &[Vec<usize>],
         found: &[usize],
         likely: &[usize],
     ) -> Self {
+        let Problem { stacked, model, library } = problem;
         let confused = classes.iter().filter(|class| class.len() > 1).flatten();
         let columns = confused
             .chain(likely)

@@ -7,7 +7,7 @@ use crate::baseline::Baseline;
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::Data;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
-use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
+use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::{Hats, Scaled, Variable};
@@ -264,7 +264,6 @@ impl<'a> Design<'a> {
         matrix
     }
 
-    #[expect(clippy::too_many_lines, reason = "one block for each kind of column, in their order")]
     fn write_segment(
         &self,
         data: &Data<'_>,
@@ -273,116 +272,105 @@ impl<'a> Design<'a> {
         matrix: &mut Mat<f64>,
         scratch: &mut [f64],
     ) {
-        let channels = data.channels.count();
-        let put = |matrix: &mut Mat<f64>, column: usize, values: &ByChannel| {
-            let white = whiten_within_segment(row, values, channels);
-            for channel in 0..channels {
-                matrix[(first + channel, column)] = white[channel];
-            }
-        };
+        let mut rows = RowsOfSegment::new(data, row, first, matrix);
         for (column, signature) in row.signatures.iter().enumerate() {
-            put(matrix, column, signature);
+            rows.put(column, signature);
         }
-        let mut on_fuel = [0.0; MAXIMUM_CHANNELS];
-        on_fuel[0] = 1.0;
-        let mut on_thrust = on_fuel;
-        on_thrust[0] = row.drag_over_thrust;
-        if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
-            on_thrust[data.channels.n2_row()] = row.n2_slope * row.drag_over_thrust;
-        }
-        let fuel = whiten_within_segment(row, &on_fuel, channels);
-        let thrust = whiten_within_segment(row, &on_thrust, channels);
-        let scaled = |matrix: &mut Mat<f64>, column: usize, unit: &ByChannel, by: f64| {
-            for channel in 0..channels {
-                matrix[(first + channel, column)] = unit[channel] * by;
-            }
-        };
+        self.write_nuisance(&mut rows, scratch);
+        rows.put(self.columns - 1, &row.residual);
+        self.write_smooth_columns(&mut rows, scratch);
+    }
 
-        let mut at = self.nuisance.start;
+    /// Columns of what is uncertain about the model, in the order of [`Nuisance`].
+    fn write_nuisance(&self, rows: &mut RowsOfSegment<'_>, scratch: &mut [f64]) {
+        let (row, channels) = (rows.row, rows.channels);
         let parts = &self.nuisance_parts;
+        let mut at = self.nuisance.start;
         if let Some(baseline) = parts.baseline {
             let terms = &mut scratch[..baseline.remainder_terms()];
             baseline.write_remainder(&row.response, terms);
             for value in &*terms {
-                scaled(matrix, at, &fuel, *value);
+                rows.put_fuel_flow(at, *value);
                 at += 1;
             }
             for contrast in 1..=baseline.contrasts() {
                 let mut values = [0.0; MAXIMUM_CHANNELS];
-                if contrast <= data.channels.contrasts && row.is_recorded[contrast] {
+                if contrast <= channels.contrasts && row.is_recorded[contrast] {
                     values[contrast] = 1.0;
                 }
-                put(matrix, at, &values);
+                rows.put(at, &values);
                 at += 1;
             }
         }
-        let deck_columns = if parts.baseline.is_some() || parts.deck { DECK_TERMS } else { 0 };
-        if deck_columns > 0 {
+        if parts.baseline.is_some() || parts.deck {
             for term in row.deck {
                 let mut values = [0.0; MAXIMUM_CHANNELS];
-                if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
-                    values[data.channels.n2_row()] = term;
+                if channels.n2 && row.is_recorded[channels.n2_row()] {
+                    values[channels.n2_row()] = term;
                 }
-                put(matrix, at, &values);
+                rows.put(at, &values);
                 at += 1;
             }
         }
         if parts.baseline.is_some() {
             for slope in &row.environment {
-                put(matrix, at, slope);
+                rows.put(at, slope);
                 at += 1;
             }
         }
         if parts.chords {
             for chord in row.chords {
-                scaled(matrix, at, &thrust, chord);
+                rows.put_thrust(at, chord);
                 at += 1;
             }
         }
-        put(matrix, at, &row.noise.acceleration.map(|value| value * parts.acceleration));
+        rows.put(at, &row.noise.acceleration.map(|value| value * parts.acceleration));
         at += 1;
         if let Some(table) = parts.table {
             let loadings = &mut scratch[..table.rank()];
             table.write(&row.response, loadings);
             for loading in &*loadings {
-                scaled(matrix, at, &thrust, *loading);
+                rows.put_thrust(at, *loading);
                 at += 1;
             }
         }
         debug_assert_eq!(at, self.nuisance.end);
-        put(matrix, self.columns - 1, &row.residual);
+    }
 
-        let once = self.smooth.len() / if data.channels.n2 { 2 } else { 1 };
+    /// Columns of the smooth background and of functions of one variable.
+    fn write_smooth_columns(&self, rows: &mut RowsOfSegment<'_>, scratch: &mut [f64]) {
+        let (row, channels) = (rows.row, rows.channels);
+        let once = self.smooth.len() / if channels.n2 { 2 } else { 1 };
         if once > 0 {
             self.write_smooth(row, &mut scratch[..once]);
         }
         for (k, value) in scratch[..once].iter().enumerate() {
-            scaled(matrix, self.smooth.start + k, &fuel, *value);
-            if data.channels.n2 {
-                scaled(matrix, self.smooth.start + once + k, &thrust, *value);
+            rows.put_fuel_flow(self.smooth.start + k, *value);
+            if channels.n2 {
+                rows.put_thrust(self.smooth.start + once + k, *value);
             }
         }
         for block in &self.blocks {
-            match (&block.hats, block.acts) {
-                (Some(hats), acts) => {
-                    let value = block
-                        .variable
-                        .value(&row.point, &row.response, &self.references)
-                        .unwrap_or(0.0);
-                    hats.write(value, &mut scratch[..hats.len()]);
-                    let unit = if acts == Acts::Thrust { &thrust } else { &fuel };
-                    for (k, value) in scratch[..hats.len()].iter().enumerate() {
-                        scaled(matrix, block.columns.start + k, unit, *value);
+            if let Some(hats) = &block.hats {
+                let value = block
+                    .variable
+                    .value(&row.point, &row.response, &self.references)
+                    .unwrap_or(0.0);
+                hats.write(value, &mut scratch[..hats.len()]);
+                for (k, value) in scratch[..hats.len()].iter().enumerate() {
+                    if block.acts == Acts::Thrust {
+                        rows.put_thrust(block.columns.start + k, *value);
+                    } else {
+                        rows.put_fuel_flow(block.columns.start + k, *value);
                     }
                 }
-                (None, _) => {
-                    for (k, column) in block.columns.clone().enumerate() {
-                        let mut values = [0.0; MAXIMUM_CHANNELS];
-                        if row.is_recorded[1 + k] {
-                            values[1 + k] = SPLIT_SCALE;
-                        }
-                        put(matrix, column, &values);
+            } else {
+                for (k, column) in block.columns.clone().enumerate() {
+                    let mut values = [0.0; MAXIMUM_CHANNELS];
+                    if row.is_recorded[1 + k] {
+                        values[1 + k] = SPLIT_SCALE;
                     }
+                    rows.put(column, &values);
                 }
             }
         }
@@ -452,6 +440,54 @@ impl<'a> Design<'a> {
                     matrix[(row, column)] *= DECK_DEVIATION;
                 }
             }
+        }
+    }
+}
+
+/// The rows of one segment in a matrix, one row per channel, whitened by the segment's own noise.
+struct RowsOfSegment<'a> {
+    row: &'a SegmentRow,
+    channels: Channels,
+    first: usize,
+    matrix: &'a mut Mat<f64>,
+    /// Whitened: a change of fuel flow alone, and of thrust, which N2 sees too.
+    fuel_flow: ByChannel,
+    thrust: ByChannel,
+}
+
+impl<'a> RowsOfSegment<'a> {
+    fn new(data: &Data<'_>, row: &'a SegmentRow, first: usize, matrix: &'a mut Mat<f64>) -> Self {
+        let channels = data.channels;
+        let mut on_fuel = [0.0; MAXIMUM_CHANNELS];
+        on_fuel[0] = 1.0;
+        let mut on_thrust = on_fuel;
+        on_thrust[0] = row.drag_over_thrust;
+        if channels.n2 && row.is_recorded[channels.n2_row()] {
+            on_thrust[channels.n2_row()] = row.n2_slope * row.drag_over_thrust;
+        }
+        let fuel_flow = whiten_within_segment(row, &on_fuel, channels.count());
+        let thrust = whiten_within_segment(row, &on_thrust, channels.count());
+        Self { row, channels, first, matrix, fuel_flow, thrust }
+    }
+
+    fn put(&mut self, column: usize, values: &ByChannel) {
+        let white = whiten_within_segment(self.row, values, self.channels.count());
+        self.put_white(column, &white, 1.0);
+    }
+
+    fn put_fuel_flow(&mut self, column: usize, by: f64) {
+        let unit = self.fuel_flow;
+        self.put_white(column, &unit, by);
+    }
+
+    fn put_thrust(&mut self, column: usize, by: f64) {
+        let unit = self.thrust;
+        self.put_white(column, &unit, by);
+    }
+
+    fn put_white(&mut self, column: usize, white: &ByChannel, by: f64) {
+        for (channel, value) in white.iter().enumerate().take(self.channels.count()) {
+            self.matrix[(self.first + channel, column)] = value * by;
         }
     }
 }

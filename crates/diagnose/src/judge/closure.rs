@@ -1,16 +1,13 @@
 //! How far the gap shrinks: choice and fit on four fifths of the flights, judged on the rest.
 
-use effects::EffectModel;
-
 use crate::judge::thresholds::{CLEAN_PROBABILITY, SMALLEST_GAP};
-use crate::library::Library;
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::folds::FOLDS;
 use crate::search::folds::fold_of;
 use crate::search::refine::{effects_of, refine};
-use crate::search::system::Stacked;
+use crate::search::system::Problem;
 
 /// Stream of random numbers behind the interval of closure.
 const CLOSURE_STREAM: u64 = 3;
@@ -73,58 +70,43 @@ impl Shrinkage {
 
 /// Before and after with a model that is given: not judged on unseen flights.
 pub(crate) fn in_sample(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &Library,
+    problem: Problem<'_>,
     columns: &[usize],
     sizes: &[f64],
     noise_scale: f64,
     seed: u64,
 ) -> Shrinkage {
-    shrinkage(stacked, model, library, noise_scale, seed, |_| (columns.to_vec(), sizes.to_vec()))
+    shrinkage(problem, noise_scale, seed, |_| (columns.to_vec(), sizes.to_vec()))
 }
 
 /// Before and after on flights that neither choice nor fit has seen.
-pub(crate) fn nested(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &Library,
-    noise_scale: f64,
-    seed: u64,
-) -> Shrinkage {
+pub(crate) fn nested(problem: Problem<'_>, noise_scale: f64, seed: u64) -> Shrinkage {
     let choices: Vec<(Vec<usize>, Vec<f64>)> =
-        (0..FOLDS).map(|fold| chosen(stacked, model, library, fold).unwrap_or_default()).collect();
-    shrinkage(stacked, model, library, noise_scale, seed, |fold| choices[fold].clone())
+        (0..FOLDS).map(|fold| chosen(problem, fold).unwrap_or_default()).collect();
+    shrinkage(problem, noise_scale, seed, |fold| choices[fold].clone())
 }
 
-fn chosen(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &Library,
-    fold: usize,
-) -> Option<(Vec<usize>, Vec<f64>)> {
-    let Analysis { scorer, backgrounds, space, models, clean, .. } =
-        analyse(stacked, model, library, Some(fold), false)?;
+fn chosen(problem: Problem<'_>, fold: usize) -> Option<(Vec<usize>, Vec<f64>)> {
+    let Analysis { scorer, backgrounds, space, models, clean, .. } = analyse(problem, Some(fold))?;
     // The verdict's own rule: where nothing at all is improbable, the best named set, be it no more probable than none.
     let named = models.iter().map(|(scored, _)| scored).find(|s| !s.model.columns.is_empty());
     let Some(best) = named.filter(|_| clean <= CLEAN_PROBABILITY) else {
         return Some((vec![], vec![]));
     };
     let at = &backgrounds[best.background];
-    let mut found = refine(stacked, model, library, &scorer, &space, &[(best, at)], Some(fold));
+    let mut found = refine(problem, &scorer, &space, &[(best, at)], Some(fold));
     let found = found.pop().flatten();
     let sizes = found.map_or_else(|| best.sizes.clone(), |found| found.scored.sizes);
     Some((best.model.columns.clone(), sizes))
 }
 
 fn shrinkage(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &Library,
+    problem: Problem<'_>,
     noise_scale: f64,
     seed: u64,
     choice: impl Fn(usize) -> (Vec<usize>, Vec<f64>),
 ) -> Shrinkage {
+    let Problem { stacked, model, library } = problem;
     let data = stacked.data;
     let mut found = Shrinkage {
         before: vec![],

@@ -2,8 +2,6 @@
 
 use core::fmt::Write as _;
 
-use effects::EffectModel;
-
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
@@ -13,7 +11,7 @@ use crate::library::Library;
 use crate::output::{Separation, Verdict, VerdictKind};
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
-use crate::search::system::Stacked;
+use crate::search::system::Problem;
 
 /// Shares of the explainable gap between which a named set that an agnostic function improves upon passes from "something
 /// else" to "this effect in another form". Their middle, nine tenths, is where the verdict turns.
@@ -36,9 +34,9 @@ pub(crate) fn closed(unseen: Option<&Shrinkage>, own: &Shrinkage) -> Option<(f64
 ///   that hold a function, as long as the effect surely makes unseen flights better, where that can be measured. Real
 ///   gaps have many causes, and the largest has a name though the rest has none.
 ///
-/// Scatter between flights closes nothing: only the second counts for it.
-pub(crate) fn credit(beside: f64, is_scatter: bool, closed: Option<(f64, [f64; 2])>) -> f64 {
-    let Some((share, [least, _])) = closed.filter(|_| !is_scatter) else { return beside };
+/// Scatter between flights closes nothing: it comes without a share `closed`, and only the second counts for it.
+pub(crate) fn credit(beside: f64, closed: Option<(f64, [f64; 2])>) -> f64 {
+    let Some((share, [least, _])) = closed else { return beside };
     let [none, all] = OTHER_FORM;
     let form = ((share - none) / (all - none)).clamp(0.0, 1.0);
     if least > 0.0 { form.max(beside) } else { form }
@@ -62,20 +60,25 @@ pub(crate) fn beside(
     found.min(1.0)
 }
 
-#[expect(clippy::too_many_arguments, reason = "the verdict reads all that was found")]
-pub(crate) fn verdict(
-    analysis: &Analysis,
-    outside: &Outside,
-    agnostic: f64,
-    distances: &Distances,
-    advisor: &Advisor<'_>,
-    library: &Library,
-    posteriors: &[Posterior],
-    own: &Shrinkage,
-    unseen: Option<&Shrinkage>,
-    detected: bool,
-    notes: &mut Vec<String>,
-) -> Verdict {
+/// All that the verdict reads.
+pub(crate) struct Findings<'a> {
+    pub(crate) analysis: &'a Analysis,
+    pub(crate) library: &'a Library,
+    pub(crate) distances: &'a Distances,
+    pub(crate) advisor: &'a Advisor<'a>,
+    pub(crate) outside: &'a Outside,
+    /// Probability that a smooth term is needed, before any of it is credited to the leading effect.
+    pub(crate) smooth_term: f64,
+    /// Causes, the most probable first; none where there is no gap.
+    pub(crate) posteriors: &'a [Posterior],
+    pub(crate) own: &'a Shrinkage,
+    pub(crate) unseen: Option<&'a Shrinkage>,
+}
+
+/// The verdict; what else it would say goes to `notes`.
+pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<String>) -> Verdict {
+    let &Findings { analysis, library, distances, advisor, outside, smooth_term, .. } = findings;
+    let &Findings { posteriors, own, unseen, .. } = findings;
     let closure = unseen.and_then(Shrinkage::closure);
     let mut verdict = Verdict {
         kind: VerdictKind::NoGap,
@@ -87,7 +90,7 @@ pub(crate) fn verdict(
         advice: String::new(),
         separations: vec![],
     };
-    let Some(top) = posteriors.first().filter(|_| detected) else {
+    let Some(top) = posteriors.first() else {
         verdict.closure = None;
         verdict.closure_ci95 = None;
         "Nothing beyond the noise. `detectable` says how large each effect would have to be."
@@ -97,7 +100,8 @@ pub(crate) fn verdict(
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let variable = outside.variable.map_or("no variable", |(variable, _)| variable.words());
     let closed = closed(unseen, own);
-    if outside.probability > OUTSIDE_PROBABILITY || (agnostic > OUTSIDE_PROBABILITY && named < 0.5)
+    if outside.probability > OUTSIDE_PROBABILITY
+        || (smooth_term > OUTSIDE_PROBABILITY && named < 0.5)
     {
         verdict.kind = VerdictKind::OutsideLibrary;
         verdict.probability = outside.probability.max(1.0 - named);
@@ -125,7 +129,7 @@ pub(crate) fn verdict(
         }
     }
     verdict.separations = separations(advisor, library, top, &verdict.class);
-    let rest = (agnostic > OUTSIDE_PROBABILITY).then(|| Rest {
+    let rest = (smooth_term > OUTSIDE_PROBABILITY).then(|| Rest {
         variable,
         is_form: closed
             .is_none_or(|(share, _)| share >= f64::midpoint(OTHER_FORM[0], OTHER_FORM[1])),
@@ -184,14 +188,13 @@ fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String
 
 /// Who is asked for advice: about the leading effect of every probable cause, and what could be taken for it.
 pub(crate) fn advisor<'a>(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &'a Library,
+    problem: Problem<'a>,
     distances: &'a Distances,
     classes: &[Vec<usize>],
     posteriors: &[Posterior],
     detected: bool,
 ) -> Advisor<'a> {
+    let library = problem.library;
     let top = posteriors.first().filter(|_| detected);
     let found: Vec<usize> =
         top.and_then(Posterior::column_and_size).map(|(column, _)| column).into_iter().collect();
@@ -200,7 +203,7 @@ pub(crate) fn advisor<'a>(
         likely.extend(credible(posteriors).filter_map(|posterior| posterior.effect));
         likely.extend(class);
     }
-    Advisor::of(stacked, model, library, distances, classes, &found, &likely)
+    Advisor::new(problem, distances, classes, &found, &likely)
 }
 
 fn separations(

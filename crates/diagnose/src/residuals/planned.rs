@@ -35,7 +35,7 @@ impl Data<'_> {
         let against = Against::taught_or_table(self.predictor.baseline);
         let statistics = against.statistics(model);
         let samples: Vec<u32> = (0..u32::try_from(recorded.samples).ok()?).collect();
-        let differences = Differences::of(model, library, self.predictor.baseline.is_some());
+        let differences = Differences::of(model, library, self.predictor.baseline);
         let mut segments = Vec::with_capacity(points.len());
         for &point in points {
             let (known, response) = model.known_point(&point).ok()?;

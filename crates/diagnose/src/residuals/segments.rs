@@ -5,9 +5,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use effects::{
-    AppliedEffects, EffectModel, EffectPoint, Effects, KnownPoint, Response, StepTarget,
-};
+use effects::{AppliedEffects, EffectModel, EffectPoint, KnownPoint, Response, StepTarget};
 use flight::SegmentMeans;
 use flight::effect::EffectId;
 use perf_model::variance::mean_acceleration_deviation_m_s2;
@@ -25,7 +23,7 @@ use crate::signals::channels::{
     ByChannel, Channels, MAXIMUM_CHANNELS, has_n2, mean_n2_percent, recorded_channels,
 };
 use crate::signals::n2_deck::Deck;
-use crate::signals::noise::{HEATING_LOADING, SegmentNoise, Statistics, add_wander, segment_noise};
+use crate::signals::noise::{HEATING_LOADING, NoiseModel, SegmentNoise, Statistics, add_wander};
 use crate::signals::record::FlightRecord;
 use crate::signals::record::GaugeBurn;
 
@@ -133,7 +131,7 @@ impl<'a> Data<'a> {
             segments: Vec::with_capacity(points.len()),
             left_out,
         };
-        let differences = Differences::of(model, &library, baseline.is_some());
+        let differences = Differences::of(model, &library, baseline);
         for (segments, gauges) in inside {
             let first = data.segments.len();
             for segment in segments {
@@ -173,17 +171,8 @@ impl<'a> Data<'a> {
                 residual[channel] = recorded[channel] - predicted[channel];
             }
         }
-        let mut noise = segment_noise(
-            model,
-            &kept.point,
-            &Effects::none(),
-            kept.rows,
-            0.0,
-            is_recorded,
-            channels,
-            statistics,
-            &predict,
-        )?;
+        let noise_model = NoiseModel { model, channels, statistics, predict: &predict };
+        let mut noise = noise_model.segment_noise(&kept.point, kept.rows.len(), is_recorded)?;
         // Scatter between flights that the model contains is no gap: it adds to what a flight has in common.
         let scatter = model.applied().map_or(0.0, AppliedEffects::fuel_heating_value_deviation);
         if let Some(heating) = noise.common.get_mut(HEATING_LOADING) {
@@ -196,7 +185,7 @@ impl<'a> Data<'a> {
             environment: [[0.0; MAXIMUM_CHANNELS]; ENVIRONMENT.len()],
             is_recorded,
             residual,
-            signatures: Vec::with_capacity(library.columns.len()),
+            signatures: vec![],
             noise,
             deck: deck.terms(&kept.response),
             n2_slope: if channels.n2 { deck.slope(&kept.response) } else { 0.0 },
@@ -223,17 +212,30 @@ impl<'a> Data<'a> {
                 }
             }
         }
+        row.signatures = self.signatures(model, &row, library, differences);
+        Ok(row)
+    }
+
+    /// Signatures of every column of the library at a segment.
+    fn signatures(
+        &self,
+        model: &EffectModel<'_>,
+        row: &SegmentRow,
+        library: &Library,
+        differences: &Differences,
+    ) -> Vec<ByChannel> {
+        let mut signatures = Vec::with_capacity(library.columns.len());
         // A step is the same whenever it began, and nothing before.
         let mut steps: BTreeMap<StepTarget, ByChannel> = BTreeMap::new();
         for (column, difference) in library.columns.iter().zip(&differences.columns) {
             let effect = &library.effects[column.effect];
             let is_step = effect.id == EffectId::StepChange;
             if is_step && row.point.date_s < column.hidden.step_from_s {
-                row.signatures.push([0.0; MAXIMUM_CHANNELS]);
+                signatures.push([0.0; MAXIMUM_CHANNELS]);
                 continue;
             }
             if let Some(known) = steps.get(&column.hidden.step_target).filter(|_| is_step) {
-                row.signatures.push(*known);
+                signatures.push(*known);
                 continue;
             }
             let found = difference.signature(model, &row.known, row.is_recorded, &self.predictor);
@@ -242,9 +244,9 @@ impl<'a> Data<'a> {
             if is_step {
                 steps.insert(column.hidden.step_target, found);
             }
-            row.signatures.push(found);
+            signatures.push(found);
         }
-        Ok(row)
+        signatures
     }
 
     /// Where N2 is recorded but stands for no thrust near the predicted one: how often.

@@ -3,6 +3,7 @@
 use effects::{EffectModel, Effects, HiddenParameters, KnownPoint, Trial};
 use flight::effect::EffectId;
 
+use crate::baseline::Baseline;
 use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::library::Library;
 use crate::residuals::predictor::Predictor;
@@ -56,7 +57,11 @@ pub(crate) struct Differences {
 }
 
 impl Differences {
-    pub(crate) fn of(model: &EffectModel<'_>, library: &Library, has_baseline: bool) -> Self {
+    pub(crate) fn of(
+        model: &EffectModel<'_>,
+        library: &Library,
+        baseline: Option<&Baseline>,
+    ) -> Self {
         let none = Effects::none();
         let columns = library
             .columns
@@ -68,7 +73,7 @@ impl Differences {
             })
             .collect();
         // Only where there is a baseline to carry them, or one to be taught (then there is no library).
-        let carries = has_baseline || library.columns.is_empty();
+        let carries = baseline.is_some() || library.columns.is_empty();
         let environment = ENVIRONMENT
             .iter()
             .filter(|_| carries)

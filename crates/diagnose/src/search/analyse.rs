@@ -1,15 +1,13 @@
 //! One search, the leading models refined: the posterior that the verdict reads.
 
-use effects::EffectModel;
-
-use crate::hypotheses::backgrounds::{Background, backgrounds, diagonals, smoothed};
+use crate::hypotheses::backgrounds::{Background, Smoothed, backgrounds, diagonals, smoothed};
 use crate::hypotheses::evidence::{HEATING_SIZES_PERCENT, Scored, Scorer};
-use crate::library::Library;
 use crate::math::eliminate::Reduced;
+use crate::math::gram::Gram;
 use crate::math::mixture::ln_sum;
 use crate::search::refine::{Relinearised, refine};
 use crate::search::singles::{search_all, search_flight_scatter};
-use crate::search::system::{Space, Stacked};
+use crate::search::system::{Problem, SmoothTerms, Space};
 
 /// Models that are refined.
 const REFINED: usize = 5;
@@ -31,69 +29,35 @@ pub(crate) struct Analysis {
     pub(crate) clean: f64,
 }
 
-/// Searches. `without` leaves a fold of flights out; `refining` says whether the leading models are refined.
-pub(crate) fn analyse(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &Library,
-    without: Option<usize>,
-    refining: bool,
-) -> Option<Analysis> {
-    let design = stacked.design;
+/// Searches. `without` leaves a fold of flights out, and then no model is refined.
+pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<Analysis> {
+    let Problem { stacked, library, .. } = problem;
     let gram = stacked.gram(without);
+    let smooth_terms = if without.is_none() { SmoothTerms::Kept } else { SmoothTerms::LeftOut };
     let mut levels = Vec::with_capacity(stacked.scatters.len());
     let mut reduced = Vec::with_capacity(stacked.scatters.len());
     for &relative in &stacked.scatters {
-        let (level, left) = stacked.level(gram, relative, without, refining)?;
+        let (level, left) = stacked.level(gram, relative, without, smooth_terms)?;
         levels.push(level);
         reduced.push(left);
     }
-    let effects = library.columns.len();
-    let smooth_out = |reduced: &[Reduced]| {
-        smoothed(reduced, effects, design.smooth.len(), |tau| stacked.admits(tau))
-    };
-    let space = Space { smoothed: smooth_out(&reduced), levels, reduced };
+    let space = Space { smoothed: smooth_out(problem, &reduced), levels, reduced };
     let all = backgrounds(&space.smoothed, library);
     let scorer = Scorer::of(library, gram.rows);
     let search = search_all(&scorer, &all, 2, |at| stacked.is_nothing(at));
     let mut models = search.models;
-    if library.heating_value && without.is_none() {
-        for percent in HEATING_SIZES_PERCENT {
-            if stacked.scatters.iter().any(|&scatter| scatter >= percent / 100.0) {
-                continue; // part of the noise already
-            }
-            let relative = percent / 100.0;
-            let (_, left) = stacked.level(gram, relative, None, false)?;
-            let under = diagonals(&smooth_out(core::slice::from_ref(&left)), library);
-            models.extend(search_flight_scatter(&scorer, &under, percent));
-        }
+    if without.is_none() {
+        models.extend(with_flight_scatter(problem, gram, &scorer)?);
     }
     models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
     let mut refined = Vec::new();
-    if refining {
-        let total = ln_sum(models.iter().map(|m| m.ln_weight));
-        let leading: Vec<usize> = (0..models.len())
-            .filter(|&k| {
-                let model = &models[k].model;
-                !model.columns.is_empty() && model.heating_percent.is_none()
-            })
-            .take(REFINED)
-            .take_while(|&k| (models[k].ln_weight - total).exp() >= WORTH_REFINING)
-            .collect();
-        let starts: Vec<_> =
-            leading.iter().map(|&k| (&models[k], &all[models[k].background])).collect();
-        let found = refine(stacked, model, library, &scorer, &space, &starts, without);
-        for (&k, found) in leading.iter().zip(found) {
-            if let Some(found) = found {
-                models[k] = found.scored.clone();
-                refined.push(found);
-            }
-        }
+    if without.is_none() {
+        refined = refine_leading(problem, &scorer, &space, &all, &mut models);
         models.sort_by(|a, b| b.ln_weight.total_cmp(&a.ln_weight));
     }
     let total = ln_sum(models.iter().map(|m| m.ln_weight));
     let mut heating = Vec::new();
-    for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| refining) {
+    for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| without.is_none()) {
         let scatter_alone = models.iter().any(|m| {
             m.model.columns.is_empty()
                 && m.model.heating_percent.is_some_and(|p| p.total_cmp(&percent).is_eq())
@@ -101,7 +65,7 @@ pub(crate) fn analyse(
         });
         if scatter_alone {
             let relative = percent / 100.0;
-            let (_, reduced) = stacked.level(gram, relative, without, true)?;
+            let (_, reduced) = stacked.level(gram, relative, without, SmoothTerms::Kept)?;
             heating.push((percent, reduced));
         }
     }
@@ -114,4 +78,57 @@ pub(crate) fn analyse(
         })
         .collect();
     Some(Analysis { scorer, backgrounds: all, space, models, refined, heating, clean })
+}
+
+/// Every smooth discrepancy that is admitted, over Grams without nuisance.
+fn smooth_out(problem: Problem<'_>, reduced: &[Reduced]) -> Vec<Smoothed> {
+    let Problem { stacked, library, .. } = problem;
+    smoothed(reduced, library.columns.len(), stacked.design.smooth.len(), |tau| stacked.admits(tau))
+}
+
+/// Models with scatter between flights, alone and with one effect, where the library has it and it is no part of the noise
+/// already.
+fn with_flight_scatter(problem: Problem<'_>, gram: &Gram, scorer: &Scorer) -> Option<Vec<Scored>> {
+    let Problem { stacked, library, .. } = problem;
+    let mut models = Vec::new();
+    for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| library.heating_value) {
+        if stacked.scatters.iter().any(|&scatter| scatter >= percent / 100.0) {
+            continue; // part of the noise already
+        }
+        let relative = percent / 100.0;
+        let (_, left) = stacked.level(gram, relative, None, SmoothTerms::LeftOut)?;
+        let under = diagonals(&smooth_out(problem, core::slice::from_ref(&left)), library);
+        models.extend(search_flight_scatter(scorer, &under, percent));
+    }
+    Some(models)
+}
+
+/// Refines the leading models in their places.
+fn refine_leading(
+    problem: Problem<'_>,
+    scorer: &Scorer,
+    space: &Space,
+    backgrounds: &[Background],
+    models: &mut [Scored],
+) -> Vec<Relinearised> {
+    let total = ln_sum(models.iter().map(|m| m.ln_weight));
+    let leading: Vec<usize> = (0..models.len())
+        .filter(|&k| {
+            let model = &models[k].model;
+            !model.columns.is_empty() && model.heating_percent.is_none()
+        })
+        .take(REFINED)
+        .take_while(|&k| (models[k].ln_weight - total).exp() >= WORTH_REFINING)
+        .collect();
+    let starts: Vec<_> =
+        leading.iter().map(|&k| (&models[k], &backgrounds[models[k].background])).collect();
+    let found = refine(problem, scorer, space, &starts, None);
+    let mut refined = Vec::new();
+    for (&k, found) in leading.iter().zip(found) {
+        if let Some(found) = found {
+            models[k] = found.scored.clone();
+            refined.push(found);
+        }
+    }
+    refined
 }

@@ -66,7 +66,9 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
         for (level, reduced) in analysis.space.reduced.iter().enumerate() {
             let changed = refined.map(|found| &found.changed[level]);
-            weights.add(stacked, library, scorer, &set.model, (reduced, changed), &shifts, 0.0);
+            let level = (reduced, changed);
+            let set = NamedSet { model: &set.model, level, shifts: &shifts, ln_share: 0.0 };
+            weights.add(stacked, library, scorer, &set);
         }
     }
     // Scatter between flights is a named cause too, and what hangs on a flight's conditions looks like it until a function
@@ -74,7 +76,9 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
     let levels_ln = (analysis.space.reduced.len() as f64).ln();
     for (percent, reduced) in &analysis.heating {
         let model = Model { columns: vec![], heating_percent: Some(*percent) };
-        weights.add(stacked, library, scorer, &model, (reduced, None), &[], levels_ln);
+        let level = (reduced, None);
+        let set = NamedSet { model: &model, level, shifts: &[], ln_share: levels_ln };
+        weights.add(stacked, library, scorer, &set);
     }
     let Weights { named, agnostic } = weights;
     let inside = ln_sum(named);
@@ -146,19 +150,27 @@ struct Agnostic {
     beside: Option<Companion>,
 }
 
+/// A named set at one level of scatter between flights.
+struct NamedSet<'a> {
+    model: &'a Model,
+    /// The Gram without nuisance at that level, and what takes the place of its own columns there.
+    level: (&'a Reduced, Option<&'a Changed>),
+    /// Where the set was linearised.
+    shifts: &'a [f64],
+    /// ln of its share of the level.
+    ln_share: f64,
+}
+
 impl Weights {
     /// Adds a named set at one level of scatter and every spike, alone and with each agnostic function.
-    #[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
     fn add(
         &mut self,
         stacked: &Stacked<'_>,
         library: &Library,
         scorer: &Scorer,
-        model: &Model,
-        level: (&Reduced, Option<&Changed>),
-        shifts: &[f64],
-        ln_share: f64,
+        set: &NamedSet<'_>,
     ) {
+        let &NamedSet { model, level, shifts, ln_share } = set;
         let prior = scorer.ln_prior(model) + ln_share;
         for spike in SPIKES {
             let Some(under) = spiked(stacked, library, level, &model.columns, spike) else {

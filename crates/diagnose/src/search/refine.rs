@@ -15,7 +15,7 @@ use crate::residuals::rows::FlightRows;
 use crate::residuals::signatures::Difference;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::search::folds::fold_of;
-use crate::search::system::{Space, Stacked};
+use crate::search::system::{Problem, SmoothTerms, Space, Stacked};
 use crate::signals::channels::MAXIMUM_CHANNELS;
 
 /// Largest number of re-linearisations of a model.
@@ -82,16 +82,15 @@ struct Run<'a> {
 /// Refines models, each with the background it was found in; `None` where a step leaves the domain of the physics.
 /// `without` leaves a fold of flights out.
 pub(crate) fn refine(
-    stacked: &Stacked<'_>,
-    model: &EffectModel<'_>,
-    library: &Library,
+    problem: Problem<'_>,
     scorer: &Scorer,
     space: &Space,
     starts: &[(&Scored, &Background)],
     without: Option<usize>,
 ) -> Vec<Option<Relinearised>> {
-    // Agnostic functions compete once, at the end, and never on folds.
-    let agnostic = without.is_none();
+    let Problem { stacked, model, library } = problem;
+    // Smooth terms compete once, at the end, and never on folds.
+    let smooth_terms = if without.is_none() { SmoothTerms::Kept } else { SmoothTerms::LeftOut };
     let mut runs: Vec<Option<Run<'_>>> = starts
         .iter()
         .map(|&(start, at)| Some(Run { start, at, sizes: start.sizes.clone() }))
@@ -108,7 +107,7 @@ pub(crate) fn refine(
             .map(|run| Linear::of(model, library, &run.start.model.columns, &run.sizes))
             .collect();
         let mut fresh = Fresh::of(stacked, model, &linear, without);
-        let mut products = fresh.products(stacked, agnostic);
+        let mut products = fresh.products(stacked, smooth_terms);
         let mut finished = Vec::new();
         for (place, &k) in running.iter().enumerate() {
             let Some(run) = &mut runs[k] else { continue };
@@ -135,7 +134,7 @@ pub(crate) fn refine(
                 run.sizes = found;
             }
         }
-        if agnostic && !finished.is_empty() {
+        if smooth_terms == SmoothTerms::Kept && !finished.is_empty() {
             products.add_agnostic(stacked, &fresh);
         }
         for place in finished {
@@ -342,11 +341,14 @@ impl Fresh {
     }
 
     /// Completes the residuals, and multiplies with all but the agnostic columns.
-    fn products(&mut self, stacked: &Stacked<'_>, agnostic: bool) -> Products {
+    fn products(&mut self, stacked: &Stacked<'_>, smooth_terms: SmoothTerms) -> Products {
         let design = stacked.design;
         let width = self.levels.ncols();
         let end = design.smooth.end;
-        let last = if agnostic { design.residual() } else { end };
+        let last = match smooth_terms {
+            SmoothTerms::Kept => design.residual(),
+            SmoothTerms::LeftOut => end,
+        };
         let mut products =
             Products { cross: Mat::zeros(last + 1, width), own: Mat::zeros(width, width) };
         for (index, rows) in self.flights.iter_mut().enumerate() {

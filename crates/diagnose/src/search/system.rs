@@ -2,8 +2,11 @@
 
 use faer::Mat;
 
+use effects::EffectModel;
+
 use crate::hypotheses::backgrounds::{Background, Smoothed, without_nuisance};
 use crate::hypotheses::design::Design;
+use crate::library::Library;
 use crate::math::eliminate::{Changed, Elimination, Reduced};
 use crate::math::gram::{Gram, Sum};
 use crate::math::linear::{gather, subtract_gram, symmetrize};
@@ -33,6 +36,21 @@ pub(crate) struct Stacked<'a> {
     pub(crate) scatters: Vec<f64>,
     /// Of each flight: products of all columns with its own fuel-flow level, for flight-to-flight scatter.
     levels: Vec<Vec<f64>>,
+}
+
+/// What every step of the search works on: the linear system, the model behind it, the effects that are looked for.
+#[derive(Clone, Copy)]
+pub(crate) struct Problem<'a> {
+    pub(crate) stacked: &'a Stacked<'a>,
+    pub(crate) model: &'a EffectModel<'a>,
+    pub(crate) library: &'a Library,
+}
+
+/// Whether the smooth terms outside the library take part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SmoothTerms {
+    Kept,
+    LeftOut,
 }
 
 impl<'a> Stacked<'a> {
@@ -180,8 +198,11 @@ impl<'a> Stacked<'a> {
 
     /// Columns of a Gram without nuisance before it is taken out: all of the design, or all but the agnostic ones; the
     /// residual is the last.
-    fn columns_of(&self, agnostic: bool) -> Vec<usize> {
-        let end = if agnostic { self.design.residual() } else { self.design.smooth.end };
+    fn columns_of(&self, smooth_terms: SmoothTerms) -> Vec<usize> {
+        let end = match smooth_terms {
+            SmoothTerms::Kept => self.design.residual(),
+            SmoothTerms::LeftOut => self.design.smooth.end,
+        };
         (0..end).chain([self.design.residual()]).collect()
     }
 
@@ -191,10 +212,10 @@ impl<'a> Stacked<'a> {
         gram: &Gram,
         relative: f64,
         without: Option<usize>,
-        agnostic: bool,
+        smooth_terms: SmoothTerms,
     ) -> Option<(Level, Reduced)> {
-        let columns = self.columns_of(agnostic);
-        if relative == 0.0 && agnostic {
+        let columns = self.columns_of(smooth_terms);
+        if relative == 0.0 && smooth_terms == SmoothTerms::Kept {
             let (elimination, reduced) = without_nuisance(&gram.matrix, self.design)?;
             return Some((Level { scatter: None, elimination }, reduced));
         }

@@ -48,135 +48,154 @@ pub(crate) struct SegmentNoise {
     pub(crate) acceleration: ByChannel,
 }
 
-/// The prediction of every channel from a response.
-pub(crate) trait PredictChannels: Fn(&Response) -> ByChannel {}
+/// What the noise of a segment follows from besides the segment itself.
+pub(crate) struct NoiseModel<'a> {
+    pub(crate) model: &'a EffectModel<'a>,
+    pub(crate) channels: Channels,
+    pub(crate) statistics: &'a Statistics,
+    /// The prediction of every channel from a response.
+    pub(crate) predict: &'a dyn Fn(&Response) -> ByChannel,
+}
 
-impl<F: Fn(&Response) -> ByChannel> PredictChannels for F {}
-
-/// Propagates the sensors' standard deviations.
-///
-/// ```text
-/// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
-/// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split,
-///                                          and Mach number, SAT, pressure altitude, N2 by `flight_bias`  [diagnosis.14]
-/// ```
-#[expect(clippy::too_many_arguments, reason = "a kernel: every argument is a different thing")]
-#[expect(clippy::needless_range_loop, reason = "rows and columns of a covariance")]
-pub(crate) fn segment_noise(
-    model: &EffectModel<'_>,
-    point: &EffectPoint,
-    effects: &Effects,
-    rows: &[u32],
-    extra_variance: f64,
-    recorded: [bool; MAXIMUM_CHANNELS],
-    channels: Channels,
-    statistics: &Statistics,
-    predict: &impl PredictChannels,
-) -> Result<SegmentNoise, EffectError> {
-    let factors = &statistics.factors;
-    let sensors = model.aircraft().sensors();
-    let count = channels.count();
-    let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
-        let up = predict(&model.response_beside(&moved(step), effects)?);
-        let down = predict(&model.response_beside(&moved(-step), effects)?);
-        let mut slope = [0.0; MAXIMUM_CHANNELS];
-        for channel in 0..count {
-            slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
+impl NoiseModel<'_> {
+    /// Propagates the sensors' standard deviations.
+    ///
+    /// ```text
+    /// C = diag(σ_meter²) + Σ_s J_s J_sᵀ σ_s²   within a segment, s over Mach number, SAT, V̇G, pressure altitude
+    /// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split,
+    ///                                          and Mach number, SAT, pressure altitude, N2 by `flight_bias`  [diagnosis.14]
+    /// ```
+    pub(crate) fn segment_noise(
+        &self,
+        point: &EffectPoint,
+        samples: usize,
+        recorded: [bool; MAXIMUM_CHANNELS],
+    ) -> Result<SegmentNoise, EffectError> {
+        let Self { model, channels, statistics, .. } = *self;
+        let sensors = model.aircraft().sensors();
+        let slopes = self.slopes(point)?;
+        let relative_mass = sensors.mass.relative_to(units::Mass::kilograms(point.mass_kg));
+        let covariance = self.own_covariance(&slopes, samples, recorded);
+        let common =
+            common_loadings(&slopes, sensors, relative_mass, recorded, channels, statistics);
+        let mut added = [0.0; MAXIMUM_CHANNELS];
+        for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
+            added[channel] = slopes.acceleration[channel] * point.acceleration_m_s2;
         }
-        Ok::<ByChannel, EffectError>(slope)
-    };
-    let by_mach = difference(sensors.mach.max(1e-6), &|step| EffectPoint {
-        mach: point.mach + step,
-        true_airspeed_m_s: point.true_airspeed_m_s * (1.0 + step / point.mach),
-        ..*point
-    })?;
-    let by_temperature = difference(sensors.static_air_temperature_k.max(1e-3), &|step| {
-        let sat_k = point.static_air_temperature_k + step;
-        EffectPoint {
-            static_air_temperature_k: sat_k,
-            true_airspeed_m_s: point.true_airspeed_m_s
-                * (sat_k / point.static_air_temperature_k).sqrt(),
+        let factor = small_cholesky(&covariance, channels.count());
+        Ok(SegmentNoise { factor, common, acceleration: added })
+    }
+
+    /// Slopes of every channel along what sensors measure, by central differences.
+    fn slopes(&self, point: &EffectPoint) -> Result<Slopes, EffectError> {
+        let sensors = self.model.aircraft().sensors();
+        let effects = Effects::none();
+        let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
+            let up = (self.predict)(&self.model.response_beside(&moved(step), &effects)?);
+            let down = (self.predict)(&self.model.response_beside(&moved(-step), &effects)?);
+            let mut slope = [0.0; MAXIMUM_CHANNELS];
+            for channel in 0..self.channels.count() {
+                slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
+            }
+            Ok::<ByChannel, EffectError>(slope)
+        };
+        let by_mach = difference(sensors.mach.max(1e-6), &|step| EffectPoint {
+            mach: point.mach + step,
+            true_airspeed_m_s: point.true_airspeed_m_s * (1.0 + step / point.mach),
             ..*point
-        }
-    })?;
-    let by_altitude = difference(sensors.pressure_altitude_m.max(0.1), &|step| EffectPoint {
-        pressure_altitude_m: point.pressure_altitude_m + step,
-        ..*point
-    })?;
-    let by_acceleration = difference(1e-4, &|step| EffectPoint {
-        acceleration_m_s2: point.acceleration_m_s2 + step,
-        ..*point
-    })?;
-    let relative_mass = sensors.mass.relative_to(units::Mass::kilograms(point.mass_kg));
-    let by_mass =
-        difference(1e-3, &|step| EffectPoint { mass_kg: point.mass_kg * (1.0 + step), ..*point })?;
-    let acceleration = mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, rows.len());
-
-    let meter = sensors.fuel_flow_percent / 100.0;
-    let engines = model.aircraft().engines();
-    let mut covariance = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
-    covariance[0][0] = total_fuel_flow_relative_variance(meter, &[], engines);
-    for contrast in 1..=channels.contrasts {
-        // Contrasts are normalized like ln(Wf1/Wf2): squares of the weights sum to 2.
-        // What wanders is taken as new in every segment here: half as many columns, and a contrast is seldom short of data.
-        let wander = statistics.fuel_flow_drift.percent / 100.0;
-        covariance[contrast][contrast] = 2.0 * (meter * meter + wander * wander);
-    }
-    if channels.n2 {
-        let n2 = sensors.n2_percent / 100.0;
-        covariance[channels.n2_row()][channels.n2_row()] = n2 * n2;
-    }
-    for (slope, deviation) in [
-        (&by_mach, sensors.mach),
-        (&by_temperature, sensors.static_air_temperature_k),
-        (&by_altitude, sensors.pressure_altitude_m),
-        (&by_acceleration, acceleration),
-    ] {
-        for a in 0..count {
-            for b in 0..count {
-                covariance[a][b] += slope[a] * slope[b] * deviation * deviation;
+        })?;
+        let by_temperature = difference(sensors.static_air_temperature_k.max(1e-3), &|step| {
+            let sat_k = point.static_air_temperature_k + step;
+            EffectPoint {
+                static_air_temperature_k: sat_k,
+                true_airspeed_m_s: point.true_airspeed_m_s
+                    * (sat_k / point.static_air_temperature_k).sqrt(),
+                ..*point
             }
-        }
-    }
-    covariance[0][0] += extra_variance;
-    for a in 0..count {
-        for b in 0..count {
-            covariance[a][b] *= factors.within[channels.kind(a)] * factors.within[channels.kind(b)];
-        }
-    }
-    for channel in 0..count {
-        if !recorded[channel] {
-            for other in 0..count {
-                covariance[channel][other] = 0.0;
-                covariance[other][channel] = 0.0;
-            }
-            covariance[channel][channel] = 1.0; // the row is zero
-        }
-    }
-
-    let common = common_loadings(
-        &SharedSlopes {
+        })?;
+        let by_altitude = difference(sensors.pressure_altitude_m.max(0.1), &|step| EffectPoint {
+            pressure_altitude_m: point.pressure_altitude_m + step,
+            ..*point
+        })?;
+        let by_acceleration = difference(1e-4, &|step| EffectPoint {
+            acceleration_m_s2: point.acceleration_m_s2 + step,
+            ..*point
+        })?;
+        let by_mass = difference(1e-3, &|step| EffectPoint {
+            mass_kg: point.mass_kg * (1.0 + step),
+            ..*point
+        })?;
+        Ok(Slopes {
             mach: by_mach,
             static_air_temperature: by_temperature,
             pressure_altitude: by_altitude,
+            acceleration: by_acceleration,
             mass: by_mass,
-        },
-        sensors,
-        relative_mass,
-        recorded,
-        channels,
-        statistics,
-    );
-    let mut added = [0.0; MAXIMUM_CHANNELS];
-    for channel in (0..count).filter(|&channel| recorded[channel]) {
-        added[channel] = by_acceleration[channel] * point.acceleration_m_s2;
+        })
     }
-    Ok(SegmentNoise { factor: small_cholesky(&covariance, count), common, acceleration: added })
+
+    /// Covariance of a segment's own noise.
+    #[expect(clippy::needless_range_loop, reason = "rows and columns of a covariance")]
+    fn own_covariance(
+        &self,
+        slopes: &Slopes,
+        samples: usize,
+        recorded: [bool; MAXIMUM_CHANNELS],
+    ) -> [ByChannel; MAXIMUM_CHANNELS] {
+        let Self { model, channels, statistics, .. } = *self;
+        let factors = &statistics.factors;
+        let sensors = model.aircraft().sensors();
+        let count = channels.count();
+        let acceleration = mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, samples);
+        let meter = sensors.fuel_flow_percent / 100.0;
+        let engines = model.aircraft().engines();
+        let mut covariance = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+        covariance[0][0] = total_fuel_flow_relative_variance(meter, &[], engines);
+        for contrast in 1..=channels.contrasts {
+            // Contrasts are normalized like ln(Wf1/Wf2): squares of the weights sum to 2.
+            // What wanders is taken as new in every segment here: half as many columns, and a contrast is seldom short of data.
+            let wander = statistics.fuel_flow_drift.percent / 100.0;
+            covariance[contrast][contrast] = 2.0 * (meter * meter + wander * wander);
+        }
+        if channels.n2 {
+            let n2 = sensors.n2_percent / 100.0;
+            covariance[channels.n2_row()][channels.n2_row()] = n2 * n2;
+        }
+        for (slope, deviation) in [
+            (&slopes.mach, sensors.mach),
+            (&slopes.static_air_temperature, sensors.static_air_temperature_k),
+            (&slopes.pressure_altitude, sensors.pressure_altitude_m),
+            (&slopes.acceleration, acceleration),
+        ] {
+            for a in 0..count {
+                for b in 0..count {
+                    covariance[a][b] += slope[a] * slope[b] * deviation * deviation;
+                }
+            }
+        }
+        for a in 0..count {
+            for b in 0..count {
+                covariance[a][b] *=
+                    factors.within[channels.kind(a)] * factors.within[channels.kind(b)];
+            }
+        }
+        for channel in 0..count {
+            if !recorded[channel] {
+                for other in 0..count {
+                    covariance[channel][other] = 0.0;
+                    covariance[other][channel] = 0.0;
+                }
+                covariance[channel][channel] = 1.0; // the row is zero
+            }
+        }
+        covariance
+    }
 }
 
-/// Slopes of the channels that a flight's common errors act through.
-struct SharedSlopes {
+/// Slopes of the channels along what sensors measure.
+struct Slopes {
     mach: ByChannel,
+    acceleration: ByChannel,
     static_air_temperature: ByChannel,
     pressure_altitude: ByChannel,
     mass: ByChannel,
@@ -185,7 +204,7 @@ struct SharedSlopes {
 /// Loadings on what all segments of a flight have in common: mass, heating value, one split a contrast, Mach number, SAT,
 /// pressure altitude, N2.
 fn common_loadings(
-    slopes: &SharedSlopes,
+    slopes: &Slopes,
     sensors: &SensorDeviations,
     relative_mass: f64,
     recorded: [bool; MAXIMUM_CHANNELS],
