@@ -25,4 +25,4 @@ pub use model::EffectModel;
 pub use point::EffectPoint;
 pub use references::EffectReferences;
 pub use response::Response;
-pub use set::{Effects, HiddenParameters, StepTarget, ThrottleArgument};
+pub use set::Effects;
