@@ -5,11 +5,8 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use effects::{
-    AppliedEffects, EffectModel, EffectPoint, Effects, HiddenParameters, KnownPoint, Response,
-    StepTarget, Trial,
-};
-use flight::effect::EffectId;
+use effects::{AppliedEffects, EffectModel, EffectPoint, Effects, KnownPoint, Response, Trial};
+use flight::effect::{EffectId, HiddenParameter, StepTarget};
 use flight::{MAXIMUM_ENGINES, SegmentMeans};
 use perf_model::aircraft::{FlightDeviations, FuelFlowWander};
 use perf_model::variance::mean_acceleration_deviation_m_s2;
@@ -28,7 +25,7 @@ pub(crate) mod planned;
 /// An effect that a baseline carries.
 pub(crate) struct Carried {
     pub(crate) id: EffectId,
-    hidden: HiddenParameters,
+    hidden: HiddenParameter,
     /// Prior standard deviation of its size over the typical size; 1 is all that physics says where the size is known.
     pub(crate) deviation: f64,
 }
@@ -50,11 +47,11 @@ pub(crate) const ENVIRONMENT: [Carried; 10] = [
 ];
 
 const fn carried(id: EffectId, deviation: f64) -> Carried {
-    Carried { id, hidden: HiddenParameters::DEFAULT, deviation }
+    Carried { id, hidden: id.entry().hidden, deviation }
 }
 
 const fn drag_rise(drag_divergence_mach: f64) -> Carried {
-    let hidden = HiddenParameters { drag_divergence_mach, ..HiddenParameters::DEFAULT };
+    let hidden = HiddenParameter::DragDivergenceMach(drag_divergence_mach);
     Carried { id: EffectId::WaveDrag, hidden, deviation: 1.0 }
 }
 
@@ -418,21 +415,23 @@ impl<'a> Data<'a> {
         // A step is the same whenever it began, and nothing before.
         let mut steps: BTreeMap<StepTarget, ByChannel> = BTreeMap::new();
         for (column, difference) in library.columns.iter().zip(&differences.columns) {
-            let effect = &library.effects[column.effect];
-            let is_step = effect.id == EffectId::StepChange;
-            if is_step && row.point.date_s < column.hidden.step_from_s {
+            let step = match column.hidden {
+                HiddenParameter::Step { from_s, target } => Some((from_s, target)),
+                _ => None,
+            };
+            if step.is_some_and(|(from_s, _)| row.point.date_s < from_s) {
                 row.signatures.push([0.0; MAXIMUM_CHANNELS]);
                 continue;
             }
-            if let Some(known) = steps.get(&column.hidden.step_target).filter(|_| is_step) {
+            if let Some(known) = step.and_then(|(_, target)| steps.get(&target)) {
                 row.signatures.push(*known);
                 continue;
             }
             let found = difference.signature(model, &row.known, row.is_recorded, &self.predictor);
             // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
             let found = found.unwrap_or([0.0; MAXIMUM_CHANNELS]);
-            if is_step {
-                steps.insert(column.hidden.step_target, found);
+            if let Some((_, target)) = step {
+                steps.insert(target, found);
             }
             row.signatures.push(found);
         }
@@ -474,11 +473,11 @@ impl Difference {
         model: &EffectModel<'_>,
         at: &Effects,
         id: EffectId,
-        hidden: HiddenParameters,
+        hidden: HiddenParameter,
         step: f64,
     ) -> Self {
         let size = at.size(id);
-        let trial = |size: f64| model.trial(&at.clone().with(id, size).with_hidden(hidden));
+        let trial = |size: f64| model.trial(&at.clone().with(id, size).with_hidden(id, hidden));
         Self { up: trial(size + step), down: trial(size - step), step }
     }
 

@@ -294,7 +294,7 @@ pub fn score(cases: &[Case], struck_distance: impl Fn(&str) -> Option<f64>) -> S
     let pairs = || cases.iter().filter(|c| c.is_pair() && !c.is_struck() && !c.is_outside());
     // What hangs on no variable has no place that could be named: scatter between flights differs by flight at random.
     let has_place = |c: &&Case| {
-        EffectId::from_name(c.truth()).is_some_and(|id| !places::driving_variables(id).is_empty())
+        EffectId::from_name(c.truth()).is_some_and(|id| !id.entry().driven_by.is_empty())
     };
     let placed = || {
         planted

@@ -174,31 +174,14 @@ pub(crate) fn typical(id: EffectId) -> f64 {
     }
 }
 
-pub(crate) fn one_signed(id: EffectId) -> bool {
-    matches!(
-        id,
-        EffectId::ZeroLiftDrag
-            | EffectId::ReynoldsNumber
-            | EffectId::TrimDragCg
-            | EffectId::AsymmetryDrag
-            | EffectId::AirframeAgeing
-            | EffectId::TsfcThrottle
-            | EffectId::PowerOfftake
-            | EffectId::AntiIceBleed
-            | EffectId::EngineAgeing
-            | EffectId::FuelHeatingValue
-    )
-}
-
-fn known(id: EffectId) -> bool {
-    matches!(id.entry().typical, TypicalSize::Known)
-}
-
 /// An effect at a multiple of its typical size, sign drawn where physics leaves it open.
 pub(crate) fn plant(id: EffectId, times: f64, random: &mut Random) -> Planted {
-    let size = typical(id) * if known(id) { 1.0 } else { times };
-    let sign =
-        if one_signed(id) || known(id) || random.uniform(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
+    let size = typical(id) * if id.is_known() { 1.0 } else { times };
+    let sign = if id.is_one_sided() || id.is_known() || random.uniform(0.0, 1.0) < 0.5 {
+        1.0
+    } else {
+        -1.0
+    };
     Planted { id, size: sign * size }
 }
 
@@ -421,7 +404,7 @@ pub(crate) fn fly(seed: u64, setup: &Setup, effects: &[Planted], background: &Ba
                 continue;
             }
             let v = random.normal(0.0, background.clutter) * typical(id);
-            all.push(Planted { id, size: if one_signed(id) { v.abs() } else { v } });
+            all.push(Planted { id, size: if id.is_one_sided() { v.abs() } else { v } });
         }
     }
     let count = rows.len() as f64;
