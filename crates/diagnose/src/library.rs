@@ -1,7 +1,7 @@
 //! The columns of the search: every testable effect, one column for each value of a hidden parameter.
 
-use effects::{EffectModel, EffectPoint, HiddenParameters, StepTarget, ThrottleArgument};
-use flight::effect::{EffectId, TypicalSize};
+use effects::{EffectModel, EffectPoint};
+use flight::effect::{EffectId, EffectSign, HiddenParameter, StepTarget, ThrottleArgument};
 
 /// Share of the segments that must have an effect's input.
 const RECORDED_SHARE: f64 = 0.9;
@@ -11,7 +11,7 @@ const THROTTLE_PIVOTS: [f64; 5] = [0.6, 0.8, 1.0, 1.2, 1.5];
 /// what N2 and model disagree about (noise of either) times that slope passes for a throttle effect: of 16 fleets without any
 /// effect but accelerations that err by 0.009 m/s², 7 had one over N2 with all pivots of thrust, none of them with this one alone.
 const N2_PIVOT: f64 = 1.0;
-/// Drag-divergence Mach numbers of the contract's range, where the aircraft file does not say one.
+/// Drag-divergence Mach numbers that are tried (our choice: those of transport and business aircraft), where the aircraft file does not say one.
 const DIVERGENCE_MACHS: [f64; 6] = [0.74, 0.78, 0.82, 0.86, 0.90, 0.94];
 /// Dates of a step that are tried, each in the middle of as many flights.
 const STEP_DATES: usize = 15;
@@ -22,7 +22,7 @@ const KNOWN_DEVIATION: f64 = 0.15;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Column {
     pub(crate) effect: usize,
-    pub(crate) hidden: HiddenParameters,
+    pub(crate) hidden: HiddenParameter,
 }
 
 /// One testable effect with its prior.
@@ -92,16 +92,16 @@ impl Library {
         library
     }
 
-    fn add(&mut self, id: EffectId, grid: Vec<HiddenParameters>, model: &EffectModel<'_>) {
+    fn add(&mut self, id: EffectId, grid: Vec<HiddenParameter>, model: &EffectModel<'_>) {
         if grid.is_empty() {
             return; // a step needs flights on both sides of a date
         }
         let typical = model.references().typical_size(id);
-        let known = matches!(id.entry().typical, TypicalSize::Known);
+        let known = id.is_known();
         let first_column = self.columns.len();
         let effect = self.effects.len();
         // What holds where nothing is said, where the grid has it.
-        let middle = grid.iter().position(|hidden| *hidden == HiddenParameters::DEFAULT);
+        let middle = grid.iter().position(|hidden| *hidden == id.entry().hidden);
         let middle = middle.unwrap_or(grid.len() / 2);
         self.effects.push(Testable {
             id,
@@ -109,7 +109,7 @@ impl Library {
             prior_mean: if known { 1.0 } else { 0.0 },
             prior_deviation: if known { KNOWN_DEVIATION } else { typical },
             known,
-            positive: expects_positive(id),
+            positive: id.entry().sign == EffectSign::Positive,
             first_column,
             columns: grid.len(),
             representative: first_column + middle,
@@ -135,62 +135,35 @@ fn lacking(
     Some(id.entry().needs.iter().map(|needed| needed.name()).collect())
 }
 
-/// Effects whose physics has one sign: friction falls with Reynolds number, age and offtakes cost fuel.
-const fn expects_positive(id: EffectId) -> bool {
-    matches!(
-        id,
-        EffectId::ZeroLiftDrag
-            | EffectId::ReynoldsNumber
-            | EffectId::TrimDragCg
-            | EffectId::AsymmetryDrag
-            | EffectId::AirframeAgeing
-            | EffectId::TsfcThrottle
-            | EffectId::PowerOfftake
-            | EffectId::AntiIceBleed
-            | EffectId::EngineAgeing
-    )
-}
-
 fn hidden_grid(
     id: EffectId,
     model: &EffectModel<'_>,
     points: &[EffectPoint],
     flight_starts_s: &[f64],
-) -> Vec<HiddenParameters> {
-    let hidden = HiddenParameters::default();
-    match id {
-        EffectId::TsfcThrottle => {
+) -> Vec<HiddenParameter> {
+    match id.entry().hidden {
+        HiddenParameter::None => vec![HiddenParameter::None],
+        HiddenParameter::Throttle { .. } => {
             let over_n2 = tells_thrust_by_n2(points).then_some(N2_PIVOT);
             let over_n2 = over_n2.map(|pivot| (pivot, ThrottleArgument::N2));
             THROTTLE_PIVOTS
                 .map(|pivot| (pivot, ThrottleArgument::CorrectedThrust))
                 .into_iter()
                 .chain(over_n2)
-                .map(|(throttle_pivot, throttle_argument)| HiddenParameters {
-                    throttle_pivot,
-                    throttle_argument,
-                    ..hidden
-                })
+                .map(|(pivot, argument)| HiddenParameter::Throttle { pivot, argument })
                 .collect()
         }
-        EffectId::WaveDrag => match model.aircraft().drag_divergence_mach() {
-            Some(mach) => vec![HiddenParameters { drag_divergence_mach: mach.value(), ..hidden }],
-            None => DIVERGENCE_MACHS
-                .into_iter()
-                .map(|mach| HiddenParameters { drag_divergence_mach: mach, ..hidden })
-                .collect(),
+        HiddenParameter::DragDivergenceMach(_) => match model.aircraft().drag_divergence_mach() {
+            Some(mach) => vec![HiddenParameter::DragDivergenceMach(mach.value())],
+            None => DIVERGENCE_MACHS.map(HiddenParameter::DragDivergenceMach).to_vec(),
         },
-        EffectId::StepChange => step_dates_s(flight_starts_s)
+        HiddenParameter::Step { .. } => step_dates_s(flight_starts_s)
             .into_iter()
-            .flat_map(|step_from_s| {
-                [StepTarget::FuelFlow, StepTarget::Drag].map(|step_target| HiddenParameters {
-                    step_from_s,
-                    step_target,
-                    ..hidden
-                })
+            .flat_map(|from_s| {
+                [StepTarget::FuelFlow, StepTarget::Drag]
+                    .map(|target| HiddenParameter::Step { from_s, target })
             })
             .collect(),
-        _ => vec![hidden],
     }
 }
 

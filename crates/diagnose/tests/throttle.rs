@@ -5,10 +5,10 @@
 use std::sync::Arc;
 
 use diagnose::{Addition, Cause, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
+use effects::AppliedEffects;
 use effects::ExtendedModel;
-use effects::{AppliedEffects, ThrottleArgument};
 use flight::Segment;
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter, ThrottleArgument};
 use lut::surface::{Basis, Surface};
 use perf_model::{Aircraft, PerformanceModel};
 use test_support::fleet::{Background, Fleet, Planted, Random, Setup, exact_model, fly};
@@ -178,11 +178,13 @@ fn n2_tells_where_it_knows_thrust_better() {
 
     // A file keeps what told the size; the model that contains the effect has it over corrected thrust.
     let addition = found.addition.unwrap();
-    assert_eq!(addition.effects[0].throttle_argument, Some(ThrottleArgument::N2));
+    let over_n2 =
+        |hidden| matches!(hidden, HiddenParameter::Throttle { argument: ThrottleArgument::N2, .. });
+    assert!(over_n2(addition.effects[0].hidden));
     let text = ron::to_string(&addition).unwrap();
     assert_eq!(ron::from_str::<Addition>(&text).unwrap(), addition);
     let layer = addition.layer().unwrap();
-    assert_eq!(layer.effects.hidden().throttle_argument, ThrottleArgument::N2);
+    assert!(over_n2(layer.effects.hidden(EffectId::TsfcThrottle)));
     let extended = model.with_effects(AppliedEffects::new(vec![layer])).unwrap();
     let left = run(&extended, &fleet);
     // What is left, 0.86 % after 2.28 %, is mostly the thrust that the model does not know; the floor is 0.64 %.
@@ -199,7 +201,9 @@ fn corrected_thrust_tells_where_it_is_known_better() {
     let cause = throttle(&found);
     assert_eq!(cause.hidden, "over corrected thrust, pivot 1.0");
     assert!(cause.magnitude.ci95[0] < 1.8 && cause.magnitude.ci95[1] > 1.8, "{cause:?}");
-    assert_eq!(found.addition.unwrap().effects[0].throttle_argument, None);
+    let over_thrust =
+        HiddenParameter::Throttle { pivot: 1.0, argument: ThrottleArgument::CorrectedThrust };
+    assert_eq!(found.addition.unwrap().effects[0].hidden, over_thrust);
 }
 
 /// Fleets without any effect whose accelerations err by 0.009 m/s²: N2 and model disagree about thrust, and that is no effect of

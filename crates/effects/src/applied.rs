@@ -1,12 +1,12 @@
 //! Effects that a model contains for good: those of past diagnoses, applied.
 //!
-//! An applied `tsfc_throttle` always acts over corrected thrust, also where N2 told its size: the same in every command.
+//! An applied `tsfc_throttle` always acts over corrected thrust, also where its size was found over N2: the same in every command.
 //!
 //! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change what is
 //! predicted. Effects of what is recorded (sensors, load sheet, fuel quantity) correct recordings before anything looks at
 //! them, and no prediction knows of them.
 
-use flight::effect::{EffectId, NeededInput, TypicalSize};
+use flight::effect::{EffectId, HiddenParameter, NeededInput, ThrottleArgument};
 use lut::Table;
 use lut::surface::{FitError, Surface};
 use perf_model::FlightPoint;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::EffectModelError;
 use crate::references::EffectReferences;
 use crate::response::fit_polar;
-use crate::set::{Effects, HiddenParameters, ThrottleArgument};
+use crate::set::{Effects, SizedEffect};
 use crate::terms::Terms;
 
 /// What a flight point says a date in.
@@ -66,7 +66,7 @@ impl AppliedEffects {
     /// Whether an effect whose coefficient physics knows was applied: it is then no candidate of a diagnosis any more.
     #[must_use]
     pub fn settles(&self, effect: EffectId) -> bool {
-        matches!(effect.entry().typical, TypicalSize::Known) && self.contains(effect)
+        effect.is_known() && self.contains(effect)
     }
 
     /// Effects and sizes, layer by layer.
@@ -110,19 +110,16 @@ impl AppliedEffects {
         self.layers
             .iter()
             .filter_map(|layer| {
-                let mut effects = Effects::none();
-                for (id, size) in layer.effects.iter().filter(|(id, _)| of(*id)) {
-                    effects = effects.with(id, size);
-                }
+                let effects: Effects = layer
+                    .effects
+                    .as_slice()
+                    .iter()
+                    .filter(|effect| of(effect.id))
+                    .map(|effect| SizedEffect { hidden: over_thrust(effect.hidden), ..*effect })
+                    .collect();
                 if effects.is_empty() {
                     return None;
                 }
-                let hidden = HiddenParameters {
-                    // Points of a forecast have no N2, and most of what evaluates a model has no deck: N2 told the size.
-                    throttle_argument: ThrottleArgument::CorrectedThrust,
-                    ..*layer.effects.hidden()
-                };
-                let effects = effects.with_hidden(hidden);
                 let effects = match dated {
                     Dated::Yes => effects,
                     Dated::No => on_reference_date(&effects, &layer.references),
@@ -158,18 +155,29 @@ fn lacks(needed: NeededInput, point: &FlightPoint) -> Option<&'static str> {
     (!there).then_some(name)
 }
 
+/// Points of a forecast have no N2, and most of what evaluates a model has no deck: N2 only served to find the size.
+const fn over_thrust(hidden: HiddenParameter) -> HiddenParameter {
+    match hidden {
+        HiddenParameter::Throttle { pivot, .. } => {
+            HiddenParameter::Throttle { pivot, argument: ThrottleArgument::CorrectedThrust }
+        }
+        other => other,
+    }
+}
+
 /// The effects as they are on the date of their references: no ageing since, a step as it was then.
 fn on_reference_date(effects: &Effects, references: &EffectReferences) -> Effects {
-    let mut hidden = *effects.hidden();
-    hidden.step_from_s =
-        if references.date_s >= hidden.step_from_s { f64::NEG_INFINITY } else { f64::INFINITY };
-    let mut there = Effects::none();
-    for (id, size) in effects.iter() {
-        if !matches!(id, EffectId::AirframeAgeing | EffectId::EngineAgeing) {
-            there = there.with(id, size);
+    let ages = |id| matches!(id, EffectId::AirframeAgeing | EffectId::EngineAgeing);
+    let undated = |hidden| match hidden {
+        HiddenParameter::Step { from_s, target } => {
+            let holds = references.date_s >= from_s;
+            let from_s = if holds { f64::NEG_INFINITY } else { f64::INFINITY };
+            HiddenParameter::Step { from_s, target }
         }
-    }
-    there.with_hidden(hidden)
+        other => other,
+    };
+    let effects = effects.as_slice().iter().filter(|effect| !ages(effect.id));
+    effects.map(|effect| SizedEffect { hidden: undated(effect.hidden), ..*effect }).collect()
 }
 
 /// Applied effects made ready for a drag table.

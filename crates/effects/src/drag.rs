@@ -40,8 +40,9 @@ pub(crate) struct AtTable<'p> {
 /// ```
 ///
 /// # Source
-/// Lock's fourth-power law, as in Hilderman and others' Korn–Lock form of the drag rise: the drag-divergence condition
-/// ∂CD/∂M = 0.1 gives the offset. The fall with lift coefficient is our choice: XXX
+/// Lock's fourth-power law with the drag-divergence condition ∂CD/∂M = 0.1, from which the offset follows. The fall of the
+/// drag-divergence Mach number with lift coefficient is our choice, a little less than the 0.1 of Korn's equation without
+/// sweep; the lift coefficient that it is stated at is that of cruise in the middle of the envelope.
 pub(crate) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
     let divergence = divergence_mach
         - DIVERGENCE_FALL_PER_LIFT_COEFFICIENT * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);
@@ -149,7 +150,7 @@ fn drag_with_layer(below: AtTable<'_>, point: &EffectPoint, flown: &AsFlown, ter
         drag += terms.induced_drag * factor * lift_coefficient * lift_coefficient;
     }
     if terms.wave_drag_mach != 0.0 {
-        let divergence = terms.hidden.drag_divergence_mach;
+        let divergence = terms.drag_divergence_mach;
         drag += drag_rise(mach, lift_coefficient, divergence - terms.wave_drag_mach)
             - drag_rise(mach, lift_coefficient, divergence);
     }
@@ -174,7 +175,7 @@ fn drag_with_layer(below: AtTable<'_>, point: &EffectPoint, flown: &AsFlown, ter
         drag += terms.asymmetry_drag_per_deg2 * roll_squared_deg2;
     }
     drag *= 1.0 + terms.drag_factor;
-    if terms.step_drag != 0.0 && point.date_s >= terms.hidden.step_from_s {
+    if terms.step_drag != 0.0 && point.date_s >= terms.step_from_s {
         drag *= 1.0 + terms.step_drag;
     }
     drag

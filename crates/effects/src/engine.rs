@@ -1,11 +1,11 @@
 //! Effects on TSFC and fuel flow, and on what the flow meters say.
 
 use flight::MAXIMUM_ENGINES;
+use flight::effect::ThrottleArgument;
 
 use crate::drag::years_since_reference;
 use crate::point::EffectPoint;
 use crate::recorded::AsFlown;
-use crate::set::ThrottleArgument;
 use crate::terms::{Layers, Terms};
 
 /// Static air temperature above which anti-ice bleed is taken as on where it is not recorded, K: −40 °C.
@@ -49,7 +49,7 @@ pub(crate) fn recorded_fuel_flow(
         if terms.anti_ice_bleed != 0.0 {
             all *= 1.0 + terms.anti_ice_bleed * anti_ice_on(point, flown);
         }
-        if terms.step_fuel_flow != 0.0 && point.date_s >= terms.hidden.step_from_s {
+        if terms.step_fuel_flow != 0.0 && point.date_s >= terms.step_from_s {
             all *= 1.0 + terms.step_fuel_flow;
         }
     }
@@ -86,12 +86,12 @@ fn tsfc_factor(
             .powf(terms.tsfc_temperature_exponent);
     }
     if terms.tsfc_throttle != 0.0 {
-        let by_n2_n = match terms.hidden.throttle_argument {
+        let by_n2_n = match terms.throttle_argument {
             ThrottleArgument::CorrectedThrust => None,
             ThrottleArgument::N2 => point.corrected_thrust_by_n2_n,
         };
         let x = by_n2_n.unwrap_or(corrected_thrust_n) / references.corrected_thrust_n;
-        let distance = (x - terms.hidden.throttle_pivot) / THROTTLE_WIDTH;
+        let distance = (x - terms.throttle_pivot) / THROTTLE_WIDTH;
         factor *= 1.0 + terms.tsfc_throttle * distance * distance;
     }
     if terms.engine_ageing_per_year != 0.0 {

@@ -1,4 +1,72 @@
-//! What a performance model may lack.
+//! The physics of what a performance model may lack: what each effect of the library does to the recorded fuel flow of a
+//! segment, and models that contain effects for good.
+//!
+//! What it is: [`EffectModel`], in which effects are switched on and off, and [`ExtendedModel`], a performance model with the
+//! effects of past diagnoses. The equations are small functions of a point, the state that was flown, and layers of effects: drag
+//! and weight, engine and fuel flow, and what was recorded, a file each.
+//! What it is not: id, unit, typical size, sign, inputs and words of an effect are in [`flight::effect`]. It finds no effect: that
+//! is the diagnosis' business.
+//!
+//! The one design decision: what is predicted is always the *recorded* fuel flow, so that the residual
+//! ln Wf recorded − ln Wf predicted is the gap. Nothing is linearised. An effect changes the drag coefficient, the TSFC or the
+//! weight that lift carries, or it undoes an error of what was recorded.
+//!
+//! Difficult: a sensor effect says how the *recording* errs, so that its sign is the other way round from a change of the
+//! aircraft. All of it is in `recorded.rs`.
+//!
+//! Limits:
+//! - Engines give equal thrust; they differ in what they burn.
+//! - Beyond the drag table's edge the table is continued in a straight line where an effect moved the point there, and nowhere
+//!   else.
+//! - Anti-ice bleed that is not recorded is taken as on above −40 °C.
+//!
+//! # Adding an effect
+//!
+//! | edit | what | without it |
+//! |---|---|---|
+//! | `flight/src/effect.rs` | one line in the list: documentation, id, entry | there is no such id |
+//! | `flight/src/effect/airframe.rs` or its neighbours | the entry: name, unit, typical size, sign, inputs, words | the list's line does not compile |
+//! | `effects/src/terms.rs` | its coefficient in the equations' unit | the `match` of `Terms::add` is not exhaustive |
+//! | `effects/src/drag.rs`, `engine.rs` or `recorded.rs` | the equation, and a row of hand-made values in `model/tests.rs` | the test of signatures names the effect without a row |
+//! | `simulate/src/terms/resolve.rs` | the truth's own form of it | a flown effect changes nothing, and the test of flown effects names it |
+//!
+//! A new kind of hidden parameter is a variant of [`flight::effect::HiddenParameter`]; the compiler names the places that match on
+//! it.
+//!
+//! ```
+//! use effects::{AppliedEffects, AppliedLayer, EffectReferences, Effects, ExtendedModel};
+//! use flight::effect::EffectId;
+//! use perf_model::{Aircraft, FlightPoint, Guide, initial_model};
+//! use units::{Mach, Mass, PressureAltitude};
+//!
+//! let aircraft = Aircraft::from_ron(
+//!     r#"(
+//!         name: "JSBSim global5000", type_code: "GL5T", engines: 2, wing_area_m2: 94.94690688,
+//!         tsfc: (static_lb_per_lbf_h: 0.657, mach_exponent: 0),
+//!         table: (lift_coefficient: (0.30, 0.60, 0.05), mach: (0.76, 0.88, 0.02)),
+//!     )"#,
+//! )?;
+//! let guide = Guide::from_csv(include_bytes!("../../perf-model/tests/golden/guide.csv"))?;
+//! let base = ExtendedModel::from(initial_model(&aircraft, &guide)?.model);
+//!
+//! let references = EffectReferences {
+//!     date_s: 1.5e9,
+//!     mach: 0.8,
+//!     unit_reynolds_number_per_m: 5e6,
+//!     temperature_ratio: 0.75,
+//!     corrected_thrust_n: 1e5,
+//!     fuel_flow_total_kg_s: 0.45,
+//!     mass_kg: 30_000.0,
+//!     center_of_gravity_percent_mac: None,
+//! };
+//! let layer = AppliedLayer { effects: Effects::one(EffectId::DragFactor, 2.0), references };
+//! let extended = base.with_effects(AppliedEffects::new(vec![layer]))?;
+//!
+//! let cruise = FlightPoint::new(Mass::pounds(66_000.0), PressureAltitude::feet(41_000.0), Mach::new(0.80));
+//! let more = extended.predict(&cruise)?.fuel_flow_total / base.predict(&cruise)?.fuel_flow_total;
+//! assert!((more - 1.02).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod applied;
 mod drag;
@@ -25,4 +93,4 @@ pub use model::EffectModel;
 pub use point::EffectPoint;
 pub use references::EffectReferences;
 pub use response::Response;
-pub use set::{Effects, HiddenParameters, StepTarget, ThrottleArgument};
+pub use set::Effects;

@@ -1,10 +1,10 @@
 //! What acts at a point: a set of effects in the units of the equations, layer by layer.
 
 use flight::MAXIMUM_ENGINES;
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
 
 use crate::references::EffectReferences;
-use crate::set::{Effects, HiddenParameters, StepTarget};
+use crate::set::{Effects, SizedEffect};
 
 const PERCENT: f64 = 0.01;
 /// A drag count.
@@ -37,11 +37,12 @@ impl<'t> Layers<'t> {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Terms {
     pub(crate) references: EffectReferences,
-    pub(crate) hidden: HiddenParameters,
     pub(crate) zero_lift_drag: f64,
     pub(crate) drag_factor: f64,
     pub(crate) induced_drag: f64,
     pub(crate) wave_drag_mach: f64,
+    /// Drag-divergence Mach number at lift coefficient 0.35 that the rise is shifted from.
+    pub(crate) drag_divergence_mach: f64,
     pub(crate) reynolds_exponent: f64,
     pub(crate) trim_drag_per_10_percent_mac: f64,
     pub(crate) asymmetry_drag_per_deg2: f64,
@@ -52,6 +53,9 @@ pub(crate) struct Terms {
     pub(crate) tsfc_mach_exponent: f64,
     pub(crate) tsfc_temperature_exponent: f64,
     pub(crate) tsfc_throttle: f64,
+    /// Corrected thrust over its reference at which TSFC is unchanged.
+    pub(crate) throttle_pivot: f64,
+    pub(crate) throttle_argument: ThrottleArgument,
     pub(crate) power_offtake: f64,
     pub(crate) anti_ice_bleed: f64,
     pub(crate) engine_ageing_per_year: f64,
@@ -66,13 +70,15 @@ pub(crate) struct Terms {
     pub(crate) isobaric_slope: f64,
     pub(crate) step_fuel_flow: f64,
     pub(crate) step_drag: f64,
+    /// Instant from which the step holds, s since 1970.
+    pub(crate) step_from_s: f64,
 }
 
 impl Terms {
     pub(crate) fn new(effects: &Effects, references: &EffectReferences) -> Self {
-        let mut terms = Self::none(*references, *effects.hidden());
-        for (effect, size) in effects.iter() {
-            terms.add(effect, size);
+        let mut terms = Self::none(*references);
+        for effect in effects.as_slice() {
+            terms.add(effect);
         }
         terms
     }
@@ -104,14 +110,14 @@ impl Terms {
         self.load_factor != 0.0 || self.local_gravity != 0.0 || self.rotating_earth != 0.0
     }
 
-    fn none(references: EffectReferences, hidden: HiddenParameters) -> Self {
+    fn none(references: EffectReferences) -> Self {
         Self {
             references,
-            hidden,
             zero_lift_drag: 0.0,
             drag_factor: 0.0,
             induced_drag: 0.0,
             wave_drag_mach: 0.0,
+            drag_divergence_mach: 0.0,
             reynolds_exponent: 0.0,
             trim_drag_per_10_percent_mac: 0.0,
             asymmetry_drag_per_deg2: 0.0,
@@ -122,6 +128,8 @@ impl Terms {
             tsfc_mach_exponent: 0.0,
             tsfc_temperature_exponent: 0.0,
             tsfc_throttle: 0.0,
+            throttle_pivot: 0.0,
+            throttle_argument: ThrottleArgument::CorrectedThrust,
             power_offtake: 0.0,
             anti_ice_bleed: 0.0,
             engine_ageing_per_year: 0.0,
@@ -136,11 +144,14 @@ impl Terms {
             isobaric_slope: 0.0,
             step_fuel_flow: 0.0,
             step_drag: 0.0,
+            step_from_s: f64::INFINITY,
         }
     }
 
-    fn add(&mut self, effect: EffectId, size: f64) {
-        match effect {
+    fn add(&mut self, effect: &SizedEffect) {
+        let size = effect.size;
+        self.set_hidden(effect.hidden);
+        match effect.id {
             EffectId::ZeroLiftDrag => self.zero_lift_drag += size * COUNT,
             EffectId::DragFactor => self.drag_factor += size * PERCENT,
             EffectId::InducedDrag => self.induced_drag += size * PERCENT,
@@ -176,10 +187,24 @@ impl Terms {
             EffectId::LocalGravity => self.local_gravity += size,
             EffectId::RotatingEarth => self.rotating_earth += size,
             EffectId::IsobaricSlope => self.isobaric_slope += size,
-            EffectId::StepChange => match self.hidden.step_target {
-                StepTarget::FuelFlow => self.step_fuel_flow += size * PERCENT,
-                StepTarget::Drag => self.step_drag += size * PERCENT,
+            EffectId::StepChange => match effect.hidden {
+                HiddenParameter::Step { target: StepTarget::Drag, .. } => {
+                    self.step_drag += size * PERCENT;
+                }
+                _ => self.step_fuel_flow += size * PERCENT,
             },
+        }
+    }
+
+    const fn set_hidden(&mut self, hidden: HiddenParameter) {
+        match hidden {
+            HiddenParameter::None => {}
+            HiddenParameter::DragDivergenceMach(mach) => self.drag_divergence_mach = mach,
+            HiddenParameter::Throttle { pivot, argument } => {
+                self.throttle_pivot = pivot;
+                self.throttle_argument = argument;
+            }
+            HiddenParameter::Step { from_s, .. } => self.step_from_s = from_s,
         }
     }
 }

@@ -5,51 +5,112 @@ use units::convert::{
     KILOGRAMS_PER_SECOND_PER_POUND_PER_HOUR, METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT,
 };
 
-/// A column of the cruise report. Engine columns carry the engine's number from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Column {
+/// Makes the enum, the list and the names from one list, so that none can be longer than another.
+macro_rules! columns {
+    ($($(#[$doc:meta])* $column:ident $(($engine:ty))? = $name:literal,)*) => {
+        /// A column of the cruise report. Engine columns carry the engine's number from 1.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Column {
+            $($(#[$doc])* $column $(($engine))?,)*
+        }
+
+        /// Columns without an engine's number, for their place in the list.
+        enum Place {
+            $($column,)*
+        }
+
+        impl Column {
+            /// Every column in the order of the format's page, of an engine's columns that of the first.
+            pub const ALL: [Self; [$($name),*].len()] =
+                [$(Self::$column $((<$engine>::MIN + 1))?,)*];
+
+            /// Place in [`ALL`](Self::ALL), whatever the engine.
+            #[must_use]
+            pub const fn index(self) -> usize {
+                match self {
+                    $(Self::$column $((columns!(@any $engine)))? => Place::$column as usize,)*
+                }
+            }
+
+            /// The name in files, without an engine's number.
+            const fn stem(self) -> &'static str {
+                match self {
+                    $(Self::$column $((columns!(@any $engine)))? => $name,)*
+                }
+            }
+
+            /// The engine's number from 1.
+            const fn engine(self) -> Option<u8> {
+                match self {
+                    $($(Self::$column(engine) => { let engine: $engine = engine; Some(engine) })?)*
+                    _ => None,
+                }
+            }
+
+            /// The column of this stem, of an engine or of none.
+            fn from_stem(stem: &str, engine: Option<u8>) -> Option<Self> {
+                match (stem, engine) {
+                    $(($name, columns!(@number engine $($engine)?)) => {
+                        Some(Self::$column $((columns!(@value engine $engine)))?)
+                    })*
+                    _ => None,
+                }
+            }
+        }
+
+        const SPACED_NAMES: &str = concat!($(" ", $name, columns!(@k $($engine)?)),*);
+    };
+    (@any $engine:ty) => { _ };
+    (@number $number:ident) => { None };
+    (@number $number:ident $engine:ty) => { Some($number) };
+    (@value $number:ident $engine:ty) => { $number };
+    (@k) => { "" };
+    (@k $engine:ty) => { "(k)" };
+}
+
+columns! {
     /// `TIME`: time since START.
-    Time,
+    Time = "TIME",
     /// `ALT`: pressure altitude.
-    PressureAltitude,
+    PressureAltitude = "ALT",
     /// `SAT`: static air temperature.
-    StaticAirTemperature,
+    StaticAirTemperature = "SAT",
     /// `MACH`: Mach number.
-    Mach,
+    Mach = "MACH",
     /// `VTAS`: true airspeed.
-    TrueAirspeed,
+    TrueAirspeed = "VTAS",
     /// `GSPD`: ground speed.
-    GroundSpeed,
+    GroundSpeed = "GSPD",
     /// `ROLL`: roll angle.
-    Roll,
+    Roll = "ROLL",
     /// `DRIFT`: drift angle, track minus heading.
-    Drift,
+    Drift = "DRIFT",
     /// `N2(k)`: high-pressure rotor speed of engine k.
-    N2(u8),
+    N2(u8) = "N2",
     /// `WF(k)`: fuel flow of engine k.
-    FuelFlowEngine(u8),
+    FuelFlowEngine(u8) = "WF",
     /// `WF`: fuel flow of all engines, where they are not recorded apart.
-    FuelFlowTotal,
+    FuelFlowTotal = "WF",
     /// `FU`: fuel used since engine start, all engines.
-    FuelUsed,
+    FuelUsed = "FU",
     /// `LAT`: latitude.
-    Latitude,
+    Latitude = "LAT",
     /// `LON`: longitude.
-    Longitude,
+    Longitude = "LON",
     /// `HDG`: true heading.
-    TrueHeading,
+    TrueHeading = "HDG",
     /// `CG`: center of gravity.
-    CenterOfGravity,
+    CenterOfGravity = "CG",
     /// `TAT`: total air temperature.
-    TotalAirTemperature,
+    TotalAirTemperature = "TAT",
     /// `N1(k)`: low-pressure rotor speed of engine k.
-    N1(u8),
+    N1(u8) = "N1",
     /// `EGT(k)`: exhaust gas temperature of engine k.
-    ExhaustGasTemperature(u8),
+    ExhaustGasTemperature(u8) = "EGT",
     /// `FQ`: fuel quantity by the tank gauges, independent of the flow meters.
-    FuelQuantity,
+    FuelQuantity = "FQ",
     /// `A/I`: anti-ice bleed, 0 or 1.
-    AntiIce,
+    AntiIce = "A/I",
 }
 
 /// A unit a column may be written in: name, and SI (or canonical) value = `factor` × number + `offset`.
@@ -100,75 +161,32 @@ const PERCENT_MAC: &[ColumnUnit] = &[unit("%MAC", 1.0)];
 const MAXIMUM_ENGINE_FUEL_FLOW_KG_S: f64 = 100_000.0 * KILOGRAMS_PER_SECOND_PER_POUND_PER_HOUR;
 
 /// Names of all columns as the format's page prints them, for messages.
-pub const COLUMN_NAMES: &str = "TIME ALT SAT MACH VTAS GSPD ROLL DRIFT N2(k) WF(k) WF FU LAT LON HDG CG TAT N1(k) EGT(k) FQ A/I";
+pub const COLUMN_NAMES: &str = SPACED_NAMES.split_at(1).1;
 
 impl Column {
     /// The column of this name; `None` for a name that the format does not define. Engines count from 1 to 4.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Some(match name {
-            "TIME" => Self::Time,
-            "ALT" => Self::PressureAltitude,
-            "SAT" => Self::StaticAirTemperature,
-            "MACH" => Self::Mach,
-            "VTAS" => Self::TrueAirspeed,
-            "GSPD" => Self::GroundSpeed,
-            "ROLL" => Self::Roll,
-            "DRIFT" => Self::Drift,
-            "WF" => Self::FuelFlowTotal,
-            "FU" => Self::FuelUsed,
-            "LAT" => Self::Latitude,
-            "LON" => Self::Longitude,
-            "HDG" => Self::TrueHeading,
-            "CG" => Self::CenterOfGravity,
-            "TAT" => Self::TotalAirTemperature,
-            "FQ" => Self::FuelQuantity,
-            "A/I" => Self::AntiIce,
-            _ => {
-                let (stem, engine) = name.strip_suffix(')')?.split_once('(')?;
-                let engine = match engine {
-                    "1" => 1,
-                    "2" => 2,
-                    "3" => 3,
-                    "4" => 4,
-                    _ => return None,
-                };
-                match stem {
-                    "N2" => Self::N2(engine),
-                    "WF" => Self::FuelFlowEngine(engine),
-                    "N1" => Self::N1(engine),
-                    "EGT" => Self::ExhaustGasTemperature(engine),
-                    _ => return None,
-                }
-            }
-        })
+        let Some((stem, engine)) = name.split_once('(') else {
+            return Self::from_stem(name, None);
+        };
+        let engine = match engine {
+            "1)" => 1,
+            "2)" => 2,
+            "3)" => 3,
+            "4)" => 4,
+            _ => return None,
+        };
+        Self::from_stem(stem, Some(engine))
     }
 
     /// The name in files.
     #[must_use]
     pub fn name(self) -> String {
-        match self {
-            Self::N2(k) => format!("N2({k})"),
-            Self::FuelFlowEngine(k) => format!("WF({k})"),
-            Self::N1(k) => format!("N1({k})"),
-            Self::ExhaustGasTemperature(k) => format!("EGT({k})"),
-            Self::Time => "TIME".to_owned(),
-            Self::PressureAltitude => "ALT".to_owned(),
-            Self::StaticAirTemperature => "SAT".to_owned(),
-            Self::Mach => "MACH".to_owned(),
-            Self::TrueAirspeed => "VTAS".to_owned(),
-            Self::GroundSpeed => "GSPD".to_owned(),
-            Self::Roll => "ROLL".to_owned(),
-            Self::Drift => "DRIFT".to_owned(),
-            Self::FuelFlowTotal => "WF".to_owned(),
-            Self::FuelUsed => "FU".to_owned(),
-            Self::Latitude => "LAT".to_owned(),
-            Self::Longitude => "LON".to_owned(),
-            Self::TrueHeading => "HDG".to_owned(),
-            Self::CenterOfGravity => "CG".to_owned(),
-            Self::TotalAirTemperature => "TAT".to_owned(),
-            Self::FuelQuantity => "FQ".to_owned(),
-            Self::AntiIce => "A/I".to_owned(),
+        let stem = self.stem();
+        match self.engine() {
+            Some(engine) => format!("{stem}({engine})"),
+            None => stem.to_owned(),
         }
     }
 
@@ -328,43 +346,32 @@ impl Column {
 mod tests {
     use super::*;
 
-    const ALL: [Column; 21] = [
-        Column::Time,
-        Column::PressureAltitude,
-        Column::StaticAirTemperature,
-        Column::Mach,
-        Column::TrueAirspeed,
-        Column::GroundSpeed,
-        Column::Roll,
-        Column::Drift,
-        Column::N2(1),
-        Column::FuelFlowEngine(4),
-        Column::FuelFlowTotal,
-        Column::FuelUsed,
-        Column::Latitude,
-        Column::Longitude,
-        Column::TrueHeading,
-        Column::CenterOfGravity,
-        Column::TotalAirTemperature,
-        Column::N1(2),
-        Column::ExhaustGasTemperature(3),
-        Column::FuelQuantity,
-        Column::AntiIce,
-    ];
-
     #[test]
     fn names_go_both_ways() {
-        for column in ALL {
+        for column in Column::ALL {
             assert_eq!(Column::from_name(&column.name()), Some(column));
         }
-        for wrong in ["alt", "N2", "N2(0)", "N2(5)", "N2(1", "WF()", "X-ALT", ""] {
+        assert_eq!(Column::from_name("WF(4)"), Some(Column::FuelFlowEngine(4)));
+        assert_eq!(Column::from_name("WF"), Some(Column::FuelFlowTotal));
+        for wrong in
+            ["alt", "N2", "N2(0)", "N2(5)", "N2(1", "WF()", "X-ALT", "", "N2(1)(2)", "ALT(1)"]
+        {
             assert_eq!(Column::from_name(wrong), None, "{wrong}");
         }
     }
 
     #[test]
+    fn the_list_has_every_column_at_its_index() {
+        for (index, column) in Column::ALL.into_iter().enumerate() {
+            assert_eq!(column.index(), index, "{column:?}");
+        }
+        assert_eq!(Column::N2(4).index(), Column::N2(1).index());
+        assert!(COLUMN_NAMES.starts_with("TIME ALT ") && COLUMN_NAMES.ends_with(" EGT(k) FQ A/I"));
+    }
+
+    #[test]
     fn every_column_has_a_canonical_unit() {
-        for column in ALL {
+        for column in Column::ALL {
             assert!(
                 column.units().iter().any(|unit| unit.name == column.canonical_unit()),
                 "{column:?}"

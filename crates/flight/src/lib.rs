@@ -1,5 +1,5 @@
 //! The nouns that cruisefit's stages exchange: [`Report`], [`Track`], [`Segment`], [`Observation`], [`Finding`] and
-//! the ids of physical [effects](effect::EffectId).
+//! all that is said of a physical [effect](effect::EffectId) but its physics.
 //!
 //! What it is not: there is no algorithm here. A stage crate depends on this one and never on another stage, so each
 //! can be used alone and replaced.

@@ -14,6 +14,7 @@
 //! Limits:
 //! - Level flight at standard gravity. Along-path acceleration is in the balance; climb, turn and the turning earth are
 //!   not.
+//! - It knows no effect: what a model may lack, and models that contain effects, are in the crate `effects`.
 //! - The TSFC law knows temperature and Mach number, no throttle and no altitude.
 //! - Outside the table there is an error and no value. Inside the table but outside the guide a value is marked as
 //!   extrapolated.

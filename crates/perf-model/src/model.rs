@@ -17,7 +17,7 @@ pub use observe::ObserveError;
 pub use predict::{PredictError, Prediction, SegmentPrediction};
 
 /// A node with a bilinear weight up to this took no part in a value: the point lies on a grid line or on a node.
-/// The specification's width.
+/// Our choice: far above the rounding of a weight, far below any weight that moves a drag coefficient.
 pub const NODE_WEIGHT_THRESHOLD: f64 = 1e-9;
 
 /// An aircraft with a drag table over lift coefficient and Mach number.

@@ -134,7 +134,7 @@ fn polynomial_of_the_guide() {
         assert!((found - number(&row[1])).abs() < 1e-8, "{found} against {}", row[1]);
     }
     assert_eq!((initial.fit.points, initial.fit.rank, rows.len()), (360, 6, 6));
-    // The specification's own figure for this design: about 3e4.
+    // The independent implementation's figure for this design: about 3e4.
     assert!((2.5e4..3.5e4).contains(&initial.fit.condition_number), "{:?}", initial.fit);
 }
 

@@ -26,86 +26,6 @@ const SEPARATIONS_TOLD: usize = 2;
 /// Probability below which no cause is told as one.
 const PROBABLE: f64 = 0.5;
 
-/// What an effect does, by its sign.
-pub fn phrase(effect: EffectId, size: f64) -> String {
-    let pick = |more: &str, less: &str| if size < 0.0 { less.to_owned() } else { more.to_owned() };
-    match effect {
-        EffectId::ZeroLiftDrag => pick("more drag at zero lift", "less drag at zero lift"),
-        EffectId::DragFactor => pick("more drag everywhere", "less drag everywhere"),
-        EffectId::InducedDrag => pick("more lift-dependent drag", "less lift-dependent drag"),
-        EffectId::WaveDrag => {
-            pick("earlier drag rise with Mach number", "later drag rise with Mach number")
-        }
-        EffectId::ReynoldsNumber => pick(
-            "friction falls with Reynolds number, which the model does not have",
-            "friction rises with Reynolds number, which the model does not have",
-        ),
-        EffectId::TrimDragCg => pick(
-            "trim drag with a forward center of gravity",
-            "less drag with a forward center of gravity",
-        ),
-        EffectId::AsymmetryDrag => {
-            pick("drag of flying with a wing low", "less drag with a wing low")
-        }
-        EffectId::LoadFactor => "lift that turns ask for, which the model leaves out".to_owned(),
-        EffectId::AirframeAgeing => {
-            pick("zero-lift drag that grows with age", "zero-lift drag that falls with age")
-        }
-        EffectId::TsfcFactor => pick("all engines burn more", "all engines burn less"),
-        EffectId::TsfcEngine(engine) => {
-            pick(&format!("engine {engine} burns more"), &format!("engine {engine} burns less"))
-        }
-        EffectId::TsfcMachExponent => pick(
-            "TSFC rises more with Mach number than the model's",
-            "TSFC rises less with Mach number than the model's",
-        ),
-        EffectId::TsfcTemperatureExponent => pick(
-            "TSFC rises with temperature more than the model's",
-            "TSFC rises with temperature less than the model's",
-        ),
-        EffectId::TsfcThrottle => pick(
-            "TSFC is higher away from the engines' best thrust",
-            "TSFC is lower away from the pivot of thrust",
-        ),
-        EffectId::PowerOfftake => pick(
-            "constant fuel flow for power and bleed",
-            "less constant fuel flow for power and bleed",
-        ),
-        EffectId::AntiIceBleed => pick("anti-ice bleed costs more", "anti-ice bleed costs less"),
-        EffectId::EngineAgeing => pick("TSFC grows with age", "TSFC falls with age"),
-        EffectId::FuelHeatingValue => {
-            "fuel flow differs from flight to flight, as the heating value of the fuel does"
-                .to_owned()
-        }
-        EffectId::ZeroFuelMassBias => {
-            pick("the aircraft is heavier than recorded", "the aircraft is lighter than recorded")
-        }
-        EffectId::FuelQuantityGain => {
-            pick("less fuel was used than recorded", "more fuel was used than recorded")
-        }
-        EffectId::MachBias => pick("Mach number reads high", "Mach number reads low"),
-        EffectId::StaticPressureBias => {
-            pick("static pressure reads high", "static pressure reads low")
-        }
-        EffectId::TemperatureBias => pick("SAT reads high", "SAT reads low"),
-        EffectId::FuelFlowGain => {
-            pick("the fuel-flow meters read high", "the fuel-flow meters read low")
-        }
-        EffectId::FuelFlowGainEngine(engine) => pick(
-            &format!("the fuel-flow meter of engine {engine} reads high"),
-            &format!("the fuel-flow meter of engine {engine} reads low"),
-        ),
-        EffectId::LocalGravity => {
-            "gravity by latitude and height, which the model takes as standard".to_owned()
-        }
-        EffectId::RotatingEarth => "lift saved by the Earth's rotation and curvature".to_owned(),
-        EffectId::IsobaricSlope => {
-            "climb along sloping pressure surfaces without the force that balances it".to_owned()
-        }
-        EffectId::StepChange => pick("a step up from one date on", "a step down from one date on"),
-    }
-}
-
 /// What follows from an effect of this group for predictions.
 const fn consequence(group: EffectGroup) -> &'static str {
     match group {
@@ -374,7 +294,7 @@ fn effect_told(diagnosis: &Diagnosis, name: &str) -> String {
     let hidden = cause.map_or("", |cause| cause.hidden.as_str());
     format!(
         "{}, {name} {}{} ± {} {}{}",
-        phrase(id, size),
+        id.phrase(size),
         if size < 0.0 { "−" } else { "+" },
         figure(size.abs()),
         figure(deviation),
@@ -407,12 +327,12 @@ mod tests {
     fn every_effect_has_words_for_both_signs() {
         for id in EffectId::library(flight::MAXIMUM_ENGINES) {
             for size in [-1.0, 1.0] {
-                let words = phrase(id, size);
+                let words = id.phrase(size);
                 assert!(words.len() > 10 && !words.contains('_'), "{id}: {words}");
             }
         }
-        assert_eq!(phrase(EffectId::TsfcEngine(2), 3.0), "engine 2 burns more");
-        assert_eq!(phrase(EffectId::MachBias, -0.004), "Mach number reads low");
+        assert_eq!(EffectId::TsfcEngine(2).phrase(3.0), "engine 2 burns more");
+        assert_eq!(EffectId::MachBias.phrase(-0.004), "Mach number reads low");
     }
 
     #[test]

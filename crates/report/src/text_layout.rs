@@ -18,7 +18,7 @@ pub enum Decimals {
 /// Unit and decimals of every column. Zero-fuel weight and fuel on board are written as fuel used is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextLayout {
-    families: [Family; FAMILIES.len()],
+    families: [Family; Column::ALL.len()],
 }
 
 /// A unit in which a column is not written.
@@ -37,7 +37,7 @@ impl TextLayout {
     #[must_use]
     pub fn industry() -> Self {
         Self {
-            families: FAMILIES.map(|column| Family {
+            families: Column::ALL.map(|column| Family {
                 unit: column.units()[0],
                 decimals: industry_decimals(column),
             }),
@@ -49,7 +49,7 @@ impl TextLayout {
     #[must_use]
     pub fn exact() -> Self {
         Self {
-            families: FAMILIES.map(|column| Family {
+            families: Column::ALL.map(|column| Family {
                 unit: *column
                     .units()
                     .iter()
@@ -72,7 +72,7 @@ impl TextLayout {
     ) -> Result<Self, UnitUnknown> {
         match column.units().iter().find(|known| known.name == unit) {
             Some(unit) => {
-                self.families[index_of(column)] = Family { unit: *unit, decimals };
+                self.families[column.index()] = Family { unit: *unit, decimals };
                 Ok(self)
             }
             None => Err(UnitUnknown { column, unit: unit.to_owned() }),
@@ -80,12 +80,12 @@ impl TextLayout {
     }
 
     pub(crate) fn unit(&self, column: Column) -> &'static str {
-        self.families[index_of(column)].unit.name
+        self.families[column.index()].unit.name
     }
 
     /// Appends a value of the column's stored unit.
     pub(crate) fn append(&self, column: Column, value: f64, text: &mut String) {
-        let Family { unit, decimals } = &self.families[index_of(column)];
+        let Family { unit, decimals } = &self.families[column.index()];
         append_number((value - unit.offset) / unit.factor, *decimals, text);
     }
 }
@@ -94,57 +94,6 @@ impl TextLayout {
 struct Family {
     unit: ColumnUnit,
     decimals: Decimals,
-}
-
-/// Every column, of an engine's columns the first.
-const FAMILIES: [Column; 21] = [
-    Column::Time,
-    Column::PressureAltitude,
-    Column::StaticAirTemperature,
-    Column::Mach,
-    Column::TrueAirspeed,
-    Column::GroundSpeed,
-    Column::Roll,
-    Column::Drift,
-    Column::N2(1),
-    Column::FuelFlowEngine(1),
-    Column::FuelFlowTotal,
-    Column::FuelUsed,
-    Column::Latitude,
-    Column::Longitude,
-    Column::TrueHeading,
-    Column::CenterOfGravity,
-    Column::TotalAirTemperature,
-    Column::N1(1),
-    Column::ExhaustGasTemperature(1),
-    Column::FuelQuantity,
-    Column::AntiIce,
-];
-
-const fn index_of(column: Column) -> usize {
-    match column {
-        Column::Time => 0,
-        Column::PressureAltitude => 1,
-        Column::StaticAirTemperature => 2,
-        Column::Mach => 3,
-        Column::TrueAirspeed => 4,
-        Column::GroundSpeed => 5,
-        Column::Roll => 6,
-        Column::Drift => 7,
-        Column::N2(_) => 8,
-        Column::FuelFlowEngine(_) => 9,
-        Column::FuelFlowTotal => 10,
-        Column::FuelUsed => 11,
-        Column::Latitude => 12,
-        Column::Longitude => 13,
-        Column::TrueHeading => 14,
-        Column::CenterOfGravity => 15,
-        Column::TotalAirTemperature => 16,
-        Column::N1(_) => 17,
-        Column::ExhaustGasTemperature(_) => 18,
-        Column::FuelQuantity => 19,
-        Column::AntiIce => 20,
-    }
 }
 
 const fn industry_decimals(column: Column) -> Decimals {
@@ -198,8 +147,8 @@ mod tests {
 
     #[test]
     fn every_column_has_its_own_place() {
-        for (index, column) in FAMILIES.into_iter().enumerate() {
-            assert_eq!(index_of(column), index, "{column:?}");
+        for (index, column) in Column::ALL.into_iter().enumerate() {
+            assert_eq!(column.index(), index, "{column:?}");
         }
     }
 

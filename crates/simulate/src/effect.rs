@@ -4,7 +4,7 @@ use core::fmt;
 use core::str::FromStr;
 
 use flight::Timestamp;
-use flight::effect::{EffectId, TypicalSize};
+use flight::effect::{EffectId, StepTarget, TypicalSize};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// An effect that no library has: what a diagnosis must call outside of it.
@@ -91,7 +91,7 @@ impl TruthEffect {
     #[must_use]
     pub const fn is_one_sided(self) -> bool {
         match self {
-            Self::Library(id) => is_one_sided(id),
+            Self::Library(id) => id.is_one_sided(),
             Self::Outside(_) => true,
         }
     }
@@ -147,34 +147,6 @@ impl<'de> Deserialize<'de> for TruthEffect {
     }
 }
 
-/// Whether an effect only ever makes the aircraft worse, or its size is no signed number.
-pub(crate) const fn is_one_sided(id: EffectId) -> bool {
-    matches!(
-        id,
-        EffectId::ZeroLiftDrag
-            | EffectId::ReynoldsNumber
-            | EffectId::TrimDragCg
-            | EffectId::AsymmetryDrag
-            | EffectId::AirframeAgeing
-            | EffectId::TsfcThrottle
-            | EffectId::PowerOfftake
-            | EffectId::AntiIceBleed
-            | EffectId::EngineAgeing
-            | EffectId::FuelHeatingValue
-    )
-}
-
-/// What a dated step multiplies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum StepTarget {
-    /// Drag coefficient.
-    #[default]
-    Drag,
-    /// Fuel flow.
-    FuelFlow,
-}
-
 /// An effect as a plan asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -187,13 +159,17 @@ pub struct PlannedEffect {
     /// `step_change`: the instant from which it holds; the middle of the fleet's dates when left out.
     #[serde(default, with = "optional_timestamp")]
     pub from: Option<Timestamp>,
-    /// `step_change`: what it multiplies.
-    #[serde(default)]
+    /// `step_change`: what it multiplies; drag when left out.
+    #[serde(default = "drag")]
     pub target: StepTarget,
     /// Where it sits: Mach number of the bump, lift coefficient of the spoilers, corrected thrust over its reference of
     /// `tsfc_throttle`'s pivot. A default of each when left out.
     #[serde(default)]
     pub at: Option<f64>,
+}
+
+const fn drag() -> StepTarget {
+    StepTarget::Drag
 }
 
 impl PlannedEffect {

@@ -54,7 +54,8 @@ pub use aircraft::{
     InducedDrag, MassLimits, PartLoad, Preset, RotorDeck, Switch, ThrustLapse, TrimDrag,
     TruthPhysics, TsfcLaw, ZeroLiftDrag,
 };
-pub use effect::{OutsideEffect, PlannedEffect, StepTarget, TruthEffect, UnknownEffect};
+pub use effect::{OutsideEffect, PlannedEffect, TruthEffect, UnknownEffect};
+pub use flight::effect::StepTarget;
 pub use fly::FlightError;
 pub use plan::{
     AircraftChoice, FleetDesign, Flights, Plan, PlanError, Recording, Scatter, SensorChoice,

@@ -2,7 +2,6 @@
 
 mod design;
 
-use flight::Timestamp;
 use serde::{Deserialize, Serialize};
 use units::OutOfDomain;
 
@@ -325,9 +324,4 @@ impl Plan {
             }],
         }
     }
-}
-
-/// Seconds since 1970 of an instant.
-pub(crate) fn seconds(instant: Timestamp) -> f64 {
-    instant.as_second() as f64
 }

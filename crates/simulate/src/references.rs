@@ -3,7 +3,7 @@
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
 use crate::aircraft::{AircraftTruth, TruthPhysics};
-use crate::plan::{legs, seconds};
+use crate::plan::legs;
 use crate::route::{FlightPlan, Loading};
 use crate::terms::{References, Terms};
 use crate::trim::{TrimPoint, Trimmed, trim_with};
@@ -22,7 +22,7 @@ pub(crate) fn references_of(
     let mut sums = Sums::default();
     let mut dates_s: Vec<f64> = Vec::with_capacity(flights.len());
     for flight in flights {
-        dates_s.push(seconds(flight.start));
+        dates_s.push(flight::seconds_since_1970(flight.start));
         let mut mass_kg = match flight.loading {
             // A tenth of the fuel is gone when the recording starts, about.
             Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } => {

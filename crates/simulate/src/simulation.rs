@@ -10,7 +10,7 @@ use flight::{Report, ReportDataError};
 use units::{OutOfDomain, check_within};
 
 use crate::aircraft::AircraftTruth;
-use crate::effect::{PlannedEffect, TruthEffect, is_one_sided};
+use crate::effect::{PlannedEffect, TruthEffect};
 use crate::fly::{FlightError, fly};
 use crate::plan::{AircraftChoice, Flights, Plan, PlanError};
 use crate::random::{Purpose, Streams};
@@ -352,7 +352,7 @@ fn draw_clutter(
             let drawn = plan.clutter_share * random.normal();
             let effect = TruthEffect::Library(id);
             let size = effect.typical_size(references.mass_kg)
-                * if is_one_sided(id) { drawn.abs() } else { drawn };
+                * if id.is_one_sided() { drawn.abs() } else { drawn };
             let planted = effects.iter().any(|(other, _)| other.id == effect);
             let known = id.entry().typical == TypicalSize::Known;
             (!planted && !known).then(|| (PlannedEffect::sized(effect, size), size))

@@ -3,7 +3,9 @@
 use flight::Timestamp;
 use serde::{Deserialize, Serialize};
 
-use crate::effect::{StepTarget, TruthEffect, optional_timestamp, timestamp};
+use flight::effect::StepTarget;
+
+use crate::effect::{TruthEffect, optional_timestamp, timestamp};
 use crate::state::{EnergyBook, MassBook};
 use crate::terms::{MAXIMUM_ENGINES, References};
 

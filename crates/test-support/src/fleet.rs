@@ -77,29 +77,10 @@ pub fn typical(id: EffectId) -> f64 {
     }
 }
 
-/// Whether physics allows only one sign.
-#[must_use]
-pub fn one_signed(id: EffectId) -> bool {
-    matches!(
-        id,
-        EffectId::ZeroLiftDrag
-            | EffectId::ReynoldsNumber
-            | EffectId::TrimDragCg
-            | EffectId::AsymmetryDrag
-            | EffectId::AirframeAgeing
-            | EffectId::TsfcThrottle
-            | EffectId::PowerOfftake
-            | EffectId::AntiIceBleed
-            | EffectId::EngineAgeing
-            | EffectId::FuelHeatingValue
-    )
-}
-
 /// An effect at a multiple of its typical size, sign drawn where physics leaves it open.
 pub fn plant(id: EffectId, times: f64, random: &mut Random) -> Planted {
-    let known = matches!(id.entry().typical, TypicalSize::Known);
-    let size = typical(id) * if known { 1.0 } else { times };
-    let sign = if one_signed(id) || known || random.uniform(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
+    let size = typical(id) * if id.is_known() { 1.0 } else { times };
+    let sign = if id.is_one_sided() || id.is_known() || random.uniform(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
     Planted { id, size: sign * size }
 }
 
@@ -131,7 +112,7 @@ fn clutter(planted: &[Planted], deviation: f64, random: &mut Random) -> Vec<Plan
             continue;
         }
         let size = random.normal(0.0, deviation) * typical(id);
-        all.push(Planted { id, size: if one_signed(id) { size.abs() } else { size } });
+        all.push(Planted { id, size: if id.is_one_sided() { size.abs() } else { size } });
     }
     all
 }

@@ -52,47 +52,6 @@ pub fn spread(effect: &[f64]) -> f64 {
     (effect.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / count).sqrt()
 }
 
-/// Variables that an effect's size in fuel flow depends on, by the names of bounds; none for a level.
-#[must_use]
-pub const fn driving_variables(id: EffectId) -> &'static [&'static str] {
-    match id {
-        EffectId::WaveDrag | EffectId::TsfcMachExponent => &["mach"],
-        EffectId::AntiIceBleed => &["static_air_temperature_k", "pressure_altitude_m"],
-        EffectId::LoadFactor | EffectId::AsymmetryDrag => &["roll_deg"],
-        EffectId::TsfcThrottle => {
-            &["corrected_thrust_ratio", "n2_percent", "pressure_altitude_m", "mach"]
-        }
-        EffectId::ReynoldsNumber => {
-            &["pressure_altitude_m", "corrected_thrust_ratio", "static_air_temperature_k", "mach"]
-        }
-        EffectId::IsobaricSlope => &["cross_wind_m_s", "latitude_deg"],
-        EffectId::EngineAgeing | EffectId::AirframeAgeing | EffectId::StepChange => &["date_s"],
-        EffectId::FuelQuantityGain => &["fuel_used_kg", "mass_kg"],
-        EffectId::TrimDragCg => &["center_of_gravity_percent_mac", "lift_coefficient"],
-        EffectId::TsfcTemperatureExponent => {
-            &["static_air_temperature_k", "pressure_altitude_m", "isa_deviation_k"]
-        }
-        EffectId::InducedDrag => &["lift_coefficient", "mass_kg", "pressure_altitude_m", "mach"],
-        EffectId::PowerOfftake => &[
-            "pressure_altitude_m",
-            "mach",
-            "mass_kg",
-            "static_air_temperature_k",
-            "lift_coefficient",
-            "corrected_thrust_ratio",
-            "n2_percent",
-        ],
-        EffectId::ZeroLiftDrag => &["lift_coefficient", "mach", "pressure_altitude_m", "mass_kg"],
-        EffectId::ZeroFuelMassBias => &["lift_coefficient", "mass_kg"],
-        EffectId::MachBias | EffectId::StaticPressureBias => &["mach", "lift_coefficient"],
-        EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_) => &["engine"],
-        EffectId::LocalGravity | EffectId::RotatingEarth => {
-            &["latitude_deg", "eastward_speed_m_s", "lift_coefficient"]
-        }
-        _ => &[],
-    }
-}
-
 /// Whether a place is said in a variable that drives the effect.
 #[must_use]
 pub fn names_driver(id: EffectId, slice: &Slice) -> bool {
@@ -100,7 +59,7 @@ pub fn names_driver(id: EffectId, slice: &Slice) -> bool {
 }
 
 fn has_driver(id: EffectId, bounds: &BTreeMap<String, [Option<f64>; 2]>) -> bool {
-    driving_variables(id).iter().any(|name| bounds.contains_key(*name))
+    id.entry().driven_by.iter().any(|variable| bounds.contains_key(variable.name()))
 }
 
 #[cfg(test)]
@@ -147,7 +106,7 @@ mod tests {
         };
         assert!(!is_known("phase_of_moon"));
         for id in EffectId::library(2) {
-            for name in driving_variables(id) {
+            for name in id.entry().driven_by.iter().map(|variable| variable.name()) {
                 assert!(is_known(name), "{id}: {name}");
             }
         }

@@ -7,7 +7,6 @@ use flight::effect::EffectId;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::places;
 use crate::scored_case::{Case, Located};
 use crate::share::Share;
 
@@ -265,7 +264,7 @@ impl<'a> SortedCases<'a> {
         // random.
         let has_place = |c: &&Case| {
             EffectId::from_name(c.truth())
-                .is_some_and(|id| !places::driving_variables(id).is_empty())
+                .is_some_and(|id| !id.entry().driven_by.is_empty())
         };
         let placed = planted
             .iter()

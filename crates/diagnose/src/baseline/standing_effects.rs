@@ -1,12 +1,11 @@
 //! Effects that a fleet shows at all times.
 
-use effects::HiddenParameters;
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 
 /// An effect that a baseline carries.
 pub(crate) struct Carried {
     pub(crate) id: EffectId,
-    pub(crate) hidden: HiddenParameters,
+    pub(crate) hidden: HiddenParameter,
     /// Prior standard deviation of its size over the typical size; 1 is all that physics says where the size is known.
     pub(crate) deviation: f64,
 }
@@ -28,10 +27,10 @@ pub(crate) const ENVIRONMENT: [Carried; 10] = [
 ];
 
 pub(crate) const fn carried(id: EffectId, deviation: f64) -> Carried {
-    Carried { id, hidden: HiddenParameters::DEFAULT, deviation }
+    Carried { id, hidden: id.entry().hidden, deviation }
 }
 
 const fn drag_rise(drag_divergence_mach: f64) -> Carried {
-    let hidden = HiddenParameters { drag_divergence_mach, ..HiddenParameters::DEFAULT };
+    let hidden = HiddenParameter::DragDivergenceMach(drag_divergence_mach);
     Carried { id: EffectId::WaveDrag, hidden, deviation: 1.0 }
 }

@@ -1,7 +1,7 @@
 //! What the verdict adds to the model.
 
-use effects::{EffectReferences, ThrottleArgument};
-use flight::effect::EffectId;
+use effects::EffectReferences;
+use flight::effect::{EffectId, HiddenParameter};
 
 use crate::hypotheses::evidence::Scored;
 use crate::library::Library;
@@ -31,20 +31,11 @@ impl Addition {
             .enumerate()
             .map(|(place, &column)| {
                 let id = library.effects[library.columns[column].effect].id;
-                let hidden = library.columns[column].hidden;
-                let is_step = id == EffectId::StepChange;
                 AddedEffect {
                     effect: id.to_string(),
                     size: scored.sizes[place],
                     standard_deviation: scored.deviations[place],
-                    throttle_pivot: (id == EffectId::TsfcThrottle).then_some(hidden.throttle_pivot),
-                    throttle_argument: (id == EffectId::TsfcThrottle
-                        && hidden.throttle_argument != ThrottleArgument::CorrectedThrust)
-                        .then_some(hidden.throttle_argument),
-                    drag_divergence_mach: (id == EffectId::WaveDrag)
-                        .then_some(hidden.drag_divergence_mach),
-                    step_from_s: is_step.then_some(hidden.step_from_s),
-                    step_target: is_step.then_some(hidden.step_target),
+                    hidden: library.columns[column].hidden,
                 }
             })
             .collect();
@@ -52,11 +43,7 @@ impl Addition {
             effect: EffectId::FuelHeatingValue.to_string(),
             size: percent,
             standard_deviation: SCATTER_SHARE * percent,
-            throttle_pivot: None,
-            throttle_argument: None,
-            drag_divergence_mach: None,
-            step_from_s: None,
-            step_target: None,
+            hidden: HiddenParameter::None,
         }));
         // The order of the verdict, the larger effect first.
         effects.sort_by_key(|added| names.iter().position(|name| *name == added.effect));

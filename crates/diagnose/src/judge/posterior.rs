@@ -1,6 +1,5 @@
 //! The probability of each effect, and what is printed of it.
 
-use effects::StepTarget;
 use flight::effect::EffectId;
 
 use crate::advice::distances::Distances;
@@ -157,25 +156,9 @@ pub(crate) fn class_of(
 }
 
 fn hidden_words(library: &Library, posterior: &Posterior) -> String {
-    let Some(effect) = posterior.effect else { return String::new() };
-    let column = &library.columns[posterior.model.model.columns[posterior.place]];
-    match library.effects[effect].id {
-        EffectId::StepChange => {
-            let target = match column.hidden.step_target {
-                StepTarget::FuelFlow => "fuel flow",
-                StepTarget::Drag => "drag",
-            };
-            #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
-            let from = flight::Timestamp::from_second(column.hidden.step_from_s as i64)
-                .map_or_else(|_| String::new(), |instant| instant.to_string());
-            format!("{target} from {from}")
-        }
-        EffectId::TsfcThrottle => format!(
-            "over {}, pivot {:.1}",
-            column.hidden.throttle_argument.words(),
-            column.hidden.throttle_pivot
-        ),
-        EffectId::WaveDrag => format!("Mdd {}", column.hidden.drag_divergence_mach),
-        _ => String::new(),
+    if posterior.effect.is_none() {
+        return String::new();
     }
+    let column = &library.columns[posterior.model.model.columns[posterior.place]];
+    column.hidden.to_string()
 }

@@ -1,9 +1,7 @@
 //! What a verdict would add to the model: its effects with sizes, hidden parameters and references, ready to be applied.
 
-use effects::{
-    AppliedLayer, EffectReferences, Effects, HiddenParameters, StepTarget, ThrottleArgument,
-};
-use flight::effect::EffectId;
+use effects::{AppliedLayer, EffectReferences, Effects};
+use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
 use serde::{Deserialize, Serialize};
 
 /// Effects of a verdict and what they are zero at.
@@ -16,9 +14,9 @@ pub struct Addition {
     pub references: EffectReferences,
 }
 
-/// One effect with its size and hidden parameters.
+/// One effect with its size and hidden parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(from = "AddedEffectText", into = "AddedEffectText")]
 pub struct AddedEffect {
     /// Name.
     pub effect: String,
@@ -26,22 +24,85 @@ pub struct AddedEffect {
     pub size: f64,
     /// Its standard deviation.
     pub standard_deviation: f64,
-    /// `tsfc_throttle`: corrected thrust over its reference at which TSFC is unchanged.
+    /// What it has beyond its size. Once applied, `tsfc_throttle` acts over corrected thrust, whatever found it.
+    pub hidden: HiddenParameter,
+}
+
+/// As files say it: each hidden parameter by its name, those that the effect does not have left out.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "AddedEffect")]
+struct AddedEffectText {
+    effect: String,
+    size: f64,
+    standard_deviation: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub throttle_pivot: Option<f64>,
-    /// `tsfc_throttle`: what told pivot and size, where it was not corrected thrust. Once applied, the effect acts over
-    /// corrected thrust all the same.
+    throttle_pivot: Option<f64>,
+    /// Left out where it is corrected thrust.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub throttle_argument: Option<ThrottleArgument>,
-    /// `wave_drag`: drag-divergence Mach number at lift coefficient 0.35.
+    throttle_argument: Option<ThrottleArgument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub drag_divergence_mach: Option<f64>,
-    /// `step_change`: instant from which it holds, s since 1970.
+    drag_divergence_mach: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub step_from_s: Option<f64>,
-    /// `step_change`: what it multiplies.
+    step_from_s: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub step_target: Option<StepTarget>,
+    step_target: Option<StepTarget>,
+}
+
+impl From<AddedEffect> for AddedEffectText {
+    fn from(added: AddedEffect) -> Self {
+        let mut text = Self {
+            effect: added.effect,
+            size: added.size,
+            standard_deviation: added.standard_deviation,
+            throttle_pivot: None,
+            throttle_argument: None,
+            drag_divergence_mach: None,
+            step_from_s: None,
+            step_target: None,
+        };
+        match added.hidden {
+            HiddenParameter::None => {}
+            HiddenParameter::DragDivergenceMach(mach) => text.drag_divergence_mach = Some(mach),
+            HiddenParameter::Throttle { pivot, argument } => {
+                text.throttle_pivot = Some(pivot);
+                text.throttle_argument =
+                    (argument != ThrottleArgument::CorrectedThrust).then_some(argument);
+            }
+            HiddenParameter::Step { from_s, target } => {
+                text.step_from_s = Some(from_s);
+                text.step_target = Some(target);
+            }
+        }
+        text
+    }
+}
+
+impl From<AddedEffectText> for AddedEffect {
+    fn from(text: AddedEffectText) -> Self {
+        // A name that no effect has is refused where the layer is made.
+        let usual =
+            EffectId::from_name(&text.effect).map_or(HiddenParameter::None, |id| id.entry().hidden);
+        let hidden = match usual {
+            HiddenParameter::None => HiddenParameter::None,
+            HiddenParameter::DragDivergenceMach(mach) => {
+                HiddenParameter::DragDivergenceMach(text.drag_divergence_mach.unwrap_or(mach))
+            }
+            HiddenParameter::Throttle { pivot, argument } => HiddenParameter::Throttle {
+                pivot: text.throttle_pivot.unwrap_or(pivot),
+                argument: text.throttle_argument.unwrap_or(argument),
+            },
+            HiddenParameter::Step { from_s, target } => HiddenParameter::Step {
+                from_s: text.step_from_s.unwrap_or(from_s),
+                target: text.step_target.unwrap_or(target),
+            },
+        };
+        Self {
+            effect: text.effect,
+            size: text.size,
+            standard_deviation: text.standard_deviation,
+            hidden,
+        }
+    }
 }
 
 /// A name that no effect has.
@@ -59,19 +120,12 @@ impl Addition {
     /// [`UnknownEffect`] for a name that the library does not have.
     pub fn layer(&self) -> Result<AppliedLayer, UnknownEffect> {
         let mut effects = Effects::none();
-        let mut hidden = HiddenParameters::default();
         for added in &self.effects {
             let id = EffectId::from_name(&added.effect)
                 .ok_or_else(|| UnknownEffect { name: added.effect.clone() })?;
-            effects = effects.with(id, added.size);
-            hidden.throttle_pivot = added.throttle_pivot.unwrap_or(hidden.throttle_pivot);
-            hidden.throttle_argument = added.throttle_argument.unwrap_or(hidden.throttle_argument);
-            hidden.drag_divergence_mach =
-                added.drag_divergence_mach.unwrap_or(hidden.drag_divergence_mach);
-            hidden.step_from_s = added.step_from_s.unwrap_or(hidden.step_from_s);
-            hidden.step_target = added.step_target.unwrap_or(hidden.step_target);
+            effects = effects.with(id, added.size).with_hidden(id, added.hidden);
         }
-        Ok(AppliedLayer { effects: effects.with_hidden(hidden), references: self.references })
+        Ok(AppliedLayer { effects, references: self.references })
     }
 }
 
@@ -85,11 +139,7 @@ mod tests {
             effect: effect.to_owned(),
             size,
             standard_deviation: 0.1,
-            throttle_pivot: None,
-            throttle_argument: None,
-            drag_divergence_mach: None,
-            step_from_s: None,
-            step_target: None,
+            hidden: HiddenParameter::None,
         };
         let references = EffectReferences {
             date_s: 1.5e9,
@@ -101,41 +151,36 @@ mod tests {
             mass_kg: 13_000.0,
             center_of_gravity_percent_mac: None,
         };
+        let step = HiddenParameter::Step { from_s: 1.6e9, target: StepTarget::Drag };
+        let rise = HiddenParameter::DragDivergenceMach(0.86);
         let addition = Addition {
             effects: vec![
-                AddedEffect {
-                    step_from_s: Some(1.6e9),
-                    step_target: Some(StepTarget::Drag),
-                    ..effect("step_change", 1.5)
-                },
-                AddedEffect { drag_divergence_mach: Some(0.86), ..effect("wave_drag", 0.006) },
+                AddedEffect { hidden: step, ..effect("step_change", 1.5) },
+                AddedEffect { hidden: rise, ..effect("wave_drag", 0.006) },
             ],
             references,
         };
         let layer = addition.layer().unwrap();
         assert_eq!(
             layer.effects,
-            Effects::one(EffectId::StepChange, 1.5).with(EffectId::WaveDrag, 0.006).with_hidden(
-                HiddenParameters {
-                    drag_divergence_mach: 0.86,
-                    step_from_s: 1.6e9,
-                    step_target: StepTarget::Drag,
-                    ..HiddenParameters::default()
-                }
-            )
+            Effects::one(EffectId::StepChange, 1.5)
+                .with_hidden(EffectId::StepChange, step)
+                .with(EffectId::WaveDrag, 0.006)
+                .with_hidden(EffectId::WaveDrag, rise)
         );
         // As files said it before N2 could tell a throttle effect, and after.
         let before =
             r#"(effect:"tsfc_throttle",size:0.6,standard_deviation:0.1,throttle_pivot:Some(0.8))"#;
         let added: AddedEffect = ron::from_str(before).unwrap();
         let layer = Addition { effects: vec![added.clone()], references }.layer().unwrap();
-        let over_thrust = HiddenParameters { throttle_pivot: 0.8, ..HiddenParameters::default() };
-        assert_eq!(*layer.effects.hidden(), over_thrust);
+        let over = |argument| HiddenParameter::Throttle { pivot: 0.8, argument };
+        let over_thrust = over(ThrottleArgument::CorrectedThrust);
+        assert_eq!(layer.effects.hidden(EffectId::TsfcThrottle), over_thrust);
         assert_eq!(ron::to_string(&added).unwrap(), before);
-        let by_n2 = AddedEffect { throttle_argument: Some(ThrottleArgument::N2), ..added };
+        let by_n2 = AddedEffect { hidden: over(ThrottleArgument::N2), ..added };
         let layer = Addition { effects: vec![by_n2], references }.layer().unwrap();
-        let over_n2 = HiddenParameters { throttle_argument: ThrottleArgument::N2, ..over_thrust };
-        assert_eq!(*layer.effects.hidden(), over_n2);
+        let over_n2 = over(ThrottleArgument::N2);
+        assert_eq!(layer.effects.hidden(EffectId::TsfcThrottle), over_n2);
         let unknown = Addition { effects: vec![effect("drag_faktor", 1.0)], references };
         assert_eq!(unknown.layer(), Err(UnknownEffect { name: "drag_faktor".to_owned() }));
     }

@@ -5,9 +5,9 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use effects::{AppliedEffects, EffectModel, EffectPoint, KnownPoint, Response, StepTarget};
+use effects::{AppliedEffects, EffectModel, EffectPoint, KnownPoint, Response};
 use flight::SegmentMeans;
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter, StepTarget};
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
@@ -228,21 +228,23 @@ impl<'a> Data<'a> {
         // A step is the same whenever it began, and nothing before.
         let mut steps: BTreeMap<StepTarget, ByChannel> = BTreeMap::new();
         for (column, difference) in library.columns.iter().zip(&differences.columns) {
-            let effect = &library.effects[column.effect];
-            let is_step = effect.id == EffectId::StepChange;
-            if is_step && row.point.date_s < column.hidden.step_from_s {
+            let step = match column.hidden {
+                HiddenParameter::Step { from_s, target } => Some((from_s, target)),
+                _ => None,
+            };
+            if step.is_some_and(|(from_s, _)| row.point.date_s < from_s) {
                 signatures.push([0.0; MAXIMUM_CHANNELS]);
                 continue;
             }
-            if let Some(known) = steps.get(&column.hidden.step_target).filter(|_| is_step) {
+            if let Some(known) = step.and_then(|(_, target)| steps.get(&target)) {
                 signatures.push(*known);
                 continue;
             }
             let found = difference.signature(model, &row.known, row.is_recorded, &self.predictor);
             // A segment that lacks the effect's input, or cannot be flown with it, says nothing about it.
             let found = found.unwrap_or([0.0; MAXIMUM_CHANNELS]);
-            if is_step {
-                steps.insert(column.hidden.step_target, found);
+            if let Some((_, target)) = step {
+                steps.insert(target, found);
             }
             signatures.push(found);
         }

@@ -1,7 +1,7 @@
 //! Signatures: what one unit of an effect changes in every channel, by central differences.
 
-use effects::{EffectModel, Effects, HiddenParameters, KnownPoint, Trial};
-use flight::effect::EffectId;
+use effects::{EffectModel, Effects, KnownPoint, Trial};
+use flight::effect::{EffectId, HiddenParameter};
 
 use crate::baseline::Baseline;
 use crate::baseline::standing_effects::ENVIRONMENT;
@@ -23,11 +23,11 @@ impl Difference {
         model: &EffectModel<'_>,
         at: &Effects,
         id: EffectId,
-        hidden: HiddenParameters,
+        hidden: HiddenParameter,
         step: f64,
     ) -> Self {
         let size = at.size(id);
-        let trial = |size: f64| model.trial(&at.clone().with(id, size).with_hidden(hidden));
+        let trial = |size: f64| model.trial(&at.clone().with(id, size).with_hidden(id, hidden));
         Self { up: trial(size + step), down: trial(size - step), step }
     }
 

@@ -3,7 +3,7 @@
 //! Difficult: one step changes a model's own columns and the residual, and nothing else. All models step together, so that the
 //! rows are gone through once a step; what was integrated out before stays factored, and the changed columns follow.
 
-use effects::{EffectModel, Effects, HiddenParameters, Trial};
+use effects::{EffectModel, Effects, Trial};
 use faer::{Mat, MatMut, MatRef};
 
 use crate::hypotheses::backgrounds::Background;
@@ -36,40 +36,12 @@ pub(crate) struct Relinearised {
 /// Effects of a model at these sizes.
 pub(crate) fn effects_of(library: &Library, columns: &[usize], sizes: &[f64]) -> Effects {
     let mut effects = Effects::none();
-    let mut hidden = HiddenParameters::default();
     for (&column, &size) in columns.iter().zip(sizes) {
         let at = &library.columns[column];
-        effects = effects.with(library.effects[at.effect].id, size);
-        hidden = merged(hidden, at.hidden);
+        let id = library.effects[at.effect].id;
+        effects = effects.with(id, size).with_hidden(id, at.hidden);
     }
-    effects.with_hidden(hidden)
-}
-
-/// Hidden parameters of two columns together: each sets its own and leaves the others at their defaults.
-fn merged(a: HiddenParameters, b: HiddenParameters) -> HiddenParameters {
-    let default = HiddenParameters::default();
-    let number = |a: f64, b: f64, default: f64| {
-        if b.total_cmp(&default).is_eq() { a } else { b }
-    };
-    HiddenParameters {
-        throttle_pivot: number(a.throttle_pivot, b.throttle_pivot, default.throttle_pivot),
-        throttle_argument: if b.throttle_argument == default.throttle_argument {
-            a.throttle_argument
-        } else {
-            b.throttle_argument
-        },
-        drag_divergence_mach: number(
-            a.drag_divergence_mach,
-            b.drag_divergence_mach,
-            default.drag_divergence_mach,
-        ),
-        step_from_s: number(a.step_from_s, b.step_from_s, default.step_from_s),
-        step_target: if b.step_target == default.step_target {
-            a.step_target
-        } else {
-            b.step_target
-        },
-    }
+    effects
 }
 
 /// One model on its way.
@@ -231,7 +203,13 @@ impl Linear {
         let effects = effects_of(library, columns, sizes);
         let difference = |&column: &usize| {
             let effect = &library.effects[library.columns[column].effect];
-            Difference::of(model, &effects, effect.id, *effects.hidden(), 0.5 * effect.typical)
+            Difference::of(
+                model,
+                &effects,
+                effect.id,
+                effects.hidden(effect.id),
+                0.5 * effect.typical,
+            )
         };
         Self {
             columns: columns.to_vec(),

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
 use flight::{FlightIdentity, MAXIMUM_ENGINES};
 use lut::surface::Basis;
 use units::{Angle, Mach, Mass, PressureAltitude};
@@ -8,7 +8,6 @@ use units::{Angle, Mach, Mass, PressureAltitude};
 use super::*;
 use crate::applied::AppliedLayer;
 use crate::model::EffectModel;
-use crate::set::{HiddenParameters, StepTarget, ThrottleArgument};
 
 const DATE_S: f64 = 1.5e9;
 const YEAR_S: f64 = 365.25 * 86_400.0;
@@ -47,18 +46,19 @@ fn references() -> EffectReferences {
     }
 }
 
-fn hidden() -> HiddenParameters {
-    HiddenParameters {
-        throttle_pivot: 0.8,
-        throttle_argument: ThrottleArgument::CorrectedThrust,
-        drag_divergence_mach: 0.86,
-        step_from_s: DATE_S - 0.5 * YEAR_S,
-        step_target: StepTarget::FuelFlow,
-    }
+/// The same effects with hidden parameters that are not the library's.
+fn hidden(effects: Effects) -> Effects {
+    let argument = ThrottleArgument::CorrectedThrust;
+    let from_s = DATE_S - 0.5 * YEAR_S;
+    let step = HiddenParameter::Step { from_s, target: StepTarget::FuelFlow };
+    effects
+        .with_hidden(EffectId::TsfcThrottle, HiddenParameter::Throttle { pivot: 0.8, argument })
+        .with_hidden(EffectId::WaveDrag, HiddenParameter::DragDivergenceMach(0.86))
+        .with_hidden(EffectId::StepChange, step)
 }
 
 fn layer(effects: Effects) -> AppliedLayer {
-    AppliedLayer { effects: effects.with_hidden(hidden()), references: references() }
+    AppliedLayer { effects: hidden(effects), references: references() }
 }
 
 fn with(effects: Effects) -> ExtendedModel {
@@ -159,7 +159,7 @@ fn recorded_with(id: EffectId, size: f64) -> Segment {
     let model = bare();
     let mut segment = segment();
     let effect_model = EffectModel::new(&model, model.drag_table(), references()).unwrap();
-    let effects = Effects::one(id, size).with_hidden(hidden());
+    let effects = hidden(Effects::one(id, size));
     // Shares of the engines count in the mass: the recorded ones are those of the response.
     for _ in 0..3 {
         let point = EffectPoint::from_means(&segment.means, DATE_S, 2);
@@ -191,11 +191,12 @@ fn a_model_that_contains_an_effect_leaves_nothing_of_it() {
 }
 
 #[test]
-fn a_throttle_effect_that_n2_told_acts_over_corrected_thrust() {
+fn a_throttle_effect_found_over_n2_acts_over_corrected_thrust() {
     let by_thrust = with(Effects::one(EffectId::TsfcThrottle, 0.6));
-    let told_by_n2 = HiddenParameters { throttle_argument: ThrottleArgument::N2, ..hidden() };
+    let over_n2 = HiddenParameter::Throttle { pivot: 0.8, argument: ThrottleArgument::N2 };
     let layer = AppliedLayer {
-        effects: Effects::one(EffectId::TsfcThrottle, 0.6).with_hidden(told_by_n2),
+        effects: Effects::one(EffectId::TsfcThrottle, 0.6)
+            .with_hidden(EffectId::TsfcThrottle, over_n2),
         references: references(),
     };
     let model = bare().with_effects(AppliedEffects::new(vec![layer])).unwrap();

@@ -1,12 +1,12 @@
 use std::sync::Arc;
 
+use flight::effect::{HiddenParameter, StepTarget, ThrottleArgument};
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment};
 use lut::surface::{Basis, Surface};
 use perf_model::PerformanceModel;
 
 use super::*;
 use crate::mean::mean_references;
-use crate::set::{HiddenParameters, StepTarget, ThrottleArgument};
 
 /// Constants of the numerical prototype whose signature table is the oracle: CD0 0.0188, K 0.056, Lock's wave drag with
 /// Mdd 0.797 + 0.1077 at lift coefficient 0.35, TSFC exponent 0.8.
@@ -103,13 +103,15 @@ fn hand(at: &EffectPoint) -> Hand {
 
 /// Central difference of ln recorded fuel flow, per unit of θ.
 fn slope(model: &EffectModel<'_>, at: &EffectPoint, effect: EffectId, step: f64) -> f64 {
-    let hidden = HiddenParameters {
-        drag_divergence_mach: MDD,
-        step_from_s: at.date_s - 1.0,
-        ..HiddenParameters::default()
+    let hidden = match effect.entry().hidden {
+        HiddenParameter::DragDivergenceMach(_) => HiddenParameter::DragDivergenceMach(MDD),
+        HiddenParameter::Step { target, .. } => {
+            HiddenParameter::Step { from_s: at.date_s - 1.0, target }
+        }
+        other => other,
     };
     let value = |size: f64| {
-        let effects = Effects::one(effect, size).with_hidden(hidden);
+        let effects = Effects::one(effect, size).with_hidden(effect, hidden);
         model.response(at, &effects).unwrap().ln_fuel_flow_total
     };
     (value(step) - value(-step)) / (2.0 * step)
@@ -192,6 +194,11 @@ fn every_signature_against_its_formula_by_hand() {
             (EffectId::IsobaricSlope, 0.01, 13_500.0 * coriolis * cross / thrust, 2e-4),
             (EffectId::StepChange, 0.01, percent, 2e-5),
         ];
+        for id in EffectId::ALL {
+            // A scatter moves no mean.
+            let tried = cases.iter().any(|case| case.0.entry() == id.entry());
+            assert_eq!(tried, *id != EffectId::FuelHeatingValue, "{id} has no formula by hand");
+        }
         for (effect, step, expected, relative) in cases {
             let found = slope(&effects, &at, effect, step);
             // A chord's slope is that of the cell's middle: up to 0.0025/0.36 = 0.7 % off along lift coefficient.
@@ -320,12 +327,8 @@ fn dated_steps_begin_on_their_date_and_know_drag_from_fuel_flow() {
     let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
     let at = point(0.8);
     let step = |from_s: f64, target: StepTarget| {
-        let hidden = HiddenParameters {
-            step_from_s: from_s,
-            step_target: target,
-            ..HiddenParameters::default()
-        };
-        let on = Effects::one(EffectId::StepChange, 3.0).with_hidden(hidden);
+        let hidden = HiddenParameter::Step { from_s, target };
+        let on = Effects::one(EffectId::StepChange, 3.0).with_hidden(EffectId::StepChange, hidden);
         effects.response(&at, &on).unwrap()
     };
     let plain = effects.response(&at, &Effects::none()).unwrap();
@@ -343,10 +346,10 @@ fn dated_steps_begin_on_their_date_and_know_drag_from_fuel_flow() {
 fn the_throttle_effect_over_n2_by_hand() {
     let performance = model(true);
     let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
-    let hidden = HiddenParameters { throttle_pivot: 0.9, ..HiddenParameters::default() };
-    let over = |at: &EffectPoint, throttle_argument: ThrottleArgument| {
-        let hidden = HiddenParameters { throttle_argument, ..hidden };
-        let on = Effects::one(EffectId::TsfcThrottle, 0.5).with_hidden(hidden);
+    let over = |at: &EffectPoint, argument: ThrottleArgument| {
+        let hidden = HiddenParameter::Throttle { pivot: 0.9, argument };
+        let id = EffectId::TsfcThrottle;
+        let on = Effects::one(id, 0.5).with_hidden(id, hidden);
         effects.response(at, &on).unwrap()
     };
     let at = EffectPoint { corrected_thrust_by_n2_n: Some(1.3 * 60_000.0), ..point(0.8) };
@@ -368,16 +371,18 @@ fn the_throttle_effect_over_n2_by_hand() {
 /// As a file said it before there was a choice.
 #[test]
 fn hidden_parameters_without_an_argument_are_over_corrected_thrust() {
-    let before =
-        "(throttle_pivot:0.8,drag_divergence_mach:0.86,step_from_s:1.5e9,step_target:drag)";
-    let read: HiddenParameters = ron::from_str(before).unwrap();
-    assert_eq!(read.throttle_argument, ThrottleArgument::CorrectedThrust);
+    let id = EffectId::TsfcThrottle;
+    let before = r#"(sizes:[("tsfc_throttle",0.6)],hidden:(throttle_pivot:0.8,drag_divergence_mach:0.84,step_from_s:inf,step_target:fuel_flow))"#;
+    let read: Effects = ron::from_str(before).unwrap();
+    let argument = ThrottleArgument::CorrectedThrust;
+    assert_eq!(read.hidden(id), HiddenParameter::Throttle { pivot: 0.8, argument });
+    assert_eq!(ron::to_string(&read).unwrap(), before);
     // And is written as before; N2 is said.
-    assert!(!ron::to_string(&read).unwrap().contains("throttle_argument"));
-    let by_n2 = HiddenParameters { throttle_argument: ThrottleArgument::N2, ..read };
+    let argument = ThrottleArgument::N2;
+    let by_n2 = read.with_hidden(id, HiddenParameter::Throttle { pivot: 0.8, argument });
     let text = ron::to_string(&by_n2).unwrap();
     assert!(text.contains("throttle_argument:n2"), "{text}");
-    assert_eq!(ron::from_str::<HiddenParameters>(&text).unwrap(), by_n2);
+    assert_eq!(ron::from_str::<Effects>(&text).unwrap(), by_n2);
 }
 
 #[test]
@@ -465,7 +470,7 @@ fn known_point_gives_the_same_response() {
     let at = point(0.82);
     let (known, plain) = effects.known_point(&at).unwrap();
     assert_eq!(plain, effects.response(&at, &Effects::none()).unwrap());
-    let hidden = HiddenParameters { step_from_s: 1.0e9, ..HiddenParameters::DEFAULT };
+    let step = HiddenParameter::Step { from_s: 1.0e9, target: StepTarget::FuelFlow };
     let mut tried = 0;
     for id in EffectId::library(2) {
         let size = 0.5 * effects.references().typical_size(id);
@@ -474,7 +479,7 @@ fn known_point_gives_the_same_response() {
             Effects::one(EffectId::MachBias, 0.003).with(id, -size),
             Effects::one(EffectId::LocalGravity, 1.0).with(id, size),
         ] {
-            let on = on.with_hidden(hidden);
+            let on = on.with_hidden(EffectId::StepChange, step);
             let short = effects.response_at(&known, &effects.trial(&on)).unwrap();
             assert_eq!(short, effects.response(&at, &on).unwrap(), "{id}");
             tried += 1;

@@ -23,7 +23,7 @@ fn refused(text: &str) -> (usize, usize, String) {
 }
 
 #[test]
-fn the_specifications_file_reads() {
+fn a_file_with_every_field_reads() {
     let aircraft = Aircraft::from_ron(CITATION_X).unwrap();
     assert_eq!(aircraft.type_code(), "C750");
     assert_eq!(aircraft.engines(), 2);

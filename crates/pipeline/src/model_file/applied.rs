@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use diagnose::{AddedEffect, Addition, UnknownEffect};
 use effects::{AppliedEffects, EffectModelError};
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 use serde::{Deserialize, Serialize};
 
 use super::ModelFile;
@@ -63,29 +63,17 @@ fn told(added: &AddedEffect) -> String {
     let unit = EffectId::from_name(&added.effect).map_or("", |id| id.entry().unit);
     let mut words =
         format!("{} {:+.4} ± {:.4} {unit}", added.effect, added.size, added.standard_deviation);
-    if let Some(pivot) = added.throttle_pivot {
-        let argument = added.throttle_argument.unwrap_or_default().words();
-        let _ = write!(words, ", over {argument}, pivot {pivot:.1}");
-    }
-    if let Some(mach) = added.drag_divergence_mach {
-        let _ = write!(words, ", Mdd {mach}");
-    }
-    if let Some(from_s) = added.step_from_s {
-        #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
-        let from = flight::Timestamp::from_second(from_s as i64)
-            .map_or_else(|_| from_s.to_string(), |instant| instant.to_string());
-        let _ = write!(words, ", from {from} on");
-    }
-    if let Some(target) = added.step_target {
-        let _ = write!(
-            words,
-            ", of {}",
-            match target {
-                effects::StepTarget::FuelFlow => "fuel flow",
-                effects::StepTarget::Drag => "drag",
-            }
-        );
-    }
+    // Writing to a string cannot fail.
+    let _ = match added.hidden {
+        HiddenParameter::None => Ok(()),
+        HiddenParameter::Step { from_s, target } => {
+            #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
+            let from = flight::Timestamp::from_second(from_s as i64)
+                .map_or_else(|_| from_s.to_string(), |instant| instant.to_string());
+            write!(words, ", from {from} on, of {}", target.words())
+        }
+        hidden => write!(words, ", {hidden}"),
+    };
     words
 }
 

@@ -5,7 +5,7 @@ use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
 use super::{Simulation, Tail};
 use crate::fly::{FlightSetup, RollTrim};
-use crate::plan::{Scatter, seconds};
+use crate::plan::Scatter;
 use crate::random::{Purpose, Stream, Streams};
 use crate::route::{FlightPlan, Loading};
 use crate::sensor::RecordedLoading;
@@ -126,7 +126,7 @@ impl Simulation {
         }
         let context = EffectContext {
             references: &tail.references,
-            date_s: seconds(plan.start),
+            date_s: flight::seconds_since_1970(plan.start),
             engines: self.aircraft.engines(),
         };
         for (effect, size) in tail.effects.iter().chain(&tail.clutter) {

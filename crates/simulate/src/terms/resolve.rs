@@ -1,13 +1,13 @@
 //! From an effect's name and size to terms.
 
-use flight::effect::EffectId;
+use flight::effect::{EffectId, StepTarget};
 use serde::{Deserialize, Serialize};
 
 use super::Terms;
 use super::drag::FrictionTerm;
 use super::fuel::ThrottleTerm;
 use crate::aircraft::DRAG_COEFFICIENT_PER_COUNT;
-use crate::effect::{OutsideEffect, PlannedEffect, StepTarget, TruthEffect};
+use crate::effect::{OutsideEffect, PlannedEffect, TruthEffect};
 
 const PERCENT: f64 = 0.01;
 /// Mach number of the drag bump and lift coefficient of the floating spoilers, where a plan sets none.
@@ -209,10 +209,8 @@ impl Terms {
 
 /// The instant from which a step holds, seconds since 1970.
 pub(crate) fn step_date_s(effect: &PlannedEffect, references: &References) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
-    effect.from.map_or(0.5 * (references.first_date_s + references.last_date_s), |instant| {
-        instant.as_second() as f64
-    })
+    let middle_s = 0.5 * (references.first_date_s + references.last_date_s);
+    effect.from.map_or(middle_s, flight::seconds_since_1970)
 }
 
 /// Years of ageing since the reference date, saturating: fast at first, on average over the fleet's dates one a year.

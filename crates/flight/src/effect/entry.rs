@@ -1,0 +1,182 @@
+//! What an entry of the library says.
+
+use super::HiddenParameter;
+
+/// What the library says about an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EffectEntry {
+    /// Name in files; `{k}` is an engine's number.
+    pub name: &'static str,
+    /// What it belongs to.
+    pub group: EffectGroup,
+    /// Unit of its size θ.
+    pub unit: &'static str,
+    /// Usual size in that unit.
+    pub typical: TypicalSize,
+    /// Which sign physics expects.
+    pub sign: EffectSign,
+    /// Inputs beyond the required columns that it acts through. Without one of them it can neither be predicted nor tested,
+    /// unless something stands in ([`NeededInput::has_substitute`]).
+    pub needs: &'static [NeededInput],
+    /// Its hidden parameter, with the value that holds where nothing is said.
+    pub hidden: HiddenParameter,
+    /// Variables that its share of fuel flow depends on; none where it is the same everywhere.
+    pub driven_by: &'static [DrivingVariable],
+    /// What θ does to the model, in one line.
+    pub perturbation: &'static str,
+    /// What it does, in words, by the sign of θ.
+    pub phrase: Phrase,
+}
+
+/// What an effect does, in words; `{k}` is an engine's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Phrase {
+    /// Where its size is positive, or has no sign.
+    pub positive: &'static str,
+    /// Where its size is negative.
+    pub negative: &'static str,
+}
+
+/// Which sign of an effect's size physics expects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum EffectSign {
+    /// Positive: friction falls with Reynolds number, age and offtakes cost fuel.
+    Positive,
+    /// Either.
+    Either,
+    /// The size is a standard deviation.
+    Spread,
+}
+
+/// What an effect belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum EffectGroup {
+    /// The airframe's drag.
+    Airframe,
+    /// The engines' consumption.
+    Engine,
+    /// What the aircraft weighs.
+    Mass,
+    /// What the sensors say.
+    Sensor,
+    /// The Earth and its air.
+    Environment,
+    /// A dated event.
+    Event,
+}
+
+/// The size that is usual for an effect, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TypicalSize {
+    /// A number in the effect's unit.
+    Absolute(f64),
+    /// This share of the aircraft's mass, in kg.
+    ShareOfMass(f64),
+    /// The coefficient is known from physics and is 1.
+    Known,
+}
+
+/// An input beyond the required columns that an effect acts through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum NeededInput {
+    /// `CG`.
+    CenterOfGravity,
+    /// `ROLL`.
+    Roll,
+    /// `WF(k)`: fuel flow engine by engine.
+    FuelFlowPerEngine,
+    /// `A/I`; static air temperature above −40 °C stands in where it is not recorded.
+    AntiIce,
+    /// `LAT`.
+    Latitude,
+    /// `HDG`.
+    TrueHeading,
+    /// `DRIFT`.
+    Drift,
+}
+
+impl NeededInput {
+    /// Whether something stands in for the input where it is not recorded, so that effects that act through it can be
+    /// predicted and tested all the same: static air temperature above −40 °C for anti-ice bleed (our choice: bleed is
+    /// used in visible moisture, of which there is little below).
+    #[must_use]
+    pub const fn has_substitute(self) -> bool {
+        matches!(self, Self::AntiIce)
+    }
+
+    /// The column's name in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::CenterOfGravity => "CG",
+            Self::Roll => "ROLL",
+            Self::FuelFlowPerEngine => "WF(k)",
+            Self::AntiIce => "A/I",
+            Self::Latitude => "LAT",
+            Self::TrueHeading => "HDG",
+            Self::Drift => "DRIFT",
+        }
+    }
+}
+
+/// A variable of a segment that an effect's share of fuel flow depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DrivingVariable {
+    /// Mach number.
+    Mach,
+    /// Static air temperature, K.
+    StaticAirTemperature,
+    /// Pressure altitude, m.
+    PressureAltitude,
+    /// Root of the mean squared roll angle, degrees.
+    Roll,
+    /// Corrected thrust over its reference.
+    CorrectedThrust,
+    /// Mean N2 of the engines, %.
+    N2,
+    /// Cross-wind to the left, m/s.
+    CrossWind,
+    /// Latitude, degrees.
+    Latitude,
+    /// Date, s since 1970.
+    Date,
+    /// Fuel used since engine start, kg.
+    FuelUsed,
+    /// Gross mass, kg.
+    Mass,
+    /// Center of gravity, % of the mean aerodynamic chord.
+    CenterOfGravity,
+    /// Lift coefficient.
+    LiftCoefficient,
+    /// Deviation from the standard day, K.
+    IsaDeviation,
+    /// Speed over the ground towards east, m/s.
+    EastwardSpeed,
+    /// Which engine.
+    Engine,
+}
+
+impl DrivingVariable {
+    /// The name of its bounds in a diagnosis, with the unit.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mach => "mach",
+            Self::StaticAirTemperature => "static_air_temperature_k",
+            Self::PressureAltitude => "pressure_altitude_m",
+            Self::Roll => "roll_deg",
+            Self::CorrectedThrust => "corrected_thrust_ratio",
+            Self::N2 => "n2_percent",
+            Self::CrossWind => "cross_wind_m_s",
+            Self::Latitude => "latitude_deg",
+            Self::Date => "date_s",
+            Self::FuelUsed => "fuel_used_kg",
+            Self::Mass => "mass_kg",
+            Self::CenterOfGravity => "center_of_gravity_percent_mac",
+            Self::LiftCoefficient => "lift_coefficient",
+            Self::IsaDeviation => "isa_deviation_k",
+            Self::EastwardSpeed => "eastward_speed_m_s",
+            Self::Engine => "engine",
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Hidden parameters: what an effect has beyond its size.
+
+use core::fmt;
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+
+/// What a dated step multiplies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepTarget {
+    /// Fuel flow.
+    FuelFlow,
+    /// Drag coefficient.
+    Drag,
+}
+
+/// What the parabola of `tsfc_throttle` runs over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThrottleArgument {
+    /// Corrected thrust as the model has it.
+    #[default]
+    CorrectedThrust,
+    /// The corrected thrust that the recorded N2 indicates; the model's where a point has none.
+    N2,
+}
+
+/// The hidden parameter of an effect: what it has beyond its size. Which kind an effect has, and what holds where nothing is
+/// said, is [`EffectEntry::hidden`](super::EffectEntry::hidden).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HiddenParameter {
+    /// A size and nothing else.
+    None,
+    /// `wave_drag`: drag-divergence Mach number at lift coefficient 0.35.
+    DragDivergenceMach(f64),
+    /// `tsfc_throttle`.
+    Throttle {
+        /// Corrected thrust over its reference at which TSFC is unchanged.
+        pivot: f64,
+        /// Where that corrected thrust comes from.
+        argument: ThrottleArgument,
+    },
+    /// `step_change`.
+    Step {
+        /// Instant from which it holds, s since 1970.
+        from_s: f64,
+        /// What it multiplies.
+        target: StepTarget,
+    },
+}
+
+impl StepTarget {
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::FuelFlow => "fuel flow",
+            Self::Drag => "drag",
+        }
+    }
+}
+
+impl ThrottleArgument {
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::CorrectedThrust => "corrected thrust",
+            Self::N2 => "N2",
+        }
+    }
+}
+
+impl HiddenParameter {
+    /// Whether this is a value of the same parameter.
+    #[must_use]
+    pub const fn is_like(self, other: Self) -> bool {
+        matches!(
+            (self, other),
+            (Self::None, Self::None)
+                | (Self::DragDivergenceMach(_), Self::DragDivergenceMach(_))
+                | (Self::Throttle { .. }, Self::Throttle { .. })
+                | (Self::Step { .. }, Self::Step { .. })
+        )
+    }
+}
+
+/// In words, empty without a parameter: "over N2, pivot 1.0", "Mdd 0.86", "drag from 2018-05-20T00:00:00Z".
+impl fmt::Display for HiddenParameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => Ok(()),
+            Self::DragDivergenceMach(mach) => write!(f, "Mdd {mach}"),
+            Self::Throttle { pivot, argument } => {
+                write!(f, "over {}, pivot {pivot:.1}", argument.words())
+            }
+            Self::Step { from_s, target } => {
+                write!(f, "{} from ", target.words())?;
+                #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
+                match Timestamp::from_second(*from_s as i64) {
+                    Ok(instant) => instant.fmt(f),
+                    Err(_) => Ok(()),
+                }
+            }
+        }
+    }
+}
