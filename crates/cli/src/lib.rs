@@ -1,4 +1,5 @@
-//! The command line of cruisefit: files, threads, progress, pages. Glue only; every computation is in a stage crate.
+//! The command line of cruisefit: arguments, files, folders, threads, progress. Every computation, document and page is in
+//! the crates below it; nothing of this one is public but [`run`].
 //!
 //! Exit status: 0 done; 1 done, but some input was refused (each refusal on stderr and in the summary); 2 nothing was
 //! done, with the reason on stderr.

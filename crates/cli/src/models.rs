@@ -28,6 +28,49 @@ pub(crate) fn write_model(model: &ModelFile, path: &Path) -> Result<(), Failure>
     write_atomically(path, text.as_bytes())
 }
 
+/// Why a report has no model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum NoModel {
+    /// Another number of engines than the model's aircraft.
+    #[error("found {found} engines, expected {expected} as the model's aircraft has")]
+    Engines {
+        /// That the report speaks of.
+        found: usize,
+        /// That the aircraft has.
+        expected: usize,
+    },
+    /// The tail has a model, which is of another type.
+    #[error(
+        "found aircraft type {found:?}, expected {expected:?}, the type of tail {tail}'s model"
+    )]
+    TypeOfTail {
+        /// Type in the report.
+        found: String,
+        /// Type of the model.
+        expected: String,
+        /// The tail.
+        tail: String,
+    },
+    /// Several models of the type, none of them the tail's.
+    #[error(
+        "found tail {tail:?}, expected a tail that one of the models has learnt, or one model of type {aircraft_type:?} for all others"
+    )]
+    Several {
+        /// Tail in the report.
+        tail: String,
+        /// Its type.
+        aircraft_type: String,
+    },
+    /// No model of the type.
+    #[error("found aircraft type {found:?}, expected {expected}")]
+    Type {
+        /// Type in the report.
+        found: String,
+        /// Types of all models, quoted.
+        expected: String,
+    },
+}
+
 /// The models of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Models(Vec<(PathBuf, ModelFile)>);
@@ -59,15 +102,13 @@ impl Models {
     /// The model for a flight: that of its tail, else that of its type; with as many engines as the report speaks of.
     ///
     /// # Errors
-    /// Why there is none, in words for a refusal.
-    pub(crate) fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, String> {
+    /// Why there is none.
+    pub(crate) fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, NoModel> {
         let model =
             self.for_report(&flight.reduced.identity.tail, &flight.reduced.aircraft_type)?;
         let engines = model.initial.aircraft().engines();
         match flight.reduced.engines {
-            Some(found) if found != engines => Err(format!(
-                "found {found} engines, expected {engines} as the model's aircraft has"
-            )),
+            Some(found) if found != engines => Err(NoModel::Engines { found, expected: engines }),
             _ => Ok(model),
         }
     }
@@ -75,18 +116,19 @@ impl Models {
     /// The model for a report of this tail and type.
     ///
     /// # Errors
-    /// Why there is none, in words for a refusal.
-    fn for_report(&self, tail: &str, aircraft_type: &str) -> Result<&ModelFile, String> {
+    /// Why there is none.
+    fn for_report(&self, tail: &str, aircraft_type: &str) -> Result<&ModelFile, NoModel> {
         let of_type = |model: &&ModelFile| model.initial.aircraft().type_code() == aircraft_type;
         let all = || self.0.iter().map(|(_, model)| model);
         if let Some(model) = all().find(|model| tail_of(model) == Some(tail)) {
             return if of_type(&model) {
                 Ok(model)
             } else {
-                Err(format!(
-                    "found aircraft type {aircraft_type:?}, expected {:?}, the type of tail {tail}'s model",
-                    model.initial.aircraft().type_code()
-                ))
+                Err(NoModel::TypeOfTail {
+                    found: aircraft_type.to_owned(),
+                    expected: model.initial.aircraft().type_code().to_owned(),
+                    tail: tail.to_owned(),
+                })
             };
         }
         if let Some(model) = all().filter(of_type).find(|model| tail_of(model).is_none()) {
@@ -97,19 +139,19 @@ impl Models {
         if let Some(model) = others.next() {
             return match others.next() {
                 None => Ok(model),
-                Some(_) => Err(format!(
-                    "found tail {tail:?}, expected a tail that one of the models has learnt, or one model of type \
-                     {aircraft_type:?} for all others"
-                )),
+                Some(_) => Err(NoModel::Several {
+                    tail: tail.to_owned(),
+                    aircraft_type: aircraft_type.to_owned(),
+                }),
             };
         }
         let mut types: Vec<&str> = all().map(|m| m.initial.aircraft().type_code()).collect();
         types.sort_unstable();
         types.dedup();
-        Err(format!(
-            "found aircraft type {aircraft_type:?}, expected {}",
-            types.iter().map(|t| format!("{t:?}")).collect::<Vec<_>>().join(" or ")
-        ))
+        Err(NoModel::Type {
+            found: aircraft_type.to_owned(),
+            expected: types.iter().map(|t| format!("{t:?}")).collect::<Vec<_>>().join(" or "),
+        })
     }
 }
 

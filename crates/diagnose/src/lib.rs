@@ -3,7 +3,7 @@
 //! What it is: [`diagnose`] takes a performance model, its drag table and flights that the table has not learnt, and returns
 //! a [`Diagnosis`]: named effects with probability, size and 95 % interval, the class of effects that this data cannot tell
 //! from the first, the measurements and flights on purpose that could, and what the effect leaves on flights it was not
-//! fitted to. [`Baseline`] teaches it what clean flights of the same model look like. [`trial`] scores blind trials.
+//! fitted to. [`Baseline`] teaches it what clean flights of the same model look like.
 //! What it is not: it adapts nothing, opens no file. The draws of noise behind `where` come from a seed that is an argument. It does
 //! not simulate; whoever runs a trial plants the effects.
 //!

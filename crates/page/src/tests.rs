@@ -1,7 +1,6 @@
 //! The page as a whole, of the flights in `fixtures` and of tails made up.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use pipeline::evaluation::{TailCounts, TailData, TailResult};
 use pipeline::model_file::ModelFile;
@@ -11,14 +10,13 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 use crate::place::Place;
 use crate::{report, samples, tail as section};
 
+const MODEL: &str = include_str!("../../../fixtures/global5000/expected/SIM-01.ron");
+const SEGMENTS: &[u8] = include_bytes!("../../../fixtures/global5000/expected/SIM-01_segments.csv");
+
 /// What was learnt from the flights in `fixtures`, under some tail's name.
 fn tail(name: &str, adapted: bool) -> TailResult {
-    let folder =
-        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/global5000/expected"));
-    let text = std::fs::read_to_string(folder.join("SIM-01.ron")).unwrap();
-    let model = ModelFile::from_text(&text).unwrap();
-    let segments = std::fs::read(folder.join("SIM-01_segments.csv")).unwrap();
-    let segments = segments_table::read(&segments).unwrap();
+    let model = ModelFile::from_text(MODEL).unwrap();
+    let segments = segments_table::read(SEGMENTS).unwrap();
     let counts = TailCounts { flights: 12, flights_new: 12, samples: 900 };
     let notes = vec!["roll <not> recorded".to_owned()];
     let data = TailData { tail: name.to_owned(), model, segments, counts, notes };

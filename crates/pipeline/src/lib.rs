@@ -1,4 +1,42 @@
 //! The chain from cruise reports to an adapted, evaluated and diagnosed model, as a library.
+//!
+//! What it is: the pieces between the stages. [`reduction`] takes a report to its stabilised segments, [`learning`] teaches a
+//! model one flight after the other, [`evaluation`] holds segments against a table, [`model_file`] is a model with what it
+//! has learnt, as text and back. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), what
+//! a run came to ([`summary`], [`diagnosis_document`]), and a diagnosis in words ([`diagnosis_text`]).
+//! What it is not: it opens no file, starts no thread, reads no clock and prints nothing. It computes no drag, no fuel flow
+//! and no verdict; those are the stages'.
+//!
+//! The one design decision: text in, text out. JSON, CSV, RON and English are made here from the stages' typed results, and
+//! nowhere below; whoever calls decides where the bytes come from and where they go. That costs a copy of every file in
+//! memory.
+//!
+//! Limits:
+//! - A model file is read whole: one of a thousand nodes by law `bayes` has some 10 MB.
+//! - Flights have to be given in the order of flying; law `paper` learns something else in another order, and no function
+//!   here sorts them.
+//! - Words are English.
+//!
+//! ```
+//! use perf_model::{Aircraft, Guide, initial_model};
+//! use pipeline::model_file::ModelFile;
+//!
+//! let aircraft = Aircraft::from_ron(
+//!     r#"(
+//!         name: "JSBSim global5000", type_code: "GL5T", engines: 2, wing_area_m2: 94.94690688,
+//!         tsfc: (static_lb_per_lbf_h: 0.657, mach_exponent: 0),
+//!         table: (lift_coefficient: (0.30, 0.60, 0.05), mach: (0.76, 0.88, 0.02)),
+//!     )"#,
+//! )?;
+//! let guide = Guide::from_csv(include_bytes!("../../perf-model/tests/golden/guide.csv"))?;
+//! let initial = initial_model(&aircraft, &guide)?;
+//! let text = ModelFile::from_initial(&initial, &guide).to_text()?;
+//! assert_eq!(ModelFile::from_text(&text)?.initial, initial.model);
+//! // One digit that a disk or an editor changed is noticed.
+//! let damaged = text.replacen("94.94690688", "94.94690689", 1);
+//! assert!(ModelFile::from_text(&damaged).is_err());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod checksum;
 pub mod columns;
@@ -8,7 +46,9 @@ pub mod diagnosis_text;
 pub mod difference;
 pub mod evaluation;
 pub mod learning;
+pub mod merging;
 pub mod model_file;
+pub mod model_table;
 pub mod reduction;
 pub mod segments_table;
 pub mod statistics;

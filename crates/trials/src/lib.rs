@@ -1,11 +1,33 @@
-//! Blind trials of the diagnosis: the virtual aircraft flies with an effect that its model lacks.
+//! Blind trials of the diagnosis: a virtual aircraft flies with an effect that its model lacks.
 //!
-//! Three worlds, kept apart by types. [`DrawnCase`] knows what was planted and flies it; [`DiagnosisInputs`] is all that the
-//! diagnosis is given, and nothing in it names an effect; the truth lies on disk, sealed by its hash before the first
-//! diagnosis begins, and [`Seal::open`] is the only way back to it, for the scorer, after the verdict.
+//! What it is: a [`TrialPlan`] says what is planted, how large, how often; [`DiagnosedCase::run`] draws, flies and diagnoses
+//! one case; [`DiagnosedCase::score`] holds the verdict against the truth; [`summarize`] makes [`SCORES`] of all cases.
+//! What it is not: it opens no file and starts no thread. Cases do not know of each other; whoever runs them writes them
+//! down and may run them in any order.
 //!
-//! Everything of a case follows from the plan's seed and the case's label: cases can be run in any order, on any number of
-//! threads, today or after an interruption.
+//! The one design decision: three worlds, kept apart by types. [`DrawnCase`] knows what was planted and flies it;
+//! [`DiagnosisInputs`] is all that the diagnosis is given, and no effect is named in it; the truth is sealed by its hash
+//! before the first diagnosis begins, and [`Seal::open`] is the only way back to it, for the scorer, after the verdict.
+//! Everything of a case follows from the plan's seed and the case's label. That costs a second flight of every case without
+//! what was planted, when it is scored.
+//!
+//! Limits:
+//! - The truth flies in the equations of `simulate`: what neither those nor the library have is not tried.
+//! - The aircraft file of a case states the virtual sensors as they are; an operator knows them less well.
+//! - Scores are of one type of aircraft at a time.
+//!
+//! ```
+//! use trials::{Seal, TrialPlan};
+//!
+//! let plan = TrialPlan::from_ron(
+//!     "(seed: 1, parts: [(denied: exact, background: clean, kind: null, repeats: 2)])",
+//! )?;
+//! assert_eq!(plan.cases(2).len(), 2);
+//! // What was sealed is known again by its bytes, and only by them.
+//! let seal = Seal::of_texts(["{}"]);
+//! assert!(seal.open(1, b"{ }").is_err());
+//! # Ok::<(), trials::TrialPlanError>(())
+//! ```
 
 mod case;
 mod diagnosis_inputs;

@@ -58,15 +58,13 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     }
     check_refused(&refused, files, arguments.reports.strict, false)?;
     // A tail's flights are learnt in order; tails do not know of each other.
-    let mut learnt: Vec<(TailResult, Vec<RefusedReport>)> =
+    let learnt: Vec<(TailResult, Vec<RefusedReport>)> =
         jobs.into_par_iter().map(|job| job.learn(!arguments.no_remainder)).collect();
     let mut read = 0;
     let mut results = Vec::new();
-    for (result, not_learnt) in &mut learnt {
+    for (result, not_learnt) in learnt {
         read += result.summary.flights_new;
-        refused.append(not_learnt);
-    }
-    for (result, _) in learnt {
+        refused.extend(not_learnt);
         if result.summary.flights_new > 0 || result.summary.flights > 0 {
             results.push(result);
         }
@@ -82,24 +80,35 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     }
     results.sort_by(|one, other| one.tail.cmp(&other.tail));
     refused.sort_by(|one, other| one.path.cmp(&other.path));
-    let summary = Summary {
-        schema: SCHEMA,
-        reports: ReportsSummary {
-            read,
-            already_known,
-            refused: refused.iter().map(RefusedSummary::from).collect(),
-        },
-        tails: results.iter().map(|result| result.summary.clone()).collect(),
+    let reports = ReportsSummary {
+        read,
+        already_known,
+        refused: refused.iter().map(RefusedSummary::from).collect(),
     };
-    folder.write("summary.json", &summary.to_json())?;
-    let title = "Adaptation of performance models to cruise reports";
-    folder.write("report.html", page::report(&summary, &results, title).as_bytes())?;
+    let summary = write_results(&folder, reports, &results)?;
     let text = format!(
         "{}Written to {}: models/, segments/, summary.json, report.html\n",
         summary.to_text(),
         show(&arguments.output)
     );
     Ok(Outcome { text, refused })
+}
+
+/// Writes `summary.json` and `report.html`.
+fn write_results(
+    folder: &Folder,
+    reports: ReportsSummary,
+    results: &[TailResult],
+) -> Result<Summary, Failure> {
+    let summary = Summary {
+        schema: SCHEMA,
+        reports,
+        tails: results.iter().map(|result| result.summary.clone()).collect(),
+    };
+    folder.write("summary.json", &summary.to_json())?;
+    let title = "Adaptation of performance models to cruise reports";
+    folder.write("report.html", page::report(&summary, results, title).as_bytes())?;
+    Ok(summary)
 }
 
 fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {

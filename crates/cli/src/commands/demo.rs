@@ -45,7 +45,29 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
     );
     let reports = reports_below(&folder.join("reports/N750CF"))?;
     let (teaching, judging) = reports.split_at(TEACHING_FLIGHTS.min(reports.len()));
-    let mut judged = vec![("initial model".to_owned(), model.clone())];
+    let adapted = adapt_by_both_laws(folder, teaching, progress, &mut text)?;
+    let judged: Vec<(String, PathBuf)> =
+        std::iter::once(("initial model".to_owned(), model)).chain(adapted).collect();
+    judge(folder, &judged, judging, &mut text)?;
+    later_period(folder, progress, &mut text)?;
+    let _ = writeln!(
+        text,
+        "\nLook at {} and {}; everything above can be run again by hand from {}.",
+        show(&folder.join("adapted-bayes/report.html")),
+        show(&folder.join("diagnosis/diagnosis.html")),
+        show(folder)
+    );
+    Ok(Outcome::text(text))
+}
+
+/// The initial model adapted by each law: its name and where its model is.
+fn adapt_by_both_laws(
+    folder: &Path,
+    teaching: &[PathBuf],
+    progress: Progress,
+    text: &mut String,
+) -> Result<Vec<(String, PathBuf)>, Failure> {
+    let mut models = Vec::new();
     for (law, threshold, arguments) in [
         (LawName::Bayes, None, "--law bayes"),
         (LawName::Paper, Some(1.0), "--law paper --threshold 1"),
@@ -55,7 +77,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
         let learnt = adapt::run(
             &AdaptArgs {
                 reports: reports_arguments(teaching),
-                models: ModelArgs { models: vec![model.clone()] },
+                models: ModelArgs { models: vec![folder.join("MODEL.ron")] },
                 output: adapted.clone(),
                 law,
                 threshold,
@@ -69,10 +91,20 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
             "$ cruisefit adapt … --model MODEL.ron {arguments} -o adapted-{name}\n{}",
             learnt.text
         );
-        judged.push((format!("law {name}"), adapted.join("models/N750CF.ron")));
+        models.push((format!("law {name}"), adapted.join("models/N750CF.ron")));
     }
+    Ok(models)
+}
+
+/// Errors of every model on flights and static points that none of them has learnt.
+fn judge(
+    folder: &Path,
+    judged: &[(String, PathBuf)],
+    judging: &[PathBuf],
+    text: &mut String,
+) -> Result<(), Failure> {
     let _ = writeln!(text, "{} flights that no model has seen:", judging.len());
-    for (name, path) in &judged {
+    for (name, path) in judged {
         let (errors, coverage) = unseen_errors(path, judging)?;
         let covered = coverage.map_or_else(String::new, |share| {
             format!("; {:.0} % of them within the stated 95 % interval", 100.0 * share)
@@ -83,7 +115,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
     for (name, path) in judged {
         let predicted = folder.join(format!("static-{}.csv", name.replace(' ', "-")));
         let outcome = predict::run(&PredictArgs {
-            model: path,
+            model: path.clone(),
             points: folder.join("static.csv"),
             output: Some(predicted.clone()),
             table_only: false,
@@ -99,15 +131,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
             }
         );
     }
-    later_period(folder, progress, &mut text)?;
-    let _ = writeln!(
-        text,
-        "\nLook at {} and {}; everything above can be run again by hand from {}.",
-        show(&folder.join("adapted-bayes/report.html")),
-        show(&folder.join("diagnosis/diagnosis.html")),
-        show(folder)
-    );
-    Ok(Outcome::text(text))
+    Ok(())
 }
 
 /// Flies the tail a year later with an effect that its model does not know, diagnoses it against the adapted model, and only

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::args::{AdaptArgs, GoldenCommand, InitArgs, LawName, ModelArgs, ReportsArgs};
-use crate::commands::{Outcome, adapt, export, init};
+use crate::commands::{Outcome, adapt, init};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, read_text, write_atomically};
 use crate::models::read_model;
 use crate::progress::Progress;
 use pipeline::difference::{Tolerance, differences};
+use pipeline::model_table;
 
 /// `golden.ron`: a run and how exactly its results must come again.
 #[derive(Debug, Deserialize)]
@@ -160,14 +161,14 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
     tracing::debug!("{}", outcome.text);
     let initial = read_model(&model_path)?;
     let mut files = vec![
-        ("initial_table.csv".to_owned(), text_of(&export::table(&initial).to_csv())),
+        ("initial_table.csv".to_owned(), text_of(&model_table::table(&initial).to_csv())),
         ("summary.json".to_owned(), read_text(&output.join("summary.json"))?),
     ];
     for name in names_in(&output.join("models"))? {
         let path = output.join("models").join(&name);
         let model = read_model(&path)?;
         let stem = name.trim_end_matches(".ron");
-        files.push((format!("{stem}_table.csv"), text_of(&export::table(&model).to_csv())));
+        files.push((format!("{stem}_table.csv"), text_of(&model_table::table(&model).to_csv())));
         files.push((format!("{stem}.ron"), read_text(&path)?));
         let segments = output.join("segments").join(format!("{stem}.csv"));
         files.push((format!("{stem}_segments.csv"), read_text(&segments)?));

@@ -1,13 +1,10 @@
 //! `cruisefit merge`: what models of one initial model have learnt, added up.
 
-use std::collections::BTreeSet;
-
 use crate::args::MergeArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::models::{read_model, write_model};
-use pipeline::learning;
-use pipeline::model_file::{LawState, Learnt, LedgerEntry, ModelFile};
+use pipeline::{learning, merging};
 
 /// Runs the command.
 ///
@@ -26,7 +23,7 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
     };
     let mut merged = first.clone();
     for (path, other) in others {
-        add(&mut merged, other).map_err(|reason| Failure::bad_file(path, reason))?;
+        merging::add(&mut merged, other).map_err(|error| Failure::bad_file(path, error))?;
     }
     let Some(learnt) = &mut merged.learnt else {
         return Err(Failure::bad_file(&arguments.models[0], "has learnt nothing"));
@@ -42,42 +39,4 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         arguments.models.len(),
         show(&arguments.output)
     )))
-}
-
-fn add(merged: &mut ModelFile, other: &ModelFile) -> Result<(), String> {
-    if let Some((what, difference)) = merged.difference_of_initial(other) {
-        return Err(format!("another {what} than the first model: {difference}"));
-    }
-    if let Some(difference) = merged.difference_of_law(other) {
-        return Err(format!("another law or setting than the first model: {difference}"));
-    }
-    let (Some(learnt), Some(more)) = (&mut merged.learnt, &other.learnt) else {
-        return Err("a model that has learnt nothing".to_owned());
-    };
-    let key = |entry: &LedgerEntry| (entry.tail.clone(), entry.start.clone(), entry.flight.clone());
-    let known: BTreeSet<_> = learnt.ledger.iter().map(key).collect();
-    if let Some(twice) = more.ledger.iter().find(|entry| known.contains(&key(entry))) {
-        return Err(format!(
-            "tail {} flight {} of {} is in the ledger of an earlier model too: it would count twice",
-            twice.tail, twice.flight, twice.start
-        ));
-    }
-    add_learnt(learnt, more)
-}
-
-fn add_learnt(learnt: &mut Learnt, more: &Learnt) -> Result<(), String> {
-    let (LawState::Bayes { state, .. }, LawState::Bayes { state: other, .. }) =
-        (&mut learnt.law, &more.law)
-    else {
-        return Err("law paper cannot be merged: what it learns depends on the order".to_owned());
-    };
-    state.merge(other).map_err(|error| error.to_string())?;
-    if learnt.tail != more.tail {
-        learnt.tail = format!("{}+{}", learnt.tail, more.tail);
-    }
-    learnt.references.merge(&more.references);
-    // It is learnt from segments, which a model does not keep.
-    learnt.baseline = None;
-    learnt.ledger.extend(more.ledger.iter().cloned());
-    Ok(())
 }

@@ -1,0 +1,75 @@
+//! A model's drag table, and the polynomial behind it, as tables of named columns.
+
+use adapt::bayes::{PolynomialError, polynomial_export};
+use lut::surface::{self, FitError};
+
+use crate::columns::Columns;
+use crate::model_file::ModelFile;
+
+/// Why no polynomial follows from a table.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelPolynomialError {
+    /// A table learnt by law `bayes`.
+    #[error(transparent)]
+    Posterior(#[from] PolynomialError),
+    /// Any other table.
+    #[error(transparent)]
+    Fit(#[from] FitError),
+}
+
+/// One row per node: coordinates, drag coefficients, confidence, and whether the guide left it extrapolated.
+pub fn table(model: &ModelFile) -> Columns {
+    let drag = model.drag_coefficient();
+    let grid = model.grid();
+    let nodes = || 0..grid.nodes();
+    let mut columns = Columns::default();
+    columns.number("lift_coefficient", nodes().map(|node| Some(grid.coordinates(node).0)));
+    columns.number("mach", nodes().map(|node| Some(grid.coordinates(node).1)));
+    columns.number("drag_coefficient", nodes().map(|node| Some(drag.value_at_node(node))));
+    let confidence = model.confidence();
+    columns.number(
+        "confidence",
+        nodes().map(|node| Some(confidence.map_or(1.0, |confidence| confidence[node]))),
+    );
+    let initial = model.initial.drag_table();
+    columns
+        .number("initial_drag_coefficient", nodes().map(|node| Some(initial.value_at_node(node))));
+    columns
+        .count("extrapolated", nodes().map(|node| u64::from(model.initial.extrapolated()[node])));
+    columns
+}
+
+/// One row per coefficient of the polynomial fitted to the table: its value and, where the law knows it, its covariance with
+/// each of the six.
+///
+/// # Errors
+/// A table whose nodes do not determine the polynomial.
+pub fn polynomial(model: &ModelFile) -> Result<Columns, ModelPolynomialError> {
+    let basis = model.initial.polynomial().basis;
+    let (surface, covariance) = if let Some(posterior) = model.posterior() {
+        let export = polynomial_export(posterior, basis)?;
+        (export.surface, Some(export.covariance))
+    } else {
+        let grid = model.grid();
+        let points: Vec<_> = (0..grid.nodes())
+            .map(|node| {
+                let (x, y) = grid.coordinates(node);
+                (x, y, model.drag_coefficient().value_at_node(node), 1.0)
+            })
+            .collect();
+        (surface::fit(basis, &points)?.surface, None)
+    };
+    let mut columns = Columns::default();
+    columns.count("coefficient", 0..surface.coefficients.len() as u64);
+    columns.number("value", surface.coefficients.iter().map(|value| Some(*value)));
+    if let Some(covariance) = covariance {
+        for other in 0..surface.coefficients.len() {
+            columns.number(
+                format!("covariance_{other}"),
+                covariance.iter().map(|row| Some(row[other])),
+            );
+        }
+    }
+    Ok(columns)
+}
