@@ -148,7 +148,7 @@ fn only_known(rule: &str, offenders: impl Iterator<Item = String>) {
         .map(str::to_owned)
         .collect();
     let list =
-        |lines: Vec<&String>| lines.iter().map(|line| format!("{line}\n")).collect::<String>();
+        |lines: Vec<&String>| lines.into_iter().map(String::as_str).collect::<Vec<_>>().join("\n");
     let new = list(found.difference(&known).collect());
     let gone = list(known.difference(&found).collect());
     assert!(new.is_empty(), "mend, do not list:\n{new}");
