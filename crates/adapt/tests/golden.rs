@@ -2,7 +2,7 @@
 //!
 //! The two runs in `tests/golden` always run; all twelve run where the reference folder is present.
 #![expect(clippy::disallowed_methods, reason = "the reference folder is not in every checkout")]
-#![expect(clippy::unwrap_used, clippy::panic, reason = "a test")]
+#![expect(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test")]
 #![expect(clippy::float_cmp, reason = "numbers read from the same text")]
 
 use std::fs::read_to_string;

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `derive` | report to track, with the copy of the report that it takes |
 //! | `segment` | track to eight segments and 121 verdicts |
-#![expect(clippy::unwrap_used, clippy::panic, reason = "a benchmark")]
+#![expect(clippy::unwrap_used, reason = "a benchmark")]
 
 use std::hint::black_box;
 

@@ -25,6 +25,10 @@ s ft degC - kt kt deg deg % % lb/h lb/h lb deg deg deg %MAC -
 ";
 
 /// The header of [`FORMAT_SAMPLE`].
+///
+/// # Panics
+///
+/// Never: its date is a constant.
 #[must_use]
 pub fn header() -> ReportHeader {
     ReportHeader {

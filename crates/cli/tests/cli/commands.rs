@@ -140,6 +140,19 @@ fn golden_check_finds_a_changed_value() {
     assert_eq!(std::fs::read_to_string(&table).unwrap(), text);
 }
 
+/// A folder whose description is missing, moved or misspelt must not count as checked.
+#[test]
+fn golden_check_refuses_a_folder_without_a_description() {
+    let scratch = tempfile::tempdir().unwrap();
+    let check = |folders: &[&std::path::Path]| {
+        let mut words: Vec<&std::ffi::OsStr> = vec!["golden".as_ref(), "check".as_ref()];
+        words.extend(folders.iter().map(|folder| folder.as_os_str()));
+        cruisefit(&words).expect(2).says("golden.ron");
+    };
+    check(&[scratch.path()]);
+    check(&[&root().join("fixtures/global5000"), scratch.path()]);
+}
+
 #[test]
 fn the_real_a320_recording() {
     let recording = root().join("fixtures/a320-traffic/fuelflow_a320.csv.gz");
