@@ -1,6 +1,7 @@
-//! Effects that a model contains for good: those of past diagnoses, applied.
+//! Effects of past diagnoses that a model contains permanently.
 //!
-//! An applied `tsfc_throttle` always acts over corrected thrust, also where its size was found over N2: the same in every command.
+//! An applied `tsfc_throttle` always acts over corrected thrust, even where its size was found over N2, so that every
+//! command agrees.
 //!
 //! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change what is
 //! predicted. Effects of what is recorded (sensors, load sheet, fuel quantity) correct recordings before anything looks at

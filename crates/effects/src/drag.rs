@@ -9,7 +9,7 @@ use crate::point::EffectPoint;
 use crate::recorded::AsFlown;
 use crate::terms::{Layers, Terms};
 
-/// Height of the parabola of fourth degree by which drag rises, per Mach⁴: Lock's.
+/// Factor of Lock's fourth-power drag rise, per Mach⁴.
 const LOCK_FACTOR: f64 = 20.0;
 /// Mach number by which drag divergence (∂CD/∂M = 0.1) lies above the beginning of the rise: (0.1/80)^(1/3).
 const LOCK_OFFSET_MACH: f64 = 0.1077;

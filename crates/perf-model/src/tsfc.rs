@@ -2,7 +2,7 @@
 
 use units::{Mach, Tsfc};
 
-/// The constants of the TSFC law, all engines alike.
+/// The constants of the TSFC law, the same for all engines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TsfcLaw {
     /// At rest, at sea level of the standard day.
@@ -17,7 +17,7 @@ pub struct TsfcLaw {
 /// TSFC = TSFC0·√θ·(1 + M)^n                                          [forces.5]
 /// ```
 ///
-/// with θ = SAT/T0 of the static air temperature. The law knows no throttle: it is for cruise thrust. NaN for θ < 0.
+/// with θ = SAT/T0 of the static air temperature. The law has no throttle: it is for cruise thrust. NaN for θ < 0.
 ///
 /// # Source
 /// Ghazi et al. 2020, equation (5). The radical, θ, M and n are legible; their arrangement is constrained by

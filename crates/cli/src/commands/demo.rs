@@ -1,4 +1,4 @@
-//! `cruisefit demo`: the whole chain on data that comes with the program.
+//! `cruisefit demo`: the whole chain on data built into the program.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -15,13 +15,13 @@ use crate::simulated_reports;
 use pipeline::checksum::sha256;
 use pipeline::statistics::ErrorStatistics;
 
-/// Flights that teach; the later ones judge.
+/// Flights that are learnt; the later ones are used for evaluation.
 const TEACHING_FLIGHTS: usize = 30;
 
 /// Runs the command.
 ///
 /// # Errors
-/// A place that cannot be written.
+/// A file or folder that cannot be written.
 pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, Failure> {
     let folder = &arguments.output;
     let mut text = String::new();
@@ -134,8 +134,8 @@ fn judge(
     Ok(())
 }
 
-/// Flies the tail a year later with an effect that its model does not know, diagnoses it against the adapted model, and only
-/// then opens what was true.
+/// Flies the tail a year later with an effect that its model does not have, diagnoses it against the adapted model, and
+/// only then opens the truth.
 fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<(), Failure> {
     let later = folder.join("later");
     let flights =
@@ -225,7 +225,7 @@ fn told(errors: &ErrorStatistics) -> String {
     )
 }
 
-/// The errors that `predict` wrote beside measured fuel flows.
+/// The errors that `predict` wrote next to the measured fuel flows.
 fn errors_of(path: &Path) -> Result<Vec<f64>, Failure> {
     let wrong = |error: csv::Error| Failure::bad_file(path, error);
     let mut reader = csv::Reader::from_path(path).map_err(wrong)?;

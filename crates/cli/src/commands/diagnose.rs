@@ -24,7 +24,7 @@ use pipeline::{diagnosis_text, table_uncertainty};
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
     let options = Options {
         effects: effects("--effects", &arguments.effects)?,
@@ -93,7 +93,7 @@ fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Fa
         .collect()
 }
 
-/// Flights that are diagnosed together, and the model that they are held against.
+/// Flights that are diagnosed together, and the model that they are compared with.
 struct Group<'a> {
     name: String,
     model: &'a ModelFile,
@@ -125,13 +125,13 @@ fn group<'a>(
                 flight.reduced.identity.start
             );
             if !arguments.allow_learnt {
-                let reason = format!("{said} (--allow-learnt diagnoses it all the same)");
+                let reason = format!("{said} (--allow-learnt diagnoses it anyway)");
                 reading.refused.push(RefusedReport::whole(flight.path, reason));
                 continue;
             }
-            tracing::warn!("{said}; diagnosed all the same, as asked");
+            tracing::warn!("{said}; diagnosed anyway, as asked");
         }
-        // A pool is of one model: what differs between models is no gap of either.
+        // A pool has one model: a difference between models is not a gap of either.
         let (key, name) = if arguments.pool {
             (model.initial.aircraft().type_code().to_owned(), "*".to_owned())
         } else {

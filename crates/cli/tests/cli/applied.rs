@@ -1,4 +1,4 @@
-//! `diagnose --apply`, and what the commands make of a model that contains effects.
+//! `diagnose --apply`, and how the commands treat a model that contains effects.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,8 +8,8 @@ use units::Mach;
 
 use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers};
 
-/// Two tails of one virtual aircraft whose physics is the model's: `NEW`, and `WORN` with TSFC of engine 2 up 3 %. Sensors
-/// that only round, no scatter between flights.
+/// Two tails of one virtual aircraft whose physics is the model's: `NEW`, and `WORN` with TSFC of engine 2 up 3 %.
+/// Sensors only round; no scatter between flights.
 const PLAN: &str = r#"(
     seed: 6,
     physics: (reynolds_number: Off, trim_drag: Off, asymmetry: Off, part_load: Off, temperature_exponent: Off, offtake: Off),
@@ -97,10 +97,10 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     let (learnt, worn) = (at("new/models/NEW.ron"), at("flown/WORN"));
     let (found, applied) = (at("found"), at("applied"));
 
-    // A meter of engine 2 that reads high looks the same: who applies has to say which it is.
+    // A meter of engine 2 that reads high looks the same: the user has to state which of the two it is.
     run(&[&"diagnose", &worn, &"--model", &learnt, &"-o", &found, &"--apply", &applied])
         .expect(1)
-        .says("these flights cannot tell apart tsfc_engine_2, fuel_flow_gain_2");
+        .says("these flights cannot distinguish tsfc_engine_2, fuel_flow_gain_2");
     assert!(bytes_below(&applied).is_empty());
     let named = [&"--effects" as &dyn AsRef<std::ffi::OsStr>, &"tsfc_engine_2"];
     let mut words: Vec<&dyn AsRef<std::ffi::OsStr>> =
@@ -121,7 +121,7 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     adapt(&initial, &at("charged"), std::slice::from_ref(&worn), &[]).expect(0);
     adapt(&extended, &at("alone"), std::slice::from_ref(&worn), &[])
         .expect(0)
-        .says("adapting begins from its initial part and the effects applied to it");
+        .says("adaptation starts from its initial part and the effects applied to it");
     let (charged, alone) = (against_truth(&at("charged")), against_truth(&at("alone")));
     eprintln!(
         "mean, rms, share within 0.5 %: {charged:.3?} without the effect, {alone:.3?} with it"
@@ -142,10 +142,10 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     let more = predicted(&alone) / predicted(&charged) - 1.0;
     assert!((100.0 * more - 1.5).abs() < 0.15, "{more}");
 
-    // Another set of effects is another beginning.
+    // Another set of effects is another initial state.
     adapt(&initial, &at("alone"), std::slice::from_ref(&worn), &[])
         .expect(2)
-        .says("was begun with another set of applied effects: tsfc_engine_2 +")
+        .says("was started with another set of applied effects: tsfc_engine_2 +")
         .says("against none");
     run(&[
         &"merge",
@@ -298,7 +298,7 @@ fn files_with_effects_read_back_to_the_same_bytes_and_wrong_ones_are_refused() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
     let extended = extended_by_hand(&model, &one("drag_factor", 2.0));
-    // `tune` and `adapt` write the effects on.
+    // `tune` and `adapt` keep the effects in what they write.
     let out = scratch.path().join("out");
     adapt(&extended, &out, &[fixture("reports/0001.txt")], &[]).expect(0);
     let written = std::fs::read_to_string(out.join("models/SIM-01.ron")).unwrap();

@@ -1,4 +1,4 @@
-//! Black-box tests of the binary: what it writes, what it says, how it ends.
+//! Black-box tests of the binary: what it writes, what it prints, how it exits.
 
 #![expect(
     clippy::disallowed_methods,

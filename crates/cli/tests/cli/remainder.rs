@@ -1,4 +1,4 @@
-//! `predict` with what a model remembers beside its table.
+//! `predict` with what a model has learnt in addition to its table.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
