@@ -2,9 +2,9 @@
 //!
 //! An applied `tsfc_throttle` always acts over corrected thrust, even where its size was found over N2, so that every
 //! command agrees.
-//!
-//! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change what is
-//! predicted. Effects of what is recorded (sensors, load sheet, fuel quantity) correct recordings before anything looks at
+//! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change
+//! predictions. Effects of the recording (sensors, load sheet, fuel quantity) correct recordings before anything else
+//! uses them, and no prediction contains them.
 //! them, and no prediction knows of them.
 
 use flight::effect::{EffectId, HiddenParameter, NeededInput, ThrottleArgument};
@@ -19,16 +19,16 @@ use crate::response::fit_polar;
 use crate::set::{Effects, SizedEffect};
 use crate::terms::Terms;
 
-/// What a flight point says a date in.
+/// The column of flight points that holds the date.
 const DATE: &str = "date";
 
-/// Effects that were applied together, with what they are relative to.
+/// Effects that were applied together, with the references that they are relative to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AppliedLayer {
     /// Sizes and hidden parameters.
     pub effects: Effects,
-    /// What they are zero at.
+    /// The conditions at which they are zero.
     pub references: EffectReferences,
 }
 

@@ -1,4 +1,4 @@
-//! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be seen.
+//! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be detected.
 
 use diagnose::{Cause, Diagnosis, Separation, VerdictKind};
 use maud::{Markup, html};
@@ -8,12 +8,12 @@ use crate::frame::framed;
 use pipeline::diagnosis_text;
 use pipeline::summary::{ReportsSummary, counted};
 
-/// Causes shown of each tail.
+/// Causes shown for each tail.
 const CAUSES_SHOWN: usize = 8;
-/// Measurements or flights shown of each effect, whatever is found.
+/// Measurements or flights shown for each effect, whatever is found.
 const SEPARATIONS_SHOWN: usize = 2;
 
-/// The page of diagnoses, and what became of the reports that they are of.
+/// The page of diagnoses, with the counts of the reports behind them.
 #[must_use]
 pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[Diagnosis]) -> String {
     let title = "Diagnosis of performance models";
@@ -148,7 +148,8 @@ fn detectable(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-/// Effects that share a class at their typical sizes, whatever was found, and what would tell each from the nearest.
+/// Effects that share a class at their typical sizes, whatever was found, and what would distinguish each from the
+/// nearest.
 fn beforehand(diagnosis: &Diagnosis) -> Markup {
     let told: Vec<_> = diagnosis
         .detectable

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::text::{breakpoint, counted, signed_tenths};
 use crate::view::{Point, TailView};
 
-/// Columns and rows that fit a page; cells of a finer grid are put together.
+/// Columns and rows that fit on a page; cells of a finer grid are merged.
 const MOST_COLUMNS: usize = 12;
 const MOST_ROWS: usize = 24;
 /// A coordinate this near below a breakpoint is on it, as for the table itself.
@@ -15,20 +15,20 @@ const FULL_COLOR_PERCENT: f64 = 5.0;
 /// Shades on each side of zero.
 const SHADES: f64 = 5.0;
 
-/// What is known of a cell.
+/// The content of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Cell {
     segments: usize,
     sum_percent: f64,
 }
 
-/// Cells between breakpoints, and what lies in them.
+/// Cells between breakpoints, and the segments in them.
 struct Envelope {
     lift_coefficient: Vec<f64>,
     mach: Vec<f64>,
     /// Lift coefficient outer, Mach number inner.
     cells: Vec<Cell>,
-    /// Cells of the table in one of these, along lift coefficient and Mach number.
+    /// Number of table cells in each of these, along lift coefficient and Mach number.
     merged: (usize, usize),
 }
 

@@ -1,4 +1,4 @@
-//! `report.html`: what a run came to.
+//! `report.html`: the result of a run.
 
 use std::collections::BTreeMap;
 
@@ -12,16 +12,16 @@ use crate::place::Place;
 use crate::text::counted;
 use crate::{fleet, tail};
 
-/// Points of a chart at most.
+/// Largest number of points of a chart.
 const MOST_POINTS: usize = 2000;
-/// Points of a chart at least, however many tails there are.
+/// Smallest number of points of a chart, however many tails there are.
 const FEWEST_POINTS: usize = 200;
 /// Points of one kind on the whole page: about 1 MB.
 const POINTS_OF_PAGE: usize = 60_000;
 /// Up to this many tails all are printed, folded or not.
 const TAILS_PRINTED: usize = 8;
 
-/// The page: `summary` and what is known of each tail under a title.
+/// The page: `summary` and the details of each tail under a title.
 pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
     let ids = ids(tails);
     let most_points = (POINTS_OF_PAGE / tails.len().max(1)).clamp(FEWEST_POINTS, MOST_POINTS);

@@ -196,11 +196,11 @@ mod tests {
         );
         assert_eq!(
             message(&format!("{HEADER},weight_lb\n1,2,3,4,5\n")),
-            "line 1, column 5 (weight_lb): column stands twice, first as column 1"
+            "line 1, column 5 (weight_lb): column appears twice, first as column 1"
         );
         assert_eq!(
             message(&format!("{HEADER},mass_kg\n1,2,3,4,5\n")),
-            "line 1, column 5 (mass_kg): column says the same as weight_lb, expected one of the two"
+            "line 1, column 5 (mass_kg): column is the same quantity as weight_lb, expected only one of the two"
         );
         assert_eq!(
             message("weight_lb,pressure_altitude_ft,true_airspeed_kt\n1,2,3\n"),

@@ -1,4 +1,4 @@
-//! Settings from past flights, and the polynomial handed on.
+//! Settings fitted to past flights, and the exported polynomial.
 
 use adapt::bayes::{
     BayesSettings, Posterior, Search, SettingValues, log_evidence, polynomial_export, tune,
@@ -8,7 +8,7 @@ use lut::surface::{Basis, Surface};
 use crate::fleet::{Fleet, Noise, SENSOR_NOISE, believed_drag, grid, solved, table, times};
 use crate::golden;
 
-/// A fleet with little noise of its own: the search finds that, and the evidence never falls on the way.
+/// A fleet with little noise of its own: the search finds that, and the evidence never falls along its steps.
 #[test]
 fn tuning_finds_the_noise_that_was_flown() {
     let initial = table(&grid(0.05, 0.95), believed_drag);
@@ -61,8 +61,8 @@ fn tuning_on_ten_flights_does_no_harm_to_the_others() {
     }
 }
 
-/// Fleets quieter than the aircraft file and the settings say: the truth is in the model class, so the stated 95 %
-/// intervals must cover 92 to 98 % of flights that neither taught nor tuned.
+/// Fleets quieter than the aircraft file and the settings state: the truth is in the model class, so the stated 95 %
+/// intervals must cover 92 to 98 % of flights that were used neither for learning nor for tuning.
 #[test]
 fn after_tuning_intervals_of_quiet_fleets_cover() {
     let initial = table(&grid(0.05, 0.95), believed_drag);
@@ -103,7 +103,7 @@ fn is_inside(posterior: &Posterior, observation: &flight::Observation) -> bool {
     (excess / posterior.initial().interpolate(&cell)).powi(2) <= 1.96 * 1.96 * variance
 }
 
-/// More noise than there is, and less, is less likely.
+/// Both more noise than there is and less are less likely.
 #[test]
 fn evidence_prefers_the_truth() {
     let initial = table(&grid(0.05, 0.95), believed_drag);

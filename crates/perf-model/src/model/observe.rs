@@ -29,7 +29,7 @@ pub enum ObserveError {
         inertia_n: f64,
     },
     /// The segment's instant is outside the range of timestamps.
-    #[error("{time_s} s after START is no instant")]
+    #[error("{time_s} s after START is not a valid instant")]
     NoInstant {
         /// Time since START, s.
         time_s: f64,

@@ -1,10 +1,10 @@
-//! The air-data computer: from pressures and total temperature to what the report carries.
+//! The air-data computer: from pressures and total temperature to the quantities of the report.
 
 use units::{OutOfDomain, Pressure, check_within};
 
 use crate::aircraft::{HEATING_FACTOR, pressure_rise};
 
-/// What the computer is given.
+/// The inputs of the computer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AirDataInputs {
     pub(crate) static_pressure_pa: f64,
@@ -14,7 +14,7 @@ pub(crate) struct AirDataInputs {
     pub(crate) mach_bias: f64,
 }
 
-/// What it says.
+/// Its outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AirData {
     pub(crate) pressure_altitude_m: f64,
@@ -52,7 +52,7 @@ pub(crate) fn compute(inputs: &AirDataInputs) -> Result<AirData, OutOfDomain> {
     })
 }
 
-/// Total pressure behind the true static pressure and Mach number, Pa.
+/// Total pressure at the true static pressure and Mach number, Pa.
 pub(crate) fn total_pressure_pa(static_pressure_pa: f64, mach: f64) -> f64 {
     static_pressure_pa * pressure_rise(1.0 + HEATING_FACTOR * mach * mach)
 }

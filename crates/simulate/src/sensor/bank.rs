@@ -1,4 +1,4 @@
-//! All sensors of one flight: fed at every step, read at every sample, made into a report at the end.
+//! All sensors of one flight: fed at every step, read at every sample, combined into a report at the end.
 
 use flight::{
     FlightIdentity, FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportDataError,
@@ -22,7 +22,7 @@ use crate::terms::{MAXIMUM_ENGINES, RecordedTerms};
 /// Pascals in a hectopascal.
 const PASCALS_PER_HECTOPASCAL: f64 = 100.0;
 
-/// What the load sheet and the dispatcher say.
+/// Figures of the load sheet and the dispatcher.
 #[derive(Clone, Debug)]
 pub(crate) struct RecordedLoading {
     pub(crate) aircraft_type: String,
@@ -74,7 +74,7 @@ struct LagShares {
 }
 
 impl<'a> SensorBank<'a> {
-    /// Draws the errors of a flight. `fuel_used_kg` is what has truly been used when the recording starts.
+    /// Draws the errors of a flight. `fuel_used_kg` is the fuel truly used when the recording starts.
     pub(crate) fn draw(
         sensors: &'a Sensors,
         columns: &'a Columns,
@@ -210,12 +210,12 @@ impl<'a> SensorBank<'a> {
         seen
     }
 
-    /// What the meters have counted of the fuel used before the recording, engines alike.
+    /// The meters' count of the fuel used before the recording, engines alike.
     fn metered_before(&self, fuel_used_kg: f64) -> f64 {
         let each = fuel_used_kg / self.engines as f64;
         (0..self.engines)
             .map(|k| {
-                // Bias aside: a meter's zero is not known before it runs.
+                // Without the bias: a meter's zero is not known before it runs.
                 let gain = self.fuel_flow[k].steady(1.0) - self.fuel_flow[k].steady(0.0);
                 each * gain * self.recorded.fuel_flow_factor[k]
             })
@@ -283,7 +283,7 @@ impl<'a> SensorBank<'a> {
         rows.fuel_used_kg
             .push(round_to(used_lb, self.sensors.fuel_used_resolution_lb) * KILOGRAMS_PER_POUND);
         let left_lb = (self.fuel_on_board_kg - state.fuel_used_kg) / KILOGRAMS_PER_POUND;
-        // A gauge shows no less than empty.
+        // A gauge does not indicate less than empty.
         let gauge_lb = self.fuel_quantity.measure(left_lb, random).max(0.0);
         push_optional(
             &mut rows.fuel_quantity_kg,
