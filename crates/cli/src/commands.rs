@@ -46,7 +46,10 @@ fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failu
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
     let inputs = inputs::collect(&arguments.reports, mapping.is_some())?;
     if inputs.skipped > 0 {
-        tracing::info!(skipped = inputs.skipped, "files skipped: their endings are not those of reports");
+        tracing::info!(
+            skipped = inputs.skipped,
+            "files skipped: their endings are not those of reports"
+        );
     }
     let bar = progress.bar(inputs.files.len(), "reading reports");
     let criteria =

@@ -75,7 +75,7 @@ pub(crate) fn envelope(view: &TailView) -> Markup {
                 }
             }
             p.note {
-                "Empty cells: no segment. The table goes on beyond the outer cells, where nobody flew."
+                "Empty cells: no segment. The table continues beyond the outer cells, where nobody flew."
                 @if envelope.merged != (1, 1) {
                     " A cell here is " (envelope.merged.0) " by " (envelope.merged.1) " cells of the table."
                 }

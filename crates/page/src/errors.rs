@@ -62,7 +62,7 @@ pub(crate) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     let beyond = counted_before.beyond() + counted_after.beyond();
     html! {
         figure {
-            figcaption { b { "Distribution of errors." } " Positive: burns more than the model says." }
+            figcaption { b { "Distribution of errors." } " Positive: the aircraft burns more than the model predicts." }
             (legend(&entries))
             (chart.draw(&marks))
             @if beyond > 0 {
@@ -142,7 +142,7 @@ pub(crate) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     }
     html! {
         figure {
-            figcaption { b { "Error over time." } " A step may be an event, a slope wear, a flight apart from all others its load sheet." }
+            figcaption { b { "Error over time." } " A step may be an event, a slope may be wear, a flight far from all others may have a wrong load sheet." }
             (legend(&entries))
             (chart.draw(&marks))
             @if shown.len() < view.points.len() {
@@ -165,8 +165,8 @@ pub(crate) fn flights_apart(view: &TailView) -> Markup {
         @if !flights.is_empty() {
             figure {
                 figcaption {
-                    b { "Flights apart from the others." }
-                    " Mean error " @if view.adapted { "before " } "furthest from the middle one (median, "
+                    b { "Flights far from the others." }
+                    " Mean error " @if view.adapted { "before " } "farthest from the middle one (median, "
                     (signed(Some(median))) " %)."
                     @if view.adapted {
                         " Not “after”: the final table has also learnt from a flight that was recorded wrongly."

@@ -105,7 +105,7 @@ pub(crate) fn refused(reports: &ReportsSummary) -> Markup {
         @if !reports.refused.is_empty() {
             section {
                 h2 { "Refused reports" }
-                p { "Nothing of these is in any figure on this page." }
+                p { "No figure on this page includes them." }
                 table.refused {
                     thead { tr {
                         th scope="col" { "file:line:column" }

@@ -39,7 +39,7 @@ pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
             @if tails.len() > 1 {
                 p.note {
                     "Each tail unfolds at a click on its line, or on its name in the table above."
-                    @if tails.len() > TAILS_PRINTED { " Printed are those that are unfolded." }
+                    @if tails.len() > TAILS_PRINTED { " Only unfolded tails are printed." }
                 }
             }
             @for (k, result) in tails.iter().enumerate() {
@@ -116,9 +116,9 @@ fn how_to_read(adapted: bool) -> Markup {
                      forecast."
                 }
                 dt { "nodes informed" }
-                dd { "Share of the table's nodes that a segment has ever adapted. Elsewhere the model has learnt nothing from flying." }
+                dd { "Share of the table's nodes that a segment has ever adapted. Elsewhere the model has learnt nothing from flights." }
                 dt { "refits" }
-                dd { "How often the polynomial was fitted anew to the whole table." }
+                dd { "How often the polynomial was fitted again to the whole table." }
             }
             dt { "outside table" }
             dd { "Segments beyond the table's lift coefficients or Mach numbers. They have no error and are in no error figure." }

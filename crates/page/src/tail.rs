@@ -83,7 +83,7 @@ fn notes(result: &TailResult, view: &TailView) -> Markup {
     notes.extend(envelope::outside(view));
     if let Some(first) = view.not_observed.first() {
         notes.push(format!(
-            "{} say nothing about drag, so without an error and in no figure; the first: {first}.",
+            "{} give no drag, so they have no error and are in no figure; the first: {first}.",
             counted(view.not_observed.len(), "segment")
         ));
     }

@@ -294,7 +294,11 @@ fn mappings_that_are_refused() {
             "unit: \"kg/min\")",
             "unit \"kg/min\" for WF(1), expected one of lb/h kg/h kg/s",
         ),
-        ("utc_offset: \"Z\"", "utc_offset: \"UTC\"", "\"UTC\" is not an instant or offset of RFC 3339"),
+        (
+            "utc_offset: \"Z\"",
+            "utc_offset: \"UTC\"",
+            "\"UTC\" is not an instant or offset of RFC 3339",
+        ),
         ("separator: ';'", "separator: '§'", "'§' cannot separate fields or begin comments"),
         ("separator: ';'", "separator: '5'", "'5' cannot separate fields or begin comments"),
         ("recovery_factor: 1.0", "recovery_factor: 1.1", "recovery factor 1.1 - outside 0.5..=1 -"),

@@ -99,7 +99,11 @@ fn another_setting_or_initial_model_is_refused_unless_restarted() {
     adapt(&model, &output, &[report(2)], &["--law", "paper", "--threshold", "1", "--restart"])
         .expect(0);
     assert_eq!(summary(&output)["tails"][0]["flights"], 1);
-    assert_eq!(bytes_below(&scratch.path().join("out.1")), before, "the old folder is kept under another name");
+    assert_eq!(
+        bytes_below(&scratch.path().join("out.1")),
+        before,
+        "the old folder is kept under another name"
+    );
 
     // The same guide with one figure changed is another initial model.
     let guide = std::fs::read_to_string(fixture("guide.csv")).unwrap();
