@@ -88,7 +88,7 @@ impl Folder {
         if segments.len() as u64 != expected {
             return Err(Failure::bad_file(
                 &path,
-                format!("{} segments, the model's ledger says {expected}", segments.len()),
+                format!("{} segments, the model's ledger has {expected}", segments.len()),
             ));
         }
         Ok(segments)

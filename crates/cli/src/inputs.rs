@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_folder_is_said() {
+    fn an_empty_folder_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let failure = collect(&[folder.path().to_owned()], false).unwrap_err();
         assert!(failure.to_string().starts_with("no cruise report in "), "{failure}");

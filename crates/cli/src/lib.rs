@@ -44,7 +44,7 @@ pub fn run() -> ExitCode {
     }));
     let progress = if cli.common.no_progress { Progress::Hidden } else { Progress::Shown };
     let result = in_pool(&cli.common, || run_command(&cli.command, progress));
-    ExitCode::from(tell(result))
+    ExitCode::from(print_result(result))
 }
 
 fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure> {
@@ -100,7 +100,7 @@ fn start_logging(verbose: u8) {
 }
 
 /// Results to standard output, refusals and reasons to standard error; returns the exit status.
-fn tell(result: Result<Outcome, Failure>) -> u8 {
+fn print_result(result: Result<Outcome, Failure>) -> u8 {
     match result {
         Ok(Outcome { text, refused }) => {
             // A reader that closes the pipe early (`| head`) is not an error.

@@ -1,4 +1,4 @@
-//! Progress on the terminal: count, rate, time left. None where stderr is no terminal.
+//! Progress on the terminal: count, rate, time left. None where stderr is not a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 

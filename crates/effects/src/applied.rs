@@ -131,7 +131,7 @@ impl AppliedEffects {
     }
 }
 
-/// Whether points say a date.
+/// Whether points have a date.
 #[derive(Clone, Copy, Debug)]
 enum Dated {
     Yes,
@@ -139,7 +139,7 @@ enum Dated {
     No,
 }
 
-/// The column of flight points that an effect's input would be in, where the point lacks it. Roll and drift are no columns
+/// The column of flight points that an effect's input would be in, where the point lacks it. Roll and drift are not columns
 /// of theirs.
 fn lacks(needed: NeededInput, point: &FlightPoint) -> Option<&'static str> {
     let (there, name) = match needed {

@@ -45,7 +45,7 @@ pub(crate) fn envelope(view: &TailView) -> Markup {
                 b { "Where it flew." }
                 " Mean error " (which)
                 ", %, and number n of segments in each cell of lift coefficient CL and Mach number. Blue burns less than \
-                 the model says, orange more; full color from "
+                 the model predicts, orange more; full color from "
                 (FULL_COLOR_PERCENT) " %."
             }
             div.scroll {
@@ -206,8 +206,8 @@ mod tests {
             let inside = view.points.iter().filter(|point| {
                 if view.adapted { point.after.is_some() } else { point.before.is_some() }
             });
-            let told = Envelope::of(&view).map_or(0, |envelope| envelope.segments());
-            assert_eq!(told, inside.count());
+            let counted = Envelope::of(&view).map_or(0, |envelope| envelope.segments());
+            assert_eq!(counted, inside.count());
         }
     }
 

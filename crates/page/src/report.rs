@@ -104,7 +104,7 @@ fn how_to_read(adapted: bool) -> Markup {
             dt { "error" }
             dd {
                 "100 (recorded − predicted)/recorded, in % of total fuel flow (all engines), one for each segment. \
-                 Positive: the aircraft burns more than the model says."
+                 Positive: the aircraft burns more than the model predicts."
             }
             dt { "segment" }
             dd { "A stabilised piece of cruise, and the mean state over it." }

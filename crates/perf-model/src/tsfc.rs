@@ -38,7 +38,7 @@ mod tests {
     #[test]
     fn cruise_tsfc_of_an_ae3007_for_five_exponents() {
         // Worked values for TSFC0 = 1.0242e-5 kg/(N s), M 0.80, θ 0.7519, printed to three digits in lb/(lbf h)
-        // beside the ICAO emissions data bank entry 6AL024 (static TSFC 0.362 lb/(lbf h)).
+        // together with the ICAO emissions data bank entry 6AL024 (static TSFC 0.362 lb/(lbf h)).
         for (mach_exponent, printed) in
             [(0.8, 0.502), (1.0, 0.564), (1.1, 0.598), (1.2, 0.635), (1.25, 0.654), (1.3, 0.673)]
         {

@@ -116,7 +116,7 @@ fn print_ratios() {
         let sum = median(sums).as_secs_f64() / f64::from(repeats);
         let read = median(reads).as_secs_f64() / f64::from(repeats);
         println!(
-            "{name} ({} bytes): read {:.0} MB/s, {:.0} ns a row; sum of bytes {:.0} MB/s; ratio {:.1}",
+            "{name} ({} bytes): read {:.0} MB/s, {:.0} ns per row; sum of bytes {:.0} MB/s; ratio {:.1}",
             text.len(),
             text.len() as f64 / read / 1e6,
             read / rows as f64 * 1e9,

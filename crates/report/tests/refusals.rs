@@ -10,7 +10,7 @@ use test_support::reports::FORMAT_SAMPLE as BASE;
 
 /// `BASE` with `from` replaced by `to`, once; `from` must occur in it.
 fn with(from: &str, to: &str) -> String {
-    assert!(BASE.contains(from), "{from:?} does not stand in the base report");
+    assert!(BASE.contains(from), "{from:?} is not in the base report");
     BASE.replacen(from, to, 1)
 }
 

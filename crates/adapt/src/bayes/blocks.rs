@@ -176,13 +176,13 @@ impl BlockFactor {
             let mut gain = self.below[block].clone();
             let upper = self.lower[block].transpose();
             solve_upper_triangular_in_place(upper, gain.as_mut().transpose_mut(), Par::Seq);
-            let mut beside = Mat::zeros(later, earlier);
+            let mut neighbor = Mat::zeros(later, earlier);
             let after = &diagonal[diagonal.len() - 1];
-            matmul(beside.as_mut(), Accum::Replace, after, &gain, -1.0, Par::Seq);
+            matmul(neighbor.as_mut(), Accum::Replace, after, &gain, -1.0, Par::Seq);
             let mut own = inverse(&self.lower[block]);
-            matmul(own.as_mut(), Accum::Add, gain.transpose(), &beside, -1.0, Par::Seq);
+            matmul(own.as_mut(), Accum::Add, gain.transpose(), &neighbor, -1.0, Par::Seq);
             diagonal.push(own);
-            below.push(beside);
+            below.push(neighbor);
         }
         diagonal.reverse();
         below.reverse();

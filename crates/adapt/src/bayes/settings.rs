@@ -100,7 +100,7 @@ impl BayesSettings {
     /// - slopes 0.15 per unit lift coefficient and 0.25 per unit Mach number, 4.5 and 2.5 % across a patch: an induced
     ///   drag that is 6 to 18 % off tilts the correction by 0.06 to 0.17; a drag rise 0.006 Mach number early by 0.2 to
     ///   0.4 around the drag-divergence Mach number.
-    /// - bends 1.5, 1.5 and 2 (along lift coefficient, mixed, along Mach number): a polar that is no parabola departs by
+    /// - bends 1.5, 1.5 and 2 (along lift coefficient, mixed, along Mach number): a polar that is not a parabola departs by
     ///   1 to 2 % over half a patch. Along Mach number the grid sets the limit, not the physics: the correction shall
     ///   be straight to about 0.1 % inside a cell 0.05 wide, because a table cannot hold what is finer.
     /// - extra 1 % per flight: what is not a function of lift coefficient and Mach number (Reynolds number with

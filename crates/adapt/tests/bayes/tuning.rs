@@ -76,9 +76,9 @@ fn after_tuning_intervals_of_quiet_fleets_cover() {
         let unseen = fleet.flights(60, noise, times(&initial, 1.0));
         let tuned = tune(&initial, start, &past, &Search::standard()).unwrap().settings;
         let cases = [(start, 40), (tuned, 1), (tuned, 5), (tuned, 40)];
-        for (inside, (settings, taught)) in inside.iter_mut().zip(cases) {
+        for (inside, (settings, count)) in inside.iter_mut().zip(cases) {
             let posterior =
-                crate::fleet::learnt(&initial, settings, &past[..taught]).solve().unwrap();
+                crate::fleet::learnt(&initial, settings, &past[..count]).solve().unwrap();
             *inside += unseen.iter().flatten().filter(|o| is_inside(&posterior, o)).count() as f64;
         }
         all += unseen.iter().flatten().count() as f64;

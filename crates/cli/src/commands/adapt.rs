@@ -247,16 +247,16 @@ fn sort_out(
             None => {}
         }
         if newest.is_some_and(|newest| flight.reduced.identity.start < newest) {
-            let said = format!(
+            let finding = format!(
                 "flight {} of {} is older than the newest one that tail {tail} has learnt",
                 key.1, key.0
             );
             if strict {
-                sorted.refused.push(refuse(said));
+                sorted.refused.push(refuse(finding));
                 continue;
             }
-            tracing::warn!("{said}; it is learnt now, after newer ones");
-            sorted.warnings.push(format!("{said}; it was learnt after newer ones"));
+            tracing::warn!("{finding}; it is learnt now, after newer ones");
+            sorted.warnings.push(format!("{finding}; it was learnt after newer ones"));
         }
         known.insert(key, flight.content.clone());
         sorted.new.push(flight);

@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();
     for diagnosis in &diagnoses {
-        tell(diagnosis, &mut text);
+        append_lines(diagnosis, &mut text);
     }
     let refused_reports = reading.refused.len();
     if let Some(folder) = &arguments.apply {
@@ -193,7 +193,7 @@ fn diagnose_group(
     diagnosis.tail.clone_from(&group.name);
     if baseline.is_none() && !table_only {
         diagnosis.notes.push(
-            "the model remembers no remainder (five flights by law bayes teach one): everything that a table cannot hold \
+            "the model has learnt no remainder (law bayes learns one from five flights): everything that a table cannot hold \
              counts as gap"
                 .to_owned(),
         );
@@ -208,7 +208,7 @@ fn diagnose_group(
 }
 
 /// The diagnosis in a dozen lines, and what was assumed.
-fn tell(diagnosis: &Diagnosis, text: &mut String) {
+fn append_lines(diagnosis: &Diagnosis, text: &mut String) {
     for (place, line) in diagnosis_text::lines(diagnosis).into_iter().enumerate() {
         let _ = writeln!(text, "{}{line}", if place == 0 { "" } else { "  " });
     }

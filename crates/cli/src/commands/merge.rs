@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         merging::add(&mut merged, other).map_err(|error| Failure::bad_file(path, error))?;
     }
     let Some(learnt) = &mut merged.learnt else {
-        return Err(Failure::bad_file(&arguments.models[0], "has learnt nothing"));
+        return Err(Failure::bad_file(&arguments.models[0], "has not learnt anything"));
     };
     learnt
         .ledger

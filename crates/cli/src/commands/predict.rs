@@ -72,13 +72,13 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     tell_references(&model, points.rows());
     let text = arguments.output.as_ref().map_or_else(String::new, |path| {
         let known = remainders.iter().flatten().count();
-        let said = if remembered.is_some() {
-            format!("; {known} of them with the remainder that flown data informed")
+        let remainder_note = if remembered.is_some() {
+            format!("; {known} of them with a remainder informed by flown data")
         } else {
             String::new()
         };
         format!(
-            "{} of {} points predicted{said}, written to {}\n",
+            "{} of {} points predicted{remainder_note}, written to {}\n",
             points.rows().len() - refused.len(),
             points.rows().len(),
             show(path)
@@ -90,10 +90,10 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
 /// Warns once about each applied effect that is held at its reference because an input is missing.
 fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
     let Some(effects) = model.initial.effects() else { return };
-    let mut said = Vec::new();
+    let mut warned = Vec::new();
     for (effect, missing) in rows.iter().flat_map(|row| effects.at_reference(&row.point)) {
-        if !said.contains(&(effect, missing)) {
-            said.push((effect, missing));
+        if !warned.contains(&(effect, missing)) {
+            warned.push((effect, missing));
             tracing::warn!("points without {missing}: {effect} is at its reference there");
         }
     }

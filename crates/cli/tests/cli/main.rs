@@ -4,7 +4,7 @@
     clippy::disallowed_methods,
     clippy::unwrap_used,
     clippy::print_stderr,
-    reason = "tests of a program that reads and writes files; a test that cannot go on shall stop"
+    reason = "tests of a program that reads and writes files; a test that cannot continue must stop"
 )]
 
 mod applied;

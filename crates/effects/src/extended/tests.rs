@@ -153,7 +153,7 @@ fn effects_of_recordings_never_change_a_prediction() {
     assert_eq!(seen, 8);
 }
 
-/// A segment whose fuel flow is what the effect model says is recorded with the effect as a *trial*: the oracle, itself
+/// A segment whose fuel flow is that of the effect model is recorded with the effect as a *trial*: the oracle, itself
 /// held against hand computations in its own tests.
 fn recorded_with(id: EffectId, size: f64) -> Segment {
     let model = bare();

@@ -82,7 +82,7 @@ fn instant(segment: &Segment) -> Result<Timestamp, ObserveError> {
     }
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "the cast saturates, and what is that far away is no timestamp"
+        reason = "the cast saturates, and an instant that far away is not a timestamp"
     )]
     let nanoseconds = (time_s * 1e9).round() as i128;
     let start = segment.identity.start.as_nanosecond();

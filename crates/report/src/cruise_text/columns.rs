@@ -224,7 +224,10 @@ fn note_contradictions(
         if column.is_some_and(|column| is_declared_missing(column, header)) {
             note(
                 "column-declared-missing",
-                format!("column {} is not used: MISSING says that it was not recorded", word.text),
+                format!(
+                    "column {} is not used: MISSING declares that it was not recorded",
+                    word.text
+                ),
             );
         }
     }

@@ -26,7 +26,7 @@ pub(super) fn apply(
     let mut outcome = Outcome::default();
     for (group, diagnosis) in groups.iter().zip(diagnoses) {
         let path = folder.join(format!("{}.ron", file_stem(group)));
-        let said = match chosen(group, diagnosis) {
+        let result = match chosen(group, diagnosis) {
             Choice::Nothing(reason) => format!("nothing applied: {reason}"),
             Choice::Refused(reason) => {
                 outcome.refused.push(RefusedReport::whole(path, reason));
@@ -35,8 +35,8 @@ pub(super) fn apply(
             Choice::Record(record) => match group.model.extended(record) {
                 Ok(model) => {
                     write_model(&model, &path)?;
-                    let told = model.applied.last().map_or_else(String::new, AppliedRecord::told);
-                    format!("applied {told}; written to {}", show(&path))
+                    let record = model.applied.last().map_or_else(String::new, AppliedRecord::told);
+                    format!("applied {record}; written to {}", show(&path))
                 }
                 Err(reason) => {
                     outcome.refused.push(RefusedReport::whole(path, reason));
@@ -44,7 +44,7 @@ pub(super) fn apply(
                 }
             },
         };
-        let _ = writeln!(outcome.text, "{}: {said}", group.name);
+        let _ = writeln!(outcome.text, "{}: {result}", group.name);
     }
     Ok(outcome)
 }
