@@ -74,7 +74,7 @@ pub const MAXIMUM_DRAG_RATIO: f64 = 10.0;
 
 const SECONDS_A_DAY: f64 = 86_400.0;
 
-/// What law `bayes` has learnt, without the prior: sums that add up.
+/// The state of law `bayes`, without the prior: sums that can be added.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BayesState {
     initial: Table,
@@ -146,7 +146,7 @@ pub enum ObservationUpdate {
     Unusable {
         /// Which, in the field's words and with its unit.
         quantity: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// The point lies outside the grid; nothing was learnt from it.

@@ -31,7 +31,7 @@ pub struct PaperLaw {
 #[error("adaptation threshold {threshold_percent} %, outside 0.. %")]
 #[non_exhaustive]
 pub struct ThresholdError {
-    /// What was given, %.
+    /// The value given, %.
     pub threshold_percent: f64,
 }
 
@@ -43,7 +43,7 @@ pub enum Update {
     Unusable {
         /// Which, in the field's words and with its unit.
         quantity: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// The point lies outside the grid; nothing changed.

@@ -50,7 +50,7 @@ pub(crate) enum Failure {
         "reports end in .txt, .rpt or .gz; recordings of another layout need --mapping"
     ))]
     NoReports {
-        /// What was given.
+        /// The value given.
         inputs: String,
         /// ", 3 other files skipped", or empty.
         skipped: String,
@@ -89,7 +89,7 @@ pub(crate) enum Failure {
     BadArgument {
         /// The argument as it is called.
         argument: &'static str,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// Scores below their floors in `trial --check`.

@@ -181,7 +181,7 @@ fn on_reference_date(effects: &Effects, references: &EffectReferences) -> Effect
     effects.map(|effect| SizedEffect { hidden: undated(effect.hidden), ..*effect }).collect()
 }
 
-/// Applied effects made ready for a drag table.
+/// Applied effects prepared for a drag table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Prepared {
     effects: AppliedEffects,

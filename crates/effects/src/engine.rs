@@ -102,7 +102,7 @@ fn tsfc_factor(
     factor
 }
 
-/// Share of a segment with anti-ice bleed on: recorded, else all of it above −40 °C.
+/// Share of a segment with anti-ice bleed on: as recorded, otherwise all of it above −40 °C.
 fn anti_ice_on(point: &EffectPoint, flown: &AsFlown) -> f64 {
     point.anti_ice.unwrap_or(if flown.static_air_temperature_k > ANTI_ICE_PROXY_K {
         1.0

@@ -23,7 +23,7 @@ pub enum EffectModelError {
     Reference {
         /// Which.
         quantity: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// The size of an applied effect that is not finite.
@@ -31,7 +31,7 @@ pub enum EffectModelError {
     Size {
         /// The effect.
         effect: EffectId,
-        /// What was given.
+        /// The value given.
         size: f64,
     },
     /// None of the segments can be predicted by the model, so there are no references.

@@ -246,7 +246,7 @@ impl ExtendedModel {
         Ok(Cow::Owned(bare))
     }
 
-    /// The applied effects, made ready.
+    /// The applied effects, prepared.
     pub(crate) fn prepared(&self) -> Option<&Prepared> {
         self.applied.as_deref()
     }

@@ -17,7 +17,7 @@ pub struct Effects {
 pub(crate) struct SizedEffect {
     pub(crate) id: EffectId,
     pub(crate) size: f64,
-    /// Of the effect's kind.
+    /// Its hidden parameter, of the effect's kind.
     pub(crate) hidden: HiddenParameter,
 }
 

@@ -190,7 +190,7 @@ impl Column {
         }
     }
 
-    /// What the column means, in the field's words.
+    /// The meaning of the column, in the field's words.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {

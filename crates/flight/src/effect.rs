@@ -165,7 +165,7 @@ impl EffectId {
         matches!(self.entry().sign, EffectSign::Positive | EffectSign::Spread)
     }
 
-    /// What it does at a size of this sign, as a noun phrase or a clause.
+    /// Its description at a size of this sign, as a noun phrase or a clause.
     #[must_use]
     pub fn phrase(self, size: f64) -> String {
         let Phrase { positive, negative } = self.entry().phrase;

@@ -148,7 +148,7 @@ pub enum ReportDataError {
     MassNotPositive {
         /// Sample from 0.
         sample: usize,
-        /// Zero-fuel mass plus fuel on board less fuel used.
+        /// Zero-fuel mass plus fuel on board minus fuel used.
         mass_kg: f64,
     },
 }

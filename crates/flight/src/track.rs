@@ -56,7 +56,7 @@ pub enum DroppedRunReason {
 pub struct DroppedRun {
     /// Samples of the track, from 0.
     pub samples: Range<usize>,
-    /// Why.
+    /// The reason.
     pub reason: DroppedRunReason,
 }
 

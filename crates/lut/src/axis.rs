@@ -45,7 +45,7 @@ pub enum AxisError {
     NotFinite {
         /// Its index, from 0.
         index: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// A breakpoint does not exceed its predecessor.

@@ -33,7 +33,7 @@ pub enum TableError {
     NotFinite {
         /// The node.
         node: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
 }

@@ -62,7 +62,7 @@ pub enum AircraftError {
     Axis {
         /// The axis.
         axis: &'static str,
-        /// Why.
+        /// The reason.
         source: AxisError,
     },
     /// An axis with more breakpoints than a table may have.

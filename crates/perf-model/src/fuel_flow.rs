@@ -120,7 +120,7 @@ mod tests {
         // q·S = 400 000 N. CD 0.03: D = 12 000 N; 0.005 m/s² of 14 000 kg: 70 N; Fn = 12 070 N; Wf = 0.2414 kg/s.
         let flow = predicted_fuel_flow(&conditions(0.005), 0.03);
         assert!((flow.to_kilograms_per_second() - 0.2414).abs() < 1e-15);
-        // Back: 0.2414/2e-5 = 12 070 N; less 70 N; over 400 000 N.
+        // Back: 0.2414/2e-5 = 12 070 N; minus 70 N; divided by 400 000 N.
         let drag_coefficient = observed_drag_coefficient(&conditions(0.005), flow);
         assert!((drag_coefficient - 0.03).abs() < 1e-15);
         // Without the acceleration term the same flow gives a drag coefficient of 0.030 175.

@@ -49,7 +49,7 @@ pub enum ModelError {
     CoefficientNotFinite {
         /// Its index, from 0.
         index: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// A node whose drag coefficient is not positive.

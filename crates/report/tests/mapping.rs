@@ -139,7 +139,7 @@ fn gzip_and_file_names() {
     assert_eq!(mapping(MAPPING).read(&packed).unwrap(), plain);
 
     let by_name = mapping(&MAPPING.replace("Column(\"flt\")", "FileName"));
-    // What was two flights is one, and its time jumps by two hours.
+    // The two flights are read as one, and its time jumps by two hours.
     let reports = by_name.read_named(&packed, "flight 17").unwrap();
     assert_eq!(reports.len(), 1);
     assert_eq!(reports[0].report.header().identity.flight, "flight 17");

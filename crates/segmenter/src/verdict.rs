@@ -67,7 +67,7 @@ pub struct DroppedPiece {
     pub kept: usize,
     /// Samples that a segment needs.
     pub needed: usize,
-    /// Why.
+    /// The reason.
     pub reason: PieceDropReason,
 }
 

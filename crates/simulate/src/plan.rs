@@ -106,13 +106,13 @@ impl SensorChoice {
     }
 }
 
-/// What differs from flight to flight, and stays within one.
+/// Quantities that differ from flight to flight, and are constant within one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Scatter {
     /// Standard deviation of the fuel's heating value, %.
     pub heating_value_percent: f64,
-    /// Standard deviation of true less recorded zero-fuel mass, % of maximum zero-fuel mass.
+    /// Standard deviation of true minus recorded zero-fuel mass, % of maximum zero-fuel mass.
     pub zero_fuel_mass_percent: f64,
     /// Standard deviation of an engine's thrust about the mean, %.
     pub throttle_split_percent: f64,

@@ -70,7 +70,7 @@ pub enum SimulationError {
         tail: String,
         /// Flight.
         flight: String,
-        /// Why.
+        /// The reason.
         source: FlightError,
     },
     /// The recording does not make a report.
@@ -80,7 +80,7 @@ pub enum SimulationError {
         tail: String,
         /// Flight.
         flight: String,
-        /// Why.
+        /// The reason.
         source: ReportDataError,
     },
     /// A recorded value that the report's format refuses: the plan makes sensors or effects absurd.

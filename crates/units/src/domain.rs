@@ -8,7 +8,7 @@ pub struct OutOfDomain {
     pub quantity: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What was given.
+    /// The value given.
     pub value: f64,
     /// Smallest admissible value.
     pub minimum: f64,

@@ -83,7 +83,7 @@ pub enum StateDataError {
 }
 
 impl BayesState {
-    /// What was learnt, for a file.
+    /// The learnt state, for a file.
     #[must_use]
     pub fn to_data(&self) -> BayesStateData {
         let Parts { nodes, rows, vector, observations } = self.information.to_parts();

@@ -21,7 +21,7 @@ pub struct GuardedNode {
     pub before: f64,
     /// Drag coefficient in the table.
     pub after: f64,
-    /// Why.
+    /// The reason.
     pub reason: GuardReason,
 }
 

@@ -31,7 +31,7 @@ const WEIGHT_TOLERANCE: f64 = 0.05;
 /// Clean flights need 2 or 3.
 const MAXIMUM_ITERATIONS: usize = 30;
 
-/// What has been learnt of the expected residual: information about the quadratic's coefficients, without prior.
+/// The learnt part of the expected residual: information about the quadratic's coefficients, without prior.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ExpectedResidual {
     pub(super) matrix: [f64; TRIANGLE],

@@ -72,7 +72,7 @@ pub struct BayesSettings(SettingValues);
 pub struct SettingsError {
     /// Which setting.
     pub setting: &'static str,
-    /// What was given.
+    /// The value given.
     pub value: f64,
     /// Smallest value that is accepted.
     pub minimum: f64,
@@ -101,7 +101,7 @@ impl BayesSettings {
     ///   drag that is 6 to 18 % off tilts the correction by 0.06 to 0.17; a drag rise 0.006 Mach number early by 0.2 to
     ///   0.4 around the drag-divergence Mach number.
     /// - bends 1.5, 1.5 and 2 (along lift coefficient, mixed, along Mach number): a polar that is not a parabola departs by
-    ///   1 to 2 % over half a patch. Along Mach number the grid sets the limit, not the physics: the correction shall
+    ///   1 to 2 % over half a patch. Along Mach number the grid sets the limit, not the physics: the correction must
     ///   be straight to about 0.1 % inside a cell 0.05 wide, because a table cannot hold what is finer.
     /// - extra 1 % per flight: what is not a function of lift coefficient and Mach number (Reynolds number with
     ///   exponent 0.12 over a spread of 10 %, TSFC with temperature exponent 0.2 over one of 3 %, throttle 0.6 %,

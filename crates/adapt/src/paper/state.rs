@@ -23,7 +23,7 @@ pub enum StateError {
     ConfidenceBelowOne {
         /// The node.
         node: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
 }

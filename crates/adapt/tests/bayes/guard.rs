@@ -1,4 +1,4 @@
-//! Whatever comes in, drag stays physical and every number finite.
+//! Whatever the input, drag stays physical and every number finite.
 
 use adapt::bayes::{
     BayesSettings, BayesState, GuardReason, InitialError, ObservationUpdate, SettingValues,

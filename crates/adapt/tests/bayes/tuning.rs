@@ -30,7 +30,7 @@ fn tuning_finds_the_noise_that_was_flown() {
     assert!(tuned.evaluations <= 400);
     // The same again, to the bit.
     assert_eq!(tune(&initial, start, &flights, &Search::standard()).unwrap(), tuned);
-    // What tuning does not touch.
+    // Settings that tuning does not change.
     assert_eq!(values.student_degrees_of_freedom, start.values().student_degrees_of_freedom);
 }
 

@@ -220,7 +220,7 @@ fn a_throttle_effect_found_over_n2_acts_over_corrected_thrust() {
 #[test]
 fn corrections_by_hand() {
     // Meter of engine 2 reads 4 % high, each engine records 0.12 kg/s: engine 2 burnt 0.12/1.04 = 0.115 384 615; the
-    // total is 0.12·… less half of 0.04/1.04 = 1.923 %; 1500 kg of fuel used become 1471.15 and the mass gains 28.85 kg.
+    // total is 0.12·… minus half of 0.04/1.04 = 1.923 %; 1500 kg of fuel used become 1471.15 and the mass gains 28.85 kg.
     let model = with(Effects::one(EffectId::FuelFlowGainEngine(2), 4.0));
     let means = &model.corrected(&segment()).unwrap().means.clone();
     assert!((means.fuel_flow_engine_kg_s[0] - 0.12).abs() < 1e-15);
@@ -336,7 +336,7 @@ fn trial_effects_come_on_top_and_known_ones_are_settled() {
     let alone = EffectModel::new(&plain, plain.drag_table(), references()).unwrap();
     let point = EffectPoint::from_means(&segment().means, DATE_S, 2);
     let contained = Effects::one(EffectId::DragFactor, 2.0).with(EffectId::LocalGravity, 1.0);
-    // What is contained acts exactly as the same trial effects did.
+    // Contained effects act exactly as the same trial effects did.
     assert_eq!(
         on_top.response(&point, &Effects::none()).unwrap(),
         alone.response(&point, &contained).unwrap()

@@ -7,7 +7,7 @@ use super::HiddenParameter;
 pub struct EffectEntry {
     /// Name in files; `{k}` is an engine's number.
     pub name: &'static str,
-    /// What it belongs to.
+    /// Its group.
     pub group: EffectGroup,
     /// Unit of its size θ.
     pub unit: &'static str,
@@ -24,11 +24,11 @@ pub struct EffectEntry {
     pub driven_by: &'static [DrivingVariable],
     /// Its perturbation of the model, in one line.
     pub perturbation: &'static str,
-    /// What it does, in words, by the sign of θ.
+    /// Its description in words, by the sign of θ.
     pub phrase: Phrase,
 }
 
-/// What an effect does, in words; `{k}` is an engine's number.
+/// The description of an effect in words; `{k}` is an engine's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phrase {
     /// Where its size is positive, or has no sign.
@@ -48,14 +48,14 @@ pub enum EffectSign {
     Spread,
 }
 
-/// What an effect belongs to.
+/// The group of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EffectGroup {
     /// The airframe's drag.
     Airframe,
     /// The engines' consumption.
     Engine,
-    /// What the aircraft weighs.
+    /// The aircraft's mass.
     Mass,
     /// The readings of the sensors.
     Sensor,

@@ -32,7 +32,7 @@ pub enum FitError {
     WeightInvalid {
         /// The point's index, from 0.
         index: usize,
-        /// What was given.
+        /// The value given.
         weight: f64,
     },
     /// The points leave a direction undetermined.

@@ -26,7 +26,7 @@ pub(crate) struct Field {
     pub(crate) is_optional: bool,
     /// Unit of the file, whose factor and offset lead to the stored unit.
     pub(crate) unit: ColumnUnit,
-    /// Smallest value in the unit of the file, and the same less rounding.
+    /// Smallest value in the unit of the file, and the same minus rounding.
     pub(crate) minimum: f64,
     pub(crate) low: f64,
     /// Largest value in the unit of the file, and the same plus rounding.

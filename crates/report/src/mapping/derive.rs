@@ -484,7 +484,7 @@ impl Part<'_, '_> {
         Ok(series.values)
     }
 
-    /// What was derived from what, for the report's notes.
+    /// The derivations, for the report's notes.
     fn derived(&self, load: &Load) -> Vec<&'static str> {
         let mut derived = Vec::new();
         match self.plan.mach {

@@ -18,7 +18,7 @@ pub struct Engine {
     pub part_load: PartLoad,
     /// Fuel for bleed and shaft power, all engines together, whatever the thrust, kg/s.
     pub offtake_fuel_flow_kg_s: f64,
-    /// By how much the exponent of temperature in the fuel law exceeds one half.
+    /// Excess of the exponent of temperature in the fuel law over one half.
     pub extra_temperature_exponent: f64,
     /// Rotor speeds and exhaust temperature.
     pub rotors: RotorDeck,

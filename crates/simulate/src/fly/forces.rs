@@ -13,7 +13,7 @@ use crate::terms::{DragInputs, FuelInputs, MAXIMUM_ENGINES};
 use crate::vector::{Place, Vector, combine, dot, east_and_north};
 use crate::weather::{Air, Gusts};
 
-/// What moves and burns.
+/// The state of motion and fuel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     pub(crate) smooth_airspeed_m_s: f64,

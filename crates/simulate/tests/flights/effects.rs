@@ -230,7 +230,7 @@ fn sizes_mean_what_the_library_says() {
     near("anti_ice_bleed", 2.0, 0.02 * (1.0 / x).sqrt(), 4e-4);
     near("fuel_flow_gain", 2.0, 0.02, 1e-12);
     near("fuel_flow_gain_1", 3.0, 0.015, 1e-12);
-    // Gravity at FL390 and 47° N less Somigliana's 9.8085 … free air: fuel by the induced share.
+    // Gravity at FL390 and 47° N minus Somigliana's 9.8085 … free air: fuel by the induced share.
     let local = fuel_change(sized("local_gravity", 1.0));
     assert!(local < 0.0 && local > -0.004, "{local}");
 }
