@@ -118,18 +118,18 @@ fn group<'a>(
             }
         };
         if has_learnt(model, &flight) {
-            let said = format!(
+            let finding = format!(
                 "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",
                 flight.reduced.identity.tail,
                 flight.reduced.identity.flight,
                 flight.reduced.identity.start
             );
             if !arguments.allow_learnt {
-                let reason = format!("{said} (--allow-learnt diagnoses it anyway)");
+                let reason = format!("{finding} (--allow-learnt diagnoses it anyway)");
                 reading.refused.push(RefusedReport::whole(flight.path, reason));
                 continue;
             }
-            tracing::warn!("{said}; diagnosed anyway, as asked");
+            tracing::warn!("{finding}; diagnosed anyway, as asked");
         }
         // A pool has one model: a difference between models is not a gap of either.
         let (key, name) = if arguments.pool {

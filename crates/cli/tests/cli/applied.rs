@@ -272,25 +272,25 @@ fn physical_effects_change_what_a_planner_gets_and_missing_inputs_are_said() {
     let (plain, drag, _) = flows(&model);
     // A year after the reference of 2019-02-12T19:33:20Z, less a day's part: 0.9978 years of 1 % each.
     let aged = extended_by_hand(&model, &one("engine_ageing", 1.0));
-    let (found, _, said) = flows(&aged);
+    let (found, _, stderr) = flows(&aged);
     assert!((found[0] / plain[0] - 1.009_978).abs() < 1e-4, "{found:?}");
     assert!((found[1] / plain[1] - 1.0).abs() < 1e-12, "{found:?}");
-    assert_eq!(said.matches("points without date: engine_ageing is at its reference").count(), 1);
+    assert_eq!(stderr.matches("points without date: engine_ageing is at its reference").count(), 1);
     // 5 %MAC forward: 3 counts·0.5·CL/0.4.
     let trimmed = extended_by_hand(&model, &one("trim_drag_cg", 3.0));
-    let (_, trimmed_drag, said) = flows(&trimmed);
+    let (_, trimmed_drag, stderr) = flows(&trimmed);
     assert!(trimmed_drag[0] > drag[0] + 1.0e-4 && trimmed_drag[0] < drag[0] + 2.2e-4);
     assert!((trimmed_drag[1] / drag[1] - 1.0).abs() < 1e-12);
-    assert_eq!(said.matches("points without cg_percent_mac").count(), 1);
+    assert_eq!(stderr.matches("points without cg_percent_mac").count(), 1);
     // A step from 2020 on is there on the first point's date, and not on the reference's.
     let stepped = extended_by_hand(
         &model,
         r#"(effect: "step_change", size: 1.5, standard_deviation: 0.1, step_from_s: Some(1577836800), step_target: Some(fuel_flow))"#,
     );
-    let (found, _, said) = flows(&stepped);
+    let (found, _, stderr) = flows(&stepped);
     assert!((found[0] / plain[0] - 1.015).abs() < 1e-9, "{found:?}");
     assert!((found[1] / plain[1] - 1.0).abs() < 1e-12, "{found:?}");
-    assert!(said.contains("points without date: step_change is at its reference"), "{said}");
+    assert!(stderr.contains("points without date: step_change is at its reference"), "{stderr}");
 }
 
 #[test]

@@ -316,23 +316,23 @@ impl<'a> SensorBank<'a> {
             self.recorded.temperature_bias_k * (1.0 + HEATING_FACTOR * reference * reference);
         let total_air_temperature_k =
             self.total_air_temperature.measure(seen.total_air_temperature_k, random) + probe_bias_k;
-        let said = compute(&AirDataInputs {
+        let computed = compute(&AirDataInputs {
             static_pressure_pa: static_hpa * PASCALS_PER_HECTOPASCAL,
             total_pressure_pa: total_hpa * PASCALS_PER_HECTOPASCAL,
             total_air_temperature_k,
             mach_bias: self.recorded.mach_bias,
         })?;
         let rows = &mut self.rows;
-        let feet = self.static_pressure.round(said.pressure_altitude_m / METERS_PER_FOOT);
+        let feet = self.static_pressure.round(computed.pressure_altitude_m / METERS_PER_FOOT);
         rows.pressure_altitude_m.push(feet * METERS_PER_FOOT);
-        rows.mach.push(self.total_pressure.round(said.mach));
+        rows.mach.push(self.total_pressure.round(computed.mach));
         let celsius = |kelvin: f64| {
             self.total_air_temperature.round(kelvin - KELVIN_AT_ZERO_CELSIUS)
                 + KELVIN_AT_ZERO_CELSIUS
         };
-        push(&mut rows.static_air_temperature_k, celsius(said.static_air_temperature_k));
+        push(&mut rows.static_air_temperature_k, celsius(computed.static_air_temperature_k));
         push_optional(&mut rows.total_air_temperature_k, celsius(total_air_temperature_k));
-        let knots = said.true_airspeed_m_s / METERS_PER_SECOND_PER_KNOT;
+        let knots = computed.true_airspeed_m_s / METERS_PER_SECOND_PER_KNOT;
         rows.true_airspeed_m_s.push(
             round_to(knots, self.sensors.true_airspeed_resolution_kt) * METERS_PER_SECOND_PER_KNOT,
         );

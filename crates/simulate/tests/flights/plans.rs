@@ -108,8 +108,12 @@ fn perfect_sensors_record_the_truth_and_meters_integrate_the_flow() {
     let fu = column(&flown.report, "FU");
     for (i, s) in flown.states.iter().enumerate() {
         let near = |name: &str, truth: f64, tolerance: f64| {
-            let said = column(&flown.report, name)[i];
-            assert!((said - truth).abs() <= tolerance, "{name} at {}: {said} {truth}", s.time_s);
+            let recorded = column(&flown.report, name)[i];
+            assert!(
+                (recorded - truth).abs() <= tolerance,
+                "{name} at {}: {recorded} {truth}",
+                s.time_s
+            );
         };
         near("ALT", s.pressure_altitude_m, 1e-6);
         near("MACH", s.mach, 1e-12);
