@@ -1,8 +1,8 @@
-//! Law `bayes`: learning 2,000 flights (beside law `paper` on the same segments), and one solve.
+//! Law `bayes`: learning 2,000 flights (and law `paper` on the same segments, for comparison), and one solve.
 //!
 //! | group | measures |
 //! |---|---|
-//! | `learn` | a fleet of 2,000 flights of 6 segments, time a segment; grid 15 × 10 |
+//! | `learn` | a fleet of 2,000 flights of 6 segments, time per segment; grid 15 × 10 |
 //! | `solve` | correction, standard deviations and guard for 150, 600 and 2,400 nodes, after 200 flights |
 //!
 //! Compare figures within one run only.

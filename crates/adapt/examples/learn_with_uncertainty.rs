@@ -1,4 +1,5 @@
-//! Law `bayes` learns three flights of an aircraft with 5 % more drag, and says how sure it is where they never went.
+//! Law `bayes` learns three flights of an aircraft with 5 % more drag, and reports how sure it is where they never
+//! went.
 //!
 //! `cargo run -p cruisefit-adapt --example learn_with_uncertainty`
 

@@ -1,17 +1,17 @@
 //! Law `bayes`: a smooth Gaussian correction of the initial table, with its uncertainty.
 //!
-//! The table is the initial one times (1 + x), x one number a node. A prior says that x is smooth and about 10 % in
-//! size; every segment observes four neighbors of x; the solution says what is known where, nodes never visited
-//! included. The book's page on law `bayes` has equations, sources and measured figures.
+//! The table is the initial one times (1 + x), with one number x per node. A prior states that x is smooth and about 10
+//! % in size; every segment observes the four nodes around it; the solution estimates x and its uncertainty everywhere,
+//! including nodes never visited. The book's page on law `bayes` has equations, sources and measured figures.
 //!
 //! What is fixed: [`BayesSettings`] belong to the initial model and learning never changes them; [`tune`] finds better
 //! ones on past flights. What grows: [`BayesState`] holds sums over the nodes of the flown region, whatever the number
-//! of flights. What costs: a flight is learnt by its own segments alone; the one solve is [`BayesState::solve`].
+//! of flights. What costs: learning a flight involves only its own segments; the only solve is [`BayesState::solve`].
 //!
-//! Limits: what is no function of lift coefficient and Mach number (altitude, temperature, the engine) is taken for an
-//! error common to a flight. Structure finer than about half a cell cannot be held by a bilinear table, and an initial
-//! table's own chords are part of what is learnt. Outlier weights depend on what was learnt before; all else does not
-//! depend on the order.
+//! Limits: whatever is not a function of lift coefficient and Mach number (altitude, temperature, the engine) is
+//! treated as an error common to a flight. A bilinear table cannot hold structure finer than about half a cell, and an
+//! initial table's own chords are part of what is learnt. Outlier weights depend on what was learnt before; nothing
+//! else depends on the order.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -69,12 +69,12 @@ pub use settings::{BayesSettings, SettingValues, SettingsError};
 use information::{Information, Row};
 use outlier_weights::{ExpectedResidual, SegmentResidual, WeightSettings};
 
-/// Drag of more than this many times the initial table's is no observation of drag.
+/// Drag of more than this many times the initial table's is not an observation of drag.
 pub const MAXIMUM_DRAG_RATIO: f64 = 10.0;
 
 const SECONDS_A_DAY: f64 = 86_400.0;
 
-/// What law `bayes` has learnt, without the prior: sums that add up.
+/// The state of law `bayes`, without the prior: sums that can be added.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BayesState {
     initial: Table,
@@ -82,7 +82,7 @@ pub struct BayesState {
     weight_settings: WeightSettings,
     information: Information,
     expected_residual: ExpectedResidual,
-    /// The newest observation learnt; with a half-life, the instant that the sums are for.
+    /// The newest observation learnt; with a half-life, the instant to which the sums refer.
     newest: Option<Timestamp>,
     flights: u64,
     segments: u64,
@@ -99,7 +99,7 @@ pub struct InitialError {
     pub value: f64,
 }
 
-/// Why two states do not add.
+/// Why two states cannot be added.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
@@ -128,7 +128,7 @@ pub enum MergeError {
     },
 }
 
-/// What learning a flight did.
+/// The result of learning a flight.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct FlightUpdate {
@@ -139,14 +139,14 @@ pub struct FlightUpdate {
     pub flight_weight: Option<f64>,
 }
 
-/// What learning an observation did.
+/// The result of learning an observation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ObservationUpdate {
     /// A number of the observation cannot be used; nothing was learnt from it.
     Unusable {
         /// Which, in the field's words and with its unit.
         quantity: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// The point lies outside the grid; nothing was learnt from it.
@@ -155,7 +155,7 @@ pub enum ObservationUpdate {
     Learnt {
         /// Observed drag over the initial table's, minus 1.
         residual: f64,
-        /// That minus what a quadratic through all earlier flights expects.
+        /// The same minus what a quadratic through all earlier flights predicts.
         surprise: f64,
         /// Outlier weight: around 1 for an ordinary segment, towards 0 for an outlier. It divides the segment's
         /// variance.
@@ -164,7 +164,7 @@ pub enum ObservationUpdate {
 }
 
 impl BayesState {
-    /// Nothing learnt yet.
+    /// An empty state: nothing is learnt yet.
     ///
     /// # Errors
     /// [`InitialError`] where a drag coefficient is not above 0: there is no relative correction of it.
@@ -189,8 +189,8 @@ impl BayesState {
 
     /// Learns one flight: all its observations at once, because they share an error.
     ///
-    /// With a half-life, an observation older than the newest learnt is worth less from the start: the order of flights
-    /// does not matter, up to outlier weights.
+    /// With a half-life, an observation older than the newest learnt counts less from the start: the order of flights
+    /// does not matter, except for outlier weights.
     ///
     /// # Source
     /// Book `[bayes.3]`–`[bayes.8]`.
@@ -220,15 +220,15 @@ impl BayesState {
         }
     }
 
-    /// Solves for all nodes: the one expensive call.
+    /// Solves for all nodes: the only expensive call.
     ///
     /// # Errors
-    /// [`SolveError`] where the sums are no information (a damaged file).
+    /// [`SolveError`] where the sums are not a positive definite information matrix (a damaged file).
     pub fn solve(&self) -> Result<Posterior, SolveError> {
         Posterior::new(&self.initial, self.settings, &self.information)
     }
 
-    /// Adds what another state has learnt. Both orders give the same to rounding.
+    /// Adds what another state has learnt. The order of the two does not matter, up to rounding.
     ///
     /// # Errors
     /// [`MergeError`] where grid, initial table or settings differ; nothing was added then.
@@ -346,7 +346,7 @@ impl BayesState {
                 Err(refusal) => flight.refused.push(Some(refusal)),
             }
         }
-        // Segments of a flight may differ a little in what they say about their common error.
+        // The segments of a flight may state slightly different variances of their common error.
         flight.common_variance = common_variance / flight.residuals.len().max(1) as f64;
         flight
     }
@@ -383,7 +383,7 @@ impl BayesState {
 /// A flight that was read: what can be learnt, and what cannot.
 #[derive(Clone, Debug)]
 struct Flight {
-    /// One an observation; `None` for those that can be learnt, which follow in the same order.
+    /// One per observation; `None` for those that can be learnt, which follow in the same order.
     refused: Vec<Option<ObservationUpdate>>,
     residuals: Vec<SegmentResidual>,
     rows: Vec<Row>,
@@ -403,8 +403,8 @@ impl Flight {
     }
 }
 
-/// What multiplies the corrections of a cell's nodes in the correction at the point: bilinear weight times the node's
-/// initial drag over the point's. They sum to 1.
+/// Factors of the four nodes' corrections in the correction at the point: bilinear weight times the node's initial
+/// drag, divided by the point's. They sum to 1.
 ///
 /// # Source
 /// Book `[bayes.3]`.

@@ -1,15 +1,15 @@
 //! Local adaptation of a drag table to observations, segment by segment.
 //!
 //! What it is not: it reads no reports, knows neither engine nor atmosphere, and never sees a whole fleet. An
-//! [`Observation`](flight::Observation) carries all that a table can learn from a segment; spreading what was learnt
-//! over nodes that were never visited is another crate's work.
+//! [`Observation`](flight::Observation) carries all that a table can learn from a segment; carrying what was learnt
+//! over to nodes that were never visited is another crate's task.
 //!
-//! The one design decision: a law is a value with its settings and no memory. What has been learnt is the caller's
-//! [`State`](paper::State), what happened is the returned [`Update`](paper::Update) with every number before and
-//! after, so that a ledger, a log or an undo needs nothing else.
+//! The one design decision: a law is a value with its settings and no memory. The learnt [`State`](paper::State)
+//! belongs to the caller, and the returned [`Update`](paper::Update) holds every number before and after, so that a
+//! ledger, a log or an undo needs nothing else.
 //!
-//! Limits: order matters. Segments go in by time, flights by START; the law [`paper`] gives another table for another
-//! order. See that module for what else it does not do.
+//! Limits: order matters. Segments are learnt in order of time, flights in order of START; the law [`paper`] gives
+//! another table for another order. See that module for its other limits.
 //!
 //! ```
 //! use std::sync::Arc;

@@ -1,11 +1,11 @@
 //! Law `paper`: the published local adaptation, Ghazi et al. 2020, equations (24)–(28).
 //!
-//! A segment whose fuel-flow error exceeds a threshold pulls the drag coefficients of its cell's four nodes towards
-//! the observed one; a node's confidence λ says how much of its own value it keeps.
+//! A segment whose fuel-flow error exceeds a threshold pulls the drag coefficients of its cell's four nodes towards the
+//! observed one; a node's confidence λ determines how much of its own value it keeps.
 //!
-//! What it does not do, as published: it gives all four nodes the drag at the *flight point*, it learns nothing inside
-//! the threshold, it does not judge outliers, and its gain never falls below 1 − δ. The book's page on adaptation has
-//! the sizes. One thing differs from the print, and says so at [`WEIGHT_OF_NO_PART`].
+//! Limits, as published: it gives all four nodes the drag at the *flight point*, it learns nothing inside the
+//! threshold, it does not reject outliers, and its gain never falls below 1 − δ. The book's page on adaptation has the
+//! sizes. One thing differs from the print: see [`WEIGHT_OF_NO_PART`].
 
 use flight::Observation;
 use lut::{Cell, Outside, OutsideGrid, Table};
@@ -16,7 +16,7 @@ mod state;
 pub use gains::{Gains, gains};
 pub use state::{State, StateError};
 
-/// A node of at most this bilinear weight is left alone: the point lies on a grid line or a node, and the node took
+/// A node of at most this bilinear weight is left unchanged: the point lies on a grid line or a node, and the node had
 /// no part in the prediction. Our one deviation from the printed law, which would overwrite it. Book `[adaptation.3]`.
 pub const WEIGHT_OF_NO_PART: f64 = 1e-9;
 
@@ -26,16 +26,16 @@ pub struct PaperLaw {
     threshold_percent: f64,
 }
 
-/// A threshold that is none.
+/// A threshold that is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("adaptation threshold {threshold_percent} %, outside 0.. %")]
 #[non_exhaustive]
 pub struct ThresholdError {
-    /// What was given, %.
+    /// The value given, %.
     pub threshold_percent: f64,
 }
 
-/// What an observation did to the state.
+/// The effect of an observation on the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub enum Update {
@@ -43,7 +43,7 @@ pub enum Update {
     Unusable {
         /// Which, in the field's words and with its unit.
         quantity: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// The point lies outside the grid; nothing changed.
@@ -57,7 +57,7 @@ pub enum Update {
     Adapted {
         /// Fuel-flow error ε against the table before the update, %.
         error_percent: f64,
-        /// What happened to each of the cell's nodes, in the cell's order; `None` for one that was left alone.
+        /// The update of each of the cell's nodes, in the cell's order; `None` for one that was left unchanged.
         nodes: [Option<NodeChange>; 4],
     },
 }
@@ -128,7 +128,7 @@ impl PaperLaw {
 }
 
 impl Update {
-    /// The error ε against the table before the update, %; `None` where there was none to tell.
+    /// The error ε against the table before the update, %; `None` where it cannot be computed.
     #[must_use]
     pub const fn error_percent(&self) -> Option<f64> {
         match *self {
@@ -156,7 +156,7 @@ impl Update {
 /// ```
 ///
 /// This is (Wf − Ŵf)/Wf, because predicted fuel flow is linear in the drag coefficient. ε > 0: the aircraft burns more
-/// than the model says.
+/// than the model predicts.
 ///
 /// # Source
 /// Book `[adaptation.1]`; Ghazi et al. 2020, equations (22)–(24).
@@ -198,7 +198,7 @@ fn pull_nodes(state: &mut State, cell: &Cell, observed: f64) -> [Option<NodeChan
     changes
 }
 
-/// The first number that no error can be formed from.
+/// The first number that prevents computing an error.
 fn unusable(observation: &Observation) -> Option<(&'static str, f64)> {
     let finite = [
         ("lift coefficient", observation.lift_coefficient),

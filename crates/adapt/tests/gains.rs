@@ -1,4 +1,4 @@
-//! Equation (27): published and derived values of the gains, their limits, and what they mean.
+//! Equation (27): published and derived values of the gains, their limits, and their meaning.
 #![expect(clippy::float_cmp, reason = "the limits are exact")]
 
 use adapt::paper::{Gains, gains};
@@ -8,7 +8,7 @@ fn adopt(normalized_distance: f64, confidence: f64) -> f64 {
     gains(normalized_distance, confidence).adopt
 }
 
-/// Values of ka worked out beside the reconstruction of the equation, to the digits given there.
+/// Values of ka computed together with the reconstruction of the equation, to the digits given there.
 #[test]
 fn table_of_the_adopting_gain() {
     let confidences = [1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0];
@@ -75,8 +75,8 @@ proptest! {
         prop_assert!(after <= before * (1.0 + 1e-15));
     }
 
-    /// What (27) means: at a constant δ, λ = 1, 2, 3, … forms the mean of all observations with weights 1, δ, δ², … from
-    /// the newest to the oldest. The oracle is that mean.
+    /// The meaning of (27): at a constant δ, λ = 1, 2, 3, … forms the mean of all observations with weights 1, δ, δ², …
+    /// from the newest to the oldest. The oracle is that mean.
     #[test]
     fn constant_distance_is_a_forgetting_mean(
         normalized_distance in 0.01..1.0_f64,

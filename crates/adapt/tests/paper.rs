@@ -1,4 +1,4 @@
-//! Law `paper` on small tables: cases written out by hand, limits, order, and what it leaves alone.
+//! Law `paper` on small tables: cases written out by hand, limits, order, and what it leaves unchanged.
 #![expect(clippy::unwrap_used, reason = "a test")]
 #![expect(clippy::float_cmp, reason = "what is left alone or replaced is so to the bit")]
 
@@ -129,7 +129,7 @@ fn an_error_at_the_threshold_does_not_exceed_it() {
     }
 }
 
-/// A threshold of 0 adapts to any error, but not to none.
+/// A threshold of 0 adapts to any error, but not to an error of 0.
 #[test]
 fn a_threshold_of_0() {
     let law = PaperLaw::new(0.0).unwrap();
@@ -144,8 +144,8 @@ fn a_threshold_of_0() {
     ));
 }
 
-/// Our deviation from the print: a node of no weight keeps its value, so it does not matter which of two cells a point
-/// on a grid line belongs to.
+/// Our deviation from the print: a node without weight keeps its value, so it does not matter which of two cells a
+/// point on a grid line belongs to.
 #[test]
 fn nodes_of_no_weight_are_left_alone() {
     let law = PaperLaw::ghazi_2020();
@@ -218,8 +218,8 @@ fn order_matters() {
     assert_ne!(learn(&one, &two), learn(&two, &one));
 }
 
-/// Check 12: 6 % more fuel flow with the same drag teaches the same as 6 % more drag. The engine is behind both, once as
-/// it is and once consuming 6 % more: observed drag is what fuel flow over the *model's* TSFC makes of it.
+/// Check 12: 6 % more fuel flow with the same drag has the same effect as 6 % more drag. The engine consumes first as
+/// the model assumes and then 6 % more: observed drag is fuel flow divided by the *model's* TSFC.
 #[test]
 fn engine_and_drag_are_not_told_apart() {
     let (dynamic_pressure_times_area_n, tsfc_kg_n_s) = (1.1e6, 1.6e-5);
@@ -322,8 +322,8 @@ fn tables_that_are_no_state() {
 }
 
 proptest! {
-    /// Whatever comes in: confidences stay 1 or more, drag coefficients between what they were and what was observed,
-    /// and an update says exactly what it did.
+    /// Whatever the input: confidences stay 1 or more, drag coefficients between the old and the observed one, and an
+    /// update reports exactly what changed.
     #[test]
     fn updates_are_bounded_and_told(
         points in prop::collection::vec((0.25..0.55, 0.65..0.95, 0.02..0.05), 1..60),

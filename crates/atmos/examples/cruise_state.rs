@@ -1,4 +1,4 @@
-//! From what a cruise report says (pressure altitude, SAT, Mach number) to what a performance model wants.
+//! From the quantities of a cruise report (pressure altitude, SAT, Mach number) to those of a performance model.
 //!
 //! `cargo run -p cruisefit-atmos --example cruise_state`
 #![expect(clippy::print_stdout, reason = "an example shows its result")]
@@ -22,7 +22,7 @@ fn main() -> Result<(), OutOfDomain> {
     println!("CAS            {:.1} kt", calibrated_airspeed.to_knots());
     println!("TAT            {:.1} °C", total_air_temperature.to_celsius());
 
-    // Eastbound over 50° north: what the lift has to carry, against standard gravity.
+    // Eastbound over 50° north: what the lift has to carry, compared with standard gravity.
     let latitude = Angle::degrees(50.0);
     let height = GeometricAltitude::feet(41_000.0);
     let ground_speed_m_s = true_airspeed.to_meters_per_second();

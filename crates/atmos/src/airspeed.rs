@@ -1,8 +1,8 @@
 //! Mach number, TAS, CAS and EAS, each from each; impact and dynamic pressure.
 //!
-//! What has calibrated airspeed or impact pressure in it is subsonic: the Pitot tube of a supersonic aircraft sits
-//! behind a shock and obeys another law. Outside 0 ≤ M ≤ 1 or 0 ≤ CAS ≤ a0 these functions return NaN, not the
-//! value of a law that does not hold there.
+//! Functions of calibrated airspeed or impact pressure are for subsonic flow: the Pitot tube of a supersonic aircraft
+//! is behind a shock and obeys another law. Outside 0 ≤ M ≤ 1 or 0 ≤ CAS ≤ a0 these functions return NaN, not the value
+//! of a law that does not hold there.
 //!
 //! `(1 + x)^n − 1` is computed as `exp_m1(n·ln_1p(x))` throughout, so that slow airspeeds keep their digits.
 
@@ -35,7 +35,7 @@ pub fn true_airspeed_to_mach(true_airspeed: TrueAirspeed, sat: Temperature) -> M
     Mach::new(true_airspeed.to_meters_per_second() / speed_of_sound(sat).to_meters_per_second())
 }
 
-/// Impact pressure: total minus static pressure, what the airspeed indicator measures.
+/// Impact pressure: total minus static pressure, measured by the airspeed indicator.
 ///
 /// ```text
 /// qc = p·((1 + (γ−1)/2·M²)^(γ/(γ−1)) − 1)                           [atmosphere.8]

@@ -1,4 +1,4 @@
-//! Every constant once, with its source. What follows from others is computed, never retyped.
+//! Every constant once, with its source. Derived constants are computed, never retyped.
 //!
 //! Standard gravity is in [`units::convert`], where the pound-force needs it too.
 
@@ -16,9 +16,9 @@ pub const RATIO_OF_SPECIFIC_HEATS: f64 = 1.4;
 pub const LAPSE_RATE_K_M: f64 = 0.0065;
 /// Pressure altitude of the tropopause, m. ISO 2533:1975, layers (exact).
 pub const TROPOPAUSE_PRESSURE_ALTITUDE_M: f64 = 11_000.0;
-/// Lowest pressure altitude this crate answers for, m: the start of the tables of ISO 2533:1975.
+/// Lowest pressure altitude that this crate accepts, m: the start of the tables of ISO 2533:1975.
 pub const LOWEST_PRESSURE_ALTITUDE_M: f64 = -2000.0;
-/// Highest pressure altitude this crate answers for, m: the end of the isothermal layer. ISO 2533:1975, layers.
+/// Highest pressure altitude that this crate accepts, m: the end of the isothermal layer. ISO 2533:1975, layers.
 pub const HIGHEST_PRESSURE_ALTITUDE_M: f64 = 20_000.0;
 
 /// Density at zero pressure altitude, kg/m³: p0/(R·T0), 1.225 to seven digits.

@@ -1,6 +1,6 @@
-//! Gravity of the WGS 84 ellipsoid, and what moving over a turning Earth does to weight.
+//! Gravity of the WGS 84 ellipsoid, and the effect of motion over the rotating Earth on weight.
 //!
-//! Latitudes are geodetic, north positive. They are not checked: beyond ±90° the formulas go on periodically.
+//! Latitudes are geodetic, north positive. They are not checked: beyond ±90° the formulas continue periodically.
 //! Heights are above the ellipsoid in the formulas; above mean sea level differs by at most about 100 m, 3e-5 of gravity.
 //! The ellipsoid is smooth: the real Earth's gravity differs from it by a few 0.001 m/s² (a few 0.01 %) over mountains
 //! and trenches.
@@ -13,7 +13,7 @@ use crate::constants::{
     WGS84_SOMIGLIANA_CONSTANT,
 };
 
-/// Normal gravity on the ellipsoid, where nothing moves over the Earth.
+/// Normal gravity on the ellipsoid, for a body at rest relative to the Earth.
 ///
 /// ```text
 /// γ0 = γe·(1 + k sin²φ)/√(1 − e² sin²φ)                             [atmosphere.16]
@@ -28,7 +28,7 @@ pub fn normal_gravity(latitude: Angle) -> Acceleration {
     Acceleration::meters_per_second_squared(normal_gravity_m_s2(sine_squared(latitude)))
 }
 
-/// Gravity at a height over the ellipsoid, where nothing moves over the Earth: free air, to second order.
+/// Gravity at a height over the ellipsoid, for a body at rest relative to the Earth: free air, to second order.
 ///
 /// ```text
 /// γ = γ0·(1 − 2(1 + f + m − 2f sin²φ)·h/a + 3·(h/a)²)               [atmosphere.17]
@@ -37,7 +37,7 @@ pub fn normal_gravity(latitude: Angle) -> Acceleration {
 /// The second-order term is 1e-5 of gravity at 12 km, and costs nothing. The third, −4(h/a)³, is 1.2e-7 at 20 km.
 /// Height is not checked.
 ///
-/// A pressure altitude is no height (on a day 10 K warm, 12 000 m of it are about 12 500 m):
+/// A pressure altitude is not a height (on a day 10 K warm, 12 000 m of it are about 12 500 m):
 ///
 /// ```compile_fail
 /// use units::{Angle, PressureAltitude};
@@ -58,8 +58,8 @@ pub fn gravity(latitude: Angle, geometric_altitude: GeometricAltitude) -> Accele
     Acceleration::meters_per_second_squared(normal_gravity_m_s2(sine_squared) * free_air_ratio)
 }
 
-/// By how much motion over the Earth reduces apparent gravity (Eötvös): the weight that lift must carry is
-/// m·([`gravity`] − this).
+/// Reduction of apparent gravity by motion over the Earth (Eötvös): the weight that lift must carry is m·([`gravity`] −
+/// this).
 ///
 /// ```text
 /// Δg = 2Ω·V_east·cos φ + V_east²/(N + h) + V_north²/(M + h)         [atmosphere.18]
@@ -150,8 +150,8 @@ mod tests {
 
     #[test]
     fn free_air_gravity_is_that_of_the_spherical_harmonics() {
-        // Another road, without Somigliana: gradient of the normal potential with J2 and J4 of WGS 84 (TR8350.2),
-        // less the centrifugal acceleration; on the equator and over a pole, where the vertical is radial.
+        // An independent way, without Somigliana: gradient of the normal potential with J2 and J4 of WGS 84 (TR8350.2),
+        // minus the centrifugal acceleration; on the equator and over a pole, where the vertical is radial.
         let (j2, j4) = (1.082629821313e-3, -2.37091120e-6);
         for height_m in [0.0, 5000.0, 12_000.0, 20_000.0] {
             let height = GeometricAltitude::meters(height_m);

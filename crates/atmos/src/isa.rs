@@ -55,7 +55,7 @@ pub fn pressure(pressure_altitude: PressureAltitude) -> Result<Pressure, OutOfDo
 /// hp = 11 000 m − (R T11/g0)·ln(p/p11)           below              [atmosphere.3]
 /// ```
 ///
-/// At the two ends of the domain the result is held to the end, should the last bit be rounded outward.
+/// At the two ends of the domain the result is held to the end, in case the last bit is rounded outward.
 ///
 /// # Errors
 /// [`OutOfDomain`] for a static pressure outside that of 20 000 m to that of −2000 m, and for NaN.
@@ -136,7 +136,7 @@ pub fn speed_of_sound(sat: Temperature) -> SpeedOfSound {
     )
 }
 
-/// How much warmer the day is than the standard one: SAT − T(hp) with [`temperature`]. `[atmosphere.1]`
+/// Deviation of the day from the standard one: SAT − T(hp) with [`temperature`]. `[atmosphere.1]`
 ///
 /// # Errors
 /// [`OutOfDomain`] for a pressure altitude outside −2000..=20 000 m, and for NaN.
@@ -192,8 +192,8 @@ fn pressure_altitude_m(static_pressure_pa: f64) -> f64 {
     }
 }
 
-/// p11, computed and not typed: a rounded literal here is a step of the pressure at 11 km. The argument is constant, so
-/// an optimizing compiler leaves no power behind.
+/// p11, computed and not typed: a rounded literal here would make a step of the pressure at 11 km. The argument is
+/// constant, so an optimizing compiler removes the power.
 fn tropopause_pressure_pa() -> f64 {
     troposphere_pressure_pa(TROPOPAUSE_PRESSURE_ALTITUDE_M)
 }
@@ -210,7 +210,7 @@ mod tests {
             let static_pressure = pressure(pressure_altitude).unwrap();
             let back = super::pressure_altitude(static_pressure).unwrap();
             assert!((back.to_meters() - pressure_altitude_m).abs() < 1e-8);
-            // However it was rounded, the result is in the domain again.
+            // However it was rounded, the result is inside the domain.
             assert!(temperature(back).is_ok(), "{back:?}");
         }
         for pressure_altitude_m in [-2000.001, 20_000.001, f64::NAN, f64::INFINITY] {

@@ -1,8 +1,8 @@
 //! Standard atmosphere, airspeeds, temperatures, gravity, viscosity.
 //!
-//! What it is: the air and the Earth that an aircraft in cruise meets, one small free function a quantity, typed by
-//! `units` and numbered `[atmosphere.N]` as in the book's page on the atmosphere.
-//! What it is not: a weather model. The day enters as the measured SAT; the standard day only where it is asked for.
+//! What it is: the air and the Earth that an aircraft in cruise meets, one small free function per quantity, typed by
+//! `units` and numbered `[atmosphere.N]` as in the book's page on the atmosphere. What it is not: a weather model. The
+//! day enters as the measured SAT, the standard day only where it is asked for.
 //!
 //! The one design decision: pressure altitude is the only vertical coordinate of the air. Static pressure follows from
 //! it alone on every day, density from that pressure and the *measured* SAT. Geometric altitude occurs in gravity only.

@@ -4,13 +4,13 @@ use units::{Mach, Temperature};
 
 use crate::constants::RATIO_OF_SPECIFIC_HEATS;
 
-/// Temperature that a probe measures in air of a SAT: the total air temperature when the recovery factor is 1.
+/// Temperature that a probe measures in air of a given SAT: the total air temperature when the recovery factor is 1.
 ///
 /// ```text
 /// TAT = SAT·(1 + r·(γ−1)/2·M²)                                      [atmosphere.13]
 /// ```
 ///
-/// `recovery_factor` r is the share of the adiabatic heating that the probe sees: a property of the probe, 1 for an
+/// `recovery_factor` r is the share of the adiabatic heating that the probe measures: a property of the probe, 1 for an
 /// ideal one and for the TAT that an air data computer sends. It is not checked.
 ///
 /// # Source
@@ -21,7 +21,7 @@ pub fn static_to_total(sat: Temperature, mach: Mach, recovery_factor: f64) -> Te
     Temperature::kelvin(sat.to_kelvin() * heating_ratio(mach, recovery_factor))
 }
 
-/// SAT behind a measured total temperature: the inverse of [`static_to_total`]. `[atmosphere.13]`
+/// SAT from a measured total temperature: the inverse of [`static_to_total`]. `[atmosphere.13]`
 #[inline]
 #[must_use]
 pub fn total_to_static(
@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn ram_rise_by_hand() {
-        // Mach 0.80 at −56.5 °C: 216.65·0.2·0.64 = 27.7312 K; a probe of r = 0.95 sees 26.34464 K of it.
+        // Mach 0.80 at −56.5 °C: 216.65·0.2·0.64 = 27.7312 K; a probe of r = 0.95 measures 26.34464 K of it.
         let sat = Temperature::celsius(-56.5);
         let rise_k = |recovery_factor: f64| {
             (static_to_total(sat, Mach::new(0.80), recovery_factor) - sat).to_kelvin()

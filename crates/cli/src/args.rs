@@ -7,9 +7,9 @@ use segmenter::TrimCriteria;
 
 /// Aircraft performance monitoring from cruise reports.
 ///
-/// Reads cruise reports, finds the stabilised segments, corrects the drag table of the aircraft's performance model
-/// so that the fuel flow it predicts is the fuel flow that is burnt. Errors are 100 (recorded − predicted)/recorded:
-/// positive, the aircraft burns more than the model says.
+/// Reads cruise reports, finds the stabilised segments, and corrects the drag table of the aircraft's performance model
+/// so that the predicted fuel flow matches the recorded one. Errors are 100 (recorded − predicted)/recorded: a positive
+/// error means that the aircraft burns more than the model predicts.
 #[derive(Debug, Parser)]
 #[command(name = "cruisefit", version, max_term_width = 100)]
 pub(crate) struct Cli {
@@ -24,7 +24,7 @@ pub(crate) struct Cli {
 /// Options of every command.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Common {
-    /// Worker threads; results are the same bytes for any number [default: one a processor]
+    /// Worker threads; results are the same bytes for any number [default: one per processor]
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// Show no progress on the terminal
@@ -40,32 +40,32 @@ pub(crate) struct Common {
 pub(crate) enum Command {
     /// Initial model of an aircraft from its flight-planning guide
     Init(InitArgs),
-    /// Adapt models to cruise reports, one model a tail
+    /// Adapt models to cruise reports, one model per tail
     Adapt(AdaptArgs),
     /// Stabilised segments only, no model needed
     Segment(SegmentArgs),
-    /// Settings of law `bayes` from past reports, by marginal likelihood
+    /// Fit the settings of law `bayes` to past reports, by marginal likelihood
     Tune(TuneArgs),
-    /// Add what models of the same initial model have learnt (law `bayes`)
+    /// Combine what models of the same initial model have learnt (law `bayes`)
     Merge(MergeArgs),
     /// Predict fuel flow and specific range at flight points
     Predict(PredictArgs),
-    /// Fuel-flow error of a model over reports, nothing adapted
+    /// Fuel-flow error of a model over reports; nothing is adapted
     Evaluate(EvaluateArgs),
-    /// Which effect a model lacks: reports it has not learnt against the model
+    /// Which effect a model lacks: compares it with reports that it has not learnt
     Diagnose(DiagnoseArgs),
-    /// Look at a model
+    /// Show what a model file holds
     Show(ShowArgs),
-    /// Hand a model's table on as CSV
+    /// Export a model's table as CSV
     Export(ExportArgs),
     /// Compare a whole run with expected files, or accept it as expected
     #[command(subcommand)]
     Golden(GoldenCommand),
     /// Cruise reports of a virtual aircraft, with any effects switched on
     Simulate(SimulateArgs),
-    /// Blind trials: fly with an effect that the model is denied, diagnose, score
+    /// Blind trials: simulate flights with an effect that the model does not have, diagnose, score
     Trial(TrialArgs),
-    /// The whole chain on embedded data, nothing to prepare
+    /// The whole chain on embedded data; needs no input
     Demo(DemoArgs),
 }
 
@@ -78,10 +78,10 @@ pub(crate) struct ReportsArgs {
     /// Mapping file (RON), or the name of a preset, for recordings of another layout
     #[arg(long, value_name = "MAPPING")]
     pub(crate) mapping: Option<String>,
-    /// Trim criteria by which samples are steady
+    /// Trim criteria that decide which samples are steady
     #[arg(long, value_name = "NAME", default_value = TrimCriteria::PRESETS[0], value_parser = TrimCriteria::PRESETS)]
     pub(crate) criteria: String,
-    /// A refused report stops the batch before anything is written
+    /// Stop before anything is written if a report is refused
     #[arg(long)]
     pub(crate) strict: bool,
 }
@@ -89,8 +89,8 @@ pub(crate) struct ReportsArgs {
 /// Models to choose from.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ModelArgs {
-    /// Model file, or folder of them; may be given several times. A report takes the model of its tail, else that of
-    /// its type
+    /// Model file, or folder of them; may be given several times. A report uses the model of its tail, otherwise the
+    /// one of its type
     #[arg(long = "model", required = true, value_name = "MODEL.ron")]
     pub(crate) models: Vec<PathBuf>,
 }
@@ -127,7 +127,7 @@ pub(crate) struct AdaptArgs {
     /// Models.
     #[command(flatten)]
     pub(crate) models: ModelArgs,
-    /// Folder to write to; a folder that exists is gone on from
+    /// Folder to write to; an existing folder is continued
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
     /// Adaptation law
@@ -136,11 +136,11 @@ pub(crate) struct AdaptArgs {
     /// Law `paper`: adapt where the error exceeds this, in per cent [default: the model's]
     #[arg(long, value_name = "PCT")]
     pub(crate) threshold: Option<f64>,
-    /// Law `bayes`: do not learn what no table can hold (smooth remainder, rotor-speed deck, noise levels); `diagnose`
-    /// then counts it as gap
+    /// Law `bayes`: do not learn what no table can hold (smooth remainder, N2 deck, noise levels); `diagnose` then
+    /// counts it as gap
     #[arg(long)]
     pub(crate) no_remainder: bool,
-    /// Begin anew: an existing folder is kept aside under another name
+    /// Start over: an existing folder is kept under another name
     #[arg(long)]
     pub(crate) restart: bool,
 }
@@ -157,8 +157,9 @@ pub(crate) struct TuneArgs {
     /// Initial model to write, with the settings found
     #[arg(long, short, value_name = "MODEL2.ron")]
     pub(crate) output: PathBuf,
-    /// Calendar days after which knowledge counts half; none: it does not age; search: what predicts each report best
-    /// from those before. The model's own without this option. With a half-life, noise is not searched
+    /// Half-life of what was learnt, in calendar days; none: it does not age; search: the half-life that best predicts
+    /// each report from those before it. Without this option the model keeps its own. With a half-life, noise is not
+    /// searched
     #[arg(long, value_name = "DAYS|none|search")]
     pub(crate) half_life: Option<HalfLifeChoice>,
 }
@@ -168,9 +169,9 @@ pub(crate) struct TuneArgs {
 pub(crate) enum HalfLifeChoice {
     /// Knowledge does not age.
     Never,
-    /// So many calendar days.
+    /// This many calendar days.
     Days(f64),
-    /// Found on the reports.
+    /// Searched for on the reports.
     Search,
 }
 
@@ -225,7 +226,7 @@ pub(crate) struct PredictArgs {
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
-    /// Predict by the drag table alone, without the remainder that the model remembers
+    /// Predict with the drag table alone, without the model's remainder
     #[arg(long)]
     pub(crate) table_only: bool,
 }
@@ -239,7 +240,7 @@ pub(crate) struct EvaluateArgs {
     /// Models.
     #[command(flatten)]
     pub(crate) models: ModelArgs,
-    /// Write the summary as JSON too
+    /// Also write the summary as JSON
     #[arg(long, value_name = "OUT.json")]
     pub(crate) json: Option<PathBuf>,
 }
@@ -262,8 +263,8 @@ pub(crate) struct DiagnoseArgs {
     /// Leave these effects out
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     pub(crate) without: Vec<String>,
-    /// Write to this folder, as TAIL.ron, each tail's model extended by the effects found; where flights cannot tell
-    /// several effects apart, name the one with --effects
+    /// Write each tail's model, extended by the effects found, to this folder as TAIL.ron; where the flights cannot
+    /// distinguish several effects, name the right one with --effects
     #[arg(long, value_name = "DIR")]
     pub(crate) apply: Option<PathBuf>,
     /// One diagnosis for all tails together
@@ -272,7 +273,7 @@ pub(crate) struct DiagnoseArgs {
     /// Count what the model's remainder explains as gap
     #[arg(long)]
     pub(crate) table_only: bool,
-    /// Diagnose flights that the model has learnt, too
+    /// Also diagnose flights that the model has learnt
     #[arg(long)]
     pub(crate) allow_learnt: bool,
 }
@@ -294,7 +295,8 @@ pub(crate) struct ExportArgs {
     /// CSV file to write [default: standard output]
     #[arg(long, short, value_name = "TABLE.csv")]
     pub(crate) output: Option<PathBuf>,
-    /// Instead of the table, the six-coefficient polynomial nearest to it, with covariance where the law knows it
+    /// Export the six-coefficient polynomial nearest to the table instead, with its covariance where the law provides
+    /// one
     #[arg(long)]
     pub(crate) polynomial: bool,
 }
@@ -302,13 +304,13 @@ pub(crate) struct ExportArgs {
 /// `golden`
 #[derive(Debug, Subcommand)]
 pub(crate) enum GoldenCommand {
-    /// Run what DIR/golden.ron says and print each value out of tolerance
+    /// Run what DIR/golden.ron describes and print each value out of tolerance
     Check {
         /// Folder with golden.ron and expected files
         #[arg(required = true, value_name = "DIR")]
         folders: Vec<PathBuf>,
     },
-    /// Run what DIR/golden.ron says and write the result as the expected files
+    /// Run what DIR/golden.ron describes and write the result as the expected files
     Bless {
         /// Folder with golden.ron
         #[arg(required = true, value_name = "DIR")]
@@ -319,14 +321,14 @@ pub(crate) enum GoldenCommand {
 /// `simulate`
 #[derive(Debug, Args)]
 pub(crate) struct SimulateArgs {
-    /// Plan file (RON): aircraft, fleet, dates, effects, sensors, seed; or `ghazi-2020`: the study of the paper, with
-    /// aircraft file, guide and static points
+    /// Plan file (RON): aircraft, fleet, dates, effects, sensors, seed; or `ghazi-2020` for the study of the paper,
+    /// with aircraft file, guide and static points
     #[arg(value_name = "PLAN.ron")]
     pub(crate) plan: PathBuf,
     /// Folder to write to: TAIL/FLIGHT.txt and TRUTH.json
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
-    /// Write the true state of each sample too: TAIL/FLIGHT-states.csv
+    /// Also write the true state of each sample: TAIL/FLIGHT-states.csv
     #[arg(long)]
     pub(crate) states: bool,
 }
@@ -334,23 +336,22 @@ pub(crate) struct SimulateArgs {
 /// `trial`
 #[derive(Debug, Args)]
 pub(crate) struct TrialArgs {
-    /// Plan of the trials (RON) [default: a short one that comes with the program]
+    /// Plan of the trials (RON) [default: a short one built into the program]
     #[arg(value_name = "PLAN.ron")]
     pub(crate) plan: Option<PathBuf>,
-    /// Folder to write to: trials.json, trials.md, truth/, cases/; a folder that was begun with the same plan is gone on
-    /// from
+    /// Folder to write to: trials.json, trials.md, truth/, cases/; a folder started with the same plan is continued
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
-    /// The long plan that comes with the program: hours
+    /// The long plan built into the program; takes hours
     #[arg(long, conflicts_with = "plan")]
     pub(crate) long: bool,
-    /// Another seed than the plan's
+    /// Seed to use instead of the plan's
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
-    /// End with status 2 where a score is below the plan's floor
+    /// Exit with status 2 if a score is below the plan's floor
     #[arg(long)]
     pub(crate) check: bool,
-    /// Begin anew: an existing folder is kept aside under another name
+    /// Start over: an existing folder is kept under another name
     #[arg(long)]
     pub(crate) restart: bool,
 }

@@ -1,4 +1,4 @@
-//! The commands: each turns its arguments into an [`Outcome`], or says why nothing was done.
+//! The commands: each turns its arguments into an [`Outcome`], or reports why nothing was done.
 
 pub(crate) mod adapt;
 pub(crate) mod demo;
@@ -25,12 +25,12 @@ use crate::inputs;
 use crate::progress::Progress;
 use crate::reading::{self, Reading};
 
-/// What a command that did something came to.
+/// The result of a command that did something.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Outcome {
     /// For standard output.
     pub(crate) text: String,
-    /// What was refused while the rest went on.
+    /// What was refused while the rest continued.
     pub(crate) refused: Vec<RefusedReport>,
 }
 
@@ -46,7 +46,10 @@ fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failu
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
     let inputs = inputs::collect(&arguments.reports, mapping.is_some())?;
     if inputs.skipped > 0 {
-        tracing::info!(skipped = inputs.skipped, "files that are no reports by their ending");
+        tracing::info!(
+            skipped = inputs.skipped,
+            "files skipped: their endings are not those of reports"
+        );
     }
     let bar = progress.bar(inputs.files.len(), "reading reports");
     let criteria =

@@ -1,4 +1,4 @@
-//! What ends a command with nothing done, told so that a person can mend it, and the exit statuses.
+//! Why a command ended without doing anything, worded so that a person can put it right, and the exit statuses.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub(crate) enum Failure {
     Unreadable {
         /// The path as given.
         path: String,
-        /// What the operating system, or the reader, says.
+        /// What the operating system, or the reader, reports.
         reason: String,
     },
     /// A file or folder that cannot be written.
@@ -30,7 +30,7 @@ pub(crate) enum Failure {
     Unwritable {
         /// The path as given.
         path: String,
-        /// What the operating system says.
+        /// What the operating system reports.
         reason: String,
     },
     /// A file whose content is wrong.
@@ -40,7 +40,7 @@ pub(crate) enum Failure {
         path: String,
         /// What is wrong, with position.
         reason: String,
-        /// What may be done about it.
+        /// How to put it right.
         #[help]
         help: Option<String>,
     },
@@ -50,9 +50,9 @@ pub(crate) enum Failure {
         "reports end in .txt, .rpt or .gz; recordings of another layout need --mapping"
     ))]
     NoReports {
-        /// What was given.
+        /// The value given.
         inputs: String,
-        /// ", 3 other files skipped" or nothing.
+        /// ", 3 other files skipped", or empty.
         skipped: String,
     },
     /// Every report was refused.
@@ -71,10 +71,10 @@ pub(crate) enum Failure {
         /// All files.
         files: usize,
     },
-    /// A folder that was begun with something else.
-    #[error("{folder} was begun with another {what}: {difference}")]
+    /// A folder that was started with something else.
+    #[error("{folder} was started with another {what}: {difference}")]
     #[diagnostic(help(
-        "use another folder, or --restart to begin anew (the old folder is kept aside)"
+        "use another folder, or --restart to start over (the old folder is kept under another name)"
     ))]
     BegunOtherwise {
         /// The folder.
@@ -84,20 +84,20 @@ pub(crate) enum Failure {
         /// Both values.
         difference: String,
     },
-    /// An argument that makes no sense.
+    /// An argument that is invalid.
     #[error("{argument}: {reason}")]
     BadArgument {
         /// The argument as it is called.
         argument: &'static str,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// Scores below their floors in `trial --check`.
-    #[error("{missed} scores miss their floor, {failed} cases came to nothing")]
+    #[error("{missed} scores below their floor, {failed} cases failed")]
     TrialFloors {
         /// Floors missed.
         missed: usize,
-        /// Cases that came to nothing.
+        /// Cases that failed.
         failed: usize,
     },
     /// Values out of tolerance in `golden check`.
@@ -125,12 +125,12 @@ impl Failure {
     }
 }
 
-/// A path for a message: as given, with forward slashes left as they are.
+/// A path for a message: as given, with forward slashes unchanged.
 pub(crate) fn show(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// A report that was refused, while the batch went on.
+/// A report that was refused while the batch continued.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RefusedReport {
     /// File.
@@ -144,7 +144,7 @@ pub(crate) struct RefusedReport {
 }
 
 impl RefusedReport {
-    /// A report refused as a whole: no place in it is to blame.
+    /// A report refused as a whole: no position in it is at fault.
     pub(crate) fn whole(path: PathBuf, reason: impl Display) -> Self {
         Self { path, line: None, column: None, reason: reason.to_string() }
     }

@@ -1,4 +1,4 @@
-//! Writing files so that a reader, or a crash, never meets half of one.
+//! Writing files so that neither a reader nor a crash ever leaves half a file.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -6,10 +6,10 @@ use std::path::Path;
 
 use crate::failure::Failure;
 
-/// Writes to a temporary file beside `path`, syncs it, and renames it over `path`.
+/// Writes to a temporary file next to `path`, syncs it, and renames it to `path`.
 ///
 /// # Errors
-/// Whatever the operating system refuses; `path` then is as it was.
+/// Any error of the operating system; `path` then is as it was.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -27,7 +27,7 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure>
     attempt().map_err(|error| Failure::unwritable(path, error))
 }
 
-/// Temporary files are made private to their owner; results are to be read like any other file.
+/// Temporary files are private to their owner; results must be as readable as any other file.
 #[cfg(unix)]
 fn set_ordinary_permissions(path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
@@ -53,10 +53,10 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// Makes a folder and all above it.
+/// Creates a folder and its parents.
 ///
 /// # Errors
-/// Whatever the operating system refuses.
+/// Any error of the operating system.
 pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(path).map_err(|error| Failure::unwritable(path, error))
 }

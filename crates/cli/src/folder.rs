@@ -1,4 +1,4 @@
-//! The state of an output folder: what it holds, and whether a run may go on from it.
+//! The state of an output folder: what it holds, and whether a run may continue it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::models::{read_model, write_model};
 use pipeline::model_file::ModelFile;
 use pipeline::segments_table::{self, SegmentRow};
 
-/// A tail as the folder holds it.
+/// A tail in the folder.
 #[derive(Clone, Debug)]
 pub(crate) struct StoredTail {
     /// Its model.
@@ -27,17 +27,17 @@ pub(crate) struct Folder {
 }
 
 impl Folder {
-    /// The folder at a path, made if it is not there; with `restart`, what is there is kept aside first.
+    /// The folder at a path, created if it does not exist; with `restart`, an existing one is renamed first.
     ///
     /// # Errors
-    /// A place that cannot be written.
+    /// A folder that cannot be written.
     pub(crate) fn open(path: &Path, restart: bool) -> Result<Self, Failure> {
         if restart {
             keep_aside(path)?;
         }
         for folder in [path.to_owned(), path.join("models"), path.join("segments")] {
             make_folder(&folder)?;
-            // A folder that exists may still not be writable: better said now than after an hour of work.
+            // An existing folder may still not be writable: better reported now than after an hour of work.
             tempfile::tempfile_in(&folder).map_err(|error| Failure::unwritable(&folder, error))?;
         }
         Ok(Self { path: path.to_owned() })
@@ -73,8 +73,8 @@ impl Folder {
         let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
         let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
         let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
-        // Segments are written before the model. A run that was cut off in between leaves segments of flights that
-        // the ledger does not know: they are not learnt, and are learnt when their report comes again.
+        // Segments are written before the model. A run that was interrupted in between leaves segments of flights that
+        // the ledger does not list: they count as not learnt, and are learnt when their report is given again.
         let known: BTreeSet<(&str, &str)> =
             ledger.iter().map(|entry| (entry.flight.as_str(), entry.start.as_str())).collect();
         let mut segments = Vec::with_capacity(all.len());
@@ -88,7 +88,7 @@ impl Folder {
         if segments.len() as u64 != expected {
             return Err(Failure::bad_file(
                 &path,
-                format!("{} segments, the model's ledger says {expected}", segments.len()),
+                format!("{} segments, the model's ledger has {expected}", segments.len()),
             ));
         }
         Ok(segments)
@@ -97,7 +97,7 @@ impl Folder {
     /// Writes a tail: its segments, then its model, each whole or not at all.
     ///
     /// # Errors
-    /// A place that cannot be written.
+    /// A file or folder that cannot be written.
     pub(crate) fn store(
         &self,
         tail: &str,
@@ -113,26 +113,26 @@ impl Folder {
     /// Writes a file of the folder's top level.
     ///
     /// # Errors
-    /// A place that cannot be written.
+    /// A file that cannot be written.
     pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         write_atomically(&self.path.join(name), bytes)
     }
 
-    /// Where a tail's model is.
+    /// Path of a tail's model.
     pub(crate) fn model_path(&self, tail: &str) -> PathBuf {
         self.path.join("models").join(format!("{}.ron", file_stem_of_tail(tail)))
     }
 
-    /// Where a tail's segments are.
+    /// Path of a tail's segments.
     pub(crate) fn segments_path(&self, tail: &str) -> PathBuf {
         self.path.join("segments").join(format!("{}.csv", file_stem_of_tail(tail)))
     }
 }
 
-/// Renames a folder, if it is there, so that another can begin in its place.
+/// Renames a folder, if it exists, so that another can take its place.
 ///
 /// # Errors
-/// A place that cannot be written.
+/// A folder that cannot be renamed.
 pub(crate) fn keep_aside(path: &Path) -> Result<(), Failure> {
     if path.exists() {
         let aside = free_name(path);

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, show};
 
-/// The files to read, sorted and each once, and how many others were passed over.
+/// The files to read, sorted and without repetition, and how many others were skipped.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Inputs {
     /// Files, in path order.
     pub(crate) files: Vec<PathBuf>,
-    /// Files of folders that are no reports by their ending.
+    /// Files in folders whose ending is not that of a report.
     pub(crate) skipped: usize,
 }
 
@@ -23,7 +23,7 @@ const RECORDING_ENDINGS: [&str; 2] = ["csv", "gz"];
 /// report's ending, anything else is tried as a glob.
 ///
 /// # Errors
-/// An argument that names nothing, a folder that cannot be listed, or no file at all.
+/// An argument that matches nothing, a folder that cannot be listed, or no file at all.
 pub(crate) fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Inputs, Failure> {
     let endings: &[&str] = if with_mapping { &RECORDING_ENDINGS } else { &REPORT_ENDINGS };
     let mut files = BTreeSet::new();
@@ -120,13 +120,13 @@ mod tests {
         assert_eq!(inputs.skipped, 2);
         let globbed = collect(&[folder.path().join("a/*/*.txt")], false).unwrap();
         assert_eq!(globbed.files, [deep.join("2.txt")]);
-        // The same file given twice, by two names for the same path, is read once.
+        // The same file given twice, under two names of the same path, is read once.
         let twice = collect(&[deep.join("2.txt"), deep.clone()], false).unwrap();
         assert_eq!(twice.files.len(), 1);
     }
 
     #[test]
-    fn an_empty_folder_is_said() {
+    fn an_empty_folder_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let failure = collect(&[folder.path().to_owned()], false).unwrap_err();
         assert!(failure.to_string().starts_with("no cruise report in "), "{failure}");

@@ -1,5 +1,5 @@
-//! The command line of cruisefit: arguments, files, folders, threads, progress. Every computation, document and page is in
-//! the crates below it; nothing of this one is public but [`run`].
+//! The command line of cruisefit: arguments, files, folders, threads, progress. Every computation, document and page is
+//! in the crates below it; only [`run`] is public.
 //!
 //! Exit status: 0 done; 1 done, but some input was refused (each refusal on stderr and in the summary); 2 nothing was
 //! done, with the reason on stderr.
@@ -34,17 +34,17 @@ use commands::Outcome;
 use failure::{DONE, Failure, NOTHING_DONE, SOME_REFUSED};
 use progress::Progress;
 
-/// Reads the command line, runs the command, tells what came of it.
+/// Reads the command line, runs the command, and reports the result.
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
     start_logging(cli.common.verbose);
-    // Lines as they are: a path that is broken in the middle cannot be copied. Fails only where a hook is set already.
+    // Lines are not wrapped: a path with a line break in it cannot be copied. Fails only where a hook is already set.
     let _ = miette::set_hook(Box::new(|_| {
         Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
     }));
     let progress = if cli.common.no_progress { Progress::Hidden } else { Progress::Shown };
     let result = in_pool(&cli.common, || run_command(&cli.command, progress));
-    ExitCode::from(tell(result))
+    ExitCode::from(print_result(result))
 }
 
 fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure> {
@@ -89,7 +89,7 @@ fn start_logging(verbose: u8) {
         _ => "debug",
     };
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
-    // Only fails where a program that embeds this one has set a logger already: then that one serves.
+    // Fails only where a program that embeds this one has already set a logger, which then serves.
     let _ = tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(std::io::stderr)
@@ -99,11 +99,11 @@ fn start_logging(verbose: u8) {
         .try_init();
 }
 
-/// Results to standard output, refusals and reasons to standard error; the exit status.
-fn tell(result: Result<Outcome, Failure>) -> u8 {
+/// Results to standard output, refusals and reasons to standard error; returns the exit status.
+fn print_result(result: Result<Outcome, Failure>) -> u8 {
     match result {
         Ok(Outcome { text, refused }) => {
-            // A reader that has seen enough (`| head`) is no error.
+            // A reader that closes the pipe early (`| head`) is not an error.
             let _ = std::io::stdout().write_all(text.as_bytes());
             for one in &refused {
                 eprintln!("refused: {one}");

@@ -1,4 +1,4 @@
-//! Which model a report takes: that of its tail, else that of its type.
+//! Which model a report uses: that of its tail, otherwise that of its type.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use pipeline::model_file::ModelFile;
 /// Reads a model file.
 ///
 /// # Errors
-/// A file that cannot be read, is no model, is of a newer format, or whose checksum does not match.
+/// A file that cannot be read, is not a model, is of a newer format, or whose checksum does not match.
 pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
     ModelFile::from_text(&read_text(path)?).map_err(|error| Failure::BadFile {
         path: show(path),
@@ -22,7 +22,7 @@ pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
 /// Writes a model file: whole or not at all.
 ///
 /// # Errors
-/// A place that cannot be written.
+/// A file that cannot be written.
 pub(crate) fn write_model(model: &ModelFile, path: &Path) -> Result<(), Failure> {
     let text = model.to_text().map_err(|error| Failure::unwritable(path, error))?;
     write_atomically(path, text.as_bytes())
@@ -34,9 +34,9 @@ pub(crate) enum NoModel {
     /// Another number of engines than the model's aircraft.
     #[error("found {found} engines, expected {expected} as the model's aircraft has")]
     Engines {
-        /// That the report speaks of.
+        /// Engines in the report.
         found: usize,
-        /// That the aircraft has.
+        /// Engines of the aircraft.
         expected: usize,
     },
     /// The tail has a model, which is of another type.
@@ -79,8 +79,8 @@ impl Models {
     /// Reads model files, and those of folders (files ending in `.ron`), in path order.
     ///
     /// # Errors
-    /// A file that is no model, a folder without one, or two models that claim the same tail or, both without a tail,
-    /// the same type.
+    /// A file that is not a model, a folder without one, or two models that claim the same tail or, both without a
+    /// tail, the same type.
     pub(crate) fn read(arguments: &[PathBuf]) -> Result<Self, Failure> {
         let mut models: Vec<(PathBuf, ModelFile)> = Vec::new();
         for argument in arguments {
@@ -99,7 +99,7 @@ impl Models {
         Ok(Self(models))
     }
 
-    /// The model for a flight: that of its tail, else that of its type; with as many engines as the report speaks of.
+    /// The model for a flight: that of its tail, otherwise that of its type; with as many engines as the report has.
     ///
     /// # Errors
     /// Why there is none.
@@ -134,7 +134,8 @@ impl Models {
         if let Some(model) = all().filter(of_type).find(|model| tail_of(model).is_none()) {
             return Ok(model);
         }
-        // The only model of its type serves a tail that it has not learnt from: that is what it is compared with.
+        // The only model of the type also serves a tail that it has not learnt from: that is the model to compare it
+        // with.
         let mut others = all().filter(of_type);
         if let Some(model) = others.next() {
             return match others.next() {

@@ -1,4 +1,4 @@
-//! Progress on the terminal: count, rate, time left. None where stderr is no terminal.
+//! Progress on the terminal: count, rate, time left. None where stderr is not a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -12,7 +12,7 @@ pub(crate) enum Progress {
 }
 
 impl Progress {
-    /// A bar over `total` things.
+    /// A bar that counts to `total`.
     pub(crate) fn bar(self, total: usize, what: &'static str) -> Bar {
         let target = match self {
             Self::Shown => ProgressDrawTarget::stderr_with_hz(5),
@@ -39,7 +39,7 @@ impl Bar {
         self.0.inc(1);
     }
 
-    /// All are done: the bar goes.
+    /// All are done: the bar is removed.
     pub(crate) fn finish(&self) {
         self.0.finish_and_clear();
     }

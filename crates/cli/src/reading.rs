@@ -1,4 +1,4 @@
-//! Report files in, stabilised segments out: in parallel, file by file, nothing of a file kept but its segments.
+//! Report files in, stabilised segments out: in parallel, file by file; only the segments of a file are kept.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ impl FlightRead {
     }
 }
 
-/// Everything that came of a set of files, in the order of the files.
+/// All results from a set of files, in the order of the files.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reading {
     /// Flights.
@@ -80,7 +80,7 @@ pub(crate) fn read_all(
     reading
 }
 
-/// Buffers that a worker uses for one file after the other.
+/// Buffers that a worker reuses from file to file.
 #[derive(Default)]
 struct Buffers {
     raw: Vec<u8>,
@@ -109,7 +109,7 @@ fn read_file(
         let reason = format!("found {}, expected {}", refusal.found, refusal.kind);
         (Vec::new(), vec![refuse(Some(refusal.line), Some(refusal.column), reason)])
     };
-    // The content is known by its uncompressed bytes: a report that was packed later is the same report.
+    // Content is identified by its uncompressed bytes: a report that was compressed later is the same report.
     let bytes = match report::unpack(&buffers.raw, &mut buffers.unpacked) {
         Ok(bytes) => bytes,
         Err(refusal) => return of_refusal(&refusal),

@@ -1,4 +1,4 @@
-//! Reports of virtual aircraft on disk: any simulation, and the data that come with the program (the paper's study, the
+//! Reports of virtual aircraft on disk: any simulation, and the data built into the program (the paper's study, the
 //! fleet of the demonstration).
 
 use std::fmt::Write;
@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::files::{file_stem_of_tail, make_folder, write_atomically};
 use crate::progress::Progress;
 
-/// First comment of every report: nobody shall take it for a recording.
+/// First comment of every report: nobody must mistake it for a recording.
 const COMMENT: &str = "simulated with cruisefit, not a real aircraft";
 
 /// The aircraft file of the study: what a performance engineer knows of the Cessna Citation X. The TSFC constants are
@@ -25,13 +25,13 @@ pub(crate) const CITATION_X: &str = include_str!("../embedded/CITATION-X.ron");
 /// The plan of the demonstration.
 const DEMONSTRATION: &str = include_str!("../embedded/DEMO-PLAN.ron");
 
-/// The later period of the demonstration, with an effect that the model does not know.
+/// The later period of the demonstration, with an effect that the model does not have.
 const DEMONSTRATION_LATER: &str = include_str!("../embedded/DEMO-LATER.ron");
 
 /// Seed of the study, fixed before anything was run.
 const GHAZI_2020_SEED: u64 = 2020;
 
-/// Data that belong together: what `init`, `adapt` and `predict` are given.
+/// Input data for `init`, `adapt` and `predict` that belong together.
 #[derive(Debug)]
 pub(crate) struct Study {
     /// Text of the aircraft file.
@@ -47,7 +47,7 @@ pub(crate) struct Study {
 /// The study of Ghazi et al. 2020: ten flights of table 5, 45 static points, a guide whose drag is wrong in a known way.
 ///
 /// # Errors
-/// What the simulator refuses.
+/// A request that the simulator refuses.
 pub(crate) fn ghazi_2020() -> Result<Study, Failure> {
     study_with(study::paper_study_plan(GHAZI_2020_SEED))
 }
@@ -55,7 +55,7 @@ pub(crate) fn ghazi_2020() -> Result<Study, Failure> {
 /// The demonstration: the same aircraft and guide, one tail with airline-like sensors, wind, turbulence.
 ///
 /// # Errors
-/// What the simulator refuses.
+/// A request that the simulator refuses.
 pub(crate) fn demonstration() -> Result<Study, Failure> {
     study_with(Plan::from_ron(DEMONSTRATION).map_err(|error| wrong(&error))?)
 }
@@ -63,7 +63,7 @@ pub(crate) fn demonstration() -> Result<Study, Failure> {
 /// The demonstration's tail a year later, with an effect that its model has not learnt.
 ///
 /// # Errors
-/// What the simulator refuses.
+/// A request that the simulator refuses.
 pub(crate) fn demonstration_later() -> Result<Simulation, Failure> {
     let plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
     Simulation::new(plan).map_err(|error| wrong(&error))
@@ -72,7 +72,7 @@ pub(crate) fn demonstration_later() -> Result<Simulation, Failure> {
 /// Flies every flight of a simulation and writes reports, true states where the plan asks for them, and the truth.
 ///
 /// # Errors
-/// A flight that cannot be flown, or a place that cannot be written.
+/// A flight that cannot be flown, or a file that cannot be written.
 pub(crate) fn write(
     simulation: &Simulation,
     folder: &Path,
@@ -138,10 +138,10 @@ fn study_with(plan: Plan) -> Result<Study, Failure> {
 }
 
 impl Study {
-    /// Writes `AIRCRAFT.ron`, `guide.csv`, `static.csv` and the reports (a folder a tail below `reports`).
+    /// Writes `AIRCRAFT.ron`, `guide.csv`, `static.csv` and the reports (one folder per tail below `reports`).
     ///
     /// # Errors
-    /// A place that cannot be written, or a flight that cannot be flown.
+    /// A file that cannot be written, or a flight that cannot be flown.
     pub(crate) fn write(self, folder: &Path, progress: Progress) -> Result<usize, Failure> {
         make_folder(folder)?;
         write_atomically(&folder.join("AIRCRAFT.ron"), self.aircraft.as_bytes())?;
@@ -176,7 +176,7 @@ fn wrong(error: &dyn std::fmt::Display) -> Failure {
     Failure::BadArgument { argument: "embedded study", reason: error.to_string() }
 }
 
-/// True states as columns; what is one number an engine becomes a column an engine.
+/// True states as columns; a quantity with one number per engine becomes one column per engine.
 fn states_table(states: &[TrueState]) -> Result<Columns, serde_json::Error> {
     let rows = states.iter().map(flattened).collect::<Result<Vec<_>, _>>()?;
     let mut columns = Columns::default();

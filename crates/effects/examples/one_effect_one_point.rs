@@ -1,4 +1,4 @@
-//! What a meter that reads 2 % high and an engine that burns 2 % more do at one point: the same in fuel flow, not in thrust.
+//! A meter that reads 2 % high and an engine that burns 2 % more at one point: the same fuel flow, but not the same thrust.
 
 use effects::{EffectModel, EffectPoint, Effects, ExtendedModel, mean_references};
 use flight::effect::EffectId;

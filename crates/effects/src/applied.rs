@@ -1,9 +1,10 @@
-//! Effects that a model contains for good: those of past diagnoses, applied.
+//! Effects of past diagnoses that a model contains permanently.
 //!
-//! An applied `tsfc_throttle` always acts over corrected thrust, also where its size was found over N2: the same in every command.
-//!
-//! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change what is
-//! predicted. Effects of what is recorded (sensors, load sheet, fuel quantity) correct recordings before anything looks at
+//! An applied `tsfc_throttle` always acts over corrected thrust, even where its size was found over N2, so that every
+//! command agrees.
+//! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change
+//! predictions. Effects of the recording (sensors, load sheet, fuel quantity) correct recordings before anything else
+//! uses them, and no prediction contains them.
 //! them, and no prediction knows of them.
 
 use flight::effect::{EffectId, HiddenParameter, NeededInput, ThrottleArgument};
@@ -18,16 +19,16 @@ use crate::response::fit_polar;
 use crate::set::{Effects, SizedEffect};
 use crate::terms::Terms;
 
-/// What a flight point says a date in.
+/// The column of flight points that holds the date.
 const DATE: &str = "date";
 
-/// Effects that were applied together, with what they are relative to.
+/// Effects that were applied together, with the references that they are relative to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AppliedLayer {
     /// Sizes and hidden parameters.
     pub effects: Effects,
-    /// What they are zero at.
+    /// The conditions at which they are zero.
     pub references: EffectReferences,
 }
 
@@ -130,7 +131,7 @@ impl AppliedEffects {
     }
 }
 
-/// Whether points say a date.
+/// Whether points have a date.
 #[derive(Clone, Copy, Debug)]
 enum Dated {
     Yes,
@@ -138,7 +139,7 @@ enum Dated {
     No,
 }
 
-/// The column of flight points that an effect's input would be in, where the point lacks it. Roll and drift are no columns
+/// The column of flight points that an effect's input would be in, where the point lacks it. Roll and drift are not columns
 /// of theirs.
 fn lacks(needed: NeededInput, point: &FlightPoint) -> Option<&'static str> {
     let (there, name) = match needed {
@@ -180,7 +181,7 @@ fn on_reference_date(effects: &Effects, references: &EffectReferences) -> Effect
     effects.map(|effect| SizedEffect { hidden: undated(effect.hidden), ..*effect }).collect()
 }
 
-/// Applied effects made ready for a drag table.
+/// Applied effects prepared for a drag table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Prepared {
     effects: AppliedEffects,

@@ -9,23 +9,23 @@ use crate::point::EffectPoint;
 use crate::recorded::AsFlown;
 use crate::terms::{Layers, Terms};
 
-/// Height of the parabola of fourth degree by which drag rises, per Mach⁴: Lock's.
+/// Factor of Lock's fourth-power drag rise, per Mach⁴.
 const LOCK_FACTOR: f64 = 20.0;
-/// Mach number by which drag divergence (∂CD/∂M = 0.1) lies above the beginning of the rise: (0.1/80)^(1/3).
+/// Distance from the beginning of the rise up to the drag-divergence Mach number (∂CD/∂M = 0.1): (0.1/80)^(1/3).
 const LOCK_OFFSET_MACH: f64 = 0.1077;
 /// Fall of the drag-divergence Mach number per unit of lift coefficient.
 const DIVERGENCE_FALL_PER_LIFT_COEFFICIENT: f64 = 0.085;
-/// Lift coefficient that drag-divergence Mach numbers are stated at.
+/// Lift coefficient at which drag-divergence Mach numbers are stated.
 const DIVERGENCE_LIFT_COEFFICIENT: f64 = 0.35;
-/// Lift coefficient that trim drag is stated at.
+/// Lift coefficient at which trim drag is stated.
 const TRIM_LIFT_COEFFICIENT: f64 = 0.4;
 /// Roll angle up to which a segment counts as wings level, degrees.
 const WINGS_LEVEL_DEG: f64 = 5.0;
 
-/// A point of the drag table that effects change the drag coefficient at.
+/// A point of the drag table, where effects change the drag coefficient.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AtTable<'p> {
-    /// Drag coefficient without them.
+    /// Drag coefficient without effects.
     pub(crate) drag_coefficient: f64,
     /// Lift coefficient.
     pub(crate) lift_coefficient: f64,
@@ -40,9 +40,9 @@ pub(crate) struct AtTable<'p> {
 /// ```
 ///
 /// # Source
-/// Lock's fourth-power law with the drag-divergence condition ∂CD/∂M = 0.1, from which the offset follows. The fall of the
-/// drag-divergence Mach number with lift coefficient is our choice, a little less than the 0.1 of Korn's equation without
-/// sweep; the lift coefficient that it is stated at is that of cruise in the middle of the envelope.
+/// Lock's fourth-power law with the drag-divergence condition ∂CD/∂M = 0.1, from which the offset follows. The fall of
+/// the drag-divergence Mach number with lift coefficient is our choice, a little less than the 0.1 of Korn's equation
+/// without sweep; the lift coefficient at which it is stated is that of cruise in the middle of the envelope.
 pub(crate) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
     let divergence = divergence_mach
         - DIVERGENCE_FALL_PER_LIFT_COEFFICIENT * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);
@@ -61,8 +61,8 @@ pub(crate) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
 /// g = (g0 + θg·(g(φ, h) − g0) − θr·(2Ω V_east cos φ + V²/R))·(1 + θn·(1/cos ϕ − 1))   [diagnosis.6]
 /// ```
 ///
-/// Pressure altitude stands for height (1 km of difference is 0.03 % of gravity). Track is heading plus drift; heading
-/// where drift is not recorded. ϕ is the root of the mean squared roll angle.
+/// Pressure altitude is used as the height (1 km of difference is 0.03 % of gravity). Track is heading plus drift;
+/// heading where drift is not recorded. ϕ is the root of the mean squared roll angle.
 pub(crate) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> f64 {
     let mut gravity_m_s2 = STANDARD_GRAVITY_M_S2;
     let local_gravity = layers.sum(|terms| terms.local_gravity);
@@ -103,8 +103,9 @@ pub(crate) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> 
 /// m·V̇G + θ·m·f·V_cross,  f = 2Ω sin φ,  V_cross = −V·sin(drift)                  [diagnosis.7]
 /// ```
 ///
-/// `V_cross` is positive when the wind blows to the left of the track: in the north, high pressure is then ahead and a
-/// surface of constant pressure climbs. In geostrophic flow the Coriolis force on the cross-wind takes exactly as much.
+/// `V_cross` is positive when the wind blows to the left of the track: in the northern hemisphere high pressure is then
+/// ahead and a surface of constant pressure climbs. In geostrophic flow the Coriolis force on the cross-wind balances
+/// this exactly.
 pub(crate) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<'_>) -> f64 {
     let mut force_n = flown.mass_kg * point.acceleration_m_s2;
     let isobaric_slope = layers.sum(|terms| terms.isobaric_slope);
@@ -125,7 +126,8 @@ pub(crate) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<
 ///       + θc·1e-4·(CG_ref − CG)/10·CL/0.4 + θϕ·1e-4·ϕ²)·(1 + θD)·(1 + θs from the date on)   [diagnosis.8]
 /// ```
 ///
-/// Layer by layer: what the model contains comes first, and takes the place of the table for what is on top.
+/// Layer by layer: the effects that the model contains come first, and their result replaces the table for the layers
+/// above.
 pub(crate) fn drag_coefficient(
     at: AtTable<'_>,
     point: &EffectPoint,

@@ -1,4 +1,4 @@
-//! Effects on TSFC and fuel flow, and on what the flow meters say.
+//! Effects on TSFC and fuel flow, and on the readings of the flow meters.
 
 use flight::MAXIMUM_ENGINES;
 use flight::effect::ThrottleArgument;
@@ -8,12 +8,12 @@ use crate::point::EffectPoint;
 use crate::recorded::AsFlown;
 use crate::terms::{Layers, Terms};
 
-/// Static air temperature above which anti-ice bleed is taken as on where it is not recorded, K: −40 °C.
+/// Static air temperature above which anti-ice bleed counts as on where it is not recorded, K: −40 °C.
 pub const ANTI_ICE_PROXY_K: f64 = 233.15;
 /// Width of the throttle effect's parabola, of corrected thrust over its reference.
 const THROTTLE_WIDTH: f64 = 0.25;
 
-/// Thrust, and what it costs without effects.
+/// Thrust, and the fuel flow that it costs without effects.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Thrust {
     /// Net thrust of all engines, N.
@@ -34,7 +34,8 @@ pub(crate) struct Thrust {
 /// recorded Wf_k = Wf_k·(1 + θWF,k)                                                             [diagnosis.11]
 /// ```
 ///
-/// x is corrected thrust over its reference, or that which N2 stands for ([`ThrottleArgument`]); TSFC the aircraft's law.
+/// x is corrected thrust over its reference, or the one that N2 indicates ([`ThrottleArgument`]); TSFC is the
+/// aircraft's law.
 /// Engines give equal thrust. Factors of all layers multiply, offtakes add.
 pub(crate) fn recorded_fuel_flow(
     thrust: &Thrust,
@@ -61,7 +62,8 @@ pub(crate) fn recorded_fuel_flow(
     let mut total = 0.0;
     for (engine, flow) in each.iter_mut().enumerate().take(engines) {
         let own: f64 = layers.iter().map(|terms| 1.0 + terms.tsfc_engine[engine]).product();
-        // Meters are of the trial layer alone: recordings are corrected before by what the model contains.
+        // Meters belong to the trial layer alone: the meter errors that the model contains were corrected in the
+        // recordings before.
         let meter = 1.0 + layers.trial.fuel_flow_gain[engine];
         *flow = (thrust_flow_kg_s * own + aside_kg_s) * all * meter;
         total += *flow;
@@ -69,7 +71,7 @@ pub(crate) fn recorded_fuel_flow(
     (total, each)
 }
 
-/// What one layer multiplies TSFC of all engines by, `[diagnosis.9]`.
+/// Factor of one layer on the TSFC of all engines, `[diagnosis.9]`.
 fn tsfc_factor(
     corrected_thrust_n: f64,
     point: &EffectPoint,
@@ -100,7 +102,7 @@ fn tsfc_factor(
     factor
 }
 
-/// Share of a segment with anti-ice bleed on: recorded, else all of it above −40 °C.
+/// Share of a segment with anti-ice bleed on: as recorded, otherwise all of it above −40 °C.
 fn anti_ice_on(point: &EffectPoint, flown: &AsFlown) -> f64 {
     point.anti_ice.unwrap_or(if flown.static_air_temperature_k > ANTI_ICE_PROXY_K {
         1.0

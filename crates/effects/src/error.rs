@@ -15,7 +15,7 @@ pub enum EffectModelError {
     /// The table does not determine CD0(M) and K(M).
     #[error("CD0(M) and K(M) cannot be fitted to the drag table: {0}")]
     Polar(#[from] FitError),
-    /// A table that makes no performance model.
+    /// A table that does not make a performance model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// A reference that is not finite and positive.
@@ -23,7 +23,7 @@ pub enum EffectModelError {
     Reference {
         /// Which.
         quantity: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// The size of an applied effect that is not finite.
@@ -31,10 +31,10 @@ pub enum EffectModelError {
     Size {
         /// The effect.
         effect: EffectId,
-        /// What was given.
+        /// The value given.
         size: f64,
     },
-    /// No segment that the model can predict, so no references.
+    /// None of the segments can be predicted by the model, so there are no references.
     #[error("none of {segments} segments is inside the drag table")]
     NothingInside {
         /// Segments given.
@@ -73,11 +73,11 @@ pub enum EffectError {
     },
 }
 
-/// Why a segment is no observation for a model with effects.
+/// Why a segment does not give an observation for a model with effects.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ObserveError {
-    /// The model without effects has none.
+    /// The model without effects gives none.
     #[error(transparent)]
     Model(#[from] perf_model::ObserveError),
     /// An applied effect has no prediction for the segment.
@@ -89,7 +89,7 @@ pub enum ObserveError {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PredictError {
-    /// The model without effects has none.
+    /// The model without effects gives none.
     #[error(transparent)]
     Model(#[from] perf_model::PredictError),
     /// An applied effect has no prediction.

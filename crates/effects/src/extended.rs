@@ -1,4 +1,4 @@
-//! A performance model with effects of past diagnoses applied: what every command predicts and observes with.
+//! A performance model with effects of past diagnoses applied: every command predicts and observes with it.
 
 use std::borrow::Cow;
 
@@ -23,7 +23,7 @@ use crate::terms::{Layers, Terms};
 
 /// A performance model and the effects that were applied to it; a plain model converts by [`From`].
 ///
-/// Effects of the aircraft and its surroundings are part of every prediction; effects of what is recorded (sensors, load
+/// Effects of the aircraft and its surroundings are part of every prediction; effects of the recording (sensors, load
 /// sheet, fuel quantity) are undone in every recorded segment, and never change a prediction for a flight point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExtendedModel {
@@ -42,7 +42,7 @@ impl ExtendedModel {
     ///
     /// # Errors
     /// [`EffectModelError`] for a size or reference that is not finite, and where the drag table does not determine the
-    /// polar that some effects are a share of.
+    /// polar that some effects scale.
     pub fn new(base: PerformanceModel, applied: AppliedEffects) -> Result<Self, EffectModelError> {
         let applied = Prepared::new(applied, base.drag_table())?.map(Box::new);
         Ok(Self { base, applied })
@@ -59,8 +59,8 @@ impl ExtendedModel {
     /// The same model with another drag table, for example an adapted one.
     ///
     /// # Errors
-    /// [`EffectModelError`] where the table is not on the aircraft's grid, a drag coefficient is not positive, or the table
-    /// does not determine the polar that applied effects are a share of.
+    /// [`EffectModelError`] where the table is not on the aircraft's grid, a drag coefficient is not positive, or the
+    /// table does not determine the polar that applied effects scale.
     pub fn with_drag_table(&self, drag_table: Table) -> Result<Self, EffectModelError> {
         let base = self.base.with_drag_table(drag_table)?;
         let mut applied = self.applied.clone();
@@ -106,7 +106,7 @@ impl ExtendedModel {
         self.base.extrapolated()
     }
 
-    /// The state of a segment as recorded: everything about it that does not need the drag table.
+    /// The state of a segment as recorded: every quantity that does not need the drag table.
     ///
     /// # Errors
     /// [`OutOfDomain`] as for [`PerformanceModel::state_of`].
@@ -114,11 +114,11 @@ impl ExtendedModel {
         self.base.state_of(segment)
     }
 
-    /// What a segment says about drag, as [`PerformanceModel::observe`]. Applied effects are taken away first
-    /// ([`without_effects`](Self::without_effects)): what is left is drag, and all that is not among them.
+    /// The observation of a segment, as [`PerformanceModel::observe`]. Applied effects are removed first
+    /// ([`without_effects`](Self::without_effects)): what is left is drag, and everything that is not among them.
     ///
     /// # Errors
-    /// [`ObserveError`] where the base model has no observation, or an effect no prediction.
+    /// [`ObserveError`] where the base model gives no observation, or an effect no prediction.
     pub fn observe(&self, segment: &Segment) -> Result<Observation, ObserveError> {
         let bare = self.without_effects(segment, self.drag_table())?;
         Ok(self.base.observe(&bare)?)
@@ -129,8 +129,8 @@ impl ExtendedModel {
     /// error are as recorded.
     ///
     /// # Errors
-    /// [`PredictError`] where a mean is outside its domain, the table does not hold the point or is on another grid than
-    /// the model's, or an effect has no prediction.
+    /// [`PredictError`] where a mean is outside its domain, the point is outside the table, the table is on another
+    /// grid than the model's, or an effect has no prediction.
     pub fn predict_segment(
         &self,
         segment: &Segment,
@@ -155,11 +155,11 @@ impl ExtendedModel {
 
     /// Predicted fuel flow and specific range at a flight point: level flight without acceleration.
     ///
-    /// Lift coefficient, drag coefficient, thrust and TSFC are those with the applied physical effects, at their reference
-    /// where the point lacks an input ([`AppliedEffects::at_reference`]).
+    /// Lift coefficient, drag coefficient, thrust and TSFC include the applied physical effects, held at their
+    /// reference where the point lacks an input ([`AppliedEffects::at_reference`]).
     ///
     /// # Errors
-    /// [`PredictError`] where a number is outside its domain or the table does not hold the point.
+    /// [`PredictError`] where a number is outside its domain or the point is outside the table.
     pub fn predict(&self, point: &FlightPoint) -> Result<Prediction, PredictError> {
         let plain = self.base.predict(point)?;
         match self.prepared().filter(|prepared| prepared.changes_predictions()) {
@@ -168,8 +168,8 @@ impl ExtendedModel {
         }
     }
 
-    /// The response at a flight point with the applied physical effects; those whose input the point lacks are at their
-    /// reference ([`AppliedEffects::at_reference`]).
+    /// The response at a flight point with the applied physical effects; those whose input the point lacks are held at
+    /// their reference ([`AppliedEffects::at_reference`]).
     ///
     /// # Errors
     /// [`EffectError`] for a quantity outside its domain, a point outside the table, or no thrust left.
@@ -181,7 +181,7 @@ impl ExtendedModel {
         self.predicted(&point, self.drag_table(), terms)
     }
 
-    /// A segment as it would have been recorded without the errors that were applied; the same where none was.
+    /// A segment as it would have been recorded without the errors that were applied; unchanged where there are none.
     ///
     /// # Errors
     /// [`EffectError`] where a correction leaves the domain of a quantity.
@@ -192,7 +192,7 @@ impl ExtendedModel {
         })
     }
 
-    /// The same of a segment's means.
+    /// The same for a segment's means.
     ///
     /// # Errors
     /// As for [`corrected`](Self::corrected).
@@ -204,15 +204,16 @@ impl ExtendedModel {
         corrected_by(recorded, means, self.aircraft().engines())
     }
 
-    /// A segment as an aircraft without any of the applied effects would have recorded it: errors undone, then fuel flow
-    /// brought to the model without effects.
+    /// A segment as an aircraft without any of the applied effects would have recorded it: errors undone, then fuel
+    /// flow converted to that of the model without effects.
     ///
     /// ```text
     /// Wf → Wf·Ŵf_without/Ŵf_with,  both predicted over the drag table at the corrected means          [applying.2]
     /// ```
     ///
-    /// Engines recorded apart each by their own ratio, their sum by that of the total. The same segment where nothing is
-    /// applied, or where the table does not hold the point (which the caller then meets).
+    /// Engines that are recorded separately are each scaled by their own ratio, their sum by that of the total. The
+    /// segment is unchanged where nothing is applied, or where the point is outside the table (the caller then gets
+    /// that error).
     ///
     /// # Errors
     /// [`EffectError`] where a correction leaves the domain of a quantity, or no thrust is left.
@@ -245,7 +246,7 @@ impl ExtendedModel {
         Ok(Cow::Owned(bare))
     }
 
-    /// The applied effects, made ready.
+    /// The applied effects, prepared.
     pub(crate) fn prepared(&self) -> Option<&Prepared> {
         self.applied.as_deref()
     }
@@ -297,7 +298,7 @@ impl ExtendedModel {
     ) -> Result<Response, EffectError> {
         let polar = self.prepared().map_or(*self.polynomial(), |prepared| prepared.polar);
         let bare = Bare { aircraft: self.aircraft(), drag_table, polar };
-        // References are those of trial effects, and there are none.
+        // References are for trial effects, and there are none.
         let trial = Terms::new(&Effects::none(), &EffectReferences::UNUSED);
         let layers = Layers { contained, trial: &trial };
         let (response, _) = evaluate(&bare, point, layers, Edge::under(layers), None)?;

@@ -1,4 +1,4 @@
-//! Many trial effects at one point: what an effect leaves alone is computed once.
+//! Many trial effects at one point: what an effect does not change is computed once.
 
 use flight::effect::EffectId;
 
@@ -6,7 +6,7 @@ use crate::point::EffectPoint;
 use crate::response::Known;
 use crate::terms::Terms;
 
-/// Trial effects made ready for many points: [`EffectModel::trial`](crate::EffectModel::trial).
+/// Trial effects prepared for many points: [`EffectModel::trial`](crate::EffectModel::trial).
 #[derive(Clone, Debug)]
 pub struct Trial {
     pub(crate) terms: Terms,
@@ -14,7 +14,7 @@ pub struct Trial {
     pub(crate) acting: Vec<EffectId>,
 }
 
-/// A recorded point with what stays the same when effects that do not touch it are switched on:
+/// A recorded point with the quantities that stay the same when effects that do not touch them are switched on:
 /// [`EffectModel::known_point`](crate::EffectModel::known_point).
 #[derive(Clone, Copy, Debug)]
 pub struct KnownPoint {
@@ -23,8 +23,8 @@ pub struct KnownPoint {
 }
 
 impl KnownPoint {
-    /// The same point with the corrected thrust that its N2 stands for
-    /// ([`EffectPoint::corrected_thrust_by_n2_n`]): of trial effects alone, so that what is known stays.
+    /// The same point with the corrected thrust that its N2 indicates ([`EffectPoint::corrected_thrust_by_n2_n`]): only
+    /// trial effects use it, so the cached quantities stay.
     #[must_use]
     pub const fn with_corrected_thrust_by_n2(mut self, newtons: Option<f64>) -> Self {
         self.point.corrected_thrust_by_n2_n = newtons;

@@ -1,9 +1,9 @@
-//! The physics of what a performance model may lack: what each effect of the library does to the recorded fuel flow of a
-//! segment, and models that contain effects for good.
+//! The physics of what a performance model may lack: what each effect of the library does to the recorded fuel flow of
+//! a segment, and models that contain effects permanently.
 //!
-//! What it is: [`EffectModel`], in which effects are switched on and off, and [`ExtendedModel`], a performance model with the
-//! effects of past diagnoses. The equations are small functions of a point, the state that was flown, and layers of effects: drag
-//! and weight, engine and fuel flow, and what was recorded, a file each.
+//! What it is: [`EffectModel`], in which effects are switched on and off, and [`ExtendedModel`], a performance model
+//! with the effects of past diagnoses. The equations are small functions of a point, the state that was flown, and
+//! layers of effects: drag and weight, engine and fuel flow, and recordings, one file each.
 //! What it is not: id, unit, typical size, sign, inputs and words of an effect are in [`flight::effect`]. It finds no effect: that
 //! is the diagnosis' business.
 //!
@@ -11,7 +11,7 @@
 //! ln Wf recorded − ln Wf predicted is the gap. Nothing is linearised. An effect changes the drag coefficient, the TSFC or the
 //! weight that lift carries, or it undoes an error of what was recorded.
 //!
-//! Difficult: a sensor effect says how the *recording* errs, so that its sign is the other way round from a change of the
+//! Difficult: a sensor effect describes how the *recording* errs, so its sign is opposite to that of a change of the
 //! aircraft. All of it is in `recorded.rs`.
 //!
 //! Limits:

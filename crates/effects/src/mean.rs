@@ -1,4 +1,4 @@
-//! References from segments: the mean of what a model was adapted to, or of the data at hand.
+//! References from segments: the mean over what a model was adapted to, or over the data at hand.
 
 use lut::Table;
 use lut::surface::{Basis, Surface};
@@ -34,7 +34,7 @@ pub fn mean_references(
     sum.fuel_flow_total_kg_s = 0.0;
     sum.mass_kg = 0.0;
     let (mut count, mut center, mut centers) = (0.0, 0.0, 0.0);
-    // Dates about the first one, so that 1970's distance costs no digits.
+    // Dates relative to the first one: relative to 1970 they would lose digits.
     let first_date_s = points.first().map_or(0.0, |point| point.date_s);
     for point in points {
         let Ok((response, _)) = evaluate(&bare, point, layers, Edge::Refuse, None) else {

@@ -1,4 +1,4 @@
-//! A performance model in which effects can be switched on: what a diagnosis tries.
+//! A performance model in which effects can be switched on: used by a diagnosis to try them.
 
 use std::borrow::Cow;
 
@@ -18,10 +18,10 @@ use crate::response::{Bare, Edge, Response, evaluate, fit_polar};
 use crate::set::Effects;
 use crate::terms::{Layers, Terms};
 
-/// A performance model that effects can be switched on in.
+/// A performance model in which effects can be switched on.
 ///
-/// What the extended model contains already acts always: its physical effects are part of every response, and points are
-/// those of *corrected* recordings ([`ExtendedModel::corrected`]). Trial effects come on top.
+/// Effects that the extended model contains already always act: its physical effects are part of every response, and
+/// points are made from *corrected* recordings ([`ExtendedModel::corrected`]). Trial effects are added to them.
 #[derive(Clone, Debug)]
 pub struct EffectModel<'a> {
     bare: Bare<'a>,
@@ -65,14 +65,14 @@ impl<'a> EffectModel<'a> {
         self.applied.is_some_and(|applied| applied.contains(effect))
     }
 
-    /// What the model contains already; `None` for nothing.
+    /// The effects that the model contains already; `None` for none.
     #[must_use]
     pub const fn applied(&self) -> Option<&AppliedEffects> {
         self.applied
     }
 
-    /// A segment's means as they would have been recorded without the errors that the model contains: what points are made
-    /// of.
+    /// A segment's means as they would have been recorded without the errors that the model contains; points are made
+    /// from these.
     ///
     /// # Errors
     /// [`EffectError`] where a correction leaves the domain of a quantity.
@@ -83,7 +83,8 @@ impl<'a> EffectModel<'a> {
         recorded::corrected_by(self.recorded, means, self.bare.aircraft.engines())
     }
 
-    /// Fuel that meters counted over fuel that was burnt, by the errors that the model contains, at a corrected point.
+    /// Ratio of the fuel that meters counted to the fuel that was burnt, by the errors that the model contains, at a
+    /// corrected point.
     #[must_use]
     pub fn metered_over_burnt(&self, point: &EffectPoint) -> f64 {
         let of = |terms: &Terms| -> f64 {
@@ -111,7 +112,7 @@ impl<'a> EffectModel<'a> {
         self.bare.drag_table
     }
 
-    /// What would be recorded at this segment if the effects were there.
+    /// The recorded quantities at this segment if the effects were present.
     ///
     /// The recorded point must be inside the table; where an effect moves it beyond the table's edge, the edge's bilinear
     /// surface is continued in a straight line: effects are small, and a value held at the edge would have no slope.
@@ -134,8 +135,8 @@ impl<'a> EffectModel<'a> {
         evaluate(&self.bare, point, layers, Edge::under(layers), None).map(|(response, _)| response)
     }
 
-    /// As [`response`](Self::response), at a point beside a recorded one: the table is continued in a straight line for
-    /// it too. For derivatives with respect to what is recorded.
+    /// As [`response`](Self::response), at a point near a recorded one: the table is continued in a straight line there
+    /// too. For derivatives with respect to recorded quantities.
     ///
     /// # Errors
     /// As for [`response`](Self::response), but for a point outside the table.
@@ -149,7 +150,7 @@ impl<'a> EffectModel<'a> {
         evaluate(&self.bare, point, layers, Edge::Continue, None).map(|(response, _)| response)
     }
 
-    /// Makes effects ready for many points.
+    /// Prepares effects for many points.
     #[must_use]
     pub fn trial(&self, effects: &Effects) -> Trial {
         Trial {
@@ -169,8 +170,8 @@ impl<'a> EffectModel<'a> {
         Ok((KnownPoint { point: *point, known }, response))
     }
 
-    /// The same numbers as [`response`](Self::response), to the last bit, in less time: what the effects leave alone is not
-    /// computed again.
+    /// The same numbers as [`response`](Self::response), to the last bit, in less time: what the effects do not change
+    /// is not computed again.
     ///
     /// # Errors
     /// As for [`response`](Self::response).

@@ -1,11 +1,11 @@
-//! What effects need to know about a segment or about a flight point.
+//! The inputs of effects at a segment or flight point.
 
 use flight::effect::{EffectId, NeededInput};
 use flight::{MAXIMUM_ENGINES, Segment, SegmentMeans, seconds_since_1970};
 use perf_model::FlightPoint;
 use units::OutOfDomain;
 
-/// What effects need to know about a segment. SI unless the name says otherwise.
+/// The inputs of effects at a segment. SI unless the name says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EffectPoint {
     /// Instant, s since 1970.
@@ -40,15 +40,15 @@ pub struct EffectPoint {
     pub center_of_gravity_percent_mac: Option<f64>,
     /// Share of the samples with anti-ice bleed on.
     pub anti_ice: Option<f64>,
-    /// Net thrust of all engines over pressure ratio that the recorded N2 stands for, N. It takes a deck (N2 over corrected
-    /// thrust), which whoever makes points may have; `None` without one, or where N2 is not recorded.
+    /// Net thrust of all engines over pressure ratio that the recorded N2 indicates, N. It needs a deck (N2 over
+    /// corrected thrust), which the maker of the points may have; `None` without one, or where N2 is not recorded.
     pub corrected_thrust_by_n2_n: Option<f64>,
 }
 
 impl EffectPoint {
-    /// The point that a prediction is wanted for: level, unaccelerated, wings level, no wind. Anti-ice bleed is off and
-    /// the center of gravity, latitude and heading are unknown where the flight point does not say; `date_s` is 0 without
-    /// a date.
+    /// The point for which a prediction is wanted: level, unaccelerated, wings level, no wind. Anti-ice bleed is off,
+    /// and center of gravity, latitude and heading are unknown, where the flight point does not state them; `date_s` is
+    /// 0 without a date.
     ///
     /// # Errors
     /// [`OutOfDomain`] for a pressure altitude outside the atmosphere's domain.
@@ -81,14 +81,14 @@ impl EffectPoint {
         })
     }
 
-    /// The point of a segment. `engines` is the aircraft's number.
+    /// The point of a segment. `engines` is the aircraft's number of engines.
     #[must_use]
     pub fn from_segment(segment: &Segment, engines: usize) -> Self {
         Self::from_means(&segment.means, segment.identity.start_s(), engines)
     }
 
-    /// The point of a segment's means; its flight started `start_s` s since 1970. `engines` is the aircraft's number. No deck is at hand: what N2 stands for is left
-    /// open.
+    /// The point of a segment's means; its flight started `start_s` s since 1970. `engines` is the aircraft's number of
+    /// engines. There is no deck here, so the thrust indicated by N2 stays unset.
     #[must_use]
     pub fn from_means(means: &SegmentMeans, start_s: f64, engines: usize) -> Self {
         let engines = engines.clamp(1, MAXIMUM_ENGINES);
@@ -123,9 +123,9 @@ impl EffectPoint {
         }
     }
 
-    /// The first input that an effect cannot do without and that this point lacks; `None` where the effect can be predicted.
+    /// The first required input of an effect that this point lacks; `None` where the effect can be predicted.
     ///
-    /// Inputs that something stands in for ([`NeededInput::has_substitute`]) are never lacking.
+    /// Inputs that have a substitute ([`NeededInput::has_substitute`]) are never lacking.
     #[must_use]
     pub fn lacks(&self, effect: EffectId) -> Option<NeededInput> {
         let indispensable = effect.entry().needs.iter().filter(|needed| !needed.has_substitute());

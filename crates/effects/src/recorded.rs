@@ -1,4 +1,4 @@
-//! From what was recorded to what was flown: sensor, mass and fuel-quantity effects undone.
+//! From the recorded to the flown state: sensor, mass and fuel-quantity effects undone.
 
 use std::borrow::Cow;
 
@@ -10,7 +10,7 @@ use crate::error::EffectError;
 use crate::point::EffectPoint;
 use crate::terms::Terms;
 
-/// The state that was flown if the recording erred as the effects say.
+/// The state that was flown if the recording has the errors that the effects describe.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AsFlown {
     pub(crate) mach: f64,
@@ -34,8 +34,8 @@ pub(crate) struct AsFlown {
 /// m = m_rec + θZFM + FU_rec·(θFQ + Σ_k s_k θWF,k/(1 + θWF,k))         [diagnosis.4]
 /// ```
 ///
-/// [diagnosis.2] holds total pressure, which a static source does not touch. `s_k` is engine k's share of the recorded fuel
-/// flow; a meter that reads `θWF` high has counted `FU·θWF/(1 + θWF)` of fuel too much.
+/// [diagnosis.2] holds total pressure, which a static source does not affect. `s_k` is engine k's share of the recorded
+/// fuel flow; a meter that reads `θWF` high has counted `FU·θWF/(1 + θWF)` of fuel too much.
 pub(crate) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, EffectError> {
     let recorded_mach = positive("Mach number", "Mach", point.mach)?;
     let recorded_sat_k = positive("static air temperature", "K", point.static_air_temperature_k)?;
@@ -100,7 +100,7 @@ pub(crate) fn corrected_by<'m>(
 
 /// The means of a segment as they would have been recorded without the errors.
 ///
-/// What [`as_flown`] says of Mach number, TAS, SAT and mass; pressure altitude of the static pressure; and
+/// Mach number, TAS, SAT and mass by [`as_flown`]; pressure altitude from the static pressure; and
 ///
 /// ```text
 /// Wf_k = Wf_k,rec/(1 + θWF,k),   FU = FU_rec·(1 − θFQ − Σ_k s_k θWF,k/(1 + θWF,k))          [applying.1]

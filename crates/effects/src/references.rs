@@ -1,11 +1,11 @@
-//! What effects are zero at.
+//! The conditions at which effects are zero.
 
 use flight::effect::{EffectId, TypicalSize};
 use serde::{Deserialize, Serialize};
 
 use crate::error::EffectModelError;
 
-/// What effects are zero at: the mean of what a model was adapted to, or of the data at hand.
+/// The conditions at which effects are zero: the mean over what a model was adapted to, or over the data at hand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EffectReferences {
@@ -28,7 +28,7 @@ pub struct EffectReferences {
 }
 
 impl EffectReferences {
-    /// For a model in which no effect is switched on: only effects look at references.
+    /// For a model in which no effect is switched on: only effects use references.
     pub(crate) const UNUSED: Self = Self {
         date_s: 0.0,
         mach: 1.0,
@@ -40,7 +40,7 @@ impl EffectReferences {
         center_of_gravity_percent_mac: None,
     };
 
-    /// The size of θ that is usual for an effect, in its unit.
+    /// The usual size θ of an effect, in its unit.
     #[must_use]
     pub fn typical_size(&self, effect: EffectId) -> f64 {
         match effect.entry().typical {

@@ -1,4 +1,4 @@
-//! From a recorded point and the effects that act there to what would be recorded: one road for all of them.
+//! From a recorded point and the effects that act there to the recorded quantities: one path for all effects.
 
 use flight::MAXIMUM_ENGINES;
 use lut::surface::{Basis, FitError, Surface, fit};
@@ -14,12 +14,12 @@ use crate::point::EffectPoint;
 use crate::recorded::{self, AsFlown};
 use crate::terms::Layers;
 
-/// The prediction for one segment, with everything the residual channels ask for.
+/// The prediction for one segment, with everything that the residual channels need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// Natural logarithm of the fuel flow of all engines that would be recorded, kg/s.
     pub ln_fuel_flow_total: f64,
-    /// The same of each engine; equal thrust is assumed. −∞ beyond the aircraft's engines.
+    /// The same for each engine; equal thrust is assumed. −∞ beyond the aircraft's engines.
     pub ln_fuel_flow_engine: [f64; MAXIMUM_ENGINES],
     /// ln(F/δ), F the net thrust of all engines in N, δ the pressure ratio.
     pub ln_corrected_thrust: f64,
@@ -31,7 +31,7 @@ pub struct Response {
     pub mach: f64,
     /// Lift coefficient.
     pub lift_coefficient: f64,
-    /// Drag over net thrust: how much of a change of drag arrives in fuel flow.
+    /// Ratio of drag to net thrust: the share of a change of drag that appears in fuel flow.
     pub drag_over_thrust: f64,
     /// Net thrust of all engines, N.
     pub net_thrust_n: f64,
@@ -50,7 +50,7 @@ pub(crate) struct Bare<'a> {
     pub(crate) polar: Surface,
 }
 
-/// What is known of a point without trial effects.
+/// The cached quantities of a point without trial effects.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known {
     flown: AsFlown,
@@ -59,7 +59,7 @@ pub(crate) struct Known {
     tsfc_kg_per_n_s: f64,
 }
 
-/// What holds beyond the edge of the drag table.
+/// The rule beyond the edge of the drag table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Edge {
     /// No value: the point was recorded there.
@@ -75,7 +75,7 @@ impl Edge {
     }
 }
 
-/// What would be recorded at a point. What is known of it without trial effects is not computed again.
+/// The recorded quantities at a point. Cached quantities without trial effects are not computed again.
 pub(crate) fn evaluate(
     bare: &Bare<'_>,
     point: &EffectPoint,

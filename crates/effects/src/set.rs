@@ -17,7 +17,7 @@ pub struct Effects {
 pub(crate) struct SizedEffect {
     pub(crate) id: EffectId,
     pub(crate) size: f64,
-    /// Of the effect's kind.
+    /// Its hidden parameter, of the effect's kind.
     pub(crate) hidden: HiddenParameter,
 }
 
@@ -34,8 +34,8 @@ impl Effects {
         Self::none().with(effect, size)
     }
 
-    /// The same with an effect at this size, in its unit; a size that it had before is replaced. Its hidden parameter is what it
-    /// was before, else the library's.
+    /// The same set with an effect at this size, in its unit; an earlier size is replaced. Its hidden parameter stays,
+    /// or is the library's where there was none.
     #[must_use]
     pub fn with(mut self, effect: EffectId, size: f64) -> Self {
         match self.effects.iter_mut().find(|on| on.id == effect) {
@@ -47,8 +47,8 @@ impl Effects {
         self
     }
 
-    /// The same with another hidden parameter of an effect. Unchanged where the effect is off, or the parameter is not of its
-    /// kind.
+    /// The same set with another hidden parameter of an effect. Unchanged where the effect is off, or the parameter is
+    /// of another kind.
     #[must_use]
     pub fn with_hidden(mut self, effect: EffectId, hidden: HiddenParameter) -> Self {
         if let Some(on) = self.effects.iter_mut().find(|on| on.id == effect)

@@ -1,4 +1,4 @@
-//! What acts at a point: a set of effects in the units of the equations, layer by layer.
+//! The effects that act at a point, in the units of the equations, layer by layer.
 
 use flight::MAXIMUM_ENGINES;
 use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
@@ -10,8 +10,8 @@ const PERCENT: f64 = 0.01;
 /// A drag count.
 const COUNT: f64 = 1e-4;
 
-/// Everything that acts at once: effects that the model contains, in the order in which they were applied, and the trial
-/// effects on top of them.
+/// Everything that acts at once: the effects that the model contains, in the order in which they were applied, and the
+/// trial effects on top of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layers<'t> {
     pub(crate) contained: &'t [Terms],
@@ -33,7 +33,7 @@ impl<'t> Layers<'t> {
     }
 }
 
-/// Sizes as the kernels use them: shares instead of per cent, coefficients instead of counts.
+/// Sizes in the form that the equations need: shares instead of per cent, coefficients instead of counts.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Terms {
     pub(crate) references: EffectReferences,
@@ -95,7 +95,7 @@ impl Terms {
             || self.fuel_flow_gain.iter().any(|gain| *gain != 0.0)
     }
 
-    /// Whether an effect says that the state flown is not the one recorded.
+    /// Whether an effect means that the flown state differs from the recorded one.
     pub(crate) fn corrects_recordings(&self) -> bool {
         self.zero_fuel_mass_kg != 0.0
             || self.fuel_quantity_gain != 0.0
@@ -105,7 +105,7 @@ impl Terms {
             || self.fuel_flow_gain.iter().any(|gain| *gain != 0.0)
     }
 
-    /// Whether an effect changes what a mass weighs.
+    /// Whether an effect changes the weight of a mass.
     pub(crate) const fn changes_weight(&self) -> bool {
         self.load_factor != 0.0 || self.local_gravity != 0.0 || self.rotating_earth != 0.0
     }
@@ -169,7 +169,7 @@ impl Terms {
             EffectId::PowerOfftake => self.power_offtake += size * PERCENT,
             EffectId::AntiIceBleed => self.anti_ice_bleed += size * PERCENT,
             EffectId::EngineAgeing => self.engine_ageing_per_year += size * PERCENT,
-            // A scatter moves no mean: it is a variance, and the business of whoever knows variances.
+            // A scatter moves no mean: it is a variance, and is handled where variances are.
             EffectId::FuelHeatingValue => {}
             EffectId::ZeroFuelMassBias => self.zero_fuel_mass_kg += size,
             EffectId::FuelQuantityGain => self.fuel_quantity_gain += size * PERCENT,

@@ -5,7 +5,7 @@ use units::convert::{
     KILOGRAMS_PER_SECOND_PER_POUND_PER_HOUR, METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT,
 };
 
-/// Makes the enum, the list and the names from one list, so that none can be longer than another.
+/// Makes the enum, the list and the names from one list, so that they cannot differ in length.
 macro_rules! columns {
     ($($(#[$doc:meta])* $column:ident $(($engine:ty))? = $name:literal,)*) => {
         /// A column of the cruise report. Engine columns carry the engine's number from 1.
@@ -20,11 +20,11 @@ macro_rules! columns {
         }
 
         impl Column {
-            /// Every column in the order of the format's page, of an engine's columns that of the first.
+            /// Every column in the order of the format's page; of the engine columns, that of engine 1.
             pub const ALL: [Self; [$($name),*].len()] =
                 [$(Self::$column $((<$engine>::MIN + 1))?,)*];
 
-            /// Place in [`ALL`](Self::ALL), whatever the engine.
+            /// Index in [`ALL`](Self::ALL), whatever the engine.
             #[must_use]
             pub const fn index(self) -> usize {
                 match self {
@@ -47,7 +47,7 @@ macro_rules! columns {
                 }
             }
 
-            /// The column of this stem, of an engine or of none.
+            /// The column of this stem, with an engine's number or without.
             fn from_stem(stem: &str, engine: Option<u8>) -> Option<Self> {
                 match (stem, engine) {
                     $(($name, columns!(@number engine $($engine)?)) => {
@@ -157,7 +157,7 @@ const FLOW: &[ColumnUnit] = &[
 const MASS: &[ColumnUnit] = &[unit("lb", KILOGRAMS_PER_POUND), unit("kg", 1.0)];
 const PERCENT_MAC: &[ColumnUnit] = &[unit("%MAC", 1.0)];
 
-/// Largest fuel flow of one engine that the format admits: 100 000 lb/h.
+/// Largest fuel flow of one engine that the format allows: 100 000 lb/h.
 const MAXIMUM_ENGINE_FUEL_FLOW_KG_S: f64 = 100_000.0 * KILOGRAMS_PER_SECOND_PER_POUND_PER_HOUR;
 
 /// Names of all columns as the format's page prints them, for messages.
@@ -190,7 +190,7 @@ impl Column {
         }
     }
 
-    /// What the column means, in the field's words.
+    /// The meaning of the column, in the field's words.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {
@@ -248,7 +248,7 @@ impl Column {
             .map_or("-", |unit| unit.name)
     }
 
-    /// Whether `-` (not available for this sample) may stand in it, and the column may be absent without `MISSING`.
+    /// Whether `-` (not available for this sample) is allowed in it, and the column may be absent without `MISSING`.
     #[must_use]
     pub const fn is_optional(self) -> bool {
         matches!(
@@ -265,8 +265,8 @@ impl Column {
         )
     }
 
-    /// Inclusive range in the stored unit. The upper limits that depend on the report (total fuel flow by the number
-    /// of engines, fuel used and fuel quantity by the fuel on board) are the caller's.
+    /// Inclusive range in the stored unit. The upper limits that depend on the report (total fuel flow by the number of
+    /// engines, fuel used and fuel quantity by the fuel on board) are for the caller to check.
     #[must_use]
     pub const fn range(self) -> ColumnRange {
         const fn closed(minimum: f64, maximum: f64, words: &'static str) -> ColumnRange {
@@ -320,7 +320,7 @@ impl Column {
                 minimum: Some(0.0),
                 maximum: Some(MAXIMUM_ENGINE_FUEL_FLOW_KG_S),
                 minimum_excluded: true,
-                words: "above 0 to 100000 lb/h an engine",
+                words: "above 0 to 100000 lb/h per engine",
             },
             Self::FuelUsed => ColumnRange {
                 minimum: Some(0.0),

@@ -1,8 +1,8 @@
-//! The library of physical effects: all that is said of an effect but its physics, once.
+//! The library of physical effects: everything about an effect except its physics, in one place.
 //!
-//! The list of ids is below, what is said of each in the files by what it belongs to: airframe, engine, recording, surroundings.
-//! The physics is in the crate `effects`, and in the truth's own form in `simulate`. Library table, help, docs and report are
-//! made from here.
+//! The list of ids is below, the entries are in the files of the groups: airframe, engine, recording, surroundings. The
+//! physics is in the crate `effects`, and in the truth's own form in `simulate`. Library table, help, docs and report
+//! are made from here.
 
 use core::fmt;
 
@@ -20,7 +20,7 @@ pub use entry::{
 };
 pub use hidden::{HiddenParameter, StepTarget, ThrottleArgument};
 
-/// Makes the enum, its list and the table of entries from one list, so that none can be longer than another.
+/// Makes the enum, its list and the table of entries from one list, so that they cannot differ in length.
 macro_rules! effects {
     ($($(#[$doc:meta])* $id:ident $(($engine:ty))? = $file:ident::$entry:ident,)*) => {
         /// A physical effect that a performance model may lack.
@@ -30,7 +30,7 @@ macro_rules! effects {
         }
 
         impl EffectId {
-            /// Every effect, of an effect of single engines that of the first, in the library's order.
+            /// Every effect in the library's order; of effects of single engines, that of engine 1.
             pub const ALL: &[Self] = &[$(Self::$id $((<$engine>::MIN + 1))?,)*];
 
             /// The library's entry.
@@ -41,7 +41,7 @@ macro_rules! effects {
                 }
             }
 
-            /// Of a single engine: its number from 1.
+            /// The number of its engine, from 1, for an effect of a single engine.
             #[must_use]
             pub const fn engine(self) -> Option<u8> {
                 match self {
@@ -50,7 +50,7 @@ macro_rules! effects {
                 }
             }
 
-            /// The same of another engine; unchanged where it is not of a single one.
+            /// The same effect for another engine; unchanged where it is not of a single one.
             #[must_use]
             const fn of_engine(self, engine: u8) -> Self {
                 match self {
@@ -72,13 +72,13 @@ effects! {
     InducedDrag = airframe::INDUCED_DRAG,
     /// Earlier or later drag rise with Mach number.
     WaveDrag = airframe::WAVE_DRAG,
-    /// Friction that follows the Reynolds number.
+    /// Friction that depends on the Reynolds number.
     ReynoldsNumber = airframe::REYNOLDS_NUMBER,
     /// Trim drag with the center of gravity.
     TrimDragCg = airframe::TRIM_DRAG_CG,
     /// Drag of flying with a wing low.
     AsymmetryDrag = airframe::ASYMMETRY_DRAG,
-    /// Lift that a turn asks for.
+    /// Lift needed in a turn.
     LoadFactor = airframe::LOAD_FACTOR,
     /// Zero-lift drag that grows with age.
     AirframeAgeing = airframe::AIRFRAME_AGEING,
@@ -116,7 +116,7 @@ effects! {
     FuelFlowGainEngine(u8) = recording::FUEL_FLOW_GAIN_ENGINE,
     /// Gravity by latitude and height.
     LocalGravity = surroundings::LOCAL_GRAVITY,
-    /// Lift saved or asked for by the Earth's rotation and curvature.
+    /// Lift saved or needed because of the Earth's rotation and curvature.
     RotatingEarth = surroundings::ROTATING_EARTH,
     /// Climb along a sloping pressure surface.
     IsobaricSlope = surroundings::ISOBARIC_SLOPE,
@@ -125,8 +125,8 @@ effects! {
 }
 
 impl EffectId {
-    /// Every effect for an aircraft with this many engines, in the library's order. Effects of single engines are
-    /// there for two engines and more.
+    /// Every effect for an aircraft with this many engines, in the library's order. Effects of single engines exist for
+    /// two engines and more.
     #[must_use]
     pub fn library(engines: usize) -> Vec<Self> {
         let single = if engines < 2 { 0 } else { engines.min(MAXIMUM_ENGINES) };
@@ -146,8 +146,8 @@ impl EffectId {
         Self::library(MAXIMUM_ENGINES).into_iter().find(|id| id.to_string() == name)
     }
 
-    /// Whether it is about what was recorded (sensors, load sheet, fuel quantity) and not about what flies: it then corrects
-    /// recordings, and never a prediction.
+    /// Whether it concerns the recording (sensors, load sheet, fuel quantity) and not the flight itself: it then
+    /// corrects recordings, and never a prediction.
     #[must_use]
     pub const fn is_of_recordings(self) -> bool {
         matches!(self.entry().group, EffectGroup::Mass | EffectGroup::Sensor)
@@ -159,13 +159,13 @@ impl EffectId {
         matches!(self.entry().typical, TypicalSize::Known)
     }
 
-    /// Whether physics says that its size is positive, or its size has no sign.
+    /// Whether physics requires its size to be positive, or its size has no sign.
     #[must_use]
     pub const fn is_one_sided(self) -> bool {
         matches!(self.entry().sign, EffectSign::Positive | EffectSign::Spread)
     }
 
-    /// What it does at a size of this sign, as a noun phrase or a clause.
+    /// Its description at a size of this sign, as a noun phrase or a clause.
     #[must_use]
     pub fn phrase(self, size: f64) -> String {
         let Phrase { positive, negative } = self.entry().phrase;

@@ -1,4 +1,4 @@
-//! Findings: what is worth knowing about data that is nevertheless used.
+//! Findings: noteworthy facts about data that is used nevertheless.
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -9,7 +9,7 @@ pub enum Severity {
     Warning,
 }
 
-/// Something noticed about data that does not refuse it.
+/// Something noticed about data that is not a reason to refuse it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// How much it matters.
@@ -18,6 +18,6 @@ pub struct Finding {
     pub code: &'static str,
     /// The sentence for a person, with values and units.
     pub message: String,
-    /// Line of the file, from 1, where one line is meant.
+    /// Line of the file, from 1, where it concerns one line.
     pub line: Option<usize>,
 }

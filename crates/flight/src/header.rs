@@ -3,7 +3,7 @@
 use jiff::Timestamp;
 use units::Mass;
 
-/// What names one flight of one tail: the key of every ledger.
+/// Identifies one flight of one tail: the key of every ledger.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FlightIdentity {
     /// Tail (registration) as sent.
@@ -58,7 +58,7 @@ impl MissingColumn {
     }
 }
 
-/// What stands in for something that was not recorded.
+/// An assumption in place of something that was not recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Assumption {
     /// `SAT=ISA+3`: static air temperature is that of the ISA plus a deviation.
@@ -90,7 +90,7 @@ pub struct ReportHeader {
     pub lower_heating_value_mj_kg: Option<f64>,
     /// Required columns that the recording does not have, in order, each once.
     pub missing: Vec<MissingColumn>,
-    /// What stands in for them.
+    /// The assumptions in their place.
     pub assumed: Vec<Assumption>,
     /// Other header lines, key and value, in order.
     pub notes: Vec<(String, String)>,

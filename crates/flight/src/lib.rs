@@ -1,11 +1,11 @@
 //! The nouns that cruisefit's stages exchange: [`Report`], [`Track`], [`Segment`], [`Observation`], [`Finding`] and
-//! all that is said of a physical [effect](effect::EffectId) but its physics.
+//! everything about a physical [effect](effect::EffectId) except its physics.
 //!
-//! What it is not: there is no algorithm here. A stage crate depends on this one and never on another stage, so each
-//! can be used alone and replaced.
+//! What it is not: there is no algorithm here. A stage crate depends on this one and never on another stage, so that
+//! each can be used alone and replaced.
 //!
-//! The one design decision: plain data, valid by construction. What has invariants ([`Report`], [`Track`]) has private
-//! fields and one fallible constructor; what has none is a struct of named values with their unit in the name.
+//! The one design decision: plain data, valid by construction. Types with invariants ([`Report`], [`Track`]) have
+//! private fields and one fallible constructor; the others are structs of named values with their unit in the name.
 //! A `Report` holds what was sent; nothing that was derived ever overwrites it.
 //!
 //! ```
@@ -36,5 +36,5 @@ pub use track::{
     TrackParts,
 };
 
-/// Largest number of engines that a report may speak of.
+/// Largest number of engines that a report may have.
 pub const MAXIMUM_ENGINES: usize = 4;

@@ -1,4 +1,4 @@
-//! What a segment says about the aircraft's drag.
+//! The drag information in a segment.
 
 use jiff::Timestamp;
 
@@ -13,8 +13,8 @@ pub struct ObservationVariance {
 
 /// A segment reduced to a point (lift coefficient, Mach number) with its observed drag coefficient.
 ///
-/// Fuel flow is linear in the drag coefficient, so that the error ε of any table is
-/// `100 · fuel_flow_per_drag_coefficient · (drag_coefficient − table) / fuel_flow`: what the adaptation needs, without
+/// Fuel flow is linear in the drag coefficient, so that the error ε of any table is `100 ·
+/// fuel_flow_per_drag_coefficient · (drag_coefficient − table) / fuel_flow`: all that the adaptation needs, without
 /// knowing engine or atmosphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
@@ -30,6 +30,6 @@ pub struct Observation {
     pub fuel_flow_total_kg_s: f64,
     /// Change of predicted total fuel flow with drag coefficient, kg/s: dynamic pressure × wing area × TSFC.
     pub fuel_flow_per_drag_coefficient_kg_s: f64,
-    /// How uncertain the observed drag coefficient is.
+    /// Variance of the observed drag coefficient.
     pub variance: ObservationVariance,
 }

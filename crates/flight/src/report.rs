@@ -5,7 +5,7 @@ use crate::{MAXIMUM_ENGINES, ReportHeader};
 /// A column whose samples may be unavailable one by one.
 pub type OptionalColumn = Vec<Option<f64>>;
 
-/// Fuel flow as it was recorded: engine by engine, or of all together.
+/// Fuel flow as it was recorded: engine by engine, or the total only.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FuelFlowColumns {
     /// `[engine][sample]`, kg/s per engine.
@@ -140,7 +140,7 @@ pub enum ReportDataError {
         column: &'static str,
         /// Engines found.
         found: usize,
-        /// What would be right.
+        /// What is expected.
         expected: &'static str,
     },
     /// A mass at or below zero.
@@ -148,17 +148,17 @@ pub enum ReportDataError {
     MassNotPositive {
         /// Sample from 0.
         sample: usize,
-        /// Zero-fuel mass plus fuel on board less fuel used.
+        /// Zero-fuel mass plus fuel on board minus fuel used.
         mass_kg: f64,
     },
 }
 
 impl Report {
-    /// Header and columns as one report.
+    /// Combines header and columns into one report.
     ///
     /// # Errors
-    /// [`ReportDataError`] when the columns are not consistent with each other. Ranges of single columns are the
-    /// reader's business ([`crate::column::Column::range`]).
+    /// [`ReportDataError`] when the columns are not consistent with each other. Ranges of single columns are checked by
+    /// the reader ([`crate::column::Column::range`]).
     pub fn new(header: ReportHeader, columns: ReportColumns) -> Result<Self, ReportDataError> {
         check_columns(&columns)?;
         let ramp_mass_kg =
@@ -197,7 +197,7 @@ impl Report {
         self.columns.time_s.is_empty()
     }
 
-    /// Number of engines recorded apart; `None` where only total fuel flow is known and no rotor speed.
+    /// Number of engines recorded separately; `None` where only total fuel flow and no rotor speed is recorded.
     #[must_use]
     pub fn engines(&self) -> Option<usize> {
         match (&self.columns.fuel_flow, &self.columns.n2_percent) {
@@ -207,7 +207,7 @@ impl Report {
         }
     }
 
-    /// Takes the report apart.
+    /// Takes the report apart into header and columns.
     #[must_use]
     pub fn into_parts(self) -> (ReportHeader, ReportColumns) {
         (self.header, self.columns)

@@ -29,7 +29,7 @@ pub struct SegmentMeans {
     pub mass_kg: f64,
     /// Fuel flow of all engines together, kg/s.
     pub fuel_flow_total_kg_s: f64,
-    /// Fuel flow of each engine, kg/s; empty where engines are not recorded apart.
+    /// Fuel flow of each engine, kg/s; empty where engines are not recorded separately.
     pub fuel_flow_engine_kg_s: Vec<f64>,
     /// Fuel used since engine start, kg.
     pub fuel_used_kg: f64,
@@ -64,7 +64,7 @@ pub struct SegmentMeans {
 /// A stabilised segment of one flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// Whose.
+    /// The flight it belongs to.
     pub identity: Arc<FlightIdentity>,
     /// Kept samples: indices into the track's samples, from 0, increasing.
     pub rows: Vec<u32>,

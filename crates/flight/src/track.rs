@@ -1,4 +1,4 @@
-//! The report with what is derived from it.
+//! The report with the quantities derived from it.
 
 use core::ops::Range;
 
@@ -15,7 +15,7 @@ pub enum Sampling {
         bin_s: f64,
         /// Median time step of the recording, s.
         recorded_interval_s: f64,
-        /// Bins that were dropped because they held less than half of the samples a bin should hold.
+        /// Bins that were dropped because they held fewer than half of the samples a bin should hold.
         incomplete_bins: usize,
     },
 }
@@ -43,7 +43,7 @@ pub struct SampleRun {
     pub vertical_speed_m_s: Vec<f64>,
 }
 
-/// Why a run of samples is of no use.
+/// Why a run of samples cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum DroppedRunReason {
@@ -56,18 +56,18 @@ pub enum DroppedRunReason {
 pub struct DroppedRun {
     /// Samples of the track, from 0.
     pub samples: Range<usize>,
-    /// Why.
+    /// The reason.
     pub reason: DroppedRunReason,
 }
 
-/// What a [`Track`] is made of.
+/// The parts of a [`Track`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackParts {
     /// The samples: the report as sent, or averaged into bins.
     pub report: Report,
-    /// Which of the two.
+    /// How they came from the recording.
     pub sampling: Sampling,
-    /// Time Δt that each sample stands for, s: the median time step of `report` as sent, or the length of a bin.
+    /// Time Δt that each sample represents, s: the median time step of `report` as sent, or the length of a bin.
     pub sample_interval_s: f64,
     /// Static air temperature of each sample, K.
     pub static_air_temperature_k: Vec<f64>,
@@ -152,7 +152,7 @@ impl Track {
         self.parts.sampling
     }
 
-    /// Time Δt that each sample stands for, s: median time step as sent, or length of a bin.
+    /// Time Δt that each sample represents, s: median time step as sent, or length of a bin.
     #[must_use]
     pub const fn sample_interval_s(&self) -> f64 {
         self.parts.sample_interval_s

@@ -1,4 +1,4 @@
-//! Look-ups at random points of a 30 × 20 table, one value and one four-node update a point, beside `interpn`.
+//! Look-ups at random points of a 30 × 20 table, one value and one four-node update per point, compared with `interpn`.
 //!
 //! Figures are points per second; compare them within one run only.
 #![expect(clippy::unwrap_used, reason = "a benchmark")]

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let after = table.interpolate(&cell);
 
-    // Outside there is no value, unless the edge is asked to stand for it.
+    // Outside there is no value, unless the edge value is asked for.
     assert!(grid.locate(0.42, 0.90, Outside::Error).is_err());
     assert!(grid.locate(0.42, 0.90, Outside::Hold)?.held());
     assert!((before - 0.0369).abs() < 1e-4 && (after - wanted).abs() < 1e-15);

@@ -12,7 +12,7 @@ pub const SNAP: f64 = 1e-9;
 
 /// Largest magnitude of a breakpoint: squares of distances stay far from overflow.
 const MAXIMUM_MAGNITUDE: f64 = 1e100;
-/// Largest number of breakpoints that [`Axis::from_step`] makes: more is a mistyped step.
+/// Largest number of breakpoints that [`Axis::from_step`] makes: a larger one is a mistyped step.
 const MAXIMUM_BREAKPOINTS: usize = 1_000_000;
 /// Breakpoints of one axis: two or more, finite, increasing, no two closer than twice [`SNAP`].
 ///
@@ -26,11 +26,11 @@ const MAXIMUM_BREAKPOINTS: usize = 1_000_000;
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Axis {
     breakpoints: Vec<f64>,
-    /// Follows from the breakpoints.
+    /// Derived from the breakpoints.
     buckets: Buckets,
 }
 
-/// Why breakpoints are no axis.
+/// Why breakpoints do not make an axis.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AxisError {
@@ -45,7 +45,7 @@ pub enum AxisError {
     NotFinite {
         /// Its index, from 0.
         index: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
     /// A breakpoint does not exceed its predecessor.
@@ -58,7 +58,7 @@ pub enum AxisError {
         /// The second of the two.
         value: f64,
     },
-    /// Two breakpoints are so close that one point would be both.
+    /// Two breakpoints are so close that one point would lie on both.
     #[error("breakpoint {index} is {value} after {previous}: closer than 2e-9")]
     TooClose {
         /// Index of the second of the two, from 0.
@@ -75,7 +75,7 @@ pub enum AxisError {
         from: f64,
         /// Last breakpoint.
         to: f64,
-        /// Distance of neighbors.
+        /// Distance between neighbors.
         step: f64,
     },
     /// The step is not positive, or does not lead from the first to the last breakpoint.
@@ -85,7 +85,7 @@ pub enum AxisError {
         from: f64,
         /// Last breakpoint.
         to: f64,
-        /// Distance of neighbors.
+        /// Distance between neighbors.
         step: f64,
     },
     /// The step asks for more than a million breakpoints.
@@ -95,7 +95,7 @@ pub enum AxisError {
         from: f64,
         /// Last breakpoint.
         to: f64,
-        /// Distance of neighbors.
+        /// Distance between neighbors.
         step: f64,
     },
 }
@@ -111,7 +111,7 @@ pub(crate) struct Position {
 }
 
 impl Position {
-    /// Whether both ends of the cell are further away than [`SNAP`].
+    /// Whether both ends of the cell are farther away than [`SNAP`].
     #[inline]
     pub(crate) fn is_off_breakpoints(&self) -> bool {
         self.above_low > SNAP && self.below_high > SNAP
@@ -122,7 +122,7 @@ impl Axis {
     /// An axis of these breakpoints.
     ///
     /// # Errors
-    /// [`AxisError`] says which breakpoint is wrong, and how.
+    /// [`AxisError`] states which breakpoint is wrong, and how.
     pub fn new(breakpoints: Vec<f64>) -> Result<Self, AxisError> {
         if breakpoints.len() < 2 {
             return Err(AxisError::TooShort { count: breakpoints.len() });
@@ -150,7 +150,7 @@ impl Axis {
     /// `to` counts as reached within [`SNAP`]; the last breakpoint is then the decimal `from + n·step`.
     ///
     /// # Errors
-    /// [`AxisError`] where the step does not lead from `from` to `to`, or the result is no axis.
+    /// [`AxisError`] where the step does not lead from `from` to `to`, or the result is not an axis.
     pub fn from_step(from: f64, to: f64, step: f64) -> Result<Self, AxisError> {
         let cells = ((to - from) / step).round();
         let decimals = decimal::Progression::new(from, step);
@@ -212,7 +212,7 @@ impl Axis {
         self.first() <= coordinate && coordinate < self.last()
     }
 
-    /// Where `coordinate` lies, which the axis must span; not yet snapped to a breakpoint.
+    /// Position of `coordinate`, which the axis must span; not yet snapped to a breakpoint.
     #[expect(
         clippy::inline_always,
         reason = "a position through memory costs more than the search: measured"
@@ -230,7 +230,8 @@ impl Axis {
         }
     }
 
-    /// Where `coordinate` lies, `None` beyond the ends (or NaN); with `hold` the nearer end stands for what is beyond.
+    /// Position of `coordinate`, `None` beyond the ends (or NaN); with `hold`, what is beyond takes the position of the
+    /// nearer end.
     pub(crate) fn position(&self, coordinate: f64, hold: bool) -> Option<Position> {
         let (first, last) = (self.first(), self.last());
         // Within SNAP of an end a point is that end, and therefore inside.

@@ -1,8 +1,8 @@
-//! A point in its cell: what reading and changing a table need to know about where it lies.
+//! A point in its cell: the position that reading and changing a table need.
 
 use crate::axis::Position;
 
-/// The cell that holds a point, and where in it the point lies. Made by [`Grid::locate`](crate::Grid::locate).
+/// The cell that holds a point, and the point's position in it. Made by [`Grid::locate`](crate::Grid::locate).
 ///
 /// The four nodes are always in the order (low x, low y), (low x, high y), (high x, low y), (high x, high y).
 #[derive(Clone, Copy, Debug)]
@@ -60,14 +60,14 @@ impl Cell {
         ]
     }
 
-    /// Whether the point was outside the grid and the nearest edge stands for it.
+    /// Whether the point was outside the grid and was moved to the nearest edge.
     #[must_use]
     #[inline]
     pub const fn held(&self) -> bool {
         self.x.held || self.y.held
     }
 
-    /// Place in the cell: `(u, v)`, each 0 at the low and 1 at the high end.
+    /// Position in the cell: `(u, v)`, each 0 at the low and 1 at the high end.
     #[must_use]
     #[inline]
     pub fn local(&self) -> (f64, f64) {

@@ -17,7 +17,7 @@ pub struct Grid {
 pub enum Outside {
     /// Refuse it.
     Error,
-    /// Take the nearest edge instead and say so in [`Cell::held`]. What is not finite is still refused.
+    /// Take the nearest edge instead and report it in [`Cell::held`]. A coordinate that is not finite is still refused.
     Hold,
 }
 
@@ -78,10 +78,10 @@ impl Grid {
     /// The cell that holds a point.
     ///
     /// Cells are half-open, `[x_i, x_{i+1})`; the last node of an axis belongs to its last cell. A coordinate within
-    /// [`SNAP`](crate::SNAP) of a breakpoint is that breakpoint, before anything else.
+    /// [`SNAP`](crate::SNAP) of a breakpoint is that breakpoint; this rule is applied first.
     ///
     /// # Errors
-    /// [`OutsideGrid`] where the point is outside and `outside` says [`Outside::Error`], or is not finite.
+    /// [`OutsideGrid`] where the point is outside and `outside` is [`Outside::Error`], or is not finite.
     #[expect(
         clippy::inline_always,
         reason = "a cell through memory costs more than the search: measured"

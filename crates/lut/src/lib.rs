@@ -1,19 +1,19 @@
 //! Checked axes, rectangular look-up tables with their cell weights and gradients, and six-coefficient polynomial
 //! surfaces.
 //!
-//! What it is not: a general interpolation library. Tables have two axes and are bilinear; there is no word of
-//! aviation, no unit and no policy about what to do with a value.
+//! What it is not: a general interpolation library. Tables have two axes and are bilinear; there are no terms of
+//! aviation, no units and no policy about what to do with a value.
 //!
 //! The one design decision: looking up has two steps. [`Grid::locate`] turns a point into a [`Cell`] (four nodes, four
-//! weights, four distances), and a [`Table`] is asked with the cell. Whoever changes a table needs the cell anyway,
+//! weights, four distances), and a [`Table`] is read with the cell. Code that changes a table needs the cell anyway,
 //! and tables that share a [`Grid`] are read with one search.
 //!
 //! Limits:
-//! - A coordinate within [`SNAP`] of a breakpoint *is* that breakpoint, before anything else. Axes whose breakpoints
-//!   lie closer than twice that are refused.
+//! - A coordinate within [`SNAP`] of a breakpoint *is* that breakpoint; this rule is applied first. Axes whose
+//!   breakpoints lie closer than twice that are refused.
 //! - Outside the grid there is no value: the caller gets [`OutsideGrid`], or asks for [`Outside::Hold`] and finds
 //!   [`Cell::held`] set. Nothing is extrapolated.
-//! - [`Table::values_mut`] lends plain numbers: keeping them finite is the borrower's part.
+//! - [`Table::values_mut`] lends plain numbers: the borrower must keep them finite.
 //!
 //! ```
 //! use std::sync::Arc;

@@ -32,7 +32,7 @@ pub enum Basis {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Surface {
-    /// What the coefficients multiply.
+    /// The functions that the coefficients multiply.
     pub basis: Basis,
     /// The coefficients in the basis' order.
     pub coefficients: [f64; COEFFICIENTS],
@@ -43,9 +43,9 @@ pub struct Surface {
 pub struct Fit {
     /// The surface.
     pub surface: Surface,
-    /// Rank of the design: always 6, what has less is refused.
+    /// Rank of the design: always 6, because a lower rank is refused.
     pub rank: usize,
-    /// Largest over smallest singular value of the weighted design √w·X as it stands, columns not scaled.
+    /// Ratio of largest to smallest singular value of the weighted design √w·X, columns not scaled.
     pub condition_number: f64,
     /// Root of the weighted mean of squared residuals, √(Σ w r² / Σ w).
     pub residual_rms: f64,
@@ -157,7 +157,7 @@ fn check(basis: Basis, points: &[(f64, f64, f64, f64)]) -> Result<(), FitError> 
         if !(weight.is_finite() && weight >= 0.0) {
             return Err(FitError::WeightInvalid { index, weight });
         }
-        // Squares of huge coordinates overflow: the decomposition would never end on an infinity.
+        // Squares of huge coordinates overflow: the decomposition would never terminate on an infinity.
         let row = basis.row(x, y);
         if !row.iter().chain([&x, &y, &z]).all(|number| (number * number * weight).is_finite()) {
             return Err(FitError::NotFinite { index, x, y, z });

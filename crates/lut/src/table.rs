@@ -8,7 +8,7 @@ use crate::{Cell, Grid};
 
 /// Values at the nodes of a grid, bilinear between them.
 ///
-/// Cells must come from the table's own grid (or an equal one): a cell of another grid is a programmer's mistake.
+/// Cells must come from the table's own grid (or an equal one): using a cell of another grid is a programming error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Table {
@@ -16,11 +16,11 @@ pub struct Table {
     values: Vec<f64>,
 }
 
-/// Why values are no table.
+/// Why values do not make a table.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// Not one value a node.
+    /// The number of values differs from the number of nodes.
     #[error("{values} values for {nodes} nodes")]
     Length {
         /// How many values were given.
@@ -33,13 +33,13 @@ pub enum TableError {
     NotFinite {
         /// The node.
         node: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
 }
 
 impl Table {
-    /// A table of these values, one a node, x outer and y inner.
+    /// A table of these values, one per node, x outer and y inner.
     ///
     /// # Errors
     /// [`TableError`] where the number of values is not the grid's, or a value is not finite.
@@ -76,7 +76,7 @@ impl Table {
         &self.values
     }
 
-    /// All values, to be changed. Keep them finite: reading does not check again.
+    /// All values, for changes. Keep them finite: reading does not check again.
     #[must_use]
     pub fn values_mut(&mut self) -> &mut [f64] {
         &mut self.values
@@ -99,7 +99,7 @@ impl Table {
 
     /// Slopes along x and y of the bilinear surface at a located point.
     ///
-    /// On a grid line it is the slope of the cell that the point belongs to. Where the point is held at an edge the
+    /// On a grid line it is the slope of the cell that the point belongs to. Where the point is held at an edge, the
     /// value does not change further out, and the slope across that edge is 0.
     ///
     /// # Panics
@@ -126,7 +126,8 @@ impl Table {
     }
 }
 
-/// A table as it is written: the grid in full. Tables that share a grid should be written by their owner, grid once.
+/// A table in the form of a file: the grid in full. Tables that share a grid should be written by their owner, with the
+/// grid once.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Table", deny_unknown_fields)]
 struct Parts {

@@ -1,4 +1,4 @@
-//! What is an axis, what is none, and the decimals of even axes.
+//! What makes an axis and what does not, and the decimals of even axes.
 #![expect(clippy::float_cmp, reason = "breakpoints are these doubles or they are wrong")]
 
 use lut::{Axis, AxisError};

@@ -1,4 +1,5 @@
-//! Cells, weights, distances, values and slopes at points where it matters: nodes, lines, edges, beside them, outside.
+//! Cells, weights, distances, values and slopes at points where it matters: on nodes, lines and edges, near them,
+//! outside.
 #![expect(clippy::unwrap_used, reason = "a test")]
 #![expect(clippy::float_cmp, reason = "what is exact is tested to be exact")]
 
@@ -101,7 +102,7 @@ fn on_a_line_two_nodes_take_no_part() {
     assert_eq!(cell.nodes(), [5, 6, 9, 10]);
     assert_eq!(cell.weights()[2..], [0.0, 0.0]);
     close(table.interpolate(&cell), 6.0);
-    // The last line belongs to the last cell, whose far nodes take part then.
+    // The last line belongs to the last cell, whose far nodes then have a part.
     let cell = table.grid().locate(0.5, 0.7, Outside::Error).unwrap();
     assert_eq!(cell.weights()[..2], [0.0, 0.0]);
     close(table.interpolate(&cell), 18.0);

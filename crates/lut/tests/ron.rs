@@ -1,4 +1,4 @@
-//! Reading back what was written gives the same bits; what was edited into nonsense is refused.
+//! Reading what was written restores the same bits; text edited into nonsense is refused.
 
 use std::sync::Arc;
 

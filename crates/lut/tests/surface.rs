@@ -66,7 +66,7 @@ fn an_independent_polynomial_comes_back_from_its_table() {
     }
 }
 
-/// The mean is the simplest weighted fit. Six places with two values each, 3 with weight 1 and 7 with weight 3: the
+/// The mean is the simplest weighted fit. Six points with two values each, 3 with weight 1 and 7 with weight 3: the
 /// surface goes through (1·3 + 3·7)/4 = 6 everywhere, and every residual is 3 or 1: rms² = (1·9 + 3·1)/4 = 3.
 #[test]
 fn weights_multiply_squared_residuals() {
@@ -171,7 +171,7 @@ fn what_points_do_not_say_is_named() {
         );
         let two_y = with(|point| point.1 = if point.1 < 0.7 { 0.6 } else { 0.8 });
         assert_eq!(undetermined(basis, &two_y).1, Undetermined::FewY { distinct: 2, needed: 3 });
-        // A difference below the width of a breakpoint is none.
+        // A difference below the width of a breakpoint does not count.
         let nearly = with(|point| point.1 = 0.8 + 1e-11 * point.1);
         assert!(matches!(undetermined(basis, &nearly).1, Undetermined::SameY { .. }));
     }
@@ -225,7 +225,7 @@ fn other_refusals_and_their_words() {
     assert!(text.ends_with(": all points have the same y 0.8"), "{text}");
 }
 
-/// Units of x and y do not decide what is determined: x in thousands is as good as x in units.
+/// The units of x and y do not affect what is determined: x in thousands is as good as x in units.
 #[test]
 fn rank_does_not_depend_on_units() {
     let points: Vec<_> =

@@ -1,7 +1,7 @@
 //! Charts as inline SVG: a frame with two scales, and marks in it.
 //!
-//! Nothing here knows aviation. Colors and line styles come from the page's style sheet by class name; many marks are
-//! one path, because a page of a whole fleet has hundreds of thousands of them.
+//! Nothing here is specific to aviation. Colors and line styles come from the page's style sheet by class name; many
+//! marks form one path, because a page of a whole fleet has hundreds of thousands of them.
 
 use std::fmt::Write;
 
@@ -20,17 +20,17 @@ const RIGHT: f64 = 12.0;
 const TOP: f64 = 8.0;
 const BOTTOM: f64 = 40.0;
 const TICK: f64 = 4.0;
-/// Half the width of a character of a label, amply.
+/// A generous half of the width of a label's character.
 const HALF_CHARACTER: f64 = 3.8;
 
-/// A chart. Sizes are those of the drawing's own pixels; the page scales it as a whole.
+/// A chart. Sizes are in the drawing's own pixels; the page scales it as a whole.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     /// Unique on the page.
     pub(crate) id: String,
-    /// What it is, for those who hear the page.
+    /// Title, for screen readers.
     pub(crate) title: String,
-    /// What it shows.
+    /// Description.
     pub(crate) description: String,
     pub(crate) width: f64,
     pub(crate) height: f64,
@@ -101,7 +101,7 @@ impl Chart {
         }
     }
 
-    /// A line through points; a point off the scales ends it and begins another.
+    /// A line through points; a point off the scales ends it and starts another.
     pub(crate) fn polyline(&self, points: &[(f64, f64)], class: &str) -> Markup {
         let mut d = String::new();
         let mut pen = 'M';
@@ -197,12 +197,12 @@ impl Chart {
 }
 
 impl Mark {
-    /// All marks of one kind as a path or two.
+    /// All marks of one kind as one or two paths.
     fn paths(self, places: impl Iterator<Item = (f64, f64)>, class: &str) -> Markup {
         let mut d = String::new();
         for (x, y) in places {
             match self {
-                // A line of no length with round ends is a point.
+                // A line of length zero with round ends is drawn as a point.
                 Self::Dot | Self::Disc | Self::Ring => {
                     let _ = write!(d, "M{} {}h0", coordinate(x), coordinate(y));
                 }
@@ -220,7 +220,7 @@ impl Mark {
     }
 }
 
-/// A legend: what each mark means, in words.
+/// A legend: the meaning of each mark, in words.
 pub(crate) fn legend(entries: &[(Key, &str, &str)]) -> Markup {
     html! {
         ul class="legend" {
@@ -240,7 +240,7 @@ pub(crate) fn legend(entries: &[(Key, &str, &str)]) -> Markup {
     }
 }
 
-/// A path; nothing where there is nothing to draw.
+/// A path; empty where there is nothing to draw.
 fn path(class: &str, d: &str) -> Markup {
     html! {
         @if !d.is_empty() {

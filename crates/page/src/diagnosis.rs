@@ -1,4 +1,4 @@
-//! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be seen.
+//! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be detected.
 
 use diagnose::{Cause, Diagnosis, Separation, VerdictKind};
 use maud::{Markup, html};
@@ -8,19 +8,19 @@ use crate::frame::framed;
 use pipeline::diagnosis_text;
 use pipeline::summary::{ReportsSummary, counted};
 
-/// Causes shown of each tail.
+/// Causes shown for each tail.
 const CAUSES_SHOWN: usize = 8;
-/// Measurements or flights shown of each effect, whatever is found.
+/// Measurements or flights shown for each effect, whatever is found.
 const SEPARATIONS_SHOWN: usize = 2;
 
-/// The page of diagnoses, and what became of the reports that they are of.
+/// The page of diagnoses, with the counts of the reports behind them.
 #[must_use]
 pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[Diagnosis]) -> String {
     let title = "Diagnosis of performance models";
     let body = html! {
         p.run {
             (counted(reports.read, "report")) " read, " (reports.refused.len()) " refused. Gap: ln recorded − ln predicted "
-            "total fuel flow, in %; positive, the aircraft burns more than the model says."
+            "total fuel flow, in %; positive: the aircraft burns more than the model predicts."
         }
         (fleet::refused(reports))
         @for one in diagnoses { (section(one)) }
@@ -41,14 +41,14 @@ fn section(diagnosis: &Diagnosis) -> Markup {
             @if diagnosis.verdict.kind != VerdictKind::InsufficientData {
                 (causes(&diagnosis.causes))
                 p {
-                    "Something that no effect of the library is: probability "
+                    "A cause outside the library of effects: probability "
                     (format!("{:.3}", diagnosis.outside.probability))
-                    ". The causes' probabilities share one whole with this one."
+                    ". The causes' probabilities and this one are parts of the same total."
                 }
                 (floors(diagnosis))
             }
             @if !diagnosis.verdict.separations.is_empty() {
-                h3 { "What would separate them" }
+                h3 { "What would distinguish them" }
                 (separations(diagnosis.verdict.separations.iter().map(|one| (None, one))))
             }
             (detectable(diagnosis))
@@ -67,7 +67,7 @@ fn places(diagnosis: &Diagnosis) -> Markup {
             h3 { "Where the gap lies" }
             table {
                 thead { tr {
-                    th scope="col" { "place" } th scope="col" { "segments" } th scope="col" { "mean gap, %" }
+                    th scope="col" { "region" } th scope="col" { "segments" } th scope="col" { "mean gap, %" }
                     th scope="col" { "95 % interval by flight, %" } th scope="col" { "share of the explainable gap" }
                     th scope="col" { "p, search accounted for" }
                 } }
@@ -109,7 +109,7 @@ fn causes(causes: &[Cause]) -> Markup {
             thead { tr {
                 th scope="col" { "effect" } th scope="col" { "probability" } th scope="col" { "size" }
                 th scope="col" { "95 % interval" } th scope="col" { "unit" } th scope="col" { "closes, unseen flights" }
-                th scope="col" { "cannot be told from" }
+                th scope="col" { "cannot be distinguished from" }
             } }
             tbody { @for cause in causes.iter().take(CAUSES_SHOWN) { tr {
                 th scope="row" { (cause.effect) }
@@ -133,7 +133,7 @@ fn others(cause: &Cause) -> String {
 fn detectable(diagnosis: &Diagnosis) -> Markup {
     html! {
         @if !diagnosis.detectable.is_empty() {
-            h3 { "What would just be seen with this data" }
+            h3 { "Smallest sizes that this data would show" }
             table {
                 thead { tr {
                     th scope="col" { "effect" } th scope="col" { "smallest size" } th scope="col" { "unit" }
@@ -148,9 +148,10 @@ fn detectable(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-/// Effects that share a class at their typical sizes, whatever was found, and what would tell each from the nearest.
+/// Effects that share a class at their typical sizes, whatever was found, and what would distinguish each from the
+/// nearest.
 fn beforehand(diagnosis: &Diagnosis) -> Markup {
-    let told: Vec<_> = diagnosis
+    let shared: Vec<_> = diagnosis
         .detectable
         .iter()
         .flat_map(|one| {
@@ -159,9 +160,9 @@ fn beforehand(diagnosis: &Diagnosis) -> Markup {
         })
         .collect();
     html! {
-        @if !told.is_empty() {
-            h3 { "What these flights could not tell apart, at typical sizes, and what could" }
-            (separations(told.into_iter()))
+        @if !shared.is_empty() {
+            h3 { "Effects of typical size that these flights cannot distinguish, and what would" }
+            (separations(shared.into_iter()))
         }
     }
 }
@@ -172,8 +173,8 @@ fn separations<'a>(all: impl Iterator<Item = (Option<&'a str>, &'a Separation)> 
         table {
             thead { tr {
                 @if named { th scope="col" { "effect" } }
-                th scope="col" { "measurement or flights" } th scope="col" { "tells it from" }
-                th scope="col" { "distance now, σ" } th scope="col" { "distance then, σ" }
+                th scope="col" { "measurement or flights" } th scope="col" { "distinguishes it from" }
+                th scope="col" { "distance now, σ" } th scope="col" { "distance with it, σ" }
                 th scope="col" { "with six ordinary flights, σ" }
             } }
             tbody { @for (effect, one) in all { tr {

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::text::{breakpoint, counted, signed_tenths};
 use crate::view::{Point, TailView};
 
-/// Columns and rows that fit a page; cells of a finer grid are put together.
+/// Columns and rows that fit on a page; cells of a finer grid are merged.
 const MOST_COLUMNS: usize = 12;
 const MOST_ROWS: usize = 24;
 /// A coordinate this near below a breakpoint is on it, as for the table itself.
@@ -15,20 +15,20 @@ const FULL_COLOR_PERCENT: f64 = 5.0;
 /// Shades on each side of zero.
 const SHADES: f64 = 5.0;
 
-/// What is known of a cell.
+/// The content of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Cell {
     segments: usize,
     sum_percent: f64,
 }
 
-/// Cells between breakpoints, and what lies in them.
+/// Cells between breakpoints, and the segments in them.
 struct Envelope {
     lift_coefficient: Vec<f64>,
     mach: Vec<f64>,
     /// Lift coefficient outer, Mach number inner.
     cells: Vec<Cell>,
-    /// Cells of the table in one of these, along lift coefficient and Mach number.
+    /// Number of table cells in each of these, along lift coefficient and Mach number.
     merged: (usize, usize),
 }
 
@@ -45,7 +45,7 @@ pub(crate) fn envelope(view: &TailView) -> Markup {
                 b { "Where it flew." }
                 " Mean error " (which)
                 ", %, and number n of segments in each cell of lift coefficient CL and Mach number. Blue burns less than \
-                 the model says, orange more; full color from "
+                 the model predicts, orange more; full color from "
                 (FULL_COLOR_PERCENT) " %."
             }
             div.scroll {
@@ -75,7 +75,7 @@ pub(crate) fn envelope(view: &TailView) -> Markup {
                 }
             }
             p.note {
-                "Empty cells: no segment. The table goes on beyond the outer cells, where nobody flew."
+                "Empty cells: no segment. The table continues beyond the outer cells, where nobody flew."
                 @if envelope.merged != (1, 1) {
                     " A cell here is " (envelope.merged.0) " by " (envelope.merged.1) " cells of the table."
                 }
@@ -206,8 +206,8 @@ mod tests {
             let inside = view.points.iter().filter(|point| {
                 if view.adapted { point.after.is_some() } else { point.before.is_some() }
             });
-            let told = Envelope::of(&view).map_or(0, |envelope| envelope.segments());
-            assert_eq!(told, inside.count());
+            let counted = Envelope::of(&view).map_or(0, |envelope| envelope.segments());
+            assert_eq!(counted, inside.count());
         }
     }
 

@@ -1,4 +1,4 @@
-//! Errors of a tail's segments: how they are distributed, and how they went over time.
+//! Errors of a tail's segments: their distribution, and their course over time.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use pipeline::statistics::ErrorStatistics;
 
 /// Width of a bin where 60 of them suffice, %.
 const BIN_PERCENT: f64 = 0.5;
-/// Flights that are named as furthest from the others.
+/// Flights that are listed as farthest from the others.
 const FLIGHTS_NAMED: usize = 5;
 const WIDTH: f64 = 500.0;
 const HEIGHT: f64 = 290.0;
@@ -62,7 +62,7 @@ pub(crate) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     let beyond = counted_before.beyond() + counted_after.beyond();
     html! {
         figure {
-            figcaption { b { "Distribution of errors." } " Positive: burns more than the model says." }
+            figcaption { b { "Distribution of errors." } " Positive: the aircraft burns more than the model predicts." }
             (legend(&entries))
             (chart.draw(&marks))
             @if beyond > 0 {
@@ -142,7 +142,7 @@ pub(crate) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     }
     html! {
         figure {
-            figcaption { b { "Error over time." } " A step may be an event, a slope wear, a flight apart from all others its load sheet." }
+            figcaption { b { "Error over time." } " A step may be an event, a slope may be wear, a flight far from all others may have a wrong load sheet." }
             (legend(&entries))
             (chart.draw(&marks))
             @if shown.len() < view.points.len() {
@@ -158,15 +158,15 @@ pub(crate) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     }
 }
 
-/// The flights whose mean error is furthest from the others': where to look for a wrong load sheet.
+/// The flights whose mean error is farthest from the others': where to look for a wrong load sheet.
 pub(crate) fn flights_apart(view: &TailView) -> Markup {
     let (median, flights) = apart(view);
     html! {
         @if !flights.is_empty() {
             figure {
                 figcaption {
-                    b { "Flights apart from the others." }
-                    " Mean error " @if view.adapted { "before " } "furthest from the middle one (median, "
+                    b { "Flights far from the others." }
+                    " Mean error " @if view.adapted { "before " } "farthest from the middle one (median, "
                     (signed(Some(median))) " %)."
                     @if view.adapted {
                         " Not “after”: the final table has also learnt from a flight that was recorded wrongly."
@@ -197,8 +197,8 @@ pub(crate) fn flights_apart(view: &TailView) -> Markup {
     }
 }
 
-/// Median of the flights' mean errors before (of an even number the upper middle one), and the flights furthest from
-/// it. Stable: of equally far ones the earlier is named first.
+/// Median of the flights' mean errors before (for an even number the upper middle one), and the flights farthest from
+/// it. Stable: of equally far ones the earlier is listed first.
 fn apart(view: &TailView) -> (f64, Vec<&Flight>) {
     let mut flights: Vec<(f64, &Flight)> =
         view.flights.iter().filter_map(|flight| Some((flight.before.mean?, flight))).collect();

@@ -1,4 +1,4 @@
-//! The fleet: a row a tail, and the reports that were refused.
+//! The fleet: one row per tail, and the reports that were refused.
 
 use std::fmt::Write;
 
@@ -8,10 +8,10 @@ use crate::text::{count, percent, plain, signed};
 use pipeline::statistics::ErrorStatistics;
 use pipeline::summary::{RefusedSummary, ReportsSummary, Summary, TailSummary};
 
-/// Refused reports that are listed; more make the page unreadable.
+/// Refused reports that are listed; more would make the page unreadable.
 const MOST_REFUSED: usize = 200;
 
-/// Table of all tails, in the order given. `id_of` is where a tail's section is, if it has one.
+/// Table of all tails, in the order given. `id_of` is the anchor of a tail's section, if it has one.
 pub(crate) fn table(summary: &Summary, id_of: impl Fn(&str) -> Option<String>) -> Markup {
     let adapted = summary.tails.iter().any(|tail| tail.fuel_flow_error_percent.after.is_some());
     html! {
@@ -99,13 +99,13 @@ fn totals(tails: &[TailSummary], adapted: bool) -> Markup {
     }
 }
 
-/// The refused reports, with place and reason.
+/// The refused reports, with position and reason.
 pub(crate) fn refused(reports: &ReportsSummary) -> Markup {
     html! {
         @if !reports.refused.is_empty() {
             section {
                 h2 { "Refused reports" }
-                p { "Nothing of these is in any figure on this page." }
+                p { "No figure on this page includes them." }
                 table.refused {
                     thead { tr {
                         th scope="col" { "file:line:column" }

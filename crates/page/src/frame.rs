@@ -1,10 +1,11 @@
-//! What every page has around its body.
+//! The frame around the body of every page.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style;
 
-/// A whole page: `body` under a title, without scripts or network. `prints_all` also unfolds for print what is folded.
+/// A whole page: `body` under a title, without scripts or network. `prints_all` also unfolds the folded parts for
+/// printing.
 pub(crate) fn framed(title: &str, prints_all: bool, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)

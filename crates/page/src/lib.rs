@@ -1,16 +1,16 @@
-//! What a run came to, as one plain page for a performance engineer to read, print and forward.
+//! The result of a run as one plain page for a performance engineer to read, print and forward.
 //!
-//! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis`] that of
-//! diagnoses (verdicts, causes with sizes, what cannot be tested, what would just be seen). Both are strings of HTML with
-//! charts drawn as SVG; `chart` inside knows axes, bins and dates, and nothing of aviation.
-//! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures come
-//! from the results as they are.
+//! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis`]
+//! that of diagnoses (verdicts, causes with sizes, what cannot be tested, what would just be detected). Both are
+//! strings of HTML with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
+//! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures
+//! are taken from the results unchanged.
 //!
 //! The one design decision: one string without network, script or clock, so that the same results give the same bytes and a
 //! page that was mailed is read in ten years as it is today. That costs interaction: a chart cannot be zoomed.
 //!
 //! Limits:
-//! - The page of a large fleet draws a share of the segments, and says so; figures and tables are of all.
+//! - The page of a large fleet draws a share of the segments, and states so; figures and tables cover all.
 //! - Some 300 tails make a page of 10 MB; more belong in several runs.
 //!
 //! ```

@@ -1,25 +1,25 @@
-//! Where a tail's section is on the page, and how much may be drawn in it.
+//! The anchor of a tail's section on the page, and how much may be drawn in it.
 
-/// Class of what belongs to the initial (or given) table.
+/// Class of elements that belong to the initial (or given) table.
 pub(crate) const BEFORE: &str = "before";
 
-/// Where a tail's section is, and how much may be drawn in it.
+/// The anchor of a tail's section, and how much may be drawn in it.
 pub(crate) struct Place<'a> {
     /// Tail.
     pub(crate) tail: &'a str,
     /// Unique on the page.
     pub(crate) id: String,
-    /// Points of a chart at most.
+    /// Largest number of points of a chart.
     pub(crate) most_points: usize,
 }
 
 impl Place<'_> {
-    /// An id for something in this section.
+    /// An id for an element of this section.
     pub(crate) fn id(&self, what: &str) -> String {
         format!("{}-{what}", self.id)
     }
 
-    /// Says that not everything is drawn.
+    /// The note that not everything is drawn.
     pub(crate) fn thinned_words(&self, shown: usize, all: usize, what: &str) -> String {
         format!(
             "Drawn are {shown} of {all} {what}, evenly chosen, at most {} a chart to keep the page small. Figures and \

@@ -1,5 +1,5 @@
-//! Drag polars: initial and final table over lift coefficient at the Mach numbers that were flown, with what was
-//! observed there.
+//! Drag polars: initial and final table over lift coefficient at the Mach numbers that were flown, with the drag that
+//! was observed there.
 
 use maud::{Markup, html};
 
@@ -12,8 +12,8 @@ use crate::view::{Point, TailView};
 const PANELS: usize = 4;
 /// Nodes beyond the outermost segment that are still drawn.
 const NODES_BEYOND: usize = 2;
-/// Observed points up to this share of the curves' range beyond the curves are on the scale: one wrong report shall
-/// not flatten the polars.
+/// Observed points within this share of the curves' range beyond the curves are on the scale: one wrong report must not
+/// flatten the polars.
 const ROOM_FOR_POINTS: f64 = 0.5;
 
 /// Scales that all panels share, and the nodes on them.
@@ -212,7 +212,7 @@ fn nodes_near(grid: &[f64], points: &[Point]) -> (usize, usize) {
     (below.saturating_sub(1 + NODES_BEYOND), (above + NODES_BEYOND).min(grid.len() - 1))
 }
 
-/// The breakpoint nearest to a value; of two equally near the lower one.
+/// The breakpoint nearest to a value; of two equally near, the lower one.
 fn nearest(breakpoints: &[f64], value: f64) -> usize {
     let mut best = 0;
     for (k, breakpoint) in breakpoints.iter().enumerate() {

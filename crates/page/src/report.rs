@@ -1,4 +1,4 @@
-//! `report.html`: what a run came to.
+//! `report.html`: the result of a run.
 
 use std::collections::BTreeMap;
 
@@ -12,16 +12,16 @@ use crate::place::Place;
 use crate::text::counted;
 use crate::{fleet, tail};
 
-/// Points of a chart at most.
+/// Largest number of points of a chart.
 const MOST_POINTS: usize = 2000;
-/// Points of a chart at least, however many tails there are.
+/// Smallest number of points of a chart, however many tails there are.
 const FEWEST_POINTS: usize = 200;
 /// Points of one kind on the whole page: about 1 MB.
 const POINTS_OF_PAGE: usize = 60_000;
 /// Up to this many tails all are printed, folded or not.
 const TAILS_PRINTED: usize = 8;
 
-/// The page: `summary` and what is known of each tail under a title.
+/// The page: `summary` and the details of each tail under a title.
 pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
     let ids = ids(tails);
     let most_points = (POINTS_OF_PAGE / tails.len().max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
@@ -39,7 +39,7 @@ pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
             @if tails.len() > 1 {
                 p.note {
                     "Each tail unfolds at a click on its line, or on its name in the table above."
-                    @if tails.len() > TAILS_PRINTED { " Printed are those that are unfolded." }
+                    @if tails.len() > TAILS_PRINTED { " Only unfolded tails are printed." }
                 }
             }
             @for (k, result) in tails.iter().enumerate() {
@@ -104,7 +104,7 @@ fn how_to_read(adapted: bool) -> Markup {
             dt { "error" }
             dd {
                 "100 (recorded − predicted)/recorded, in % of total fuel flow (all engines), one for each segment. \
-                 Positive: the aircraft burns more than the model says."
+                 Positive: the aircraft burns more than the model predicts."
             }
             dt { "segment" }
             dd { "A stabilised piece of cruise, and the mean state over it." }
@@ -116,9 +116,9 @@ fn how_to_read(adapted: bool) -> Markup {
                      forecast."
                 }
                 dt { "nodes informed" }
-                dd { "Share of the table's nodes that a segment has ever adapted. Elsewhere the model has learnt nothing from flying." }
+                dd { "Share of the table's nodes that a segment has ever adapted. Elsewhere the model has learnt nothing from flights." }
                 dt { "refits" }
-                dd { "How often the polynomial was fitted anew to the whole table." }
+                dd { "How often the polynomial was fitted again to the whole table." }
             }
             dt { "outside table" }
             dd { "Segments beyond the table's lift coefficients or Mach numbers. They have no error and are in no error figure." }

@@ -22,7 +22,7 @@ pub(crate) fn views() -> Vec<TailView> {
     views
 }
 
-/// The k-th of many segments about Mach 0.80 and lift coefficient 0.45, six a flight, a flight each other day.
+/// The k-th of many segments about Mach 0.80 and lift coefficient 0.45, six per flight, one flight every other day.
 fn point(k: u32, before: f64, after: Option<f64>) -> Point {
     let wave = (f64::from(k) * 0.7).sin();
     let (lift_coefficient, mach) = (0.45 + 0.08 * wave, 0.80 + 0.04 * (f64::from(k) * 0.31).cos());

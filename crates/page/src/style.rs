@@ -1,5 +1,5 @@
-//! The page's style sheet. Colors are Okabe and Ito's, told apart by people with any color vision; shape, dash and
-//! words say the same again for print in black and white.
+//! The page's style sheet. Colors are Okabe and Ito's, which people with any color vision can tell apart; shape, dash
+//! and words repeat the distinction for print in black and white.
 
 /// The whole sheet.
 pub(crate) const STYLE: &str = r#"

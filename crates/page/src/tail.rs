@@ -44,7 +44,7 @@ pub(crate) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
 fn headline(result: &TailResult) -> String {
     let summary = &result.summary;
     let errors = &summary.fuel_flow_error_percent;
-    let told = |statistics: &ErrorStatistics| {
+    let words = |statistics: &ErrorStatistics| {
         format!(
             "mean\u{a0}{}\u{a0}%, std\u{a0}{}\u{a0}%",
             signed(statistics.mean),
@@ -57,8 +57,8 @@ fn headline(result: &TailResult) -> String {
         counted(summary.segments, "segment")
     );
     match &errors.after {
-        Some(after) => format!("{counts}before {}; after {}", told(&errors.before), told(after)),
-        None => format!("{counts}{}", told(&errors.before)),
+        Some(after) => format!("{counts}before {}; after {}", words(&errors.before), words(after)),
+        None => format!("{counts}{}", words(&errors.before)),
     }
 }
 
@@ -83,7 +83,7 @@ fn notes(result: &TailResult, view: &TailView) -> Markup {
     notes.extend(envelope::outside(view));
     if let Some(first) = view.not_observed.first() {
         notes.push(format!(
-            "{} say nothing about drag, so without an error and in no figure; the first: {first}.",
+            "{} give no drag, so they have no error and are in no figure; the first: {first}.",
             counted(view.not_observed.len(), "segment")
         ));
     }

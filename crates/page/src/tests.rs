@@ -103,7 +103,7 @@ fn odd_tails_are_drawn_too() {
         let figures = section::figures(view, &place).into_string();
         check(&figures);
         let thinned = view.points.len() > 100;
-        assert_eq!(figures.contains("evenly chosen"), thinned, "what is left out is said");
+        assert_eq!(figures.contains("evenly chosen"), thinned, "what is left out is reported");
     }
 }
 

@@ -1,4 +1,4 @@
-//! A tail as plain numbers: what the charts draw, taken out of the results once.
+//! A tail as plain numbers for the charts, taken out of the results once.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub(crate) struct TailView {
     pub(crate) points: Vec<Point>,
     /// Lift coefficients and Mach numbers of segments outside the table.
     pub(crate) outside: Vec<(f64, f64)>,
-    /// Why other segments say nothing about drag, one reason a segment.
+    /// Why other segments give no drag, one reason per segment.
     pub(crate) not_observed: Vec<String>,
     /// Flights with segments, by START.
     pub(crate) flights: Vec<Flight>,
@@ -62,7 +62,7 @@ pub(crate) struct Polars {
     pub(crate) mach: Vec<f64>,
     /// Drag coefficient of the initial table.
     pub(crate) initial: Vec<f64>,
-    /// Drag coefficient as it stands.
+    /// Present drag coefficient.
     pub(crate) current: Vec<f64>,
     /// Whether anything was learnt; if not, both are the same.
     pub(crate) learnt: bool,
@@ -120,7 +120,7 @@ impl TailView {
         }
     }
 
-    /// What "before" is called: there is one only where there is an "after".
+    /// The label of "before": there is one only where there is an "after".
     pub(crate) fn before_label(&self) -> &'static str {
         if self.adapted { "before" } else { "model as given" }
     }

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{weight_lb} lb: {flow:.0} lb/h, {range:.4} nm/lb");
     }
 
-    // One per cent more weight is 0.2 to 0.8 % more fuel flow, the share of induced drag deciding.
+    // One per cent more weight costs 0.2 to 0.8 % more fuel flow, depending on the share of induced drag.
     let heavier =
         at_weight(1.01 * 67_000.0)?.fuel_flow_total / at_weight(67_000.0)?.fuel_flow_total;
     println!("1 % more weight burns {:.2} % more", 100.0 * (heavier - 1.0));

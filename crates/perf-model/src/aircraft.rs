@@ -1,4 +1,4 @@
-//! One aircraft type: what the aircraft file says, checked.
+//! One aircraft type: the checked content of the aircraft file.
 
 use std::sync::Arc;
 
@@ -26,24 +26,24 @@ pub struct Aircraft {
     grid: Arc<Grid>,
 }
 
-/// Why text or numbers are no aircraft.
+/// Why text or numbers do not make a valid aircraft.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AircraftError {
-    /// The text is not the file's: syntax, an unknown or missing field, a number out of its limits.
+    /// The text is not a valid aircraft file: syntax, an unknown or missing field, a number out of its limits.
     #[error("line {line}, column {column}: {reason}")]
     File {
         /// Line from 1.
         line: usize,
-        /// Column from 1: where reading stopped, so just after a value that is out of its limits.
+        /// Column from 1: where reading stopped, that is just after a value that is out of its limits.
         column: usize,
-        /// What is wrong there.
+        /// What is wrong at that position.
         reason: Box<ron::Error>,
     },
     /// A number out of its limits.
     #[error(transparent)]
     OutOfDomain(#[from] OutOfDomain),
-    /// No engine, or more than reports can speak of.
+    /// No engine, or more than a report can have.
     #[error("{found} engines, expected 1 to {maximum}")]
     Engines {
         /// Engines found.
@@ -57,12 +57,12 @@ pub enum AircraftError {
         /// The field.
         field: &'static str,
     },
-    /// Breakpoints that are no axis.
+    /// Breakpoints that do not make an axis.
     #[error("table axis of {axis}: {source}")]
     Axis {
         /// The axis.
         axis: &'static str,
-        /// Why.
+        /// The reason.
         source: AxisError,
     },
     /// An axis with more breakpoints than a table may have.
@@ -78,7 +78,7 @@ pub enum AircraftError {
 }
 
 impl Aircraft {
-    /// Checks what an aircraft file says and builds the table's grid.
+    /// Checks the content of an aircraft file and builds the table's grid.
     ///
     /// # Errors
     /// [`AircraftError`] for the first value out of its limits.
@@ -128,26 +128,26 @@ impl Aircraft {
     /// Writes the aircraft file; reading it back gives the same bits in every number. Defaults are written out.
     ///
     /// # Errors
-    /// What the writer of RON refuses; nothing that a checked aircraft holds.
+    /// What the writer of RON refuses; a checked aircraft holds nothing of the kind.
     pub fn to_ron(&self) -> Result<String, ron::Error> {
         let mut text = ron::ser::to_string_pretty(&self.file, ron::ser::PrettyConfig::new())?;
         text.push('\n');
         Ok(text)
     }
 
-    /// What the file says.
+    /// The content of the aircraft file.
     #[must_use]
     pub const fn file(&self) -> &AircraftFile {
         &self.file
     }
 
-    /// Name for people.
+    /// Name for display.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.file.name
     }
 
-    /// What `AIRCRAFT` says in the type's reports.
+    /// The value of `AIRCRAFT` in the type's reports.
     #[must_use]
     pub fn type_code(&self) -> &str {
         &self.file.type_code
@@ -188,19 +188,19 @@ impl Aircraft {
         self.file.polynomial
     }
 
-    /// Mean aerodynamic chord, m, where the file says it.
+    /// Mean aerodynamic chord, m, where the file states it.
     #[must_use]
     pub const fn mean_aerodynamic_chord_m(&self) -> Option<f64> {
         self.file.mean_aerodynamic_chord_m
     }
 
-    /// Drag-divergence Mach number at lift coefficient 0.35, where the file says it.
+    /// Drag-divergence Mach number at lift coefficient 0.35, where the file states it.
     #[must_use]
     pub fn drag_divergence_mach(&self) -> Option<Mach> {
         self.file.drag_divergence_mach.map(Mach::new)
     }
 
-    /// Lower heating value that the guide's fuel flows are for, MJ/kg, where the file says it.
+    /// Lower heating value that the guide's fuel flows are for, MJ/kg, where the file states it.
     #[must_use]
     pub const fn reference_lower_heating_value_mj_kg(&self) -> Option<f64> {
         self.file.reference_lhv_mj_kg

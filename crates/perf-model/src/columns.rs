@@ -1,9 +1,9 @@
-//! The columns of guide and flight points: names with their unit, and limits. Limits that the cruise report has too are
-//! the report's.
+//! The columns of guide and flight points: names with their unit, and limits. Limits that the cruise report also has
+//! are taken from there.
 
 use crate::csv_text::Column;
 
-/// A column whose limits are written out, with the reason beside it.
+/// A column with its own limits; the reason is in the comment next to it.
 const fn column(
     name: &'static str,
     quantity: &'static str,
@@ -22,12 +22,12 @@ pub(crate) const PRESSURE_ALTITUDE_FT: Column =
 pub(crate) const TRUE_AIRSPEED_KT: Column =
     column("true_airspeed_kt", "true airspeed", "kt", 50.0, 1000.0);
 pub(crate) const MACH: Column = column("mach", "Mach number", "Mach", MINIMUM_MACH, MAXIMUM_MACH);
-// All engines: four times the report's limit of one. Zero is no cruise.
+// All engines: four times the report's limit for one engine. Zero is not cruise.
 pub(crate) const FUEL_FLOW_LB_H: Column =
     column("fuel_flow_lb_h", "total fuel flow", "lb/h", 1.0, 400_000.0);
 pub(crate) const FUEL_FLOW_KG_H: Column =
     column("fuel_flow_kg_h", "total fuel flow", "kg/h", 0.5, 181_000.0);
-// Wider than any certified envelope (about ±40 K); a column of absolute temperatures is still noticed.
+// Wider than any certified envelope (about ±40 K); a column of absolute temperatures is still detected.
 pub(crate) const ISA_DEVIATION_C: Column =
     column("isa_deviation_c", "deviation from the ISA", "°C", -50.0, 50.0);
 pub(crate) const CG_PERCENT_MAC: Column =

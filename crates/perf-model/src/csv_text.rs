@@ -1,7 +1,7 @@
-//! Comma-separated text with a header: what guide and flight points share.
+//! Comma-separated text with a header: shared by guide and flight points.
 //!
 //! A file is read whole and refused at its first fault, with line, column and what was expected. Columns are found by
-//! name, in any order; columns whose name begins with `X-` are kept out of the meaning, as in cruise reports.
+//! name, in any order; columns whose name begins with `X-` are ignored, as in cruise reports.
 
 use core::fmt;
 
@@ -17,13 +17,13 @@ pub(crate) struct Column {
     pub(crate) maximum: f64,
 }
 
-/// Why text is no guide or no list of flight points.
+/// Why text is not a guide or a list of flight points.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}{}: {reason}", At(.column.as_ref()))]
 pub struct CsvError {
     /// Line of the file, from 1.
     pub line: u64,
-    /// The column, where one is meant.
+    /// The column, where the fault is in one.
     pub column: Option<CsvColumn>,
     /// What is wrong.
     pub reason: CsvErrorReason,
@@ -34,7 +34,7 @@ pub struct CsvError {
 pub struct CsvColumn {
     /// Number from 1.
     pub number: usize,
-    /// Its name in the header, or what stands there.
+    /// Its name in the header, or the text found there.
     pub name: String,
 }
 
@@ -45,7 +45,7 @@ pub enum CsvErrorReason {
     /// No line with column names.
     #[error("no header, expected column names: {known}")]
     NoHeader {
-        /// Names the file may have.
+        /// Names that the file may have.
         known: String,
     },
     /// A header without rows.
@@ -54,11 +54,11 @@ pub enum CsvErrorReason {
     /// A name that the file does not define.
     #[error("unknown column, expected one of {known}, or a name beginning with X-")]
     UnknownColumn {
-        /// Names the file may have.
+        /// Names that the file may have.
         known: String,
     },
-    /// A name that stands twice.
-    #[error("column stands twice, first as column {first}")]
+    /// A name that appears twice.
+    #[error("column appears twice, first as column {first}")]
     DuplicatedColumn {
         /// Number of the first, from 1.
         first: usize,
@@ -69,8 +69,8 @@ pub enum CsvErrorReason {
         /// Its name, or the names of which one is required.
         expected: String,
     },
-    /// Two columns that say the same in different units.
-    #[error("column says the same as {other}, expected one of the two")]
+    /// Two columns of the same quantity in different units.
+    #[error("column is the same quantity as {other}, expected only one of the two")]
     ConflictingColumn {
         /// The other one.
         other: &'static str,
@@ -83,7 +83,7 @@ pub enum CsvErrorReason {
         /// Columns of the header.
         expected: usize,
     },
-    /// Bytes that are no UTF-8.
+    /// Bytes that are not UTF-8.
     #[error("not UTF-8 text")]
     NotUtf8,
     /// A field that is not a finite decimal number.
@@ -98,7 +98,7 @@ pub enum CsvErrorReason {
         /// The field.
         found: String,
     },
-    /// A field that is no date.
+    /// A field that is not a date.
     #[error("found {found:?}, expected a date as 2018-05-20 or 2018-05-20T14:14:21Z")]
     NotADate {
         /// The field.
@@ -115,7 +115,7 @@ pub enum CsvErrorReason {
     /// Fields that are each possible but not together.
     #[error("together with the row's other fields: {domain}")]
     Inconsistent {
-        /// What they give, and what it may be.
+        /// The resulting quantity, and its limits.
         domain: OutOfDomain,
     },
 }
@@ -144,7 +144,7 @@ impl CsvText {
             .from_reader(text);
         let mut record = csv::ByteRecord::new();
         let mut rows = Vec::new();
-        // Reading bytes from memory into a flexible byte record cannot fail; an end is an end.
+        // Reading bytes from memory into a flexible byte record cannot fail; an error is treated as the end.
         while reader.read_byte_record(&mut record).unwrap_or(false) {
             let line = line_of(text, record.position());
             rows.push(Row { line, fields: utf8_fields(&record, line)? });
@@ -170,12 +170,12 @@ impl CsvText {
         Ok(Self { header_line, header, rows })
     }
 
-    /// Index of a column, where the file has it.
+    /// Index of a column, if the file has it.
     pub(crate) fn find(&self, column: &Column) -> Option<usize> {
         self.header.iter().position(|name| name.trim() == column.name)
     }
 
-    /// Index of a column that must be there.
+    /// Index of a required column.
     pub(crate) fn require(&self, column: &Column) -> Result<usize, CsvError> {
         self.find(column).ok_or_else(|| self.missing(column.name.to_owned()))
     }
@@ -197,7 +197,7 @@ impl CsvText {
         }
     }
 
-    /// Like [`find_either`](Self::find_either), of which one must be there.
+    /// Like [`find_either`](Self::find_either), where one of the two is required.
     pub(crate) fn require_either<'c>(
         &self,
         columns: [&'c Column; 2],
@@ -219,7 +219,7 @@ impl CsvText {
         )
     }
 
-    /// Like [`number`](Self::number); an empty field or `-` says "not available".
+    /// Like [`number`](Self::number); an empty field or `-` means "not available".
     pub(crate) fn optional_number(
         &self,
         row: &Row,
@@ -257,12 +257,12 @@ impl CsvError {
     }
 }
 
-/// Whether a field says anything.
+/// Whether a field has a value.
 pub(crate) fn is_available(field: &str) -> bool {
     !matches!(field.trim(), "" | "-")
 }
 
-/// `, column 4 (fuel_flow_lb_h)`, or nothing.
+/// `, column 4 (fuel_flow_lb_h)`, or empty.
 struct At<'a>(Option<&'a CsvColumn>);
 
 impl fmt::Display for At<'_> {
@@ -314,7 +314,7 @@ fn utf8_fields(record: &csv::ByteRecord, line: u64) -> Result<Vec<String>, CsvEr
         .collect()
 }
 
-/// Line of a record, from 1. The reader's own position is where it began to look, before empty lines.
+/// Line of a record, from 1. The reader's own position is where it started to search, before empty lines.
 fn line_of(text: &[u8], position: Option<&csv::Position>) -> u64 {
     let Some(position) = position else { return 1 };
     let start = usize::try_from(position.byte()).unwrap_or(usize::MAX).min(text.len());

@@ -1,8 +1,8 @@
 //! The balance of forces in level flight, and the coefficients.
 //!
-//! Thrust acts along the path, gravity is standard gravity, the path is level and the air carries the aircraft along:
-//! along-path acceleration is the rate of ground speed. What this leaves out (climb, turn, real gravity, the earth's
-//! rotation) is the diagnosis' business.
+//! Thrust acts along the path, gravity is standard gravity, the path is level and the air mass does not accelerate:
+//! along-path acceleration is the rate of change of ground speed. What this leaves out (climb, turn, real gravity, the
+//! earth's rotation) is left to the diagnosis.
 
 use units::convert::STANDARD_GRAVITY_M_S2;
 use units::{Acceleration, Area, Force, Mass, Pressure};
@@ -22,7 +22,7 @@ pub fn inertia(mass: Mass, acceleration: Acceleration) -> Force {
     Force::newtons(mass.to_kilograms() * acceleration.to_meters_per_second_squared())
 }
 
-/// Net thrust of all engines that drag and acceleration ask for: Fn = D + m·V̇G. `[forces.2]`
+/// Net thrust of all engines that drag and acceleration require: Fn = D + m·V̇G. `[forces.2]`
 ///
 /// # Source
 /// Ghazi et al. 2020, equation (1).
@@ -37,7 +37,7 @@ pub fn thrust_required(drag: Force, inertia: Force) -> Force {
 /// CL = m·g0/(q·S),  q = ½ρV²                                         [forces.6]
 /// ```
 ///
-/// The trimmed aircraft's, so that trim is part of lift and drag.
+/// It is that of the trimmed aircraft, so that trim is part of lift and drag.
 ///
 /// # Source
 /// Ghazi et al. 2020, equations (6), (12), (20).
@@ -82,7 +82,7 @@ mod tests {
         let drag = drag(0.03, dynamic_pressure, wing_area); // 15 000 N
         assert!((drag.to_newtons() - 15_000.0).abs() < 1e-9);
         assert!((drag_coefficient(drag, dynamic_pressure, wing_area) - 0.03).abs() < 1e-15);
-        // 0.1 m/s² of 10 000 kg are 1000 N more.
+        // 0.1 m/s² of 10 000 kg need 1000 N more.
         let inertia =
             inertia(Mass::kilograms(10_000.0), Acceleration::meters_per_second_squared(0.1));
         assert!((thrust_required(drag, inertia).to_newtons() - 16_000.0).abs() < 1e-9);

@@ -4,7 +4,7 @@ use units::{Acceleration, Area, Force, FuelFlowTotal, Mass, Pressure, Tsfc};
 
 use crate::forces;
 
-/// What ties drag coefficient and fuel flow to each other at one moment of level flight.
+/// What relates drag coefficient and fuel flow to each other at one moment of level flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CruiseConditions {
     /// Dynamic pressure ½ρV² with the true airspeed.
@@ -15,7 +15,7 @@ pub struct CruiseConditions {
     pub tsfc: Tsfc,
     /// Gross mass.
     pub mass: Mass,
-    /// Along-path acceleration, rate of ground speed.
+    /// Along-path acceleration: rate of change of ground speed.
     pub acceleration: Acceleration,
 }
 
@@ -44,7 +44,7 @@ pub fn net_thrust(fuel_flow_total: FuelFlowTotal, tsfc: Tsfc) -> Force {
 /// Ŵf = (q·S·CD + m·V̇G)·TSFC                                          [forces.12]
 /// ```
 ///
-/// Negative where the aircraft slows down faster than drag alone would make it: no cruise.
+/// Negative where the aircraft slows down faster than drag alone would make it, which is not cruise.
 ///
 /// # Source
 /// Ghazi et al. 2020, equation (23).
@@ -61,7 +61,7 @@ pub fn predicted_fuel_flow(conditions: &CruiseConditions, drag_coefficient: f64)
 /// CD = (Wf/TSFC − m·V̇G)/(q·S)                                        [forces.11]
 /// ```
 ///
-/// Everything that fuel flow and model disagree in is charged to drag, the engine's part too.
+/// Every disagreement between fuel flow and model is charged to drag, including the engine's part.
 ///
 /// # Source
 /// Ghazi et al. 2020, equation (22).
@@ -89,7 +89,7 @@ pub fn fuel_flow_per_drag_coefficient_kg_s(conditions: &CruiseConditions) -> f64
 /// ε = 100·(Wf − Ŵf)/Wf                                               [forces.13]
 /// ```
 ///
-/// Positive: the aircraft burns more than the model says.
+/// Positive: the aircraft burns more than the model predicts.
 ///
 /// # Source
 /// Ghazi et al. 2020, equation (24).
@@ -120,10 +120,10 @@ mod tests {
         // q·S = 400 000 N. CD 0.03: D = 12 000 N; 0.005 m/s² of 14 000 kg: 70 N; Fn = 12 070 N; Wf = 0.2414 kg/s.
         let flow = predicted_fuel_flow(&conditions(0.005), 0.03);
         assert!((flow.to_kilograms_per_second() - 0.2414).abs() < 1e-15);
-        // Back: 0.2414/2e-5 = 12 070 N; less 70 N; over 400 000 N.
+        // Back: 0.2414/2e-5 = 12 070 N; minus 70 N; divided by 400 000 N.
         let drag_coefficient = observed_drag_coefficient(&conditions(0.005), flow);
         assert!((drag_coefficient - 0.03).abs() < 1e-15);
-        // Without the acceleration term the same flow reads as CD 0.030 175.
+        // Without the acceleration term the same flow gives a drag coefficient of 0.030 175.
         let drag_coefficient = observed_drag_coefficient(&conditions(0.0), flow);
         assert!((drag_coefficient - 0.030_175).abs() < 1e-15);
     }
@@ -140,8 +140,8 @@ mod tests {
 
     #[test]
     fn six_percent_more_fuel_is_six_percent_more_drag() {
-        // The published non-identifiability: an engine that burns 6 % more at the same drag, and 6 % more drag at the
-        // same engine, are one and the same to [forces.11] in steady flight.
+        // The published non-identifiability: an engine that burns 6 % more at the same drag, and 6 % more drag with the
+        // same engine, are identical to [forces.11] in steady flight.
         let steady = conditions(0.0);
         let healthy = predicted_fuel_flow(&steady, 0.03);
         let worn_engine =
@@ -158,7 +158,7 @@ mod tests {
         fn error_of_any_table_is_linear_in_its_drag_coefficient(
             observed in 0.01_f64..0.08, table in 0.01_f64..0.08, acceleration in -0.02_f64..0.02,
         ) {
-            // [forces.14]: ε = 100·slope·(CD − CD table)/Wf, what an Observation promises.
+            // [forces.14]: ε = 100·slope·(CD − CD table)/Wf, as documented for an Observation.
             let conditions = conditions(acceleration);
             let flow = predicted_fuel_flow(&conditions, observed);
             let direct = fuel_flow_error_percent(flow, predicted_fuel_flow(&conditions, table));

@@ -12,7 +12,7 @@ use crate::columns::{
 };
 use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Row};
 
-/// A flight-planning guide: level, unaccelerated cruise, one row a condition.
+/// A flight-planning guide: level, unaccelerated cruise, one row per condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
     points: Vec<GuidePoint>,
@@ -31,7 +31,7 @@ pub struct GuidePoint {
     pub true_airspeed: TrueAirspeed,
     /// Fuel flow of all engines.
     pub fuel_flow_total: FuelFlowTotal,
-    /// Deviation from the ISA; zero where the guide does not say.
+    /// Deviation from the ISA; zero where the guide states none.
     pub isa_deviation: TemperatureDifference,
 }
 
@@ -49,7 +49,7 @@ const COLUMNS: [Column; 7] = [
 impl Guide {
     /// Reads a guide.
     ///
-    /// Comma-separated with a header that decides: `weight_lb` or `mass_kg`; `pressure_altitude_ft`;
+    /// Comma-separated; the header determines the columns: `weight_lb` or `mass_kg`; `pressure_altitude_ft`;
     /// `true_airspeed_kt`; `fuel_flow_lb_h` or `fuel_flow_kg_h`, all engines; optionally `isa_deviation_c`. Columns
     /// whose name begins with `X-` are ignored.
     ///
@@ -67,8 +67,8 @@ impl Guide {
     /// ```
     ///
     /// # Errors
-    /// [`CsvError`] at the first fault: an unknown, missing or doubled column, a row with too few or too many fields, a
-    /// number that is none or that the quantity cannot have, an airspeed that is no Mach number from 0.1 to 0.99.
+    /// [`CsvError`] at the first fault: an unknown, missing or repeated column, a row with too few or too many fields,
+    /// a field that is not a number or outside the quantity's limits, an airspeed outside Mach 0.1 to 0.99.
     pub fn from_csv(text: &[u8]) -> Result<Self, CsvError> {
         let file = CsvText::read(text, &COLUMNS)?;
         let (mass, mass_column) = file.require_either([&WEIGHT_LB, &MASS_KG])?;
@@ -196,11 +196,11 @@ mod tests {
         );
         assert_eq!(
             message(&format!("{HEADER},weight_lb\n1,2,3,4,5\n")),
-            "line 1, column 5 (weight_lb): column stands twice, first as column 1"
+            "line 1, column 5 (weight_lb): column appears twice, first as column 1"
         );
         assert_eq!(
             message(&format!("{HEADER},mass_kg\n1,2,3,4,5\n")),
-            "line 1, column 5 (mass_kg): column says the same as weight_lb, expected one of the two"
+            "line 1, column 5 (mass_kg): column is the same quantity as weight_lb, expected only one of the two"
         );
         assert_eq!(
             message("weight_lb,pressure_altitude_ft,true_airspeed_kt\n1,2,3\n"),
@@ -212,7 +212,7 @@ mod tests {
         );
         assert!(message("").starts_with("line 1: no header, expected column names: weight_lb"));
         assert_eq!(message(&format!("{HEADER}\n")), "line 1: no rows after the header");
-        // Another separator is one unknown column, shown as it stands.
+        // Another separator makes one unknown column, printed as it is.
         assert!(
             message("weight_lb;pressure_altitude_ft\n1;2\n")
                 .starts_with("line 1, column 1 (weight_lb;pressure_altitude_ft): unknown column")
@@ -256,7 +256,7 @@ mod tests {
         ] {
             assert_eq!(row(text), expected);
         }
-        // 600 kt at 41 000 ft is Mach 1.046: each field is possible, together they are not.
+        // 600 kt at 41 000 ft is Mach 1.046: each field is possible, the combination is not.
         let error = row("30000,41000,600,1688");
         assert!(
             error.starts_with("line 3, column 3 (true_airspeed_kt): together with the row's other fields: Mach number 1.04"),

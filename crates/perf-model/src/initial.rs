@@ -1,9 +1,10 @@
 //! The initial model: a six-coefficient polynomial through the rows of a flight-planning guide.
 //!
-//! A guide may have rank enough for arithmetic and still say nothing: rows of one weight at one altitude lie on one
-//! curve of lift coefficient over Mach number, and beside that curve the polynomial is free. The condition number does
-//! not tell this from a good guide with a narrow band of Mach numbers (both are near 1e5). So what is judged is the
-//! thing itself: how much an error of the rows grows at a node within the guide's own range.
+//! A guide may have full rank for the arithmetic and still not determine the polynomial: rows of one weight at one
+//! altitude lie on one curve of lift coefficient over Mach number, and away from that curve the polynomial is free. The
+//! condition number does not distinguish this from a good guide with a narrow band of Mach numbers (both are near 1e5).
+//! So the criterion is the quantity of interest itself: how much an error of the rows grows at a node within the
+//! guide's own range.
 
 use std::sync::Arc;
 
@@ -24,35 +25,35 @@ mod findings;
 pub use error::{InitialModelError, Undetermined};
 
 /// Largest growth of an error from the guide's rows to a node within its range. At 100 an error of 1 % in the rows is
-/// as large as the drag itself: the guide says nothing there. Guides that span weights and speeds reach 1 to 3; rows of
-/// one weight at one altitude 1e4 and more.
+/// as large as the drag itself: the guide carries no information there. Guides that span weights and speeds reach 1 to
+/// 3; rows of one weight at one altitude 1e4 and more.
 pub const MAXIMUM_AMPLIFICATION: f64 = 100.0;
 
-/// A model from a guide, and how good the guide was for it.
+/// A model from a guide, and how well the guide determines it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InitialModel {
     /// The model.
     pub model: PerformanceModel,
     /// The fit.
     pub fit: GuideFit,
-    /// What is worth knowing about it.
+    /// Findings about the guide.
     pub findings: Vec<Finding>,
 }
 
-/// How the polynomial fits the guide, and what the guide spans.
+/// How well the polynomial fits the guide, and the range of the guide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuideFit {
     /// Rows of the guide.
     pub points: usize,
     /// Rank of the design; always 6.
     pub rank: usize,
-    /// Largest over smallest singular value of the design, columns not scaled.
+    /// Ratio of largest to smallest singular value of the design, columns not scaled.
     pub condition_number: f64,
     /// Root mean square of the residuals, in drag coefficient.
     pub residual_rms: f64,
     /// Root mean square of the residuals, % of each row's drag coefficient, which is % of its fuel flow.
     pub residual_rms_percent: f64,
-    /// The row that the polynomial misses most: its line, and guide less polynomial in % of the guide.
+    /// The row with the largest residual: its line, and guide minus polynomial in % of the guide.
     pub worst_row: (u64, f64),
     /// Largest growth of an independent error of the rows to a node or corner within the guide's range.
     pub amplification: f64,
@@ -75,7 +76,7 @@ pub struct GuideObservation {
     pub lift_coefficient: f64,
     /// Mach number.
     pub mach: f64,
-    /// Drag coefficient that the fuel flow stands for.
+    /// Drag coefficient that corresponds to the fuel flow.
     pub drag_coefficient: f64,
 }
 
@@ -119,7 +120,7 @@ pub fn observe_guide_point(
 /// of the table takes its value; nodes outside the guide's range are marked as extrapolated.
 ///
 /// # Errors
-/// [`InitialModelError`] where the guide does not determine the polynomial, and says why, or where the polynomial is
+/// [`InitialModelError`] with the reason where the guide does not determine the polynomial, or where the polynomial is
 /// not positive at a node.
 ///
 /// # Source
@@ -220,14 +221,14 @@ fn table_of(
     Table::new(Arc::clone(aircraft.grid()), values).map_err(InitialModelError::Table)
 }
 
-/// Smallest and largest; infinite the wrong way round for nothing.
+/// Smallest and largest; for no values, infinities the wrong way round.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     })
 }
 
-/// Inclusive, and what is within the table's snap of the limit is on it.
+/// Inclusive; a value within the table's snap distance of the limit counts as on it.
 fn within(value: f64, (low, high): (f64, f64)) -> bool {
     low - value <= SNAP && value - high <= SNAP
 }

@@ -1,23 +1,23 @@
-//! The performance model of one aircraft type in level cruise: what drag a recorded fuel flow stands for, what fuel
-//! flow a drag table predicts, and the first table, from a flight-planning guide.
+//! The performance model of one aircraft type in level cruise: the drag that corresponds to a recorded fuel flow, the
+//! fuel flow that a drag table predicts, and the first table, from a flight-planning guide.
 //!
 //! What it is: equations as small free functions ([`forces`], [`mod@tsfc`], [`fuel_flow`], [`mod@specific_range`]); the
 //! [`Aircraft`] with its file; the [`Guide`] and [`FlightPoints`] files; [`initial_model`]; and [`PerformanceModel`],
 //! which turns a segment into an observation with its [`variance`] and a flight point into a prediction.
-//! What it is not: it adapts nothing and diagnoses nothing, and it opens no file: text comes in, text goes out.
+//! What it is not: it adapts nothing, diagnoses nothing and opens no file: text in, text out.
 //!
-//! The one design decision: everything that fuel flow and model disagree in is charged to the drag coefficient. One
+//! The one design decision: every disagreement between fuel flow and model is charged to the drag coefficient. One
 //! table over lift coefficient and Mach number is then all there is to learn, and an observation needs neither engine
-//! nor atmosphere any more. The price: a worn engine and a dirty airframe look alike here; telling them apart is the
-//! diagnosis' business, with more than fuel flow.
+//! nor atmosphere. The price: a worn engine and a dirty airframe look alike here; distinguishing them is left to the
+//! diagnosis, with more than fuel flow.
 //!
 //! Limits:
-//! - Level flight at standard gravity. Along-path acceleration is in the balance; climb, turn and the turning earth are
-//!   not.
+//! - Level flight at standard gravity. Along-path acceleration is in the balance; climb, turn and the earth's rotation
+//!   are not.
 //! - It knows no effect: what a model may lack, and models that contain effects, are in the crate `effects`.
-//! - The TSFC law knows temperature and Mach number, no throttle and no altitude.
-//! - Outside the table there is an error and no value. Inside the table but outside the guide a value is marked as
-//!   extrapolated.
+//! - The TSFC law depends on temperature and Mach number, not on throttle or altitude.
+//! - Outside the table there is an error and no value. Inside the table but outside the guide's range a value is marked
+//!   as extrapolated.
 //! - A guide that does not determine the polynomial within its own range is refused, with the reason in words.
 //!
 //! ```

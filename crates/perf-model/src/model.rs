@@ -1,4 +1,4 @@
-//! The performance model: aircraft, drag table, and what follows for segments and flight points.
+//! The performance model: aircraft, drag table, and the state of a segment.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ mod predict;
 pub use observe::ObserveError;
 pub use predict::{PredictError, Prediction, SegmentPrediction};
 
-/// A node with a bilinear weight up to this took no part in a value: the point lies on a grid line or on a node.
+/// A node with a bilinear weight up to this has no part in a value: the point lies on a grid line or on a node.
 /// Our choice: far above the rounding of a weight, far below any weight that moves a drag coefficient.
 pub const NODE_WEIGHT_THRESHOLD: f64 = 1e-9;
 
@@ -36,7 +36,7 @@ pub enum ModelError {
     /// A table on another grid than the aircraft's.
     #[error("the drag table is not on the grid of the aircraft file")]
     GridDiffers,
-    /// Not one mark a node.
+    /// The number of marks differs from the number of nodes.
     #[error("{found} marks of extrapolated nodes for {nodes} nodes")]
     ExtrapolatedLength {
         /// Marks found.
@@ -49,10 +49,10 @@ pub enum ModelError {
     CoefficientNotFinite {
         /// Its index, from 0.
         index: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
-    /// A node without drag.
+    /// A node whose drag coefficient is not positive.
     #[error(
         "drag coefficient {drag_coefficient} at lift coefficient {lift_coefficient}, Mach number {mach} is not positive"
     )]
@@ -66,7 +66,7 @@ pub enum ModelError {
     },
 }
 
-/// A point that the drag table does not hold. Nothing is extrapolated.
+/// A point outside the drag table. Nothing is extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "lift coefficient {:.4}, Mach number {:.4} outside the table's lift coefficients {}..={} and Mach numbers {}..={}",
@@ -84,7 +84,7 @@ pub struct OutsideTable {
 }
 
 impl PerformanceModel {
-    /// A model of these parts. `extrapolated` marks the nodes that no guide stands behind, one mark a node.
+    /// A model of these parts. `extrapolated` marks the nodes that no row of the guide supports, one mark per node.
     ///
     /// # Errors
     /// [`ModelError`] where the table is not on the aircraft's grid, a drag coefficient is not positive, or lengths
@@ -135,13 +135,13 @@ impl PerformanceModel {
         &self.drag_table
     }
 
-    /// Which nodes no row of the guide stands behind, in node order.
+    /// Nodes that no row of the guide supports, in node order.
     #[must_use]
     pub fn extrapolated(&self) -> &[bool] {
         &self.extrapolated
     }
 
-    /// The state of a segment as recorded: everything about it that does not need the drag table.
+    /// The state of a segment as recorded: every quantity that does not need the drag table.
     ///
     /// # Errors
     /// [`OutOfDomain`] as for [`SegmentState::of_means`].
@@ -154,7 +154,7 @@ impl PerformanceModel {
         Ok(self.aircraft.grid().locate(lift_coefficient, mach, Outside::Error)?)
     }
 
-    /// Whether a node that the guide does not stand behind takes part in the value at a cell's point.
+    /// Whether a node that the guide does not support has a part in the value at a cell's point.
     fn uses_extrapolated(&self, cell: &Cell) -> bool {
         cell.nodes()
             .into_iter()
@@ -179,7 +179,7 @@ fn check_drag_table(aircraft: &Aircraft, drag_table: &Table) -> Result<(), Model
         return Err(ModelError::GridDiffers);
     }
     for (node, &drag_coefficient) in drag_table.values().iter().enumerate() {
-        // Written so that NaN is refused too: a table's values can be changed after it was made.
+        // Written so that NaN is refused too: a table's values can be changed after its construction.
         if drag_coefficient.is_nan() || drag_coefficient <= 0.0 {
             let (lift_coefficient, mach) = drag_table.grid().coordinates(node);
             return Err(ModelError::DragNotPositive { lift_coefficient, mach, drag_coefficient });

@@ -1,4 +1,4 @@
-//! Flight points: conditions that a prediction is wanted for.
+//! Flight points: conditions for which a prediction is wanted.
 
 use atmos::isa;
 use flight::Timestamp;
@@ -28,7 +28,7 @@ pub struct FlightPointRow {
     pub line: u64,
     /// Fields as sent, as many as the header has names.
     pub fields: Vec<String>,
-    /// What they say.
+    /// Their meaning.
     pub point: FlightPoint,
 }
 
@@ -45,7 +45,7 @@ pub struct FlightPoint {
     pub isa_deviation: TemperatureDifference,
     /// Fuel flow of all engines that was measured there.
     pub measured_fuel_flow_total: Option<FuelFlowTotal>,
-    /// When; a date alone is its first instant in UTC.
+    /// Instant; a date alone is its first instant in UTC.
     pub date: Option<Timestamp>,
     /// Center of gravity, % of the mean aerodynamic chord.
     pub center_of_gravity_percent_mac: Option<f64>,
@@ -76,10 +76,11 @@ const COLUMNS: [Column; 12] = [
 impl FlightPoints {
     /// Reads flight points.
     ///
-    /// Comma-separated with a header that decides: `weight_lb` or `mass_kg`; `pressure_altitude_ft`; `mach`; optionally
-    /// `isa_deviation_c` (else the ISA), `fuel_flow_lb_h` or `fuel_flow_kg_h`, `date`, `cg_percent_mac`, `anti_ice`,
-    /// `latitude_deg`, `true_heading_deg`. In an optional column other than `isa_deviation_c` an empty field or `-` says
-    /// "not available". Columns whose name begins with `X-` are kept and mean nothing.
+    /// Comma-separated; the header determines the columns: `weight_lb` or `mass_kg`; `pressure_altitude_ft`; `mach`;
+    /// optionally `isa_deviation_c` (otherwise the ISA), `fuel_flow_lb_h` or `fuel_flow_kg_h`, `date`,
+    /// `cg_percent_mac`, `anti_ice`, `latitude_deg`, `true_heading_deg`. In an optional column other than
+    /// `isa_deviation_c` an empty field or `-` means "not available". Columns whose name begins with `X-` are kept and
+    /// have no meaning.
     ///
     /// # Errors
     /// [`CsvError`] at the first fault, as for [`Guide::from_csv`](crate::Guide::from_csv).
@@ -111,7 +112,7 @@ impl FlightPoints {
 }
 
 impl FlightPoint {
-    /// A point of the standard day, of which nothing else is known.
+    /// A point of the standard day with no further data.
     #[must_use]
     pub const fn new(mass: Mass, pressure_altitude: PressureAltitude, mach: Mach) -> Self {
         Self {
@@ -137,7 +138,7 @@ impl FlightPoint {
     }
 }
 
-/// Where each column stands.
+/// Index of each column.
 struct Columns<'c> {
     mass: (usize, &'c Column),
     pressure_altitude: usize,

@@ -1,4 +1,4 @@
-//! Flight states: what follows from recorded means without any drag table.
+//! Flight states: what follows from recorded means without a drag table.
 
 use atmos::{airspeed, isa};
 use flight::SegmentMeans;
@@ -15,25 +15,25 @@ use crate::tsfc::tsfc;
 /// The state of a segment, computed from its means (and not the mean of states).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentState {
-    /// Static pressure, of pressure altitude alone.
+    /// Static pressure, from pressure altitude alone.
     pub static_pressure: Pressure,
     /// Density, with the recorded static air temperature.
     pub density: Density,
-    /// Static air temperature over that of the standard day at sea level.
+    /// Ratio of static air temperature to that of the standard day at sea level.
     pub temperature_ratio: f64,
     /// Recorded Mach number.
     pub mach: Mach,
     /// Recorded true airspeed.
     pub true_airspeed: TrueAirspeed,
-    /// What ties drag and fuel flow to each other here.
+    /// Relates drag and fuel flow to each other at this state.
     pub conditions: CruiseConditions,
     /// Lift coefficient.
     pub lift_coefficient: f64,
     /// Recorded fuel flow of all engines.
     pub fuel_flow_total: FuelFlowTotal,
-    /// Net thrust of all engines that this fuel flow stands for.
+    /// Net thrust of all engines that corresponds to this fuel flow.
     pub net_thrust: Force,
-    /// Observed drag coefficient; not positive where the recorded acceleration exceeds what the thrust can do.
+    /// Observed drag coefficient; not positive where the recorded acceleration exceeds what the thrust can produce.
     pub drag_coefficient: f64,
 }
 
@@ -97,7 +97,7 @@ impl SegmentState {
         })
     }
 
-    /// Drag that the fuel flow stands for: net thrust less what accelerates the aircraft.
+    /// Drag that corresponds to the fuel flow: net thrust minus the force that accelerates the aircraft.
     #[must_use]
     pub fn drag(&self) -> Force {
         self.net_thrust - forces::inertia(self.conditions.mass, self.conditions.acceleration)

@@ -2,7 +2,7 @@
 
 use units::{Mach, Tsfc};
 
-/// The constants of the TSFC law, all engines alike.
+/// The constants of the TSFC law, the same for all engines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TsfcLaw {
     /// At rest, at sea level of the standard day.
@@ -17,7 +17,7 @@ pub struct TsfcLaw {
 /// TSFC = TSFC0·√θ·(1 + M)^n                                          [forces.5]
 /// ```
 ///
-/// with θ = SAT/T0 of the static air temperature. The law knows no throttle: it is for cruise thrust. NaN for θ < 0.
+/// with θ = SAT/T0 of the static air temperature. The law has no throttle: it is for cruise thrust. NaN for θ < 0.
 ///
 /// # Source
 /// Ghazi et al. 2020, equation (5). The radical, θ, M and n are legible; their arrangement is constrained by
@@ -38,7 +38,7 @@ mod tests {
     #[test]
     fn cruise_tsfc_of_an_ae3007_for_five_exponents() {
         // Worked values for TSFC0 = 1.0242e-5 kg/(N s), M 0.80, θ 0.7519, printed to three digits in lb/(lbf h)
-        // beside the ICAO emissions data bank entry 6AL024 (static TSFC 0.362 lb/(lbf h)).
+        // together with the ICAO emissions data bank entry 6AL024 (static TSFC 0.362 lb/(lbf h)).
         for (mach_exponent, printed) in
             [(0.8, 0.502), (1.0, 0.564), (1.1, 0.598), (1.2, 0.635), (1.25, 0.654), (1.3, 0.673)]
         {

@@ -1,7 +1,7 @@
 //! How uncertain an observed drag coefficient is: the sensors' standard deviations propagated to first order.
 //!
-//! What counts is the residual y = ln CD observed − ln CD table(CL, M): an error of Mach number, mass or pressure moves
-//! the observed drag coefficient *and* the point at which the table is asked, and the two partly cancel.
+//! The quantity of interest is the residual y = ln CD observed − ln CD table(CL, M): an error of Mach number, mass or
+//! pressure moves the observed drag coefficient *and* the point at which the table is read, and the two partly cancel.
 //! The derivation is the book's page on uncertainty.
 
 use atmos::constants::SPECIFIC_GAS_CONSTANT_J_KG_K;
@@ -23,20 +23,20 @@ pub struct TableSlopes {
     pub along_mach: f64,
 }
 
-/// Derivatives of the residual y with respect to what is recorded.
+/// Derivatives of the residual y with respect to recorded quantities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResidualSensitivity {
-    /// ∂y/∂ln Wf: net thrust over drag, 1 in steady flight.
+    /// ∂y/∂ln Wf: ratio of net thrust to drag, 1 in steady flight.
     pub ln_fuel_flow: f64,
-    /// ∂y/∂M, per unit of Mach number; true airspeed moves with Mach number.
+    /// ∂y/∂M, per unit of Mach number; true airspeed changes with Mach number.
     pub mach: f64,
-    /// ∂y/∂SAT, 1/K; true airspeed moves with temperature.
+    /// ∂y/∂SAT, 1/K; true airspeed changes with temperature.
     pub static_air_temperature_per_k: f64,
     /// ∂y/∂V̇G, s²/m.
     pub acceleration_s2_per_m: f64,
     /// ∂y/∂ln m.
     pub ln_mass: f64,
-    /// ∂y/∂h, 1/m, with h pressure altitude; Mach number and true airspeed stay.
+    /// ∂y/∂h, 1/m, with h pressure altitude; Mach number and true airspeed are held.
     pub pressure_altitude_per_m: f64,
 }
 
@@ -99,7 +99,7 @@ impl ResidualSensitivity {
     }
 }
 
-/// Variance of a segment's residual: its own part, and the part that all segments of its flight have in common.
+/// Variance of a segment's residual: its own part, and the part common to all segments of its flight.
 ///
 /// ```text
 /// segment: Σ (∂y/∂x·σx)² over fuel flow, Mach number, SAT, acceleration, pressure altitude   [uncertainty.8]
@@ -139,13 +139,14 @@ pub fn observation_variance(
     Ok(ObservationVariance { segment: segment_variance, flight: flight_variance })
 }
 
-/// Relative variance of total fuel flow when every engine's reading errs independently by the same share.
+/// Relative variance of total fuel flow when the readings of all engines have independent errors of the same relative
+/// size.
 ///
 /// ```text
 /// σ²·Σ Wk²/(Σ Wk)²,  σ²/n for n engines that burn alike                                  [uncertainty.10]
 /// ```
 ///
-/// `fuel_flow_engine_kg_s` is empty where engines are not recorded apart; then they count as alike.
+/// `fuel_flow_engine_kg_s` is empty where engines are not recorded separately; they then count as alike.
 #[must_use]
 pub fn total_fuel_flow_relative_variance(
     engine_relative_deviation: f64,
@@ -164,9 +165,10 @@ pub fn total_fuel_flow_relative_variance(
 /// σ(mean) = σa/√N                                                                        [uncertainty.11]
 /// ```
 ///
-/// for N samples whose errors are independent. Forward differences of ground speed alone would telescope, and their
-/// mean would err as 1/N; but what errs in turbulence is not the speed: fuel flow is read at N moments and does not see
-/// what thrust did between them. On simulated fleets in turbulence the mean erred as 1/√N (book, page on uncertainty).
+/// for N samples whose errors are independent. If ground speed were in error, its forward differences would telescope
+/// and the error of their mean would fall as 1/N; but in turbulence the error is not in the speed: fuel flow is read at
+/// N moments and does not see what thrust did between them. On simulated fleets in turbulence the error of the mean
+/// fell as 1/√N (book, page on uncertainty).
 #[must_use]
 pub fn mean_acceleration_deviation_m_s2(sample_deviation_m_s2: f64, samples: usize) -> f64 {
     sample_deviation_m_s2 / (samples.max(1) as f64).sqrt()

@@ -1,4 +1,4 @@
-//! Text from anywhere: a value or an error, never a panic.
+//! Arbitrary text: gives a value or an error, never a panic.
 
 use perf_model::{Aircraft, FlightPoints, Guide, initial_model};
 use proptest::prelude::*;
@@ -46,7 +46,7 @@ proptest! {
     #[test]
     fn aircraft_files(text in edited_aircraft(), noise in ".{0,60}") {
         if let Ok(aircraft) = Aircraft::from_ron(&text) {
-            // What reads also writes, and reads again as the same.
+            // What can be read can be written, and reads back as the same.
             let written = aircraft.to_ron().map_err(|error| TestCaseError::fail(error.to_string()))?;
             prop_assert_eq!(Aircraft::from_ron(&written), Ok(aircraft));
         }

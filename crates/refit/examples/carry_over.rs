@@ -1,6 +1,6 @@
 //! A third of a table was corrected upwards by 8 %; the polynomial carries part of that to the rest.
 //!
-//! `cargo run -p refit --example carry_over`
+//! `cargo run -p cruisefit-refit --example carry_over`
 
 use std::error::Error;
 use std::sync::Arc;

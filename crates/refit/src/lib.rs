@@ -1,14 +1,14 @@
 //! Global adaptation of a drag table: what was learnt at the visited nodes, carried to all others by a polynomial.
 //!
-//! What it is not: it does not decide when to ask (after each flight, says the method), does not observe, and does not
-//! judge whether the polynomial makes sense as an aircraft's drag.
+//! What it is not: it does not decide when to refit (the method does so after each flight), does not observe, and does
+//! not judge whether the polynomial is plausible as an aircraft's drag.
 //!
 //! The one design decision: the share of adapted nodes is a fraction of whole numbers, so that "more than 30 %" means
 //! `10·n > 3·N` to the node, on every machine.
 //!
 //! Limits, as published: nodes that were never adapted enter the fit with their old values and full weight, and so hold
 //! back what the others have learnt; adapted nodes keep their values, which leaves a step at the border; setting every
-//! confidence to 1 forgets how often a node was visited. The book's page on adaptation has the sizes.
+//! confidence to 1 discards how often a node was visited. The book's page on adaptation has the sizes.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -32,14 +32,14 @@
 use lut::Table;
 use lut::surface::{self, Basis, Fit, FitError};
 
-/// How many nodes must have been adapted before the polynomial is fitted anew: more than a share of all.
+/// How many nodes must have been adapted before the polynomial is fitted again: more than a share of all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RefitRule {
     numerator: u32,
     denominator: u32,
 }
 
-/// A share that is none.
+/// An invalid share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("refit share {numerator}/{denominator}, outside 0..=1")]
 #[non_exhaustive]
@@ -50,7 +50,7 @@ pub struct ShareError {
     pub denominator: u32,
 }
 
-/// What a refit found and did.
+/// The result of a refit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct RefitReport {
@@ -63,7 +63,7 @@ pub struct RefitReport {
     pub fit: Option<Fit>,
 }
 
-/// Why a refit that was due was not made. The tables are as they were.
+/// Why a refit that was due was not made. The tables are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefitError {
@@ -84,10 +84,10 @@ pub enum RefitError {
 }
 
 impl RefitRule {
-    /// Refit once strictly more than `numerator/denominator` of the nodes were adapted; 1/1 is never.
+    /// Refit once strictly more than `numerator/denominator` of the nodes were adapted; 1/1 means never.
     ///
     /// # Errors
-    /// [`ShareError`] where that is no share.
+    /// [`ShareError`] where the share is invalid.
     pub const fn more_than(numerator: u32, denominator: u32) -> Result<Self, ShareError> {
         if denominator == 0 || numerator > denominator {
             return Err(ShareError { numerator, denominator });
@@ -116,7 +116,7 @@ impl RefitReport {
     }
 }
 
-/// Fits the polynomial to all nodes and gives the nodes that were not adapted its values, if enough others were.
+/// Fits the polynomial to all nodes and assigns its values to the nodes that were not adapted, if enough others were.
 ///
 /// A node counts as adapted when its confidence λ exceeds 1. The fit takes every node with its present drag coefficient,
 /// λ multiplying the squared residual. Nodes with λ = 1 get the polynomial's value, all others keep theirs, and every λ

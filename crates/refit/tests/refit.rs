@@ -1,4 +1,4 @@
-//! When a refit is due, what it changes and what it leaves; equation (29) against coefficients known beforehand.
+//! When a refit is due, what it changes and what it keeps; equation (29) against coefficients known beforehand.
 #![expect(clippy::unwrap_used, reason = "a test")]
 #![expect(clippy::float_cmp, reason = "what is left alone is so to the bit")]
 
@@ -109,7 +109,7 @@ fn a_polynomial_surface_comes_back() {
     }
 }
 
-/// λ multiplies the squared residual: the fit is that of a list in which a node of λ = 3 stands three times.
+/// λ multiplies the squared residual: the fit is that of a list in which a node of λ = 3 appears three times.
 #[test]
 fn confidence_is_the_weight_of_the_squared_residual() {
     let grid = grid();
@@ -137,10 +137,10 @@ fn confidence_is_the_weight_of_the_squared_residual() {
 }
 
 /// Check 11's second half and G4 of the reconstruction's list: nodes that were not adapted hold back. On 11 × 9 nodes
-/// with 31 adapted to drag 10 % higher, the others recover 28, 31, 36, 42 and 51 % of it on average for λ = 1.5, 2, 3, 5 and
-/// 10, says the list, for a polynomial and a place of the 31 nodes that it does not tell. Here they are a block of 6 × 5 and
-/// one beside it, and the figures come out as 28, 31, 35, 40 and 46 %. What is checked is their kind: partial, rising with
-/// λ, far from 1.
+/// with 31 adapted to drag 10 % higher, the list states that the others recover 28, 31, 36, 42 and 51 % of it on
+/// average for λ = 1.5, 2, 3, 5 and 10, for a polynomial and a position of the 31 nodes that it does not give. Here
+/// they are a block of 6 × 5 and one next to it, and the figures are 28, 31, 35, 40 and 46 %. The test checks their
+/// pattern: partial, rising with λ, far from 1.
 #[test]
 fn nodes_that_were_not_adapted_dilute() {
     let grid = grid();

@@ -1,8 +1,8 @@
 //! Speed of reading against the limit of merely summing the bytes, and of writing.
 //!
-//! `cargo bench -p cruisefit-report --bench read`. Before criterion's groups the ratio of reading to summing is printed, as the
-//! median of alternating runs on the same bytes: times alone move with the machine's neighbors, the ratio less.
-//! Everything is warm in memory: files are not opened here.
+//! `cargo bench -p cruisefit-report --bench read`. Before criterion's groups the ratio of reading to summing is
+//! printed, as the median of alternating runs on the same bytes: times alone depend on what else the machine does, the
+//! ratio less so. Everything is warm in memory: files are not opened here.
 
 #![expect(clippy::unwrap_used, reason = "a bench that cannot read its own report is wrong")]
 #![expect(clippy::print_stdout, reason = "a bench talks")]
@@ -14,12 +14,12 @@ use std::time::{Duration, Instant};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 use report::{Reader, TextLayout, write};
 
-/// How the text of a report looks.
+/// The form of a report's text.
 #[derive(Clone, Copy)]
 enum Shape {
     /// All columns of the format's sample, one blank between them.
     Sample,
-    /// The required columns alone, padded as many recorders do.
+    /// Only the required columns, padded as many recorders do.
     Aligned,
 }
 
@@ -116,7 +116,7 @@ fn print_ratios() {
         let sum = median(sums).as_secs_f64() / f64::from(repeats);
         let read = median(reads).as_secs_f64() / f64::from(repeats);
         println!(
-            "{name} ({} bytes): read {:.0} MB/s, {:.0} ns a row; sum of bytes {:.0} MB/s; ratio {:.1}",
+            "{name} ({} bytes): read {:.0} MB/s, {:.0} ns per row; sum of bytes {:.0} MB/s; ratio {:.1}",
             text.len(),
             text.len() as f64 / read / 1e6,
             read / rows as f64 * 1e9,
@@ -163,7 +163,7 @@ fn writing(criterion: &mut Criterion) {
 criterion_group!(benches, reading, writing);
 
 fn main() {
-    // Under `cargo test --benches` criterion runs everything once; the ratio would only cost time there.
+    // Under `cargo test --benches` criterion runs everything once; computing the ratio would only cost time there.
     if std::env::args().any(|argument| argument == "--bench") {
         print_ratios();
     }

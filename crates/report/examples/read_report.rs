@@ -1,4 +1,4 @@
-//! Reads a cruise report, says what a damaged one is refused for, and writes it in other units.
+//! Reads a cruise report, shows why a damaged one is refused, and writes it in other units.
 //!
 //! `cargo run -p cruisefit-report --example read_report`
 

@@ -17,15 +17,15 @@ pub(crate) use header::parse_instant;
 
 /// Name of the format, first word of its first line.
 pub(crate) const FORMAT_NAME: &str = "CRUISE-REPORT";
-/// The one version.
+/// The only version.
 pub(crate) const FORMAT_VERSION: &str = "1";
 
-/// A report and what is worth knowing about its text.
+/// A report and the findings about its text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parsed {
     /// The report as sent.
     pub report: Report,
-    /// What was noticed, in the order of the text.
+    /// The findings, in the order of the text.
     pub findings: Vec<Finding>,
 }
 

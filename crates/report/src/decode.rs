@@ -13,8 +13,8 @@ pub const MAXIMUM_TEXT_BYTES: usize = 512 << 20;
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// The uncompressed content of `bytes`: themselves, or what they unpack to when they begin as gzip does. For callers
-/// that need the content beside the report, to hash it for example.
+/// The uncompressed content of `bytes`: unchanged, or unpacked when they begin as gzip does. For callers that need the
+/// content in addition to the report, for example to hash it.
 ///
 /// # Errors
 /// [`Refusal`] for gzip that is truncated, corrupt, or holds more than [`MAXIMUM_TEXT_BYTES`].
@@ -36,7 +36,7 @@ pub fn unpack<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a [u8]
     }
 }
 
-/// The text that `bytes` holds, plain or gzip; `unpacked` is the place for decompressed text.
+/// The text that `bytes` holds, plain or gzip; `unpacked` receives decompressed text.
 pub(crate) fn text<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a str, Refusal> {
     plain(unpack(bytes, unpacked)?)
 }

@@ -2,12 +2,13 @@
 //!
 //! What it is: [`Reader`] turns the bytes of a cruise report, format 1, into a [`flight::Report`]; [`write()`] turns a
 //! report into text; a [`Mapping`] turns delimited text of another layout into reports. What it is not: there is no
-//! file access here (bytes and streams come from the caller), nothing is averaged or judged, and no aircraft file is
-//! known, so that the number of engines is compared with it by the caller.
+//! file access here (bytes and streams come from the caller), nothing is averaged or judged, and the aircraft file is
+//! not known here, so the caller compares the number of engines with it.
 //!
 //! The one design decision: a report is read whole or refused whole. A [`Refusal`] names the first line and character
-//! that break a rule of the format, what stands there and what was expected; a person repairs it and goes on. What is
-//! unusual but usable comes as findings beside the report. No value is clipped, filled in or dropped in silence.
+//! that break a rule of the format, the text found there and what was expected, so that a person can repair it. Unusual
+//! but usable data is reported as findings together with the report. No value is clipped, filled in or dropped in
+//! silence.
 //!
 //! Limits: text of more than [`MAXIMUM_TEXT_BYTES`] out of a stream or gzip is refused. Where a recording gives only the
 //! fuel flow of all engines and no rotor speed, its range is that of four engines. Free text of the header keeps blanks

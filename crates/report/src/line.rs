@@ -1,8 +1,8 @@
-//! Physical lines, what they mean without comments, their words, and positions in them.
+//! Physical lines, their content without comments, their words, and positions in them.
 
 use crate::refusal::{Found, Refusal, RefusalKind};
 
-/// Blanks and tabs separate; no other character does.
+/// Only blanks and tabs separate words.
 #[inline]
 pub(crate) const fn is_blank(byte: u8) -> bool {
     byte == b' ' || byte == b'\t'
@@ -15,13 +15,13 @@ pub(crate) struct Line<'a> {
     pub(crate) number: usize,
     /// Comment included, line end not.
     pub(crate) text: &'a str,
-    /// From the start of this line to the end of the whole text: several bytes at a time can be looked at there.
+    /// From the start of this line to the end of the whole text: several bytes at a time can be read there.
     pub(crate) onward: &'a str,
     /// Whether a line feed ends it.
     pub(crate) is_ended: bool,
 }
 
-/// A word of a line: what stands between blanks.
+/// A word of a line: the text between blanks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Word<'a> {
     /// First byte in the line.
@@ -30,7 +30,7 @@ pub(crate) struct Word<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// What stands before a comment, without blanks at either end.
+    /// The text before a comment, without blanks at either end.
     pub(crate) fn meaning(self) -> Word<'a> {
         let bytes = self.text.as_bytes();
         let comment = memchr::memchr_iter(b'#', bytes)
@@ -50,7 +50,7 @@ impl<'a> Line<'a> {
         self.refuse(word.offset, Found::text(word.text), kind)
     }
 
-    /// Refuses one character past the end of this line's meaning.
+    /// Refuses one character past the end of this line's content.
     pub(crate) fn refuse_end(self, found: Found, kind: RefusalKind) -> Refusal {
         let meaning = self.meaning();
         self.refuse(meaning.offset + meaning.text.len(), found, kind)
@@ -111,7 +111,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The next line that means something: neither blank nor comment alone.
+    /// The next line with content: neither blank nor only a comment.
     pub(crate) fn next_of_meaning(&mut self) -> Option<Line<'a>> {
         self.find(|line| !line.meaning().text.is_empty())
     }
@@ -140,7 +140,7 @@ impl<'a> Iterator for Lines<'a> {
             }
             None => (core::mem::take(&mut self.rest), false),
         };
-        // Half of a line end at the end of a cut file is no part of the line either.
+        // Half of a line end at the end of a truncated file is not part of the line either.
         let text = text.strip_suffix('\r').unwrap_or(text);
         self.last = Line { number: self.number, text, onward, is_ended };
         Some(self.last)

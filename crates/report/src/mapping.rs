@@ -1,7 +1,7 @@
 //! Recordings of other layouts into reports, by a mapping file.
 //!
-//! A mapping file (RON) says which column of a delimited text holds which quantity in which unit, what is to be
-//! derived, and which parts of the recording are level cruise. `docs/src/guides/mapping.md` describes it.
+//! A mapping file (RON) states which column of a delimited text holds which quantity in which unit, what is derived,
+//! and which parts of the recording are level cruise. `docs/src/guides/mapping.md` describes it.
 
 mod derive;
 mod file;
@@ -19,13 +19,13 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 use plan::Plan;
 use table::{Recording, Table};
 
-/// A mapping file that makes sense.
+/// A mapping file that was checked.
 #[derive(Clone, Debug)]
 pub struct Mapping {
     plan: Plan,
 }
 
-/// Why a text is no mapping file.
+/// Why a text is not a mapping file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MappingError {
@@ -36,7 +36,7 @@ pub enum MappingError {
         line: usize,
         /// Character from 1.
         column: usize,
-        /// What the reader of RON says.
+        /// The message of the RON reader.
         source: Box<ron::Error>,
     },
     /// A version of the mapping file that this program does not read.
@@ -45,24 +45,24 @@ pub enum MappingError {
         /// The version.
         found: u32,
     },
-    /// A name that is no quantity of the report; time and fuel used have entries of their own.
+    /// A name that is not a quantity of the report; time and fuel used have entries of their own.
     #[error("quantity \"{name}\", expected one of {COLUMN_NAMES}, without TIME and FU")]
     QuantityUnknown {
         /// The name.
         name: String,
     },
-    /// A quantity that the report cannot do without.
+    /// A required quantity of the report without a source.
     #[error("no source for {}", column.name())]
     QuantityNotMapped {
         /// The quantity.
         column: Column,
     },
-    /// A way of derivation that does not lead to the quantity.
-    #[error("{} does not come by {source_name}", column.name())]
+    /// A derivation that does not give the quantity.
+    #[error("{} cannot be derived by {source_name}", column.name())]
     SourceNotForQuantity {
         /// The quantity.
         column: Column,
-        /// The way.
+        /// The derivation.
         source_name: &'static str,
     },
     /// Mach number, temperature and true airspeed that are derived from each other.
@@ -71,7 +71,7 @@ pub enum MappingError {
     /// Fuel flow both of all engines and engine by engine.
     #[error("WF both of all engines and engine by engine")]
     FuelFlowTwice,
-    /// A unit that the quantity is not read in.
+    /// A unit in which the quantity is not read.
     #[error("unit \"{unit}\" for {}, expected one of {}", column.name(), unit_names(*column))]
     UnitUnknown {
         /// The quantity.
@@ -80,7 +80,7 @@ pub enum MappingError {
         unit: String,
     },
     /// An instant, or an offset, that is not RFC 3339.
-    #[error("\"{text}\" is no instant or offset of RFC 3339")]
+    #[error("\"{text}\" is not an instant or offset of RFC 3339")]
     InstantMalformed {
         /// The text.
         text: String,
@@ -100,7 +100,7 @@ fn unit_names(column: Column) -> String {
     column.units().iter().map(|unit| unit.name).collect::<Vec<_>>().join(" ")
 }
 
-/// Mapping files that come with the program: name and text.
+/// Mapping files built into the program: name and text.
 pub const PRESETS: [(&str, &str); 1] =
     [("traffic-a320", include_str!("../presets/traffic_a320.ron"))];
 
@@ -108,7 +108,7 @@ impl Mapping {
     /// Reads a mapping file.
     ///
     /// # Errors
-    /// [`MappingError`] when it does not have the form, or does not lead to a report.
+    /// [`MappingError`] when the text is not a mapping file, or does not lead to a report.
     pub fn from_ron(text: &str) -> Result<Self, MappingError> {
         let options = ron::Options::default()
             .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
@@ -120,7 +120,7 @@ impl Mapping {
         Ok(Self { plan: Plan::new(file)? })
     }
 
-    /// A mapping that comes with the program, by its name in [`PRESETS`].
+    /// A built-in mapping, by its name in [`PRESETS`].
     #[must_use]
     pub fn preset(name: &str) -> Option<Self> {
         let (_, text) = PRESETS.iter().find(|(known, _)| *known == name)?;
@@ -135,7 +135,8 @@ impl Mapping {
         self.read_with_name(bytes, None)
     }
 
-    /// The same for a mapping that takes a text of the header from the file's name: its name without folder and ending.
+    /// The same for a mapping that takes a text of the header from the file's name: `name` is that name without folder
+    /// and ending.
     ///
     /// # Errors
     /// As [`Mapping::read`].
@@ -181,7 +182,7 @@ impl Mapping {
         Ok(parsed)
     }
 
-    /// The rows that become reports, and the duration of the longest level part before any is judged.
+    /// The rows that become reports, and the duration of the longest level part before any was rejected.
     fn parts(&self, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f64) {
         let rows = recording.time_s.len();
         match &self.plan.cruise {

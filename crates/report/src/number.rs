@@ -1,7 +1,8 @@
-//! Numbers of the format: `[+-]digits[.digits][e[+-]digits]`, digits before or after the point may be missing, not both.
+//! Numbers of the format: `[+-]digits[.digits][e[+-]digits]`; digits before or after the point may be missing, not
+//! both.
 //!
-//! The grammar is checked here, byte by byte: general float parsers accept more (`inf`, `nan`, `1E3`). The digits that
-//! the check has seen give the value at no further cost where that is exact; all else goes to `fast-float2`.
+//! The grammar is checked here, byte by byte: general float parsers accept more (`inf`, `nan`, `1E3`). The digits seen
+//! by the check give the value at no further cost where that is exact; everything else is passed to `fast-float2`.
 //! Either way the value is the double nearest to the decimal.
 
 /// Powers of ten that a double holds exactly and that fifteen digits can need.
@@ -12,7 +13,7 @@ const POWERS_OF_TEN: [f64; 16] =
 const EXACT_DIGITS: usize = 15;
 
 /// A number of at most 15 digits without plus sign and exponent at the start of `bytes`, and what follows it: nearly
-/// every field of a report. `None` for whatever else stands there, also at the end of `bytes`; [`leading`] judges it.
+/// every field of a report. `None` for anything else, also at the end of `bytes`; [`leading`] handles that.
 #[inline]
 pub(crate) fn short(bytes: &[u8]) -> Option<(f64, &[u8])> {
     let mut rest = bytes.iter();
@@ -47,14 +48,14 @@ pub(crate) fn short(bytes: &[u8]) -> Option<(f64, &[u8])> {
     if digits == 0 || digits > EXACT_DIGITS || byte == b'e' {
         return None;
     }
-    // Both operands are exact, so that the quotient is the nearest double (Clinger 1990).
+    // Both operands are exact, so the quotient is the nearest double (Clinger 1990).
     let magnitude = mantissa as f64 / POWERS_OF_TEN[fraction_digits];
     let number = if is_negative { -magnitude } else { magnitude };
     Some((number, &bytes[bytes.len() - rest.len() - 1..]))
 }
 
 /// The number at the start of `bytes` and its length; `None` if there is none or it is too large for a double.
-/// What follows the number is the caller's to judge.
+/// The caller has to check what follows the number.
 pub(crate) fn leading(bytes: &[u8]) -> Option<(f64, usize)> {
     let (is_negative, sign) = match bytes.first() {
         Some(b'-') => (true, 1),
@@ -100,7 +101,7 @@ pub(crate) fn whole(bytes: &[u8]) -> Option<f64> {
     leading(bytes).filter(|(_, length)| *length == bytes.len()).map(|(value, _)| value)
 }
 
-/// Whether `bytes` ends where a number cannot: in a sign or in an exponent without digits.
+/// Whether `bytes` ends where a number cannot end: in a sign or in an exponent without digits.
 pub(crate) fn is_cut_off(bytes: &[u8]) -> bool {
     let unsigned_exponent = bytes.strip_suffix(b"-").or_else(|| bytes.strip_suffix(b"+"));
     match unsigned_exponent {
@@ -151,7 +152,7 @@ mod tests {
     }
 
     proptest::proptest! {
-        /// The short way finds the same as the long way, or leaves it to it.
+        /// The short way finds the same as the long way, or leaves the number to it.
         #[test]
         fn short_numbers_are_numbers(line in "[+-]?[0-9.]{0,18}[e\\-:/x§ \\t]?[ -~§]{0,9}") {
             let long = leading(line.as_bytes()).map(|(value, length)| (value.to_bits(), length));

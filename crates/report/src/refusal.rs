@@ -9,7 +9,7 @@ use flight::column::{COLUMN_NAMES, Column};
 /// A refusal with its position. The caller adds the name of the file.
 ///
 /// Lines are physical lines from 1. Columns are characters (Unicode scalar values) from 1 in the physical line; a tab
-/// is one character and a byte-order mark is none. What is missing at the end stands one character past the end.
+/// is one character and a byte-order mark is none. Something missing at the end is one character past the end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: found {found}, expected {kind}")]
 pub struct Refusal {
@@ -17,7 +17,7 @@ pub struct Refusal {
     pub line: usize,
     /// Character in that line from 1.
     pub column: usize,
-    /// What stands there.
+    /// The text found there.
     pub found: Found,
     /// What is wrong; displays as what was expected.
     pub kind: RefusalKind,
@@ -29,11 +29,11 @@ pub struct Refusal {
 pub enum Found {
     /// Text as sent, at most 60 characters of it.
     Text(String),
-    /// So many fields in a row.
+    /// This many fields in a row.
     Fields(usize),
-    /// So many units.
+    /// This many units.
     Units(usize),
-    /// So many rows.
+    /// This many rows.
     Rows(usize),
     /// A byte that no text contains.
     Byte(u8),
@@ -76,11 +76,11 @@ impl fmt::Display for Found {
     }
 }
 
-/// What is wrong, one variant a rule of the format. Displays as what was expected instead.
+/// What is wrong, one variant per rule of the format. Displays as what was expected instead.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RefusalKind {
-    /// The first line of meaning is not the format's name.
+    /// The first line with content is not the format's name.
     WrongFirstLine,
     /// A version of the format that this program does not read.
     UnsupportedVersion,
@@ -89,11 +89,11 @@ pub enum RefusalKind {
         /// The key.
         key: &'static str,
     },
-    /// A header key that may stand once stands twice.
+    /// A header key that is allowed once appears twice.
     HeaderKeyDoubled {
         /// The key.
         key: &'static str,
-        /// Line where it stands first.
+        /// Line of its first appearance.
         first_line: usize,
     },
     /// A header value that is not of its form.
@@ -107,9 +107,9 @@ pub enum RefusalKind {
     ColumnNamesMissing,
     /// A column name that the format does not define and that does not begin with `X-`.
     ColumnUnknown,
-    /// A column name that stands twice.
+    /// A column name that appears twice.
     ColumnDoubled {
-        /// Character where it stands first in the line.
+        /// Character in the line where it appears first.
         first_column: usize,
     },
     /// A required column is absent.
@@ -136,7 +136,7 @@ pub enum RefusalKind {
         /// Number of columns.
         expected: usize,
     },
-    /// A unit that the column is not read in.
+    /// A unit in which the column is not read.
     UnitUnknown {
         /// The column.
         column: Column,
@@ -201,7 +201,7 @@ pub enum RefusalKind {
     NulByte,
     /// Fewer than three rows.
     TooFewRows,
-    /// More text than any recording has; protects from compressed bombs.
+    /// More text than any recording has; protects against decompression bombs.
     TooLarge {
         /// The limit in bytes.
         limit_bytes: usize,
@@ -211,7 +211,7 @@ pub enum RefusalKind {
         /// Kind of the input error.
         error: io::ErrorKind,
     },
-    /// Columns that are readable one by one and do not make a report.
+    /// Columns that are readable one by one but do not make a report.
     Inconsistent(ReportDataError),
     /// A recording of another layout without a line of column names.
     SourceNamesMissing,
@@ -230,18 +230,18 @@ pub enum RefusalKind {
         /// The header key.
         key: &'static str,
     },
-    /// A field of a recording that is no number.
+    /// A field of a recording that is not a number.
     SourceNotANumber {
         /// The recording's name of the column.
         name: String,
     },
-    /// An instant of a recording that is not of the form that the mapping says.
+    /// An instant of a recording that is not of the form that the mapping states.
     SourceInstantMalformed,
-    /// Gross mass that rises by more than the mapping admits.
+    /// Gross mass that rises by more than the mapping allows.
     GrossMassRises {
         /// Its smallest value so far, kg.
         smallest_kg: f64,
-        /// What the mapping admits, kg.
+        /// What the mapping allows, kg.
         admissible_rise_kg: f64,
     },
     /// A recording without a level part that is long enough.
@@ -308,7 +308,7 @@ impl fmt::Display for RefusalKind {
                 write!(f, "header key {key} before the column names")
             }
             Self::HeaderKeyDoubled { key, first_line } => {
-                write!(f, "{key} once (it stands in line {first_line} already)")
+                write!(f, "{key} once (it is in line {first_line} already)")
             }
             Self::HeaderValueMalformed { key, form } => write!(f, "{form} after {key}"),
             Self::ColumnNamesMissing => f.write_str("a line of column names that begins with TIME"),
@@ -316,7 +316,7 @@ impl fmt::Display for RefusalKind {
                 write!(f, "one of {COLUMN_NAMES} (k from 1 to 4), or a name that begins with X-")
             }
             Self::ColumnDoubled { first_column } => {
-                write!(f, "each column once (it stands at column {first_column} already)")
+                write!(f, "each column once (it is at column {first_column} already)")
             }
             Self::ColumnMissing { column } => write_missing_column(f, *column),
             Self::EngineMissing { column } => {
@@ -329,10 +329,10 @@ impl fmt::Display for RefusalKind {
                 f.write_str("either WF(k) of each engine or WF of all engines, not both")
             }
             Self::UnitsMissing => f.write_str("a line of units"),
-            Self::UnitCountWrong { expected } => write!(f, "{expected} units, one a column"),
+            Self::UnitCountWrong { expected } => write!(f, "{expected} units, one per column"),
             Self::UnitUnknown { column } => write_units(f, *column),
             Self::TooFewFields { expected } | Self::TooManyFields { expected } => {
-                write!(f, "{expected} fields, one a column")
+                write!(f, "{expected} fields, one per column")
             }
             Self::NotANumber { column } => {
                 let or_dash = if column.is_optional() { " or -" } else { "" };
@@ -376,7 +376,7 @@ impl fmt::Display for RefusalKind {
                 "gross mass no more than {admissible_rise_kg} kg above its smallest value so far, {smallest_kg} kg"
             ),
             Self::NoLevelPart { needed_s } => {
-                write!(f, "a level part of at least {needed_s} s, as the mapping's cruise says")
+                write!(f, "a level part of at least {needed_s} s, as the mapping's cruise requires")
             }
         }
     }

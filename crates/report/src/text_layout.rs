@@ -1,4 +1,4 @@
-//! In which units and with how many decimals a report is written.
+//! The units and the number of decimals in which a report is written.
 
 use core::fmt::Write;
 
@@ -11,11 +11,11 @@ pub enum Decimals {
     Fixed(usize),
     /// Rounded to this many; zeros at the end are left out.
     AtMost(usize),
-    /// As few as give the same number back.
+    /// As few as restore the same number.
     Shortest,
 }
 
-/// Unit and decimals of every column. Zero-fuel weight and fuel on board are written as fuel used is.
+/// Unit and decimals of every column. Zero-fuel weight and fuel on board are written like fuel used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextLayout {
     families: [Family; Column::ALL.len()],
@@ -44,8 +44,8 @@ impl TextLayout {
         }
     }
 
-    /// The units in which a report is stored, with as many decimals as each number needs: reading the text gives the
-    /// same bits back.
+    /// The units in which a report is stored, with as many decimals as each number needs: reading the text restores the
+    /// same bits.
     #[must_use]
     pub fn exact() -> Self {
         Self {
@@ -98,7 +98,7 @@ struct Family {
 
 const fn industry_decimals(column: Column) -> Decimals {
     match column {
-        // Faster recordings than one sample a second keep their times apart.
+        // Recordings faster than one sample a second keep their times distinct.
         Column::Time => Decimals::AtMost(3),
         Column::PressureAltitude
         | Column::FuelFlowEngine(_)
@@ -134,7 +134,7 @@ fn append_number(value: f64, decimals: Decimals, text: &mut String) {
         let kept = text[start..].trim_end_matches('0').trim_end_matches('.').len();
         text.truncate(start + kept);
     }
-    // What rounds to zero has no sign.
+    // A value that rounds to zero has no sign.
     if text[start..].starts_with('-') && !text[start..].contains(|c: char| ('1'..='9').contains(&c))
     {
         text.remove(start);

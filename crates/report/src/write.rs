@@ -7,15 +7,15 @@ use crate::cruise_text::{FORMAT_NAME, FORMAT_VERSION, Reader};
 use crate::refusal::Refusal;
 use crate::text_layout::TextLayout;
 
-/// Why a report cannot be written so that reading gives it back.
+/// Why a report cannot be written so that reading restores it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The format, or rounding to the layout's decimals, does not admit what the report holds.
+    /// The format, or rounding to the layout's decimals, does not allow what the report holds.
     #[error("the text would be refused")]
     Refused(#[from] Refusal),
-    /// A header value that the text form does not keep: blanks at an end, a line end, `#` after a blank, a note whose
-    /// key means something else.
+    /// A header value that the text form does not preserve: blanks at an end, a line end, `#` after a blank, a note
+    /// whose key has another meaning.
     #[error("the value of {key} in the header does not survive the text form")]
     HeaderNotKept {
         /// The header key; `note` for one of the notes.
@@ -28,9 +28,9 @@ pub enum WriteError {
 
 /// Writes `report` as format-1 text, with `comments` as comment lines below the first line.
 ///
-/// The same report, layout and comments give the same bytes. The text is read back before it is handed out: what this
-/// function returns, [`Reader`] accepts, with the same header texts and with numbers that differ by rounding to the
-/// layout's decimals alone.
+/// The same report, layout and comments give the same bytes. The text is read back before it is returned: [`Reader`]
+/// accepts what this function returns, with the same header texts and with numbers that differ only by rounding to the
+/// layout's decimals.
 ///
 /// # Errors
 /// [`WriteError`] when the text form cannot hold the report.

@@ -1,4 +1,4 @@
-//! The guides of the handbook show texts that this crate reads: they are read here.
+//! The guides of the handbook show texts for this crate: they are read here.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking, in its helpers too")]
 

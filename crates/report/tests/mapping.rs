@@ -12,7 +12,7 @@ use std::io::Write;
 use flight::{Assumption, FuelFlowColumns, MissingColumn};
 use report::{Mapping, Parsed, Reader, TextLayout, write};
 
-/// A recording that shows most of what a mapping can say: semicolons, comments, quotes, several flights, gaps.
+/// A recording that shows most of what a mapping can express: semicolons, comments, quotes, several flights, gaps.
 const RECORDING: &str = "\
 # made up
 type;reg;flt;utc;alt;cas;gs;ff1;ff2;gw;trk;hdg;n2a;n2b;tat;cg
@@ -139,7 +139,7 @@ fn gzip_and_file_names() {
     assert_eq!(mapping(MAPPING).read(&packed).unwrap(), plain);
 
     let by_name = mapping(&MAPPING.replace("Column(\"flt\")", "FileName"));
-    // What was two flights is one, and its time jumps by two hours.
+    // The two flights are read as one, and its time jumps by two hours.
     let reports = by_name.read_named(&packed, "flight 17").unwrap();
     assert_eq!(reports.len(), 1);
     assert_eq!(reports[0].report.header().identity.flight, "flight 17");
@@ -227,13 +227,13 @@ const REFUSED: &[(&str, &str, &str, &str)] = &[
         FIRST_ROW,
         "A320;D-ABCD;\"LH;1\";2024-03-01 10:00:00;",
         "too-few-fields",
-        "line 3, column 86: found 15 fields, expected 16 fields, one a column",
+        "line 3, column 86: found 15 fields, expected 16 fields, one per column",
     ),
     (
         FIRST_ROW,
         "x;A320;D-ABCD;\"LH;1\";2024-03-01 10:00:00;37000;",
         "too-many-fields",
-        "line 3, column 90: found 17 fields, expected 16 fields, one a column",
+        "line 3, column 90: found 17 fields, expected 16 fields, one per column",
     ),
     (
         ";27.5\nA320;D-ABCD;\"LH;1\";2024-03-01 10:00:01",
@@ -285,7 +285,7 @@ fn mappings_that_are_refused() {
         (
             "\"VTAS\": FromMach",
             "\"VTAS\": FromTrueAirspeed",
-            "VTAS does not come by FromTrueAirspeed",
+            "VTAS cannot be derived by FromTrueAirspeed",
         ),
         (
             "FromCalibratedAirspeed(column: \"cas\", unit: \"kt\")",
@@ -301,7 +301,11 @@ fn mappings_that_are_refused() {
             "unit: \"kg/min\")",
             "unit \"kg/min\" for WF(1), expected one of lb/h kg/h kg/s",
         ),
-        ("utc_offset: \"Z\"", "utc_offset: \"UTC\"", "\"UTC\" is no instant or offset of RFC 3339"),
+        (
+            "utc_offset: \"Z\"",
+            "utc_offset: \"UTC\"",
+            "\"UTC\" is not an instant or offset of RFC 3339",
+        ),
         ("separator: ';'", "separator: '§'", "'§' cannot separate fields or begin comments"),
         ("separator: ';'", "separator: '5'", "'5' cannot separate fields or begin comments"),
         ("recovery_factor: 1.0", "recovery_factor: 1.1", "recovery factor 1.1 - outside 0.5..=1 -"),
@@ -360,7 +364,7 @@ fn level_parts_become_reports() {
         .unwrap_err();
     assert_eq!(
         refusal.to_string(),
-        "line 452, column 85: found 201 s of level flight, expected a level part of at least 320 s, as the mapping's cruise says"
+        "line 452, column 85: found 201 s of level flight, expected a level part of at least 320 s, as the mapping's cruise requires"
     );
 }
 
@@ -372,8 +376,8 @@ fn outside(name: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Oracle: what the recording's own description says of its cruise: one level part of 8604 s at FL360, Mach number
-/// 0.750 to 0.780, mass 67.2 t to 61.3 t.
+/// Oracle: the recording's own description of its cruise: one level part of 8604 s at FL360, Mach number 0.750 to
+/// 0.780, mass 67.2 t to 61.3 t.
 #[test]
 fn an_a320_flight_data_recording() {
     let Some(bytes) = outside("traffic_fuelflow_a320/fuelflow_a320.csv.gz") else { return };
@@ -432,7 +436,7 @@ fn an_a320_quick_access_recording() {
     assert_eq!(report.header().missing, MissingColumn::ALL);
 }
 
-/// Oracle: the recordings' description: one level part a flight of 11 to 17 min; TAS = M a(SAT) to 1e-4.
+/// Oracle: the recordings' description: one level part of 11 to 17 min per flight; TAS = M a(SAT) to 1e-4.
 #[test]
 fn citation_flights_with_every_parameter() {
     let mapping = mapping(

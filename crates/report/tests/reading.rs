@@ -1,4 +1,4 @@
-//! What the format allows, read as the format's page means it.
+//! What the format allows, read as the format's page defines it.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking, in its helpers too")]
 #![expect(clippy::disallowed_methods, reason = "tests read data from files")]
@@ -98,7 +98,7 @@ fn a_stream_reads_as_its_bytes() {
     let mut reader = Reader::new();
     let from_bytes = reader.read(SAMPLE.as_bytes()).unwrap();
     assert_eq!(reader.read_from(SAMPLE.as_bytes()).unwrap(), from_bytes);
-    // The reader's buffers carry nothing over, not from a refused text either.
+    // The reader's buffers carry nothing over, even from a refused text.
     reader.read(b"CRUISE-REPORT 1\nTIME\n").unwrap_err();
     assert_eq!(reader.read(SAMPLE.as_bytes()).unwrap(), from_bytes);
 }

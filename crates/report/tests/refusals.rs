@@ -8,9 +8,9 @@
 use report::{Reader, RefusalKind};
 use test_support::reports::FORMAT_SAMPLE as BASE;
 
-/// `BASE` with `from` replaced by `to`, once; `from` must stand in it.
+/// `BASE` with `from` replaced by `to`, once; `from` must occur in it.
 fn with(from: &str, to: &str) -> String {
-    assert!(BASE.contains(from), "{from:?} does not stand in the base report");
+    assert!(BASE.contains(from), "{from:?} is not in the base report");
     BASE.replacen(from, to, 1)
 }
 
@@ -108,7 +108,7 @@ fn header_keys() {
             with(line, &format!("{line}{line}")),
             "header-key-doubled",
             &format!(
-                "line {0}, column 1: found \"{key}\", expected {key} once (it stands in line {1} already)",
+                "line {0}, column 1: found \"{key}\", expected {key} once (it is in line {1} already)",
                 2 + BASE.lines().position(|text| text.starts_with(key)).unwrap(),
                 1 + BASE.lines().position(|text| text.starts_with(key)).unwrap()
             ),
@@ -117,9 +117,9 @@ fn header_keys() {
     check(
         with("FOB ", "LHV 43.1 MJ/kg\nLHV 43.1 MJ/kg\nFOB "),
         "header-key-doubled",
-        "line 8, column 1: found \"LHV\", expected LHV once (it stands in line 7 already)",
+        "line 8, column 1: found \"LHV\", expected LHV once (it is in line 7 already)",
     );
-    // Another case is another key: a note, and the real one is missing.
+    // Different case is a different key: a note, and the required one is missing.
     check(
         with("TAIL ", "Tail "),
         "header-key-missing",
@@ -232,7 +232,7 @@ fn masses() {
     ] {
         check(with(from, to), "mass-not-positive", expected);
     }
-    // Gross mass: all fuel used and a zero-fuel weight that vanishes beside its rounding.
+    // Gross mass: all fuel used and a zero-fuel weight that vanishes in rounding.
     let text = with("24283 lb", "1e-300 lb").replace("1396", "7219.000000002");
     let refusal = Reader::new().read(text.as_bytes()).unwrap_err();
     assert_eq!(refusal.kind, RefusalKind::MassNotPositive { mass: "gross mass" });
@@ -249,9 +249,9 @@ fn column_names() {
         ("N2(2)", "N2(5)", "column-unknown", format!("line 8, column 46: found \"N2(5)\", expected {unknown}")),
         ("N2(2)", "N2", "column-unknown", format!("line 8, column 46: found \"N2\", expected {unknown}")),
         (" LAT ", " x-LAT ", "column-unknown", format!("line 8, column 67: found \"x-LAT\", expected {unknown}")),
-        (" LAT ", " ALT ", "column-doubled", "line 8, column 67: found \"ALT\", expected each column once (it stands at column 6 already)".to_owned()),
-        (" LAT LON ", " X-A X-A ", "column-doubled", "line 8, column 71: found \"X-A\", expected each column once (it stands at column 67 already)".to_owned()),
-        (" LAT ", " TIME ", "column-doubled", "line 8, column 67: found \"TIME\", expected each column once (it stands at column 1 already)".to_owned()),
+        (" LAT ", " ALT ", "column-doubled", "line 8, column 67: found \"ALT\", expected each column once (it is at column 6 already)".to_owned()),
+        (" LAT LON ", " X-A X-A ", "column-doubled", "line 8, column 71: found \"X-A\", expected each column once (it is at column 67 already)".to_owned()),
+        (" LAT ", " TIME ", "column-doubled", "line 8, column 67: found \"TIME\", expected each column once (it is at column 1 already)".to_owned()),
     ] {
         check(with(from, to), code, &expected);
     }
@@ -323,13 +323,13 @@ fn unit_line() {
             "%MAC -\n",
             "%MAC\n",
             "unit-count-wrong",
-            "line 9, column 60: found 17 units, expected 18 units, one a column",
+            "line 9, column 60: found 17 units, expected 18 units, one per column",
         ),
         (
             "%MAC -\n",
             "%MAC - -\n",
             "unit-count-wrong",
-            "line 9, column 63: found 19 units, expected 18 units, one a column",
+            "line 9, column 63: found 19 units, expected 18 units, one per column",
         ),
         (
             "s ft ",
@@ -373,25 +373,25 @@ fn field_counts() {
             "27.2 0\n60",
             "27.2\n60",
             "too-few-fields",
-            "line 10, column 91: found 17 fields, expected 18 fields, one a column",
+            "line 10, column 91: found 17 fields, expected 18 fields, one per column",
         ),
         (
             "27.2 0\n60",
             "27.2 # 0\n60",
             "too-few-fields",
-            "line 10, column 91: found 17 fields, expected 18 fields, one a column",
+            "line 10, column 91: found 17 fields, expected 18 fields, one per column",
         ),
         (
             "27.2 0\n60",
             "27.2 0 0\n60",
             "too-many-fields",
-            "line 10, column 94: found 19 fields, expected 18 fields, one a column",
+            "line 10, column 94: found 19 fields, expected 18 fields, one per column",
         ),
         (
             "0 43008",
             "0 43008\t\t\n",
             "too-few-fields",
-            "line 10, column 8: found 2 fields, expected 18 fields, one a column",
+            "line 10, column 8: found 2 fields, expected 18 fields, one per column",
         ),
     ] {
         check(with(from, to), code, expected);
@@ -427,7 +427,7 @@ fn numbers() {
     check(
         with("0 43008", "# § 1\n0\t\t43 008"),
         "too-many-fields",
-        "line 11, column 94: found 19 fields, expected 18 fields, one a column",
+        "line 11, column 94: found 19 fields, expected 18 fields, one per column",
     );
 }
 
@@ -556,7 +556,7 @@ fn last_row_without_line_end() {
         assert_eq!(parsed.findings[0].code, "last-row-without-line-end", "{end:?}");
         assert_eq!(parsed.report.columns().anti_ice.as_ref().unwrap()[2], None);
     }
-    // A last line that is no row needs no line end.
+    // A last line that is not a row needs no line end.
     let with_comment = format!("{BASE}# end");
     assert!(Reader::new().read(with_comment.as_bytes()).unwrap().findings.is_empty());
 }

@@ -68,7 +68,7 @@ fn what_the_text_cannot_hold_is_refused() {
         WriteError::Refused(refusal) => refusal.kind.code(),
         other => panic!("{other:?}"),
     };
-    // Nothing says that the column is missing; times that rounding makes equal; a flow that it makes zero; Mach 1.2.
+    // Nothing declares the column missing; times that rounding makes equal; a flow that it makes zero; Mach 1.2.
     let refused = [
         ("column-missing", written(&|_, columns| columns.roll_deg = None)),
         ("time-not-increasing", written(&|_, columns| columns.time_s[1] = 0.0004)),
@@ -198,7 +198,7 @@ proptest! {
         let layout = TextLayout::industry();
         let text = match write(&report, &layout, &[]) {
             Ok(text) => text,
-            // Random flows below half a pound an hour round to zero, which the format does not admit.
+            // Random flows below half a pound an hour round to zero, which the format does not allow.
             Err(WriteError::Refused(refusal)) => {
                 prop_assert!(refusal.to_string().contains("WF"), "{}", refusal);
                 return Ok(());

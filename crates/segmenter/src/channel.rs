@@ -17,9 +17,9 @@ pub(crate) struct Channel<'a> {
     pub(crate) standard_deviations: f64,
 }
 
-/// The channels that were recorded, in the order of the criteria; N2 once an engine.
+/// The channels that were recorded, in the order of the criteria; N2 once per engine.
 ///
-/// An assumed static air temperature is no channel: it would judge pressure altitude a second time.
+/// An assumed static air temperature is not a channel: it would judge pressure altitude a second time.
 pub(crate) fn of_run<'a>(
     track: &'a Track,
     run: &'a SampleRun,

@@ -6,7 +6,7 @@ use crate::Criterion;
 pub(crate) const TOLERANCE: f64 = 1e-9;
 /// A count of samples this close to a whole number is that number.
 const COUNT_TOLERANCE: f64 = 1e-9;
-/// Fewest samples of a segment: one has no standard deviation.
+/// Fewest samples of a segment: a single one has no standard deviation.
 const SEGMENT_SAMPLES_FLOOR: usize = 2;
 
 /// When samples are steady, and how many of them make a segment.
@@ -65,12 +65,12 @@ impl TrimCriteria {
     }
 
     /// The stability limits of an Airbus aircraft condition monitoring unit's cruise performance report, for recordings
-    /// that table 4 leaves no segment of: real aircraft wander by tens of feet and by knots from minute to minute, and
+    /// in which table 4 finds no segment: real aircraft wander by tens of feet and by knots from minute to minute, and
     /// fly in cross-winds.
     ///
-    /// The unit takes largest less smallest over 100 s; here the limits are between neighbors 60 s apart. Drift has no
-    /// limit (the isobaric slope that comes with a cross-wind is then in the error, some tenths of a per cent), vertical
-    /// speed that of table 4; pieces, segments and filter too.
+    /// The unit takes the range (largest minus smallest) over 100 s; here the limits are between neighbors 60 s apart.
+    /// Drift has no limit (the isobaric slope that comes with a cross-wind is then in the error, some tenths of a per
+    /// cent); vertical speed, pieces, segments and filter are those of table 4.
     ///
     /// # Source
     /// Limits of report 02 as remembered in the field (150 ft, 6 kt, 0.8°, 1.1 °C, N2 0.9 %, Mach 0.008): not checked
@@ -117,7 +117,7 @@ impl TrimCriteria {
         }
     }
 
-    /// Most samples of a piece, each standing for `sample_interval_s`: ⌊maximum/Δt + 1e-9⌋, at least one.
+    /// Most samples of a piece, each representing `sample_interval_s`: ⌊maximum/Δt + 1e-9⌋, at least one.
     /// `[steadiness.10]`
     #[must_use]
     pub fn piece_samples_maximum(&self, sample_interval_s: f64) -> usize {

@@ -70,7 +70,7 @@ impl Criterion {
         Self::ALL.into_iter().find(|criterion| criterion.name() == name)
     }
 
-    /// What is judged, in the field's words.
+    /// The quantity that is judged, in the field's words.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
         match self {

@@ -1,16 +1,17 @@
 //! From a [`Track`] to stabilised [`Segment`]s: eight trim criteria, pieces of at most ten minutes, a 2σ filter, and
 //! the reason for everything that is left out.
 //!
-//! What it is: the judgement which samples of a cruise are steady enough to compare with a performance model.
-//! What it is not: it knows no model, takes no rate (a track brings them) and repairs nothing.
+//! What it is: the decision which samples of a cruise are steady enough to compare with a performance model. What it is
+//! not: it knows no model, computes no rate (a track has them already) and repairs nothing.
 //!
 //! The one design decision: every sample of the track gets exactly one [`SampleVerdict`], and the [`Tally`] of them
-//! adds up. Whoever asks why a flight gave so little finds what each criterion cost, alone and together with others.
+//! adds up. Anyone who asks why a flight gave so few segments finds what each criterion cost, alone and together with
+//! others.
 //!
-//! Limits: neighbor criteria bound what changes from sample to sample, so a slow drift passes (20 ft a minute is
-//! 180 ft along a piece of ten samples). A channel that was not recorded is not judged: its criterion is reported as
-//! not evaluated and the segments are as steady as the others can tell. The criteria are meant for samples one minute
-//! apart; `track` averages what is faster.
+//! Limits: neighbor criteria bound the change from sample to sample, so a slow drift passes (20 ft a minute is 180 ft
+//! along a piece of ten samples). A channel that was not recorded is not judged: its criterion is reported as not
+//! evaluated, and the segments are only as steady as the others can establish. The criteria are meant for samples one
+//! minute apart; `track` averages faster recordings.
 //!
 //! ```
 //! use segmenter::{Criterion, TrimCriteria};
@@ -42,12 +43,13 @@ pub use criterion::{Criterion, CriterionKind, CriterionSet};
 pub use tally::{CriterionCost, Tally};
 pub use verdict::{DroppedPiece, PieceDropReason, SampleVerdict, Segmentation};
 
-/// The stabilised segments of a track, and what became of every sample.
+/// The stabilised segments of a track, and the verdict on every sample.
 ///
 /// 1. Samples that meet all criteria make stable runs of neighbors.
 /// 2. A stable run is cut from its start into pieces of at most [`TrimCriteria::piece_samples_maximum`] samples.
 /// 3. In a piece, samples more than two standard deviations from the mean of any channel are discarded, all at once.
-/// 4. What keeps [`TrimCriteria::segment_samples_minimum`] samples is a segment: the means over its kept samples.
+/// 4. A piece that keeps [`TrimCriteria::segment_samples_minimum`] samples is a segment: the means over its kept
+///    samples.
 ///
 /// # Source
 /// `[steadiness.8]` to `[steadiness.14]`; Ghazi et al. 2020, table 4 and eq. (19).
@@ -77,7 +79,7 @@ pub fn segment(track: &Track, criteria: &TrimCriteria) -> Segmentation {
     cut.finish()
 }
 
-/// The cutting of one track under way.
+/// The segmentation of one track in progress.
 struct Cut<'a> {
     track: &'a Track,
     identity: Arc<FlightIdentity>,
@@ -102,7 +104,7 @@ impl<'a> Cut<'a> {
         }
     }
 
-    /// Keeps one piece of a run as a segment where enough is left of it. `outlying` has the piece's length.
+    /// Keeps one piece of a run as a segment if enough of it is left. `outlying` has the piece's length.
     fn piece(&mut self, run: &SampleRun, piece: Range<usize>, outlying: &[CriterionSet]) {
         let samples = run.samples.start + piece.start..run.samples.start + piece.end;
         let kept = outlying.iter().filter(|outlying| outlying.is_empty()).count();

@@ -3,7 +3,7 @@
 use flight::{FuelFlowColumns, OptionalColumn, SampleRun, SegmentMeans, Track};
 use units::mean_direction_deg;
 
-/// Means over the samples `rows` of the track, which lie in `run`, increase and are at least one.
+/// Means over the samples `rows` of the track: increasing, within `run`, at least one.
 ///
 /// Arithmetic means, summed in the order of time; mean directions for longitude (−180 … 180) and true heading
 /// (0 … 360); an optional column over the samples that have a value. Total fuel flow is the sum of the engines' means.

@@ -5,16 +5,16 @@ use core::ops::Range;
 use crate::CriterionSet;
 use crate::channel::Channel;
 
-/// Marks in `failed` the samples of a piece that lie beyond the limit in a channel, all channels judged on the same
+/// Marks in `failed` the samples of a piece that lie beyond the limit in a channel; all channels are judged on the same
 /// piece at once.
 ///
 /// ```text
 /// discard i where |x_i − μ| > k σ + 1e-9,  μ = Σ x/n,  σ² = Σ (x − μ)²/(n − 1)
 /// ```
 ///
-/// The 1e-9 is of the limit's unit and keeps a constant channel from discarding its own rounding. With k = 2 no sample
-/// of fewer than six can be discarded, because |x − μ|/σ cannot exceed (n − 1)/√n. A piece of one sample has no σ and
-/// is left unmarked.
+/// The 1e-9 is in the limit's unit and keeps a constant channel from discarding samples for its own rounding. With k =
+/// 2 no sample of fewer than six can be discarded, because |x − μ|/σ cannot exceed (n − 1)/√n. A piece of one sample
+/// has no σ and is left unmarked.
 ///
 /// # Source
 /// `[steadiness.11]`. That σ is the sample's (n − 1) and that the filter runs once are our choice: the paper says 2σ.

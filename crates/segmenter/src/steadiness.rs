@@ -12,7 +12,7 @@ use crate::{CriterionKind, CriterionSet};
 /// |x_i| ≤ ℓ  (drift, roll)
 /// ```
 ///
-/// In runs of fewer than three samples (a `track` makes none) only those neighbors count that exist.
+/// In runs of fewer than three samples (`track` makes none) only the neighbors that exist count.
 ///
 /// # Source
 /// `[steadiness.8]`, `[steadiness.9]`; Ghazi et al. 2020, eq. (19) and table 4.
@@ -29,7 +29,7 @@ pub(crate) fn failed_criteria(channels: &[Channel<'_>], samples: usize) -> Vec<C
 
 fn mark_changes(channel: &Channel<'_>, failed: &mut [CriterionSet]) {
     let values = channel.values;
-    // As 'within' and not as 'exceeds', so that a limit of NaN rejects.
+    // Written as 'within' and not as 'exceeds', so that a limit of NaN rejects.
     let within = |a: f64, b: f64| (a - b).abs() <= channel.limit;
     for (before, pair) in values.windows(2).enumerate() {
         if !within(pair[0], pair[1]) {

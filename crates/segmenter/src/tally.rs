@@ -22,7 +22,7 @@ pub struct CriterionCost {
     pub outliers_alone: usize,
 }
 
-/// The verdicts of one flight, or of several added up, counted.
+/// The verdicts of one flight, or of several flights together, counted.
 ///
 /// ```text
 /// samples        = not judged + judged
@@ -40,7 +40,7 @@ pub struct Tally {
     pub samples_unsteady: usize,
     /// Samples that the filter discards.
     pub samples_outlying: usize,
-    /// Steady samples of pieces that became no segment.
+    /// Steady samples of pieces that did not become a segment.
     pub samples_in_dropped_pieces: usize,
     /// Samples in segments.
     pub samples_kept: usize,
@@ -57,7 +57,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Of no flight: where a sum begins.
+    /// Of no flight: the start of a sum.
     pub const NOTHING: Self = Self {
         flights: 0,
         samples: 0,
@@ -184,7 +184,7 @@ impl AddAssign for Tally {
 }
 
 /// One line: "113 samples: 27 kept in 3 segments; 80 unsteady (ALT 12, 3 alone; GSPD 30, 20 alone); …". Criteria that
-/// cost nothing are left out, those that could not be judged are named.
+/// cost nothing are left out, those that could not be evaluated are listed.
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", counted(self.samples, "sample"))?;

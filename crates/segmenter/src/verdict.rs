@@ -1,4 +1,4 @@
-//! What became of samples, pieces and the whole flight.
+//! The verdict on samples, pieces and the whole flight.
 
 use core::fmt;
 use core::ops::Range;
@@ -16,30 +16,30 @@ pub struct Segmentation {
     pub verdicts: Vec<SampleVerdict>,
     /// Sample runs that the track could not use, with reasons.
     pub dropped_runs: Vec<DroppedRun>,
-    /// Pieces of stable runs that became no segment, with reasons.
+    /// Pieces of stable runs that did not become a segment, with reasons.
     pub dropped_pieces: Vec<DroppedPiece>,
     /// The verdicts counted.
     pub tally: Tally,
 }
 
 impl Segmentation {
-    /// Criteria whose channel was not recorded: what they would have rejected is not known.
+    /// Criteria whose channel was not recorded: what they would have rejected is unknown.
     #[must_use]
     pub fn not_evaluated(&self) -> CriterionSet {
         self.tally.not_evaluated()
     }
 }
 
-/// What became of one sample.
+/// The verdict on one sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleVerdict {
-    /// It lies in no sample run: the track dropped its run.
+    /// It is in no sample run: the track dropped its run.
     NotJudged,
     /// It fails these criteria.
     Unsteady(CriterionSet),
     /// It meets all criteria, but lies too far from the mean of its piece in these channels.
     Outlier(CriterionSet),
-    /// It is steady, but its piece became no segment.
+    /// It is steady, but its piece did not become a segment.
     InDroppedPiece(PieceDropReason),
     /// It is kept.
     Kept {
@@ -48,7 +48,7 @@ pub enum SampleVerdict {
     },
 }
 
-/// Why a piece of a stable run became no segment.
+/// Why a piece of a stable run did not become a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum PieceDropReason {
@@ -58,7 +58,7 @@ pub enum PieceDropReason {
     TooShort,
 }
 
-/// A piece of a stable run that became no segment.
+/// A piece of a stable run that did not become a segment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DroppedPiece {
     /// Samples of the track.
@@ -67,7 +67,7 @@ pub struct DroppedPiece {
     pub kept: usize,
     /// Samples that a segment needs.
     pub needed: usize,
-    /// Why.
+    /// The reason.
     pub reason: PieceDropReason,
 }
 

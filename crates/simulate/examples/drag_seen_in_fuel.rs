@@ -1,4 +1,4 @@
-//! Flies one flight twice, clean and with 2 % more drag, and finds the 2 % again in the recorded fuel flow.
+//! Flies one flight twice, clean and with 2 % more drag, and finds the 2 % in the recorded fuel flow.
 #![expect(clippy::print_stdout, reason = "an example shows its result")]
 
 use simulate::{FleetDesign, Plan, PlannedEffect, Scatter, SensorChoice, Simulation};

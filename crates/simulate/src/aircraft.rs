@@ -1,4 +1,4 @@
-//! The aircraft that is flown: its truth, which is richer than any model that is fitted to it.
+//! The virtual aircraft: its truth, which is richer than any model that is fitted to it.
 
 mod airframe;
 mod engine;
@@ -20,14 +20,14 @@ pub(crate) use engine::{
 
 use crate::terms::{DragInputs, Terms};
 
-/// Total over static temperature less one, per squared Mach number: (γ − 1)/2.
+/// Total over static temperature minus one, per squared Mach number: (γ − 1)/2.
 pub(crate) const HEATING_FACTOR: f64 = (atmos::constants::RATIO_OF_SPECIFIC_HEATS - 1.0) / 2.0;
 
 /// An aircraft type as it truly is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AircraftTruth {
-    /// Name for people.
+    /// Name for display.
     pub name: String,
     /// Type code, as `AIRCRAFT` in reports.
     pub type_code: String,
@@ -39,7 +39,7 @@ pub struct AircraftTruth {
     pub masses: MassLimits,
     /// Speed and altitude limits.
     pub envelope: Envelope,
-    /// Fuel from engine start to top of climb over what the energy gained alone needs at cruise efficiency.
+    /// Fuel from engine start to top of climb, relative to what the energy gained would need at cruise efficiency.
     pub climb_fuel_factor: f64,
 }
 
@@ -71,7 +71,7 @@ pub struct Envelope {
     pub maximum_lift_coefficient: f64,
 }
 
-/// The aircraft types that come with the program.
+/// The built-in aircraft types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Preset {
@@ -104,26 +104,27 @@ impl Switch {
     }
 }
 
-/// What the truth has beyond CD(CL, M) and TSFC0·√θ·(1 + M)^n. All off, a performance model of that form can be exact.
+/// The truth's physics beyond CD(CL, M) and TSFC0·√θ·(1 + M)^n. With all off, a performance model of that form can be
+/// exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TruthPhysics {
-    /// Zero-lift drag follows the Reynolds number by the Prandtl–Schlichting law.
+    /// Zero-lift drag depends on the Reynolds number by the Prandtl–Schlichting law.
     pub reynolds_number: Switch,
     /// Trim drag with the center of gravity.
     pub trim_drag: Switch,
     /// Drag of holding a wing low.
     pub asymmetry: Switch,
-    /// TSFC over part load.
+    /// TSFC depends on part load.
     pub part_load: Switch,
-    /// TSFC with another exponent of temperature than one half.
+    /// TSFC has another exponent of temperature than one half.
     pub temperature_exponent: Switch,
     /// Fuel for bleed and shaft power.
     pub offtake: Switch,
 }
 
 impl TruthPhysics {
-    /// Nothing beyond the model's own equations.
+    /// Only the model's own equations.
     #[must_use]
     pub const fn plain() -> Self {
         Self::all(Switch::Off)
@@ -147,7 +148,7 @@ impl TruthPhysics {
     }
 }
 
-/// What drag depends on beside lift coefficient and Mach number.
+/// What drag depends on in addition to lift coefficient and Mach number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DragConditions {
     /// Reynolds number over the mean aerodynamic chord.
@@ -165,13 +166,13 @@ pub enum AircraftError {
     /// The text is not RON of this shape.
     #[error("aircraft file: {0}")]
     Format(#[from] ron::error::SpannedError),
-    /// A number outside what makes sense.
+    /// A number outside reasonable limits.
     #[error("aircraft file: {0}")]
     Value(#[from] OutOfDomain),
 }
 
 impl AircraftTruth {
-    /// One of the types that come with the program.
+    /// One of the built-in types.
     ///
     /// # Errors
     /// None in practice: every preset is parsed in a test.
@@ -186,7 +187,7 @@ impl AircraftTruth {
     /// From the text of an aircraft file.
     ///
     /// # Errors
-    /// [`AircraftError`] for text of another shape or numbers that make no aircraft.
+    /// [`AircraftError`] for text of another shape or numbers that do not make an aircraft.
     pub fn from_ron(text: &str) -> Result<Self, AircraftError> {
         let aircraft: Self = ron::from_str(text)?;
         aircraft.check()?;
@@ -196,7 +197,7 @@ impl AircraftTruth {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfDomain`] with the first that makes no aircraft.
+    /// [`OutOfDomain`] for the first number out of its limits.
     pub fn check(&self) -> Result<(), OutOfDomain> {
         let airframe = &self.airframe;
         let engine = &self.engine;
@@ -273,7 +274,7 @@ impl AircraftTruth {
         }
     }
 
-    /// Drag coefficient of the trimmed aircraft, no effect added.
+    /// Drag coefficient of the trimmed aircraft, without effects.
     #[must_use]
     pub fn drag_coefficient(
         &self,
@@ -294,7 +295,7 @@ impl AircraftTruth {
         )
     }
 
-    /// TSFC without offtake at a corrected thrust F/δ of all engines together, no effect added.
+    /// TSFC without offtake at a corrected thrust F/δ of all engines together, without effects.
     #[must_use]
     pub fn tsfc(
         &self,
@@ -306,7 +307,7 @@ impl AircraftTruth {
         let mach = mach.value();
         let temperature_ratio = atmos::isa::temperature_ratio(sat);
         let heating = 1.0 + HEATING_FACTOR * mach * mach;
-        // Both thrusts over δ: the static pressure drops out of the part load.
+        // Both thrusts over δ: the static pressure cancels in the part load.
         let maximum_n = f64::from(self.engine.count)
             * maximum_thrust_n(
                 &self.engine,

@@ -7,25 +7,25 @@ use flight::Timestamp;
 use flight::effect::{EffectId, StepTarget, TypicalSize};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// An effect that no library has: what a diagnosis must call outside of it.
+/// An effect that no library has: a diagnosis must report it as outside its library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum OutsideEffect {
     /// A bump of drag at one Mach number.
     MachBump,
     /// Spoilers that float above one lift coefficient.
     SpoilerFloat,
-    /// Fuel that does not burn where the pressure is low.
+    /// Fuel that does not burn completely where the pressure is low.
     CombustorLoss,
-    /// Fuel flow that follows the temperature of the fuel in the tanks.
+    /// Fuel flow that depends on the temperature of the fuel in the tanks.
     FuelTemperature,
 }
 
 /// An effect of the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TruthEffect {
-    /// One that a library knows.
+    /// One of the library.
     Library(EffectId),
-    /// One that none does.
+    /// One outside any library.
     Outside(OutsideEffect),
 }
 
@@ -87,7 +87,7 @@ impl TruthEffect {
         }
     }
 
-    /// Whether it only ever makes the aircraft worse, or its size is no signed number.
+    /// Whether it only ever makes the aircraft worse, or its size has no sign.
     #[must_use]
     pub const fn is_one_sided(self) -> bool {
         match self {
@@ -162,8 +162,8 @@ pub struct PlannedEffect {
     /// `step_change`: what it multiplies; drag when left out.
     #[serde(default = "drag")]
     pub target: StepTarget,
-    /// Where it sits: Mach number of the bump, lift coefficient of the spoilers, corrected thrust over its reference of
-    /// `tsfc_throttle`'s pivot. A default of each when left out.
+    /// Its position: Mach number of the bump, lift coefficient of the spoilers, corrected thrust over its reference of
+    /// `tsfc_throttle`'s pivot. Each has a default when left out.
     #[serde(default)]
     pub at: Option<f64>,
 }

@@ -1,10 +1,11 @@
 //! One flight, step by step.
 //!
-//! A difficult file. The state is airspeed against the mean wind, pressure altitude, vertical speed, pitch, thrust, mass
-//! and a place with a direction on the sphere. Along the airspeed the equation of motion is `[flow.7]`. Airspeed and mass
-//! are predicted by the two-step Adams–Bashforth rule, the forces evaluated once there, and both corrected by the
-//! trapezoidal rule: second order for one evaluation a step. The fast heave mode goes implicitly, wind by the exact
-//! difference between the two ends of a step. The books in `state.rs` check all that.
+//! A difficult file. The state is airspeed relative to the mean wind, pressure altitude, vertical speed, pitch, thrust,
+//! mass and a position with a direction on the sphere. Along the airspeed the equation of motion is `[flow.7]`.
+//! Airspeed and mass are predicted by the two-step Adams–Bashforth rule, the forces are evaluated once there, and both
+//! are corrected by the trapezoidal rule: second order for one evaluation per step. The fast heave mode is integrated
+//! implicitly, wind by the exact difference between the two ends of a step. The energy and fuel balances in `state.rs`
+//! check all that.
 
 mod air_ahead;
 mod controls;
@@ -26,7 +27,7 @@ use controls::Controls;
 use forces::{EarthHere, Forces, Motion};
 use steering::Steering;
 
-/// Time constant with which fuel in the wings takes on TAT, s.
+/// Time constant with which fuel in the wings approaches TAT, s.
 const FUEL_TEMPERATURE_TIME_S: f64 = 7200.0;
 
 /// Why a flight cannot be flown as planned.
@@ -36,17 +37,17 @@ pub enum FlightError {
     /// Outside the atmosphere.
     #[error(transparent)]
     Atmosphere(#[from] OutOfDomain),
-    /// The engines do not hold the speed.
+    /// The engines cannot hold the speed.
     #[error("at {time_s} s Mach number {mach} falls away from {target}: not enough thrust")]
     Thrust {
         /// Time since the start of the recording, s.
         time_s: f64,
         /// Mach number.
         mach: f64,
-        /// What the autopilot wants.
+        /// Target of the autopilot.
         target: f64,
     },
-    /// More lift than the wing gives.
+    /// More lift than the wing can give.
     #[error("at {time_s} s lift coefficient {lift_coefficient} above {maximum}")]
     LiftCoefficient {
         /// Time since the start of the recording, s.
@@ -66,7 +67,7 @@ pub enum FlightError {
     },
 }
 
-/// Everything one flight is flown with.
+/// Everything needed to fly one flight.
 #[derive(Clone, Debug)]
 pub(crate) struct FlightSetup<'a> {
     pub(crate) aircraft: &'a AircraftTruth,
@@ -89,7 +90,7 @@ pub(crate) struct FlightSetup<'a> {
     pub(crate) settle_s: f64,
     /// Recording interval, s.
     pub(crate) interval_s: f64,
-    /// Steps in an interval.
+    /// Steps per interval.
     pub(crate) steps_per_interval: u32,
 }
 
@@ -101,7 +102,7 @@ pub(crate) struct RollTrim {
     pub(crate) limit_deg: f64,
 }
 
-/// What the sensors see at every step.
+/// The quantities that the sensors read at every step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant {
     pub(crate) static_pressure_pa: f64,
@@ -113,15 +114,15 @@ pub(crate) struct Instant {
     pub(crate) fuel_flow_kg_s: [f64; MAXIMUM_ENGINES],
 }
 
-/// The books of a flight.
+/// The energy and fuel balances of a flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Books {
     pub(crate) energy: EnergyBook,
     pub(crate) mass: MassBook,
 }
 
-/// Flies. `observe` is called at every step of the recording, with the step's length and, where a sample falls, the whole
-/// true state.
+/// Flies. `observe` is called at every step of the recording, with the length of the step and, where a sample falls,
+/// the whole true state.
 pub(crate) fn fly(
     setup: &FlightSetup<'_>,
     mut observe: impl FnMut(&Instant, f64, Option<&TrueState>),
@@ -163,7 +164,7 @@ pub(crate) fn fly(
     }
 }
 
-/// The flight in flight.
+/// The flight while it is flown.
 struct Flying<'a> {
     setup: &'a FlightSetup<'a>,
     step_s: f64,
@@ -179,7 +180,7 @@ struct Flying<'a> {
     gust_sigma_m_s: f64,
     drift_wobble_rad: f64,
     forces: Forces,
-    /// Acceleration without wind change and fuel flow of the step before, for the prediction.
+    /// Acceleration without wind change, and fuel flow, of the step before, for the prediction.
     before: Option<(f64, f64)>,
     /// Where the last step began, for the correction.
     begun: Option<Begun>,
@@ -212,7 +213,7 @@ impl<'a> Flying<'a> {
         let motion = Motion {
             smooth_airspeed_m_s: plan.mach * speed_of_sound_m_s,
             pressure_altitude_m,
-            // A warm column is a tall one; the mean temperature below is about 250 K.
+            // A warm column is taller; its mean temperature is about 250 K.
             geometric_altitude_m: pressure_altitude_m * (1.0 + deviation_k / 250.0),
             vertical_speed_m_s: 0.0,
             pitch_rad: 0.0,
@@ -244,7 +245,7 @@ impl<'a> Flying<'a> {
             opened_mass_kg: 0.0,
         };
         flying.renew_here();
-        // In trim to begin with: thrust is drag.
+        // In trim at the start: thrust equals drag.
         flying.evaluate()?;
         flying.motion.thrust_n = flying.forces.drag_n;
         flying.controls.trim(flying.forces.drag_n / flying.motion.mass_kg, plan.mach);
@@ -285,7 +286,7 @@ impl<'a> Flying<'a> {
         let step_s = self.step_s;
         let forces = self.forces;
 
-        // Place and air at the end of the step first: the wind's change over it is then exact.
+        // Position and air at the end of the step first: the wind's change over it is then exact.
         let turning = self.steering.advance(
             forces.ground_speed_m_s,
             forces.smooth_airspeed_m_s,

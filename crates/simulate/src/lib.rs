@@ -1,17 +1,18 @@
-//! A virtual aircraft: cruise reports with a truth that is known.
+//! A virtual aircraft: cruise reports with a known truth.
 //!
-//! What it is: a point-mass aircraft with an autopilot, flown second by second through wind, temperature and turbulence over
-//! a round and turning Earth, recorded by sensors that err, with any effect of the library switched on in the truth's own
-//! form, and some that no library has. It stands in for a level-D simulator and is the ground under blind trials.
-//! What it is not: a flight simulator (no climb, no stick, no pitch dynamics), and no performance model: it shares the
-//! atmosphere with the rest and none of the equations that are fitted to it.
+//! What it is: a point-mass aircraft with an autopilot, flown second by second through wind, temperature and turbulence
+//! over a round and rotating Earth, recorded by sensors with errors, with any effect of the library switched on in the
+//! truth's own form, and some that no library has. It replaces a level-D simulator and is the basis of blind trials.
+//! What it is not: a flight simulator (no climb, no stick, no pitch dynamics), or a performance model: it shares the
+//! atmosphere with the other crates and none of the equations that are fitted to it.
 //!
-//! The one design decision: everything random has its own stream, keyed by seed, tail, flight and purpose. So a flight is
-//! the same bytes whatever the order and the threads, and an effect changes what it should and no weather, no load sheet.
+//! The one design decision: every random quantity has its own stream, keyed by seed, tail, flight and purpose. So a
+//! flight is the same bytes whatever the order and the threads, and an effect changes what it should, but no weather
+//! and no load sheet.
 //!
-//! Limits: the presets are synthetic; weather is frozen, the same at all levels, and each flight's own; the autopilot flies
-//! on the truth, not on its sensors. Equations `[virtual.N]` and `[flow.N]` are in the book, pages "The virtual aircraft"
-//! and "Level flight in geostrophic wind". No files, threads or clock: text in, data out.
+//! Limits: the presets are synthetic; weather is frozen, the same at all levels, and drawn for each flight separately;
+//! the autopilot uses the truth, not its sensors. Equations `[virtual.N]` and `[flow.N]` are in the book, pages "The
+//! virtual aircraft" and "Level flight in geostrophic wind". No files, threads or clock: text in, data out.
 //!
 //! ```
 //! use simulate::{Plan, Simulation};

@@ -1,4 +1,4 @@
-//! `PLAN.ron`: what a simulation is asked for.
+//! `PLAN.ron`: the input of a simulation.
 
 mod design;
 
@@ -19,15 +19,15 @@ pub(crate) use design::legs;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
-    /// Every random number comes from it.
+    /// All random numbers are derived from it.
     pub seed: u64,
     /// Which aircraft.
     #[serde(default)]
     pub aircraft: AircraftChoice,
-    /// What the truth has beyond the model's equations.
+    /// The truth's physics beyond the model's equations.
     #[serde(default = "TruthPhysics::full", alias = "richness")]
     pub physics: TruthPhysics,
-    /// What of the Earth the truth knows.
+    /// Which properties of the Earth the truth has.
     #[serde(default = "Earth::full")]
     pub earth: Earth,
     /// The air.
@@ -39,7 +39,7 @@ pub struct Plan {
     /// The sensors.
     #[serde(default)]
     pub sensors: SensorChoice,
-    /// What is recorded.
+    /// The recorded columns.
     #[serde(default)]
     pub columns: Columns,
     /// What differs from flight to flight.
@@ -48,14 +48,15 @@ pub struct Plan {
     /// How it is recorded.
     #[serde(default)]
     pub recording: Recording,
-    /// Smooth errors of drag and fuel flow over the whole envelope, of every tail its own.
+    /// Smooth errors of drag and fuel flow over the whole envelope, drawn for every tail separately.
     #[serde(default)]
     pub smooth_errors: SmoothErrorSizes,
     /// Effects of every tail.
     #[serde(default)]
     pub effects: Vec<PlannedEffect>,
-    /// Clutter: every other effect of the library too, of a size drawn with this share of the typical one as standard
-    /// deviation; positive where an effect only ever is. Effects whose coefficient is known are not cluttered.
+    /// Clutter: every other effect of the library is present too, with a size drawn with this share of the typical one
+    /// as standard deviation; positive for effects that only have one sign. Effects whose coefficient is known are not
+    /// included.
     #[serde(default)]
     pub clutter_share: f64,
     /// The tails.
@@ -65,9 +66,9 @@ pub struct Plan {
 /// Which aircraft.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum AircraftChoice {
-    /// One that comes with the program.
+    /// A built-in one.
     Preset(Preset),
-    /// One that the plan defines.
+    /// One defined in the plan.
     Custom(Box<AircraftTruth>),
 }
 
@@ -83,12 +84,12 @@ impl Default for AircraftChoice {
 pub enum SensorChoice {
     /// The truth itself.
     Perfect,
-    /// The truth, rounded as the format's example is.
+    /// The truth, rounded as in the format's example.
     Rounded,
     /// Those of a transport aircraft.
     #[default]
     Transport,
-    /// Those that the plan defines.
+    /// Defined in the plan.
     Custom(Sensors),
 }
 
@@ -105,26 +106,26 @@ impl SensorChoice {
     }
 }
 
-/// What differs from flight to flight, and stays within one.
+/// Quantities that differ from flight to flight, and are constant within one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Scatter {
     /// Standard deviation of the fuel's heating value, %.
     pub heating_value_percent: f64,
-    /// Standard deviation of true less recorded zero-fuel mass, % of maximum zero-fuel mass.
+    /// Standard deviation of true minus recorded zero-fuel mass, % of maximum zero-fuel mass.
     pub zero_fuel_mass_percent: f64,
     /// Standard deviation of an engine's thrust about the mean, %.
     pub throttle_split_percent: f64,
     /// Standard deviation of the roll held in straight flight, degrees.
     pub roll_trim_deg: f64,
-    /// Standard deviation of its drift, degrees per hour.
+    /// Standard deviation of the change of that roll, degrees per hour.
     pub roll_trim_drift_deg_h: f64,
     /// Roll at which a crew trims, degrees: no more than this is held.
     pub roll_trim_limit_deg: f64,
 }
 
 impl Default for Scatter {
-    /// Heating value and mass as the gap diagnosis' prototype has them (0.3 %, 80 kg of 11.1 t), the rest our choice.
+    /// Heating value and mass as in the gap diagnosis' prototype (0.3 %, 80 kg of 11.1 t), the rest our choice.
     fn default() -> Self {
         Self {
             heating_value_percent: 0.3,
@@ -138,7 +139,7 @@ impl Default for Scatter {
 }
 
 impl Scatter {
-    /// Every flight like the other.
+    /// All flights alike.
     #[must_use]
     pub const fn none() -> Self {
         Self {
@@ -200,7 +201,7 @@ pub struct TailPlan {
     /// TSFC of each engine above new, %.
     #[serde(default)]
     pub engine_deterioration_percent: Vec<f64>,
-    /// Conditions at which effects are nothing; the means over the tail's flights when left out.
+    /// Conditions at which effects are zero; the means over the tail's flights when left out.
     #[serde(default)]
     pub references: Option<References>,
     /// Its flights.
@@ -223,10 +224,10 @@ pub enum PlanError {
     /// The text is not RON of this shape.
     #[error("plan: {0}")]
     Format(#[from] ron::error::SpannedError),
-    /// The aircraft is none.
+    /// The aircraft is invalid.
     #[error(transparent)]
     Aircraft(#[from] AircraftError),
-    /// A number outside what makes sense.
+    /// A number outside reasonable limits.
     #[error("plan: {0}")]
     Value(#[from] OutOfDomain),
     /// Two tails of one name: their streams would be the same.
@@ -281,7 +282,7 @@ impl Plan {
     /// From the text of a plan.
     ///
     /// # Errors
-    /// [`PlanError::Format`] with line and column. Numbers are judged when the plan is made a simulation.
+    /// [`PlanError::Format`] with line and column. Numbers are checked when the plan becomes a simulation.
     pub fn from_ron(text: &str) -> Result<Self, PlanError> {
         let options = ron::Options::default()
             .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);

@@ -1,13 +1,13 @@
 //! Random streams: one for every purpose of every flight of every tail, independent of the order in which they are drawn.
 //!
-//! The stream cipher is its own seed sequence: seed, tail, flight and purpose *are* the 256-bit key, so that two streams
-//! differ wherever one of the four differs, and adding a tail or drawing more in one stream moves no other.
+//! The stream cipher is its own seed sequence: seed, tail, flight and purpose *are* the 256-bit key, so two streams
+//! differ wherever one of the four differs, and adding a tail or drawing more numbers in one stream changes no other.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-/// What a stream is for.
+/// The purpose of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub(crate) enum Purpose {

@@ -1,4 +1,4 @@
-//! Where effects are nothing: means over what a tail is planned to fly.
+//! Conditions at which effects are zero: means over what a tail is planned to fly.
 
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
@@ -9,8 +9,8 @@ use crate::terms::{References, Terms};
 use crate::trim::{TrimPoint, Trimmed, trim_with};
 use crate::weather::Weather;
 
-/// Means over the planned legs, each weighed by its time, on the plan's mean day. An estimate before flight: fuel burnt is
-/// that of trimmed points.
+/// Means over the planned legs, each weighted by its time, on the plan's mean day. An estimate before the flights: fuel
+/// burnt is that of trimmed points.
 pub(crate) fn references_of(
     aircraft: &AircraftTruth,
     physics: TruthPhysics,
@@ -24,7 +24,7 @@ pub(crate) fn references_of(
     for flight in flights {
         dates_s.push(flight::seconds_since_1970(flight.start));
         let mut mass_kg = match flight.loading {
-            // A tenth of the fuel is gone when the recording starts, about.
+            // About a tenth of the fuel is used when the recording starts.
             Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } => {
                 zero_fuel_mass_kg + 0.9 * fuel_on_board_kg
             }

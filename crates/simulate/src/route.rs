@@ -1,4 +1,4 @@
-//! What one flight is asked to do.
+//! The plan of one flight.
 
 use flight::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ pub struct FlightPlan {
     pub pressure_altitude_ft: f64,
     /// Mach number at the start.
     pub mach: f64,
-    /// What it weighs.
+    /// Its mass.
     pub loading: Loading,
     /// Center of gravity with the fuel at the start of the recording, %MAC.
     pub center_of_gravity_percent_mac: f64,
@@ -37,7 +37,7 @@ pub struct FlightPlan {
     pub anti_ice: Vec<(f64, f64)>,
 }
 
-/// Mass of a flight, kg: true, whatever the load sheet says.
+/// Mass of a flight, kg: the true one, whatever is on the load sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Loading {
     /// By zero-fuel mass and fuel at engine start.
@@ -140,7 +140,7 @@ impl Default for Autopilot {
     }
 }
 
-/// What of the Earth the truth knows.
+/// Which properties of the Earth the truth has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Earth {
@@ -169,7 +169,7 @@ impl Earth {
         }
     }
 
-    /// What a performance model knows: standard gravity, and slope with Coriolis force, which cancel.
+    /// As in a performance model: standard gravity, and slope with Coriolis force, which cancel.
     #[must_use]
     pub const fn plain() -> Self {
         Self {

@@ -1,7 +1,8 @@
-//! What the sensors make of the truth, and the report that comes of it.
+//! From the truth through the sensors to the report.
 //!
-//! The air-data computer is modelled as one: it measures static and total pressure and total temperature, and computes
-//! pressure altitude, Mach number, SAT and TAS from them by the exact formulas, so that one wrong pressure shows in all.
+//! The air-data computer is modelled as one unit: it measures static and total pressure and total temperature, and
+//! computes pressure altitude, Mach number, SAT and TAS from them by the exact formulas, so that one wrong pressure
+//! affects all of them.
 
 mod air_data;
 mod bank;
@@ -25,7 +26,7 @@ pub struct Sensors {
     pub total_pressure: ChannelSensor,
     /// Total air temperature, K; `resolution` is that of SAT and TAT, °C.
     pub total_air_temperature: ChannelSensor,
-    /// True airspeed: only its resolution, kt, counts.
+    /// True airspeed: only its resolution, kt, is used.
     pub true_airspeed_resolution_kt: f64,
     /// Ground speed, kt.
     pub ground_speed: ChannelSensor,
@@ -41,7 +42,7 @@ pub struct Sensors {
     pub exhaust_gas_temperature: ChannelSensor,
     /// Fuel flow of one engine, lb/h.
     pub fuel_flow: ChannelSensor,
-    /// Resolution of fuel used, lb. Fuel used is what the flow meters integrate.
+    /// Resolution of fuel used, lb. Fuel used is the integral of the flow meters.
     pub fuel_used_resolution_lb: f64,
     /// Fuel quantity by the tank gauges, lb.
     pub fuel_quantity: ChannelSensor,
@@ -81,7 +82,7 @@ impl Sensors {
         }
     }
 
-    /// The truth in the figures that the format's example prints.
+    /// The truth in the figures of the format's example.
     #[must_use]
     pub fn rounded() -> Self {
         let rounded = |resolution| ChannelSensor { resolution, ..ChannelSensor::default() };
@@ -107,7 +108,7 @@ impl Sensors {
     }
 
     /// Sensors of a transport aircraft, without faults. Sizes: industrial tolerances as far as known (fuel flow 0.5 %,
-    /// Mach number 0.001, SAT 0.3 K, N2 0.1 %), split by our choice over tail, flight, minutes and sample.
+    /// Mach number 0.001, SAT 0.3 K, N2 0.1 %), split by our choice between tail, flight, minutes and sample.
     #[must_use]
     pub fn transport() -> Self {
         let r = Self::rounded();
@@ -158,7 +159,7 @@ impl Sensors {
     }
 }
 
-/// What of the optional columns is recorded, and how fuel flow is.
+/// Which optional columns are recorded, and in which form fuel flow is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Columns {

@@ -48,12 +48,12 @@ struct Tail {
     smooth_errors: Option<SmoothErrors>,
 }
 
-/// What came of one flight.
+/// The result of one flight.
 #[derive(Clone, Debug)]
 pub struct Flown {
-    /// What the sensors said.
+    /// The recorded report.
     pub report: Report,
-    /// What was true of the flight as a whole.
+    /// The truth of the flight as a whole.
     pub truth: FlightTruth,
     /// The true state of each sample, before faults of the recording; empty unless the plan asks for it.
     pub states: Vec<TrueState>,
@@ -70,17 +70,17 @@ pub enum SimulationError {
         tail: String,
         /// Flight.
         flight: String,
-        /// Why.
+        /// The reason.
         source: FlightError,
     },
-    /// What was recorded is no report.
+    /// The recording does not make a report.
     #[error("tail {tail} flight {flight}: {source}")]
     Report {
         /// Tail.
         tail: String,
         /// Flight.
         flight: String,
-        /// Why.
+        /// The reason.
         source: ReportDataError,
     },
     /// A recorded value that the report's format refuses: the plan makes sensors or effects absurd.
@@ -114,7 +114,7 @@ impl Simulation {
     /// Checks a plan and draws its fleets.
     ///
     /// # Errors
-    /// [`PlanError`] with what cannot be simulated.
+    /// [`PlanError`] with the reason why it cannot be simulated.
     pub fn new(plan: Plan) -> Result<Self, PlanError> {
         let aircraft = match &plan.aircraft {
             AircraftChoice::Preset(preset) => AircraftTruth::preset(*preset)?,
@@ -194,7 +194,7 @@ impl Simulation {
         &self.aircraft
     }
 
-    /// The plan behind it.
+    /// Its plan.
     #[must_use]
     pub const fn plan(&self) -> &Plan {
         &self.plan
@@ -211,7 +211,7 @@ impl Simulation {
     /// Flies one flight. The result depends on the plan and the index alone.
     ///
     /// # Errors
-    /// [`SimulationError`] where the flight cannot be flown or what it records is no report.
+    /// [`SimulationError`] where the flight cannot be flown or its recording does not make a report.
     pub fn fly(&self, index: usize) -> Result<Flown, SimulationError> {
         let Some((tail_index, flight_index)) = self.jobs.get(index).copied() else {
             return Err(SimulationError::Index { index, flights: self.jobs.len() });
@@ -274,7 +274,7 @@ impl Simulation {
         Ok(Flown { report, truth, states })
     }
 
-    /// The document of what was true, from the flights flown, in any order.
+    /// The document of the truth, from the flights flown, in any order.
     #[must_use]
     pub fn truth(&self, flown: Vec<FlightTruth>) -> Truth {
         let mut tails: Vec<TailTruth> = self
@@ -334,7 +334,7 @@ fn check_effects(tail: &str, effects: &[(PlannedEffect, f64)]) -> Result<(), Pla
     Ok(())
 }
 
-/// Every effect of the library that the tail does not carry, small.
+/// Every effect of the library that the tail does not carry, with a small size.
 fn draw_clutter(
     plan: &Plan,
     tail: &str,
@@ -349,7 +349,7 @@ fn draw_clutter(
     EffectId::library(aircraft.engines())
         .into_iter()
         .filter_map(|id| {
-            // Drawn whether used or not: what is planted moves no other draw.
+            // Drawn whether used or not: a planted effect changes no other draw.
             let drawn = plan.clutter_share * random.normal();
             let effect = TruthEffect::Library(id);
             let size = effect.typical_size(references.mass_kg)

@@ -1,4 +1,4 @@
-//! Smooth errors of the whole truth: what no named effect is, and every real aircraft has.
+//! Smooth errors of the whole truth: every real aircraft has them, and no named effect describes them.
 
 use core::f64::consts::TAU;
 
@@ -18,7 +18,7 @@ struct Ripple {
     amplitude: f64,
 }
 
-/// Ripples of one function.
+/// Number of ripples of one function.
 const RIPPLES: usize = 10;
 /// Center and scale of Mach number, lift coefficient and pressure altitude, m: about the spread of cruise flights.
 const CENTERS: [f64; 3] = [0.80, 0.33, 12_000.0];

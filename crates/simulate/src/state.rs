@@ -1,4 +1,4 @@
-//! True states, and the books of energy and fuel that a flight must close.
+//! True states, and the balances of energy and fuel that a flight must close.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::terms::MAXIMUM_ENGINES;
 /// Temperature of the fuel at engine start: that of the ISA at sea level, K.
 pub(crate) const FUEL_TEMPERATURE_AT_START_K: f64 = atmos::constants::SEA_LEVEL_TEMPERATURE_K;
 
-/// What truly is at one instant, whatever the sensors say.
+/// The true state at one instant, independent of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrueState {
     /// Time since the start of the recording, s.
@@ -24,15 +24,15 @@ pub struct TrueState {
     pub mach: f64,
     /// True airspeed with gusts, m/s.
     pub true_airspeed_m_s: f64,
-    /// Airspeed against the mean wind, without gusts, m/s.
+    /// Airspeed relative to the mean wind, without gusts, m/s.
     pub smooth_airspeed_m_s: f64,
     /// Ground speed, m/s.
     pub ground_speed_m_s: f64,
-    /// Rate of the airspeed against the mean wind, m/s².
+    /// Rate of the airspeed relative to the mean wind, m/s².
     pub acceleration_m_s2: f64,
     /// Rate of pressure altitude, m/s.
     pub vertical_speed_m_s: f64,
-    /// Climb angle against the air, with the slope of the pressure surface and vertical wind, rad.
+    /// Climb angle relative to the air, with the slope of the pressure surface and vertical wind, rad.
     pub climb_angle_rad: f64,
     /// Roll angle, degrees.
     pub roll_deg: f64,
@@ -56,7 +56,7 @@ pub struct TrueState {
     pub fuel_used_kg: f64,
     /// Center of gravity, %MAC.
     pub center_of_gravity_percent_mac: f64,
-    /// Acceleration of what is to be lifted, m/s².
+    /// Acceleration that lift has to carry, m/s².
     pub effective_gravity_m_s2: f64,
     /// Lift coefficient.
     pub lift_coefficient: f64,
@@ -87,18 +87,18 @@ pub struct EnergyBook {
     pub thrust_j_kg: f64,
     /// Work of drag, negative.
     pub drag_j_kg: f64,
-    /// Work of gravity: climbing against the air, negative.
+    /// Work of gravity: climbing relative to the air, negative.
     pub gravity_j_kg: f64,
     /// Work of the Coriolis force on the wind.
     pub coriolis_j_kg: f64,
     /// Work of the wind's change along the path.
     pub wind_change_j_kg: f64,
-    /// Gain of kinetic energy against the mean wind.
+    /// Gain of kinetic energy relative to the mean wind.
     pub kinetic_gain_j_kg: f64,
 }
 
 impl EnergyBook {
-    /// What does not close, over the work of thrust.
+    /// Residual of the balance, relative to the work of thrust.
     #[must_use]
     pub fn residual(&self) -> f64 {
         (self.kinetic_gain_j_kg
@@ -121,7 +121,7 @@ pub struct MassBook {
 }
 
 impl MassBook {
-    /// What does not close, over the loss of mass.
+    /// Residual of the balance, relative to the loss of mass.
     #[must_use]
     pub fn residual(&self) -> f64 {
         (self.mass_lost_kg - self.fuel_flow_integral_kg) / self.mass_lost_kg

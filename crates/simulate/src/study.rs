@@ -1,7 +1,8 @@
-//! What the paper's study needs: its ten flights, its static points, and a flight-planning guide that is wrong in a known way.
+//! The data of the paper's study: its ten flights, its static points, and a flight-planning guide that is wrong in a
+//! known way.
 //!
-//! Numbers are those of Ghazi et al. (2020), table 5 and section IV, as far as they are legible; what is not (routes, dates,
-//! fuel loads, when levels and speeds change) is our choice and said so where it is.
+//! Numbers are those of Ghazi et al. (2020), table 5 and section IV, as far as they are legible; the others (routes,
+//! dates, fuel loads, when levels and speeds change) are our choice and marked as such.
 
 mod guide;
 
@@ -38,9 +39,9 @@ const TABLE_5: [(u32, f64, f64, f64, f64, bool, bool); 10] = [
 
 /// Start of every route, degrees: Montréal, where the paper's laboratory is. Our choice, as are the tracks.
 const ROUTE_START_DEG: (f64, f64) = (45.5, -73.7);
-/// Zero-fuel mass that every flight has about, lb: our choice, a little above the operating empty mass.
+/// Approximate zero-fuel mass of every flight, lb: our choice, a little above the operating empty mass.
 const ZERO_FUEL_MASS_LB: f64 = 22_800.0;
-/// Fuel used before the recording, lb, about: what the report format's example shows.
+/// Approximate fuel used before the recording, lb: as in the report format's example.
 const USED_BEFORE_LB: f64 = 1_300.0;
 /// 2018-05-20 14:14:21 UTC, the start of the report format's example, s.
 const FIRST_START_S: i64 = 1_526_825_661;
@@ -69,7 +70,7 @@ pub fn table_5_flights() -> Vec<FlightPlan> {
             }
             changes.sort_by(|a, b| a.at_s().total_cmp(&b.at_s()));
             let (latitude_deg, longitude_deg) = ROUTE_START_DEG;
-            // Tracks all around, a golden angle apart.
+            // Tracks all around the compass, a golden angle apart.
             let track_deg = 137.5 * f64::from(*number);
             let end = crate::vector::Place::at(latitude_deg, longitude_deg, track_deg)
                 .ahead(250.0 * (duration_s + 1500.0));
@@ -103,8 +104,9 @@ fn start(number: u32) -> Timestamp {
     Timestamp::from_second(seconds).unwrap_or(Timestamp::UNIX_EPOCH)
 }
 
-/// The plan of the paper's study: table 5 on a Citation X whose truth is all there is, wind, temperature and turbulence
-/// along the way, sensors without noise but rounded (the paper calls noise and rounding negligible), one fuel.
+/// The plan of the paper's study: table 5 on a Citation X with all of the truth's physics, wind, temperature and
+/// turbulence along the way, sensors without noise but rounded (the paper calls noise and rounding negligible), one
+/// fuel.
 #[must_use]
 pub fn paper_study_plan(seed: u64) -> Plan {
     Plan {
@@ -158,7 +160,7 @@ pub fn static_conditions() -> Vec<StaticCondition> {
     conditions
 }
 
-/// A static point as it is, and as it was measured.
+/// A static point: the truth, and the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StaticPoint {
     /// Where.
@@ -169,14 +171,14 @@ pub struct StaticPoint {
     pub measured_fuel_flow_kg_s: f64,
 }
 
-/// Why a static point gives nothing.
+/// Why a static point has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StaticPointError {
     /// It cannot be trimmed.
     #[error(transparent)]
     Trim(#[from] TrimError),
-    /// It makes no plan.
+    /// Its plan is invalid.
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// It cannot be flown.
@@ -184,8 +186,8 @@ pub enum StaticPointError {
     Flight(#[from] SimulationError),
 }
 
-/// Trims the aircraft at a point of the standard day and flies it there for a minute in still air, with rounded sensors and
-/// plain gravity, reading the fuel flow every 10 s as the paper did.
+/// Trims the aircraft at a point of the standard day and flies it there for a minute in still air, with rounded sensors
+/// and standard gravity, reading the fuel flow every 10 s as in the paper.
 ///
 /// # Errors
 /// [`StaticPointError`] where the aircraft cannot be flown there.
@@ -291,7 +293,7 @@ mod tests {
         assert_eq!(conditions.len(), 45);
         for condition in conditions {
             let point = static_point(&aircraft, TruthPhysics::full(), &condition).unwrap();
-            // Rounded to 1 lb/h an engine, six times: 0.1 % of 1 200 lb/h at most.
+            // Rounded to 1 lb/h per engine, six times: 0.1 % of 1 200 lb/h at most.
             let ratio = point.measured_fuel_flow_kg_s / point.trimmed.fuel_flow_kg_s;
             assert!((ratio - 1.0).abs() < 1e-3, "{condition:?}: {ratio}");
         }

@@ -1,7 +1,8 @@
-//! Everything that makes one flight's drag and fuel: the aircraft, its physics, and the effects it carries.
+//! All terms of one flight's drag and fuel: the aircraft, its physics, and the effects it carries.
 //!
-//! An effect is written here in the truth's own form, which is *not* the library's: saturating ageing for a rate a year, a
-//! log law for a power law, two half-parabolas for one. A diagnosis that found only its own formulas would prove nothing.
+//! An effect is written here in the truth's own form, which is *not* the library's: saturating ageing instead of a
+//! constant rate per year, a log law instead of a power law, two half-parabolas instead of one. A diagnosis that found
+//! only its own formulas would prove nothing.
 
 mod drag;
 mod fuel;
@@ -26,7 +27,7 @@ pub(crate) struct Terms {
     pub(crate) recorded: RecordedTerms,
 }
 
-/// What of the Earth an effect switches on.
+/// The effects of the Earth that are switched on.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EarthTerms {
     pub(crate) load_factor: bool,
@@ -36,12 +37,12 @@ pub(crate) struct EarthTerms {
     pub(crate) extra_slope: f64,
 }
 
-/// Errors of what is recorded.
+/// Errors of the recording.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RecordedTerms {
     pub(crate) mach_bias: f64,
     pub(crate) static_pressure_relative: f64,
-    /// SAT reads this high at `temperature_bias_mach`, K.
+    /// SAT reads high by this at `temperature_bias_mach`, K.
     pub(crate) temperature_bias_k: f64,
     pub(crate) temperature_bias_mach: f64,
     /// Recorded over true fuel flow of each engine.

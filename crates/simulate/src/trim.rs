@@ -55,7 +55,7 @@ pub enum TrimError {
     /// Outside the atmosphere.
     #[error(transparent)]
     Atmosphere(#[from] OutOfDomain),
-    /// More lift than the wing gives.
+    /// More lift than the wing can give.
     #[error("lift coefficient {lift_coefficient} above {maximum}")]
     LiftCoefficient {
         /// Needed.
@@ -63,7 +63,7 @@ pub enum TrimError {
         /// Largest.
         maximum: f64,
     },
-    /// More thrust than the engines give.
+    /// More thrust than the engines can give.
     #[error("thrust {thrust_n} N above {maximum_n} N")]
     Thrust {
         /// Needed, N.
@@ -74,7 +74,7 @@ pub enum TrimError {
 }
 
 impl AircraftTruth {
-    /// Trims the aircraft, no effect added.
+    /// Trims the aircraft, without effects.
     ///
     /// # Errors
     /// [`TrimError`] outside the atmosphere's or the aircraft's limits.
@@ -97,7 +97,7 @@ impl AircraftTruth {
     }
 }
 
-/// What a point's air does, before any drag is known.
+/// The air at a point, before any drag is known.
 struct Air {
     static_pressure_pa: f64,
     pressure_ratio: f64,
@@ -175,7 +175,7 @@ pub(crate) fn fuel_flow_at_thrust(
     Ok(FuelFlowTotal::kilograms_per_second(flow))
 }
 
-/// Trims with terms, limits not judged.
+/// Trims with terms; limits are not checked.
 pub(crate) fn trim_with(
     aircraft: &AircraftTruth,
     terms: &Terms,
@@ -287,8 +287,8 @@ mod tests {
 
     #[test]
     fn published_performance_of_the_citation_x() {
-        // aeropedia.com.au: maximum cruise M 0.91 at 37 000 ft; certified ceiling 51 000 ft. AIN, July 2014: FL450 at M 0.86
-        // after take-off some 500 lb below maximum take-off mass.
+        // aeropedia.com.au: maximum cruise M 0.91 at 37 000 ft; certified ceiling 51 000 ft. AIN, July 2014: FL450 at M
+        // 0.86 after take-off some 500 lb below maximum take-off mass.
         let aircraft = AircraftTruth::preset(Preset::CitationX).unwrap();
         let fits = |pounds, flight_level, mach| {
             let (pressure_altitude, sat) = isa(flight_level);
@@ -311,9 +311,10 @@ mod tests {
 
     #[test]
     fn a320_against_a_recorded_cruise() {
-        // Flight-data recorder of an A320-216 published with the Python library `traffic` (MIT), FL360, means of 20 min:
-        // gross mass, calibrated airspeed, total fuel flow. The zero-lift drag was set on the middle one; the others and
-        // the slope with mass test the rest. Its temperature is not recorded: ISA, which is worth 0.2 %/K.
+        // Flight-data recorder of an A320-216 published with the Python library `traffic` (MIT), FL360, means of 20
+        // min: gross mass, calibrated airspeed, total fuel flow. The zero-lift drag was fitted to the middle one; the
+        // others and the slope with mass test the rest. Its temperature is not recorded: ISA is assumed, which matters
+        // by 0.2 %/K.
         let aircraft = AircraftTruth::preset(Preset::A320).unwrap();
         let (pressure_altitude, sat) = isa(360.0);
         let static_pressure = atmos::isa::pressure(pressure_altitude).unwrap();

@@ -1,4 +1,4 @@
-//! `TRUTH.json`: what was true, for whoever scores a diagnosis. Never an input of one.
+//! `TRUTH.json`: the truth, for scoring a diagnosis. Never an input of one.
 
 use flight::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use crate::terms::{MAXIMUM_ENGINES, References};
 /// Name and version of this document.
 pub const TRUTH_SCHEMA: &str = "cruisefit.truth/1";
 
-/// What was true in a simulation.
+/// The truth of a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// Always [`TRUTH_SCHEMA`].
@@ -25,22 +25,22 @@ pub struct Truth {
     pub tails: Vec<TailTruth>,
 }
 
-/// What was true of a tail.
+/// The truth of a tail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TailTruth {
     /// Registration.
     pub tail: String,
     /// Its effects.
     pub effects: Vec<EffectTruth>,
-    /// Small effects that clutter it.
+    /// Its clutter: small effects.
     pub clutter: Vec<EffectTruth>,
-    /// Where effects are nothing.
+    /// Conditions at which effects are zero.
     pub references: References,
     /// Its flights, in order.
     pub flights: Vec<FlightTruth>,
 }
 
-/// An effect as it truly was.
+/// A true effect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectTruth {
     /// Which.
@@ -53,12 +53,12 @@ pub struct EffectTruth {
     /// `step_change`: of what.
     #[serde(default)]
     pub target: Option<StepTarget>,
-    /// Where it sits, if the plan said so.
+    /// Its position, if the plan gave one.
     #[serde(default)]
     pub at: Option<f64>,
 }
 
-/// What was true of a flight.
+/// The truth of a flight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlightTruth {
     /// Tail.
@@ -84,8 +84,8 @@ pub struct FlightTruth {
     pub isa_deviation_k: f64,
     /// Minutes in turbulence.
     pub turbulence_min: f64,
-    /// Books of energy.
+    /// Energy balance.
     pub energy: EnergyBook,
-    /// Books of fuel.
+    /// Fuel balance.
     pub mass: MassBook,
 }

@@ -49,7 +49,7 @@ impl Place {
         cross(self.along, self.position)
     }
 
-    /// The place a distance further on the great circle.
+    /// The point at a distance further along the great circle.
     pub(crate) fn ahead(&self, distance_m: f64) -> Self {
         let (sine, cosine) = (distance_m / EARTH_RADIUS_M).sin_cos();
         Self {
@@ -66,7 +66,7 @@ impl Place {
         let cosine = 1.0 - squared / 2.0 + squared * squared / 24.0;
         let position = normalize(combine(cosine, self.position, sine, self.along));
         let along = combine(cosine, self.along, -sine, self.position);
-        // Whatever rounding leaves along the vertical would grow over thousands of steps.
+        // Rounding errors along the vertical would otherwise grow over thousands of steps.
         let along = normalize(combine(1.0, along, -dot(along, position), position));
         Self { position, along }
     }
@@ -110,7 +110,7 @@ pub(crate) fn point(latitude_deg: f64, longitude_deg: f64) -> Vector {
     [cosine * cosine_longitude, cosine * sine_longitude, sine]
 }
 
-/// Unit vectors east and north. At a pole, where there are none, some pair at right angles.
+/// Unit vectors east and north. At a pole, where they are undefined, any pair at right angles.
 pub(crate) fn east_and_north(position: Vector) -> (Vector, Vector) {
     let horizontal = position[0].hypot(position[1]);
     let east = if horizontal > 1e-12 {

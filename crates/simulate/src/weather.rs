@@ -1,8 +1,9 @@
-//! The air along the way: temperature, wind, and the slope of pressure surfaces that goes with the wind.
+//! The air along the way: temperature, wind, and the slope of pressure surfaces that belongs to the wind.
 //!
-//! Fields are sums of plane waves in space, cut by the sphere: smooth, with exact gradients, and without a map projection.
-//! A wave of the stream function makes a wind along its crests, so the wind has no divergence; in geostrophic balance that
-//! same wind says how steep the pressure surface is. What is not in balance is a second, smaller set of waves.
+//! Fields are sums of plane waves in space, cut by the sphere: smooth, with exact gradients, and without a map
+//! projection. A wave of the stream function makes a wind along its crests, so the wind has no divergence; in
+//! geostrophic balance that same wind determines the slope of the pressure surface. The unbalanced part is a second,
+//! smaller set of waves.
 
 mod turbulence;
 
@@ -16,7 +17,7 @@ use crate::vector::{EARTH_RADIUS_M, Vector, combine, cross, dot, east_and_north}
 pub use turbulence::Turbulence;
 pub(crate) use turbulence::{DrydenFilters, Gusts, Patch, draw_patches, intensity_m_s};
 
-/// Weather of a plan: what is drawn anew for every flight.
+/// Weather of a plan: the ranges of what is drawn for every flight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Weather {
@@ -26,7 +27,7 @@ pub struct Weather {
     pub isa_deviation_field_k: f64,
     /// Mean over flights, and spread between them, of the eastward wind, m/s.
     pub wind_east_m_s: Spread,
-    /// The same of the northward wind, m/s.
+    /// The same for the northward wind, m/s.
     pub wind_north_m_s: Spread,
     /// Standard deviation along a flight of each component of the wind, m/s.
     pub wind_field_m_s: f64,
@@ -89,7 +90,7 @@ impl Weather {
     }
 }
 
-/// The air at a place.
+/// The air at a point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Air {
     /// Horizontal wind, where the air goes to, m/s.

@@ -1,20 +1,20 @@
 //! Recordings faster than the trim criteria, averaged into bins of 60 s.
 //!
 //! The criteria limit what may change from one sample to the next, one minute apart. At one sample a second the same
-//! limits would let everything pass, so the recording is averaged before anything else is derived from it.
+//! limits would accept everything, so the recording is averaged before anything else is derived from it.
 //!
 //! - A recording whose median step is below 59 s is averaged (TIME in whole seconds resolves a step to ±1 s, so 59 s
 //!   is a one-minute recording as sent).
-//! - The recording is split at its holes first, and bins begin anew with the first sample after one. A hole is a step
-//!   above 1.5 median steps and above half a bin: a lost second in a recording of one sample a second costs a bin
-//!   one sample, not its neighbors.
+//! - The recording is first split at its holes, and bins start again with the first sample after one. A hole is a step
+//!   above 1.5 median steps and above half a bin: a lost second in a recording of one sample a second costs a bin one
+//!   sample, not its neighbors.
 //! - A bin that holds less than half of the samples it should hold, bin length over median step, is dropped and
 //!   counted; it ends the run, as a hole does.
 //! - Time, fuel used and every other number are means over the bin's samples, so that rates between bins are those
 //!   between their mean times. Longitude and true heading are mean directions. In an optional column the mean is over
 //!   the samples that have a value. Anti-ice bleed is the share of the samples that have it on, from 0 to 1.
 //!
-//! Limit: what moves within a bin is not seen. A roll of ±3° within a minute passes as its mean.
+//! Limit: changes within a bin are not seen. A roll of ±3° within a minute passes as its mean.
 
 use core::ops::Range;
 
@@ -30,7 +30,7 @@ pub const AS_SENT_INTERVAL_MINIMUM_S: f64 = 59.0;
 
 /// A report of bins.
 pub(crate) struct Binned {
-    /// One sample a bin.
+    /// One sample per bin.
     pub(crate) report: Report,
     /// Bins without a hole or a dropped bin between them.
     pub(crate) runs: Vec<Range<usize>>,
@@ -38,7 +38,7 @@ pub(crate) struct Binned {
     pub(crate) incomplete_bins: usize,
 }
 
-/// Whether a recording is to be averaged.
+/// Whether a recording must be averaged.
 pub(crate) fn is_faster_than_bins(sample_interval_s: f64) -> bool {
     sample_interval_s < AS_SENT_INTERVAL_MINIMUM_S - interval::TIME_TOLERANCE_S
 }

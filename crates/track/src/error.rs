@@ -1,11 +1,11 @@
-//! Why a report has no track.
+//! Why a report does not give a track.
 
 use flight::{ReportDataError, TrackDataError};
 use units::OutOfDomain;
 
 use crate::{SAMPLE_INTERVAL_MAXIMUM_S, bins};
 
-/// Why a report has no track, in words for the person who sent it.
+/// Why a report does not give a track, worded for the person who sent it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackError {
@@ -20,7 +20,7 @@ pub enum TrackError {
     },
     /// Static air temperature is neither recorded nor assumed.
     #[error(
-        "static air temperature is not recorded and nothing stands in for it: \
+        "static air temperature is neither recorded nor assumed: \
          add a header line such as 'ASSUMED SAT=ISA+0' (deviation from the ISA in K)"
     )]
     StaticAirTemperatureMissing,
@@ -29,7 +29,7 @@ pub enum TrackError {
     AssumedTemperatureUndefined {
         /// Sample from 0.
         sample: usize,
-        /// What the atmosphere says.
+        /// The error of the atmosphere.
         source: OutOfDomain,
     },
     /// A fast recording too short or too patchy for three bins.
@@ -41,7 +41,7 @@ pub enum TrackError {
     TooFewBins {
         /// Bins with at least half of their samples.
         bins: usize,
-        /// Bins with less.
+        /// Bins with fewer.
         incomplete_bins: usize,
     },
     /// The averaged columns do not make a report.

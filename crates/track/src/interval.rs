@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use crate::TrackError;
 
-/// Largest median time step at which neighbors still say something about steadiness, s.
+/// Largest median time step at which neighbors still indicate steadiness, s.
 pub const SAMPLE_INTERVAL_MAXIMUM_S: f64 = 90.0;
 /// A step longer than this many median steps is a gap.
 pub const GAP_INTERVALS: f64 = 1.5;

@@ -1,15 +1,15 @@
 //! From a [`Report`] to a [`Track`]: sample runs, mass, along-path acceleration and vertical speed.
 //!
-//! What it is: everything that is known about the samples of one cruise before any of them is judged.
-//! What it is not: there is no trim criterion here and no performance model; no sample is dropped but in runs too
-//! short for a rate, and those are named in [`Track::dropped_runs`].
+//! What it is: everything that is known about the samples of one cruise before any of them is judged. What it is not:
+//! there is no trim criterion here and no performance model; samples are dropped only in runs too short for a rate, and
+//! those are listed in [`Track::dropped_runs`].
 //!
-//! The one design decision: rates are taken before anything is thrown away. A forward difference belongs to the start
-//! of its step, so the last kept sample of a stable piece still has the true rate of the step that follows it.
+//! The one design decision: rates are taken before anything is discarded. A forward difference belongs to the start of
+//! its step, so the last kept sample of a stable piece still has the true rate of the step that follows it.
 //!
 //! Limits: a step above 1.5 Δt ends a run, Δt being the median step. A recording with Δt below 59 s is averaged into
-//! bins of 60 s ([`bins`]); one with Δt above 90 s is refused, because its neighbors say nothing about steadiness.
-//! Static air temperature that was not recorded is taken from the header's assumption or refused, never guessed.
+//! bins of 60 s ([`bins`]); one with Δt above 90 s is refused, because its neighbors do not indicate steadiness. Static
+//! air temperature that was not recorded is taken from the header's assumption or refused, never guessed.
 //!
 //! ```
 //! use flight::{FlightIdentity, FuelFlowColumns, Report, ReportColumns, ReportHeader, Timestamp};
@@ -80,8 +80,8 @@ pub const RUN_SAMPLES_MINIMUM: usize = 3;
 /// The track of a report: samples as sent or averaged into bins, split into runs, with mass and rates.
 ///
 /// # Errors
-/// [`TrackError`] where the samples are too far apart, where nothing says what the static air temperature is, and
-/// where averaging leaves fewer than three bins.
+/// [`TrackError`] where the samples are too far apart, where static air temperature is neither recorded nor assumed,
+/// and where averaging leaves fewer than three bins.
 ///
 /// # Source
 /// `[steadiness.1]` to `[steadiness.6]`; Ghazi et al. 2020, eqs. (16) to (18).

@@ -3,14 +3,14 @@
 use flight::Report;
 use units::Mass;
 
-/// Gross mass in cruise from what the load sheet and the fuel-used counter say.
+/// Gross mass in cruise from load sheet and fuel-used counter.
 ///
 /// ```text
 /// m = m_ZFW + m_FOB − m_FU
 /// ```
 ///
-/// Fuel on board is that at main engine start and fuel used counts from there, so fuel burnt by the auxiliary power
-/// unit in flight is not in it.
+/// Fuel on board is that at main engine start and fuel used counts from there, so it does not include fuel burnt by the
+/// auxiliary power unit in flight.
 ///
 /// # Source
 /// `[steadiness.3]`; Ghazi et al. 2020, eq. (16).

@@ -1,6 +1,6 @@
-//! Rates along a run: forward differences, and what stands at the last sample.
+//! Rates along a run: forward differences, and an extrapolated rate at the last sample.
 
-/// Rates that the line at the end of a run is fitted through.
+/// Number of rates through which the line at the end of a run is fitted.
 const END_FIT_RATES: usize = 3;
 
 /// Rate of a column at each sample of a run, in the column's unit per second.
@@ -19,7 +19,7 @@ const END_FIT_RATES: usize = 3;
 /// Both slices have the run's length, at least three; time strictly increases.
 ///
 /// # Source
-/// `[steadiness.4]` to `[steadiness.6]`; Ghazi et al. 2020, eqs. (17) and (18). The paper says that the last point's
+/// `[steadiness.4]` to `[steadiness.6]`; Ghazi et al. 2020, eqs. (17) and (18). The paper states that the last point's
 /// value is extrapolated from the three points before it; that the line is one of least squares is our reading.
 pub(crate) fn along_run(time_s: &[f64], values: &[f64]) -> Vec<f64> {
     let last = values.len() - 1;

@@ -1,11 +1,11 @@
-//! Static air temperature of each sample: recorded, or what the header says stands in for it.
+//! Static air temperature of each sample: recorded, or by the header's assumption.
 
 use flight::{Assumption, Report, TemperatureSource};
 use units::PressureAltitude;
 
 use crate::TrackError;
 
-/// Static air temperature of each sample, K, and where it comes from. A recording goes before an assumption.
+/// Static air temperature of each sample, K, and its source. A recording takes precedence over an assumption.
 pub(crate) fn static_air_temperature_k(
     report: &Report,
 ) -> Result<(Vec<f64>, TemperatureSource), TrackError> {

@@ -1,4 +1,4 @@
-//! The track of hand-made reports. Every expected number is computed by hand in the comment beside it.
+//! The track of hand-made reports. Every expected number is computed by hand in the comment next to it.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests; clippy.toml covers test functions only")]
 
@@ -140,7 +140,7 @@ fn a_missing_temperature_needs_an_assumption() {
         "{refused}"
     );
 
-    // A recording goes before an assumption.
+    // A recording takes precedence over an assumption.
     sent.static_air_temperature_k = Some(vec![220.0; 3]);
     let track = derive(Report::new(header, sent).unwrap()).unwrap();
     assert_eq!(track.temperature_source(), TemperatureSource::Recorded);
@@ -211,7 +211,7 @@ fn incomplete_bins_are_dropped_and_counted() {
     // Half of the samples is enough: 210 s leave 30 of 60.
     assert_eq!(self::track(columns(every(1.0, 210))).report().len(), 4);
 
-    // Two bins are no track.
+    // Two bins are not enough for a track.
     let refused = refusal(columns(every(1.0, 149)));
     assert_eq!(refused, TrackError::TooFewBins { bins: 2, incomplete_bins: 1 });
 }
@@ -225,7 +225,7 @@ fn a_lost_second_costs_one_sample_and_a_hole_begins_anew() {
     assert_eq!(lost.runs().len(), 1);
     close(&lost.report().columns().time_s, &[29.5, 5300.0 / 59.0, 149.5, 209.5]);
 
-    // Three minutes, then 31 s of silence, then three minutes: bins begin anew at 211 s.
+    // Three minutes, then 31 s of silence, then three minutes: bins start again at 211 s.
     let time_s = (0..180).chain(211..391).map(f64::from).collect();
     let hole = track(columns(time_s));
     close(&hole.report().columns().time_s, &[29.5, 89.5, 149.5, 240.5, 300.5, 360.5]);
@@ -249,7 +249,7 @@ fn thirty_and_forty_five_seconds_are_averaged_too() {
     let half = track(columns(every(30.0, 8)));
     close(&half.report().columns().time_s, &[15.0, 75.0, 135.0, 195.0]);
 
-    // 0 45 | 90 | 135 | 180 225 | 270 | 315: bins of unequal count, each standing for 60 s, in one run.
+    // 0 45 | 90 | 135 | 180 225 | 270 | 315: bins of unequal count, each representing 60 s, in one run.
     let uneven = track(columns(every(45.0, 8)));
     close(&uneven.report().columns().time_s, &[22.5, 90.0, 135.0, 202.5, 270.0, 315.0]);
     close(&[uneven.sample_interval_s()], &[60.0]);

@@ -4,7 +4,7 @@
 pub const METERS_PER_FOOT: f64 = 0.3048;
 /// Meters in a nautical mile. International hydrographic conference, 1929 (exact).
 pub const METERS_PER_NAUTICAL_MILE: f64 = 1852.0;
-/// Meters per second in a knot (exact by definition: one nautical mile an hour).
+/// Meters per second in a knot (exact by definition: one nautical mile per hour).
 pub const METERS_PER_SECOND_PER_KNOT: f64 = METERS_PER_NAUTICAL_MILE / 3600.0;
 /// Meters per second in a foot per minute.
 pub const METERS_PER_SECOND_PER_FOOT_PER_MINUTE: f64 = METERS_PER_FOOT / 60.0;
@@ -18,7 +18,7 @@ pub const NEWTONS_PER_POUND_FORCE: f64 = KILOGRAMS_PER_POUND * STANDARD_GRAVITY_
 pub const KILOGRAMS_PER_SECOND_PER_POUND_PER_HOUR: f64 = KILOGRAMS_PER_POUND / 3600.0;
 /// Kilograms per second in a kilogram per hour.
 pub const KILOGRAMS_PER_SECOND_PER_KILOGRAM_PER_HOUR: f64 = 1.0 / 3600.0;
-/// kg/(N s) in lb/(lbf h): the pounds cancel, one standard gravity and one hour stay.
+/// kg/(N s) in lb/(lbf h): the pounds cancel; one standard gravity and one hour remain.
 pub const TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR: f64 = 1.0 / (3600.0 * STANDARD_GRAVITY_M_S2);
 /// Kelvin at 0 °C. ITS-90 (exact).
 pub const KELVIN_AT_ZERO_CELSIUS: f64 = 273.15;

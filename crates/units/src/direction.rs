@@ -1,8 +1,8 @@
-//! Means of directions, where 359° and 1° lie beside each other.
+//! Means of directions, where 359° and 1° are close to each other.
 
 use crate::convert::RADIANS_PER_DEGREE;
 
-/// Length of the mean unit vector below which directions cancel and their mean points nowhere.
+/// Length of the mean unit vector below which directions cancel and have no mean.
 const RESULTANT_MINIMUM: f64 = 1e-9;
 
 /// Mean direction (circular mean) of angles in degrees, from 0 to below 360.

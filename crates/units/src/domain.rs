@@ -1,4 +1,4 @@
-//! The shared refusal of a value outside its domain.
+//! The shared error for a value outside its domain.
 
 /// A quantity outside the domain in which a function or constructor is valid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -8,7 +8,7 @@ pub struct OutOfDomain {
     pub quantity: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What was given.
+    /// The value given.
     pub value: f64,
     /// Smallest admissible value.
     pub minimum: f64,

@@ -1,8 +1,8 @@
 //! SI newtypes for the quantities of flight that must not be mixed up.
 //!
-//! What it is: one transparent type a *kind* of quantity, so that true and calibrated airspeed, pressure and
-//! geometric altitude, static and total temperature, zero-fuel and gross mass cannot change places in a call.
-//! What it is not: a unit system. Inside kernels, columns and files numbers are `f64` with the unit in the name.
+//! What it is: one transparent type per *kind* of quantity, so that true and calibrated airspeed, pressure and
+//! geometric altitude, static and total temperature, zero-fuel and gross mass cannot be swapped in a call. What it is
+//! not: a unit system. Inside kernels, columns and files numbers are `f64` with the unit in the name.
 //!
 //! The one design decision: kinds, not dimensions. The dangerous mistakes of this field are between quantities of
 //! the same dimension, which a dimension-checking library does not separate.
@@ -18,7 +18,7 @@
 //! assert!((TrueAirspeed::knots(460.0).to_meters_per_second() - 236.644_444).abs() < 1e-6);
 //! ```
 //!
-//! A calibrated airspeed is no true airspeed:
+//! A calibrated airspeed is not a true airspeed:
 //!
 //! ```compile_fail
 //! use units::{CalibratedAirspeed, TrueAirspeed};
@@ -26,7 +26,7 @@
 //! density_kg_m3(CalibratedAirspeed::knots(250.0));
 //! ```
 //!
-//! A bare number is no quantity:
+//! A bare number is not a quantity:
 //!
 //! ```compile_fail
 //! let altitude: units::PressureAltitude = 12_000.0.into();

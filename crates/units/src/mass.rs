@@ -1,4 +1,4 @@
-//! Mass and its flow. Fuel flow says whose: of one engine or of all together.
+//! Mass and its flow. The types of fuel flow distinguish one engine from all together.
 
 use crate::TrueAirspeed;
 use crate::convert::{
@@ -35,7 +35,7 @@ quantity!(
       TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR, "lb/(lbf h)")]
 );
 quantity!(
-    /// Specific air range: true airspeed over total fuel flow, distance through the air for a mass of fuel.
+    /// Specific air range: true airspeed divided by total fuel flow, the distance through the air per mass of fuel.
     SpecificRange, "m/kg",
     [(meters_per_kilogram, to_meters_per_kilogram, 1.0, "m/kg"),
      (nautical_miles_per_pound, to_nautical_miles_per_pound,
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn tsfc_of_one_pound_per_pound_force_hour() {
-        // 2.8325e-5 kg/(N s), the value every propulsion text quotes for 1 lb/(lbf h).
+        // 2.8325e-5 kg/(N s), the value that every propulsion text gives for 1 lb/(lbf h).
         let tsfc = Tsfc::pounds_per_pound_force_hour(1.0).to_kilograms_per_newton_second();
         assert!((tsfc - 2.8325e-5).abs() < 5e-10, "{tsfc}");
     }

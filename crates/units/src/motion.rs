@@ -28,7 +28,7 @@ quantity!(
     [(square_meters, to_square_meters, 1.0, "m²")]
 );
 quantity!(
-    /// Angle: latitude, heading, roll; which one is said by the argument's name.
+    /// Angle: latitude, heading, roll; the argument's name states which.
     Angle, "rad",
     [(radians, to_radians, 1.0, "radians"), (degrees, to_degrees, RADIANS_PER_DEGREE, "degrees")]
 );

@@ -1,4 +1,4 @@
-//! The one macro: a transparent newtype over an SI `f64`, with the arithmetic that means something for every kind.
+//! The one macro: a transparent newtype over an SI `f64`, with the arithmetic that is meaningful for every kind.
 
 /// Defines a quantity: `quantity!(doc, Name, "unit", [(constructor, reader, factor-to-SI), …])`.
 ///
@@ -25,7 +25,7 @@ macro_rules! quantity {
                 }
             )+
 
-            /// Whether the number behind is finite.
+            /// Whether the number is finite.
             #[must_use]
             pub const fn is_finite(self) -> bool {
                 self.0.is_finite()
@@ -47,7 +47,7 @@ macro_rules! quantity {
     };
 }
 
-/// Adds `+`, `-` with the same kind, scaling by `f64` and the ratio of two, to a quantity for which sums mean something.
+/// For a quantity whose sums are meaningful: adds `+`, `-` with the same kind, scaling by `f64`, and the ratio of two.
 macro_rules! additive {
     ($($name:ident),+ $(,)?) => {$(
         impl core::ops::Add for $name {

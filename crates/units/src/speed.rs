@@ -1,4 +1,4 @@
-//! Speeds: every kind its own type, for all are meters per second.
+//! Speeds: each kind has its own type, because all are in meters per second.
 
 use crate::convert::METERS_PER_SECOND_PER_KNOT;
 use crate::quantity::{additive, quantity};
@@ -10,19 +10,19 @@ quantity!(
      (knots, to_knots, METERS_PER_SECOND_PER_KNOT, "knots")]
 );
 quantity!(
-    /// Calibrated airspeed (CAS): what the impact pressure means at sea level.
+    /// Calibrated airspeed (CAS): the airspeed that has this impact pressure at sea level of the standard day.
     CalibratedAirspeed, "m/s",
     [(meters_per_second, to_meters_per_second, 1.0, "m/s"),
      (knots, to_knots, METERS_PER_SECOND_PER_KNOT, "knots")]
 );
 quantity!(
-    /// Equivalent airspeed (EAS): what the dynamic pressure means at sea level.
+    /// Equivalent airspeed (EAS): the airspeed that has this dynamic pressure at sea level of the standard day.
     EquivalentAirspeed, "m/s",
     [(meters_per_second, to_meters_per_second, 1.0, "m/s"),
      (knots, to_knots, METERS_PER_SECOND_PER_KNOT, "knots")]
 );
 quantity!(
-    /// Ground speed: speed over the ground, what along-path acceleration is taken from.
+    /// Ground speed: speed over the ground; along-path acceleration is derived from it.
     GroundSpeed, "m/s",
     [(meters_per_second, to_meters_per_second, 1.0, "m/s"),
      (knots, to_knots, METERS_PER_SECOND_PER_KNOT, "knots")]
@@ -34,7 +34,7 @@ quantity!(
      (knots, to_knots, METERS_PER_SECOND_PER_KNOT, "knots")]
 );
 quantity!(
-    /// Mach number: true airspeed over speed of sound.
+    /// Mach number: true airspeed divided by speed of sound.
     Mach, "Mach",
     [(new, value, 1.0, "the ratio itself")]
 );

@@ -3,7 +3,7 @@
 use crate::quantity::{additive, quantity};
 
 quantity!(
-    /// Pressure; static, total or impact is said by the argument's name.
+    /// Pressure; the argument's name states whether it is static, total or impact pressure.
     Pressure, "Pa",
     [(pascals, to_pascals, 1.0, "pascals"), (hectopascals, to_hectopascals, 100.0, "hectopascals")]
 );

@@ -1,10 +1,10 @@
-//! Absolute temperature and temperature difference: two types, because only some sums mean something.
+//! Absolute temperature and temperature difference: two types, because only some sums are meaningful.
 
 use crate::convert::KELVIN_AT_ZERO_CELSIUS;
 use crate::quantity::{additive, quantity};
 
 quantity!(
-    /// Absolute temperature. Whether static (SAT) or total (TAT) is said by the argument's name.
+    /// Absolute temperature. The argument's name states whether it is static (SAT) or total (TAT).
     Temperature, "K",
     [(kelvin, to_kelvin, 1.0, "kelvin")]
 );

@@ -1,6 +1,6 @@
 //! A symmetric positive definite matrix over the nodes of a grid, in blocks along its diagonal.
 //!
-//! A difficult file. Nodes are taken row by row of one axis and so many rows make a block that entries couple only
+//! A difficult file. Nodes are taken row by row of one axis, and a block has enough rows that entries couple only
 //! neighboring blocks: the matrix is block tridiagonal, and so is the part of its inverse that variances need. The
 //! Cholesky factor has blocks L on the diagonal and B below it. The selected inverse S follows backwards (Takahashi,
 //! Fagan and Chin 1973; here in blocks):
@@ -23,7 +23,7 @@ use faer::linalg::triangular_solve::{
 use faer::{Accum, Auto, Mat, Par, Spec};
 use lut::Grid;
 
-/// Which node goes where: blocks of whole rows, along the axis that makes the smaller blocks.
+/// Position of each node: blocks of whole rows, along the axis that makes the smaller blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout {
     /// Nodes of the outer and of the inner axis, in the blocks' sense.
@@ -36,7 +36,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// A layout for entries that couple at most so many rows along x and along y.
+    /// A layout for entries that couple at most this many rows along x and along y.
     pub(super) fn new(grid: &Grid, reach_x: usize, reach_y: usize) -> Self {
         let (x, y) = (grid.x().len(), grid.y().len());
         let swapped = reach_y * x < reach_x * y;
@@ -61,11 +61,11 @@ impl Layout {
     }
 }
 
-/// The matrix, while it is added up. Of diagonal blocks only the lower triangle.
+/// The matrix, while it is summed. Only the lower triangle of diagonal blocks is used.
 #[derive(Debug)]
 pub(super) struct BlockMatrix {
     layout: Layout,
-    /// Place of every node: thousands of additions would divide for it again and again.
+    /// Position of every node: thousands of additions would otherwise divide for it again and again.
     places: Vec<(usize, usize)>,
     diagonal: Vec<Mat<f64>>,
     below: Vec<Mat<f64>>,
@@ -115,7 +115,7 @@ impl BlockMatrix {
     }
 }
 
-/// A Cholesky factor in blocks. Above the diagonal of the diagonal blocks is rubbish that nobody reads.
+/// A Cholesky factor in blocks. The diagonal blocks hold unused values above their diagonal.
 #[derive(Clone, Debug)]
 pub(super) struct BlockFactor {
     layout: Layout,
@@ -176,13 +176,13 @@ impl BlockFactor {
             let mut gain = self.below[block].clone();
             let upper = self.lower[block].transpose();
             solve_upper_triangular_in_place(upper, gain.as_mut().transpose_mut(), Par::Seq);
-            let mut beside = Mat::zeros(later, earlier);
+            let mut neighbor = Mat::zeros(later, earlier);
             let after = &diagonal[diagonal.len() - 1];
-            matmul(beside.as_mut(), Accum::Replace, after, &gain, -1.0, Par::Seq);
+            matmul(neighbor.as_mut(), Accum::Replace, after, &gain, -1.0, Par::Seq);
             let mut own = inverse(&self.lower[block]);
-            matmul(own.as_mut(), Accum::Add, gain.transpose(), &beside, -1.0, Par::Seq);
+            matmul(own.as_mut(), Accum::Add, gain.transpose(), &neighbor, -1.0, Par::Seq);
             diagonal.push(own);
-            below.push(beside);
+            below.push(neighbor);
         }
         diagonal.reverse();
         below.reverse();
@@ -218,7 +218,7 @@ impl BlockFactor {
     }
 }
 
-/// The inverse where the matrix has blocks.
+/// The inverse at the positions where the matrix has blocks.
 #[derive(Clone, Debug)]
 pub(super) struct SelectedInverse {
     layout: Layout,
@@ -227,7 +227,7 @@ pub(super) struct SelectedInverse {
 }
 
 impl SelectedInverse {
-    /// The inverse's entry of two nodes of the same or of neighboring blocks; the corners of a cell always are.
+    /// The inverse's entry for two nodes of the same or of neighboring blocks; the corners of a cell always are.
     pub(super) fn entry(&self, node: usize, other: usize) -> f64 {
         let (mut later, mut earlier) = (self.layout.place(node), self.layout.place(other));
         if later < earlier {

@@ -1,4 +1,4 @@
-//! What was learnt, as plain numbers for a file.
+//! The learnt state as plain numbers for a file.
 
 use flight::Timestamp;
 use lut::Table;
@@ -8,9 +8,9 @@ use super::information::{Information, Parts};
 use super::outlier_weights::{ExpectedResidual, TERMS, TRIANGLE};
 use super::{BayesSettings, BayesState, InitialError};
 
-/// What a [`BayesState`] has learnt, without grid, initial table and settings, which the model keeps anyway.
+/// What a [`BayesState`] has learnt, without grid, initial table and settings, which the model holds already.
 ///
-/// Numbers come back to the bit. Nodes are in ascending order.
+/// Numbers are restored to the bit. Nodes are in ascending order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BayesStateData {
@@ -18,29 +18,30 @@ pub struct BayesStateData {
     pub flights: u64,
     /// Segments learnt.
     pub segments: u64,
-    /// The instant that the numbers are for, as ISO 8601 text; `None` where nothing was learnt.
+    /// The instant to which the numbers refer, as ISO 8601 text; `None` where nothing was learnt.
     pub newest: Option<String>,
     /// Nodes ever touched, ascending.
     pub nodes: Vec<usize>,
-    /// Information matrix over these nodes, lower triangle. Row k ends at the diagonal; what is missing at its start
-    /// is 0.
+    /// Information matrix over these nodes, lower triangle. Row k ends at the diagonal; entries missing at its start
+    /// are 0.
     pub information: Vec<Vec<f64>>,
     /// Information vector.
     pub vector: Vec<f64>,
     /// Effective number of observations.
     pub observations: Vec<f64>,
-    /// What outlier weights are judged by, the expected residual: 21 numbers of a triangle, 6 of a vector. The name is the file format's.
+    /// State of the outlier weights, the expected residual: 21 numbers of a triangle, 6 of a vector. The name is the
+    /// file format's.
     pub judge: Vec<f64>,
 }
 
-/// Why numbers are no state.
+/// Why numbers do not make a state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateDataError {
-    /// The initial table is no base.
+    /// The initial table cannot be corrected by a relative amount.
     #[error(transparent)]
     Initial(#[from] InitialError),
-    /// A list has not one entry for each touched node.
+    /// The length of a list differs from the number of touched nodes.
     #[error("{list} of what was learnt has {found} entries, expected {expected}")]
     Length {
         /// Which list.
@@ -76,13 +77,13 @@ pub enum StateDataError {
         /// The value.
         value: f64,
     },
-    /// The instant is missing, not to be read, or given although nothing was learnt.
-    #[error("the newest instant of what was learnt is missing or no instant")]
+    /// The instant is missing, unreadable, or given although nothing was learnt.
+    #[error("the newest instant of what was learnt is missing or not an instant")]
     Newest,
 }
 
 impl BayesState {
-    /// What was learnt, for a file.
+    /// The learnt state, for a file.
     #[must_use]
     pub fn to_data(&self) -> BayesStateData {
         let Parts { nodes, rows, vector, observations } = self.information.to_parts();
@@ -104,7 +105,7 @@ impl BayesState {
         }
     }
 
-    /// Back from [`to_data`](Self::to_data), with the initial table and the settings it was learnt with.
+    /// Restores a state from [`to_data`](Self::to_data), with the initial table and the settings it was learnt with.
     ///
     /// # Errors
     /// [`StateDataError`] where the data are not of this grid or damaged.
@@ -157,7 +158,7 @@ fn check(data: &BayesStateData, nodes: usize) -> Result<(), StateDataError> {
         lowest = node + 1;
     }
     for (row, entries) in data.information.iter().enumerate() {
-        // A row without entries is a node that was touched with weight 0 only: a segment on a grid line.
+        // A row without entries is a node that was touched with weight 0 only: by a segment on a grid line.
         if entries.len() > row + 1 {
             return Err(StateDataError::Row { row, found: entries.len(), maximum: row + 1 });
         }

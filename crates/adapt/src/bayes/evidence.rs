@@ -18,16 +18,17 @@ pub struct Search {
     pub largest_factor: f64,
     /// The search ends when a factor this small improves nothing.
     pub smallest_factor: f64,
-    /// The search ends after so many evaluations.
+    /// The search ends after this many evaluations.
     pub maximum_evaluations: usize,
     /// How far a setting may be from its start: a factor of this size is one standard deviation of a log-normal prior.
-    /// Some tens of flights say little about some settings; without it those would wander.
+    /// Some tens of flights carry little information about some settings; without the prior those would wander.
     pub prior_factor: f64,
-    /// Whether the correction's size, slopes and bends are searched too, and not noise alone.
+    /// Whether the correction's size, slopes and bends are searched too, or only the noise.
     ///
-    /// One aircraft is one draw of a level, two slopes and three bends, however many its flights: it says little about
-    /// how large they usually are. On three simulated fleets ten flights made slopes 2 to 3 times as large for 6 to 10
-    /// in ln evidence, and the standard deviation over unseen flights 0.88 to 0.95 % instead of 0.80 to 0.83 %.
+    /// One aircraft is one draw of a level, two slopes and three bends, however many its flights: it carries little
+    /// information about how large they usually are. On three simulated fleets, ten flights made slopes 2 to 3 times as
+    /// large for a gain of 6 to 10 in ln evidence, and the standard deviation over unseen flights 0.88 to 0.95 %
+    /// instead of 0.80 to 0.83 %.
     pub with_correction: bool,
 }
 
@@ -38,11 +39,11 @@ pub struct Tuned {
     pub settings: BayesSettings,
     /// Natural logarithm of their evidence, without the search's prior.
     pub log_evidence: f64,
-    /// The way there; the first step is the start.
+    /// The steps of the search; the first is the start.
     pub path: Vec<TuneStep>,
     /// Evaluations of the evidence.
     pub evaluations: usize,
-    /// Settings that ended where the search may not go further: the flights say little about them, or the limit is
+    /// Settings that ended at the limit of the search: the flights carry little information about them, or the limit is
     /// too narrow.
     pub at_limit: Vec<&'static str>,
 }
@@ -50,8 +51,8 @@ pub struct Tuned {
 /// An improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TuneStep {
-    /// What was changed; "outlier weights" where outlier weights were computed anew, after which evidences compare no longer
-    /// with those before.
+    /// What was changed; "outlier weights" where outlier weights were computed again, after which evidences cannot be
+    /// compared with those before.
     pub changed: &'static str,
     /// The settings after it.
     pub settings: BayesSettings,
@@ -63,17 +64,17 @@ pub struct TuneStep {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TuneError {
-    /// The initial table is no base.
+    /// The initial table cannot be corrected by a relative amount.
     #[error(transparent)]
     Initial(#[from] InitialError),
-    /// Prior and information are no precision matrix together.
+    /// Prior plus information is not a positive definite precision matrix.
     #[error(transparent)]
     Solve(#[from] SolveError),
 }
 
-/// How many of the changes are of the correction, the first ones.
+/// The number of changes that concern the correction; they come first.
 const CORRECTION: usize = 3;
-/// What the search changes, as one: the flights cannot tell two slopes or three bends apart.
+/// The settings that the search changes together: the flights cannot distinguish two slopes or three bends.
 type Change = fn(&mut SettingValues, f64);
 const CHANGES: [(&str, Change); CORRECTION + 4] = [
     ("correction_std", |values, factor| values.correction_std *= factor),
@@ -92,12 +93,12 @@ const CHANGES: [(&str, Change); CORRECTION + 4] = [
     ("sensor_segment_factor", |values, factor| values.sensor_segment_factor *= factor),
 ];
 
-/// Outlier weights belong to settings: how often they are renewed with the settings found.
+/// Outlier weights depend on the settings: how often they are computed again with the settings found.
 const ROUNDS: usize = 2;
 
 impl Search {
-    /// Factors of 2 down to 2^¼, up to 8 in all, at most 400 evaluations, each setting known to a factor of 2; noise
-    /// alone.
+    /// Factors of 2 down to 2^¼, up to 8 in all, at most 400 evaluations, each setting known to a factor of 2; only
+    /// noise.
     #[must_use]
     pub const fn standard() -> Self {
         Self {
@@ -117,10 +118,10 @@ impl Search {
 }
 
 /// Natural logarithm of the marginal likelihood of flights in the order learnt, with the outlier weights of these
-/// settings. Constants included, so that settings compare; knowledge does not age in it.
+/// settings. Constants are included, so that settings can be compared; knowledge does not age in it.
 ///
 /// # Errors
-/// [`TuneError`] where the initial table is no base.
+/// [`TuneError`] where the initial table cannot be corrected.
 ///
 /// # Source
 /// Book `[bayes.10]`.
@@ -133,20 +134,20 @@ pub fn log_evidence(
     evidence(initial, settings, flights, &weights)
 }
 
-/// Searches for the settings of the largest evidence times [`Search::prior_factor`]'s prior, one after the other by
-/// factors: deterministic, and never far.
+/// Searches for the settings of the largest evidence times [`Search::prior_factor`]'s prior, one setting after the
+/// other, by factors: deterministic, and never far from the start.
 ///
-/// Changed is the noise of flights and of segments: the extra one, and a factor on what the sensors propagate, which
+/// It changes the noise of flights and of segments: the extra one, and a factor on what the sensors propagate, which
 /// handbook values state too large for a quiet fleet; with [`Search::with_correction`] also the correction's size, its
-/// slopes and its bends (each by one factor). Degrees of freedom and half-life stay: outliers are too few, and ageing is
-/// no matter of this likelihood ([`search_half_life`](super::search_half_life)). With fewer than some tens of flights
+/// slopes and its bends (each by one factor). Degrees of freedom and half-life stay: outliers are too few, and ageing
+/// is not part of this likelihood ([`search_half_life`](super::search_half_life)). With fewer than some tens of flights
 /// expect little more than noise.
 ///
-/// Outlier weights shrink a little what they weigh: where the noise of the start is right and normal, standard
-/// deviations 8 % too small are found.
+/// Outlier weights shrink the residuals slightly: where the noise of the start is right and normal, the standard
+/// deviations found are 8 % too small.
 ///
 /// # Errors
-/// [`TuneError`] where the initial table is no base.
+/// [`TuneError`] where the initial table cannot be corrected.
 pub fn tune(
     initial: &Table,
     start: BayesSettings,
@@ -200,7 +201,7 @@ pub fn tune(
             }
         }
     }
-    // One more smallest step would leave the limit.
+    // One more smallest step would exceed the limit.
     let limit = search.largest_factor / search.smallest_factor;
     let at_limit = CHANGES
         .iter()
@@ -211,7 +212,7 @@ pub fn tune(
     Ok(Tuned { settings: best.0, log_evidence: best.1, path, evaluations, at_limit })
 }
 
-/// The start with every change applied; `None` out of a setting's limits.
+/// The start with every change applied; `None` where a setting exceeds its limits.
 fn changed_by(start: &BayesSettings, factors: &[f64; CHANGES.len()]) -> Option<BayesSettings> {
     let mut values = *start.values();
     for ((_, change), factor) in CHANGES.iter().zip(factors) {
@@ -220,7 +221,7 @@ fn changed_by(start: &BayesSettings, factors: &[f64; CHANGES.len()]) -> Option<B
     BayesSettings::new(values).ok()
 }
 
-/// Settings without ageing, which is no likelihood.
+/// Settings without ageing, because the likelihood has none.
 fn ageless(settings: BayesSettings) -> BayesSettings {
     let values = SettingValues { half_life_days: None, ..*settings.values() };
     BayesSettings::new(values).unwrap_or(settings)

@@ -5,7 +5,7 @@ use lut::{Grid, Table};
 /// Least share of the initial drag that a correction may leave.
 const MINIMUM_SHARE: f64 = 0.1;
 
-/// Where the guard acted.
+/// Report of the guard's action.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GuardReport {
     /// The nodes it changed, ascending.
@@ -21,11 +21,11 @@ pub struct GuardedNode {
     pub before: f64,
     /// Drag coefficient in the table.
     pub after: f64,
-    /// Why.
+    /// The reason.
     pub reason: GuardReason,
 }
 
-/// What was not physical.
+/// What was unphysical.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GuardReason {
     /// Less than a tenth of the initial drag, or negative.
@@ -34,11 +34,11 @@ pub enum GuardReason {
     NotRising,
 }
 
-/// Projects corrected drag on the physical: the nearest in the sense of `precisions` that keeps what the initial table
-/// has.
+/// Projects corrected drag onto physical drag: the nearest, in the sense of `precisions`, that keeps the initial
+/// table's shape where it rises.
 ///
 /// The initial table decides where drag must rise: along lift coefficient, at every Mach number, between neighbors
-/// above its minimum. Where the initial table itself falls there, nothing is asked. The projection is an isotonic
+/// above its minimum. Where the initial table itself falls, there is no constraint. The projection is an isotonic
 /// regression by pooling adjacent violators (Ayer et al. 1955): it ends in a flat stretch, never in a wiggle.
 pub(super) fn project(
     initial: &Table,

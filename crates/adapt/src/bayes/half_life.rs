@@ -1,4 +1,5 @@
-//! How fast knowledge ages, from past flights: each is predicted from those before it, by several half-lives.
+//! How fast knowledge ages, estimated from past flights: each is predicted from those before it, with several
+//! half-lives.
 
 use flight::Observation;
 use lut::Table;
@@ -7,9 +8,9 @@ use super::evidence::TuneError;
 use super::settings::SettingValues;
 use super::{BayesSettings, BayesState, Flight, days_between};
 
-/// Half-lives that are tried, days, besides none: a month to eight years, in factors of 2.
+/// Half-lives that are tried, days, in addition to none: a month to eight years, in factors of 2.
 const CANDIDATES_DAYS: [f64; 9] = [30.0, 60.0, 120.0, 240.0, 480.0, 960.0, 1920.0, 3840.0, 7680.0];
-/// Longer half-lives than this many times the flights' span are as good as none.
+/// Half-lives longer than this many times the flights' span are equivalent to none.
 const LONGEST_OVER_SPAN: f64 = 4.0;
 /// Gain in ln density that ageing must bring: "strong" evidence (Kass and Raftery 1995, section 3.2: 2 ln B > 6).
 const NEEDED_GAIN: f64 = 3.0;
@@ -24,13 +25,14 @@ pub struct HalfLife {
     pub tried: Vec<(Option<f64>, f64)>,
 }
 
-/// Searches for the half-life that predicts flights best from those before, in the order given; all other settings stay.
+/// Searches for the half-life that predicts flights best from those before, in the order given; all other settings
+/// stay.
 ///
-/// It is kept only where it is worth more than 3 in ln density against none: without ageing, a half-life throws
-/// knowledge away. Costs a solve a flight and half-life.
+/// It is kept only where it gains more than 3 in ln density over none: without ageing, a half-life discards knowledge.
+/// Costs one solve per flight and half-life.
 ///
 /// # Errors
-/// [`TuneError`] where the initial table is no base.
+/// [`TuneError`] where the initial table cannot be corrected.
 ///
 /// # Source
 /// Book `[bayes.12]`.
@@ -54,7 +56,7 @@ pub fn search_half_life(
         let Some(settings) = with(half_life_days) else { continue };
         let log_density = log_predictive_density(initial, settings, flights)?;
         tried.push((half_life_days, log_density));
-        // Against none, a half-life must be worth it; among half-lives the better one is taken.
+        // Compared with none, a half-life must gain enough; among half-lives the better one is taken.
         let needed = match &best {
             None => f64::NEG_INFINITY,
             Some((best, density)) if best.values().half_life_days.is_none() => {
@@ -81,7 +83,7 @@ pub fn search_half_life(
 /// on the half-life and are left out.
 ///
 /// # Errors
-/// [`TuneError`] where the initial table is no base.
+/// [`TuneError`] where the initial table cannot be corrected.
 pub fn log_predictive_density(
     initial: &Table,
     settings: BayesSettings,

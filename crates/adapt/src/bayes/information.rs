@@ -1,9 +1,9 @@
-//! What flights said about nodes: precision matrix and vector, over the nodes that were ever touched.
+//! The information that flights carry about nodes: precision matrix and vector, over the nodes that were ever touched.
 //!
-//! A flight's common error couples all nodes that the flight touched, so that no fixed stencil holds the sum exactly.
-//! The nodes of the flown region do, in a packed triangle: it is exact, it adds, and it grows with the region, not with
-//! the flights. Slots are given in order of first touch; every number is a sum over flights in the order learnt, the
-//! same whatever its slot.
+//! A flight's common error couples all nodes that the flight touched, so no fixed stencil holds the sum exactly. A
+//! packed triangle over the nodes of the flown region does: it is exact, it can be added, and it grows with the region,
+//! not with the flights. Slots are assigned in order of first touch; every number is a sum over flights in the order
+//! learnt, the same whatever its slot.
 
 use std::iter;
 
@@ -30,7 +30,7 @@ pub(super) struct Information {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub(super) nodes: [usize; 4],
-    /// What multiplies the corrections of the four nodes.
+    /// Factors of the four nodes' corrections.
     pub(super) coefficients: [f64; 4],
     /// Bilinear weights, for the count.
     pub(super) bilinear: [f64; 4],
@@ -91,7 +91,7 @@ impl Information {
         }
     }
 
-    /// Multiplies all that is known.
+    /// Scales all information.
     pub(super) fn scale(&mut self, factor: f64) {
         let numbers = [&mut self.matrix, &mut self.vector, &mut self.observations];
         for number in numbers.into_iter().flatten() {
@@ -99,7 +99,7 @@ impl Information {
         }
     }
 
-    /// Adds what another knows about the same grid.
+    /// Adds the information of another sum over the same grid.
     pub(super) fn merge(&mut self, other: &Self) {
         let slots: Vec<usize> = other.nodes.iter().map(|&node| self.slot(node)).collect();
         let mut entries = other.matrix.iter();
@@ -127,7 +127,7 @@ impl Information {
         pairs.zip(&self.matrix).map(|((node, &other), &value)| (node, other, value))
     }
 
-    /// How many rows of nodes along x and y an entry that is not 0 couples.
+    /// How many rows of nodes along x and y are coupled by non-zero entries.
     pub(super) fn reach(&self, grid: &Grid) -> (usize, usize) {
         let count = grid.y().len();
         self.entries().filter(|entry| entry.2 != 0.0).fold((0, 0), |(x, y), (node, other, _)| {
@@ -169,7 +169,7 @@ impl Information {
         }
     }
 
-    /// Back from [`to_parts`](Self::to_parts); the caller has checked lengths and nodes.
+    /// Restores it from [`to_parts`](Self::to_parts); the caller has checked lengths and nodes.
     pub(super) fn from_parts(nodes_of_grid: usize, parts: &Parts) -> Self {
         let mut information = Self::new(nodes_of_grid);
         for (rank, &node) in parts.nodes.iter().enumerate() {
@@ -183,7 +183,7 @@ impl Information {
         information
     }
 
-    /// The node's slot, made where there is none.
+    /// The node's slot, created where there is none.
     fn slot(&mut self, node: usize) -> usize {
         if self.slots[node] == UNTOUCHED {
             let slot = self.nodes.len();

@@ -2,8 +2,8 @@
 //!
 //! A difficult file. The weights need a prediction with its variance, for every flight; a solve over the grid would
 //! cost a thousand times the rest. A quadratic in lift coefficient and Mach number, learnt along with the grid's
-//! information from the same weighted segments, is enough to tell 10 % from 1 %, and what a quadratic cannot hold is
-//! added to its variance. It never touches the table.
+//! information from the same weighted segments, is enough to distinguish 10 % from 1 %, and what a quadratic cannot
+//! hold is added to its variance. It never affects the table.
 //!
 //! Of one flight, `y = φ·a + f + e`: a the six coefficients, f the flight's common error, e the segments' own. With
 //! Student errors as scale mixtures, the expectation–maximization weights are (Lange, Little and Taylor 1989)
@@ -12,8 +12,8 @@
 //! w_i = (ν + 1)/(ν + E[e_i²]/d_i)      w_f = (ν + 1)/(ν + E[f²]/s²)
 //! ```
 //!
-//! with expectations over a and f given all of the flight. An honest first flight of a fleet that is 5 % off is not an
-//! outlier by this: the level of a, 10 % wide, explains it, and f stays small.
+//! with expectations over a and f given the whole flight. By this, a correct first flight of a fleet that is 5 % off is
+//! not an outlier: the level of a, 10 % wide, explains it, and f stays small.
 
 use super::BayesSettings;
 use super::settings::{PATCH_LIFT_COEFFICIENT, PATCH_MACH};
@@ -25,13 +25,13 @@ pub(super) const TRIANGLE: usize = TERMS * (TERMS + 1) / 2;
 /// The coefficients and the flight's common error.
 const UNKNOWNS: usize = TERMS + 1;
 
-/// Iterations end when no weight changes by more than this share of its value. Weights between 0.8 and 1.2 mean the
-/// same; what matters is 0.05 for 0.8.
+/// Iterations end when no weight changes by more than this share of its value. Weights between 0.8 and 1.2 have
+/// practically the same effect; what matters is 0.05 instead of 0.8.
 const WEIGHT_TOLERANCE: f64 = 0.05;
 /// Clean flights need 2 or 3.
 const MAXIMUM_ITERATIONS: usize = 30;
 
-/// What has been learnt of the expected residual: information about the quadratic's coefficients, without prior.
+/// The learnt part of the expected residual: information about the quadratic's coefficients, without prior.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ExpectedResidual {
     pub(super) matrix: [f64; TRIANGLE],
@@ -44,7 +44,7 @@ pub(super) struct WeightSettings {
     middle: (f64, f64),
     /// Prior precisions of the coefficients.
     precisions: [f64; TERMS],
-    /// Variance of what a quadratic does not hold.
+    /// Variance of what a quadratic cannot hold.
     remainder: f64,
     degrees_of_freedom: f64,
 }
@@ -67,7 +67,7 @@ pub(super) struct FlightWeights {
     pub(super) weights: Vec<f64>,
     /// Of the flight's common error.
     pub(super) flight_weight: f64,
-    /// Of each segment: residual minus what was expected before this flight.
+    /// For each segment: residual minus the prediction before this flight.
     pub(super) surprises: Vec<f64>,
 }
 
@@ -222,7 +222,7 @@ impl ExpectedResidual {
 
 /// Normal equations of seven unknowns and, after [`factor`](Self::factor), their Cholesky factor. Lower triangle.
 ///
-/// Normal equations on purpose: the prior keeps them well conditioned, and they only weigh.
+/// Normal equations on purpose: the prior keeps them well conditioned, and they only determine weights.
 #[derive(Clone)]
 struct System {
     matrix: [[f64; UNKNOWNS]; UNKNOWNS],
@@ -230,7 +230,7 @@ struct System {
 }
 
 impl System {
-    /// Prior and what was learnt before; nothing about the flight's common error yet.
+    /// Prior and what was learnt before; no information about the flight's common error yet.
     fn new(expected: &ExpectedResidual, settings: &WeightSettings) -> Self {
         let mut system = Self { matrix: [[0.0; UNKNOWNS]; UNKNOWNS], vector: [0.0; UNKNOWNS] };
         let mut entries = expected.matrix.iter();

@@ -5,7 +5,7 @@ use lut::surface::{self, Basis, COEFFICIENTS, FitError, Surface};
 
 use super::Posterior;
 
-/// A polynomial surface of drag over (lift coefficient, Mach number) and how well it is known.
+/// A polynomial surface of drag over (lift coefficient, Mach number) and its uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolynomialExport {
     /// The surface.

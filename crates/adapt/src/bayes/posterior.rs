@@ -1,4 +1,4 @@
-//! What is known after a solve: corrections, their standard deviations, the corrected table.
+//! The result of a solve: corrections, their standard deviations, the corrected table.
 
 use flight::ObservationVariance;
 use lut::{Cell, Table};
@@ -10,8 +10,8 @@ use super::{BayesSettings, coefficients, prior};
 
 /// The solution: every node's correction and drag with their uncertainty, informed or not.
 ///
-/// Standard deviations and variances are relative to the initial drag: 0.01 is 1 % of it. They are of the table; what a
-/// new flight and a new segment add to that, [`segment_variance`](Self::segment_variance) includes.
+/// Standard deviations and variances are relative to the initial drag: 0.01 is 1 % of it. They are those of the table;
+/// [`segment_variance`](Self::segment_variance) includes what a new flight and a new segment add.
 #[derive(Clone, Debug)]
 pub struct Posterior {
     initial: Table,
@@ -29,8 +29,8 @@ pub struct Posterior {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// Prior and information are no precision matrix together.
-    #[error("what was learnt is no positive definite information: the state is damaged")]
+    /// Prior plus information is not a positive definite precision matrix.
+    #[error("what was learnt is not a positive definite information matrix: the state is damaged")]
     NotPositiveDefinite,
 }
 
@@ -76,7 +76,7 @@ impl Posterior {
         &self.drag
     }
 
-    /// What the guard had to change to keep drag physical; `None` where it did not act.
+    /// The changes by which the guard kept drag physical; `None` where there were none.
     #[must_use]
     pub const fn guard(&self) -> Option<&GuardReport> {
         self.guard.as_ref()
@@ -114,7 +114,7 @@ impl Posterior {
         informed as f64 / self.observations.len() as f64
     }
 
-    /// The table that was corrected.
+    /// The initial table.
     #[must_use]
     pub const fn initial(&self) -> &Table {
         &self.initial
@@ -144,8 +144,8 @@ impl Posterior {
         variance
     }
 
-    /// Relative variance of what a segment of a new flight will show at a located point: the table's, the flight's
-    /// common error, the segment's own.
+    /// Relative variance of what a segment of a new flight will show at a located point: that of the table, of the
+    /// flight's common error, and of the segment alone.
     #[must_use]
     pub fn segment_variance(&self, cell: &Cell, of_sensors: &ObservationVariance) -> f64 {
         self.relative_variance(cell)
@@ -153,7 +153,7 @@ impl Posterior {
             + self.settings.segment_variance(of_sensors)
     }
 
-    /// Relative covariances of the table's drag at several located points, row by row: what the table does not know is
+    /// Relative covariances of the table's drag at several located points, row by row: the errors of the table are
     /// common to points near each other.
     #[must_use]
     pub fn relative_covariances(&self, cells: &[Cell]) -> Vec<Vec<f64>> {

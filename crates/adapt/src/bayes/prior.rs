@@ -5,7 +5,7 @@
 //! ```
 //!
 //! c lift coefficient, m Mach number, A the grid's area, A0 the patch's. Derivatives are finite differences on the axes
-//! as they are, even or not, and every difference stands for its share of the area: refining the grid refines the
+//! as they are, even or not, and every difference represents its share of the area: refining the grid refines the
 //! integral and changes nothing else.
 
 use lut::{Axis, Grid};
@@ -91,12 +91,12 @@ fn square(terms: &[(usize, f64)], weight: f64, add: &mut impl FnMut(usize, usize
 struct Line {
     length: f64,
     widths: Vec<f64>,
-    /// How much of the axis each node stands for.
+    /// How much of the axis each node represents.
     shares: Vec<f64>,
     bends: Vec<Bend>,
 }
 
-/// A second derivative from three neighbors, and how much of the axis it stands for.
+/// A second derivative from three neighbors, and how much of the axis it represents.
 struct Bend {
     first: usize,
     coefficients: [f64; 3],
@@ -118,7 +118,7 @@ impl Line {
             .enumerate()
             .map(|(first, pair)| {
                 let (a, b) = (pair[0], pair[1]);
-                // The first and the last also stand for the half cells beyond them, so that shares fill the axis.
+                // The first and the last also represent the half cells beyond them, so that shares fill the axis.
                 let beyond_low = if first == 0 { a / 2.0 } else { 0.0 };
                 let beyond_high = if first == last { b / 2.0 } else { 0.0 };
                 Bend {

@@ -1,4 +1,4 @@
-//! What law `bayes` takes for granted: sizes, smoothness and noise. Learning never changes them.
+//! The assumptions of law `bayes`: sizes, smoothness and noise. Learning never changes them.
 
 use flight::ObservationVariance;
 use serde::{Deserialize, Serialize};
@@ -38,7 +38,7 @@ pub struct SettingValues {
         skip_serializing_if = "is_as_the_aircraft_file_says"
     )]
     pub sensor_segment_factor: f64,
-    /// The same of what is common to a flight: mass and heating value.
+    /// The same for what is common to a flight: mass and heating value.
     #[serde(
         default = "as_the_aircraft_file_says",
         skip_serializing_if = "is_as_the_aircraft_file_says"
@@ -72,7 +72,7 @@ pub struct BayesSettings(SettingValues);
 pub struct SettingsError {
     /// Which setting.
     pub setting: &'static str,
-    /// What was given.
+    /// The value given.
     pub value: f64,
     /// Smallest value that is accepted.
     pub minimum: f64,
@@ -100,14 +100,14 @@ impl BayesSettings {
     /// - slopes 0.15 per unit lift coefficient and 0.25 per unit Mach number, 4.5 and 2.5 % across a patch: an induced
     ///   drag that is 6 to 18 % off tilts the correction by 0.06 to 0.17; a drag rise 0.006 Mach number early by 0.2 to
     ///   0.4 around the drag-divergence Mach number.
-    /// - bends 1.5, 1.5 and 2 (along lift coefficient, mixed, along Mach number): a polar that is no parabola departs by
-    ///   1 to 2 % over half a patch. Along Mach number the grid sets the limit, not the physics: the correction shall
+    /// - bends 1.5, 1.5 and 2 (along lift coefficient, mixed, along Mach number): a polar that is not a parabola departs by
+    ///   1 to 2 % over half a patch. Along Mach number the grid sets the limit, not the physics: the correction must
     ///   be straight to about 0.1 % inside a cell 0.05 wide, because a table cannot hold what is finer.
-    /// - extra 1 % a flight: what is no function of lift coefficient and Mach number (Reynolds number with exponent
-    ///   0.12 over a spread of 10 %, TSFC with temperature exponent 0.2 over one of 3 %, throttle 0.6 %, heating value
-    ///   0.6 %: about 1.2 % if all act at once).
-    /// - extra 0.3 % a segment: the same causes change by about a third of that during a flight.
-    /// - factors of 1 on the sensors' part: the aircraft file is believed.
+    /// - extra 1 % per flight: what is not a function of lift coefficient and Mach number (Reynolds number with
+    ///   exponent 0.12 over a spread of 10 %, TSFC with temperature exponent 0.2 over one of 3 %, throttle 0.6 %,
+    ///   heating value 0.6 %: about 1.2 % if all act at once).
+    /// - extra 0.3 % per segment: the same causes change by about a third of that during a flight.
+    /// - factors of 1 on the sensors' part: the aircraft file is taken as stated.
     /// - 4 degrees of freedom: an error of ten standard deviations keeps a twentieth of its weight.
     #[must_use]
     pub const fn physical_2026() -> Self {
@@ -154,7 +154,7 @@ impl BayesSettings {
         factor * factor * of_sensors.segment + extra * extra
     }
 
-    /// What knowledge is multiplied by after so many days; 1 for a negative age.
+    /// Factor on knowledge after this many days; 1 for a negative age.
     pub(super) fn decay(&self, days: f64) -> f64 {
         self.0.half_life_days.map_or(1.0, |half_life| (-days.max(0.0) / half_life).exp2())
     }

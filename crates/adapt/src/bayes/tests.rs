@@ -269,7 +269,7 @@ fn outlier_weights_are_the_fixed_point() {
 
     let mut flight = state.read(&last);
     assert!(flight.residuals.len() > 3, "{}", flight.residuals.len());
-    flight.residuals[1].residual += 0.10; // gross
+    flight.residuals[1].residual += 0.10; // gross error
     let flight_weights = state.expected_residual.weigh(
         &state.weight_settings,
         &flight.residuals,
@@ -321,8 +321,8 @@ fn outlier_weights_are_the_fixed_point() {
     assert!(others.into_iter().all(|(_, weight)| *weight > 3.0 * flight_weights.weights[1]));
 }
 
-/// Truth drawn from the prior, noise as the settings have it: 95 % intervals of nodes and of unseen segments cover 92
-/// to 98 %.
+/// Truth drawn from the prior, noise as in the settings: 95 % intervals of nodes and of unseen segments cover 92 to 98
+/// %.
 #[test]
 fn intervals_cover_what_they_say() {
     let grid = even_grid();

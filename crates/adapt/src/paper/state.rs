@@ -1,4 +1,4 @@
-//! What law `paper` has learnt: two tables on one grid.
+//! The state of law `paper`: two tables on one grid.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ pub struct State {
     confidence: Table,
 }
 
-/// Why two tables are no state.
+/// Why two tables do not make a state.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StateError {
@@ -23,13 +23,13 @@ pub enum StateError {
     ConfidenceBelowOne {
         /// The node.
         node: usize,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
 }
 
 impl State {
-    /// Nothing learnt yet: confidence 1 at every node.
+    /// An empty state: confidence 1 at every node.
     #[must_use]
     pub fn new(drag_coefficient: Table) -> Self {
         let mut confidence = drag_coefficient.clone(); // shares the grid
@@ -37,7 +37,7 @@ impl State {
         Self { drag_coefficient, confidence }
     }
 
-    /// What was learnt earlier.
+    /// A state that was learnt earlier.
     ///
     /// # Errors
     /// [`StateError`] where the tables are on different grids or a confidence is below 1.
@@ -70,7 +70,7 @@ impl State {
         &self.confidence
     }
 
-    /// Both tables, drag coefficient and confidence, given up.
+    /// Both tables, drag coefficient and confidence, by value.
     #[must_use]
     pub fn into_tables(self) -> (Table, Table) {
         (self.drag_coefficient, self.confidence)

@@ -1,4 +1,4 @@
-//! States add, age, and are refused where they do not belong together.
+//! States are added, age, and are refused where they do not belong together.
 
 use adapt::bayes::{
     BayesSettings, BayesState, BayesStateData, MergeError, SettingValues, StateDataError,
@@ -123,7 +123,7 @@ fn knowledge_halves_in_a_half_life() {
     for (young, old) in entries(&state).into_iter().zip(entries(&aged)) {
         assert!((old - young / 2.0).abs() <= 1e-12 * young.abs());
     }
-    // Not after the newest: nothing happens.
+    // Not after the newest: nothing changes.
     let mut same = state.clone();
     same.decay_to(Timestamp::from_second(newest - day).unwrap());
     assert_eq!(same, state);
@@ -186,7 +186,7 @@ fn damaged_files_are_refused() {
     data.information[0][0] = f64::NAN;
     let refusal = BayesState::from_data(&initial, settings, data).unwrap_err();
     assert!(matches!(refusal, StateDataError::Value { list: "information", .. }), "{refusal:?}");
-    // Finite but no information: found when solving.
+    // Finite but not an information matrix: detected when solving.
     let mut data = learnt(&initial, settings, &forty_flights()).to_data();
     data.information[0][0] = -1e9;
     let state = BayesState::from_data(&initial, settings, data).unwrap();

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 
-/// What sensors as in the aircraft files propagate to: fuel flow of two engines 0.5 %/√2, Mach number 0.001,
+/// The propagated errors of sensors as in the aircraft files: fuel flow of two engines 0.5 %/√2, Mach number 0.001,
 /// acceleration; loading 0.3 % and heating value 0.3 %.
 pub(crate) const SENSORS: ObservationVariance =
     ObservationVariance { segment: 0.005 * 0.005, flight: 0.0045 * 0.0045 };
@@ -66,7 +66,7 @@ pub(crate) fn table(grid: &Arc<Grid>, value: impl Fn(f64, f64) -> f64) -> Table 
     Table::new(Arc::clone(grid), (0..grid.nodes()).map(at).collect()).unwrap()
 }
 
-/// A jet's drag: parabola and drag rise. The model's idea of it.
+/// A jet's drag: parabola and drag rise, as the model has it.
 pub(crate) fn believed_drag(lift_coefficient: f64, mach: f64) -> f64 {
     drag(lift_coefficient, mach, BELIEVED)
 }
@@ -80,7 +80,7 @@ fn drag(lift_coefficient: f64, mach: f64, [zero_lift, induced, divergence]: [f64
     zero_lift + induced * lift_coefficient * lift_coefficient + rise
 }
 
-/// A truth that is off from a table by its parameters. It has the table's own chords (up to 2 % of drag at 0.05 Mach
+/// A truth whose parameters differ from the table's. It has the table's own chords (up to 2 % of drag at 0.05 Mach
 /// number and the drag-divergence Mach number), so that they are not part of what a test measures.
 pub(crate) fn off_by(
     table: &Table,
@@ -100,14 +100,14 @@ pub(crate) fn times(table: &Table, factor: f64) -> impl Fn(f64, f64) -> f64 + '_
     off_by(table, BELIEVED, factor)
 }
 
-/// How virtual flights go wrong, as standard deviations relative to drag.
+/// Errors of virtual flights, as standard deviations relative to drag.
 #[derive(Clone, Copy)]
 pub(crate) struct Noise {
     pub(crate) segment: f64,
     pub(crate) flight: f64,
 }
 
-/// Noise as the sensors have it, and nothing else.
+/// Noise as stated for the sensors, and nothing else.
 pub(crate) const SENSOR_NOISE: Noise = Noise { segment: 0.005, flight: 0.0045 };
 
 /// A virtual fleet: flights of 2 to 11 segments at one or two Mach numbers, burning fuel as they go.

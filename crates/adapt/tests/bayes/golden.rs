@@ -121,7 +121,8 @@ fn ten_flights_teach_the_other_flights_mean_and_spread() {
     }
 }
 
-/// Forty flights of six degrees of freedom are no draw of the prior, but their spread must stay inside what is stated.
+/// Forty flights of a simulator with six degrees of freedom are not a draw from the prior, but their spread must stay
+/// inside the stated one.
 #[test]
 fn stated_intervals_hold_on_fleets_that_are_not_in_the_model_class() {
     let initial = initial_table();
@@ -146,7 +147,7 @@ fn stated_intervals_hold_on_fleets_that_are_not_in_the_model_class() {
     }
 }
 
-/// A run that stops after ten flights, is written and read, and goes on, gives the same bits as one run.
+/// A run that stops after ten flights, is written and read, and continues, gives the same bits as one run.
 #[test]
 fn going_on_from_a_file_changes_no_bit() {
     let initial = initial_table();

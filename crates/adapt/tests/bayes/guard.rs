@@ -1,4 +1,4 @@
-//! Whatever comes in, drag stays physical and every number finite.
+//! Whatever the input, drag stays physical and every number finite.
 
 use adapt::bayes::{
     BayesSettings, BayesState, GuardReason, InitialError, ObservationUpdate, SettingValues,
@@ -113,7 +113,7 @@ fn settings_out_of_limits_are_refused_by_name() {
     assert!(BayesSettings::new(SettingValues { half_life_days: Some(0.0), ..good }).is_err());
 }
 
-/// Many consistent but absurd flights, drag falling with lift: the guard keeps it from falling and says where it acted.
+/// Many consistent but absurd flights, drag falling with lift: the guard keeps it from falling and reports where it acted.
 #[test]
 fn the_guard_acts_and_reports() {
     let initial = table(&grid(0.05, 0.95), believed_drag);

@@ -7,7 +7,7 @@ use flight::Timestamp;
 
 use crate::fleet::{Fleet, Flights, SENSOR_NOISE, believed_drag, grid, table, times};
 
-/// Flights ten days apart of an aircraft that ages by so much a year.
+/// Flights ten days apart of an aircraft that ages by this much per year.
 fn flights(seed: u64, count: usize, growth_a_year: f64) -> (lut::Table, Flights) {
     let initial = table(&grid(0.05, 0.95), believed_drag);
     let mut flights = Fleet::new(seed).flights(count, SENSOR_NOISE, times(&initial, 1.0));

@@ -84,7 +84,7 @@ fn outliers_and_only_outliers_are_named() {
     assert_eq!((found, wrong), (planted, 0));
 }
 
-/// A whole flight 10 % off (a wrong load sheet) is weighed down as a flight.
+/// A whole flight 10 % off (a wrong load sheet) gets a low weight as a flight.
 #[test]
 fn a_wrong_load_sheet_is_one_flight_s_matter() {
     let grid = grid(0.05, 0.95);

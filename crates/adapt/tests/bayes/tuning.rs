@@ -1,4 +1,4 @@
-//! Settings from past flights, and the polynomial handed on.
+//! Settings fitted to past flights, and the exported polynomial.
 
 use adapt::bayes::{
     BayesSettings, Posterior, Search, SettingValues, log_evidence, polynomial_export, tune,
@@ -8,7 +8,7 @@ use lut::surface::{Basis, Surface};
 use crate::fleet::{Fleet, Noise, SENSOR_NOISE, believed_drag, grid, solved, table, times};
 use crate::golden;
 
-/// A fleet with little noise of its own: the search finds that, and the evidence never falls on the way.
+/// A fleet with little noise of its own: the search finds that, and the evidence never falls along its steps.
 #[test]
 fn tuning_finds_the_noise_that_was_flown() {
     let initial = table(&grid(0.05, 0.95), believed_drag);
@@ -30,7 +30,7 @@ fn tuning_finds_the_noise_that_was_flown() {
     assert!(tuned.evaluations <= 400);
     // The same again, to the bit.
     assert_eq!(tune(&initial, start, &flights, &Search::standard()).unwrap(), tuned);
-    // What tuning does not touch.
+    // Settings that tuning does not change.
     assert_eq!(values.student_degrees_of_freedom, start.values().student_degrees_of_freedom);
 }
 
@@ -61,8 +61,8 @@ fn tuning_on_ten_flights_does_no_harm_to_the_others() {
     }
 }
 
-/// Fleets quieter than the aircraft file and the settings say: the truth is in the model class, so the stated 95 %
-/// intervals must cover 92 to 98 % of flights that neither taught nor tuned.
+/// Fleets quieter than the aircraft file and the settings state: the truth is in the model class, so the stated 95 %
+/// intervals must cover 92 to 98 % of flights that were used neither for learning nor for tuning.
 #[test]
 fn after_tuning_intervals_of_quiet_fleets_cover() {
     let initial = table(&grid(0.05, 0.95), believed_drag);
@@ -76,9 +76,9 @@ fn after_tuning_intervals_of_quiet_fleets_cover() {
         let unseen = fleet.flights(60, noise, times(&initial, 1.0));
         let tuned = tune(&initial, start, &past, &Search::standard()).unwrap().settings;
         let cases = [(start, 40), (tuned, 1), (tuned, 5), (tuned, 40)];
-        for (inside, (settings, taught)) in inside.iter_mut().zip(cases) {
+        for (inside, (settings, count)) in inside.iter_mut().zip(cases) {
             let posterior =
-                crate::fleet::learnt(&initial, settings, &past[..taught]).solve().unwrap();
+                crate::fleet::learnt(&initial, settings, &past[..count]).solve().unwrap();
             *inside += unseen.iter().flatten().filter(|o| is_inside(&posterior, o)).count() as f64;
         }
         all += unseen.iter().flatten().count() as f64;
@@ -103,7 +103,7 @@ fn is_inside(posterior: &Posterior, observation: &flight::Observation) -> bool {
     (excess / posterior.initial().interpolate(&cell)).powi(2) <= 1.96 * 1.96 * variance
 }
 
-/// More noise than there is, and less, is less likely.
+/// Both more noise than there is and less are less likely.
 #[test]
 fn evidence_prefers_the_truth() {
     let initial = table(&grid(0.05, 0.95), believed_drag);

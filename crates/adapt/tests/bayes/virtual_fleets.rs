@@ -1,4 +1,5 @@
-//! Virtual fleets with known truth: exactly as the model says, off in known ways, and with what no table holds.
+//! Virtual fleets with known truth: exactly as the model predicts, off in known ways, and with effects that no table
+//! holds.
 
 use adapt::bayes::{BayesSettings, BayesState, ObservationUpdate};
 use lut::Outside;
@@ -8,8 +9,8 @@ use crate::fleet::{
     off_by, solved, table, times,
 };
 
-/// A fleet that flies exactly as the model says: what adaptation adds to the spread of errors, and how that compares
-/// with what it states. Twenty fleets, judged where 100 unseen flights go.
+/// A fleet that flies exactly as the model predicts: how much spread adaptation adds to the errors, compared with what
+/// it states. Twenty fleets, judged where 100 unseen flights go.
 ///
 /// The table's error t is known, so that the spread it adds to an independent noise n is √(n² + t²) − n; the spread of
 /// a sample would also have their chance correlation.
@@ -96,7 +97,7 @@ fn many_flights_leave_the_noise() {
     assert!(mean.abs() < 0.1 && std < 1.05 * floor, "{mean} {std}");
 }
 
-/// A fleet 5 % off: its honest first flights are no outliers, and the first already moves the whole region.
+/// A fleet 5 % off: its correct first flights are not outliers, and the first already moves the whole region.
 #[test]
 fn an_honest_bias_is_no_outlier() {
     let grid = grid(0.05, 0.95);
@@ -125,7 +126,7 @@ fn weight(update: &ObservationUpdate) -> f64 {
     }
 }
 
-/// Where nobody flew nothing is certain: node standard deviations grow away from the flights, and say so.
+/// Where nobody flew nothing is certain: node standard deviations grow away from the flights.
 #[test]
 fn far_nodes_are_less_certain_and_marked() {
     let grid = grid(0.05, 0.95);

@@ -1,4 +1,4 @@
-//! `cruisefit adapt`: one adapted model a tail, going on from what the folder holds.
+//! `cruisefit adapt`: one adapted model per tail, continuing from what the folder holds.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models = Models::read(&arguments.models.models)?;
     check_threshold(arguments)?;
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
         });
     }
     check_refused(&refused, files, arguments.reports.strict, false)?;
-    // A tail's flights are learnt in order; tails do not know of each other.
+    // A tail's flights are learnt in order; tails are independent of each other.
     let learnt: Vec<(TailResult, Vec<RefusedReport>)> =
         jobs.into_par_iter().map(|job| job.learn(!arguments.no_remainder)).collect();
     let mut read = 0;
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
             folder.store(&result.tail, &result.model, &result.rows)?;
         }
     }
-    // The folder speaks of every tail it holds, also of those that nobody reported this time.
+    // The summary covers every tail that the folder holds, also those without a report in this run.
     for (tail, StoredTail { model, segments }) in stored {
         results.push(at_rest(tail, model, segments));
     }
@@ -124,7 +124,7 @@ fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {
     }
 }
 
-/// The state from which each tail begins; a report without a model moves to the refused ones.
+/// The state that each tail starts from; a report without a model moves to the refused ones.
 fn choose_models(
     models: &Models,
     reading: &mut Reading,
@@ -147,12 +147,12 @@ fn choose_models(
     Ok(chosen)
 }
 
-/// A model's initial part with nothing learnt yet.
+/// A model's initial part, before anything is learnt.
 fn beginning(model: &ModelFile, tail: &str, arguments: &AdaptArgs) -> Result<ModelFile, Failure> {
     if let Some(learnt) = &model.learnt {
         tracing::warn!(
             tail,
-            "the model given has learnt {} flights of tail {}; adapting begins from its initial part{}",
+            "the model given has learnt {} flights of tail {}; adaptation starts from its initial part{}",
             learnt.ledger.len(),
             learnt.tail,
             if model.applied.is_empty() { "" } else { " and the effects applied to it" }
@@ -187,7 +187,7 @@ fn check_begun_alike(
     Ok(())
 }
 
-/// A tail that this run has nothing new for.
+/// A tail for which this run has nothing new.
 fn at_rest(tail: String, model: ModelFile, segments: Vec<flight::Segment>) -> TailResult {
     let counts = counts_of(&model, 0);
     TailResult::adapted(TailData { tail, model, segments, counts, notes: Vec::new() })
@@ -209,7 +209,7 @@ struct Sorted {
     warnings: Vec<String>,
 }
 
-/// Puts a tail's flights in the order of flying and sorts out what the ledger, or the batch itself, already knows.
+/// Puts a tail's flights in the order of flying and sets aside those already in the ledger, or given twice.
 fn sort_out(
     tail: &str,
     mut flights: Vec<FlightRead>,
@@ -239,7 +239,7 @@ fn sort_out(
             }
             Some(_) => {
                 sorted.refused.push(refuse(format!(
-                    "tail {tail} flight {} of {} is already known with other content",
+                    "tail {tail} flight {} of {} is already known with different content",
                     key.1, key.0
                 )));
                 continue;
@@ -247,16 +247,16 @@ fn sort_out(
             None => {}
         }
         if newest.is_some_and(|newest| flight.reduced.identity.start < newest) {
-            let said = format!(
-                "flight {} of {} is older than the newest that tail {tail} has learnt",
+            let finding = format!(
+                "flight {} of {} is older than the newest one that tail {tail} has learnt",
                 key.1, key.0
             );
             if strict {
-                sorted.refused.push(refuse(said));
+                sorted.refused.push(refuse(finding));
                 continue;
             }
-            tracing::warn!("{said}; it is learnt now, after newer ones");
-            sorted.warnings.push(format!("{said}; it was learnt after newer ones"));
+            tracing::warn!("{finding}; it is learnt now, after newer ones");
+            sorted.warnings.push(format!("{finding}; it was learnt after newer ones"));
         }
         known.insert(key, flight.content.clone());
         sorted.new.push(flight);
@@ -297,7 +297,7 @@ impl Job {
             && flights_new > 0
             && let Err(error) = learning::settle(learnt)
         {
-            // Cannot happen to a state that was read whole: what was learnt is then not written.
+            // Cannot happen to a state that was read whole: if it did, what was learnt would not be written.
             tracing::error!(tail = self.tail, "{error}");
             flights_new = 0;
         }

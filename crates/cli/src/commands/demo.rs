@@ -1,4 +1,4 @@
-//! `cruisefit demo`: the whole chain on data that comes with the program.
+//! `cruisefit demo`: the whole chain on data built into the program.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -15,13 +15,13 @@ use crate::simulated_reports;
 use pipeline::checksum::sha256;
 use pipeline::statistics::ErrorStatistics;
 
-/// Flights that teach; the later ones judge.
+/// Flights that are learnt; the later ones are used for evaluation.
 const TEACHING_FLIGHTS: usize = 30;
 
 /// Runs the command.
 ///
 /// # Errors
-/// A place that cannot be written.
+/// A file or folder that cannot be written.
 pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, Failure> {
     let folder = &arguments.output;
     let mut text = String::new();
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
     let _ = writeln!(
         text,
         "A virtual Citation X, tail N750CF: {flights} cruise reports, a flight-planning guide whose drag is wrong, and \
-         static points written to {}.\nThe first {TEACHING_FLIGHTS} flights teach the model, the others judge it.\n",
+         static points written to {}.\nThe first {TEACHING_FLIGHTS} flights are learnt, the others are used for evaluation.\n",
         show(folder)
     );
     let model = folder.join("MODEL.ron");
@@ -109,7 +109,7 @@ fn judge(
         let covered = coverage.map_or_else(String::new, |share| {
             format!("; {:.0} % of them within the stated 95 % interval", 100.0 * share)
         });
-        let _ = writeln!(text, "  {name:<14} {}{covered}", told(&errors));
+        let _ = writeln!(text, "  {name:<14} {}{covered}", in_words(&errors));
     }
     let _ = writeln!(text, "\n45 static points at three masses, between FL300 and FL450:");
     for (name, path) in judged {
@@ -124,7 +124,7 @@ fn judge(
         let _ = writeln!(
             text,
             "  {name:<14} {}{}",
-            told(&ErrorStatistics::of(&errors)),
+            in_words(&ErrorStatistics::of(&errors)),
             match outcome.refused.len() {
                 0 => String::new(),
                 outside => format!("; {outside} outside the table"),
@@ -134,8 +134,8 @@ fn judge(
     Ok(())
 }
 
-/// Flies the tail a year later with an effect that its model does not know, diagnoses it against the adapted model, and only
-/// then opens what was true.
+/// Flies the tail a year later with an effect that its model does not have, diagnoses it against the adapted model, and
+/// only then opens the truth.
 fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<(), Failure> {
     let later = folder.join("later");
     let flights =
@@ -145,7 +145,7 @@ fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<
     let _ = writeln!(
         text,
         "\nA year later, {flights} more flights: something about the aircraft has changed, and the model does not know \
-         it.\nWhat it is lies sealed in later/TRUTH.json, SHA-256 {hash}.\n"
+         it.\nThe change is sealed in later/TRUTH.json, SHA-256 {hash}.\n"
     );
     let found = diagnose::run(
         &DiagnoseArgs {
@@ -176,8 +176,7 @@ fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<
         .flat_map(|tail| &tail.effects)
         .map(|effect| format!("{} {:+}", effect.id, effect.size))
         .collect();
-    let _ =
-        writeln!(text, "The seal is opened ({unchanged}). What was true: {}.", planted.join(", "));
+    let _ = writeln!(text, "The seal is opened ({unchanged}). The truth: {}.", planted.join(", "));
     Ok(())
 }
 
@@ -213,7 +212,7 @@ fn unseen_errors(
     }))
 }
 
-fn told(errors: &ErrorStatistics) -> String {
+fn in_words(errors: &ErrorStatistics) -> String {
     let figure = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:+.2}"));
     let plain = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.2}"));
     format!(
@@ -225,7 +224,7 @@ fn told(errors: &ErrorStatistics) -> String {
     )
 }
 
-/// The errors that `predict` wrote beside measured fuel flows.
+/// The errors that `predict` wrote next to the measured fuel flows.
 fn errors_of(path: &Path) -> Result<Vec<f64>, Failure> {
     let wrong = |error: csv::Error| Failure::bad_file(path, error);
     let mut reader = csv::Reader::from_path(path).map_err(wrong)?;

@@ -24,7 +24,7 @@ use pipeline::{diagnosis_text, table_uncertainty};
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
     let options = Options {
         effects: effects("--effects", &arguments.effects)?,
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();
     for diagnosis in &diagnoses {
-        tell(diagnosis, &mut text);
+        append_lines(diagnosis, &mut text);
     }
     let refused_reports = reading.refused.len();
     if let Some(folder) = &arguments.apply {
@@ -93,7 +93,7 @@ fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Fa
         .collect()
 }
 
-/// Flights that are diagnosed together, and the model that they are held against.
+/// Flights that are diagnosed together, and the model that they are compared with.
 struct Group<'a> {
     name: String,
     model: &'a ModelFile,
@@ -118,20 +118,20 @@ fn group<'a>(
             }
         };
         if has_learnt(model, &flight) {
-            let said = format!(
+            let finding = format!(
                 "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",
                 flight.reduced.identity.tail,
                 flight.reduced.identity.flight,
                 flight.reduced.identity.start
             );
             if !arguments.allow_learnt {
-                let reason = format!("{said} (--allow-learnt diagnoses it all the same)");
+                let reason = format!("{finding} (--allow-learnt diagnoses it anyway)");
                 reading.refused.push(RefusedReport::whole(flight.path, reason));
                 continue;
             }
-            tracing::warn!("{said}; diagnosed all the same, as asked");
+            tracing::warn!("{finding}; diagnosed anyway, as asked");
         }
-        // A pool is of one model: what differs between models is no gap of either.
+        // A pool has one model: a difference between models is not a gap of either.
         let (key, name) = if arguments.pool {
             (model.initial.aircraft().type_code().to_owned(), "*".to_owned())
         } else {
@@ -193,7 +193,7 @@ fn diagnose_group(
     diagnosis.tail.clone_from(&group.name);
     if baseline.is_none() && !table_only {
         diagnosis.notes.push(
-            "the model remembers no remainder (five flights by law bayes teach one): everything that a table cannot hold \
+            "the model has learnt no remainder (law bayes learns one from five flights): everything that a table cannot hold \
              counts as gap"
                 .to_owned(),
         );
@@ -208,7 +208,7 @@ fn diagnose_group(
 }
 
 /// The diagnosis in a dozen lines, and what was assumed.
-fn tell(diagnosis: &Diagnosis, text: &mut String) {
+fn append_lines(diagnosis: &Diagnosis, text: &mut String) {
     for (place, line) in diagnosis_text::lines(diagnosis).into_iter().enumerate() {
         let _ = writeln!(text, "{}{line}", if place == 0 { "" } else { "  " });
     }

@@ -1,4 +1,4 @@
-//! `cruisefit evaluate`: the fuel-flow error of a model over reports, nothing adapted.
+//! `cruisefit evaluate`: the fuel-flow error of a model over reports; nothing is adapted.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Failure> {
     let (summary, refused) = evaluate(arguments, progress)?;
     if let Some(path) = &arguments.json {
@@ -28,7 +28,7 @@ pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcom
 /// The error of the models over the reports, and what was refused.
 ///
 /// # Errors
-/// What leaves nothing to evaluate.
+/// A reason for which there is nothing to evaluate.
 pub(crate) fn evaluate(
     arguments: &EvaluateArgs,
     progress: Progress,

@@ -10,7 +10,7 @@ use pipeline::model_table;
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     if !model.applied.is_empty() {

@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use pipeline::difference::{Tolerance, differences};
 use pipeline::model_table;
 
-/// `golden.ron`: a run and how exactly its results must come again.
+/// `golden.ron`: a run, and how exactly its results must be reproduced.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Golden {
@@ -140,7 +140,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             output: output.clone(),
             law,
             threshold,
-            // What no table can hold is the diagnosis' matter; a model with it is six times as large.
+            // What no table can hold concerns the diagnosis; a model with it is six times as large.
             no_remainder: true,
             restart: false,
         },
@@ -175,7 +175,7 @@ fn names_in(folder: &Path) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// A checksum changes with the last bit of any number: it is left out of what is compared within tolerance.
+/// A checksum changes with the last bit of any number, so it is left out of the comparison within tolerance.
 fn without_checksum(text: &str) -> String {
     text.lines()
         .filter(|line| !line.trim_start().starts_with("checksum:"))

@@ -15,7 +15,7 @@ use pipeline::model_file::ModelFile;
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?).map_err(|error| {
         Failure::bad_file(&arguments.aircraft, format!("not an aircraft file: {error}"))

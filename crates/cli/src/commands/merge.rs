@@ -1,4 +1,4 @@
-//! `cruisefit merge`: what models of one initial model have learnt, added up.
+//! `cruisefit merge`: the sum of what several models of one initial model have learnt.
 
 use crate::args::MergeArgs;
 use crate::commands::Outcome;
@@ -9,7 +9,8 @@ use pipeline::{learning, merging};
 /// Runs the command.
 ///
 /// # Errors
-/// Models that do not add up: another initial model, law, setting, trim criterion, or a flight that two have learnt.
+/// Models that do not add up: different initial models, laws, settings or trim criteria, or a flight that two have
+/// learnt.
 pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
     let mut models = Vec::with_capacity(arguments.models.len());
     for path in &arguments.models {
@@ -26,7 +27,7 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         merging::add(&mut merged, other).map_err(|error| Failure::bad_file(path, error))?;
     }
     let Some(learnt) = &mut merged.learnt else {
-        return Err(Failure::bad_file(&arguments.models[0], "has learnt nothing"));
+        return Err(Failure::bad_file(&arguments.models[0], "has not learnt anything"));
     };
     learnt
         .ledger

@@ -24,7 +24,7 @@ use remainder::Remainder;
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     let current = model.current().map_err(|error| Failure::bad_file(&arguments.model, error))?;
@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
                 }
                 None => prediction,
             })),
-            // The row stays, without figures: a planner's table keeps its lines.
+            // The row stays, without values: a planner's table keeps its lines.
             Err(error) => {
                 predicted.push(None);
                 refused.push(RefusedReport {
@@ -72,13 +72,13 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     tell_references(&model, points.rows());
     let text = arguments.output.as_ref().map_or_else(String::new, |path| {
         let known = remainders.iter().flatten().count();
-        let said = if remembered.is_some() {
-            format!("; {known} of them with the remainder that flown data informed")
+        let remainder_note = if remembered.is_some() {
+            format!("; {known} of them with a remainder informed by flown data")
         } else {
             String::new()
         };
         format!(
-            "{} of {} points predicted{said}, written to {}\n",
+            "{} of {} points predicted{remainder_note}, written to {}\n",
             points.rows().len() - refused.len(),
             points.rows().len(),
             show(path)
@@ -87,13 +87,13 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     Ok(Outcome { text, refused })
 }
 
-/// Says once which applied effects are at their reference for want of an input.
+/// Warns once about each applied effect that is held at its reference because an input is missing.
 fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
     let Some(effects) = model.initial.effects() else { return };
-    let mut said = Vec::new();
+    let mut warned = Vec::new();
     for (effect, missing) in rows.iter().flat_map(|row| effects.at_reference(&row.point)) {
-        if !said.contains(&(effect, missing)) {
-            said.push((effect, missing));
+        if !warned.contains(&(effect, missing)) {
+            warned.push((effect, missing));
             tracing::warn!("points without {missing}: {effect} is at its reference there");
         }
     }
@@ -114,7 +114,7 @@ fn table(
         predicted.iter().map(move |prediction| prediction.as_ref().map(of))
     };
     columns.number("fuel_flow_kg_s", figure(|p| p.fuel_flow_total.to_kilograms_per_second()));
-    // Law `paper` knows no standard deviation: the column is there, and empty.
+    // Law `paper` has no standard deviation: the column exists and is empty.
     columns.number("fuel_flow_std_kg_s", deviations.iter().copied());
     columns.number("specific_range_m_kg", figure(|p| p.specific_range.to_meters_per_kilogram()));
     columns.number("lift_coefficient", figure(|p| p.lift_coefficient));
@@ -136,9 +136,9 @@ fn table(
     columns
 }
 
-/// Standard deviation of what a segment recorded there would say, kg/s: what the table does not know, what is common to
-/// a flight, and the segment's own noise by the aircraft's sensors, and scatter between flights that was applied. Where the
-/// remainder is known, what it leaves open is added, and noise is as large as flights showed it.
+/// Standard deviation, in kg/s, of what a segment recorded there would show: the uncertainty of the table, the part
+/// common to a flight, the segment's own noise by the aircraft's sensors, and any applied scatter between flights.
+/// Where the remainder is known, its uncertainty is added, and the noise is as large as flights showed it to be.
 fn deviations(
     model: &ModelFile,
     rows: &[FlightPointRow],
@@ -146,7 +146,7 @@ fn deviations(
     remembered: Option<Remainder<'_>>,
     remainders: &[Option<(f64, f64)>],
 ) -> Vec<Option<f64>> {
-    // What is imagined is recorded by the aircraft's sensors as they should be.
+    // The imagined segment is recorded by the aircraft's sensors without any error of theirs.
     let Ok(plain) = model.initial.with_effects(AppliedEffects::default()) else {
         return vec![None; rows.len()];
     };

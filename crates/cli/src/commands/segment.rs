@@ -16,13 +16,13 @@ use pipeline::summary::{NO_SEGMENT, aligned, counted};
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome, Failure> {
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     let nothing_left = reading.flights.is_empty();
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
-    // The order of flying, whatever the files are called.
+    // Sorted by the order of flying, whatever the names of the files.
     reading.flights.sort_by(FlightRead::order);
     let explained = if arguments.explain { explain(&reading.flights) } else { String::new() };
     let flights = reading.flights.len();
@@ -48,14 +48,14 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
             text.push_str(NO_SEGMENT);
         }
     } else {
-        // Standard output carries the table; the explanation goes where it does not get into it.
+        // Standard output carries the table, so the explanation goes to standard error.
         eprint!("{explained}");
         columns::write(&table, None)?;
     }
     Ok(Outcome { text, refused: reading.refused })
 }
 
-/// What each criterion cost: a line a flight, then all flights together.
+/// What each criterion cost: one line per flight, then all flights together.
 fn explain(flights: &[FlightRead]) -> String {
     let mut text = String::new();
     let mut total = Tally::NOTHING;

@@ -1,4 +1,4 @@
-//! `cruisefit show`: what a model file holds, for a person.
+//! `cruisefit show`: the contents of a model file, in readable form.
 
 use std::fmt::Write;
 
@@ -14,7 +14,7 @@ use pipeline::summary::aligned;
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     let mut text = String::new();
@@ -134,7 +134,7 @@ fn describe_table(model: &ModelFile, text: &mut String) {
     let grid = model.grid();
     let drag = model.drag_coefficient();
     let informed = match &model.learnt {
-        // The refit sets confidences back: what counts is what was adapted since.
+        // The refit resets the confidences: what counts is what was adapted since.
         Some(Learnt { law: law @ LawState::Paper { .. }, .. }) => {
             law.confidence().iter().map(|confidence| *confidence > 1.0).collect()
         }

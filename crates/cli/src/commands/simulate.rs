@@ -12,7 +12,7 @@ use crate::simulated_reports;
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcome, Failure> {
     if arguments.plan.as_os_str() == "ghazi-2020" {
         let flights = simulated_reports::ghazi_2020()?.write(&arguments.output, progress)?;
@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcom
         Simulation::new(plan).map_err(|error| Failure::bad_file(&arguments.plan, error))?;
     let flights = simulated_reports::write(&simulation, &arguments.output, progress)?;
     Ok(Outcome::text(format!(
-        "{flights} flights written to {}: a folder a tail, TRUTH.json\n",
+        "{flights} flights written to {}: one folder per tail, TRUTH.json\n",
         show(&arguments.output)
     )))
 }

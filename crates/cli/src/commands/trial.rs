@@ -24,7 +24,7 @@ use folder::TruthFolder;
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done; with `--check` a score below its floor.
+/// A reason for which nothing was done; with `--check`, a score below its floor.
 pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, Failure> {
     let plan = read_plan(arguments)?;
     let begun = Instant::now();
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
     begin(&arguments.output, &plan)?;
     let cases = plan.cases(engines(&plan)?);
     let truths = seal(&arguments.output, &plan, &cases, progress)?;
-    // Told before the first diagnosis, also where nobody watches the progress.
+    // Printed before the first diagnosis, also where no progress is shown.
     eprintln!("{} cases, truth sealed: sha256 {}", cases.len(), truths.seal().hash());
     let bar = progress.bar(cases.len(), "trials");
     let results: Vec<_> = cases
@@ -101,7 +101,7 @@ fn engines(plan: &TrialPlan) -> Result<usize, Failure> {
     }
 }
 
-/// Writes down what the folder was begun with, or makes sure that it was begun with the same.
+/// Records what the folder was started with, or checks that it was started with the same.
 fn begin(folder: &Path, plan: &TrialPlan) -> Result<(), Failure> {
     let path = folder.join("plan.ron");
     let mut text = plan.to_ron().map_err(|error| Failure::unwritable(&path, error))?;
@@ -124,7 +124,7 @@ fn begin(folder: &Path, plan: &TrialPlan) -> Result<(), Failure> {
     })
 }
 
-/// Draws every case and seals what is withheld.
+/// Draws every case and seals the truths.
 fn seal(
     folder: &Path,
     plan: &TrialPlan,

@@ -1,4 +1,4 @@
-//! `cruisefit tune`: settings of law `bayes` from past reports.
+//! `cruisefit tune`: settings of law `bayes` fitted to past reports.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -16,7 +16,7 @@ use crate::reading::FlightRead;
 /// Runs the command.
 ///
 /// # Errors
-/// What leaves nothing done.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, Failure> {
     let mut model = read_model(&arguments.model)?;
     if model.learnt.is_some() {
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         }
     };
     if aged.values().half_life_days.is_some() {
-        // The evidence is of knowledge that does not age: it would take ageing for noise of flights.
+        // The evidence assumes knowledge that does not age: it would mistake ageing for noise of flights.
         model.settings.bayes = aged;
         text.push_str("Noise stays as it is: with a half-life it is not searched\n");
     } else {

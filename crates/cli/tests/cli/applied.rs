@@ -1,4 +1,4 @@
-//! `diagnose --apply`, and what the commands make of a model that contains effects.
+//! `diagnose --apply`, and how the commands treat a model that contains effects.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,8 +8,8 @@ use units::Mach;
 
 use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers};
 
-/// Two tails of one virtual aircraft whose physics is the model's: `NEW`, and `WORN` with TSFC of engine 2 up 3 %. Sensors
-/// that only round, no scatter between flights.
+/// Two tails of one virtual aircraft whose physics is the model's: `NEW`, and `WORN` with TSFC of engine 2 up 3 %.
+/// Sensors only round; no scatter between flights.
 const PLAN: &str = r#"(
     seed: 6,
     physics: (reynolds_number: Off, trim_drag: Off, asymmetry: Off, part_load: Off, temperature_exponent: Off, offtake: Off),
@@ -97,10 +97,10 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     let (learnt, worn) = (at("new/models/NEW.ron"), at("flown/WORN"));
     let (found, applied) = (at("found"), at("applied"));
 
-    // A meter of engine 2 that reads high looks the same: who applies has to say which it is.
+    // A meter of engine 2 that reads high looks the same: the user has to state which of the two it is.
     run(&[&"diagnose", &worn, &"--model", &learnt, &"-o", &found, &"--apply", &applied])
         .expect(1)
-        .says("these flights cannot tell apart tsfc_engine_2, fuel_flow_gain_2");
+        .says("these flights cannot distinguish tsfc_engine_2, fuel_flow_gain_2");
     assert!(bytes_below(&applied).is_empty());
     let named = [&"--effects" as &dyn AsRef<std::ffi::OsStr>, &"tsfc_engine_2"];
     let mut words: Vec<&dyn AsRef<std::ffi::OsStr>> =
@@ -121,7 +121,7 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     adapt(&initial, &at("charged"), std::slice::from_ref(&worn), &[]).expect(0);
     adapt(&extended, &at("alone"), std::slice::from_ref(&worn), &[])
         .expect(0)
-        .says("adapting begins from its initial part and the effects applied to it");
+        .says("adaptation starts from its initial part and the effects applied to it");
     let (charged, alone) = (against_truth(&at("charged")), against_truth(&at("alone")));
     eprintln!(
         "mean, rms, share within 0.5 %: {charged:.3?} without the effect, {alone:.3?} with it"
@@ -142,10 +142,10 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     let more = predicted(&alone) / predicted(&charged) - 1.0;
     assert!((100.0 * more - 1.5).abs() < 0.15, "{more}");
 
-    // Another set of effects is another beginning.
+    // Another set of effects is another initial state.
     adapt(&initial, &at("alone"), std::slice::from_ref(&worn), &[])
         .expect(2)
-        .says("was begun with another set of applied effects: tsfc_engine_2 +")
+        .says("was started with another set of applied effects: tsfc_engine_2 +")
         .says("against none");
     run(&[
         &"merge",
@@ -272,25 +272,25 @@ fn physical_effects_change_what_a_planner_gets_and_missing_inputs_are_said() {
     let (plain, drag, _) = flows(&model);
     // A year after the reference of 2019-02-12T19:33:20Z, less a day's part: 0.9978 years of 1 % each.
     let aged = extended_by_hand(&model, &one("engine_ageing", 1.0));
-    let (found, _, said) = flows(&aged);
+    let (found, _, stderr) = flows(&aged);
     assert!((found[0] / plain[0] - 1.009_978).abs() < 1e-4, "{found:?}");
     assert!((found[1] / plain[1] - 1.0).abs() < 1e-12, "{found:?}");
-    assert_eq!(said.matches("points without date: engine_ageing is at its reference").count(), 1);
+    assert_eq!(stderr.matches("points without date: engine_ageing is at its reference").count(), 1);
     // 5 %MAC forward: 3 counts·0.5·CL/0.4.
     let trimmed = extended_by_hand(&model, &one("trim_drag_cg", 3.0));
-    let (_, trimmed_drag, said) = flows(&trimmed);
+    let (_, trimmed_drag, stderr) = flows(&trimmed);
     assert!(trimmed_drag[0] > drag[0] + 1.0e-4 && trimmed_drag[0] < drag[0] + 2.2e-4);
     assert!((trimmed_drag[1] / drag[1] - 1.0).abs() < 1e-12);
-    assert_eq!(said.matches("points without cg_percent_mac").count(), 1);
+    assert_eq!(stderr.matches("points without cg_percent_mac").count(), 1);
     // A step from 2020 on is there on the first point's date, and not on the reference's.
     let stepped = extended_by_hand(
         &model,
         r#"(effect: "step_change", size: 1.5, standard_deviation: 0.1, step_from_s: Some(1577836800), step_target: Some(fuel_flow))"#,
     );
-    let (found, _, said) = flows(&stepped);
+    let (found, _, stderr) = flows(&stepped);
     assert!((found[0] / plain[0] - 1.015).abs() < 1e-9, "{found:?}");
     assert!((found[1] / plain[1] - 1.0).abs() < 1e-12, "{found:?}");
-    assert!(said.contains("points without date: step_change is at its reference"), "{said}");
+    assert!(stderr.contains("points without date: step_change is at its reference"), "{stderr}");
 }
 
 #[test]
@@ -298,7 +298,7 @@ fn files_with_effects_read_back_to_the_same_bytes_and_wrong_ones_are_refused() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
     let extended = extended_by_hand(&model, &one("drag_factor", 2.0));
-    // `tune` and `adapt` write the effects on.
+    // `tune` and `adapt` keep the effects in what they write.
     let out = scratch.path().join("out");
     adapt(&extended, &out, &[fixture("reports/0001.txt")], &[]).expect(0);
     let written = std::fs::read_to_string(out.join("models/SIM-01.ron")).unwrap();

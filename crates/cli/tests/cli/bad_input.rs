@@ -1,10 +1,10 @@
-//! Bad input: the message that a person gets, and that the rest goes on.
+//! Bad input: the message that a person gets, and that the rest continues.
 
 use std::path::{Path, PathBuf};
 
 use crate::support::{Ran, adapt, bytes_below, cruisefit, fixture, initial_model};
 
-/// Adapts to one good report and one bad one: the bad one is refused with these words, the good one is learnt.
+/// Adapts to one good report and one bad one: the bad one is refused with this message, the good one is learnt.
 fn refused_beside_a_good_one(name: &str, bytes: &[u8], words: &str) {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());

@@ -135,7 +135,7 @@ fn golden_check_finds_a_changed_value() {
     let ran = cruisefit(&["golden".as_ref(), "check".as_ref(), folder.as_os_str()]).expect(2);
     assert!(ran.stdout.contains("SIM-01_table.csv:41: value"), "{}", ran.stdout);
     ran.says("1 values out of tolerance");
-    // Blessing is on purpose, and makes it right again.
+    // Blessing is deliberate, and makes the check pass again.
     cruisefit(&["golden".as_ref(), "bless".as_ref(), folder.as_os_str()]).expect(0);
     assert_eq!(std::fs::read_to_string(&table).unwrap(), text);
 }
@@ -172,7 +172,8 @@ fn the_real_a320_recording() {
         ])
         .expect(0)
     };
-    // Drift of 5 degrees and more, and a pressure altitude that swings by 20 ft: table 4 leaves nothing, and says so.
+    // Drift of 5 degrees and more, and a pressure altitude that swings by 20 ft: table 4 leaves no segment, and the
+    // program reports that.
     let strict = segment("ghazi-2020-table-4");
     assert!(strict.stdout.contains("0 kept in 0 segments"), "{}", strict.stdout);
     assert!(strict.stdout.contains("not evaluated: SAT, N2"), "{}", strict.stdout);
@@ -207,7 +208,7 @@ fn demo_does_the_whole_chain_on_embedded_data() {
     ] {
         assert!(folder.join(file).exists(), "{file}");
     }
-    // Again into the same folder: the same words.
+    // Once more into the same folder: the same output.
     let again = cruisefit(&["demo".as_ref(), "-o".as_ref(), folder.as_os_str()]).expect(0);
     assert_eq!(again.stdout, ran.stdout);
 }
@@ -320,10 +321,10 @@ fn tuned_settings_are_kept_by_the_model() {
     assert!(ran.stdout.contains("ln evidence"), "{}", ran.stdout);
     let output = scratch.path().join("out");
     adapt(&tuned, &output, &[fixture("reports/0001.txt")], &[]).expect(0);
-    // Other settings are another beginning.
+    // Other settings are another initial state.
     adapt(&model, &output, &[fixture("reports/0002.txt")], &[])
         .expect(2)
-        .says("was begun with another setting");
+        .says("was started with another setting");
 }
 
 #[test]

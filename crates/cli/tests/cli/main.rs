@@ -1,10 +1,10 @@
-//! Black-box tests of the binary: what it writes, what it says, how it ends.
+//! Black-box tests of the binary: what it writes, what it prints, how it exits.
 
 #![expect(
     clippy::disallowed_methods,
     clippy::unwrap_used,
     clippy::print_stderr,
-    reason = "tests of a program that reads and writes files; a test that cannot go on shall stop"
+    reason = "tests of a program that reads and writes files; a test that cannot continue must stop"
 )]
 
 mod applied;

@@ -1,4 +1,4 @@
-//! What a folder remembers, and what it refuses.
+//! What a folder keeps, and what it refuses.
 
 use std::path::{Path, PathBuf};
 
@@ -60,7 +60,7 @@ fn the_same_flight_with_other_content_is_refused_by_name() {
     adapt(&model, &output, &[report(1)], &[]).expect(0);
     let changed = changed_copy(scratch.path(), 1, "ZFW      52960 lb", "ZFW      52970 lb");
     adapt(&model, &output, std::slice::from_ref(&changed), &[]).expect(1).says(
-        "tail SIM-01 flight 0001 of 2019-03-14T10:45:00Z is already known with other content",
+        "tail SIM-01 flight 0001 of 2019-03-14T10:45:00Z is already known with different content",
     );
     // Within one batch too.
     let other = scratch.path().join("other");
@@ -78,7 +78,7 @@ fn an_older_flight_is_learnt_with_a_warning_or_refused() {
     assert_eq!(summary(&output)["tails"][0]["flights"], 1);
     adapt(&model, &output, &[report(1)], &[])
         .expect(0)
-        .says("is older than the newest that tail SIM-01 has learnt");
+        .says("is older than the newest one that tail SIM-01 has learnt");
     assert_eq!(summary(&output)["tails"][0]["flights"], 2);
 }
 
@@ -91,15 +91,19 @@ fn another_setting_or_initial_model_is_refused_unless_restarted() {
     let before = bytes_below(&output);
     adapt(&model, &output, &[report(2)], &[])
         .expect(2)
-        .says("was begun with another law or setting: law paper, threshold 5 %");
+        .says("was started with another law or setting: law paper, threshold 5 %");
     adapt(&model, &output, &[report(2)], &["--law", "paper", "--threshold", "1"])
         .expect(2)
-        .says("was begun with another law or setting: law paper, threshold 5 %, criteria ghazi-2020-table-4 against law paper, threshold 1 %, criteria ghazi-2020-table-4");
+        .says("was started with another law or setting: law paper, threshold 5 %, criteria ghazi-2020-table-4 against law paper, threshold 1 %, criteria ghazi-2020-table-4");
     assert_eq!(bytes_below(&output), before);
     adapt(&model, &output, &[report(2)], &["--law", "paper", "--threshold", "1", "--restart"])
         .expect(0);
     assert_eq!(summary(&output)["tails"][0]["flights"], 1);
-    assert_eq!(bytes_below(&scratch.path().join("out.1")), before, "the old folder is kept aside");
+    assert_eq!(
+        bytes_below(&scratch.path().join("out.1")),
+        before,
+        "the old folder is kept under another name"
+    );
 
     // The same guide with one figure changed is another initial model.
     let guide = std::fs::read_to_string(fixture("guide.csv")).unwrap();
@@ -119,5 +123,5 @@ fn another_setting_or_initial_model_is_refused_unless_restarted() {
     .expect(0);
     adapt(&other, &output, &[report(3)], &["--law", "paper", "--threshold", "1"])
         .expect(2)
-        .says("was begun with another initial model");
+        .says("was started with another initial model");
 }

@@ -38,13 +38,13 @@ pub(crate) fn cruisefit<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Ran {
 }
 
 impl Ran {
-    /// Asserts the exit status, showing what was said if it is another.
+    /// Asserts the exit status, showing the output if it is another.
     pub(crate) fn expect(self, status: i32) -> Self {
         assert_eq!(self.status, status, "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);
         self
     }
 
-    /// Asserts that standard error says this, whatever its line breaks.
+    /// Asserts that standard error contains this, whatever its line breaks.
     pub(crate) fn says(&self, words: &str) -> &Self {
         let flat = flatten(&self.stderr);
         assert!(flat.contains(&flatten(words)), "{words:?} is not in:\n{}", self.stderr);
@@ -52,7 +52,7 @@ impl Ran {
     }
 }
 
-/// Text without line breaks, frames of the terminal's error printer, or doubled blanks.
+/// Text without line breaks, frames of the terminal's error printer, or repeated blanks.
 fn flatten(text: &str) -> String {
     let words: Vec<&str> = text
         .split(|c: char| c.is_whitespace() || c == '│')

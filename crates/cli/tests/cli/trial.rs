@@ -36,7 +36,7 @@ fn a_trial_is_sealed_scored_and_gone_on_from() {
     let expected = bytes_below(&output);
     let trials: serde_json::Value = serde_json::from_slice(&expected["trials.json"]).unwrap();
     assert_eq!(trials["schema"], "cruisefit.trials/1");
-    // The hash that was told at the start is the one of the results.
+    // The hash that was printed at the start is the one in the results.
     ran.says(trials["seal_sha256"].as_str().unwrap());
     assert_eq!(trials["cases"].as_array().unwrap().len(), 3);
     let truth: serde_json::Value = serde_json::from_slice(&expected["truth/00001.json"]).unwrap();
@@ -46,18 +46,19 @@ fn a_trial_is_sealed_scored_and_gone_on_from() {
     assert!((size.abs() - 4.0).abs() < 1e-12, "{size}");
     assert_eq!(truth["clutter"].as_array().unwrap().len(), 27);
 
-    // A run that was cut off goes on: what is left is the same, to the last byte, on one thread as on two.
+    // An interrupted run continues: the remaining cases give the same result, to the last byte, on one thread as on
+    // two.
     std::fs::remove_file(output.join("cases/00002.json")).unwrap();
     std::fs::remove_file(output.join("trials.json")).unwrap();
     run("1", &[]).expect(0);
     assert_eq!(bytes_below(&output), expected);
 
     // A floor without a case behind it is missed.
-    run("2", &["--check"]).expect(2).says("1 scores miss their floor, 0 cases came to nothing");
-    // Another plan in the same folder is refused, unless begun anew.
-    run("2", &["--seed", "4"]).expect(2).says("was begun with another plan");
+    run("2", &["--check"]).expect(2).says("1 scores below their floor, 0 cases failed");
+    // Another plan in the same folder is refused, unless started over.
+    run("2", &["--seed", "4"]).expect(2).says("was started with another plan");
     // A truth that was changed is noticed.
     let path = output.join("truth/00001.json");
     std::fs::write(&path, std::fs::read_to_string(&path).unwrap().replace("4.0", "5.0")).unwrap();
-    run("2", &[]).expect(2).says("was begun with another truth");
+    run("2", &[]).expect(2).says("was started with another truth");
 }

@@ -12,7 +12,7 @@ use crate::model::EffectModel;
 const DATE_S: f64 = 1.5e9;
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
-/// CD0 0.0188, K 0.056, a drag rise: nothing that a test depends on.
+/// CD0 0.0188, K 0.056, a drag rise: no test depends on the values.
 fn bare() -> ExtendedModel {
     let aircraft = Aircraft::from_ron(
         r#"(
@@ -132,7 +132,7 @@ fn ids(of_recordings: bool) -> impl Iterator<Item = EffectId> {
 
 #[test]
 fn effects_of_recordings_never_change_a_prediction() {
-    // A planner asks what will be burnt, not what an erring sensor will say of it.
+    // A planner asks what will be burnt, not what a sensor with an error will indicate.
     let plain = bare().predict(&flight_point()).unwrap();
     let mut seen = 0;
     for id in ids(true) {
@@ -153,14 +153,14 @@ fn effects_of_recordings_never_change_a_prediction() {
     assert_eq!(seen, 8);
 }
 
-/// A segment whose fuel flow is what the effect model says is recorded with the effect as a *trial*: the oracle, itself
+/// A segment whose fuel flow is that of the effect model is recorded with the effect as a *trial*: the oracle, itself
 /// held against hand computations in its own tests.
 fn recorded_with(id: EffectId, size: f64) -> Segment {
     let model = bare();
     let mut segment = segment();
     let effect_model = EffectModel::new(&model, model.drag_table(), references()).unwrap();
     let effects = hidden(Effects::one(id, size));
-    // Shares of the engines count in the mass: the recorded ones are those of the response.
+    // The engines' shares enter the mass: the recorded ones are those of the response.
     for _ in 0..3 {
         let point = EffectPoint::from_means(&segment.means, DATE_S, 2);
         let response = effect_model.response(&point, &effects).unwrap();
@@ -205,7 +205,7 @@ fn a_throttle_effect_found_over_n2_acts_over_corrected_thrust() {
     };
     assert_eq!(flow(&model).to_bits(), flow(&by_thrust).to_bits());
     assert_ne!(flow(&model).to_bits(), flow(&bare()).to_bits());
-    // Nor does a point that knows what its N2 stands for make a difference: every command says the same.
+    // Nor does the corrected thrust that N2 indicates make a difference: every command gives the same.
     let at = EffectPoint {
         corrected_thrust_by_n2_n: Some(80_000.0),
         ..EffectPoint::from_means(&segment().means, DATE_S, 2)
@@ -220,7 +220,7 @@ fn a_throttle_effect_found_over_n2_acts_over_corrected_thrust() {
 #[test]
 fn corrections_by_hand() {
     // Meter of engine 2 reads 4 % high, each engine records 0.12 kg/s: engine 2 burnt 0.12/1.04 = 0.115 384 615; the
-    // total is 0.12·… less half of 0.04/1.04 = 1.923 %; 1500 kg of fuel used become 1471.15 and the mass gains 28.85 kg.
+    // total is 0.12·… minus half of 0.04/1.04 = 1.923 %; 1500 kg of fuel used become 1471.15 and the mass gains 28.85 kg.
     let model = with(Effects::one(EffectId::FuelFlowGainEngine(2), 4.0));
     let means = &model.corrected(&segment()).unwrap().means.clone();
     assert!((means.fuel_flow_engine_kg_s[0] - 0.12).abs() < 1e-15);
@@ -310,7 +310,7 @@ fn what_a_point_does_not_say_is_at_its_reference() {
 
 #[test]
 fn layers_come_one_on_top_of_the_other() {
-    // 2 % of drag, then 3 % of what is then there: 1.02·1.03. Meters 2 % and 1 % high: 1/(1.02·1.01).
+    // 2 % of drag, then 3 % of the result: 1.02·1.03. Meters 2 % and 1 % high: 1/(1.02·1.01).
     let applied = AppliedEffects::new(vec![
         layer(Effects::one(EffectId::DragFactor, 2.0).with(EffectId::FuelFlowGain, 2.0)),
         layer(Effects::one(EffectId::DragFactor, 3.0).with(EffectId::FuelFlowGain, 1.0)),
@@ -336,7 +336,7 @@ fn trial_effects_come_on_top_and_known_ones_are_settled() {
     let alone = EffectModel::new(&plain, plain.drag_table(), references()).unwrap();
     let point = EffectPoint::from_means(&segment().means, DATE_S, 2);
     let contained = Effects::one(EffectId::DragFactor, 2.0).with(EffectId::LocalGravity, 1.0);
-    // What is contained acts exactly as the same trial effects did.
+    // Contained effects act exactly as the same trial effects did.
     assert_eq!(
         on_top.response(&point, &Effects::none()).unwrap(),
         alone.response(&point, &contained).unwrap()

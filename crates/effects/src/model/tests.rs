@@ -345,7 +345,7 @@ fn dated_steps_begin_on_their_date_and_know_drag_from_fuel_flow() {
     assert_eq!(step(at.date_s + 1.0, StepTarget::Drag), plain);
 }
 
-/// F/δ that N2 stands for is 1.3 references, pivot 0.9: ((1.3 − 0.9)/0.25)² = 2.56, at 0.5 % a factor of 1.0128.
+/// F/δ that N2 indicates is 1.3 references, pivot 0.9: ((1.3 − 0.9)/0.25)² = 2.56, at 0.5 % a factor of 1.0128.
 #[test]
 fn the_throttle_effect_over_n2_by_hand() {
     let performance = model(true);
@@ -362,17 +362,17 @@ fn the_throttle_effect_over_n2_by_hand() {
     assert!((by_n2.ln_fuel_flow_total - plain.ln_fuel_flow_total - 1.0128_f64.ln()).abs() < 1e-14);
     // N2 moves the argument of TSFC, not the thrust that is flown.
     assert!((by_n2.ln_corrected_thrust - plain.ln_corrected_thrust).abs() < 1e-15);
-    // Over corrected thrust the point's N2 is not looked at.
+    // Over corrected thrust the point's N2 is not used.
     let x = plain.ln_corrected_thrust.exp() / 60_000.0;
     let factor: f64 = 1.0 + 0.005 * ((x - 0.9) / 0.25).powi(2);
     let by_thrust = over(&at, ThrottleArgument::CorrectedThrust);
     let grown = by_thrust.ln_fuel_flow_total - plain.ln_fuel_flow_total;
     assert!((grown - factor.ln()).abs() < 1e-14);
-    // A point that N2 says nothing of is over corrected thrust too.
+    // A point without N2 uses corrected thrust too.
     assert_eq!(over(&point(0.8), ThrottleArgument::N2), by_thrust);
 }
 
-/// As a file said it before there was a choice.
+/// As files stated it before there was a choice.
 #[test]
 fn hidden_parameters_without_an_argument_are_over_corrected_thrust() {
     let id = EffectId::TsfcThrottle;
@@ -381,7 +381,7 @@ fn hidden_parameters_without_an_argument_are_over_corrected_thrust() {
     let argument = ThrottleArgument::CorrectedThrust;
     assert_eq!(read.hidden(id), HiddenParameter::Throttle { pivot: 0.8, argument });
     assert_eq!(ron::to_string(&read).unwrap(), before);
-    // And is written as before; N2 is said.
+    // And it is written as before; N2 is written explicitly.
     let argument = ThrottleArgument::N2;
     let by_n2 = read.with_hidden(id, HiddenParameter::Throttle { pivot: 0.8, argument });
     let text = ron::to_string(&by_n2).unwrap();
@@ -466,7 +466,8 @@ fn references_are_means_and_read_back_to_the_same_bits() {
     assert_eq!(ron::from_str::<Effects>(&text).unwrap(), effects);
 }
 
-/// The short way to a response against the long one, to the last bit, for every effect alone and beside two others.
+/// The short way to a response against the long one, to the last bit, for every effect alone and together with two
+/// others.
 #[test]
 fn known_point_gives_the_same_response() {
     let model = model(true);

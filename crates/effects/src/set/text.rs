@@ -1,4 +1,4 @@
-//! A set of effects as files say it: names with sizes, then every hidden parameter, used or not.
+//! A set of effects in the form of the files: names with sizes, then every hidden parameter, used or not.
 
 use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,8 @@ pub(super) struct EffectsText {
 #[serde(rename = "HiddenParameters")]
 struct HiddenText {
     throttle_pivot: f64,
-    /// Not written where it is corrected thrust, so that files without N2 are what they were before there was a choice.
+    /// Not written where it is corrected thrust, so that files without N2 stay what they were before there was a
+    /// choice.
     #[serde(default, skip_serializing_if = "is_corrected_thrust")]
     throttle_argument: ThrottleArgument,
     drag_divergence_mach: f64,

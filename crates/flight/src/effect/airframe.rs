@@ -5,8 +5,8 @@ use super::{
     TypicalSize,
 };
 
-/// Drag-divergence Mach number at lift coefficient 0.35 where neither aircraft file nor search says one: our choice, the middle
-/// of the range 0.74 to 0.94 of transport and business aircraft that a search goes through.
+/// Drag-divergence Mach number at lift coefficient 0.35 where neither aircraft file nor search gives one: our choice,
+/// the middle of the range 0.74 to 0.94 of transport and business aircraft that a search covers.
 const DRAG_DIVERGENCE_MACH: f64 = 0.84;
 
 /// More (or less) drag at zero lift.
@@ -78,7 +78,7 @@ pub(super) const WAVE_DRAG: EffectEntry = EffectEntry {
     },
 };
 
-/// Friction that follows the Reynolds number.
+/// Friction that depends on the Reynolds number.
 pub(super) const REYNOLDS_NUMBER: EffectEntry = EffectEntry {
     name: "reynolds_number",
     group: EffectGroup::Airframe,
@@ -134,7 +134,7 @@ pub(super) const ASYMMETRY_DRAG: EffectEntry = EffectEntry {
     },
 };
 
-/// Lift that a turn asks for.
+/// Lift needed in a turn.
 pub(super) const LOAD_FACTOR: EffectEntry = EffectEntry {
     name: "load_factor",
     group: EffectGroup::Airframe,

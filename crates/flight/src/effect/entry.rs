@@ -1,13 +1,13 @@
-//! What an entry of the library says.
+//! The library's entry of an effect.
 
 use super::HiddenParameter;
 
-/// What the library says about an effect.
+/// The library's entry of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EffectEntry {
     /// Name in files; `{k}` is an engine's number.
     pub name: &'static str,
-    /// What it belongs to.
+    /// Its group.
     pub group: EffectGroup,
     /// Unit of its size θ.
     pub unit: &'static str,
@@ -15,20 +15,20 @@ pub struct EffectEntry {
     pub typical: TypicalSize,
     /// Which sign physics expects.
     pub sign: EffectSign,
-    /// Inputs beyond the required columns that it acts through. Without one of them it can neither be predicted nor tested,
-    /// unless something stands in ([`NeededInput::has_substitute`]).
+    /// Inputs beyond the required columns that it depends on. Without one of them it can neither be predicted nor
+    /// tested, unless there is a substitute ([`NeededInput::has_substitute`]).
     pub needs: &'static [NeededInput],
-    /// Its hidden parameter, with the value that holds where nothing is said.
+    /// Its hidden parameter, with the default value.
     pub hidden: HiddenParameter,
     /// Variables that its share of fuel flow depends on; none where it is the same everywhere.
     pub driven_by: &'static [DrivingVariable],
-    /// What θ does to the model, in one line.
+    /// Its perturbation of the model, in one line.
     pub perturbation: &'static str,
-    /// What it does, in words, by the sign of θ.
+    /// Its description in words, by the sign of θ.
     pub phrase: Phrase,
 }
 
-/// What an effect does, in words; `{k}` is an engine's number.
+/// The description of an effect in words; `{k}` is an engine's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phrase {
     /// Where its size is positive, or has no sign.
@@ -48,16 +48,16 @@ pub enum EffectSign {
     Spread,
 }
 
-/// What an effect belongs to.
+/// The group of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EffectGroup {
     /// The airframe's drag.
     Airframe,
     /// The engines' consumption.
     Engine,
-    /// What the aircraft weighs.
+    /// The aircraft's mass.
     Mass,
-    /// What the sensors say.
+    /// The readings of the sensors.
     Sensor,
     /// The Earth and its air.
     Environment,
@@ -76,7 +76,7 @@ pub enum TypicalSize {
     Known,
 }
 
-/// An input beyond the required columns that an effect acts through.
+/// An input beyond the required columns that an effect depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NeededInput {
     /// `CG`.
@@ -85,7 +85,7 @@ pub enum NeededInput {
     Roll,
     /// `WF(k)`: fuel flow engine by engine.
     FuelFlowPerEngine,
-    /// `A/I`; static air temperature above −40 °C stands in where it is not recorded.
+    /// `A/I`; where it is not recorded, static air temperature above −40 °C is used instead.
     AntiIce,
     /// `LAT`.
     Latitude,
@@ -96,9 +96,9 @@ pub enum NeededInput {
 }
 
 impl NeededInput {
-    /// Whether something stands in for the input where it is not recorded, so that effects that act through it can be
-    /// predicted and tested all the same: static air temperature above −40 °C for anti-ice bleed (our choice: bleed is
-    /// used in visible moisture, of which there is little below).
+    /// Whether there is a substitute for the input where it is not recorded, so that effects that depend on it can
+    /// still be predicted and tested: static air temperature above −40 °C for anti-ice bleed (our choice: bleed is used
+    /// in visible moisture, of which there is little below).
     #[must_use]
     pub const fn has_substitute(self) -> bool {
         matches!(self, Self::AntiIce)

@@ -1,4 +1,4 @@
-//! Hidden parameters: what an effect has beyond its size.
+//! Hidden parameters: the parameters of an effect other than its size.
 
 use core::fmt;
 
@@ -15,22 +15,22 @@ pub enum StepTarget {
     Drag,
 }
 
-/// What the parabola of `tsfc_throttle` runs over.
+/// The argument of the parabola of `tsfc_throttle`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThrottleArgument {
-    /// Corrected thrust as the model has it.
+    /// Corrected thrust by the model.
     #[default]
     CorrectedThrust,
     /// The corrected thrust that the recorded N2 indicates; the model's where a point has none.
     N2,
 }
 
-/// The hidden parameter of an effect: what it has beyond its size. Which kind an effect has, and what holds where nothing is
-/// said, is [`EffectEntry::hidden`](super::EffectEntry::hidden).
+/// The hidden parameter of an effect, in addition to its size. Its kind and its default are in
+/// [`EffectEntry::hidden`](super::EffectEntry::hidden).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HiddenParameter {
-    /// A size and nothing else.
+    /// No parameter other than the size.
     None,
     /// `wave_drag`: drag-divergence Mach number at lift coefficient 0.35.
     DragDivergenceMach(f64),

@@ -26,7 +26,7 @@ pub(super) const LOCAL_GRAVITY: EffectEntry = EffectEntry {
     },
 };
 
-/// Lift saved or asked for by the Earth's rotation and curvature.
+/// Lift saved or needed because of the Earth's rotation and curvature.
 pub(super) const ROTATING_EARTH: EffectEntry = EffectEntry {
     name: "rotating_earth",
     group: EffectGroup::Environment,

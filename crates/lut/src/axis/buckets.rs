@@ -1,8 +1,8 @@
-//! The search among breakpoints, without a loop: the axis is divided into equal buckets, so narrow that none holds
-//! more than one breakpoint. A multiplication finds the bucket, a comparison with its one breakpoint the cell.
+//! The search among breakpoints, without a loop: the axis is divided into equal buckets, so narrow that none holds more
+//! than one breakpoint. A multiplication finds the bucket, a comparison with its one breakpoint the cell.
 //!
-//! Rounding cannot make it wrong. The bucket of a coordinate never decreases with the coordinate, and breakpoints are
-//! put into buckets by the same arithmetic: a breakpoint of a lower bucket is smaller, one of a higher bucket is larger.
+//! Rounding cannot break it. The bucket of a coordinate never decreases with the coordinate, and breakpoints are put
+//! into buckets by the same arithmetic: a breakpoint of a lower bucket is smaller, one of a higher bucket is larger.
 
 /// Largest number of buckets: an axis that needs more (its narrowest cell is a thousandth of it, or less) is bisected.
 const MAXIMUM_BUCKETS: usize = 4096;
@@ -49,7 +49,7 @@ impl Buckets {
         }
     }
 
-    /// Fills `cells` and says whether no bucket holds two breakpoints.
+    /// Fills `cells`; false if a bucket holds two breakpoints.
     fn fill(&mut self, inner: &[f64], last: f64) -> bool {
         let buckets: Vec<usize> = inner.iter().map(|&breakpoint| self.bucket(breakpoint)).collect();
         if buckets.windows(2).any(|pair| pair[0] == pair[1]) {

@@ -32,7 +32,7 @@ pub enum FitError {
     WeightInvalid {
         /// The point's index, from 0.
         index: usize,
-        /// What was given.
+        /// The value given.
         weight: f64,
     },
     /// The points leave a direction undetermined.
@@ -40,14 +40,14 @@ pub enum FitError {
     RankDeficient {
         /// How many directions are determined.
         rank: usize,
-        /// Largest over smallest singular value of the weighted design; may be infinite.
+        /// Ratio of largest to smallest singular value of the weighted design; may be infinite.
         condition_number: f64,
-        /// What the points do not say.
+        /// What the points do not determine.
         undetermined: Undetermined,
     },
 }
 
-/// What points do not say about a surface. Distinct means more than [`SNAP`] apart.
+/// What points do not determine about a surface. Distinct means more than [`SNAP`] apart.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Undetermined {
@@ -89,7 +89,7 @@ pub enum Undetermined {
     },
 }
 
-/// Names what is undetermined, the plainest reason first. `null` is the direction of the smallest singular value.
+/// States what is undetermined, the simplest reason first. `null` is the direction of the smallest singular value.
 pub(super) fn undetermined(
     basis: Basis,
     points: &[(f64, f64, f64, f64)],

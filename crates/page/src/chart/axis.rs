@@ -8,7 +8,7 @@ pub(crate) struct Axis {
     ticks: Vec<Tick>,
 }
 
-/// A labelled place on a scale.
+/// A labelled position on a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tick {
     pub(crate) at: f64,
@@ -41,12 +41,12 @@ impl Axis {
         Self { first: low, last: high, ticks: step.ticks(first, last) }
     }
 
-    /// From 0 for counts: ticks are whole numbers.
+    /// From 0, for counts: ticks are whole numbers.
     pub(crate) fn of_counts(largest: usize, ticks: usize) -> Self {
         Self::around(0.0, largest.max(ticks) as f64, ticks)
     }
 
-    /// A scale with ticks of its own; those beyond the ends are left out.
+    /// A scale with given ticks; those beyond the ends are left out.
     pub(crate) fn with_ticks(low: f64, high: f64, ticks: Vec<Tick>) -> Self {
         let (first, last) = of_some_length(low, high);
         let ticks = ticks.into_iter().filter(|tick| first <= tick.at && tick.at <= last).collect();
@@ -65,12 +65,12 @@ impl Axis {
         &self.ticks
     }
 
-    /// Whether a value lies on the scale; what is not finite does not.
+    /// Whether a value lies on the scale; a value that is not finite does not.
     pub(crate) fn holds(&self, value: f64) -> bool {
         self.first <= value && value <= self.last
     }
 
-    /// Place of a value: 0 at the first, 1 at the last end.
+    /// Position of a value: 0 at the first, 1 at the last end.
     pub(crate) fn share(&self, value: f64) -> f64 {
         (value - self.first) / (self.last - self.first)
     }

@@ -1,6 +1,6 @@
 //! Counting values in bins, and the range worth drawing.
 
-/// Equal bins on whole multiples of their width, the same for every series that is counted in them.
+/// Equal bins at whole multiples of their width, the same for every series that is counted in them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bins {
     /// Lower edge of the first bin, in widths.
@@ -22,12 +22,12 @@ pub(crate) struct Histogram {
 
 /// Most bins that a chart of this size can show.
 const MOST_BINS: f64 = 60.0;
-/// Share of the values that bins must hold where not all fit: a single wild value shall not flatten the rest.
+/// Share of the values that bins must hold where not all fit: a single wild value must not flatten the rest.
 const SHARE_SHOWN: f64 = 0.98;
 
 impl Bins {
-    /// Bins of `width` around all values, where 60 bins suffice. Where they do not: 60 around the median, if they hold
-    /// 98 % of the values; else wider bins (2, 4, 10, 20, … widths) that do.
+    /// Bins of `width` around all values, if 60 bins suffice. Otherwise 60 around the median, if they hold 98 % of the
+    /// values; otherwise wider bins (2, 4, 10, 20, … widths) that do.
     pub(crate) fn of(values: &[f64], width: f64) -> Self {
         let mut sorted: Vec<f64> =
             values.iter().copied().filter(|value| value.is_finite()).collect();
@@ -44,7 +44,7 @@ impl Bins {
                 return all;
             }
             let half = MOST_BINS / 2.0 * width;
-            // Where one side has nothing that far out, the bins need not go there either.
+            // If there are no values that far out on one side, the bins need not extend there either.
             let some = Self::between(low.max(median - half), high.min(median + half), width);
             let shown = sorted.iter().filter(|value| some.holds(**value)).count();
             if shown as f64 >= SHARE_SHOWN * sorted.len() as f64 {

@@ -6,7 +6,7 @@ use jiff::{Timestamp, ToSpan};
 
 use super::{Axis, Tick};
 
-/// Distances of ticks.
+/// Distances between ticks.
 #[derive(Clone, Copy)]
 enum Step {
     Days(i64),
@@ -39,7 +39,7 @@ pub(crate) fn axis(low_s: f64, high_s: f64, ticks: usize) -> Axis {
     if !(low_s.is_finite() && high_s.is_finite() && low_s <= high_s) {
         return Axis::with_ticks(0.0, SECONDS_PER_DAY, Vec::new());
     }
-    // Half a day at least, so that a single flight has a midnight beside it.
+    // At least half a day, so that a single flight has a midnight near it.
     let room = (0.03 * (high_s - low_s)).max(0.6 * SECONDS_PER_DAY);
     let (first_s, last_s) = (low_s - room, high_s + room);
     let mut dates = Vec::new();

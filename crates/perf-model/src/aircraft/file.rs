@@ -10,14 +10,14 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::limits::{self, MAXIMUM_BREAKPOINTS, TABLE_LIFT_COEFFICIENT, TABLE_MACH};
 use super::{AircraftError, SensorDeviations};
 
-/// What an aircraft file says. [`Aircraft::new`](super::Aircraft::new) makes the checked aircraft of it.
+/// The content of an aircraft file. [`Aircraft::new`](super::Aircraft::new) checks it and makes the aircraft.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Aircraft", deny_unknown_fields)]
 pub struct AircraftFile {
-    /// Name for people ("Cessna Citation X").
+    /// Name for display ("Cessna Citation X").
     #[serde(deserialize_with = "name")]
     pub name: String,
-    /// What `AIRCRAFT` says in the type's cruise reports ("C750").
+    /// The value of `AIRCRAFT` in the type's cruise reports ("C750").
     #[serde(deserialize_with = "type_code")]
     pub type_code: String,
     /// Number of engines, 1 to 4.
@@ -30,7 +30,7 @@ pub struct AircraftFile {
     pub tsfc: TsfcFile,
     /// The look-up table's axes.
     pub table: TableFile,
-    /// The polynomial that is fitted to the guide; the first basis where the file does not say.
+    /// The polynomial that is fitted to the guide; the first basis where the file states none.
     #[serde(default = "separable")]
     pub polynomial: Basis,
     /// Mean aerodynamic chord, m.
@@ -89,13 +89,13 @@ pub struct TableFile {
 /// An axis as it is written: `(from, to, step)` or `[breakpoint, breakpoint, …]`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxisFile {
-    /// Even: from, to, step. Breakpoints are the doubles nearest to their decimals.
+    /// Evenly spaced: from, to, step. Breakpoints are the doubles nearest to their decimals.
     Step {
         /// First breakpoint.
         from: f64,
         /// Last breakpoint.
         to: f64,
-        /// Distance of neighbors.
+        /// Distance between neighbors.
         step: f64,
     },
     /// Breakpoint by breakpoint.
@@ -142,7 +142,7 @@ impl AxisFile {
 
 impl<'de> Deserialize<'de> for AxisFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        // To serde a RON tuple and a RON list are the same sequence: only the text tells one from the other.
+        // To serde a RON tuple and a RON list are the same sequence: only the text distinguishes them.
         let raw = Box::<RawValue>::deserialize(deserializer)?;
         let text = limits::without_leading_comments(raw.get_ron());
         if text.starts_with('[') {

@@ -1,6 +1,6 @@
-//! What the numbers of the aircraft file may be: each bound once, for reading text and for building in code.
+//! Limits of the numbers in the aircraft file: each bound once, for reading text and for building in code.
 //!
-//! A bound is checked while the text is read, so that the error knows the place.
+//! A bound is checked while the text is read, so that the error knows its position.
 
 use core::fmt::Display;
 
@@ -80,7 +80,7 @@ pub(super) fn optional<'de, D: Deserializer<'de>>(
     }
 }
 
-/// Writes an optional number plainly. Absent ones are skipped before this is asked.
+/// Writes an optional number plainly. Absent ones are skipped before this is called.
 #[expect(clippy::ref_option, reason = "the signature that serde calls")]
 pub(super) fn serialize_optional<S: Serializer>(
     value: &Option<f64>,
@@ -92,14 +92,14 @@ pub(super) fn serialize_optional<S: Serializer>(
     }
 }
 
-/// A piece of RON text as a value; the inner position is dropped, the outer reader knows a better one.
+/// A piece of RON text as a value; its own error position is dropped because the outer reader knows a better one.
 pub(super) fn from_text<T: DeserializeOwned, E: Error>(text: &str) -> Result<T, E> {
     ron::from_str(text).map_err(|error| custom(error.code))
 }
 
-/// RON text from its first character that is neither blank nor comment. What is left may still end in comments.
+/// RON text from its first character that is neither blank nor comment. The rest may still end in comments.
 ///
-/// `RawValue::trim` does the same but panics on what it cannot read again.
+/// `RawValue::trim` does the same but panics on text that it cannot read again.
 pub(super) fn without_leading_comments(text: &str) -> &str {
     let mut rest = text.trim_start();
     loop {

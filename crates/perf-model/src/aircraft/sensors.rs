@@ -1,15 +1,16 @@
-//! How far readings stray: the standard deviations that uncertainties are propagated from.
+//! Errors of recorded quantities: the standard deviations that uncertainties are propagated from.
 
 use serde::{Deserialize, Serialize};
 
 use super::AircraftError;
 use super::limits;
 
-/// Standard deviations of what is recorded. All are of a segment's mean unless the field says otherwise, and stand for
-/// what differs from segment to segment; a bias that never changes is no matter of variance but of diagnosis.
+/// Standard deviations of recorded quantities. Unless the field states otherwise, each is that of a segment's mean and
+/// describes what differs from segment to segment; a bias that never changes is not a matter of variance but of
+/// diagnosis.
 ///
-/// The defaults are handbook values. A fleet in level flight is quieter: take them from past reports where there are
-/// some.
+/// The defaults are handbook values. A fleet in level flight is quieter: estimate them from past reports where there
+/// are some.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SensorDeviations {
@@ -17,10 +18,11 @@ pub struct SensorDeviations {
     /// operators quote for flow meters.
     #[serde(deserialize_with = "limits::fuel_flow_percent::deserialize")]
     pub fuel_flow_percent: f64,
-    /// Mach number; true airspeed errs with it. Default 0.001: the resolution and repeatability of an air-data computer.
+    /// Mach number; the error of true airspeed follows it. Default 0.001: the resolution and repeatability of an
+    /// air-data computer.
     #[serde(deserialize_with = "limits::mach::deserialize")]
     pub mach: f64,
-    /// Static air temperature, K; true airspeed errs with it. Default 0.3: a total-temperature probe.
+    /// Static air temperature, K; the error of true airspeed follows it. Default 0.3: a total-temperature probe.
     #[serde(deserialize_with = "limits::static_air_temperature_k::deserialize")]
     pub static_air_temperature_k: f64,
     /// Along-path acceleration of one *sample* of 60 s, m/s², independent from sample to sample. Default 0.0045: the
@@ -47,29 +49,29 @@ pub struct SensorDeviations {
     pub fuel_flow_drift: FuelFlowDrift,
 }
 
-/// Drift of flow meters within a flight, on top of what differs from segment to segment: a first-order Gauss–Markov process,
-/// so that the errors of neighbouring segments are correlated.
+/// Drift of flow meters within a flight, in addition to what differs from segment to segment: a first-order
+/// Gauss–Markov process, so that the errors of neighbouring segments are correlated.
 ///
-/// No figure for real meters is known to us, so the default is no drift. Where meters drift and the file does not say so,
-/// functions of anything that changes slowly through a flight seem to explain it.
+/// We know of no figure for real meters, so the default is no drift. Where meters drift and the file does not state it,
+/// functions of anything that changes slowly through a flight seem to explain the drift.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FuelFlowDrift {
     /// Standard deviation of one engine's segment means, % of the reading; engines err independently. Default 0.
     #[serde(deserialize_with = "limits::fuel_flow_drift_percent::deserialize")]
     pub percent: f64,
-    /// Correlation time: the correlation of two means falls to 1/e in it, s. Default 1200.
+    /// Correlation time: the correlation of two means falls to 1/e over it, s. Default 1200.
     #[serde(deserialize_with = "limits::drift_time_s::deserialize")]
     pub time_s: f64,
 }
 
 /// Standard deviations of the per-flight biases, constant within a flight and independent between flights: calibration,
-/// hysteresis, the alignment of a computer. They come on top of what differs from segment to segment.
+/// hysteresis, the alignment of a computer. They are added to what differs from segment to segment.
 ///
 /// Ten segments of one flight that share an error carry no more information than one of them. Without this, a diagnosis
-/// without a learnt remainder takes three warm flights for a step, or for scatter between flights.
+/// without a learnt remainder mistakes three warm flights for a step, or for scatter between flights.
 ///
-/// The defaults are our choice: 0.7 of what the handbook says of one reading, so that half of its variance stays.
+/// The defaults are our choice: 0.7 of the handbook value for one reading, so that half of its variance stays.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FlightBias {

@@ -2,7 +2,7 @@ use super::*;
 
 const CITATION_X: &str = r#"(
     name: "Cessna Citation X",
-    type_code: "C750",              // what AIRCRAFT says in its reports
+    type_code: "C750",              // the value of AIRCRAFT in its reports
     engines: 2,
     wing_area_m2: 48.96,
     tsfc: (static_lb_per_lbf_h: 0.405, mach_exponent: 1.05),

@@ -5,7 +5,7 @@ use lut::surface::{Basis, COEFFICIENTS};
 /// The point where errors grow most.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Worst {
-    /// Standard deviation of the surface there, over that of a fitted point.
+    /// Standard deviation of the surface there, relative to that of a fitted point.
     pub(super) factor: f64,
     /// The point.
     pub(super) at: (f64, f64),
@@ -25,12 +25,12 @@ pub(super) fn worst(
     let start = Worst { factor: 0.0, at: (f64::NAN, f64::NAN) };
     judged.fold(start, |worst, at| {
         let factor = factor(&triangle, &basis.row(at.0, at.1));
-        // NaN, from a triangle with a zero on its diagonal, is the worst of all.
+        // NaN, from a triangle with a zero on its diagonal, counts as the worst.
         if factor > worst.factor || factor.is_nan() { Worst { factor, at } } else { worst }
     })
 }
 
-/// R of the design, by modified Gram–Schmidt: as accurate in R as Householder's.
+/// R of the design, by modified Gram–Schmidt: R is as accurate as with Householder reflections.
 fn triangle(mut rows: Vec<[f64; COEFFICIENTS]>) -> [[f64; COEFFICIENTS]; COEFFICIENTS] {
     let mut triangle = [[0.0; COEFFICIENTS]; COEFFICIENTS];
     for k in 0..COEFFICIENTS {

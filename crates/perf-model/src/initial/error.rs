@@ -1,4 +1,4 @@
-//! Why a guide gives no initial model.
+//! Why a guide does not give an initial model.
 
 use lut::TableError;
 use lut::surface::{COEFFICIENTS, FitError};
@@ -6,7 +6,7 @@ use units::OutOfDomain;
 
 use crate::ModelError;
 
-/// Why a guide gives no initial model.
+/// Why a guide does not give an initial model.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InitialModelError {
@@ -25,19 +25,19 @@ pub enum InitialModelError {
     NotDetermined {
         /// Directions that are determined.
         rank: usize,
-        /// Largest over smallest singular value of the design; may be infinite.
+        /// Ratio of largest to smallest singular value of the design; may be infinite.
         condition_number: f64,
-        /// What the rows do not say.
+        /// What the rows do not determine.
         reason: Undetermined,
     },
-    /// The rows have rank enough, but their least error swamps the polynomial within their own range.
+    /// The rows have full rank, but a small error of theirs swamps the polynomial within their own range.
     #[error(
         "the guide does not determine the polynomial: an error of 1 % in its rows would be {amplification:.3} % at lift coefficient {lift_coefficient:.3}, Mach number {mach:.3}, within its own range (at most {maximum} % is admitted). Its {rows} rows have {weights} different weights and {pressure_altitudes} different pressure altitudes: they lie near one curve of lift coefficient over Mach number (condition number {condition_number:.1e})"
     )]
     PoorlyDetermined {
         /// Growth of an error.
         amplification: f64,
-        /// Largest growth that is admitted.
+        /// Largest growth that is allowed.
         maximum: f64,
         /// Lift coefficient where it grows most.
         lift_coefficient: f64,
@@ -49,7 +49,7 @@ pub enum InitialModelError {
         weights: usize,
         /// Different pressure altitudes among them.
         pressure_altitudes: usize,
-        /// Largest over smallest singular value of the design.
+        /// Ratio of largest to smallest singular value of the design.
         condition_number: f64,
     },
     /// The polynomial is not positive at a node.
@@ -75,7 +75,7 @@ pub enum InitialModelError {
         /// What is outside.
         domain: OutOfDomain,
     },
-    /// A node's value that is not finite.
+    /// A value at a node that is not finite.
     #[error("table of the polynomial: {0}")]
     Table(TableError),
     /// Parts that do not fit.
@@ -86,7 +86,7 @@ pub enum InitialModelError {
     Fit(FitError),
 }
 
-/// What a guide's rows do not say.
+/// What a guide's rows do not determine.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Undetermined {
@@ -122,7 +122,7 @@ pub enum Undetermined {
     },
     /// The rows lie on one curve, as those of one weight at one altitude do.
     #[error(
-        "lift coefficient and Mach number of the rows hang on each other, as those of one weight at one altitude do"
+        "lift coefficient and Mach number of the rows depend on each other, as those of one weight at one altitude do"
     )]
     OneCurve,
 }

@@ -1,17 +1,17 @@
-//! What is worth knowing about a guide that is nevertheless used.
+//! Findings about a guide that is used nevertheless.
 
 use flight::{Finding, Severity};
 
 use super::GuideFit;
 use crate::Guide;
 
-/// Growth of an error above which the guide is thin somewhere in its range: a guide rounded to 0.5 % is wrong by more
-/// than 2.5 % there. Guides that span weights, altitudes and speeds reach 1 to 3.
+/// Growth of an error above which the guide has too few rows somewhere in its range: a guide rounded to 0.5 % is off by
+/// more than 2.5 % there. Guides that span weights, altitudes and speeds reach 1 to 3.
 const THIN_AMPLIFICATION: f64 = 5.0;
 /// Residual above which the polynomial, or the TSFC law behind it, does not follow the guide, %. A quadratic polynomial
 /// misses a drag rise by 1 to 3 %.
 const LARGE_RESIDUAL_PERCENT: f64 = 5.0;
-/// A row this many times the root mean square away is probably mistyped.
+/// A row with a residual of this many times the root mean square is probably mistyped.
 const ODD_ROW_FACTOR: f64 = 5.0;
 
 pub(super) fn from_fit(fit: &GuideFit, guide: &Guide, nodes: usize) -> Vec<Finding> {

@@ -13,7 +13,7 @@ fn polar(lift_coefficient: f64, mach: f64) -> f64 {
         + (0.06 - 0.01 * mach + 0.02 * mach * mach) * lift_coefficient * lift_coefficient
 }
 
-/// A guide of the polar, written by hand-made formulas apart from the crate's.
+/// A guide of the polar, from formulas written out here independently of the crate's.
 fn guide(aircraft: &Aircraft, weights_lb: &[f64], altitudes_ft: &[f64], machs: &[f64]) -> Guide {
     let mut rows = Vec::new();
     for &weight_lb in weights_lb {
@@ -102,7 +102,7 @@ fn the_polynomial_behind_a_guide_comes_back() {
 
 #[test]
 fn the_second_basis_by_hand() {
-    // Nothing of the separable polar's Mach-dependent CL² is in the second basis; a polar that is: CL²·0.05 + 0.02.
+    // The second basis cannot hold the separable polar's Mach-dependent CL²; a polar that it can hold: CL²·0.05 + 0.02.
     // 1, M, CL, M², M·CL, CL² in this order.
     let aircraft = aircraft("FullQuadratic");
     let guide = guide(&aircraft, &WEIGHTS_LB, &ALTITUDES_FT, &MACHS);
@@ -121,7 +121,7 @@ fn the_second_basis_by_hand() {
     let node = initial.model.drag_table().grid().coordinates(55);
     let at_node = initial.model.drag_table().value_at_node(55);
     assert!((polynomial.value(node.0, node.1) - at_node).abs() < 1e-15);
-    // It follows the other basis' polar to a per cent, and not exactly.
+    // It follows the other basis' polar to within a per cent, but not exactly.
     assert!((1e-3..2.0).contains(&initial.fit.residual_rms_percent), "{:?}", initial.fit);
     assert!((by_hand / polar(lift_coefficient, mach) - 1.0).abs() < 0.02);
 }

@@ -6,30 +6,30 @@ use units::OutOfDomain;
 use super::{OutsideTable, PerformanceModel};
 use crate::variance::{self, TableSlopes};
 
-/// Why a segment is no observation.
+/// Why a segment does not give an observation.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ObserveError {
     /// A mean outside its domain.
     #[error(transparent)]
     OutOfDomain(#[from] OutOfDomain),
-    /// The table does not hold the segment's lift coefficient and Mach number.
+    /// The segment's lift coefficient and Mach number lie outside the table.
     #[error(transparent)]
     OutsideTable(#[from] OutsideTable),
     /// Recorded thrust and acceleration leave no drag.
     #[error(
-        "drag {drag_n:.0} N is not positive: fuel flow stands for {net_thrust_n:.0} N of thrust, acceleration takes {inertia_n:.0} N"
+        "drag {drag_n:.0} N is not positive: fuel flow corresponds to {net_thrust_n:.0} N of thrust, acceleration takes {inertia_n:.0} N"
     )]
     DragNotPositive {
         /// What is left for drag, N.
         drag_n: f64,
-        /// Net thrust that the recorded fuel flow stands for, N.
+        /// Net thrust that corresponds to the recorded fuel flow, N.
         net_thrust_n: f64,
         /// Mass times recorded acceleration, N.
         inertia_n: f64,
     },
-    /// The segment's instant is beyond what timestamps hold.
-    #[error("{time_s} s after START is no instant")]
+    /// The segment's instant is outside the range of timestamps.
+    #[error("{time_s} s after START is not a valid instant")]
     NoInstant {
         /// Time since START, s.
         time_s: f64,
@@ -37,14 +37,14 @@ pub enum ObserveError {
 }
 
 impl PerformanceModel {
-    /// What a segment says about drag: lift coefficient, Mach number, observed drag coefficient and its variance.
+    /// The observation of a segment: lift coefficient, Mach number, observed drag coefficient and its variance.
     ///
-    /// The variance includes how an error of Mach number, mass or pressure moves the point along *this model's* table;
-    /// see [`variance`].
+    /// The variance includes the effect that an error of Mach number, mass or pressure moves the point along *this
+    /// model's* table; see [`variance`].
     ///
     /// # Errors
-    /// [`ObserveError`] where a mean is outside its domain, the table does not hold the point, or thrust and
-    /// acceleration leave no drag.
+    /// [`ObserveError`] where a mean is outside its domain, the point is outside the table, or thrust and acceleration
+    /// leave no drag.
     ///
     /// # Source
     /// Book `[forces.6]`, `[forces.11]`, `[forces.14]`, `[uncertainty.1]`; Ghazi et al. 2020, equations (20)–(22).
@@ -82,7 +82,7 @@ fn instant(segment: &Segment) -> Result<Timestamp, ObserveError> {
     }
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "the cast saturates, and what is that far away is no timestamp"
+        reason = "the cast saturates, and an instant that far away is not a timestamp"
     )]
     let nanoseconds = (time_s * 1e9).round() as i128;
     let start = segment.identity.start.as_nanosecond();

@@ -22,7 +22,7 @@ pub enum PredictError {
     /// An input outside its domain.
     #[error(transparent)]
     OutOfDomain(#[from] OutOfDomain),
-    /// The table does not hold the point's lift coefficient and Mach number.
+    /// The point's lift coefficient and Mach number lie outside the table.
     #[error(transparent)]
     OutsideTable(#[from] OutsideTable),
     /// A table on another grid than the model's.
@@ -30,7 +30,7 @@ pub enum PredictError {
     GridDiffers,
 }
 
-/// What a table says about a recorded segment.
+/// The prediction of a table for a recorded segment.
 #[derive(Clone, Copy, Debug)]
 pub struct SegmentPrediction {
     /// The segment's state.
@@ -41,13 +41,13 @@ pub struct SegmentPrediction {
     pub fuel_flow_total: FuelFlowTotal,
     /// Error of the prediction, % of the recorded fuel flow; positive: the aircraft burns more.
     pub error_percent: f64,
-    /// Whether a node that no row of the guide stands behind takes part.
+    /// Whether a node that no row of the guide supports has a part in it.
     pub extrapolated: bool,
     /// Cell of the table.
     pub cell: Cell,
 }
 
-/// What the model says about a flight point: level, unaccelerated flight.
+/// The prediction for a flight point: level, unaccelerated flight.
 #[derive(Clone, Copy, Debug)]
 pub struct Prediction {
     /// Predicted fuel flow of all engines.
@@ -64,14 +64,14 @@ pub struct Prediction {
     pub drag_coefficient: f64,
     /// Net thrust of all engines, equal to drag.
     pub net_thrust: Force,
-    /// TSFC: fuel flow over net thrust.
+    /// TSFC: fuel flow divided by net thrust.
     pub tsfc: Tsfc,
     /// Change of predicted total fuel flow with drag coefficient, kg/s: what turns the table's standard deviation into
     /// that of fuel flow.
     pub fuel_flow_per_drag_coefficient_kg_s: f64,
-    /// Whether a node that no row of the guide stands behind takes part.
+    /// Whether a node that no row of the guide supports has a part in it.
     pub extrapolated: bool,
-    /// Error of the prediction, % of the measured fuel flow, where that is given; positive: the aircraft burns more.
+    /// Error of the prediction, % of the measured fuel flow, if that is given; positive: the aircraft burns more.
     pub error_percent: Option<f64>,
     /// Cell of the table.
     pub cell: Cell,
@@ -82,8 +82,8 @@ impl PerformanceModel {
     /// [`drag_table`](Self::drag_table). The segment's acceleration is part of the prediction.
     ///
     /// # Errors
-    /// [`PredictError`] where a mean is outside its domain, the table does not hold the point, or is on another grid
-    /// than the model's.
+    /// [`PredictError`] where a mean is outside its domain, the point is outside the table, or the table is on another
+    /// grid than the model's.
     ///
     /// # Source
     /// Book `[forces.12]`, `[forces.13]`; Ghazi et al. 2020, equations (23), (24).
@@ -117,8 +117,8 @@ impl PerformanceModel {
     /// Predicted fuel flow and specific range at a flight point: level flight without acceleration.
     ///
     /// # Errors
-    /// [`PredictError`] where a number is outside its domain or the table does not hold the point. Nothing is
-    /// extrapolated; a node that the *guide* does not reach is used and said in
+    /// [`PredictError`] where a number is outside its domain or the point is outside the table. Nothing is
+    /// extrapolated; a node outside the *guide's* range is used and reported in
     /// [`extrapolated`](Prediction::extrapolated).
     ///
     /// # Source
@@ -172,7 +172,7 @@ impl PerformanceModel {
 }
 
 impl Prediction {
-    /// The same prediction with another fuel flow: specific range and error follow it.
+    /// The same prediction with another fuel flow; specific range and error follow it.
     #[must_use]
     pub fn with_fuel_flow(self, fuel_flow_total: FuelFlowTotal, point: &FlightPoint) -> Self {
         Self {

@@ -219,7 +219,7 @@ fn parts_that_do_not_fit_are_refused() {
 
 #[test]
 fn an_adapted_table_predicts_what_it_says() {
-    // Drag 6 % up is fuel 6 % up: the table cannot tell it from an engine that burns 6 % more.
+    // Drag 6 % up is fuel 6 % up: the table cannot distinguish it from an engine that burns 6 % more.
     let model = citation_x();
     let mut table = model.drag_table().clone();
     table.values_mut().iter_mut().for_each(|value| *value *= 1.06);

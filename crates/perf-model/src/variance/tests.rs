@@ -101,7 +101,7 @@ fn sensitivities_against_finite_differences() {
             difference(&model, h, |means, d| means.fuel_flow_total_kg_s *= 1.0 + d),
         ),
         (
-            // True airspeed is made of Mach number and temperature by the air-data computer.
+            // The air-data computer derives true airspeed from Mach number and temperature.
             "Mach number",
             analytic.mach,
             difference(&model, h, |means, d| {
@@ -154,7 +154,7 @@ fn variance_of_a_segment_by_hand() {
     let segment = segment();
     let variance = model.observe(&segment).unwrap().variance;
     let s = sensitivity(&model);
-    // Defaults: 0.5 % an engine, Mach 0.001, 0.3 K, 0.0045 m/s² a sample, 8 m; LHV 0.3 %, mass 0.7 %.
+    // Defaults: 0.5 % per engine, Mach 0.001, 0.3 K, 0.0045 m/s² per sample, 8 m; LHV 0.3 %, mass 0.7 %.
     // Engines 0.26 and 0.24 kg/s: (0.0676 + 0.0576)/0.25 = 0.5008 of the single variance.
     // Eight samples.
     let by_hand = s.ln_fuel_flow.powi(2) * 0.005_f64.powi(2) * 0.5008
@@ -165,7 +165,7 @@ fn variance_of_a_segment_by_hand() {
     assert!((variance.segment / by_hand - 1.0).abs() < 1e-12);
     let by_hand = (s.ln_fuel_flow * 0.003).powi(2) + (s.ln_mass * 0.007).powi(2);
     assert!((variance.flight / by_hand - 1.0).abs() < 1e-12);
-    // A segment is good to about half a per cent, a flight likewise.
+    // A segment is good to about half a per cent, and so is a flight.
     for variance in [variance.segment, variance.flight] {
         assert!((0.003..0.008).contains(&variance.sqrt()), "{}", variance.sqrt());
     }

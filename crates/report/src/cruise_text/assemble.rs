@@ -10,7 +10,7 @@ use super::columns::Field;
 use crate::line::Lines;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
-/// The report of these rows; `columns` holds one column a field, in the units of the file.
+/// The report of these rows; `columns` holds one column per field, in the units of the file.
 pub(super) fn report(
     header: ReportHeader,
     fields: &[Field],
@@ -60,8 +60,8 @@ pub(super) fn report(
     Report::new(header, columns)
 }
 
-/// Where in the text the data lie that do not make a report. The reader's own checks leave hardly anything to refuse
-/// here: masses that vanish within rounding.
+/// Position of data that do not make a report. The reader's own checks leave hardly anything to refuse here: masses
+/// that vanish within rounding.
 pub(super) fn refusal(error: ReportDataError, mut lines: Lines<'_>) -> Refusal {
     let (sample, found, kind) = match error {
         ReportDataError::MassNotPositive { sample, mass_kg } => (

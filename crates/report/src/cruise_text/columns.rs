@@ -1,4 +1,4 @@
-//! The line of column names and the line of units, and what each field of a row is from then on.
+//! The line of column names and the line of units, and from them the meaning of each field of a row.
 
 use flight::column::{Column, ColumnUnit};
 use flight::{Finding, MAXIMUM_ENGINES, MissingColumn, ReportHeader, Severity};
@@ -8,24 +8,25 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 
 /// Fuel quantity may exceed the fuel on board by 2 %.
 const MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD: f64 = 1.02;
-/// A limit is widened by this share of itself: a value written exactly on it must not fall to a conversion's rounding.
+/// A limit is widened by this share of itself: a value written exactly on it must not fail because of a conversion's
+/// rounding.
 const LIMIT_ROUNDING: f64 = 1e-12;
 const KEPT_OUT_PREFIX: &str = "X-";
 const LAST_ENGINE: u8 = 4;
 const _: () = assert!(LAST_ENGINE as usize == MAXIMUM_ENGINES);
 
-/// One field of every row: which column, how to read it, what to make of it.
+/// One field of every row: which column it is, how it is read and converted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
-    /// `None` for a column that is kept out: its fields are counted and not read.
+    /// `None` for a column that is ignored: its fields are counted and not read.
     pub(crate) column: Option<Column>,
     /// False for a column that the header declares missing: it is checked and not handed on.
     pub(crate) is_handed_on: bool,
-    /// Whether `-` may stand in it.
+    /// Whether `-` is allowed in it.
     pub(crate) is_optional: bool,
     /// Unit of the file, whose factor and offset lead to the stored unit.
     pub(crate) unit: ColumnUnit,
-    /// Smallest value in the unit of the file, and the same less rounding.
+    /// Smallest value in the unit of the file, and the same minus rounding.
     pub(crate) minimum: f64,
     pub(crate) low: f64,
     /// Largest value in the unit of the file, and the same plus rounding.
@@ -41,7 +42,7 @@ impl Field {
     }
 }
 
-/// Reads names and units into `fields` and returns the number of engines, where the columns tell.
+/// Reads names and units into `fields` and returns the number of engines, where the columns determine it.
 pub(super) fn read(
     names: Line<'_>,
     lines: &mut Lines<'_>,
@@ -204,7 +205,7 @@ fn is_declared_missing(column: Column, header: &ReportHeader) -> bool {
     header.missing.contains(&missing)
 }
 
-/// A column that the header declares missing is not believed, and an assumption for a recorded one is not needed.
+/// A column that the header declares missing is not used, and an assumption for a recorded one is not needed.
 fn note_contradictions(
     line: Line<'_>,
     columns: &[NamedColumn<'_>],
@@ -223,7 +224,10 @@ fn note_contradictions(
         if column.is_some_and(|column| is_declared_missing(column, header)) {
             note(
                 "column-declared-missing",
-                format!("column {} is not used: MISSING says that it was not recorded", word.text),
+                format!(
+                    "column {} is not used: MISSING declares that it was not recorded",
+                    word.text
+                ),
             );
         }
     }
@@ -234,7 +238,7 @@ fn note_contradictions(
     if is_temperature_assumed && !header.missing.contains(&MissingColumn::StaticAirTemperature) {
         note(
             "assumption-not-needed",
-            "SAT is recorded and used: what ASSUMED says of it is not".to_owned(),
+            "SAT is recorded and used; the assumption about it in ASSUMED is not".to_owned(),
         );
     }
 }
@@ -251,7 +255,7 @@ fn field_of(
     };
     let range = column.range();
     let fuel_on_board_kg = header.fuel_on_board.to_kilograms();
-    // Where nothing tells how many engines there are, the format's largest number of them.
+    // Where nothing determines the number of engines, the format's largest number of them.
     let engines = f64::from(engines.unwrap_or(LAST_ENGINE));
     let maximum = match column {
         Column::FuelUsed => Some(fuel_on_board_kg),
@@ -269,7 +273,7 @@ fn field_of(
         unit: *unit,
         minimum: minimum.unwrap_or(f64::MIN),
         low: match minimum {
-            // Excluded is only a minimum of zero, which needs no rounding.
+            // Only a minimum of zero is excluded, and it needs no rounding.
             Some(_) if range.minimum_excluded => f64::MIN_POSITIVE,
             Some(limit) => limit - limit.abs() * LIMIT_ROUNDING,
             // Time has no limit of its own, but must stay finite in seconds.

@@ -63,7 +63,7 @@ fn misspelt_key(key: Word<'_>, line: Line<'_>) -> Option<Finding> {
     })
 }
 
-/// What the header lines have said so far.
+/// The content of the header lines so far.
 #[derive(Default)]
 struct Values {
     aircraft_type: Option<String>,
@@ -160,7 +160,7 @@ fn instant(entry: &Entry<'_>) -> Result<Timestamp, Refusal> {
     parse_instant(entry.value.text).ok_or_else(|| entry.malformed(START_FORM))
 }
 
-/// RFC 3339 and no more: jiff also reads forms without punctuation, with a blank, with seconds of the offset and
+/// RFC 3339 and nothing else: jiff also reads forms without punctuation, with a blank, with seconds of the offset and
 /// with a zone in brackets.
 pub(crate) fn parse_instant(text: &str) -> Option<Timestamp> {
     const DATE_TIME: &[u8] = b"0000-00-00T00:00:00";

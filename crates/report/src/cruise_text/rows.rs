@@ -1,5 +1,5 @@
-//! Rows: the hot loop of the reader. Numbers are parsed where they stand and checked in the unit of the file; what is
-//! wrong is put into words only once it has happened.
+//! Rows: the hot loop of the reader. Numbers are parsed in place and checked in the unit of the file; a message is
+//! composed only after something is wrong.
 
 use flight::column::Column;
 use flight::{Finding, Severity};
@@ -12,10 +12,10 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 /// A fuel-used counter may fall by this much, pounds or kilograms.
 const FUEL_USED_STEP_LB: f64 = 1.0;
 const FUEL_USED_STEP_KG: f64 = 0.5;
-/// Decimal differences in binary: a fall of exactly one step is no more than a step.
+/// Decimal differences in binary: a fall of exactly one step counts as one step.
 const DIFFERENCE_ROUNDING: f64 = 1e-9;
 
-/// Reads all rows into `columns`, one a field, in the units of the file (NaN for "not available"), and returns the
+/// Reads all rows into `columns`, one per field, in the units of the file (NaN for "not available"), and returns the
 /// number of rows.
 pub(super) fn read(
     lines: &mut Lines<'_>,
@@ -42,7 +42,7 @@ pub(super) fn read(
     Ok(rows)
 }
 
-/// What is wrong in a row, and the byte of the line where.
+/// What is wrong in a row, and the byte of the line at which it is.
 #[derive(Clone, Copy, Debug)]
 enum RowProblem {
     WrongLength,
@@ -50,10 +50,10 @@ enum RowProblem {
     OutOfRange { offset: usize, column: Column, field: usize, value: f64 },
 }
 
-/// Appends the numbers of one line to `columns`; `false` for a line that means nothing. After a problem the columns
-/// are of different lengths and of no use.
+/// Appends the numbers of one line to `columns`; `false` for a line without content. After a problem the columns have
+/// different lengths and must not be used.
 ///
-/// Not inlined: among the refusals of its caller the loop would not keep its values in registers.
+/// Not inlined: together with its caller's error handling the loop would not keep its values in registers.
 #[inline(never)]
 fn read_row(
     line: Line<'_>,
@@ -61,14 +61,14 @@ fn read_row(
     columns: &mut [Vec<f64>],
 ) -> Result<bool, RowProblem> {
     let bytes = line.text.as_bytes();
-    // Onward from the line, a number ends at the line end at the latest: nothing has to be compared with the line's
-    // length until something else than a number in its range turns up.
+    // In the text that starts at the line, a number ends at the line end at the latest: nothing needs to be compared
+    // with the line's length until something other than a number in its range turns up.
     let onward = line.onward.as_bytes();
     let beyond = onward.len() - bytes.len();
     let mut rest = onward;
     for (index, (field, column)) in fields.iter().zip(columns).enumerate() {
         rest = skip_blanks(rest);
-        // No number is inside the range of a column that is kept out: it is empty.
+        // No number is inside the range of an ignored column: it is empty.
         if let Some((number, tail)) = number::short(rest)
             && field.low <= number
             && number <= field.high
@@ -92,7 +92,7 @@ fn read_row(
     }
 }
 
-/// Whatever is no short number inside its range; returns its value and its end.
+/// Anything that is not a short number inside its range; returns its value and its end.
 fn read_field(
     bytes: &[u8],
     at: usize,
@@ -123,7 +123,7 @@ fn skip_blanks(mut rest: &[u8]) -> &[u8] {
     rest
 }
 
-/// The line's end, behind which `beyond` bytes lie, or a comment: `rest` begins with a word.
+/// The end of the line, after which `beyond` bytes lie, or a comment: `rest` begins with a word.
 fn is_end_of_meaning(rest: &[u8], beyond: usize) -> bool {
     rest.len() <= beyond || rest[0] == b'#'
 }
@@ -139,7 +139,7 @@ fn end_of_word(bytes: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// What holds from row to row, and of whole rows.
+/// Conditions between rows and on whole rows.
 struct Series {
     previous_time_s: f64,
     previous_time: f64,
@@ -207,7 +207,7 @@ impl Series {
     }
 }
 
-/// A last row without line end is complete unless its last word is no whole number.
+/// A last row without line end is complete unless its last word is not a whole number.
 fn accept_last_row(line: Line<'_>, fields: &[Field]) -> Result<Finding, Refusal> {
     if ends_in_cut_off_word(line) {
         return Err(refuse_last_row(line, fields));
@@ -241,7 +241,7 @@ fn refuse_field(line: Line<'_>, index: usize, kind: RefusalKind) -> Refusal {
     }
 }
 
-/// A row of the wrong length is refused for that, whatever its fields hold: they are shifted.
+/// A row of the wrong length is refused for its length, whatever its fields hold: they are shifted.
 #[cold]
 fn refusal(problem: RowProblem, line: Line<'_>, fields: &[Field]) -> Refusal {
     let expected = fields.len();
@@ -268,7 +268,7 @@ fn refusal(problem: RowProblem, line: Line<'_>, fields: &[Field]) -> Refusal {
     }
 }
 
-/// Whether the word at `offset` is where the text was cut.
+/// Whether the word at `offset` is where the text was cut off.
 fn is_cut_off_at(line: Line<'_>, offset: usize) -> bool {
     !line.is_ended
         && end_of_word(line.text.as_bytes(), offset) == line.text.len()

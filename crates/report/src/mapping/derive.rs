@@ -17,7 +17,7 @@ use super::table::{Recording, Table};
 use crate::Parsed;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
-/// A limit is widened by this share of itself: a number exactly on it must not fall to a conversion's rounding.
+/// A limit is widened by this share of itself: a number exactly on it must not fail because of a conversion's rounding.
 const LIMIT_ROUNDING: f64 = 1e-12;
 /// A counter of fuel used may fall by this much.
 const FUEL_USED_STEP_KG: f64 = 0.5;
@@ -74,7 +74,7 @@ pub(super) fn report(
     Ok(Parsed { report, findings })
 }
 
-/// Numbers in the stored unit of their column, with the input that a refusal points at.
+/// Numbers in the stored unit of their column, with the input column that a refusal refers to.
 struct Series {
     values: Vec<f64>,
     input: usize,
@@ -101,7 +101,7 @@ struct Part<'p, 't> {
     recording: &'p Recording,
     /// Rows of the recording, at least three.
     rows: Vec<usize>,
-    /// As many before any was left out for its range.
+    /// Number of rows before any was left out for its range.
     level_rows: usize,
 }
 
@@ -240,7 +240,7 @@ impl Part<'_, '_> {
 
     fn air_data(&self) -> Result<AirData, Refusal> {
         let pressure_altitude_m = self.required(Column::PressureAltitude)?;
-        // In an order in which each finds what it is derived from: the plan has excluded circles.
+        // In an order in which each is derived after its inputs: the plan has excluded circles.
         let mut mach = match &self.plan.mach {
             MachSource::Recorded => Some(self.required(Column::Mach)?),
             MachSource::CalibratedAirspeed(conversion) => {
@@ -382,7 +382,7 @@ impl Part<'_, '_> {
     }
 
     /// Fuel used is how far gross mass has fallen below its first value: the running maximum of the fall, because
-    /// recorded masses come in steps and flutter between two of them.
+    /// recorded masses come in steps and alternate between two of them.
     fn load_of_gross_mass(
         &self,
         conversion: &Conversion,
@@ -474,7 +474,7 @@ impl Part<'_, '_> {
         Ok(engines)
     }
 
-    /// Where nothing tells how many engines there are, the range of four counts.
+    /// Where nothing determines the number of engines, the range of four is used.
     fn total_fuel_flow(&self, engines: usize) -> Result<Vec<f64>, Refusal> {
         let column = Column::FuelFlowTotal;
         let engines = if engines == 0 { MAXIMUM_ENGINES } else { engines };
@@ -484,7 +484,7 @@ impl Part<'_, '_> {
         Ok(series.values)
     }
 
-    /// What was derived from what, for the report's notes.
+    /// The derivations, for the report's notes.
     fn derived(&self, load: &Load) -> Vec<&'static str> {
         let mut derived = Vec::new();
         match self.plan.mach {
@@ -522,7 +522,7 @@ impl Part<'_, '_> {
         }
         if let TemperatureSource::Isa { deviation_k } = self.plan.temperature {
             let message = format!(
-                "static air temperature is not recorded: ISA {deviation_k:+} K stands in for it"
+                "static air temperature is not recorded: ISA {deviation_k:+} K is used instead"
             );
             findings.push(note(Severity::Warning, "mapped-temperature-assumed", message));
         }

@@ -1,11 +1,11 @@
-//! The mapping file as it is written: RON into plain data, nothing checked but the form.
+//! The mapping file as it is written: RON into plain data; only the form is checked.
 
 use core::fmt;
 
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
-/// The one version of the mapping file.
+/// The only version of the mapping file.
 pub(super) const FORMAT: u32 = 1;
 
 #[derive(Clone, Debug, Deserialize)]
@@ -34,7 +34,7 @@ pub(super) struct MappingFile {
     pub(super) cruise: Option<CruiseFile>,
 }
 
-/// What becomes of a row with a recorded number outside its column's range.
+/// What happens to a row with a recorded number outside its column's range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub(super) enum OutOfRange {
     /// The recording is refused, as a report is.
@@ -44,7 +44,7 @@ pub(super) enum OutOfRange {
     LeaveRowOut,
 }
 
-/// Where a text of the header comes from.
+/// The source of a text of the header.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub(super) enum TextSource {
     /// The same in every file.
@@ -75,7 +75,7 @@ pub(super) struct WithUnit(pub(super) f64, pub(super) String);
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) enum MassSource {
-    /// Gross mass, from whose fall fuel used follows.
+    /// Gross mass, from whose fall fuel used is derived.
     GrossMass {
         column: String,
         unit: String,
@@ -85,7 +85,7 @@ pub(super) enum MassSource {
         zero_fuel_weight: Option<WithUnit>,
         largest_rise_kg: f64,
     },
-    /// Fuel used since engine start, beside a load sheet.
+    /// Fuel used since engine start, together with a load sheet.
     FuelUsed {
         column: String,
         unit: String,
@@ -148,7 +148,7 @@ pub(super) struct CruiseFile {
     pub(super) trim_s: f64,
 }
 
-/// A RON map by name that refuses a name that stands twice; `BTreeMap` would keep the last in silence.
+/// A RON map by name that refuses a repeated name; `BTreeMap` would silently keep the last.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Quantities(pub(super) Vec<(String, QuantitySource)>);
 
@@ -171,7 +171,7 @@ impl<'de> Visitor<'de> for QuantitiesVisitor {
         let mut quantities: Vec<(String, QuantitySource)> = Vec::new();
         while let Some((name, source)) = map.next_entry::<String, QuantitySource>()? {
             if quantities.iter().any(|(other, _)| *other == name) {
-                return Err(serde::de::Error::custom(format_args!("{name} stands twice")));
+                return Err(serde::de::Error::custom(format_args!("{name} appears twice")));
             }
             quantities.push((name, source));
         }

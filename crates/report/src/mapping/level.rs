@@ -1,28 +1,28 @@
-//! The level parts of a recording: climb and descent are no cruise.
+//! The level parts of a recording: climb and descent are not cruise.
 
 use core::ops::Range;
 use std::collections::VecDeque;
 
-/// Differences of decimal altitudes in binary: a band of exactly its width is within it.
+/// Differences of decimal altitudes in binary: a range of exactly the band's width is within it.
 const ROUNDING_M: f64 = 1e-9;
 
-/// What counts as a level part.
+/// The definition of a level part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LevelCriteria {
-    /// No sample lies below, m.
+    /// No sample lies below this pressure altitude, m.
     pub(super) minimum_pressure_altitude_m: f64,
-    /// Highest less lowest pressure altitude, m.
+    /// Largest difference between highest and lowest pressure altitude, m.
     pub(super) band_m: f64,
     /// Shortest part after trimming, s.
     pub(super) minimum_duration_s: f64,
-    /// What is cut off at either end, where the aircraft still levels off or already leaves, s.
+    /// Time cut off at either end, where the aircraft is still levelling off or already leaving, s.
     pub(super) trim_s: f64,
 }
 
 /// The level parts in the order of time, trimmed, and the duration of the longest untrimmed one.
 ///
-/// The longest part is taken first, then the longest of what is left before and after it; of equally long ones the
-/// earliest. So a step climb gives two parts, and a part is never split to please another.
+/// The longest part is taken first, then the longest in the rest before and after it; of equally long ones the
+/// earliest. So a step climb gives two parts, and a part is never split to lengthen another.
 pub(super) fn level_parts(
     time_s: &[f64],
     pressure_altitude_m: &[f64],
@@ -61,8 +61,8 @@ fn trim(time_s: &[f64], part: Range<usize>, trim_s: f64) -> Range<usize> {
     start..end.max(start)
 }
 
-/// Two indices that move forward alone, with the indices of falling maxima and rising minima between them: each
-/// sample enters and leaves once.
+/// Two indices that only move forward, with the indices of falling maxima and rising minima between them: each sample
+/// enters and leaves once.
 fn longest_level_part(
     time_s: &[f64],
     pressure_altitude_m: &[f64],
@@ -162,7 +162,7 @@ mod tests {
     }
 
     proptest::proptest! {
-        /// Oracle: every stretch tried.
+        /// Oracle: every interval tried.
         #[test]
         fn no_stretch_is_longer(altitudes in proptest::collection::vec(8_980.0_f64..9_120.0, 0..40)) {
             let time_s: Vec<f64> = (0..altitudes.len()).map(|second| second as f64).collect();

@@ -1,4 +1,4 @@
-//! A mapping that makes sense: every required quantity has a source, every unit is known.
+//! A checked mapping: every required quantity has a source, every unit is known.
 
 use flight::column::{Column, ColumnUnit};
 use flight::{MAXIMUM_ENGINES, MissingColumn, Timestamp};
@@ -13,7 +13,7 @@ use super::file::{
 use super::level::LevelCriteria;
 use crate::cruise_text::parse_instant;
 
-/// What a mapping file says, checked.
+/// The checked content of a mapping file.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) separator: u8,
@@ -26,7 +26,7 @@ pub(super) struct Plan {
     pub(super) notes: Vec<(String, String)>,
     pub(super) time_column: String,
     pub(super) time: TimeForm,
-    /// Columns of the recording that hold numbers; other fields name them by their place here.
+    /// Columns of the recording that hold numbers; other fields refer to them by their index here.
     pub(super) inputs: Vec<Input>,
     pub(super) recorded: Vec<(Column, Conversion)>,
     pub(super) mach: MachSource,
@@ -96,7 +96,7 @@ pub(super) enum MassPlan {
     FuelUsed { fuel_used: Conversion, zero_fuel_mass: Mass, fuel_on_board: Mass },
 }
 
-/// How the recording writes time.
+/// The form of time in the recording.
 #[derive(Clone, Debug)]
 pub(super) enum TimeForm {
     Timestamp { utc_offset: Option<String> },
@@ -158,7 +158,7 @@ impl Plan {
     }
 }
 
-/// Where quantities come from, as far as the file has been read.
+/// The sources of quantities, as far as the file has been read.
 #[derive(Default)]
 struct Sources {
     inputs: Inputs,
@@ -194,7 +194,7 @@ impl Sources {
                 self.recorded.push((quantity, conversion));
             }
             (Column::Mach, QuantitySource::FromCalibratedAirspeed { column, unit, scale }) => {
-                // Calibrated airspeed is no column of the report, but comes in the units of true airspeed.
+                // Calibrated airspeed is not a column of the report, but is given in the units of true airspeed.
                 let conversion =
                     self.inputs.conversion(Column::TrueAirspeed, column, &unit, scale)?;
                 self.mach = Some(MachSource::CalibratedAirspeed(conversion));

@@ -1,4 +1,4 @@
-//! Delimited text into recordings: rows of numbers with the lines where they stand.
+//! Delimited text into recordings: rows of numbers with their line numbers.
 
 use flight::Timestamp;
 
@@ -64,7 +64,7 @@ impl Table<'_> {
     }
 }
 
-/// Reads all rows of `text`; `file_name` stands for what the mapping takes from the file's name.
+/// Reads all rows of `text`; `file_name` is used for the texts that the mapping takes from the file's name.
 pub(super) fn read<'a>(
     plan: &Plan,
     text: &'a str,
@@ -184,7 +184,7 @@ impl Row<'_, '_> {
         if self.is_not_available(text) {
             return Ok(f64::NAN);
         }
-        // Other programs write the exponent's letter large.
+        // Other programs write the exponent's letter as a capital.
         number::whole(text.as_bytes())
             .or_else(|| {
                 text.contains('E').then(|| number::whole(text.replacen('E', "e", 1).as_bytes()))?
@@ -261,7 +261,7 @@ impl Names<'_> {
     }
 }
 
-/// The text with what it takes to say where something stands in it.
+/// The text with what is needed to state a position in it.
 #[derive(Clone, Copy, Debug)]
 struct Source<'a> {
     text: &'a str,
@@ -290,7 +290,7 @@ impl<'a> Source<'a> {
                     self.refuse(line, expected, Found::Fields(found), kind)
                 }
             }
-            // Text in memory that is UTF-8 leaves nothing else to go wrong.
+            // For text in memory that is UTF-8, no other error is possible.
             _ => self.refuse_end(Found::EndOfText, RefusalKind::InvalidUtf8),
         })
     }

@@ -77,7 +77,7 @@ fn constant_channels_survive_the_filter() {
 #[test]
 fn one_of_ten_beyond_two_deviations() {
     // Nine samples at one value, one 0.9 kt off: |x − μ|/σ = (n − 1)/√n = 9/√10 = 2.846 > 2. At both sides ground
-    // speed changes by 0.9 kt only: steady. Acceleration is no channel.
+    // speed changes by 0.9 kt only: steady. Acceleration is not a channel.
     let mut sent = steady(60.0, 10);
     sent.ground_speed_m_s[4] += 0.9 * METERS_PER_SECOND_PER_KNOT;
     let (_, segmentation) = segmented(sent);

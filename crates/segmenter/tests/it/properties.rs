@@ -1,4 +1,4 @@
-//! What holds for every flight.
+//! Properties of every flight.
 
 use flight::{Report, ReportColumns};
 use proptest::prelude::*;

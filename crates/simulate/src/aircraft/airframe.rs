@@ -1,19 +1,19 @@
-//! The airframe's drag, term by term. The whole is assembled in `drag.rs`; here is one function a term.
+//! The airframe's drag, term by term. It is assembled in `drag.rs`; here is one function per term.
 
 use serde::{Deserialize, Serialize};
 
-/// Drag counts in a unit of drag coefficient.
+/// Drag counts per unit of drag coefficient.
 pub(crate) const DRAG_COEFFICIENT_PER_COUNT: f64 = 1e-4;
 
-/// What the airframe is made of. Read from a preset; every number there has its source beside it.
+/// The airframe's constants. Read from a preset, where every number has its source next to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Airframe {
     /// Reference area of the lift and drag coefficients, m².
     pub wing_area_m2: f64,
-    /// Mean aerodynamic chord: length of the Reynolds number and unit of the center of gravity, m.
+    /// Mean aerodynamic chord: reference length of the Reynolds number and unit of the center of gravity, m.
     pub mean_aerodynamic_chord_m: f64,
-    /// Slope of the lift curve in cruise, 1/rad: how much lift a vertical gust makes.
+    /// Slope of the lift curve in cruise, 1/rad: the lift of a vertical gust.
     pub lift_curve_slope_per_rad: f64,
     /// Drag at zero lift.
     pub zero_lift: ZeroLiftDrag,
@@ -73,7 +73,7 @@ pub struct DragRise {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Friction {
-    /// Share of the zero-lift drag that follows the friction law.
+    /// Share of the zero-lift drag that depends on friction.
     pub share_of_zero_lift: f64,
     /// Reynolds number over the mean aerodynamic chord at which the zero-lift drag was stated.
     pub reference_reynolds_number: f64,
@@ -136,7 +136,7 @@ pub(crate) fn drag_rise_coefficient(
 /// cf = 0.455/(log10 Re)^2.58                                        [virtual.4]
 /// ```
 ///
-/// Valid for 1e6 < Re < 1e9; not positive arguments give NaN.
+/// Valid for 1e6 < Re < 1e9; arguments that are not positive give NaN.
 ///
 /// # Source
 /// Prandtl and Schlichting; Schlichting, *Boundary-Layer Theory*, 7th edition, equation (21.16).
@@ -144,13 +144,13 @@ pub(crate) fn skin_friction_coefficient(reynolds_number: f64) -> f64 {
     0.455 / reynolds_number.log10().powf(2.58)
 }
 
-/// Exponent of the power law that touches the friction law at a Reynolds number: −d ln cf/d ln Re = 2.58/ln Re.
+/// Exponent of the power law that is tangent to the friction law at a Reynolds number: −d ln cf/d ln Re = 2.58/ln Re.
 pub(crate) fn local_friction_exponent(reynolds_number: f64) -> f64 {
     2.58 / reynolds_number.ln()
 }
 
-/// Trim drag in counts per unit of `counts_per_10_percent_mac`: forward of the reference the tail pushes down, and
-/// the wing carries more; the download's own drag makes it bend upwards.
+/// Trim drag in counts per unit of `counts_per_10_percent_mac`: with a center of gravity forward of the reference the
+/// tail pushes down, and the wing carries more; the download's own drag makes the curve bend upwards.
 ///
 /// ```text
 /// x = (CGref − CG)/10 %MAC;  n = (x + 0.15·x·|x|)·CL/0.4            [virtual.5]

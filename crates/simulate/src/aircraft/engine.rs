@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// One of the aircraft's engines; all are alike but for what a plan says of each.
+/// One of the aircraft's engines; all are alike unless a plan states differences.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Engine {
@@ -14,11 +14,11 @@ pub struct Engine {
     pub lapse: ThrustLapse,
     /// Fuel for thrust at the best part load.
     pub tsfc: TsfcLaw,
-    /// What another part load costs.
+    /// The penalty of other part loads.
     pub part_load: PartLoad,
-    /// Fuel that bleed and shaft power cost all engines together, whatever the thrust, kg/s.
+    /// Fuel for bleed and shaft power, all engines together, whatever the thrust, kg/s.
     pub offtake_fuel_flow_kg_s: f64,
-    /// By how much the exponent of temperature in the fuel law exceeds one half.
+    /// Excess of the exponent of temperature in the fuel law over one half.
     pub extra_temperature_exponent: f64,
     /// Rotor speeds and exhaust temperature.
     pub rotors: RotorDeck,
@@ -91,8 +91,8 @@ pub struct RotorDeck {
 /// with total pressure and temperature ratios δt, θt.
 ///
 /// # Source
-/// Shape after Mattingly, Heiser and Pratt, *Aircraft Engine Design*, 2nd edition, section 2.3.2; b and c are fitted
-/// to the type's published ceiling and maximum cruise Mach number, as its preset says.
+/// Shape after Mattingly, Heiser and Pratt, *Aircraft Engine Design*, 2nd edition, section 2.3.2; b and c are fitted to
+/// the type's published ceiling and maximum cruise Mach number, as stated in its preset.
 pub(crate) fn maximum_thrust_n(
     of: &Engine,
     mach: f64,
@@ -166,7 +166,7 @@ pub(crate) fn n1_percent(
 /// EGT = TAT·(r0 + r1·φ),  φ = Wf/(δt·√θt·Wf,rated)                  [virtual.11]
 /// ```
 ///
-/// It sees the fuel and not the thrust: an engine that needs more fuel runs hotter at the same thrust.
+/// It depends on the fuel and not on the thrust: an engine that needs more fuel runs hotter at the same thrust.
 pub(crate) fn exhaust_gas_temperature_k(
     of: &Engine,
     total_temperature_k: f64,

@@ -3,7 +3,7 @@
 use crate::vector::Place;
 use crate::weather::{Air, AirMass};
 
-/// Spacing of the points, m. At the shortest wave, 100 km, a chord is wrong by 0.2 % of its amplitude.
+/// Spacing of the points, m. At the shortest wave, 100 km, a chord is off by 0.2 % of its amplitude.
 const SPACING_M: f64 = 2000.0;
 
 /// The air here, and at the next point.
@@ -23,12 +23,12 @@ impl AirAhead {
         Self { from, to: air.at(next.position), next, flown_m: 0.0, now: from }
     }
 
-    /// The air at the present place.
+    /// The air at the present position.
     pub(crate) const fn now(&self) -> &Air {
         &self.now
     }
 
-    /// Flies on; true when a point was passed. While turning every step is a point of its own.
+    /// Moves on; true when a point was passed. During a turn every step is a point of its own.
     pub(crate) fn advance(
         &mut self,
         air: &AirMass,

@@ -17,7 +17,7 @@ pub(crate) struct Controls {
     changes: Vec<Change>,
     altitude_target_m: f64,
     mach_target: f64,
-    /// Where the target goes at the autopilot's rate.
+    /// Target, which moves at the autopilot's rate.
     mach_wanted: f64,
     mach_step: f64,
     mach_filtered: f64,
@@ -60,13 +60,13 @@ impl Controls {
         }
     }
 
-    /// Puts the integrator where level flight needs it.
+    /// Initialises the integrator for level flight.
     pub(crate) const fn trim(&mut self, thrust_over_mass_m_s2: f64, mach: f64) {
         self.integral_m_s2 = thrust_over_mass_m_s2;
         self.mach_filtered = mach;
     }
 
-    /// What the autopilot holds at present.
+    /// The present targets of the autopilot.
     pub(crate) const fn mach_target(&self) -> f64 {
         self.mach_target
     }
@@ -76,7 +76,7 @@ impl Controls {
         self.lift_acceleration_m_s2
     }
 
-    /// Thrust, pitch, vertical speed and pressure altitude one step on.
+    /// Thrust, pitch, vertical speed and pressure altitude one step later.
     pub(crate) fn advance(
         &mut self,
         motion: &mut Motion,
@@ -107,7 +107,7 @@ impl Controls {
             * (self.altitude_target_m - motion.pressure_altitude_m))
             .clamp(-limit, limit);
 
-        // Thrust for the climb goes ahead of the error that the climb would make.
+        // Thrust for the climb is fed forward, ahead of the error that the climb would make.
         let wanted_n = motion.mass_kg
             * (self.integral_m_s2
                 + self.proportional_s * speed_error_m_s

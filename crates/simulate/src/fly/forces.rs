@@ -1,4 +1,4 @@
-//! Forces and fuel flow at one instant. A hot file: everything here runs once a step.
+//! Forces and fuel flow at one instant. A hot file: everything here runs once per step.
 
 use atmos::constants::{RATIO_OF_SPECIFIC_HEATS, SPECIFIC_GAS_CONSTANT_J_KG_K};
 use units::convert::STANDARD_GRAVITY_M_S2;
@@ -13,7 +13,7 @@ use crate::terms::{DragInputs, FuelInputs, MAXIMUM_ENGINES};
 use crate::vector::{Place, Vector, combine, dot, east_and_north};
 use crate::weather::{Air, Gusts};
 
-/// What moves and burns.
+/// The state of motion and fuel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     pub(crate) smooth_airspeed_m_s: f64,
@@ -28,12 +28,12 @@ pub(crate) struct Motion {
     pub(crate) fuel_temperature_k: f64,
 }
 
-/// What the Earth does here; renewed every 2 km.
+/// The Earth's gravity and rotation here; renewed every 2 km.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct EarthHere {
-    /// What lift has to carry per mass, m/s².
+    /// Acceleration that lift has to carry, m/s².
     pub(crate) effective_gravity_m_s2: f64,
-    /// f·(slope on) and f·(Coriolis on), 1/s: what the geostrophic and the whole wind are multiplied with.
+    /// f·(slope on) and f·(Coriolis on), 1/s: factors of the geostrophic and of the whole wind.
     slope_s: f64,
     coriolis_s: f64,
 }
@@ -72,7 +72,7 @@ impl EarthHere {
     }
 }
 
-/// What the forces are evaluated for.
+/// The inputs of the forces.
 pub(crate) struct Circumstances<'a> {
     pub(crate) setup: &'a FlightSetup<'a>,
     pub(crate) time_s: f64,
@@ -118,7 +118,7 @@ pub(crate) struct Forces {
     pub(crate) maximum_thrust_n: f64,
     pub(crate) gravity_along_m_s2: f64,
     pub(crate) coriolis_along_m_s2: f64,
-    /// Of the airspeed against the mean wind, without the wind's change along the path.
+    /// Of the airspeed relative to the mean wind, without the wind's change along the path.
     pub(crate) acceleration_m_s2: f64,
     pub(crate) anti_ice: bool,
     pub(crate) fuel_flow_kg_s: [f64; MAXIMUM_ENGINES],
@@ -169,11 +169,11 @@ fn air(of: &Circumstances<'_>, forces: &mut Forces) -> Result<f64, FlightError> 
     Ok(standard_k)
 }
 
-/// The wind triangle, and what slope, vertical air and Coriolis force do along the airspeed.
+/// The wind triangle, and the effect of slope, vertical air motion and Coriolis force along the airspeed.
 fn wind_and_slope(of: &Circumstances<'_>, standard_k: f64, forces: &mut Forces) {
     let Circumstances { motion, place, air, here, gusts, .. } = *of;
     let speed_m_s = forces.smooth_airspeed_m_s;
-    // The track is given, the nose finds its angle.
+    // The track is given, the heading follows.
     let right = place.right();
     forces.tail_wind_m_s = dot(air.wind_m_s, place.along);
     forces.wind_from_left_m_s = dot(air.wind_m_s, right);
@@ -184,7 +184,7 @@ fn wind_and_slope(of: &Circumstances<'_>, standard_k: f64, forces: &mut Forces) 
     forces.air_direction = combine(cosine, place.along, -sine, right);
     let air_right = combine(sine, place.along, cosine, right);
 
-    // [flow.4]: the surface falls ahead where geostrophic wind comes from the left, in the north.
+    // [flow.4]: in the northern hemisphere the surface falls ahead where geostrophic wind comes from the left.
     let gravity = here.effective_gravity_m_s2;
     let surface_slope = -here.slope_s * dot(air.geostrophic_m_s, air_right) / gravity;
     forces.upward_air_m_s = air.vertical_wind_m_s + gusts.upward_m_s;
@@ -226,7 +226,7 @@ fn lift_and_drag(of: &Circumstances<'_>, forces: &mut Forces) -> (f64, f64) {
             mach: forces.mach,
             reynolds_number,
             center_of_gravity_percent_mac: forces.center_of_gravity_percent_mac,
-            // A wing held low makes drag; a coordinated turn makes lift.
+            // A wing held low adds drag; a coordinated turn adds lift.
             roll_deg: of.roll_trim_deg,
         },
     );

@@ -9,7 +9,7 @@ use crate::vector::{Place, Vector, point};
 const BANK_PER_ANGLE: f64 = 4.0;
 /// Largest roll rate, rad/s.
 const ROLL_RATE_RAD_S: f64 = 5.0 * units::convert::RADIANS_PER_DEGREE;
-/// A turn is over within this angle of the new course and of wings level, rad.
+/// A turn is finished within this angle of the new course and of wings level, rad.
 const TURN_DONE_RAD: f64 = 0.05 * units::convert::RADIANS_PER_DEGREE;
 
 /// Position, direction, bank.
@@ -91,11 +91,11 @@ impl Steering {
         true
     }
 
-    /// Begins the turn so early that it ends on the new leg.
+    /// Starts the turn early enough that it ends on the new leg.
     fn begin_turn(&mut self, ground_speed_m_s: f64, autopilot: &Autopilot) {
         let [.., after, next] = self.waypoints[..] else { return };
         let distance_m = self.place.distance_to_m(next);
-        // No turn is begun further out than this: spares the rest of the arithmetic on a long leg.
+        // No turn starts farther out than this: it saves the rest of the arithmetic on a long leg.
         if distance_m > 100_000.0 {
             return;
         }

@@ -1,4 +1,4 @@
-//! Fleets drawn from ranges, wide enough that what a diagnosis looks for can be told apart.
+//! Fleets drawn from ranges, wide enough that the effects of a diagnosis can be distinguished.
 //!
 //! Two thirds of the flights are at cruise altitude, a third lower and slower; masses, centers of gravity, dates, latitudes,
 //! tracks, changes of level and speed and anti-ice are spread independently of each other.
@@ -15,7 +15,7 @@ use crate::terms::Terms;
 use crate::trim::{TrimPoint, trim_with};
 use crate::vector::Place;
 
-/// A fleet's ranges. What is left out follows from the aircraft.
+/// A fleet's ranges. What is left out is derived from the aircraft.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FleetDesign {
@@ -57,7 +57,7 @@ pub struct FleetDesign {
 }
 
 impl Default for FleetDesign {
-    /// Sixty flights of two hours within 1.6 years, spread as the gap diagnosis' prototype spreads them.
+    /// Sixty flights of two hours within 1.6 years, spread as in the gap diagnosis' prototype.
     fn default() -> Self {
         Self {
             flights: 60,
@@ -81,9 +81,9 @@ impl Default for FleetDesign {
     }
 }
 
-/// Draws for one flight before the ranges are called infeasible.
+/// Draws for one flight before the ranges count as infeasible.
 const TRIES: usize = 500;
-/// Part of the maximum lift coefficient and thrust that a planned point may need: the day may be warm.
+/// Share of the maximum lift coefficient and thrust that a planned point may need: the day may be warm.
 const LIFT_MARGIN: f64 = 0.85;
 const THRUST_MARGIN: f64 = 0.90;
 /// Warmest air in which the margin must hold, above the ISA, K.
@@ -188,7 +188,7 @@ impl FleetDesign {
     }
 
     fn draw_route(&self, duration_s: f64, random: &mut Stream) -> Vec<(f64, f64)> {
-        // At 250 m/s, the quarter of an hour before the recording and some reserve.
+        // At 250 m/s, including the quarter of an hour before the recording and some reserve.
         let length_m = 250.0 * (duration_s + 1500.0);
         let turns = count(self.turns_per_h * duration_s / 3600.0, random);
         let legs = turns + 1;
@@ -230,7 +230,7 @@ impl FleetDesign {
         let mut feet = plan.pressure_altitude_ft;
         for _ in 0..count(self.level_changes_per_h * hours, random) {
             let at_s = random.uniform(0.1, 0.9) * plan.duration_s;
-            // Mostly up; down where there is no room.
+            // Mostly up; down where there is no room above.
             let up = random.chance(0.8);
             let next = feet + if up { self.level_change_ft } else { -self.level_change_ft };
             if (0.4 * aircraft.envelope.ceiling_ft..=0.97 * aircraft.envelope.ceiling_ft)
@@ -302,7 +302,7 @@ pub(crate) fn legs(plan: &FlightPlan) -> Vec<(f64, f64, f64)> {
     legs
 }
 
-/// Whether the heaviest aircraft flies every leg on a warm day with a margin, and the fuel is enough.
+/// Whether the heaviest aircraft can fly every leg on a warm day with a margin, and the fuel is sufficient.
 fn can_be_flown(aircraft: &AircraftTruth, plan: &FlightPlan) -> Result<bool, OutOfDomain> {
     let Loading::ZeroFuel { zero_fuel_mass_kg, fuel_on_board_kg } = plan.loading else {
         return Ok(true);

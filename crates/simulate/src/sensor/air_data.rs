@@ -1,10 +1,10 @@
-//! The air-data computer: from pressures and total temperature to what the report carries.
+//! The air-data computer: from pressures and total temperature to the quantities of the report.
 
 use units::{OutOfDomain, Pressure, check_within};
 
 use crate::aircraft::{HEATING_FACTOR, pressure_rise};
 
-/// What the computer is given.
+/// The inputs of the computer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AirDataInputs {
     pub(crate) static_pressure_pa: f64,
@@ -14,7 +14,7 @@ pub(crate) struct AirDataInputs {
     pub(crate) mach_bias: f64,
 }
 
-/// What it says.
+/// Its outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AirData {
     pub(crate) pressure_altitude_m: f64,
@@ -52,7 +52,7 @@ pub(crate) fn compute(inputs: &AirDataInputs) -> Result<AirData, OutOfDomain> {
     })
 }
 
-/// Total pressure behind the true static pressure and Mach number, Pa.
+/// Total pressure at the true static pressure and Mach number, Pa.
 pub(crate) fn total_pressure_pa(static_pressure_pa: f64, mach: f64) -> f64 {
     static_pressure_pa * pressure_rise(1.0 + HEATING_FACTOR * mach * mach)
 }
@@ -72,11 +72,11 @@ mod tests {
 
     #[test]
     fn true_inputs_give_the_truth() {
-        let said = compute(&inputs(17_874.0, 0.82, 219.0)).unwrap();
-        assert!((said.mach - 0.82).abs() < 1e-12);
-        assert!((said.static_air_temperature_k - 219.0).abs() < 1e-9);
+        let computed = compute(&inputs(17_874.0, 0.82, 219.0)).unwrap();
+        assert!((computed.mach - 0.82).abs() < 1e-12);
+        assert!((computed.static_air_temperature_k - 219.0).abs() < 1e-9);
         // a = √(1.4·287.05287·219) = 296.66 m/s.
-        assert!((said.true_airspeed_m_s - 0.82 * 296.6628).abs() < 1e-2, "{said:?}");
+        assert!((computed.true_airspeed_m_s - 0.82 * 296.6628).abs() < 1e-2, "{computed:?}");
     }
 
     #[test]
@@ -87,15 +87,17 @@ mod tests {
         let relative = 0.003;
         let mut wrong = inputs(p, mach, sat_k);
         wrong.static_pressure_pa *= 1.0 + relative;
-        let said = compute(&wrong).unwrap();
+        let computed = compute(&wrong).unwrap();
         let mach_change = -relative * (1.0 + 0.2 * mach * mach) / (1.4 * mach);
-        assert!((said.mach - mach - mach_change).abs() < 2e-5, "{}", said.mach - mach);
+        assert!((computed.mach - mach - mach_change).abs() < 2e-5, "{}", computed.mach - mach);
         let height_change = -287.05287 * sat_k / 9.80665 * relative;
-        assert!((said.pressure_altitude_m - truth.pressure_altitude_m - height_change).abs() < 0.1);
+        assert!(
+            (computed.pressure_altitude_m - truth.pressure_altitude_m - height_change).abs() < 0.1
+        );
         // SAT = TAT/(1 + 0.2·M²) rises as Mach number falls: −0.4·M·dM/(1 + 0.2·M²)·SAT.
         let sat_change = -0.4 * mach * mach_change / (1.0 + 0.2 * mach * mach) * sat_k;
-        assert!((said.static_air_temperature_k - sat_k - sat_change).abs() < 2e-3);
-        assert!(said.true_airspeed_m_s < truth.true_airspeed_m_s);
+        assert!((computed.static_air_temperature_k - sat_k - sat_change).abs() < 2e-3);
+        assert!(computed.true_airspeed_m_s < truth.true_airspeed_m_s);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! All sensors of one flight: fed at every step, read at every sample, made into a report at the end.
+//! All sensors of one flight: fed at every step, read at every sample, combined into a report at the end.
 
 use flight::{
     FlightIdentity, FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportDataError,
@@ -22,7 +22,7 @@ use crate::terms::{MAXIMUM_ENGINES, RecordedTerms};
 /// Pascals in a hectopascal.
 const PASCALS_PER_HECTOPASCAL: f64 = 100.0;
 
-/// What the load sheet and the dispatcher say.
+/// Figures of the load sheet and the dispatcher.
 #[derive(Clone, Debug)]
 pub(crate) struct RecordedLoading {
     pub(crate) aircraft_type: String,
@@ -223,12 +223,12 @@ impl<'a> SensorBank<'a> {
         seen
     }
 
-    /// What the meters have counted of the fuel used before the recording, engines alike.
+    /// The meters' count of the fuel used before the recording, engines alike.
     fn metered_before(&self, fuel_used_kg: f64) -> f64 {
         let each = fuel_used_kg / self.engines as f64;
         (0..self.engines)
             .map(|k| {
-                // Bias aside: a meter's zero is not known before it runs.
+                // Without the bias: a meter's zero is not known before it runs.
                 let gain = self.fuel_flow[k].steady(1.0) - self.fuel_flow[k].steady(0.0);
                 each * gain * self.recorded.fuel_flow_factor[k]
             })
@@ -296,7 +296,7 @@ impl<'a> SensorBank<'a> {
         rows.fuel_used_kg
             .push(round_to(used_lb, self.sensors.fuel_used_resolution_lb) * KILOGRAMS_PER_POUND);
         let left_lb = (self.fuel_on_board_kg - state.fuel_used_kg) / KILOGRAMS_PER_POUND;
-        // A gauge shows no less than empty.
+        // A gauge does not indicate less than empty.
         let gauge_lb = self.fuel_quantity.measure(left_lb, random).max(0.0);
         push_optional(
             &mut rows.fuel_quantity_kg,
@@ -329,23 +329,23 @@ impl<'a> SensorBank<'a> {
             self.recorded.temperature_bias_k * (1.0 + HEATING_FACTOR * reference * reference);
         let total_air_temperature_k =
             self.total_air_temperature.measure(seen.total_air_temperature_k, random) + probe_bias_k;
-        let said = compute(&AirDataInputs {
+        let computed = compute(&AirDataInputs {
             static_pressure_pa: static_hpa * PASCALS_PER_HECTOPASCAL,
             total_pressure_pa: total_hpa * PASCALS_PER_HECTOPASCAL,
             total_air_temperature_k,
             mach_bias: self.recorded.mach_bias,
         })?;
         let rows = &mut self.rows;
-        let feet = self.static_pressure.round(said.pressure_altitude_m / METERS_PER_FOOT);
+        let feet = self.static_pressure.round(computed.pressure_altitude_m / METERS_PER_FOOT);
         rows.pressure_altitude_m.push(feet * METERS_PER_FOOT);
-        rows.mach.push(self.total_pressure.round(said.mach));
+        rows.mach.push(self.total_pressure.round(computed.mach));
         let celsius = |kelvin: f64| {
             self.total_air_temperature.round(kelvin - KELVIN_AT_ZERO_CELSIUS)
                 + KELVIN_AT_ZERO_CELSIUS
         };
-        push(&mut rows.static_air_temperature_k, celsius(said.static_air_temperature_k));
+        push(&mut rows.static_air_temperature_k, celsius(computed.static_air_temperature_k));
         push_optional(&mut rows.total_air_temperature_k, celsius(total_air_temperature_k));
-        let knots = said.true_airspeed_m_s / METERS_PER_SECOND_PER_KNOT;
+        let knots = computed.true_airspeed_m_s / METERS_PER_SECOND_PER_KNOT;
         rows.true_airspeed_m_s.push(
             round_to(knots, self.sensors.true_airspeed_resolution_kt) * METERS_PER_SECOND_PER_KNOT,
         );

@@ -1,12 +1,12 @@
-//! One channel: bias, gain, slow drift, noise, lag, rounding, and its faults.
+//! One channel: bias, gain, drift, noise, lag, rounding, and its faults.
 
 use serde::{Deserialize, Serialize};
 
 use crate::random::Stream;
 
-/// How one channel is wrong: measured = true·(1 + gain) + bias, rounded.
+/// The errors of one channel: measured = true·(1 + gain) + bias, rounded.
 ///
-/// Every part is the sum of a constant, a draw for the tail, a draw for the flight, a slow drift and a draw for the sample.
+/// Every part is the sum of a constant, a draw for the tail, a draw for the flight, a drift and a draw for the sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ChannelSensor {
@@ -49,7 +49,7 @@ pub struct Faults {
     pub missing_sample: f64,
     /// Probability that an optional column has no value in a sample.
     pub drop_out: f64,
-    /// Stuck values an hour: one channel keeps what it said last.
+    /// Stuck values per hour: one channel keeps its last value.
     pub stuck_per_h: f64,
     /// Mean length of a stuck value, min.
     pub stuck_min: f64,
@@ -66,8 +66,8 @@ pub(crate) struct Channel {
 }
 
 impl Channel {
-    /// Draws what stays for the tail and for the flight. Every channel draws the same number of values whatever its sizes,
-    /// so that switching one error on moves no other draw.
+    /// Draws the parts that are constant for the tail and for the flight. Every channel draws the same number of values
+    /// whatever its sizes, so that switching one error on changes no other draw.
     pub(crate) fn draw(
         sensor: &ChannelSensor,
         of_tail: &mut Stream,
@@ -104,7 +104,7 @@ impl Channel {
         self.steady(value) * (1.0 + relative) + self.sensor.noise_sd * random.normal()
     }
 
-    /// Share of a step in a lagging sensor.
+    /// Share of a step that a lagging sensor follows.
     pub(crate) fn lag_share(&self, step_s: f64) -> f64 {
         if self.sensor.lag_s > 0.0 { 1.0 - (-step_s / self.sensor.lag_s).exp() } else { 1.0 }
     }
@@ -114,7 +114,7 @@ impl Channel {
     }
 }
 
-/// To the nearest multiple of a step; 0 leaves the value alone.
+/// To the nearest multiple of a step; 0 leaves the value unchanged.
 pub(crate) fn round_to(value: f64, resolution: f64) -> f64 {
     if resolution > 0.0 {
         let steps = (value / resolution).round();

@@ -1,11 +1,11 @@
-//! What goes wrong with a recording: rows that are missing, values that drop out, values that stick.
+//! Faults of a recording: missing rows, missing values, stuck values.
 
 use flight::{FuelFlowColumns, OptionalColumn, ReportColumns};
 
 use super::Faults;
 use crate::random::Stream;
 
-/// Rows that a report must keep.
+/// Number of rows that a report must keep.
 const LEAST_ROWS: usize = 3;
 
 /// Applies the faults to finished columns. Nothing is drawn for a fault that does not occur.
@@ -50,7 +50,7 @@ fn stick(rows: &mut ReportColumns, faults: &Faults, random: &mut Stream) {
     let mut from_s = times[0] + random.exponential(mean_gap_s);
     while from_s < end_s {
         let to_s = from_s + random.exponential(60.0 * faults.stuck_min);
-        // Fuel used does not stick: a totalizer that stands still is another fault.
+        // Fuel used does not get stuck: a totalizer that stops is another fault.
         let mut columns = full_columns(rows);
         columns.remove(FUEL_USED);
         let which = random.below(columns.len());
@@ -64,7 +64,7 @@ fn stick(rows: &mut ReportColumns, faults: &Faults, random: &mut Stream) {
     }
 }
 
-/// Where [`full_columns`] has fuel used.
+/// Index of fuel used in [`full_columns`].
 const FUEL_USED: usize = 0;
 
 /// Every required column but time.

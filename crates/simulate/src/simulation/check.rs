@@ -1,4 +1,4 @@
-//! What a plan must be before anything is drawn.
+//! Conditions on a plan before anything is drawn.
 
 use units::check_within;
 

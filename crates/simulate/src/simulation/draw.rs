@@ -1,4 +1,4 @@
-//! Everything of one flight that is random, but for gusts and sensors.
+//! Everything random about one flight, except gusts and sensors.
 
 use flight::FlightIdentity;
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
@@ -17,7 +17,7 @@ use crate::vector::Place;
 use crate::weather::{AirMass, draw_patches};
 
 impl Simulation {
-    /// Draws it. The order of draws within a stream is part of what a seed means.
+    /// Draws it. The order of draws within a stream is part of the meaning of a seed.
     pub(super) fn draw<'a>(
         &'a self,
         tail: &'a Tail,
@@ -187,7 +187,7 @@ impl Simulation {
     }
 }
 
-/// What was drawn.
+/// The result of the draw.
 pub(super) struct Drawn<'a> {
     pub(super) setup: FlightSetup<'a>,
     pub(super) streams: Streams,

@@ -1,4 +1,4 @@
-//! Whether what was recorded is within the ranges of the report's format: absurd effects make absurd recordings.
+//! Whether the recording is within the ranges of the report's format: absurd effects make absurd recordings.
 
 use flight::column::Column;
 use flight::{FuelFlowColumns, Report};
@@ -11,7 +11,7 @@ pub(super) struct OutOfRange {
     pub(super) words: &'static str,
 }
 
-/// Fuel quantity may exceed fuel on board by this factor: a format's rule.
+/// Fuel quantity may exceed fuel on board by this factor: a rule of the format.
 const FUEL_QUANTITY_FACTOR: f64 = 1.02;
 
 /// The first value out of range, column by column.

@@ -1,4 +1,4 @@
-//! A flight-planning guide made from a truth, with a drag error that is known.
+//! A flight-planning guide made from a truth, with a known drag error.
 
 use serde::Serialize;
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TrueAirspeed};
@@ -60,7 +60,7 @@ impl DragError {
     }
 }
 
-/// Where the guide has rows.
+/// Grid of the guide's rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GuideGrid {
     /// Gross masses, lb.

@@ -14,7 +14,7 @@ const MACH_BUMP_WIDTH: f64 = 0.015;
 /// Range of lift coefficient over which floating spoilers come up.
 const SPOILER_RAMP: f64 = 0.05;
 
-/// What the drag coefficient depends on.
+/// The variables of the drag coefficient.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DragInputs {
     pub(crate) lift_coefficient: f64,
@@ -36,7 +36,7 @@ pub(crate) struct DragTerms {
     pub(crate) friction: Vec<FrictionTerm>,
     /// Relative growth of K.
     pub(crate) induced: f64,
-    /// Whole rise of drag earlier by this Mach number.
+    /// Shift of the whole drag rise to lower Mach numbers.
     pub(crate) earlier_by_mach: f64,
     /// Trim drag coefficient per 10 %MAC at lift coefficient 0.4, with its reference, %MAC.
     pub(crate) trim: Vec<(f64, f64)>,
@@ -67,7 +67,7 @@ impl FrictionTerm {
         }
     }
 
-    /// The friction law in such an amount that it touches the power law Re^−exponent at the reference.
+    /// The friction law, scaled so that it is tangent to the power law Re^−exponent at the reference.
     pub(crate) fn exponent(exponent: f64, reference_reynolds_number: f64) -> Self {
         Self::share(
             exponent / local_friction_exponent(reference_reynolds_number),
@@ -163,7 +163,7 @@ impl Terms {
     }
 }
 
-/// Roughness drag over its value at a reference Mach number: friction falls as the wall warms.
+/// Roughness drag relative to its value at a reference Mach number: friction falls as the wall warms.
 ///
 /// ```text
 /// ((1 + 0.144·M²)/(1 + 0.144·Mref²))^−0.65                          [virtual.12]

@@ -3,14 +3,15 @@
 use super::{MAXIMUM_ENGINES, Terms};
 use crate::aircraft::{AircraftTruth, Engine, TruthPhysics, part_load_factor, tsfc_kg_n_s};
 
-/// Static pressures between which the combustor loses: none above the first, all below the second, Pa (FL340, FL475).
+/// Static pressures between which combustion loses efficiency: no loss above the first, full loss below the second, Pa
+/// (FL340, FL475).
 const COMBUSTOR_PRESSURES_PA: (f64, f64) = (25_000.0, 13_000.0);
-/// Temperature of the fuel at which the fuel-temperature effect is nothing, and the range of its size, K.
+/// Temperature of the fuel at which the fuel-temperature effect is zero, and the range of its size, K.
 const FUEL_TEMPERATURE: (f64, f64) = (268.0, 30.0);
 /// Curvature of the throttle effect below and above its pivot, over that of the library's parabola.
 const THROTTLE_HALVES: (f64, f64) = (1.15, 0.70);
 
-/// What fuel flow depends on.
+/// The variables of fuel flow.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FuelInputs {
     pub(crate) mach: f64,
@@ -47,7 +48,7 @@ pub(crate) struct FuelTerms {
     pub(crate) temperature_power: f64,
     /// Relative growth per relative growth of θ, and θref.
     pub(crate) temperature_line: Option<(f64, f64)>,
-    /// Whether the engine's own part-load curve counts.
+    /// Whether the engine's own part-load curve is used.
     pub(crate) part_load: bool,
     pub(crate) throttle: Vec<ThrottleTerm>,
     /// Constant fuel flow, kg/s.
@@ -112,7 +113,7 @@ impl Terms {
             tsfc *= 1.0 + throttle_growth(throttle, corrected_thrust_n);
         }
 
-        // Fuel that does no thrust.
+        // Fuel that makes no thrust.
         let mut aside_kg_s = terms.offtake_kg_s;
         if let Some((at_reference_kg_s, reference)) = terms.power_offtake {
             aside_kg_s += at_reference_kg_s * (at.temperature_ratio / reference).sqrt();

@@ -10,12 +10,12 @@ use crate::aircraft::DRAG_COEFFICIENT_PER_COUNT;
 use crate::effect::{OutsideEffect, PlannedEffect, TruthEffect};
 
 const PERCENT: f64 = 0.01;
-/// Mach number of the drag bump and lift coefficient of the floating spoilers, where a plan sets none.
+/// Mach number of the drag bump and lift coefficient of the floating spoilers, where a plan gives none.
 const DEFAULT_BUMP_MACH: f64 = 0.80;
 const DEFAULT_SPOILER_LIFT_COEFFICIENT: f64 = 0.40;
 
-/// The conditions at which an effect is nothing: means over what a tail is planned to fly, so that a size says what the
-/// library's says.
+/// The conditions at which an effect is zero: means over what a tail is planned to fly, so that a size has the same
+/// meaning as the library's.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct References {
@@ -43,7 +43,7 @@ pub struct References {
     pub last_date_s: f64,
 }
 
-/// What an effect needs to know of the flight and its tail.
+/// The inputs of an effect from the flight and its tail.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EffectContext<'a> {
     pub(crate) references: &'a References,
@@ -213,7 +213,7 @@ pub(crate) fn step_date_s(effect: &PlannedEffect, references: &References) -> f6
     effect.from.map_or(middle_s, flight::seconds_since_1970)
 }
 
-/// Years of ageing since the reference date, saturating: fast at first, on average over the fleet's dates one a year.
+/// Years of ageing since the reference date, saturating: fast at first; on average over the fleet's dates one per year.
 ///
 /// ```text
 /// a(t) = T·(1 − e^(−(t − t1)/T))/(1 − e^−1),  T = t2 − t1,  x = a(t) − a(tref)     [virtual.14]

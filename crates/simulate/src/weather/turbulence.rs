@@ -7,7 +7,7 @@ use crate::random::Stream;
 /// Scale of turbulence above 2 000 ft, 1 750 ft, for all three gusts. Source: MIL-F-8785C, section 3.7.3.1.
 pub(crate) const SCALE_M: f64 = 1750.0 * units::convert::METERS_PER_FOOT;
 
-/// Where and how much turbulence there is. A plan's `turbulence`.
+/// Where turbulence occurs and how strong it is. A plan's `turbulence`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Turbulence {
@@ -27,7 +27,7 @@ pub struct Turbulence {
 
 impl Default for Turbulence {
     /// Gusts of 5.0 and 8.1 ft/s: the curves of probability 1e-3 and 1e-4 at 35 000 ft of MIL-F-8785C, figure 7, as
-    /// JSBSim's `FGWinds` tabulates them. How often there is some is our choice.
+    /// tabulated in JSBSim's `FGWinds`. Their frequency is our choice.
     fn default() -> Self {
         Self {
             light_patches_per_h: 0.25,
@@ -41,7 +41,7 @@ impl Default for Turbulence {
 }
 
 impl Turbulence {
-    /// None at all.
+    /// No turbulence.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -137,7 +137,7 @@ impl DrydenFilters {
         filters
     }
 
-    /// One step on; the gusts of unit standard deviation.
+    /// One step later; the gusts of unit standard deviation.
     pub(crate) fn advance(&mut self, random: &mut Stream) -> Gusts {
         self.longitudinal =
             self.step.decay * self.longitudinal + self.step.longitudinal_noise * random.normal();
@@ -163,7 +163,7 @@ pub(crate) struct Patch {
     pub(crate) sigma_m_s: f64,
 }
 
-/// Seconds over which a patch comes and goes.
+/// Seconds over which a patch builds up and decays.
 const PATCH_EDGE_S: f64 = 30.0;
 
 /// Patches of a flight in order, drawn as a Poisson process in time.

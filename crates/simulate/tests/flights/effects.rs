@@ -1,4 +1,4 @@
-//! Each effect changes its own channels by what physics says, and no other.
+//! Each effect changes its own channels as physics requires, and no other.
 //!
 //! One flight is flown with and without it: same seed, perfect sensors, still air. The first sample is compared, where the
 //! fuel burnt differently has hardly changed the mass yet.
@@ -17,7 +17,8 @@ const ALL: [&str; 17] = [
     "FU", "HDG", "LAT", "CG", "A/I", "EGT(1)",
 ];
 
-/// A flight that shows everything: warm air, a wing low, center of gravity forward, anti-ice on, a year after the reference.
+/// A flight in which every effect shows: warm air, a wing low, center of gravity forward, anti-ice on, a year after the
+/// reference.
 fn showing() -> FlightPlan {
     FlightPlan {
         anti_ice: vec![(0.0, 3600.0)],
@@ -28,7 +29,7 @@ fn showing() -> FlightPlan {
     }
 }
 
-/// Away from the flight in everything, so that nothing is zero by chance.
+/// Different from the flight in everything, so that nothing is zero by chance.
 fn references() -> References {
     References {
         mach: 0.75,
@@ -55,13 +56,13 @@ fn fly(effects: Vec<PlannedEffect>) -> Flown {
 }
 
 fn relative_change(name: &str, with: &Flown, without: &Flown) -> f64 {
-    // Fuel used needs some minutes to show what is switched on with the recording.
+    // Fuel used needs some minutes to show an effect that is switched on with the recording.
     let sample = if name == "FU" { 5 } else { 0 };
     let (a, b) = (column(&with.report, name)[sample], column(&without.report, name)[sample]);
     if b == 0.0 { a } else { a / b - 1.0 }
 }
 
-/// Channels whose first sample differs by more than a share that fuel burnt before it explains.
+/// Channels whose first sample differs by more than the share explained by fuel burnt before it.
 fn changed(with: &Flown, without: &Flown) -> Vec<&'static str> {
     ALL.into_iter()
         .filter(|name| {
@@ -72,7 +73,7 @@ fn changed(with: &Flown, without: &Flown) -> Vec<&'static str> {
                 "EGT(1)" => 2e-4,
                 // A wing held low by half a degree has a load factor of 1.00004.
                 "FU" => 2e-5,
-                // The speed hold lives on an error: another thrust, another few millionths of the speed.
+                // The speed hold needs an error to act: another thrust changes the speed by a few millionths.
                 _ => 5e-6,
             };
             relative_change(name, with, without).abs() > tolerance
@@ -134,7 +135,7 @@ fn every_effect_of_the_library_changes_its_own_channels_only() {
         expected.sort_unstable();
         found.sort_unstable();
         assert_eq!(found, expected, "{id}");
-        // True states of what only the sensors get wrong are the same to the bit.
+        // True states are the same to the bit for effects that only sensors have.
         if matches!(
             id.entry().group,
             flight::effect::EffectGroup::Sensor | flight::effect::EffectGroup::Mass
@@ -166,7 +167,7 @@ fn effects_outside_the_library_change_their_own_channels_only() {
         let mut found = changed(&fly(vec![effect]), &base);
         found.sort_unstable();
         assert_eq!(found, expected, "{outside:?}");
-        // Away from where it sits nothing is left of the two that sit somewhere.
+        // Away from their position, the two effects that have one vanish.
         if let Some(at) = at {
             effect.at = Some(at + 0.15);
             assert_eq!(changed(&fly(vec![effect]), &base), Vec::<&str>::new(), "{outside:?}");
@@ -229,7 +230,7 @@ fn sizes_mean_what_the_library_says() {
     near("anti_ice_bleed", 2.0, 0.02 * (1.0 / x).sqrt(), 4e-4);
     near("fuel_flow_gain", 2.0, 0.02, 1e-12);
     near("fuel_flow_gain_1", 3.0, 0.015, 1e-12);
-    // Gravity at FL390 and 47° N less Somigliana's 9.8085 … free air: fuel by the induced share.
+    // Gravity at FL390 and 47° N minus Somigliana's 9.8085 … free air: fuel by the induced share.
     let local = fuel_change(sized("local_gravity", 1.0));
     assert!(local < 0.0 && local > -0.004, "{local}");
 }
@@ -281,7 +282,7 @@ fn recorded_errors_are_exact() {
     assert!(
         (column(&with.report, "MACH")[0] - column(&base.report, "MACH")[0] - 0.004).abs() < 1e-12
     );
-    // TAS is that of the wrong Mach number at the SAT that the wrong Mach number gives.
+    // TAS follows from the wrong Mach number and the SAT that the wrong Mach number gives.
     let sat = column(&with.report, "SAT")[0];
     let expected = column(&with.report, "MACH")[0] * (1.4 * 287.05287 * sat).sqrt();
     assert!((column(&with.report, "VTAS")[0] - expected).abs() < 1e-9);

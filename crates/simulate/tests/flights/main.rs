@@ -1,4 +1,4 @@
-//! The crate as its users see it: flights, effects, plans.
+//! The crate from the point of view of its users: flights, effects, plans.
 #![allow(clippy::unwrap_used, reason = "helpers of tests, which clippy does not take for tests")]
 #![allow(clippy::float_cmp, reason = "same input, same bits")]
 

@@ -1,4 +1,4 @@
-//! The flight itself: books, balance in wind, gravity, steps and turns.
+//! The flight itself: balances, wind, gravity, steps and turns.
 
 use crate::common::{fly_first, northbound, quiet_plan};
 use simulate::{
@@ -92,7 +92,7 @@ fn level_flight_in_uniform_geostrophic_wind_needs_thrust_equal_to_drag() {
     let (coriolis_alone, f_v) = excess_m_s2(&in_westerly_wind(force, Vec::new()));
     assert!((coriolis_alone / f_v - 1.0).abs() < 2e-3, "{coriolis_alone} {f_v}");
 
-    // The effect of size 0.5: half of the slope alone. In the library's words thrust + θ·m·f·V with V from the right.
+    // The effect of size 0.5: half of the slope alone. In the library's form thrust + θ·m·f·V with V from the right.
     let id: TruthEffect = "isobaric_slope".parse().unwrap();
     let (half, f_v) =
         excess_m_s2(&in_westerly_wind(Earth::plain(), vec![PlannedEffect::sized(id, 0.5)]));

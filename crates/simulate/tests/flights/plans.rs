@@ -1,4 +1,4 @@
-//! Plans, reports and truth: reproducible, within the format's ranges, and refused by name where they are wrong.
+//! Plans, reports and truth: reproducible, within the format's ranges, and refused with a reason where they are wrong.
 
 use crate::common::{column, fly_first, northbound, quiet_plan};
 use flight::Report;
@@ -108,8 +108,12 @@ fn perfect_sensors_record_the_truth_and_meters_integrate_the_flow() {
     let fu = column(&flown.report, "FU");
     for (i, s) in flown.states.iter().enumerate() {
         let near = |name: &str, truth: f64, tolerance: f64| {
-            let said = column(&flown.report, name)[i];
-            assert!((said - truth).abs() <= tolerance, "{name} at {}: {said} {truth}", s.time_s);
+            let recorded = column(&flown.report, name)[i];
+            assert!(
+                (recorded - truth).abs() <= tolerance,
+                "{name} at {}: {recorded} {truth}",
+                s.time_s
+            );
         };
         near("ALT", s.pressure_altitude_m, 1e-6);
         near("MACH", s.mach, 1e-12);
@@ -126,7 +130,8 @@ fn perfect_sensors_record_the_truth_and_meters_integrate_the_flow() {
 
 #[test]
 fn a_lagging_probe_follows_late() {
-    // A speed change is a ramp of Mach number and so of TAT: a first-order lag runs behind by its time constant.
+    // A speed change is a ramp of Mach number and so of TAT: a first-order lag follows it with a delay of its time
+    // constant.
     let mut flight = northbound();
     flight.changes = vec![simulate::Change::Mach { at_s: 600.0, mach: 0.83 }];
     let fly = |lag_s: f64| {
@@ -244,7 +249,7 @@ fn truth_names_effects_with_their_sizes_and_survives_json() {
     let mut plan = Plan::of_one_tail(3, "T-001", small_design());
     plan.effects = vec![PlannedEffect::typical("zero_fuel_mass_bias".parse().unwrap())];
     let simulation = Simulation::new(plan).unwrap();
-    // Flown in any order, written in that of time.
+    // Flown in any order, written in order of time.
     let flown = (0..4).rev().map(|i| simulation.fly(i).unwrap().truth).collect();
     let truth = simulation.truth(flown);
     let tail = &truth.tails[0];
@@ -307,7 +312,7 @@ fn clutter_is_every_other_effect_at_a_tenth() {
     let rms = (shares.iter().map(|s| s * s).sum::<f64>() / 27.0).sqrt();
     assert!((0.06..0.14).contains(&rms), "{rms}");
     assert!(simulation.fly(0).is_ok());
-    // What is planted moves no size of the clutter.
+    // A planted effect changes no size of the clutter.
     plan.effects = Vec::new();
     let without = Simulation::new(plan).unwrap().truth(Vec::new()).tails.remove(0).clutter;
     assert!(clutter.iter().all(|effect| without.contains(effect)));
@@ -373,7 +378,7 @@ fn the_example_plan_shows_the_defaults_and_flies() {
 proptest::proptest! {
     #![proptest_config(proptest::prelude::ProptestConfig::with_cases(64))]
 
-    /// Whatever is asked for: a report within the format's ranges, or an error that says why; never a panic.
+    /// Whatever the plan: a report within the format's ranges, or an error with a reason; never a panic.
     #[test]
     fn any_flight_flies_or_says_why(
         seed in proptest::prelude::any::<u64>(),

@@ -12,11 +12,11 @@ use crate::files::{file_stem_of_tail, make_folder};
 use crate::models::write_model;
 use pipeline::model_file::{AppliedRecord, DiagnosisRecord};
 
-/// Writes the extended model of every group whose verdict names effects without doubt which; the others are said, or
-/// refused where a person has to choose.
+/// Writes the extended model of every group whose verdict names its effects unambiguously. The other groups are
+/// reported, or refused where a person has to choose.
 ///
 /// # Errors
-/// A place that cannot be written.
+/// A file or folder that cannot be written.
 pub(super) fn apply(
     folder: &Path,
     groups: &[Group<'_>],
@@ -26,7 +26,7 @@ pub(super) fn apply(
     let mut outcome = Outcome::default();
     for (group, diagnosis) in groups.iter().zip(diagnoses) {
         let path = folder.join(format!("{}.ron", file_stem(group)));
-        let said = match chosen(group, diagnosis) {
+        let result = match chosen(group, diagnosis) {
             Choice::Nothing(reason) => format!("nothing applied: {reason}"),
             Choice::Refused(reason) => {
                 outcome.refused.push(RefusedReport::whole(path, reason));
@@ -35,8 +35,8 @@ pub(super) fn apply(
             Choice::Record(record) => match group.model.extended(record) {
                 Ok(model) => {
                     write_model(&model, &path)?;
-                    let told = model.applied.last().map_or_else(String::new, AppliedRecord::told);
-                    format!("applied {told}; written to {}", show(&path))
+                    let record = model.applied.last().map_or_else(String::new, AppliedRecord::told);
+                    format!("applied {record}; written to {}", show(&path))
                 }
                 Err(reason) => {
                     outcome.refused.push(RefusedReport::whole(path, reason));
@@ -44,12 +44,12 @@ pub(super) fn apply(
                 }
             },
         };
-        let _ = writeln!(outcome.text, "{}: {said}", group.name);
+        let _ = writeln!(outcome.text, "{}: {result}", group.name);
     }
     Ok(outcome)
 }
 
-/// A model of one tail is called after it, that of a pool after its type.
+/// The model of one tail is named after the tail, that of a pool after its type.
 fn file_stem(group: &Group<'_>) -> String {
     if group.name == "*" {
         file_stem_of_tail(group.model.initial.aircraft().type_code())
@@ -70,13 +70,13 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
         VerdictKind::Effects => {}
         VerdictKind::NoGap => return Choice::Nothing("no gap beyond the noise"),
         VerdictKind::OutsideLibrary => {
-            return Choice::Nothing("the gap is no effect of the library");
+            return Choice::Nothing("no effect of the library explains the gap");
         }
         VerdictKind::InsufficientData => return Choice::Nothing("insufficient data"),
     }
     if verdict.class.iter().any(|member| !verdict.effects.contains(member)) {
         return Choice::Refused(format!(
-            "tail {}: nothing applied, these flights cannot tell apart {}; name the one that it is with --effects",
+            "tail {}: nothing applied, these flights cannot distinguish {}; name the right one with --effects",
             group.name,
             verdict.class.join(", ")
         ));

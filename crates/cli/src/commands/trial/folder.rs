@@ -15,11 +15,11 @@ pub(super) struct TruthFolder {
 }
 
 impl TruthFolder {
-    /// Writes the truths of all cases, in the order of their numbers, below `DIR/truth`. Truths that are there already
-    /// must be the same bytes: then the run continues from what it had.
+    /// Writes the truths of all cases, in the order of their numbers, below `DIR/truth`. Truths that exist already must
+    /// be identical to the byte; the run then continues from the results it has.
     ///
     /// # Errors
-    /// A place that cannot be written; a folder whose truths are others.
+    /// A file or folder that cannot be written; a folder with other truths.
     pub(super) fn write(folder: &Path, truths: &[CaseTruth]) -> Result<Self, Failure> {
         let folder = folder.join("truth");
         make_folder(&folder)?;
@@ -34,7 +34,7 @@ impl TruthFolder {
                         folder: show(&folder),
                         what: "truth",
                         difference: format!(
-                            "case {}: another version of the program drew it, or the file was changed",
+                            "case {}: it was drawn by another version of the program, or the file was changed",
                             truth.case
                         ),
                     });
@@ -52,10 +52,10 @@ impl TruthFolder {
         &self.seal
     }
 
-    /// Opens the truth of a case, for the scorer.
+    /// Opens the truth of a case, for scoring.
     ///
     /// # Errors
-    /// A file that cannot be read, or is no longer what was sealed.
+    /// A file that cannot be read, or that differs from what was sealed.
     pub(super) fn open(&self, case: usize) -> Result<CaseTruth, Failure> {
         let path = path_of(&self.folder, case);
         let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
@@ -63,10 +63,10 @@ impl TruthFolder {
     }
 }
 
-/// Why a case has no result: it failed, or its files did.
+/// Why a case has no result: the case failed, or its files did.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum CaseError {
-    /// The case.
+    /// The case itself.
     #[error(transparent)]
     Case(#[from] CaseFailure),
     /// Truth or result on disk.
@@ -74,11 +74,11 @@ pub(super) enum CaseError {
     Disk(#[from] Failure),
 }
 
-/// Runs one case: flies it, diagnoses it, opens its truth, scores it, and writes the result below `DIR/cases` at once, so
-/// that an interruption loses no finished case. A result that is there already is taken.
+/// Runs one case: flies it, diagnoses it, opens its truth, scores it, and writes the result below `DIR/cases` at once,
+/// so that an interruption loses no finished case. An existing result is reused.
 ///
 /// # Errors
-/// [`CaseError`]; other cases are not touched by it.
+/// [`CaseError`]; other cases are not affected.
 pub(super) fn run_case(
     folder: &Path,
     plan: &TrialPlan,
@@ -97,11 +97,11 @@ pub(super) fn run_case(
         serde_json::to_string_pretty(&result).map_err(|error| Failure::unwritable(&path, error))?;
     text.push('\n');
     write_atomically(&path, text.as_bytes())?;
-    // As a later run would read it: a run that continues from a folder shall come to the same bytes.
+    // Read back as a later run would read it: a run that continues from a folder must arrive at the same bytes.
     serde_json::from_str(&text).map_err(|error| CaseError::Disk(Failure::bad_file(&path, error)))
 }
 
-/// A result of an earlier run, if it is of this truth.
+/// The result of an earlier run, if it belongs to this truth.
 fn finished(path: &Path, truth_sha256: &str) -> Option<CaseResult> {
     let bytes = std::fs::read(path).ok()?;
     let known: CaseResult = serde_json::from_slice(&bytes).ok()?;
@@ -137,7 +137,7 @@ mod tests {
         let write = |times| TruthFolder::write(folder.path(), &[truth(1, 1.0), truth(2, times)]);
         let truths = write(0.5).unwrap();
         assert_eq!(truths.open(2).unwrap(), truth(2, 0.5));
-        // The same again is the same seal; another truth in the same place is refused.
+        // The same truth gives the same seal; another truth in the same folder is refused.
         assert_eq!(write(0.5).unwrap().seal(), truths.seal());
         assert!(write(0.6).is_err());
         let path = folder.path().join("truth/00002.json");
