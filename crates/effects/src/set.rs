@@ -41,7 +41,7 @@ impl Effects {
         match self.effects.iter_mut().find(|on| on.id == effect) {
             Some(on) => on.size = size,
             None => {
-                self.effects.push(SizedEffect { id: effect, size, hidden: effect.entry().hidden })
+                self.effects.push(SizedEffect { id: effect, size, hidden: effect.entry().hidden });
             }
         }
         self

@@ -422,6 +422,38 @@ fn left_out(data: &Data<'_>, rows: &[Row]) -> Vec<LeftOut> {
     found
 }
 
+impl Baseline {
+    /// Raw values of every column and, last, the residual.
+    fn raw_row(&self, data: &Data<'_>, row: &SegmentRow) -> Vec<[f64; MAXIMUM_CHANNELS]> {
+        let terms = self.remainder_terms();
+        let mut remainder = vec![0.0; terms];
+        self.write_remainder(&row.response, &mut remainder);
+        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; self.factor.nrows() + 1];
+        for (slot, value) in raw.iter_mut().zip(&remainder) {
+            slot[0] = *value;
+        }
+        for contrast in 1..=self.parts.contrasts {
+            if row.is_recorded[contrast] {
+                raw[terms + contrast - 1][contrast] = 1.0;
+            }
+        }
+        if data.channels.n2 {
+            let channel = data.channels.n2_row();
+            if row.is_recorded[channel] {
+                for (k, term) in row.deck.into_iter().enumerate() {
+                    raw[terms + self.parts.contrasts + k][channel] = term;
+                }
+            }
+        }
+        let environment = self.factor.nrows() - ENVIRONMENT.len();
+        raw[environment..environment + ENVIRONMENT.len()].copy_from_slice(&row.environment);
+        if let Some(last) = raw.last_mut() {
+            *last = row.residual;
+        }
+        raw
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use faer::Side;
@@ -545,37 +577,5 @@ mod tests {
                 }
             }
         }
-    }
-}
-
-impl Baseline {
-    /// Raw values of every column and, last, the residual.
-    fn raw_row(&self, data: &Data<'_>, row: &SegmentRow) -> Vec<[f64; MAXIMUM_CHANNELS]> {
-        let terms = self.remainder_terms();
-        let mut remainder = vec![0.0; terms];
-        self.write_remainder(&row.response, &mut remainder);
-        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; self.factor.nrows() + 1];
-        for (slot, value) in raw.iter_mut().zip(&remainder) {
-            slot[0] = *value;
-        }
-        for contrast in 1..=self.parts.contrasts {
-            if row.is_recorded[contrast] {
-                raw[terms + contrast - 1][contrast] = 1.0;
-            }
-        }
-        if data.channels.n2 {
-            let channel = data.channels.n2_row();
-            if row.is_recorded[channel] {
-                for (k, term) in row.deck.into_iter().enumerate() {
-                    raw[terms + self.parts.contrasts + k][channel] = term;
-                }
-            }
-        }
-        let environment = self.factor.nrows() - ENVIRONMENT.len();
-        raw[environment..environment + ENVIRONMENT.len()].copy_from_slice(&row.environment);
-        if let Some(last) = raw.last_mut() {
-            *last = row.residual;
-        }
-        raw
     }
 }

@@ -77,7 +77,7 @@ pub(crate) fn solve_small_lower<const N: usize>(
     solved
 }
 
-/// Factors `inner` = LLᵀ in place and turns the columns of `into` from `at` on, as many as `inner` has, into themselves times
+/// Factors `inner` = `LLᵀ` in place and turns the columns of `into` from `at` on, as many as `inner` has, into themselves times
 /// `L⁻ᵀ`; returns `ln|inner|`. For matrices of the form 1 + UᵀC⁻¹U, whose pivots are not below 1. Both steps go column by
 /// column together: a factor by faer would sum in another order.
 pub(crate) fn factor_and_project(inner: &mut Mat<f64>, into: &mut Mat<f64>, at: usize) -> f64 {

@@ -35,7 +35,6 @@ pub fn references_of(
     flights: &[FlightRecord<'_>],
 ) -> Result<EffectReferences, DiagnoseError> {
     let engines = model.aircraft().engines();
-    #[expect(clippy::cast_precision_loss, reason = "seconds since 1970 are below 2^53")]
     let points: Vec<EffectPoint> = flights
         .iter()
         .flat_map(|flight| flight.segments)
