@@ -6,24 +6,19 @@ use faer::Mat;
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::priors::{
+    DECK_DEVIATION, REMAINDER_HAT_DEVIATION, REMAINDER_LEVEL_DEVIATION,
+    REMAINDER_PRODUCT_DEVIATION, TAUGHT_SPLIT_DEVIATION,
+};
 use crate::signals::n2_deck::{DECK_TERMS, Deck};
 use crate::signals::noise::NoiseFactors;
 use crate::signals::variables::{Hats, Scaled, Variable};
+use crate::thresholds::INFORMED_SHARE;
 
 pub(crate) mod standing_effects;
 
-/// Prior standard deviation of the remainder's level, of a hat function and of a product: shares of fuel flow.
-const LEVEL_DEVIATION: f64 = 0.10;
-const HAT_DEVIATION: f64 = 0.02;
-const PRODUCT_DEVIATION: f64 = 0.005;
-/// Prior standard deviation of the level of ln(Wf1/Wf2).
-const SPLIT_DEVIATION: f64 = 0.03;
-/// Prior standard deviation of a deck coefficient about its least-squares value.
-const DECK_DEVIATION: f64 = 0.02;
 /// Effects that the first model files with a baseline carried.
 const FIRST_CARRIED: usize = 3;
-/// Share of the prior variance that is left where flown data informed the remainder.
-const INFORMED_SHARE: f64 = 0.25;
 
 /// A taught baseline. Reads and writes with serde, to the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -221,13 +216,13 @@ impl Baseline {
         let terms = self.remainder_terms();
         let products = 1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
         if index == 0 {
-            LEVEL_DEVIATION
+            REMAINDER_LEVEL_DEVIATION
         } else if index < products {
-            HAT_DEVIATION * self.parts.scales[0]
+            REMAINDER_HAT_DEVIATION * self.parts.scales[0]
         } else if index < terms {
-            PRODUCT_DEVIATION * self.parts.scales[1]
+            REMAINDER_PRODUCT_DEVIATION * self.parts.scales[1]
         } else if index < terms + self.parts.contrasts {
-            SPLIT_DEVIATION
+            TAUGHT_SPLIT_DEVIATION
         } else if index < self.factor.nrows() - ENVIRONMENT.len() {
             DECK_DEVIATION
         } else {

@@ -4,6 +4,9 @@ use effects::EffectReferences;
 use faer::Mat;
 
 use crate::baseline::Baseline;
+use crate::priors::{
+    AGNOSTIC_QUANTILES, DECK_DEVIATION, PRODUCT_SCALE, SMOOTH_QUANTILES, SPLIT_SCALE,
+};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::Data;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
@@ -12,16 +15,6 @@ use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::{Hats, Scaled, Variable};
 
-/// Prior standard deviation of a deck coefficient about its least-squares value where no deck was taught.
-const DECK_DEVIATION: f64 = 0.02;
-/// Split of the fuel flow between engines that an agnostic level is scaled to, against 1 for fuel flow.
-const SPLIT_SCALE: f64 = 2.0;
-/// Quantiles at which the smooth background has its knots.
-const SMOOTH_QUANTILES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-/// Quantiles at which agnostic functions have theirs.
-const AGNOSTIC_QUANTILES: [f64; 7] = [0.0, 0.17, 0.33, 0.5, 0.67, 0.83, 1.0];
-/// Amplitude of a product of two scaled variables in the smooth background.
-const PRODUCT_SCALE: f64 = 0.5;
 const SMOOTH_VARIABLES: [Variable; 15] = [
     Variable::Mach,
     Variable::LiftCoefficient,

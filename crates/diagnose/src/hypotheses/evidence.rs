@@ -9,17 +9,9 @@ use statrs::function::erf::erfc;
 use crate::hypotheses::backgrounds::Background;
 use crate::library::Library;
 use crate::math::mixture::{Evidence, Factored, Mixture};
-
-/// Degrees of freedom of the prior of the noise scale.
-pub(crate) const NOISE_FREEDOM: f64 = 40.0;
-/// Prior probability of no effect, one, two.
-const PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25];
-/// Prior standard deviations of a free effect, of its typical size, and how probable each is.
-const PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)];
-/// Prior probability of the sign that physics expects.
-const EXPECTED_SIGN: f64 = 0.95;
-/// Sizes of flight-to-flight scatter that are tried, per cent of fuel flow.
-pub(crate) const HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4];
+use crate::priors::{
+    EXPECTED_SIGN, HEATING_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
+};
 
 /// What a model is made of.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,19 +7,17 @@ use faer::Mat;
 
 use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::baseline::{Baseline, lower_triangle};
-use crate::learning::moments::FOLDS;
 use crate::learning::moments::{KINDS, LeftOut, Moments, Part};
 use crate::math::cholesky::Cholesky;
+use crate::priors::{
+    DIAL_LIMITS, REMAINDER_SCALE_LN_DEVIATION, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
+};
 use crate::residuals::segments::Data;
 use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::references::DiagnoseError;
+use crate::thresholds::LEARNING_FOLDS;
 
-/// Usual noise over the handbook's, and its spread: factors of 0.3 to 0.55 were seen on simulated fleets.
-const USUAL_NOISE: f64 = 0.5;
-const USUAL_NOISE_LN_DEVIATION: f64 = 0.5;
-/// Spread of the sizes of hat functions and products about their defaults.
-const SCALE_LN_DEVIATION: f64 = 1.0;
 /// Rounds over all dials, the first of them coarse.
 const ROUNDS: usize = 12;
 const COARSE_ROUNDS: usize = 4;
@@ -27,8 +25,6 @@ const COARSE_STEP: f64 = 1.6;
 const FINE_STEP: f64 = 1.1;
 /// Dials: noise within flights and between flights of three kinds of channels, sizes of hat functions and of products.
 const DIALS: usize = 8;
-/// Limits of every dial: what a few flights say is not believed beyond them.
-const NOISE_LIMITS: (f64, f64) = (0.03, 10.0);
 
 /// Coarse and fine steps that every dial is from its start: equal positions are equal settings.
 type Position = [(i32, i32); DIALS];
@@ -91,7 +87,7 @@ impl Baseline {
             _ => &mut self.parts.scales[dial - 6],
         };
         let turned = *value * by;
-        let (low, high) = NOISE_LIMITS;
+        let (low, high) = DIAL_LIMITS;
         let inside = turned >= low && turned <= high;
         if inside {
             *value = turned;
@@ -110,7 +106,7 @@ impl Baseline {
     pub(super) fn inflate(&mut self, moments: &Moments) {
         let mut errors: [Vec<[f64; 3]>; KINDS] = [vec![], vec![], vec![]]; // squared error, known variance, between
         let all = moments.gram(&self.parts.noise, None);
-        for fold in 0..FOLDS {
+        for fold in 0..LEARNING_FOLDS {
             let judged: Vec<&LeftOut> =
                 moments.left_out.iter().filter(|flight| flight.fold == fold).collect();
             if judged.is_empty() {
@@ -136,7 +132,7 @@ impl Baseline {
                 ]);
             }
         }
-        let (low, high) = NOISE_LIMITS;
+        let (low, high) = DIAL_LIMITS;
         for (kind, errors) in errors.iter().enumerate() {
             if errors.is_empty() {
                 continue;
@@ -284,7 +280,7 @@ impl Baseline {
                 .parts
                 .scales
                 .into_iter()
-                .map(|scale| of(scale, 1.0, SCALE_LN_DEVIATION))
+                .map(|scale| of(scale, 1.0, REMAINDER_SCALE_LN_DEVIATION))
                 .sum::<f64>()
     }
 }

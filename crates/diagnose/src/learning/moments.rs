@@ -23,9 +23,7 @@ use crate::residuals::segments::Data;
 use crate::residuals::whiten::whiten_within_segment;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 use crate::signals::noise::NoiseFactors;
-
-/// Folds of flights that the scatter between flights is judged on, and rounds of it.
-pub(crate) const FOLDS: usize = 10;
+use crate::thresholds::LEARNING_FOLDS;
 
 /// Kinds of channels: fuel flow, engine against engine, N2.
 pub(super) const KINDS: usize = 3;
@@ -171,10 +169,10 @@ impl Part {
                 recorded[kind_of[channel]] += usize::from(row.is_recorded[channel]);
             }
         }
-        let folds: Vec<Within> = (0..FOLDS)
+        let folds: Vec<Within> = (0..LEARNING_FOLDS)
             .map(|fold| {
                 let rows: Vec<&Row> =
-                    rows.iter().filter(|row| row.flight % FOLDS == fold).collect();
+                    rows.iter().filter(|row| row.flight % LEARNING_FOLDS == fold).collect();
                 Within::of(&rows, &channels, kind_of, &columns)
             })
             .collect();
@@ -211,7 +209,7 @@ impl Part {
             .flights
             .iter()
             .enumerate()
-            .filter(|(flight, _)| fold.is_none_or(|fold| flight % FOLDS == fold))
+            .filter(|(flight, _)| fold.is_none_or(|fold| flight % LEARNING_FOLDS == fold))
             .map(|(_, common)| common)
             .collect();
         let mut explained =
@@ -397,7 +395,7 @@ fn left_out(data: &Data<'_>, rows: &[Row]) -> Vec<LeftOut> {
             }
             let width = rows.first().map_or(0, |row| row.raw.len() - 1);
             let mut mean = LeftOut {
-                fold: flight % FOLDS,
+                fold: flight % LEARNING_FOLDS,
                 kind: data.channels.kind(channel),
                 residual: 0.0,
                 loading: vec![0.0; width],
@@ -534,7 +532,7 @@ mod tests {
             let moments = Moments { parts, left_out: Vec::new(), columns: COLUMNS };
             let all = moments.gram(&noise, None);
             let mut by_folds = Mat::<f64>::zeros(COLUMNS, COLUMNS);
-            for fold in 0..FOLDS {
+            for fold in 0..LEARNING_FOLDS {
                 by_folds += moments.gram(&noise, Some(fold));
             }
             for i in 0..COLUMNS {

@@ -2,13 +2,11 @@
 
 use crate::library::Library;
 use crate::math::quantile::{QuantileType, quantile};
+use crate::priors::{ROBUST_EFFECT, ROBUST_SMOOTH, STUDENT_FREEDOM};
 use crate::search::analyse::Analysis;
 use crate::search::system::Stacked;
+use crate::thresholds::{HEAVY_KURTOSIS, LEAST_ROBUST_SCALE};
 
-/// Kurtosis of whitened residuals above which weights are used; 3 for normal ones.
-const HEAVY: f64 = 4.0;
-/// Degrees of freedom of the Student distribution behind the weights.
-const STUDENT: f64 = 4.0;
 /// Median of |x| over the standard deviation of a normal distribution, inverted.
 const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 
@@ -26,9 +24,11 @@ pub(crate) fn weights(
     let design = stacked.design;
     let (columns, deviations): (Vec<usize>, Vec<f64>) = best
         .iter()
-        .map(|&column| (column, 3.0 * library.effects[library.columns[column].effect].typical))
+        .map(|&column| {
+            (column, ROBUST_EFFECT * library.effects[library.columns[column].effect].typical)
+        })
         .chain(design.nuisance.clone().map(|column| (column, 1.0)))
-        .chain(design.smooth.clone().map(|column| (column, 0.0015)))
+        .chain(design.smooth.clone().map(|column| (column, ROBUST_SMOOTH)))
         .unzip();
     let gram = stacked.gram(None);
     let solution = gram.fit(&columns, &deviations, design.residual())?;
@@ -56,18 +56,19 @@ pub(crate) fn weights(
     let second = all.iter().map(|e| e * e).sum::<f64>() / count;
     let fourth = all.iter().map(|e| e.powi(4)).sum::<f64>() / count;
     let kurtosis = fourth / (second * second);
-    if !kurtosis.is_finite() || kurtosis <= HEAVY {
+    if !kurtosis.is_finite() || kurtosis <= HEAVY_KURTOSIS {
         return None;
     }
     let mut sizes: Vec<f64> = all.iter().map(|e| e.abs()).collect();
     sizes.sort_by(f64::total_cmp);
-    let scale = (MEDIAN_TO_DEVIATION * quantile(&sizes, 0.5, QuantileType::UpperType1)).max(0.3);
+    let scale = (MEDIAN_TO_DEVIATION * quantile(&sizes, 0.5, QuantileType::UpperType1))
+        .max(LEAST_ROBUST_SCALE);
     Some(
         worst
             .into_iter()
             .map(|e| {
                 let z = e / scale;
-                ((STUDENT + 1.0) / (STUDENT + z * z)).sqrt().min(1.0)
+                ((STUDENT_FREEDOM + 1.0) / (STUDENT_FREEDOM + z * z)).sqrt().min(1.0)
             })
             .collect(),
     )
