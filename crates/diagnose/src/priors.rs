@@ -88,7 +88,7 @@ deciding_numbers! {
             OurChoice "The smallest amplitude of the smooth discrepancy, so that it explains no outlier.";
         FLIGHT_SPLIT_DEVIATION: f64 = 0.01, "",
             "standard deviation from flight to flight of ln(Wf1/Wf2)",
-            OurChoice "Thrust levers are set by hand or by a computer to about 1 %.";
+            OurChoice "Engines of one aircraft are not set exactly alike; how far apart is a guess.";
         GAUGE_DEVIATION_KG: f64 = 25.0, "kg",
             "standard deviation of the difference of two gauge readings",
             OurChoice "A fuel-quantity indication to about 1 % of a business jet's tanks.";
@@ -117,10 +117,10 @@ deciding_numbers! {
             OurChoice "Wide: least squares over the same flights is only a start.";
         CARRIED_DEVIATION: f64 = 1.0, "of typical size",
             "prior standard deviation of an effect that a fleet shows at all times",
-            Measured "JSBSim, SIM-02: closure on unseen flights 0.90; at 3.0 it was 0.69, with an absurd trim drag.";
+            Measured "JSBSim, SIM-02: closure on unseen flights 0.90; at 3.0 it was 0.69, with 22 counts of trim drag.";
         CARRIED_SLOPE_DEVIATION: f64 = 2.0, "of typical size",
             "the same of isobaric slope",
-            OurChoice "0 in geostrophic wind, 1 where nothing balances the slope; real wind is known less well than gravity.";
+            OurChoice "Twice the typical 0.5: from geostrophic wind, 0, to a slope that nothing balances, 1.";
         CARRIED_DRAG_RISE_MACHS: [f64; 3] = [0.82, 0.88, 0.94], "Mach",
             "drag-divergence Mach numbers of the drag rises that a baseline carries",
             OurChoice "Evenly over the upper part of the range that a diagnosis tries; flights mix them.";

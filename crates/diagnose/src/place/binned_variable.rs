@@ -11,7 +11,7 @@ use crate::thresholds::{BINS, EDGE_TOLERANCE, ROLL_EDGES_DEG};
 /// A variable, the name of its bounds (a column, unit in the name), and its name and unit in words.
 type Entry = (Variable, &'static str, &'static str, &'static str);
 
-/// The variables of the specification but engine, in its order.
+/// Variables of regions but engine; of two that describe a region equally well, the earlier one is reported.
 const ENTRIES: [Entry; 16] = [
     (Variable::Mach, "mach", "mach", ""),
     (Variable::LiftCoefficient, "lift_coefficient", "lift_coefficient", ""),
