@@ -4,6 +4,12 @@
 //! The numbers of `diagnose` come from its own list. Those of other crates are read from their sources, by the name of the
 //! constant or field, so that the page cannot say another value than the code; only the words are here. A test compares the
 //! page in the book with what is printed.
+#![expect(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    clippy::expect_used,
+    reason = "a program of the repository that prints a page from its sources"
+)]
 
 use std::fmt::Write as _;
 use std::fs;

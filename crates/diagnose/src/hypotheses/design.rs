@@ -15,6 +15,7 @@ use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::{Hats, Scaled, Variable};
 
+/// Variables of the smooth background. Our choice: what effects of the library depend on.
 const SMOOTH_VARIABLES: [Variable; 15] = [
     Variable::Mach,
     Variable::LiftCoefficient,
@@ -32,6 +33,7 @@ const SMOOTH_VARIABLES: [Variable; 15] = [
     Variable::CenterOfGravity,
     Variable::Mass,
 ];
+/// Products in the smooth background. Our choice: pairs that physics multiplies.
 const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
     (Variable::Mach, Variable::LiftCoefficient),
     (Variable::Mach, Variable::PressureAltitude),

@@ -20,8 +20,11 @@ use crate::thresholds::LEARNING_FOLDS;
 
 /// Rounds over all dials, the first of them coarse.
 const ROUNDS: usize = 12;
+/// Rounds of coarse steps. Our choice: a bound on time.
 const COARSE_ROUNDS: usize = 4;
+/// Factor of a coarse step. Our choice: five steps are a factor of about ten.
 const COARSE_STEP: f64 = 1.6;
+/// Factor of a fine step. Our choice: noise need not be known better than to a tenth.
 const FINE_STEP: f64 = 1.1;
 /// Dials: noise within flights and between flights of three kinds of channels, sizes of hat functions and of products.
 const DIALS: usize = 8;

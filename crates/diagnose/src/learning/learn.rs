@@ -30,6 +30,8 @@ const VARIABLES: [Variable; 6] = [
 /// Variables that the remainder may bend along differently at each Mach number: drag rises locally, and so does thrust.
 const LOCAL_VARIABLES: [Variable; 3] =
     [Variable::LiftCoefficient, Variable::CorrectedThrust, Variable::PressureAltitude];
+/// How often the scatter between flights is raised. Our choice: raising it changes the fit that it is judged by, so that once is
+/// not enough.
 const INFLATIONS: usize = 3;
 
 impl Baseline {
