@@ -5,8 +5,8 @@ use crate::deciding::deciding_numbers;
 deciding_numbers! {
     "Which hypothesis" {
         PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25], "",
-            "prior probability of no effect, of one, of two",
-            OurChoice "One effect is the likeliest, none and two are no surprise; three and more are not searched.";
+            "prior weights of no effect, of one, of two",
+            OurChoice "One is the likeliest, none and two are no surprise; three, which would have the rest, are not searched.";
         PRIOR_OUTSIDE: f64 = 0.20, "",
             "prior probability that something outside the library acts",
             OurChoice "One cause in five: the library is long, but nobody can list every cause.";

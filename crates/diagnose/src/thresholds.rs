@@ -219,6 +219,21 @@ deciding_numbers! {
         EDGE_MASS: f64 = 0.02, "of the mass",
             "the same along lift coefficient, as a share of mass",
             OurChoice "The aircraft will not have exactly that mass.";
+        MEASURED_MASS: f64 = 0.003, "of the mass",
+            "standard deviation of a mass that is weighed",
+            OurChoice "What an operator may expect of scales; a guess, which the advice states.";
+        MEASURED_BURN_PERCENT: f64 = 0.15, "%",
+            "standard deviation of fuel flow held against tank gauges",
+            OurChoice "Over many flights the errors of the gauges average out; a guess, which the advice states.";
+        MEASURED_SAT_K: f64 = 0.5, "K",
+            "standard deviation of SAT held against a reanalysis",
+            OurChoice "A mean over many flights; a guess, which the advice states.";
+        MEASURED_MACH: f64 = 0.0015, "Mach",
+            "standard deviation of Mach number held against GPS and wind",
+            OurChoice "About 0.45 m/s of true airspeed in the mean; a guess, which the advice states.";
+        MEASURED_PRESSURE_PERCENT: f64 = 0.05, "% of p",
+            "standard deviation of static pressure held against GPS height and a reanalysis",
+            OurChoice "About 10 ft in the mean; a guess, which the advice states.";
         DECK_MEASURED: f64 = 0.05, "",
             "what measuring an N2 deck leaves of its uncertainty",
             Source "Arithmetic: from the prior's 2 % to 0.1 %.";
