@@ -15,7 +15,7 @@ use units::OutOfDomain;
 
 use crate::fuel_flow::{self, CruiseConditions};
 use crate::tsfc::tsfc;
-use crate::{Aircraft, Guide, GuidePoint, ModelError, PerformanceModel, forces};
+use crate::{Aircraft, Guide, GuidePoint, PerformanceModel, forces};
 
 mod amplification;
 mod error;
@@ -178,23 +178,8 @@ pub fn initial_model(
     let drag_table = table_of(aircraft, &fit.surface, &coordinates)?;
     let extrapolated_nodes = extrapolated.iter().filter(|&&mark| mark).count();
     let model = PerformanceModel::new(aircraft.clone(), fit.surface, drag_table, extrapolated)
-        .map_err(|source| match source {
-            ModelError::DragNotPositive { lift_coefficient, mach, drag_coefficient } => {
-                InitialModelError::DragNotPositive {
-                    lift_coefficient,
-                    mach,
-                    drag_coefficient,
-                    extrapolated: !inside((lift_coefficient, mach)),
-                }
-            }
-            other => InitialModelError::Model(other),
-        })?;
-    let residuals_percent: Vec<f64> = rows
-        .iter()
-        .map(|row| {
-            100.0 * (1.0 - fit.surface.value(row.lift_coefficient, row.mach) / row.drag_coefficient)
-        })
-        .collect();
+        .map_err(|source| error::from_model(source, inside))?;
+    let residuals_percent = residuals_percent(&rows, &fit.surface);
     let fit = GuideFit {
         points: rows.len(),
         rank: fit.rank,
@@ -211,6 +196,15 @@ pub fn initial_model(
     };
     let findings = findings::from_fit(&fit, guide, grid.nodes());
     Ok(InitialModel { model, fit, findings })
+}
+
+/// How far each row's drag lies above the polynomial, %.
+fn residuals_percent(rows: &[GuideObservation], polynomial: &Surface) -> Vec<f64> {
+    rows.iter()
+        .map(|row| {
+            100.0 * (1.0 - polynomial.value(row.lift_coefficient, row.mach) / row.drag_coefficient)
+        })
+        .collect()
 }
 
 /// The polynomial at every node.

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::aircraft::Switch;
 
-pub(crate) use bank::{RecordedLoading, SensorBank};
+pub(crate) use bank::{BankSetup, RecordedLoading, SensorBank};
 pub use channel::{ChannelSensor, DRIFT_TIME_CONSTANT_S, Faults};
 
 /// The sensors of an aircraft. Units are those that reports usually carry.

@@ -16,7 +16,7 @@ use crate::plan::{AircraftChoice, Flights, Plan, PlanError};
 use crate::random::{Purpose, Streams};
 use crate::references::references_of;
 use crate::route::FlightPlan;
-use crate::sensor::{SensorBank, Sensors};
+use crate::sensor::{BankSetup, SensorBank, Sensors};
 use crate::smooth::SmoothErrors;
 use crate::state::TrueState;
 use crate::terms::References;
@@ -226,14 +226,15 @@ impl Simulation {
         let drawn = self.draw(tail, plan, flight_index).map_err(|e| of_flight(e.into()))?;
         let Drawn { setup, streams, loading, mut truth } = drawn;
         let recorded = setup.terms.recorded;
-        let mut bank = SensorBank::draw(
-            &self.sensors,
-            &self.plan.columns,
-            &recorded,
-            self.aircraft.engines(),
-            (Streams::of_tail(self.plan.seed, &tail.name), streams),
-            truth.fuel_on_board_kg,
-        );
+        let mut bank = SensorBank::draw(&BankSetup {
+            sensors: &self.sensors,
+            columns: &self.plan.columns,
+            recorded: &recorded,
+            engines: self.aircraft.engines(),
+            of_tail: Streams::of_tail(self.plan.seed, &tail.name),
+            of_flight: streams,
+            fuel_on_board_kg: truth.fuel_on_board_kg,
+        });
         let keep = self.plan.recording.true_states.is_on();
         let mut states = Vec::new();
         let mut outside: Option<OutOfDomain> = None;

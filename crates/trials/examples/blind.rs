@@ -89,7 +89,8 @@ fn main() {
         }
     }
     println!("{}", serde_json::to_string_pretty(&Scores::from_cases(&cases)).unwrap());
-    println!("{count} cases, {:.3} s a case", begin.elapsed().as_secs_f64() / f64::from(count));
+    assert_eq!(cases.len(), count as usize, "a case came to nothing");
+    println!("{count} cases, {:.3} s per case", begin.elapsed().as_secs_f64() / f64::from(count));
 }
 
 /// What the fleet recorded, as the diagnosis takes it.

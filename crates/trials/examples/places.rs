@@ -21,6 +21,7 @@ fn main() {
     let what = arguments.get(3).map_or("effects", String::as_str);
     let only = arguments.get(4);
     let model = exact_model();
+    assert!(repeats > 0, "nothing to measure");
     match what {
         "null" => nulls(&model, seed, repeats),
         "cost" => cost(&model, seed, repeats),

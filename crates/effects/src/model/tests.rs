@@ -117,83 +117,87 @@ fn slope(model: &EffectModel<'_>, at: &EffectPoint, effect: EffectId, step: f64)
     (value(step) - value(-step)) / (2.0 * step)
 }
 
-/// The table of signatures in the theory page's section on effects, written out: dlnWf/dθ by hand for every effect.
+/// The table of signatures in the theory page's section on effects, written out: every effect with a step of its size,
+/// dlnWf/dθ by hand and the relative tolerance. The fitted polar gives CD0(M) and K(M) where an effect scales them.
+fn signatures_by_hand(polar: [f64; 6], mach: f64) -> Vec<(EffectId, f64, f64, f64)> {
+    let [p0, p1, p2, p3, p4, p5] = polar;
+    let at = point(mach);
+    let h = hand(&at);
+    let zero_lift = p0 + p1 * mach + p2 * mach * mach;
+    let induced = p3 + p4 * mach + p5 * mach * mach;
+    let e_m = 2.0 * h.wi + h.cl * h.wave_per_cl / h.cd;
+    let wave_share = wave(mach, h.cl) / h.cd;
+    let e_p = h.w0 + wave_share - h.wi - h.cl * h.wave_per_cl / h.cd;
+    let e_mach = 2.0 / mach * e_p + h.wave_per_mach / h.cd + 0.8 / (1.0 + mach);
+    // θ = 222/288.15; δ = 19 330.4/101 325.
+    let theta: f64 = 222.0 / 288.15;
+    let thrust = 0.7 * 19_330.4 * mach * mach * 48.96 * h.cd;
+    let x = thrust / (19_330.4 / 101_325.0) / 60_000.0;
+    let tsfc = 0.48 / (3600.0 * 9.80665) * theta.sqrt() * (1.0 + mach).powf(0.8);
+    let density = 19_330.4 / (287.05287 * 222.0);
+    let viscosity = 1.458e-6 * 222.0_f64.powf(1.5) / (222.0 + 110.4);
+    let reynolds = density * at.true_airspeed_m_s / viscosity;
+    // f = 2Ω sin 50°; drift −4°: the wind blows to the left, the surface climbs.
+    let coriolis = 2.0 * 7.292115e-5 * 50.0_f64.to_radians().sin();
+    let cross = at.true_airspeed_m_s * 4.0_f64.to_radians().sin();
+    // Eötvös by hand on a sphere of 6371 km: V²/R + 2ΩV_east cos φ, heading 60° less 4° of drift.
+    let east = 250.0 * 56.0_f64.to_radians().sin();
+    let lighter = 2.0 * 7.292115e-5 * east * 50.0_f64.to_radians().cos() + 250.0 * 250.0 / 6.371e6;
+    // International gravity formula 1980 with the free-air gradient.
+    let sine = 50.0_f64.to_radians().sin().powi(2);
+    let gravity = 9.780327 * (1.0 + 0.0053024 * sine) - 3.086e-6 * 12_000.0;
+    let percent = 0.01;
+    vec![
+        (EffectId::ZeroLiftDrag, 0.01, 1e-4 / h.cd, 3e-4),
+        (EffectId::DragFactor, 0.01, percent, 2e-5),
+        (EffectId::InducedDrag, 0.01, percent * induced * h.cl * h.cl / h.cd, 3e-4),
+        (EffectId::WaveDrag, 1e-5, h.wave_per_mach / h.cd, 2e-3),
+        (EffectId::ReynoldsNumber, 1e-4, -zero_lift / h.cd * (reynolds / 5e6).ln(), 3e-4),
+        (EffectId::TrimDragCg, 0.01, 1e-4 * 0.4 * h.cl / 0.4 / h.cd, 3e-4),
+        (EffectId::AsymmetryDrag, 0.01, 1e-4 * 0.64 / h.cd, 3e-4),
+        (EffectId::AirframeAgeing, 0.01, percent * zero_lift / h.cd, 3e-4),
+        (EffectId::TsfcFactor, 0.01, percent, 2e-5),
+        (EffectId::TsfcEngine(2), 0.01, 0.5 * percent, 2e-5),
+        (EffectId::TsfcMachExponent, 1e-3, ((1.0 + mach) / 1.8).ln(), 1e-6),
+        (EffectId::TsfcTemperatureExponent, 1e-3, (theta / 0.765).ln(), 1e-6),
+        (EffectId::TsfcThrottle, 0.01, percent * ((x - 1.0) / 0.25).powi(2), 8e-3),
+        (EffectId::PowerOfftake, 0.01, percent * 0.235 / (thrust * tsfc), 3e-4),
+        // 222 K is below −40 °C and no A/I is recorded.
+        (EffectId::AntiIceBleed, 0.01, 0.0, 1e-12),
+        // Exactly one year after the reference.
+        (EffectId::EngineAgeing, 0.01, percent, 2e-5),
+        (EffectId::ZeroFuelMassBias, 1.0, e_m / 13_500.0, 1e-2),
+        (EffectId::FuelQuantityGain, 0.01, percent * e_m * 1500.0 / 13_500.0, 1e-2),
+        (EffectId::MachBias, 1e-5, -e_mach, 1.2e-2),
+        (
+            EffectId::StaticPressureBias,
+            1e-3,
+            percent * (-e_p + e_mach * (1.0 + 0.2 * mach * mach) / (1.4 * mach)),
+            1.2e-2,
+        ),
+        (EffectId::TemperatureBias, 0.01, -1.0 / (2.0 * 222.0), 2e-5),
+        (EffectId::FuelFlowGain, 0.01, percent * (1.0 + e_m * 1500.0 / 13_500.0), 1e-3),
+        (
+            EffectId::FuelFlowGainEngine(1),
+            0.01,
+            0.5 * percent * (1.0 + e_m * 1500.0 / 13_500.0),
+            1e-3,
+        ),
+        (EffectId::LocalGravity, 0.01, e_m * (gravity / 9.80665 - 1.0), 2e-2),
+        (EffectId::RotatingEarth, 0.01, -e_m * lighter / 9.80665, 2e-2),
+        (EffectId::LoadFactor, 0.01, e_m * (1.0 / 0.8_f64.to_radians().cos() - 1.0), 1e-2),
+        (EffectId::IsobaricSlope, 0.01, 13_500.0 * coriolis * cross / thrust, 2e-4),
+        (EffectId::StepChange, 0.01, percent, 2e-5),
+    ]
+}
+
 #[test]
 fn every_signature_against_its_formula_by_hand() {
     let performance = model(true);
     let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
-    // The fitted polar stands for CD0(M) and K(M) where an effect scales them.
-    let [p0, p1, p2, p3, p4, p5] = effects.bare.polar.coefficients;
     for mach in [0.7613, 0.8471] {
         let at = point(mach);
-        let h = hand(&at);
-        let zero_lift = p0 + p1 * mach + p2 * mach * mach;
-        let induced = p3 + p4 * mach + p5 * mach * mach;
-        let e_m = 2.0 * h.wi + h.cl * h.wave_per_cl / h.cd;
-        let wave_share = wave(mach, h.cl) / h.cd;
-        let e_p = h.w0 + wave_share - h.wi - h.cl * h.wave_per_cl / h.cd;
-        let e_mach = 2.0 / mach * e_p + h.wave_per_mach / h.cd + 0.8 / (1.0 + mach);
-        // θ = 222/288.15; δ = 19 330.4/101 325.
-        let theta: f64 = 222.0 / 288.15;
-        let thrust = 0.7 * 19_330.4 * mach * mach * 48.96 * h.cd;
-        let x = thrust / (19_330.4 / 101_325.0) / 60_000.0;
-        let tsfc = 0.48 / (3600.0 * 9.80665) * theta.sqrt() * (1.0 + mach).powf(0.8);
-        let density = 19_330.4 / (287.05287 * 222.0);
-        let viscosity = 1.458e-6 * 222.0_f64.powf(1.5) / (222.0 + 110.4);
-        let reynolds = density * at.true_airspeed_m_s / viscosity;
-        // f = 2Ω sin 50°; drift −4°: the wind blows to the left, the surface climbs.
-        let coriolis = 2.0 * 7.292115e-5 * 50.0_f64.to_radians().sin();
-        let cross = at.true_airspeed_m_s * 4.0_f64.to_radians().sin();
-        // Eötvös by hand on a sphere of 6371 km: V²/R + 2ΩV_east cos φ, heading 60° less 4° of drift.
-        let east = 250.0 * 56.0_f64.to_radians().sin();
-        let lighter =
-            2.0 * 7.292115e-5 * east * 50.0_f64.to_radians().cos() + 250.0 * 250.0 / 6.371e6;
-        // International gravity formula 1980 with the free-air gradient.
-        let sine = 50.0_f64.to_radians().sin().powi(2);
-        let gravity = 9.780327 * (1.0 + 0.0053024 * sine) - 3.086e-6 * 12_000.0;
-        let percent = 0.01;
-        let cases = [
-            (EffectId::ZeroLiftDrag, 0.01, 1e-4 / h.cd, 3e-4),
-            (EffectId::DragFactor, 0.01, percent, 2e-5),
-            (EffectId::InducedDrag, 0.01, percent * induced * h.cl * h.cl / h.cd, 3e-4),
-            (EffectId::WaveDrag, 1e-5, h.wave_per_mach / h.cd, 2e-3),
-            (EffectId::ReynoldsNumber, 1e-4, -zero_lift / h.cd * (reynolds / 5e6).ln(), 3e-4),
-            (EffectId::TrimDragCg, 0.01, 1e-4 * 0.4 * h.cl / 0.4 / h.cd, 3e-4),
-            (EffectId::AsymmetryDrag, 0.01, 1e-4 * 0.64 / h.cd, 3e-4),
-            (EffectId::AirframeAgeing, 0.01, percent * zero_lift / h.cd, 3e-4),
-            (EffectId::TsfcFactor, 0.01, percent, 2e-5),
-            (EffectId::TsfcEngine(2), 0.01, 0.5 * percent, 2e-5),
-            (EffectId::TsfcMachExponent, 1e-3, ((1.0 + mach) / 1.8).ln(), 1e-6),
-            (EffectId::TsfcTemperatureExponent, 1e-3, (theta / 0.765).ln(), 1e-6),
-            (EffectId::TsfcThrottle, 0.01, percent * ((x - 1.0) / 0.25).powi(2), 8e-3),
-            (EffectId::PowerOfftake, 0.01, percent * 0.235 / (thrust * tsfc), 3e-4),
-            // 222 K is below −40 °C and no A/I is recorded.
-            (EffectId::AntiIceBleed, 0.01, 0.0, 1e-12),
-            // Exactly one year after the reference.
-            (EffectId::EngineAgeing, 0.01, percent, 2e-5),
-            (EffectId::ZeroFuelMassBias, 1.0, e_m / 13_500.0, 1e-2),
-            (EffectId::FuelQuantityGain, 0.01, percent * e_m * 1500.0 / 13_500.0, 1e-2),
-            (EffectId::MachBias, 1e-5, -e_mach, 1.2e-2),
-            (
-                EffectId::StaticPressureBias,
-                1e-3,
-                percent * (-e_p + e_mach * (1.0 + 0.2 * mach * mach) / (1.4 * mach)),
-                1.2e-2,
-            ),
-            (EffectId::TemperatureBias, 0.01, -1.0 / (2.0 * 222.0), 2e-5),
-            (EffectId::FuelFlowGain, 0.01, percent * (1.0 + e_m * 1500.0 / 13_500.0), 1e-3),
-            (
-                EffectId::FuelFlowGainEngine(1),
-                0.01,
-                0.5 * percent * (1.0 + e_m * 1500.0 / 13_500.0),
-                1e-3,
-            ),
-            (EffectId::LocalGravity, 0.01, e_m * (gravity / 9.80665 - 1.0), 2e-2),
-            (EffectId::RotatingEarth, 0.01, -e_m * lighter / 9.80665, 2e-2),
-            (EffectId::LoadFactor, 0.01, e_m * (1.0 / 0.8_f64.to_radians().cos() - 1.0), 1e-2),
-            (EffectId::IsobaricSlope, 0.01, 13_500.0 * coriolis * cross / thrust, 2e-4),
-            (EffectId::StepChange, 0.01, percent, 2e-5),
-        ];
+        let cases = signatures_by_hand(effects.bare.polar.coefficients, mach);
         for id in EffectId::ALL {
             // A scatter moves no mean.
             let tried = cases.iter().any(|case| case.0.entry() == id.entry());

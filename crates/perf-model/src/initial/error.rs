@@ -127,6 +127,24 @@ pub enum Undetermined {
     OneCurve,
 }
 
+/// A polynomial that makes no model; `inside` tells whether a node lies inside the guide's range.
+pub(super) fn from_model(
+    error: ModelError,
+    inside: impl Fn((f64, f64)) -> bool,
+) -> InitialModelError {
+    match error {
+        ModelError::DragNotPositive { lift_coefficient, mach, drag_coefficient } => {
+            InitialModelError::DragNotPositive {
+                lift_coefficient,
+                mach,
+                drag_coefficient,
+                extrapolated: !inside((lift_coefficient, mach)),
+            }
+        }
+        other => InitialModelError::Model(other),
+    }
+}
+
 /// In the field's words.
 pub(super) fn from_fit(error: FitError, rows: usize) -> InitialModelError {
     use lut::surface::Undetermined as Of;

@@ -73,18 +73,31 @@ struct LagShares {
     fuel_flow: f64,
 }
 
+/// What the sensors of a flight are drawn from.
+#[derive(Debug)]
+pub(crate) struct BankSetup<'a> {
+    /// How large the errors are.
+    pub(crate) sensors: &'a Sensors,
+    /// Which optional columns are recorded.
+    pub(crate) columns: &'a Columns,
+    /// Effects of the recording.
+    pub(crate) recorded: &'a RecordedTerms,
+    /// Number of engines.
+    pub(crate) engines: usize,
+    /// Random streams of the tail, whose errors stay from flight to flight.
+    pub(crate) of_tail: Streams,
+    /// Random streams of the flight.
+    pub(crate) of_flight: Streams,
+    /// Fuel that is truly on board when the load sheet is made.
+    pub(crate) fuel_on_board_kg: f64,
+}
+
 impl<'a> SensorBank<'a> {
-    /// Draws the errors of a flight. `fuel_used_kg` is what has truly been used when the recording starts.
-    pub(crate) fn draw(
-        sensors: &'a Sensors,
-        columns: &'a Columns,
-        recorded: &'a RecordedTerms,
-        engines: usize,
-        (of_tail, of_flight): (Streams, Streams),
-        fuel_on_board_kg: f64,
-    ) -> Self {
-        let mut tail = of_tail.stream(Purpose::SensorsOfTail);
-        let mut random = of_flight.stream(Purpose::Sensors);
+    /// Draws the errors of a flight.
+    pub(crate) fn draw(setup: &BankSetup<'a>) -> Self {
+        let BankSetup { sensors, columns, recorded, engines, fuel_on_board_kg, .. } = *setup;
+        let mut tail = setup.of_tail.stream(Purpose::SensorsOfTail);
+        let mut random = setup.of_flight.stream(Purpose::Sensors);
         let mut one = |sensor: &ChannelSensor| Channel::draw(sensor, &mut tail, &mut random);
         let static_pressure = one(&sensors.static_pressure);
         let total_pressure = one(&sensors.total_pressure);

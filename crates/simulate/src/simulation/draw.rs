@@ -32,19 +32,11 @@ impl Simulation {
         let heating_value = 0.01 * scatter.heating_value_percent * loading.normal()
             + terms.recorded.heating_value_scatter * loading.normal();
         terms.fuel.heating_value_factor = 1.0 / (1.0 + heating_value);
-        let load_sheet_kg = 0.01
-            * scatter.zero_fuel_mass_percent
-            * self.aircraft.masses.maximum_zero_fuel_kg
-            * loading.normal();
+        let load_sheet_kg = self.load_sheet_error_kg(&mut loading);
 
         let mut airframe = streams.stream(Purpose::Airframe);
         let shares = draw_shares(self.aircraft.engines(), scatter, &mut airframe);
-        let limit_deg = scatter.roll_trim_limit_deg;
-        let roll_trim = RollTrim {
-            start_deg: (scatter.roll_trim_deg * airframe.normal()).clamp(-limit_deg, limit_deg),
-            drift_deg_h: scatter.roll_trim_drift_deg_h * airframe.normal(),
-            limit_deg,
-        };
+        let roll_trim = draw_roll_trim(scatter, &mut airframe);
 
         let middle = middle_of(plan);
         let air = AirMass::draw(&self.plan.weather, middle, &mut streams.stream(Purpose::Weather));
@@ -59,16 +51,10 @@ impl Simulation {
         let fuel_on_board_kg = plan.loading.fuel_on_board_kg();
         let lower_heating_value_mj_kg =
             self.aircraft.engine.reference_lower_heating_value_mj_kg * (1.0 + heating_value);
-        let interval_s = self.plan.recording.interval_s;
-        let steps = (interval_s / self.plan.recording.longest_step_s - 1e-9).ceil().max(1.0);
         Ok(Drawn {
             loading: RecordedLoading {
                 aircraft_type: self.aircraft.type_code.clone(),
-                identity: FlightIdentity {
-                    tail: tail.name.clone(),
-                    start: plan.start,
-                    flight: plan.flight.clone(),
-                },
+                identity: identity_of(tail, plan),
                 zero_fuel_mass_kg: recorded_zero_fuel_mass_kg,
                 fuel_on_board_kg,
                 lower_heating_value_mj_kg,
@@ -105,16 +91,31 @@ impl Simulation {
                 start_mass_kg: masses.start_kg,
                 start_fuel_used_kg: masses.climb_fuel_kg,
                 settle_s,
-                interval_s,
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "checked to be 1 to 36 million when the plan was"
-                )]
-                steps_per_interval: steps as u32,
+                interval_s: self.plan.recording.interval_s,
+                steps_per_interval: self.steps_per_interval(),
             },
             streams,
         })
+    }
+
+    /// Error of the load sheet's zero-fuel mass.
+    fn load_sheet_error_kg(&self, loading: &mut Stream) -> f64 {
+        0.01 * self.plan.scatter.zero_fuel_mass_percent
+            * self.aircraft.masses.maximum_zero_fuel_kg
+            * loading.normal()
+    }
+
+    /// Steps of integration between two samples.
+    fn steps_per_interval(&self) -> u32 {
+        let recording = &self.plan.recording;
+        let steps = (recording.interval_s / recording.longest_step_s - 1e-9).ceil().max(1.0);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "checked to be 1 to 36 million when the plan was"
+        )]
+        let steps = steps as u32;
+        steps
     }
 
     fn terms_of(&self, tail: &Tail, plan: &FlightPlan) -> Terms {
@@ -202,6 +203,19 @@ struct Masses {
     start_kg: f64,
     /// Burnt until there.
     climb_fuel_kg: f64,
+}
+
+fn identity_of(tail: &Tail, plan: &FlightPlan) -> FlightIdentity {
+    FlightIdentity { tail: tail.name.clone(), start: plan.start, flight: plan.flight.clone() }
+}
+
+fn draw_roll_trim(scatter: &Scatter, airframe: &mut Stream) -> RollTrim {
+    let limit_deg = scatter.roll_trim_limit_deg;
+    RollTrim {
+        start_deg: (scatter.roll_trim_deg * airframe.normal()).clamp(-limit_deg, limit_deg),
+        drift_deg_h: scatter.roll_trim_drift_deg_h * airframe.normal(),
+        limit_deg,
+    }
 }
 
 /// Each engine's share of the thrust, about alike.
