@@ -13,7 +13,7 @@ use crate::math::gram::Gram;
 pub(crate) const CONFUSED: f64 = 9.0;
 /// Factor on 1/√G of the smallest size that would just be seen.
 const DETECTION: f64 = 4.0;
-/// Factor on the deck's uncertainty when an N2 deck is measured: from 2 % to 0.1 %.
+/// Factor on the uncertainty of the deck's coefficients when an N2 deck is measured: from 2 % to 0.1 %.
 const DECK_MEASURED: f64 = 0.05;
 
 /// Distances between effects in the data at hand, nuisance integrated out.
@@ -33,7 +33,12 @@ impl Distances {
         let kept: Vec<usize> = (0..design.effects).collect();
         let out: Vec<usize> = design.nuisance.clone().collect();
         let plain = integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])?;
-        let deck = integrate_out(&gram.matrix, &kept, &out, &vec![DECK_MEASURED; out.len()])?;
+        // A measured deck says nothing of the rest of the nuisance. Of a baseline's coefficients, whose columns are those of
+        // their covariance's Cholesky factor, it shrinks what remainder and contrasts do not explain of the deck.
+        let of_deck = design.deck_columns();
+        let deviation = |column| if of_deck.contains(column) { DECK_MEASURED } else { 1.0 };
+        let deviations: Vec<f64> = out.iter().map(deviation).collect();
+        let deck = integrate_out(&gram.matrix, &kept, &out, &deviations)?;
         const { assert!(TAUS[0] == 0.0) };
         Some(Self { gram: plain.matrix, with_deck: deck.matrix, leading })
     }
