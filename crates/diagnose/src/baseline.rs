@@ -5,6 +5,7 @@ use effects::{EffectReferences, Response};
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
+use crate::baseline::layout::NuisanceLayout;
 use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::priors::{
     DECK_DEVIATION, REMAINDER_HAT_DEVIATION, REMAINDER_LEVEL_DEVIATION,
@@ -15,6 +16,7 @@ use crate::signals::noise::NoiseFactors;
 use crate::signals::variables::{Hats, Scaled, Variable};
 use crate::thresholds::INFORMED_SHARE;
 
+pub(crate) mod layout;
 pub(crate) mod standing_effects;
 
 /// Effects that the first model files with a baseline carried.
@@ -151,7 +153,7 @@ impl Baseline {
     }
 
     pub(crate) fn split_mean(&self, contrast: usize) -> f64 {
-        self.parts.mean[self.remainder_terms() + contrast - 1]
+        self.parts.mean[self.layout().contrasts.start + contrast - 1]
     }
 
     pub(crate) const fn factor(&self) -> &Mat<f64> {
@@ -162,6 +164,11 @@ impl Baseline {
         let mut coefficients = [0.0; DECK_TERMS];
         coefficients.copy_from_slice(self.parts.deck_coefficients.get(..DECK_TERMS)?);
         self.parts.deck_known.then_some(Deck { centers: self.parts.deck_centers, coefficients })
+    }
+
+    /// Which of its coefficients is what.
+    pub(crate) fn layout(&self) -> NuisanceLayout {
+        NuisanceLayout::of_baseline(self.remainder_terms(), self.parts.contrasts)
     }
 
     pub(crate) fn remainder_terms(&self) -> usize {
@@ -213,20 +220,20 @@ impl Baseline {
     }
 
     pub(crate) fn prior_deviation(&self, index: usize) -> f64 {
-        let terms = self.remainder_terms();
+        let layout = self.layout();
         let products = 1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
         if index == 0 {
             REMAINDER_LEVEL_DEVIATION
         } else if index < products {
             REMAINDER_HAT_DEVIATION * self.parts.scales[0]
-        } else if index < terms {
+        } else if layout.remainder.contains(&index) {
             REMAINDER_PRODUCT_DEVIATION * self.parts.scales[1]
-        } else if index < terms + self.parts.contrasts {
+        } else if layout.contrasts.contains(&index) {
             TAUGHT_SPLIT_DEVIATION
-        } else if index < self.factor.nrows() - ENVIRONMENT.len() {
+        } else if layout.deck.contains(&index) {
             DECK_DEVIATION
         } else {
-            self.carried_deviation(index + ENVIRONMENT.len() - self.factor.nrows())
+            self.carried_deviation(index - layout.standing_effects.start)
         }
     }
 
@@ -259,17 +266,16 @@ impl TryFrom<Parts> for Baseline {
                 Err(BaselineLengthError { quantity, found, expected })
             }
         };
-        let means = baseline.remainder_terms() + baseline.parts.contrasts;
-        let width = means + DECK_TERMS + ENVIRONMENT.len();
-        check("means", baseline.parts.mean.len(), means)?;
+        let layout = baseline.layout();
+        check("means", baseline.parts.mean.len(), layout.contrasts.end)?;
         check("deck coefficients", baseline.parts.deck_coefficients.len(), DECK_TERMS)?;
         let carried = baseline.parts.environment.len();
         if carried != FIRST_CARRIED {
             check("carried effects", carried, ENVIRONMENT.len())?;
         }
-        let known = means + DECK_TERMS + carried;
+        let known = layout.standing_effects.start + carried;
         check("covariance factor", baseline.parts.factor.len(), known * (known + 1) / 2)?;
-        let mut factor = Mat::zeros(width, width);
+        let mut factor = Mat::zeros(layout.len(), layout.len());
         let mut values = baseline.parts.factor.iter();
         for i in 0..known {
             for j in 0..=i {
@@ -279,10 +285,11 @@ impl TryFrom<Parts> for Baseline {
         // An older file was taught nothing of the effects that were added since: their prior stands.
         for k in carried..ENVIRONMENT.len() {
             let deviation = baseline.carried_deviation(k);
-            factor[(means + DECK_TERMS + k, means + DECK_TERMS + k)] = deviation;
+            let column = layout.standing_effects.start + k;
+            factor[(column, column)] = deviation;
             baseline.parts.environment.push(0.0);
         }
-        if known < width {
+        if known < layout.len() {
             baseline.parts.factor = lower_triangle(&factor);
         }
         baseline.factor = factor;

@@ -83,5 +83,5 @@ pub use place::members::{SliceError, slice_members};
 pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};
 pub use signals::references::{DiagnoseError, references_of};
-pub use signals::table_uncertainty::{TableUncertainty, TableUncertaintyError};
+pub use signals::table_uncertainty::{TableUncertainty, TableUncertaintyError, visited_nodes};
 pub use signals::variables::Variable;

@@ -27,7 +27,12 @@ impl Distances {
         let kept: Vec<usize> = (0..design.effects).collect();
         let out: Vec<usize> = design.nuisance.clone().collect();
         let plain = integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])?;
-        let deck = integrate_out(&gram.matrix, &kept, &out, &vec![DECK_MEASURED; out.len()])?;
+        // A measured deck says nothing of the rest of the nuisance. Of a baseline's coefficients, whose columns are those of
+        // their covariance's Cholesky factor, it shrinks what remainder and contrasts do not explain of the deck.
+        let of_deck = design.deck_columns();
+        let deviation = |column| if of_deck.contains(column) { DECK_MEASURED } else { 1.0 };
+        let deviations: Vec<f64> = out.iter().map(deviation).collect();
+        let deck = integrate_out(&gram.matrix, &kept, &out, &deviations)?;
         const { assert!(SMOOTH_AMPLITUDES[0] == 0.0) };
         Some(Self { gram: plain.matrix, with_deck: deck.matrix, leading })
     }

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::moments::{KINDS, LeftOut, Moments, Part};
 use crate::math::cholesky::Cholesky;
@@ -13,7 +12,6 @@ use crate::priors::{
     DIAL_LIMITS, REMAINDER_SCALE_LN_DEVIATION, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
 };
 use crate::residuals::segments::Data;
-use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::references::DiagnoseError;
 use crate::thresholds::LEARNING_FOLDS;
@@ -181,17 +179,14 @@ impl Baseline {
         let (solution, factor) = self.posterior(&gram).ok_or(DiagnoseError::Degenerate)?;
         let mut covariance = Mat::<f64>::identity(width, width);
         factor.solve(&mut covariance);
-        let terms = self.parts.mean.len();
-        for k in 0..terms {
-            self.parts.mean[k] = solution[(k, 0)];
-        }
-        for k in 0..DECK_TERMS {
-            self.parts.deck_coefficients[k] =
-                data.predictor.deck.coefficients[k] + solution[(terms + k, 0)];
-        }
-        for k in 0..ENVIRONMENT.len() {
-            self.parts.environment[k] = solution[(terms + DECK_TERMS + k, 0)];
-        }
+        let layout = self.layout();
+        let found = |column: usize| solution[(column, 0)];
+        let means = layout.remainder.chain(layout.contrasts);
+        self.parts.mean = means.map(found).collect();
+        let deck = layout.deck.zip(&data.predictor.deck.coefficients);
+        self.parts.deck_coefficients =
+            deck.map(|(column, coefficient)| coefficient + found(column)).collect();
+        self.parts.environment = layout.standing_effects.map(found).collect();
         // A covariance inverted in floating point may miss definiteness by rounding; a hair on the diagonal mends it.
         for k in 0..width {
             covariance[(k, k)] *= 1.0 + 1e-12;

@@ -11,7 +11,6 @@ use crate::library::Library;
 use crate::priors::REMAINDER_QUANTILES;
 use crate::residuals::reference::Against;
 use crate::residuals::segments::Data;
-use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::{DiagnoseError, references_of};
@@ -115,10 +114,9 @@ impl Baseline {
             rms: f64::NAN,
         };
         let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
-        let means = baseline.remainder_terms() + baseline.parts.contrasts;
-        let width = means + DECK_TERMS + ENVIRONMENT.len();
-        baseline.parts.mean = vec![0.0; means];
-        baseline.factor = Mat::zeros(width, width);
+        let layout = baseline.layout();
+        baseline.parts.mean = vec![0.0; layout.contrasts.end];
+        baseline.factor = Mat::zeros(layout.len(), layout.len());
         baseline
     }
 }

@@ -15,7 +15,6 @@
 use faer::Mat;
 
 use crate::baseline::Baseline;
-use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::math::cholesky::factor_and_project;
 use crate::math::linear::{subtract_gram, symmetrize};
 use crate::residuals::rows::SegmentRow;
@@ -549,28 +548,27 @@ mod tests {
 impl Baseline {
     /// Raw values of every column and, last, the residual.
     fn raw_row(&self, data: &Data<'_>, row: &SegmentRow) -> Vec<[f64; MAXIMUM_CHANNELS]> {
-        let terms = self.remainder_terms();
-        let mut remainder = vec![0.0; terms];
+        let layout = self.layout();
+        let mut remainder = vec![0.0; layout.remainder.len()];
         self.write_remainder(&row.response, &mut remainder);
-        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; self.factor.nrows() + 1];
-        for (slot, value) in raw.iter_mut().zip(&remainder) {
+        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; layout.len() + 1];
+        for (slot, value) in raw[layout.remainder].iter_mut().zip(&remainder) {
             slot[0] = *value;
         }
-        for contrast in 1..=self.parts.contrasts {
+        for (slot, contrast) in raw[layout.contrasts].iter_mut().zip(1..) {
             if row.is_recorded[contrast] {
-                raw[terms + contrast - 1][contrast] = 1.0;
+                slot[contrast] = 1.0;
             }
         }
         if data.channels.n2 {
             let channel = data.channels.n2_row();
             if row.is_recorded[channel] {
-                for (k, term) in row.deck.into_iter().enumerate() {
-                    raw[terms + self.parts.contrasts + k][channel] = term;
+                for (slot, term) in raw[layout.deck].iter_mut().zip(row.deck) {
+                    slot[channel] = term;
                 }
             }
         }
-        let environment = self.factor.nrows() - ENVIRONMENT.len();
-        raw[environment..environment + ENVIRONMENT.len()].copy_from_slice(&row.environment);
+        raw[layout.standing_effects].copy_from_slice(&row.environment);
         if let Some(last) = raw.last_mut() {
             *last = row.residual;
         }

@@ -77,7 +77,7 @@ impl<'a> Stacked<'a> {
         let mut sum = Sum::of(design.columns);
         for index in 0..data.flights.len() {
             let rows = stacked.whitened(index);
-            sum.add(&rows);
+            sum.add(&rows, data.recorded_values(&data.flights[index]));
             let products = rows.transpose() * rows.col(design.smooth.start);
             let level = products.iter().copied().collect();
             drop(rows);
@@ -94,7 +94,8 @@ impl<'a> Stacked<'a> {
             let of = |fold: usize| {
                 let mut sum = Sum::of(self.design.columns);
                 for index in (fold..self.data.flights.len()).step_by(CLOSURE_FOLDS) {
-                    sum.add(&self.whitened(index));
+                    let recorded = self.data.recorded_values(&self.data.flights[index]);
+                    sum.add(&self.whitened(index), recorded);
                 }
                 sum.finish()
             };

@@ -202,3 +202,20 @@ fn advice_is_ranked_and_repeats() {
         assert!(offered > 0);
     });
 }
+
+/// Without a recorded N2 and without a baseline no nuisance column is one of a deck: measuring a deck changes no distance.
+#[test]
+fn a_measured_deck_shrinks_nothing_but_the_deck() {
+    let model = exact_model();
+    let mut flights = fleet(12);
+    for segment in flights.iter_mut().flatten() {
+        segment.means.n2_percent.clear();
+    }
+    with(&model, &flights, |stacked, _, library, distances| {
+        assert!(!stacked.data.channels.n2);
+        let largest = (0..library.columns.len())
+            .map(|k| distances.with_deck[(k, k)] / distances.gram[(k, k)] - 1.0)
+            .fold(0.0, f64::max);
+        assert!(largest.abs() < 1e-12, "information grows by up to {largest}");
+    });
+}
