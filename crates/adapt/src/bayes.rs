@@ -69,7 +69,8 @@ pub use settings::{BayesSettings, SettingValues, SettingsError};
 use information::{Information, Row};
 use outlier_weights::{ExpectedResidual, SegmentResidual, WeightSettings};
 
-/// Drag of more than this many times the initial table's is not an observation of drag.
+/// Drag of more than this many times the initial table's is not an observation of drag. Our choice: that is an error of
+/// units or of a sensor.
 pub const MAXIMUM_DRAG_RATIO: f64 = 10.0;
 
 const SECONDS_A_DAY: f64 = 86_400.0;

@@ -164,7 +164,7 @@ fn crossover_altitudes() {
     }
 }
 
-/// An independent implementation of the specification, through pressure and density to the lift coefficient.
+/// An independent implementation of the book's equations, through pressure and density to the lift coefficient.
 #[test]
 fn lift_coefficient_of_reduced_segments() {
     let mut segments = 0;

@@ -5,25 +5,22 @@ use effects::{EffectReferences, Response};
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
+use crate::baseline::layout::NuisanceLayout;
 use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::priors::{
+    DECK_DEVIATION, REMAINDER_HAT_DEVIATION, REMAINDER_LEVEL_DEVIATION,
+    REMAINDER_PRODUCT_DEVIATION, TAUGHT_SPLIT_DEVIATION,
+};
 use crate::signals::n2_deck::{DECK_TERMS, Deck};
 use crate::signals::noise::NoiseFactors;
 use crate::signals::variables::{Hats, Scaled, Variable};
+use crate::thresholds::INFORMED_SHARE;
 
+pub(crate) mod layout;
 pub(crate) mod standing_effects;
 
-/// Prior standard deviation of the remainder's level, of a hat function and of a product: shares of fuel flow.
-const LEVEL_DEVIATION: f64 = 0.10;
-const HAT_DEVIATION: f64 = 0.02;
-const PRODUCT_DEVIATION: f64 = 0.005;
-/// Prior standard deviation of the level of ln(Wf1/Wf2).
-const SPLIT_DEVIATION: f64 = 0.03;
-/// Prior standard deviation of a deck coefficient about its least-squares value.
-const DECK_DEVIATION: f64 = 0.02;
 /// Effects that the first model files with a baseline carried.
 const FIRST_CARRIED: usize = 3;
-/// Share of the prior variance that is left where flown data informed the remainder.
-const INFORMED_SHARE: f64 = 0.25;
 
 /// A taught baseline. Reads and writes with serde, to the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -156,7 +153,7 @@ impl Baseline {
     }
 
     pub(crate) fn split_mean(&self, contrast: usize) -> f64 {
-        self.parts.mean[self.remainder_terms() + contrast - 1]
+        self.parts.mean[self.layout().contrasts.start + contrast - 1]
     }
 
     pub(crate) const fn factor(&self) -> &Mat<f64> {
@@ -167,6 +164,11 @@ impl Baseline {
         let mut coefficients = [0.0; DECK_TERMS];
         coefficients.copy_from_slice(self.parts.deck_coefficients.get(..DECK_TERMS)?);
         self.parts.deck_known.then_some(Deck { centers: self.parts.deck_centers, coefficients })
+    }
+
+    /// Which of its coefficients is what.
+    pub(crate) fn layout(&self) -> NuisanceLayout {
+        NuisanceLayout::of_baseline(self.remainder_terms(), self.parts.contrasts)
     }
 
     pub(crate) fn remainder_terms(&self) -> usize {
@@ -218,20 +220,20 @@ impl Baseline {
     }
 
     pub(crate) fn prior_deviation(&self, index: usize) -> f64 {
-        let terms = self.remainder_terms();
+        let layout = self.layout();
         let products = 1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
         if index == 0 {
-            LEVEL_DEVIATION
+            REMAINDER_LEVEL_DEVIATION
         } else if index < products {
-            HAT_DEVIATION * self.parts.scales[0]
-        } else if index < terms {
-            PRODUCT_DEVIATION * self.parts.scales[1]
-        } else if index < terms + self.parts.contrasts {
-            SPLIT_DEVIATION
-        } else if index < self.factor.nrows() - ENVIRONMENT.len() {
+            REMAINDER_HAT_DEVIATION * self.parts.scales[0]
+        } else if layout.remainder.contains(&index) {
+            REMAINDER_PRODUCT_DEVIATION * self.parts.scales[1]
+        } else if layout.contrasts.contains(&index) {
+            TAUGHT_SPLIT_DEVIATION
+        } else if layout.deck.contains(&index) {
             DECK_DEVIATION
         } else {
-            self.carried_deviation(index + ENVIRONMENT.len() - self.factor.nrows())
+            self.carried_deviation(index - layout.standing_effects.start)
         }
     }
 
@@ -264,17 +266,16 @@ impl TryFrom<Parts> for Baseline {
                 Err(BaselineLengthError { quantity, found, expected })
             }
         };
-        let means = baseline.remainder_terms() + baseline.parts.contrasts;
-        let width = means + DECK_TERMS + ENVIRONMENT.len();
-        check("means", baseline.parts.mean.len(), means)?;
+        let layout = baseline.layout();
+        check("means", baseline.parts.mean.len(), layout.contrasts.end)?;
         check("deck coefficients", baseline.parts.deck_coefficients.len(), DECK_TERMS)?;
         let carried = baseline.parts.environment.len();
         if carried != FIRST_CARRIED {
             check("carried effects", carried, ENVIRONMENT.len())?;
         }
-        let known = means + DECK_TERMS + carried;
+        let known = layout.standing_effects.start + carried;
         check("covariance factor", baseline.parts.factor.len(), known * (known + 1) / 2)?;
-        let mut factor = Mat::zeros(width, width);
+        let mut factor = Mat::zeros(layout.len(), layout.len());
         let mut values = baseline.parts.factor.iter();
         for i in 0..known {
             for j in 0..=i {
@@ -284,10 +285,11 @@ impl TryFrom<Parts> for Baseline {
         // An older file was taught nothing of the effects that were added since: their prior stands.
         for k in carried..ENVIRONMENT.len() {
             let deviation = baseline.carried_deviation(k);
-            factor[(means + DECK_TERMS + k, means + DECK_TERMS + k)] = deviation;
+            let column = layout.standing_effects.start + k;
+            factor[(column, column)] = deviation;
             baseline.parts.environment.push(0.0);
         }
-        if known < width {
+        if known < layout.len() {
             baseline.parts.factor = lower_triangle(&factor);
         }
         baseline.factor = factor;

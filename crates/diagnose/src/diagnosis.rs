@@ -25,6 +25,7 @@ use crate::search::analyse::{Analysis, analyse};
 use crate::search::outside::compete;
 use crate::search::system::{Problem, Stacked};
 use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::table_uncertainty::TableUncertainty;
 
 /// Diagnoses one set of flights.
 ///
@@ -75,6 +76,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     let stacked = Stacked::of(&data, &design, None);
     let mut notes = Vec::new();
     notes.extend(data.thrust_by_n2_note(&library));
+    notes.extend(input.table.and_then(TableUncertainty::note));
     if input.references.is_none() && input.baseline.is_none() {
         notes.push("references of effects are the means of these flights".to_owned());
     }
@@ -84,7 +86,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         &mut notes,
     )?;
     // Heavy tails show only beside the best model; then everything is done again with weights.
-    if let Some(weights) = crate::search::robust::weights(&stacked, &result.1, &library) {
+    if let Some(weights) = crate::search::robust::outlier_weights(&stacked, &result.1, &library) {
         notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
         drop(result);
         let stacked = Stacked::of(&data, &design, Some(weights));

@@ -6,5 +6,4 @@ pub(crate) mod gap;
 pub(crate) mod noise_floors;
 pub(crate) mod posterior;
 pub(crate) mod sufficiency;
-pub(crate) mod thresholds;
 pub(crate) mod verdict;

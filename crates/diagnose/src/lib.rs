@@ -43,6 +43,10 @@
 //! ```
 
 // Floors, from the ground up: a module imports from its own floor or a lower one (`tests/floors.rs`).
+mod deciding;
+mod priors;
+mod thresholds;
+
 mod math;
 mod signals;
 
@@ -63,10 +67,13 @@ mod place;
 
 mod diagnosis;
 mod judge;
+mod numbers;
 
 pub use baseline::{Baseline, BaselineLengthError};
+pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;
 pub use input::{Input, Options};
+pub use numbers::numbers_that_decide;
 pub use output::addition::{AddedEffect, Addition, UnknownEffect};
 pub use output::{
     Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Separation, Slice,
@@ -76,5 +83,5 @@ pub use place::members::{SliceError, slice_members};
 pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};
 pub use signals::references::{DiagnoseError, references_of};
-pub use signals::table_uncertainty::{TableUncertainty, TableUncertaintyError};
+pub use signals::table_uncertainty::{TableUncertainty, TableUncertaintyError, visited_nodes};
 pub use signals::variables::Variable;

@@ -3,20 +3,8 @@
 use effects::{EffectModel, EffectPoint};
 use flight::effect::{EffectId, EffectSign, HiddenParameter, StepTarget, ThrottleArgument};
 
-/// Share of the segments that must have an effect's input.
-const RECORDED_SHARE: f64 = 0.9;
-/// Corrected thrusts over their reference that the throttle effect may pivot about.
-const THROTTLE_PIVOTS: [f64; 5] = [0.6, 0.8, 1.0, 1.2, 1.5];
-/// The one thrust by N2 that the throttle effect may pivot about. Away from the reference the parabola has a slope there, and
-/// what N2 and model disagree about (noise of either) times that slope passes for a throttle effect: of 16 fleets without any
-/// effect but accelerations that err by 0.009 m/s², 7 had one over N2 with all pivots of thrust, none of them with this one alone.
-const N2_PIVOT: f64 = 1.0;
-/// Drag-divergence Mach numbers that are tried (our choice: those of transport and business aircraft), where the aircraft file does not say one.
-const DIVERGENCE_MACHS: [f64; 6] = [0.74, 0.78, 0.82, 0.86, 0.90, 0.94];
-/// Dates of a step that are tried, each in the middle of as many flights.
-const STEP_DATES: usize = 15;
-/// Standard deviation of a coefficient that physics says is 1.
-const KNOWN_DEVIATION: f64 = 0.15;
+use crate::priors::{DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, STEP_DATES, THROTTLE_PIVOTS};
+use crate::thresholds::RECORDED_SHARE;
 
 /// One column: an effect at one value of its hidden parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Floors from the ground up.
-const FLOORS: [&str; 16] = [
+const FLOORS: [&str; 20] = [
+    "deciding",
+    "priors",
+    "thresholds",
     "math",
     "signals",
     "library",
@@ -21,6 +24,7 @@ const FLOORS: [&str; 16] = [
     "advice",
     "judge",
     "diagnosis",
+    "numbers",
     "trial",
     "lib",
 ];

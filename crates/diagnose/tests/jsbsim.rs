@@ -111,7 +111,7 @@ fn what_was_changed_is_found_and_the_baseline_is_silent() {
     assert!(drag.verdict.class.contains(&"zero_lift_drag".to_owned()), "{:?}", drag.verdict);
     assert_eq!(mach.verdict.kind, VerdictKind::Effects);
     assert!(mach.verdict.class.contains(&"mach_bias".to_owned()), "{:?}", mach.verdict);
-    // The goal of the specification: 0.8 of the mean-square gap closed on unseen flights.
+    // Our goal: 0.8 of the mean-square gap closed on unseen flights.
     assert!(drag.verdict.closure.is_some_and(|closure| closure >= 0.8), "{:?}", drag.verdict);
     assert!(mach.verdict.closure.is_some_and(|closure| closure >= 0.8), "{:?}", mach.verdict);
     // 7.2 counts on all of the envelope is a level, and the baseline has no place.

@@ -13,13 +13,13 @@ use crate::terms::{Layers, Terms};
 const LOCK_FACTOR: f64 = 20.0;
 /// Distance from the beginning of the rise up to the drag-divergence Mach number (∂CD/∂M = 0.1): (0.1/80)^(1/3).
 const LOCK_OFFSET_MACH: f64 = 0.1077;
-/// Fall of the drag-divergence Mach number per unit of lift coefficient.
+/// Fall of the drag-divergence Mach number per unit of lift coefficient. Our choice: a number of usual size.
 const DIVERGENCE_FALL_PER_LIFT_COEFFICIENT: f64 = 0.085;
-/// Lift coefficient at which drag-divergence Mach numbers are stated.
+/// Lift coefficient at which drag-divergence Mach numbers are stated. Our choice: a usual cruise.
 const DIVERGENCE_LIFT_COEFFICIENT: f64 = 0.35;
-/// Lift coefficient at which trim drag is stated.
+/// Lift coefficient at which trim drag is stated. Our choice: a usual cruise.
 const TRIM_LIFT_COEFFICIENT: f64 = 0.4;
-/// Roll angle up to which a segment counts as wings level, degrees.
+/// Roll angle up to which a segment counts as wings level, degrees. Our choice: beyond it an aircraft turns.
 const WINGS_LEVEL_DEG: f64 = 5.0;
 
 /// A point of the drag table, where effects change the drag coefficient.

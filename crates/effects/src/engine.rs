@@ -8,9 +8,10 @@ use crate::point::EffectPoint;
 use crate::recorded::AsFlown;
 use crate::terms::{Layers, Terms};
 
-/// Static air temperature above which anti-ice bleed counts as on where it is not recorded, K: −40 °C.
+/// Static air temperature above which anti-ice bleed counts as on where it is not recorded, K: −40 °C. Our choice: colder air
+/// holds hardly any supercooled water.
 pub const ANTI_ICE_PROXY_K: f64 = 233.15;
-/// Width of the throttle effect's parabola, of corrected thrust over its reference.
+/// Width of the throttle effect's parabola, of corrected thrust over its reference. Our choice.
 const THROTTLE_WIDTH: f64 = 0.25;
 
 /// Thrust, and the fuel flow that it costs without effects.

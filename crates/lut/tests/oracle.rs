@@ -54,7 +54,7 @@ fn coordinate(axis: &Axis, share: f64, near_breakpoint: bool) -> f64 {
     }
 }
 
-/// The rule as the specification words it: snap, then the half-open cell, the last node in the last cell.
+/// The rule of the book's page on tables, word by word: snap, then the half-open cell, the last node in the last cell.
 fn snapped_and_cell(axis: &Axis, coordinate: f64) -> Option<(f64, usize)> {
     let breakpoints = axis.breakpoints();
     let snapped = breakpoints

@@ -18,12 +18,12 @@ const TOLD_WHEN_SILENT: [EffectId; 6] = [
     EffectId::ZeroFuelMassBias,
     EffectId::MachBias,
 ];
-/// Other causes than the verdict's that are told, and the least probability that is.
+/// Other causes than the verdict's that are told, and the least probability that is. Our choice: a dozen lines in all.
 const OTHERS_TOLD: usize = 3;
 const LEAST_TOLD: f64 = 0.02;
-/// Measurements or flights that are told.
+/// Measurements or flights that are told. Our choice: the best two.
 const SEPARATIONS_TOLD: usize = 2;
-/// Probability below which no cause is told as one.
+/// Probability below which no cause is told as one. Our choice: more probable than not.
 const PROBABLE: f64 = 0.5;
 
 /// What follows from an effect of this group for predictions.

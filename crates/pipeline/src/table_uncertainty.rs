@@ -3,36 +3,45 @@
 use std::sync::Arc;
 
 use adapt::bayes::Posterior;
-use diagnose::{TableUncertainty, TableUncertaintyError};
+use diagnose::{FlightRecord, TableUncertainty, TableUncertaintyError, visited_nodes};
+use effects::ExtendedModel;
 
 use crate::model_file::ModelFile;
 
-/// Most nodes of a table whose full covariance is taken; beyond, the nodes' standard deviations alone.
+/// Most nodes of a table whose full covariance is taken; beyond, that of the nodes which the flights at hand visit.
 const NODES_WITH_COVARIANCE: usize = 700;
 
-/// What a model's table does not know; `None` by a law that does not say.
+/// What a model's table does not know where these flights are; `None` by a law that does not say.
 ///
 /// # Errors
 /// A covariance that is invalid.
-pub fn of_model(model: &ModelFile) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
-    model.posterior().map(|posterior| of_posterior(posterior, model.grid())).transpose()
+pub fn of_model(
+    model: &ModelFile,
+    flights: &[FlightRecord<'_>],
+) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
+    let table = model.drag_coefficient();
+    model
+        .posterior()
+        .map(|posterior| of_posterior(posterior, &model.initial, table, flights))
+        .transpose()
 }
 
-/// What a table learnt by law `bayes` does not know.
+/// What a table learnt by law `bayes` does not know: `drag_table` is what the flights are held against.
 ///
 /// # Errors
 /// A covariance that is invalid.
 pub fn of_posterior(
     posterior: &Posterior,
-    grid: &Arc<lut::Grid>,
+    model: &ExtendedModel,
+    drag_table: &lut::Table,
+    flights: &[FlightRecord<'_>],
 ) -> Result<TableUncertainty, TableUncertaintyError> {
+    let grid = drag_table.grid();
     let nodes = grid.nodes();
     if nodes > NODES_WITH_COVARIANCE {
-        let mut factor = vec![0.0; nodes * nodes];
-        for (node, deviation) in posterior.standard_deviation().iter().enumerate() {
-            factor[node * nodes + node] = *deviation;
-        }
-        return TableUncertainty::new(Arc::clone(grid), nodes, factor);
+        // Flights of which none is inside the table visit no node; the diagnosis says why it cannot say more.
+        let visited = visited_nodes(model, drag_table, flights).unwrap_or_default();
+        return of_visited(posterior, grid, &visited);
     }
     let cells: Vec<lut::Cell> = (0..nodes)
         .filter_map(|node| {
@@ -41,4 +50,62 @@ pub fn of_posterior(
         })
         .collect();
     TableUncertainty::from_covariance(Arc::clone(grid), &posterior.relative_covariances(&cells))
+}
+
+/// The same over the nodes that flights visit, one solve for each column that is kept.
+fn of_visited(
+    posterior: &Posterior,
+    grid: &Arc<lut::Grid>,
+    visited: &[usize],
+) -> Result<TableUncertainty, TableUncertaintyError> {
+    let variances: Vec<f64> =
+        posterior.standard_deviation().iter().map(|deviation| deviation.powi(2)).collect();
+    let column = |node: usize| posterior.covariances_with(node);
+    TableUncertainty::from_columns(Arc::clone(grid), visited, &variances, column)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use adapt::bayes::{BayesSettings, BayesState};
+    use flight::{Observation, ObservationVariance, Timestamp};
+    use lut::{Axis, Grid, Outside, Table};
+
+    /// Neighbouring nodes of a table of 1200 nodes err together, as the posterior has it.
+    #[test]
+    fn a_table_of_many_nodes_keeps_the_covariance_of_those_visited() {
+        let axis = |first: f64, step: f64, count: u32| {
+            Axis::new((0..count).map(|k| first + step * f64::from(k)).collect()).unwrap()
+        };
+        let grid = Arc::new(Grid::new(axis(0.10, 0.02, 40), axis(0.50, 0.015, 30)));
+        let drag = |node: usize| 0.02 + 0.05 * grid.coordinates(node).0.powi(2);
+        let initial = Table::new(Arc::clone(&grid), (0..grid.nodes()).map(drag).collect()).unwrap();
+        let mut state = BayesState::new(&initial, BayesSettings::physical_2026()).unwrap();
+        let variance = ObservationVariance { segment: 2.5e-5, flight: 2e-5 };
+        let at = |lift: f64, mach: f64| Observation {
+            time: Timestamp::UNIX_EPOCH,
+            lift_coefficient: lift,
+            mach,
+            drag_coefficient: 1.03 * (0.02 + 0.05 * lift * lift),
+            fuel_flow_total_kg_s: 0.33,
+            fuel_flow_per_drag_coefficient_kg_s: 10.0,
+            variance,
+        };
+        let _ = state.learn_flight(&[at(0.42, 0.78), at(0.45, 0.80), at(0.51, 0.76)]);
+        let posterior = state.solve().unwrap();
+        let cells = [(0.42, 0.78), (0.45, 0.80), (0.51, 0.76)]
+            .map(|(lift, mach)| grid.locate(lift, mach, Outside::Error).unwrap());
+        let mut visited: Vec<usize> = cells.iter().flat_map(lut::Cell::nodes).collect();
+        visited.sort_unstable();
+        visited.dedup();
+        let found = of_visited(&posterior, &grid, &visited).unwrap();
+        for &a in &visited {
+            let known = posterior.covariances_with(a);
+            for &b in &visited {
+                let scale = posterior.standard_deviation()[a] * posterior.standard_deviation()[b];
+                let off = (found.covariance(a, b) - known[b]).abs() / scale;
+                assert!(off < 1e-3, "nodes {a} and {b}: off by {off} of their standard deviations");
+            }
+        }
+    }
 }

@@ -119,7 +119,9 @@ fn adapted(
     learning::remember_remainder(&initial, &mut learnt, &all);
     let uncertainty = match &learnt.law {
         LawState::Bayes { posterior, .. } => {
-            Some(table_uncertainty::of_posterior(posterior, initial.drag_table().grid())?)
+            let table = learnt.law.drag_coefficient();
+            let records = records(&flights);
+            Some(table_uncertainty::of_posterior(posterior, &initial, table, &records)?)
         }
         LawState::Paper { .. } => None,
     };

@@ -19,7 +19,7 @@ use crate::flown_case::fly;
 use crate::plan::Kind;
 use crate::seal::CaseTruth;
 
-/// Largest p-value of a place that is reported.
+/// Largest p-value of a place that is reported: that of the diagnosis, the usual 5 %.
 const SIGNIFICANT: f64 = 0.05;
 
 /// Flight and first row: what tells a segment on both flights.

@@ -4,7 +4,7 @@ use diagnose::{Diagnosis, VerdictKind};
 use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
 
-/// A probability from which a name counts as sure.
+/// A probability from which a name counts as sure. Our choice.
 const SURE: f64 = 0.9;
 
 /// What was planted in one case.

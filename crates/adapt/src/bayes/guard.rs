@@ -2,7 +2,7 @@
 
 use lut::{Grid, Table};
 
-/// Least share of the initial drag that a correction may leave.
+/// Least share of the initial drag that a correction may leave. Our choice: no aircraft has a tenth of its guide's drag.
 const MINIMUM_SHARE: f64 = 0.1;
 
 /// Report of the guard's action.

@@ -8,9 +8,9 @@ use super::evidence::TuneError;
 use super::settings::SettingValues;
 use super::{BayesSettings, BayesState, Flight, days_between};
 
-/// Half-lives that are tried, days, in addition to none: a month to eight years, in factors of 2.
+/// Half-lives that are tried, days, in addition to none: a month to 21 years, in factors of 2. Our choice.
 const CANDIDATES_DAYS: [f64; 9] = [30.0, 60.0, 120.0, 240.0, 480.0, 960.0, 1920.0, 3840.0, 7680.0];
-/// Half-lives longer than this many times the flights' span are equivalent to none.
+/// Half-lives longer than this many times the flights' span are equivalent to none. Our choice.
 const LONGEST_OVER_SPAN: f64 = 4.0;
 /// Gain in ln density that ageing must bring: "strong" evidence (Kass and Raftery 1995, section 3.2: 2 ln B > 6).
 const NEEDED_GAIN: f64 = 3.0;

@@ -164,6 +164,18 @@ impl Posterior {
         self.covariances_of(&columns)
     }
 
+    /// Covariances of one node's correction with every node's, in node order: a column of the inverse of the precision,
+    /// by one solve.
+    ///
+    /// # Panics
+    /// `node` is not a node of the grid.
+    #[must_use]
+    pub fn covariances_with(&self, node: usize) -> Vec<f64> {
+        let mut unit = vec![0.0; self.correction.len()];
+        unit[node] = 1.0;
+        self.factor.solve(&unit)
+    }
+
     /// Covariances of linear combinations of corrections.
     pub(super) fn covariances_of(&self, columns: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
         let forms = self.factor.quadratic_forms(columns);

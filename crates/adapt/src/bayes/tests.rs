@@ -163,6 +163,9 @@ fn solve_agrees_with_dense_conditioning() {
             let std = covariance[(node, node)].sqrt();
             assert!((posterior.correction()[node] - mean[node]).abs() < 1e-9);
             assert!((posterior.standard_deviation()[node] - std).abs() < 1e-9);
+            for (other, found) in posterior.covariances_with(node).into_iter().enumerate() {
+                assert!((found - covariance[(node, other)]).abs() < 1e-12);
+            }
         }
         let cells: Vec<Cell> = [(0.31, 0.77), (0.33, 0.77), (0.55, 0.55), (0.25, 0.86)]
             .map(|(x, y)| grid.locate(x, y, Outside::Error).unwrap())

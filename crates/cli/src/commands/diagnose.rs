@@ -179,7 +179,8 @@ fn diagnose_group(
             gauges: flight.reduced.gauges,
         })
         .collect();
-    let table = table_uncertainty::of_model(group.model).map_err(|error| wrong(&error))?;
+    let table =
+        table_uncertainty::of_model(group.model, &records).map_err(|error| wrong(&error))?;
     let baseline = group.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     let input = Input {
         model: &group.model.initial,

@@ -1,10 +1,11 @@
 //! What would tell confused effects apart: measurements and flights on purpose, in one list by the distance they put.
 
-use crate::advice::distances::{CONFUSED, Distances};
+use crate::advice::distances::Distances;
 use crate::advice::flights::Conditions;
 use crate::library::Library;
 use crate::output::Separation;
 use crate::search::system::Problem;
+use crate::thresholds::CONFUSED;
 
 /// Everything that advice is made of.
 pub(crate) struct Advisor<'a> {

@@ -1,10 +1,8 @@
 //! Classes of effects that these flights cannot tell apart.
 
-use crate::advice::distances::{CONFUSED, Distances};
+use crate::advice::distances::Distances;
 use crate::library::{Library, Testable};
-
-/// A member of a class must not be larger than this many typical sizes to pass for another effect.
-const PLAUSIBLE: f64 = 6.0;
+use crate::thresholds::{CONFUSED, PLAUSIBLE, PLAUSIBLE_KNOWN};
 
 impl Distances {
     /// Classes at typical sizes: complete linkage of effects whose squared distance, the smaller of both directions, is
@@ -55,7 +53,7 @@ impl Distances {
             let confused = effect.all_columns().any(|l| {
                 let (squared, implied) = self.squared(column, l, size);
                 let plausible = if effect.known {
-                    (implied - 1.0).abs() < 0.5
+                    (implied - 1.0).abs() < PLAUSIBLE_KNOWN
                 } else {
                     implied.abs() < PLAUSIBLE * effect.typical
                 };

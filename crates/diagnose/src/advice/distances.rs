@@ -2,19 +2,13 @@
 
 use faer::Mat;
 
-use crate::hypotheses::backgrounds::TAUS;
 use crate::hypotheses::design::Design;
 use crate::hypotheses::evidence::Scored;
 use crate::library::Library;
 use crate::math::eliminate::integrate_out;
 use crate::math::gram::Gram;
-
-/// Squared distance, in noise standard deviations, below which two effects cannot be told apart.
-pub(crate) const CONFUSED: f64 = 9.0;
-/// Factor on 1/√G of the smallest size that would just be seen.
-const DETECTION: f64 = 4.0;
-/// Factor on the deck's uncertainty when an N2 deck is measured: from 2 % to 0.1 %.
-const DECK_MEASURED: f64 = 0.05;
+use crate::priors::SMOOTH_AMPLITUDES;
+use crate::thresholds::{DECK_MEASURED, DETECTION, LEAST_GAIN, LEAST_GAIN_DEVIATIONS};
 
 /// Distances between effects in the data at hand, nuisance integrated out.
 #[derive(Clone, Debug)]
@@ -33,8 +27,13 @@ impl Distances {
         let kept: Vec<usize> = (0..design.effects).collect();
         let out: Vec<usize> = design.nuisance.clone().collect();
         let plain = integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])?;
-        let deck = integrate_out(&gram.matrix, &kept, &out, &vec![DECK_MEASURED; out.len()])?;
-        const { assert!(TAUS[0] == 0.0) };
+        // A measured deck says nothing of the rest of the nuisance. Of a baseline's coefficients, whose columns are those of
+        // their covariance's Cholesky factor, it shrinks what remainder and contrasts do not explain of the deck.
+        let of_deck = design.deck_columns();
+        let deviation = |column| if of_deck.contains(column) { DECK_MEASURED } else { 1.0 };
+        let deviations: Vec<f64> = out.iter().map(deviation).collect();
+        let deck = integrate_out(&gram.matrix, &kept, &out, &deviations)?;
+        const { assert!(SMOOTH_AMPLITUDES[0] == 0.0) };
         Some(Self { gram: plain.matrix, with_deck: deck.matrix, leading })
     }
 
@@ -151,7 +150,7 @@ pub(crate) fn squared_from_any(
 
 /// Whether a distance is worth an effort: a tenth more than another one, and a tenth of a standard deviation.
 pub(crate) fn gains(before: f64, after: f64) -> bool {
-    after > 1.1 * before + 0.1
+    after > LEAST_GAIN * before + LEAST_GAIN_DEVIATIONS
 }
 
 /// [`Distances::squared`] in any Gram.

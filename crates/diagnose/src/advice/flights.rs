@@ -17,18 +17,11 @@ use crate::advice::flights::sweeps::{Kind, test_flights};
 use crate::library::{Column, Library};
 use crate::math::eliminate::integrate_out;
 use crate::search::system::Stacked;
+use crate::thresholds::{ADVISED_FLIGHTS, LEAST_DISTANCE, WORTH_MIXING};
 
 mod envelope;
 mod information;
 mod sweeps;
-
-/// Flights on purpose that an advice asks for.
-pub(crate) const FLIGHTS: usize = 6;
-/// Least distance worth six flights, in noise standard deviations. In blind trials of the method the right one of two effects
-/// was named as rarely at 0.5 to 1 as below (0.38, 0.33), and at 1 to 2 twice as often (0.71).
-const LEAST_DISTANCE: f64 = 1.0;
-/// Two sorts of flights are offered where they put this much more distance than the best of one sort.
-const WORTH_MIXING: f64 = 1.05;
 
 /// What flights on purpose would do for some columns of the library.
 pub(crate) struct Conditions {
@@ -97,7 +90,7 @@ impl Conditions {
         let mut ordinary =
             vec![more_of_the_same(&gram.matrix, &columns, nuisance, stacked.data.flights.len())?];
         for (_, _, steady) in flights.iter().filter(|(kind, _, _)| *kind == Kind::Steady) {
-            ordinary.push(&now + added(&[(steady, FLIGHTS as f64)])?);
+            ordinary.push(&now + added(&[(steady, ADVISED_FLIGHTS as f64)])?);
         }
         flights.retain(|(kind, _, _)| *kind != Kind::Steady);
         let programs = programs(&flights, &now);
@@ -155,9 +148,9 @@ fn programs(flights: &[(Kind, String, FlightInformation)], now: &Mat<f64>) -> Ve
         }
     };
     for (kind, words, flight) in flights {
-        add(*kind, format!("six flights with {words}"), &[(flight, FLIGHTS as f64)]);
+        add(*kind, format!("six flights with {words}"), &[(flight, ADVISED_FLIGHTS as f64)]);
     }
-    let half = FLIGHTS as f64 / 2.0;
+    let half = ADVISED_FLIGHTS as f64 / 2.0;
     for (place, (kind, words, flight)) in flights.iter().enumerate() {
         for (_, other_words, other) in flights[place + 1..].iter().filter(|other| other.0 == *kind)
         {
@@ -176,7 +169,7 @@ fn more_of_the_same(
     nuisance: core::ops::Range<usize>,
     flights: usize,
 ) -> Option<Mat<f64>> {
-    let grown = 1.0 + FLIGHTS as f64 / flights.max(1) as f64;
+    let grown = 1.0 + ADVISED_FLIGHTS as f64 / flights.max(1) as f64;
     let out: Vec<usize> = nuisance.collect();
     let deviations = vec![grown.sqrt(); out.len()];
     Some(faer::Scale(grown) * integrate_out(gram, columns, &out, &deviations)?.matrix)

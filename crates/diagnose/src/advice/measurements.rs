@@ -2,6 +2,9 @@
 
 use crate::advice::distances::{Distances, gains, squared_from_any};
 use crate::library::Library;
+use crate::thresholds::{
+    MEASURED_BURN_PERCENT, MEASURED_MACH, MEASURED_MASS, MEASURED_PRESSURE_PERCENT, MEASURED_SAT_K,
+};
 
 /// A measurement that separates two effects, with the distance before and after.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +31,7 @@ impl Distances {
             .effects
             .iter()
             .find(|e| e.id == EffectId::ZeroFuelMassBias)
-            .map_or(f64::INFINITY, |e| e.typical / 0.015 * 0.003);
+            .map_or(f64::INFINITY, |e| e.typical / 0.015 * MEASURED_MASS);
         let engines = library
             .effects
             .iter()
@@ -37,16 +40,16 @@ impl Distances {
             .max(1) as f64;
         let offers = [
             (EffectId::ZeroFuelMassBias, mass_kg, "weigh the aircraft (to 0.3 % of its mass)"),
-            (EffectId::FuelFlowGain, 0.15, "compare with tank gauges (to 0.15 %)"),
-            (EffectId::TemperatureBias, 0.5, "compare SAT with a reanalysis (to 0.5 K)"),
+            (EffectId::FuelFlowGain, MEASURED_BURN_PERCENT, "compare with tank gauges (to 0.15 %)"),
+            (EffectId::TemperatureBias, MEASURED_SAT_K, "compare SAT with a reanalysis (to 0.5 K)"),
             (
                 EffectId::MachBias,
-                0.0015,
+                MEASURED_MACH,
                 "compare true airspeed with GPS and wind (to Mach 0.0015)",
             ),
             (
                 EffectId::StaticPressureBias,
-                0.05,
+                MEASURED_PRESSURE_PERCENT,
                 "compare pressure altitude with GPS height and a reanalysis (to 0.05 % of p)",
             ),
         ];

@@ -2,6 +2,8 @@
 
 use flight::effect::{EffectId, HiddenParameter};
 
+use crate::priors::{CARRIED_DEVIATION, CARRIED_DRAG_RISE_MACHS, CARRIED_SLOPE_DEVIATION};
+
 /// An effect that a baseline carries.
 pub(crate) struct Carried {
     pub(crate) id: EffectId,
@@ -14,16 +16,16 @@ pub(crate) struct Carried {
 /// Earth and its air, and effects of signals that the remainder does not look at, or that bend faster than a table's cells.
 /// Whatever of it a baseline was taught is no change. The first three are what older model files hold.
 pub(crate) const ENVIRONMENT: [Carried; 10] = [
-    carried(EffectId::LocalGravity, 1.0),
-    carried(EffectId::RotatingEarth, 1.0),
-    carried(EffectId::IsobaricSlope, 2.0),
-    carried(EffectId::LoadFactor, 1.0),
-    carried(EffectId::TrimDragCg, 1.0),
-    carried(EffectId::AsymmetryDrag, 1.0),
-    carried(EffectId::AntiIceBleed, 1.0),
-    drag_rise(0.82),
-    drag_rise(0.88),
-    drag_rise(0.94),
+    carried(EffectId::LocalGravity, CARRIED_DEVIATION),
+    carried(EffectId::RotatingEarth, CARRIED_DEVIATION),
+    carried(EffectId::IsobaricSlope, CARRIED_SLOPE_DEVIATION),
+    carried(EffectId::LoadFactor, CARRIED_DEVIATION),
+    carried(EffectId::TrimDragCg, CARRIED_DEVIATION),
+    carried(EffectId::AsymmetryDrag, CARRIED_DEVIATION),
+    carried(EffectId::AntiIceBleed, CARRIED_DEVIATION),
+    drag_rise(CARRIED_DRAG_RISE_MACHS[0]),
+    drag_rise(CARRIED_DRAG_RISE_MACHS[1]),
+    drag_rise(CARRIED_DRAG_RISE_MACHS[2]),
 ];
 
 pub(crate) const fn carried(id: EffectId, deviation: f64) -> Carried {
@@ -32,5 +34,5 @@ pub(crate) const fn carried(id: EffectId, deviation: f64) -> Carried {
 
 const fn drag_rise(drag_divergence_mach: f64) -> Carried {
     let hidden = HiddenParameter::DragDivergenceMach(drag_divergence_mach);
-    Carried { id: EffectId::WaveDrag, hidden, deviation: 1.0 }
+    Carried { id: EffectId::WaveDrag, hidden, deviation: CARRIED_DEVIATION }
 }

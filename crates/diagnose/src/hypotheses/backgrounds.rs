@@ -9,11 +9,7 @@ use faer::Mat;
 use crate::hypotheses::design::Design;
 use crate::library::Library;
 use crate::math::eliminate::{Changed, Elimination, Reduced, integrate_out};
-
-/// Sizes of the spike that every effect may have in the background, of its typical size.
-pub(crate) const SPIKES: [f64; 4] = [0.0, 0.05, 0.15, 0.30];
-/// Amplitudes of the smooth discrepancy, shares of fuel flow.
-pub(crate) const TAUS: [f64; 4] = [0.0, 0.0015, 0.004, 0.010];
+use crate::priors::{BACKGROUND_SPIKES, SMOOTH_AMPLITUDES};
 
 /// A background: Gram of the effects' columns, product with the residual, square of the residual.
 #[derive(Clone, Debug)]
@@ -112,7 +108,7 @@ pub(crate) fn smoothed(
     let mut all = Vec::new();
     for (scatter, reduced) in levels.iter().enumerate() {
         let residual = reduced.matrix.ncols() - 1;
-        for tau in TAUS.into_iter().filter(|&tau| admits(tau)) {
+        for tau in SMOOTH_AMPLITUDES.into_iter().filter(|&tau| admits(tau)) {
             let kept: Vec<usize> = (0..effects).chain([residual]).collect();
             let out: Vec<usize> =
                 if tau > 0.0 { (effects..effects + smooth).collect() } else { vec![] };
@@ -129,8 +125,10 @@ pub(crate) fn smoothed(
 /// Every background: every spike over every smooth discrepancy.
 pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Background> {
     let effects = library.columns.len();
-    let mut all = Vec::with_capacity(SPIKES.len() * smoothed.len());
-    for (under, spike) in smoothed.iter().flat_map(|under| SPIKES.map(|spike| (under, spike))) {
+    let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len() * smoothed.len());
+    for (under, spike) in
+        smoothed.iter().flat_map(|under| BACKGROUND_SPIKES.map(|spike| (under, spike)))
+    {
         let (out, deviations) = spike_of(library, spike);
         let kept: Vec<usize> = (0..=effects).collect();
         let Some(spiked) = integrate_out(&under.matrix, &kept, &out, &deviations) else {
@@ -155,8 +153,10 @@ pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Backg
 /// The same for single columns.
 pub(crate) fn diagonals(smoothed: &[Smoothed], library: &Library) -> Vec<Diagonal> {
     let effects = library.columns.len();
-    let mut all = Vec::with_capacity(SPIKES.len() * smoothed.len());
-    for (under, spike) in smoothed.iter().flat_map(|under| SPIKES.map(|spike| (under, spike))) {
+    let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len() * smoothed.len());
+    for (under, spike) in
+        smoothed.iter().flat_map(|under| BACKGROUND_SPIKES.map(|spike| (under, spike)))
+    {
         let (out, deviations) = spike_of(library, spike);
         let kept: Vec<usize> = (0..=effects).collect();
         let Some(elimination) = Elimination::projection(&under.matrix, kept, out, deviations)
@@ -205,8 +205,8 @@ impl Smoothed {
         let places: Vec<usize> = columns.iter().copied().chain([effects]).collect();
         let mut matrix = self.matrix.clone();
         self.elimination.follow(changed).write(&mut matrix, &places);
-        let mut all = Vec::with_capacity(SPIKES.len());
-        for spike in SPIKES.into_iter().filter(|&spike| choose(spike)) {
+        let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len());
+        for spike in BACKGROUND_SPIKES.into_iter().filter(|&spike| choose(spike)) {
             let (out, deviations) = spike_of(library, spike);
             let Some(spiked) = integrate_out(&matrix, &places, &out, &deviations) else {
                 continue;

@@ -1,27 +1,23 @@
 //! The whitened linear model of a flight: which columns there are, and their rows.
 
+use core::ops::Range;
+
 use effects::EffectReferences;
 use faer::Mat;
 
 use crate::baseline::Baseline;
+use crate::baseline::layout::{DeckColumns, NuisanceLayout};
+use crate::priors::{
+    AGNOSTIC_QUANTILES, DECK_DEVIATION, PRODUCT_SCALE, SMOOTH_QUANTILES, SPLIT_SCALE,
+};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::Data;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
-use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::{Hats, Scaled, Variable};
 
-/// Prior standard deviation of a deck coefficient about its least-squares value where no deck was taught.
-const DECK_DEVIATION: f64 = 0.02;
-/// Split of the fuel flow between engines that an agnostic level is scaled to, against 1 for fuel flow.
-const SPLIT_SCALE: f64 = 2.0;
-/// Quantiles at which the smooth background has its knots.
-const SMOOTH_QUANTILES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-/// Quantiles at which agnostic functions have theirs.
-const AGNOSTIC_QUANTILES: [f64; 7] = [0.0, 0.17, 0.33, 0.5, 0.67, 0.83, 1.0];
-/// Amplitude of a product of two scaled variables in the smooth background.
-const PRODUCT_SCALE: f64 = 0.5;
+/// Variables of the smooth background. Our choice: what effects of the library depend on.
 const SMOOTH_VARIABLES: [Variable; 15] = [
     Variable::Mach,
     Variable::LiftCoefficient,
@@ -39,6 +35,7 @@ const SMOOTH_VARIABLES: [Variable; 15] = [
     Variable::CenterOfGravity,
     Variable::Mass,
 ];
+/// Products in the smooth background. Our choice: pairs that physics multiplies.
 const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
     (Variable::Mach, Variable::LiftCoefficient),
     (Variable::Mach, Variable::PressureAltitude),
@@ -86,7 +83,7 @@ pub(crate) enum Acts {
 pub(crate) struct Block {
     pub(crate) variable: Variable,
     pub(crate) acts: Acts,
-    pub(crate) columns: core::ops::Range<usize>,
+    pub(crate) columns: Range<usize>,
     hats: Option<Hats>,
 }
 
@@ -94,8 +91,8 @@ pub(crate) struct Block {
 #[derive(Clone, Debug)]
 pub(crate) struct Design<'a> {
     pub(crate) effects: usize,
-    pub(crate) nuisance: core::ops::Range<usize>,
-    pub(crate) smooth: core::ops::Range<usize>,
+    pub(crate) nuisance: Range<usize>,
+    pub(crate) smooth: Range<usize>,
     pub(crate) blocks: Vec<Block>,
     pub(crate) columns: usize,
     references: EffectReferences,
@@ -107,9 +104,8 @@ pub(crate) struct Design<'a> {
 /// What is uncertain about the model, as columns of unit prior variance.
 #[derive(Clone, Debug)]
 struct Nuisance<'a> {
+    layout: NuisanceLayout,
     baseline: Option<&'a Baseline>,
-    deck: bool,
-    chords: bool,
     /// Share of the recorded accelerations' mean square that their error has.
     acceleration: f64,
     table: Option<&'a TableUncertainty>,
@@ -130,9 +126,16 @@ impl<'a> Design<'a> {
         };
         let effects = data.columns();
         let acceleration = share_of_error(data);
-        let parts =
-            Nuisance { baseline, deck: data.channels.n2, chords: true, acceleration, table };
-        let nuisance = effects..effects + parts.columns();
+        let rank = table.map_or(0, TableUncertainty::rank);
+        let layout = if let Some(baseline) = baseline {
+            NuisanceLayout::of_design_with_baseline(&baseline.layout(), rank)
+        } else if data.channels.n2 {
+            NuisanceLayout::of_design(DeckColumns::Present, rank)
+        } else {
+            NuisanceLayout::of_design(DeckColumns::Absent, rank)
+        };
+        let nuisance = effects..effects + layout.len();
+        let parts = Nuisance { layout, baseline, acceleration, table };
 
         let smooth_hats: Vec<(Variable, Hats)> = SMOOTH_VARIABLES
             .into_iter()
@@ -281,60 +284,49 @@ impl<'a> Design<'a> {
         self.write_smooth_columns(&mut rows, scratch);
     }
 
-    /// Columns of what is uncertain about the model, in the order of [`Nuisance`].
+    /// Columns of what is uncertain about the model.
     fn write_nuisance(&self, rows: &mut RowsOfSegment<'_>, scratch: &mut [f64]) {
         let (row, channels) = (rows.row, rows.channels);
         let parts = &self.nuisance_parts;
-        let mut at = self.nuisance.start;
+        let columns = |range: &Range<usize>| self.nuisance_columns(range);
+        let layout = &parts.layout;
         if let Some(baseline) = parts.baseline {
-            let terms = &mut scratch[..baseline.remainder_terms()];
+            let terms = &mut scratch[..layout.remainder.len()];
             baseline.write_remainder(&row.response, terms);
-            for value in &*terms {
-                rows.put_fuel_flow(at, *value);
-                at += 1;
-            }
-            for contrast in 1..=baseline.contrasts() {
-                let mut values = [0.0; MAXIMUM_CHANNELS];
-                if contrast <= channels.contrasts && row.is_recorded[contrast] {
-                    values[contrast] = 1.0;
-                }
-                rows.put(at, &values);
-                at += 1;
+            for (column, value) in columns(&layout.remainder).zip(&*terms) {
+                rows.put_fuel_flow(column, *value);
             }
         }
-        if parts.baseline.is_some() || parts.deck {
-            for term in row.deck {
-                let mut values = [0.0; MAXIMUM_CHANNELS];
-                if channels.n2 && row.is_recorded[channels.n2_row()] {
-                    values[channels.n2_row()] = term;
-                }
-                rows.put(at, &values);
-                at += 1;
+        for (column, contrast) in columns(&layout.contrasts).zip(1..) {
+            let mut values = [0.0; MAXIMUM_CHANNELS];
+            if contrast <= channels.contrasts && row.is_recorded[contrast] {
+                values[contrast] = 1.0;
             }
+            rows.put(column, &values);
         }
-        if parts.baseline.is_some() {
-            for slope in &row.environment {
-                rows.put(at, slope);
-                at += 1;
+        for (column, term) in columns(&layout.deck).zip(row.deck) {
+            let mut values = [0.0; MAXIMUM_CHANNELS];
+            if channels.n2 && row.is_recorded[channels.n2_row()] {
+                values[channels.n2_row()] = term;
             }
+            rows.put(column, &values);
         }
-        if parts.chords {
-            for chord in row.chords {
-                rows.put_thrust(at, chord);
-                at += 1;
-            }
+        for (column, slope) in columns(&layout.standing_effects).zip(&row.environment) {
+            rows.put(column, slope);
         }
-        rows.put(at, &row.noise.acceleration.map(|value| value * parts.acceleration));
-        at += 1;
+        for (column, chord) in columns(&layout.chords).zip(row.chords) {
+            rows.put_thrust(column, chord);
+        }
+        for column in columns(&layout.acceleration) {
+            rows.put(column, &row.noise.acceleration.map(|value| value * parts.acceleration));
+        }
         if let Some(table) = parts.table {
-            let loadings = &mut scratch[..table.rank()];
+            let loadings = &mut scratch[..layout.table.len()];
             table.write(&row.response, loadings);
-            for loading in &*loadings {
-                rows.put_thrust(at, *loading);
-                at += 1;
+            for (column, loading) in columns(&layout.table).zip(&*loadings) {
+                rows.put_thrust(column, *loading);
             }
         }
-        debug_assert_eq!(at, self.nuisance.end);
     }
 
     /// Columns of the smooth background and of functions of one variable.
@@ -374,6 +366,16 @@ impl<'a> Design<'a> {
                 }
             }
         }
+    }
+
+    /// Columns of the design that a range of the nuisance has.
+    fn nuisance_columns(&self, range: &Range<usize>) -> Range<usize> {
+        self.nuisance.start + range.start..self.nuisance.start + range.end
+    }
+
+    /// Columns of the N2 deck's coefficients; empty where there is none.
+    pub(crate) fn deck_columns(&self) -> Range<usize> {
+        self.nuisance_columns(&self.nuisance_parts.layout.deck)
     }
 
     /// What a baseline was taught, where there is one.
@@ -417,8 +419,8 @@ impl<'a> Design<'a> {
         let parts = &self.nuisance_parts;
         if let Some(baseline) = parts.baseline {
             let factor = baseline.factor();
-            let width = factor.nrows();
-            let range = self.nuisance.start..self.nuisance.start + width;
+            let range = self.nuisance_columns(&parts.layout.of_baseline_range());
+            let width = range.len();
             let raw = matrix.subcols(range.start, width).to_owned();
             let mut scaled = Mat::<f64>::zeros(raw.nrows(), width);
             faer::linalg::matmul::matmul(
@@ -434,8 +436,8 @@ impl<'a> Design<'a> {
                     matrix[(row, range.start + column)] = scaled[(row, column)];
                 }
             }
-        } else if parts.deck {
-            for column in self.nuisance.start..self.nuisance.start + DECK_TERMS {
+        } else {
+            for column in self.deck_columns() {
                 for row in 0..matrix.nrows() {
                     matrix[(row, column)] *= DECK_DEVIATION;
                 }
@@ -509,16 +511,4 @@ fn share_of_error(data: &Data<'_>) -> f64 {
         square += row.point.acceleration_m_s2.powi(2);
     }
     if square > error { error / square } else { 1.0 }
-}
-
-impl Nuisance<'_> {
-    fn columns(&self) -> usize {
-        let taught = self.baseline.map_or(0, |baseline| baseline.factor().nrows());
-        let deck = if self.baseline.is_none() && self.deck { DECK_TERMS } else { 0 };
-        taught
-            + deck
-            + if self.chords { 2 } else { 0 }
-            + 1
-            + self.table.map_or(0, TableUncertainty::rank)
-    }
 }

@@ -9,17 +9,9 @@ use statrs::function::erf::erfc;
 use crate::hypotheses::backgrounds::Background;
 use crate::library::Library;
 use crate::math::mixture::{Evidence, Factored, Mixture};
-
-/// Degrees of freedom of the prior of the noise scale.
-pub(crate) const NOISE_FREEDOM: f64 = 40.0;
-/// Prior probability of no effect, one, two.
-const PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25];
-/// Prior standard deviations of a free effect, of its typical size, and how probable each is.
-const PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)];
-/// Prior probability of the sign that physics expects.
-const EXPECTED_SIGN: f64 = 0.95;
-/// Sizes of flight-to-flight scatter that are tried, per cent of fuel flow.
-pub(crate) const HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4];
+use crate::priors::{
+    EXPECTED_SIGN, HEATING_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
+};
 
 /// What a model is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,7 +103,8 @@ impl Scorer {
         0.5 * (NOISE_FREEDOM + self.rows)
     }
 
-    /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters.
+    /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters. Over all models the priors
+    /// sum to one.
     pub(crate) fn ln_prior(&self, model: &Model) -> f64 {
         let size = model.columns.len() + usize::from(model.heating_percent.is_some());
         let count = self.effects as f64;
@@ -127,7 +120,8 @@ impl Scorer {
         } else {
             0.0
         };
-        PRIOR_BY_SIZE[size.min(2)].ln() - f64::ln(choices) - hidden - heating
+        let share = PRIOR_BY_SIZE[size.min(2)] / PRIOR_BY_SIZE.iter().sum::<f64>();
+        share.ln() - f64::ln(choices) - hidden - heating
     }
 
     pub(crate) fn none(&self, at: &Background) -> f64 {
@@ -251,6 +245,32 @@ pub(crate) fn sign_factor(positive: bool, t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Every hypothesis: none, one of three effects (one of them with two columns, one of them scatter), every pair.
+    #[test]
+    fn prior_masses_sum_to_one() {
+        let prior = Prior { mean: 0.0, scales: [(1.0, 0.0); 2], count: 1, positive: false };
+        let scorer = Scorer {
+            priors: vec![prior; 3],
+            effect_of: vec![0, 1, 1],
+            ln_columns: vec![0.0, 2.0_f64.ln()],
+            effects: 3,
+            rows: 10.0,
+        };
+        let mass = |columns: &[usize], heating_percent: Option<f64>| {
+            scorer.ln_prior(&Model { columns: columns.to_vec(), heating_percent }).exp()
+        };
+        let mut total: f64 = [&[][..], &[0], &[1], &[2], &[0, 1], &[0, 2]]
+            .into_iter()
+            .map(|columns| mass(columns, None))
+            .sum();
+        for percent in HEATING_SIZES_PERCENT {
+            for columns in [&[][..], &[0], &[1], &[2]] {
+                total += mass(columns, Some(percent));
+            }
+        }
+        assert!((total - 1.0).abs() < 1e-12, "{total}");
+    }
 
     #[test]
     fn signs_by_the_normal_table() {

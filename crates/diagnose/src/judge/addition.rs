@@ -7,9 +7,7 @@ use crate::hypotheses::evidence::Scored;
 use crate::library::Library;
 use crate::output::addition::{AddedEffect, Addition};
 use crate::search::analyse::Analysis;
-
-/// A flight-to-flight scatter is known to about this share of itself.
-const SCATTER_SHARE: f64 = 0.5;
+use crate::thresholds::SCATTER_SHARE;
 
 impl Addition {
     /// The effects `names` with the sizes that they have in the most probable model of exactly these; `None` where the

@@ -1,13 +1,12 @@
 //! How far the gap shrinks: choice and fit on four fifths of the flights, judged on the rest.
 
-use crate::judge::thresholds::{CLEAN_PROBABILITY, SMALLEST_GAP};
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::search::analyse::{Analysis, analyse};
-use crate::search::folds::FOLDS;
 use crate::search::folds::fold_of;
 use crate::search::refine::{effects_of, refine};
 use crate::search::system::Problem;
+use crate::thresholds::{CLEAN_PROBABILITY, CLOSURE_FOLDS, SMALLEST_GAP};
 
 /// Stream of random numbers behind the interval of closure.
 const CLOSURE_STREAM: u64 = 3;
@@ -82,7 +81,7 @@ pub(crate) fn in_sample(
 /// Before and after on flights that neither choice nor fit has seen.
 pub(crate) fn nested(problem: Problem<'_>, noise_scale: f64, seed: u64) -> Shrinkage {
     let choices: Vec<(Vec<usize>, Vec<f64>)> =
-        (0..FOLDS).map(|fold| chosen(problem, fold).unwrap_or_default()).collect();
+        (0..CLOSURE_FOLDS).map(|fold| chosen(problem, fold).unwrap_or_default()).collect();
     shrinkage(problem, noise_scale, seed, |fold| choices[fold].clone())
 }
 

@@ -2,14 +2,17 @@
 
 use statrs::function::erf::erfc;
 
-use crate::hypotheses::evidence::{NOISE_FREEDOM, Scored};
+use crate::hypotheses::evidence::Scored;
 use crate::judge::closure::Shrinkage;
 use crate::judge::posterior::Posterior;
-use crate::judge::thresholds::{CLEAN_PROBABILITY, NORMAL_95, OUTSIDE_PROBABILITY, SMALLEST_GAP};
 use crate::output::Gap;
+use crate::priors::NOISE_FREEDOM;
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
 use crate::search::system::Stacked;
+use crate::thresholds::{
+    CLEAN_PROBABILITY, MORE_PROBABLE_THAN_NOT, NORMAL_95, OUTSIDE_PROBABILITY, SMALLEST_GAP,
+};
 
 /// Whether there is more than noise: either nothing at all is improbable beside the library, or nothing outside it is.
 pub(crate) fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
@@ -50,7 +53,9 @@ pub(crate) fn is_vague(
     makes_worse: bool,
 ) -> bool {
     outside.probability <= OUTSIDE_PROBABILITY
-        && top.is_none_or(|top| top.probability * (1.0 - outside.probability) < 0.5)
+        && top.is_none_or(|top| {
+            top.probability * (1.0 - outside.probability) < MORE_PROBABLE_THAN_NOT
+        })
         && (gap.rms_ci95[0] <= gap.noise_floor_rms_percent || makes_worse)
 }
 

@@ -2,18 +2,12 @@
 
 use crate::judge::closure::Shrinkage;
 use crate::library::Library;
-use crate::search::folds::FOLDS;
 use crate::search::folds::fold_of;
 use crate::search::system::Stacked;
-
-/// Two successive segments of a flight are replicates when Mach number and pressure altitude differ by no more.
-const ALIKE_MACH: f64 = 0.02;
-const ALIKE_ALTITUDE_M: f64 = 100.0;
-/// Fewest pairs of replicates that a variance is told from.
-const FEWEST_PAIRS: usize = 20;
-/// Prior standard deviation of an effect in the flexible model, of its typical size, and of its smooth functions, relative.
-const FLEXIBLE_EFFECT: f64 = 3.0;
-const FLEXIBLE_SMOOTH: f64 = 0.004;
+use crate::thresholds::{
+    CLOSURE_FOLDS, FEWEST_REPLICATES, FLEXIBLE_EFFECT, FLEXIBLE_SMOOTH, REPLICATE_ALTITUDE_M,
+    REPLICATE_MACH,
+};
 
 /// Mean square of the noise, the part within a flight by replicates, the part between flights as propagated; `None` for too
 /// few replicates.
@@ -31,15 +25,15 @@ pub(crate) fn replicate_floor(
     for flight in &data.flights {
         for index in flight.segments.clone().skip(1) {
             let (a, b) = (&data.segments[index - 1].point, &data.segments[index].point);
-            if (a.mach - b.mach).abs() <= ALIKE_MACH
-                && (a.pressure_altitude_m - b.pressure_altitude_m).abs() <= ALIKE_ALTITUDE_M
+            if (a.mach - b.mach).abs() <= REPLICATE_MACH
+                && (a.pressure_altitude_m - b.pressure_altitude_m).abs() <= REPLICATE_ALTITUDE_M
             {
                 sum += (own.left[index] - own.left[index - 1]).powi(2);
                 pairs += 1;
             }
         }
     }
-    if pairs < FEWEST_PAIRS {
+    if pairs < FEWEST_REPLICATES {
         return None;
     }
     let common: f64 = data
@@ -62,7 +56,7 @@ pub(crate) fn held_out_floor(stacked: &Stacked<'_>, library: &Library) -> Option
         .chain(design.smooth.clone().map(|column| (column, FLEXIBLE_SMOOTH)))
         .unzip();
     let mut sum = 0.0;
-    for fold in 0..FOLDS {
+    for fold in 0..CLOSURE_FOLDS {
         let gram = stacked.gram(Some(fold));
         let sizes = gram.fit(&columns, &deviations, design.residual())?;
         for (index, flight) in stacked.data.flights.iter().enumerate() {

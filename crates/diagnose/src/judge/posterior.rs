@@ -5,12 +5,14 @@ use flight::effect::EffectId;
 use crate::advice::distances::Distances;
 use crate::hypotheses::evidence::Scored;
 use crate::judge::closure::Shrinkage;
-use crate::judge::thresholds::NORMAL_95;
 use crate::library::Library;
 use crate::output::{Cause, Magnitude};
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
 use crate::search::system::Stacked;
+use crate::thresholds::{
+    FEWEST_CAUSES, LEAST_LISTED, LISTED_PROBABILITY, NORMAL_95, SCATTER_INTERVAL,
+};
 
 /// An effect with its posterior.
 #[derive(Clone, Debug)]
@@ -102,7 +104,9 @@ pub(crate) fn causes(
     let mut sum = 0.0;
     let mut causes = Vec::new();
     for posterior in posteriors {
-        if causes.len() >= 3 && (sum > 0.995 * named || posterior.probability < 1e-3) {
+        if causes.len() >= FEWEST_CAUSES
+            && (sum > LISTED_PROBABILITY * named || posterior.probability < LEAST_LISTED)
+        {
             break;
         }
         sum += posterior.probability;
@@ -132,7 +136,7 @@ fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
         return Magnitude {
             value: percent,
             unit: EffectId::FuelHeatingValue.entry().unit.to_owned(),
-            ci95: [0.5 * percent, 2.0 * percent],
+            ci95: SCATTER_INTERVAL.map(|factor| factor * percent),
         };
     };
     let value = posterior.model.sizes[posterior.place];

@@ -5,19 +5,18 @@ use effects::EffectPoint;
 use crate::library::Library;
 use crate::output::{Diagnosis, Gap, OutsideLibrary, Verdict, VerdictKind};
 use crate::residuals::segments::Data;
-
-/// Fewest flights and segments that a name is given on.
-const FEWEST_FLIGHTS: usize = 6;
-const FEWEST_SEGMENTS: usize = 30;
+use crate::thresholds::{FEWEST_FLIGHTS_OF_A_NAME, FEWEST_SEGMENTS_OF_A_NAME, LEAST_SPREADS};
 
 /// Why the data is too little for any name.
 pub(crate) fn too_little(data: &Data<'_>, library: &Library) -> Option<String> {
     let (flights, segments) = (data.flights.len(), data.segments.len());
-    if flights < FEWEST_FLIGHTS {
-        return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS} are needed"));
+    if flights < FEWEST_FLIGHTS_OF_A_NAME {
+        return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS_OF_A_NAME} are needed"));
     }
-    if segments < FEWEST_SEGMENTS {
-        return Some(format!("{segments} segments, at least {FEWEST_SEGMENTS} are needed"));
+    if segments < FEWEST_SEGMENTS_OF_A_NAME {
+        return Some(format!(
+            "{segments} segments, at least {FEWEST_SEGMENTS_OF_A_NAME} are needed"
+        ));
     }
     if library.effects.is_empty() {
         return Some("no effect of the library can be tested".to_owned());
@@ -31,10 +30,11 @@ pub(crate) fn too_little(data: &Data<'_>, library: &Library) -> Option<String> {
         high - low
     };
     let conditions = [
-        spread(&|p| p.mach) > 1e-3,
-        spread(&|p| p.pressure_altitude_m) > 30.0,
-        spread(&|p| p.mass_kg / p.mass_kg.max(1.0)) > 0.0 || spread(&|p| p.mass_kg) > 1.0,
-        spread(&|p| p.static_air_temperature_k) > 0.1,
+        spread(&|p| p.mach) > LEAST_SPREADS[0],
+        spread(&|p| p.pressure_altitude_m) > LEAST_SPREADS[1],
+        spread(&|p| p.mass_kg / p.mass_kg.max(1.0)) > 0.0
+            || spread(&|p| p.mass_kg) > LEAST_SPREADS[2],
+        spread(&|p| p.static_air_temperature_k) > LEAST_SPREADS[3],
     ];
     if conditions.iter().filter(|varied| **varied).count() < 2 {
         return Some("all segments were flown at the same conditions".to_owned());

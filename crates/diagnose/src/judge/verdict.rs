@@ -6,18 +6,12 @@ use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
 use crate::judge::posterior::{Posterior, class_of, name_of};
-use crate::judge::thresholds::OUTSIDE_PROBABILITY;
 use crate::library::Library;
 use crate::output::{Separation, Verdict, VerdictKind};
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
 use crate::search::system::Problem;
-
-/// Shares of the explainable gap between which a named set that an agnostic function improves upon passes from "something
-/// else" to "this effect in another form". Their middle, nine tenths, is where the verdict turns.
-const OTHER_FORM: [f64; 2] = [0.8, 1.0];
-/// Probability that the credible set of effects holds.
-const CREDIBLE: f64 = 0.95;
+use crate::thresholds::{CREDIBLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY};
 
 /// Share of the explainable gap that the leading set closes, with its interval: on unseen flights; on the same ones where the
 /// gap is too small for that; `None` where it is too small for either.
@@ -101,7 +95,7 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<String>) -> Verdi
     let variable = outside.variable.map_or("no variable", |(variable, _)| variable.words());
     let closed = closed(unseen, own);
     if outside.probability > OUTSIDE_PROBABILITY
-        || (smooth_term > OUTSIDE_PROBABILITY && named < 0.5)
+        || (smooth_term > OUTSIDE_PROBABILITY && named < MORE_PROBABLE_THAN_NOT)
     {
         verdict.kind = VerdictKind::OutsideLibrary;
         verdict.probability = outside.probability.max(1.0 - named);
@@ -173,7 +167,7 @@ fn credible(posteriors: &[Posterior]) -> impl Iterator<Item = &Posterior> {
 fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String> {
     let (best, probability) = &analysis.models[0];
     let mut names = vec![name_of(library, top.effect)];
-    if *probability > 0.5 {
+    if *probability > MORE_PROBABLE_THAN_NOT {
         let members = best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
         let scatter = best.model.heating_percent.map(|_| None);
         for member in members.chain(scatter) {

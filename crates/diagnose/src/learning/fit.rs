@@ -5,30 +5,27 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
-use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::baseline::{Baseline, lower_triangle};
-use crate::learning::moments::FOLDS;
 use crate::learning::moments::{KINDS, LeftOut, Moments, Part};
 use crate::math::cholesky::Cholesky;
+use crate::priors::{
+    DIAL_LIMITS, REMAINDER_SCALE_LN_DEVIATION, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
+};
 use crate::residuals::segments::Data;
-use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::references::DiagnoseError;
+use crate::thresholds::LEARNING_FOLDS;
 
-/// Usual noise over the handbook's, and its spread: factors of 0.3 to 0.55 were seen on simulated fleets.
-const USUAL_NOISE: f64 = 0.5;
-const USUAL_NOISE_LN_DEVIATION: f64 = 0.5;
-/// Spread of the sizes of hat functions and products about their defaults.
-const SCALE_LN_DEVIATION: f64 = 1.0;
 /// Rounds over all dials, the first of them coarse.
 const ROUNDS: usize = 12;
+/// Rounds of coarse steps. Our choice: a bound on time.
 const COARSE_ROUNDS: usize = 4;
+/// Factor of a coarse step. Our choice: five steps are a factor of about ten.
 const COARSE_STEP: f64 = 1.6;
+/// Factor of a fine step. Our choice: noise need not be known better than to a tenth.
 const FINE_STEP: f64 = 1.1;
 /// Dials: noise within flights and between flights of three kinds of channels, sizes of hat functions and of products.
 const DIALS: usize = 8;
-/// Limits of every dial: what a few flights say is not believed beyond them.
-const NOISE_LIMITS: (f64, f64) = (0.03, 10.0);
 
 /// Coarse and fine steps that every dial is from its start: equal positions are equal settings.
 type Position = [(i32, i32); DIALS];
@@ -91,7 +88,7 @@ impl Baseline {
             _ => &mut self.parts.scales[dial - 6],
         };
         let turned = *value * by;
-        let (low, high) = NOISE_LIMITS;
+        let (low, high) = DIAL_LIMITS;
         let inside = turned >= low && turned <= high;
         if inside {
             *value = turned;
@@ -110,7 +107,7 @@ impl Baseline {
     pub(super) fn inflate(&mut self, moments: &Moments) {
         let mut errors: [Vec<[f64; 3]>; KINDS] = [vec![], vec![], vec![]]; // squared error, known variance, between
         let all = moments.gram(&self.parts.noise, None);
-        for fold in 0..FOLDS {
+        for fold in 0..LEARNING_FOLDS {
             let judged: Vec<&LeftOut> =
                 moments.left_out.iter().filter(|flight| flight.fold == fold).collect();
             if judged.is_empty() {
@@ -136,7 +133,7 @@ impl Baseline {
                 ]);
             }
         }
-        let (low, high) = NOISE_LIMITS;
+        let (low, high) = DIAL_LIMITS;
         for (kind, errors) in errors.iter().enumerate() {
             if errors.is_empty() {
                 continue;
@@ -182,17 +179,14 @@ impl Baseline {
         let (solution, factor) = self.posterior(&gram).ok_or(DiagnoseError::Degenerate)?;
         let mut covariance = Mat::<f64>::identity(width, width);
         factor.solve(&mut covariance);
-        let terms = self.parts.mean.len();
-        for k in 0..terms {
-            self.parts.mean[k] = solution[(k, 0)];
-        }
-        for k in 0..DECK_TERMS {
-            self.parts.deck_coefficients[k] =
-                data.predictor.deck.coefficients[k] + solution[(terms + k, 0)];
-        }
-        for k in 0..ENVIRONMENT.len() {
-            self.parts.environment[k] = solution[(terms + DECK_TERMS + k, 0)];
-        }
+        let layout = self.layout();
+        let found = |column: usize| solution[(column, 0)];
+        let means = layout.remainder.chain(layout.contrasts);
+        self.parts.mean = means.map(found).collect();
+        let deck = layout.deck.zip(&data.predictor.deck.coefficients);
+        self.parts.deck_coefficients =
+            deck.map(|(column, coefficient)| coefficient + found(column)).collect();
+        self.parts.environment = layout.standing_effects.map(found).collect();
         // A covariance inverted in floating point may miss definiteness by rounding; a hair on the diagonal mends it.
         for k in 0..width {
             covariance[(k, k)] *= 1.0 + 1e-12;
@@ -284,7 +278,7 @@ impl Baseline {
                 .parts
                 .scales
                 .into_iter()
-                .map(|scale| of(scale, 1.0, SCALE_LN_DEVIATION))
+                .map(|scale| of(scale, 1.0, REMAINDER_SCALE_LN_DEVIATION))
                 .sum::<f64>()
     }
 }

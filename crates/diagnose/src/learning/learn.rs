@@ -8,13 +8,14 @@ use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::baseline::{Baseline, Parts};
 use crate::learning::moments::Moments;
 use crate::library::Library;
+use crate::priors::REMAINDER_QUANTILES;
 use crate::residuals::reference::Against;
 use crate::residuals::segments::Data;
-use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::variables::{Hats, Scaled, Variable};
+use crate::thresholds::FEWEST_FLIGHTS_OF_A_BASELINE;
 
 /// Variables of the remainder.
 const VARIABLES: [Variable; 6] = [
@@ -28,10 +29,9 @@ const VARIABLES: [Variable; 6] = [
 /// Variables that the remainder may bend along differently at each Mach number: drag rises locally, and so does thrust.
 const LOCAL_VARIABLES: [Variable; 3] =
     [Variable::LiftCoefficient, Variable::CorrectedThrust, Variable::PressureAltitude];
-const QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0];
+/// How often the scatter between flights is raised. Our choice: raising it changes the fit that it is judged by, so that once is
+/// not enough.
 const INFLATIONS: usize = 3;
-/// Fewest flights that teach a remainder.
-const FEWEST_FLIGHTS: usize = 5;
 
 impl Baseline {
     /// Learns from clean flights against a model and a drag table (its own, or the adapted one).
@@ -53,9 +53,12 @@ impl Baseline {
                 Library::of(&effect_model, points, engines, starts, |_| false)
             },
         );
-        if data.flights.len() < FEWEST_FLIGHTS {
+        if data.flights.len() < FEWEST_FLIGHTS_OF_A_BASELINE {
             let found = data.flights.len();
-            return Err(DiagnoseError::TooFewFlights { found, needed: FEWEST_FLIGHTS });
+            return Err(DiagnoseError::TooFewFlights {
+                found,
+                needed: FEWEST_FLIGHTS_OF_A_BASELINE,
+            });
         }
         let mut baseline = Self::prior(&data, &references);
         let moments = Moments::of(&baseline, &data);
@@ -78,7 +81,7 @@ impl Baseline {
         };
         let hats: Vec<_> = VARIABLES
             .into_iter()
-            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &QUANTILES)?)))
+            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &REMAINDER_QUANTILES)?)))
             .collect();
         let mut products = Vec::new();
         for (k, a) in VARIABLES.into_iter().enumerate() {
@@ -111,10 +114,9 @@ impl Baseline {
             rms: f64::NAN,
         };
         let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
-        let means = baseline.remainder_terms() + baseline.parts.contrasts;
-        let width = means + DECK_TERMS + ENVIRONMENT.len();
-        baseline.parts.mean = vec![0.0; means];
-        baseline.factor = Mat::zeros(width, width);
+        let layout = baseline.layout();
+        baseline.parts.mean = vec![0.0; layout.contrasts.end];
+        baseline.factor = Mat::zeros(layout.len(), layout.len());
         baseline
     }
 }

@@ -15,7 +15,6 @@
 use faer::Mat;
 
 use crate::baseline::Baseline;
-use crate::baseline::standing_effects::ENVIRONMENT;
 use crate::math::cholesky::factor_and_project;
 use crate::math::linear::{subtract_gram, symmetrize};
 use crate::residuals::rows::SegmentRow;
@@ -23,9 +22,7 @@ use crate::residuals::segments::Data;
 use crate::residuals::whiten::whiten_within_segment;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 use crate::signals::noise::NoiseFactors;
-
-/// Folds of flights that the scatter between flights is judged on, and rounds of it.
-pub(crate) const FOLDS: usize = 10;
+use crate::thresholds::LEARNING_FOLDS;
 
 /// Kinds of channels: fuel flow, engine against engine, N2.
 pub(super) const KINDS: usize = 3;
@@ -171,10 +168,10 @@ impl Part {
                 recorded[kind_of[channel]] += usize::from(row.is_recorded[channel]);
             }
         }
-        let folds: Vec<Within> = (0..FOLDS)
+        let folds: Vec<Within> = (0..LEARNING_FOLDS)
             .map(|fold| {
                 let rows: Vec<&Row> =
-                    rows.iter().filter(|row| row.flight % FOLDS == fold).collect();
+                    rows.iter().filter(|row| row.flight % LEARNING_FOLDS == fold).collect();
                 Within::of(&rows, &channels, kind_of, &columns)
             })
             .collect();
@@ -211,7 +208,7 @@ impl Part {
             .flights
             .iter()
             .enumerate()
-            .filter(|(flight, _)| fold.is_none_or(|fold| flight % FOLDS == fold))
+            .filter(|(flight, _)| fold.is_none_or(|fold| flight % LEARNING_FOLDS == fold))
             .map(|(_, common)| common)
             .collect();
         let mut explained =
@@ -397,7 +394,7 @@ fn left_out(data: &Data<'_>, rows: &[Row]) -> Vec<LeftOut> {
             }
             let width = rows.first().map_or(0, |row| row.raw.len() - 1);
             let mut mean = LeftOut {
-                fold: flight % FOLDS,
+                fold: flight % LEARNING_FOLDS,
                 kind: data.channels.kind(channel),
                 residual: 0.0,
                 loading: vec![0.0; width],
@@ -425,28 +422,27 @@ fn left_out(data: &Data<'_>, rows: &[Row]) -> Vec<LeftOut> {
 impl Baseline {
     /// Raw values of every column and, last, the residual.
     fn raw_row(&self, data: &Data<'_>, row: &SegmentRow) -> Vec<[f64; MAXIMUM_CHANNELS]> {
-        let terms = self.remainder_terms();
-        let mut remainder = vec![0.0; terms];
+        let layout = self.layout();
+        let mut remainder = vec![0.0; layout.remainder.len()];
         self.write_remainder(&row.response, &mut remainder);
-        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; self.factor.nrows() + 1];
-        for (slot, value) in raw.iter_mut().zip(&remainder) {
+        let mut raw = vec![[0.0; MAXIMUM_CHANNELS]; layout.len() + 1];
+        for (slot, value) in raw[layout.remainder].iter_mut().zip(&remainder) {
             slot[0] = *value;
         }
-        for contrast in 1..=self.parts.contrasts {
+        for (slot, contrast) in raw[layout.contrasts].iter_mut().zip(1..) {
             if row.is_recorded[contrast] {
-                raw[terms + contrast - 1][contrast] = 1.0;
+                slot[contrast] = 1.0;
             }
         }
         if data.channels.n2 {
             let channel = data.channels.n2_row();
             if row.is_recorded[channel] {
-                for (k, term) in row.deck.into_iter().enumerate() {
-                    raw[terms + self.parts.contrasts + k][channel] = term;
+                for (slot, term) in raw[layout.deck].iter_mut().zip(row.deck) {
+                    slot[channel] = term;
                 }
             }
         }
-        let environment = self.factor.nrows() - ENVIRONMENT.len();
-        raw[environment..environment + ENVIRONMENT.len()].copy_from_slice(&row.environment);
+        raw[layout.standing_effects].copy_from_slice(&row.environment);
         if let Some(last) = raw.last_mut() {
             *last = row.residual;
         }
@@ -566,7 +562,7 @@ mod tests {
             let moments = Moments { parts, left_out: Vec::new(), columns: COLUMNS };
             let all = moments.gram(&noise, None);
             let mut by_folds = Mat::<f64>::zeros(COLUMNS, COLUMNS);
-            for fold in 0..FOLDS {
+            for fold in 0..LEARNING_FOLDS {
                 by_folds += moments.gram(&noise, Some(fold));
             }
             for i in 0..COLUMNS {

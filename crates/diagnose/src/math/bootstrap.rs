@@ -2,9 +2,7 @@
 
 use crate::math::quantile::central_95;
 use crate::math::random::RandomStream;
-
-/// Resamples behind an interval.
-const RESAMPLES: usize = 1000;
+use crate::thresholds::RESAMPLES;
 
 /// 95 % interval of a ratio of sums over groups, groups drawn with replacement; `ratio` divides the two sums.
 pub(crate) fn interval_95(

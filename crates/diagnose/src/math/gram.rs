@@ -8,7 +8,7 @@ use crate::math::linear::{add_gram, symmetrize};
 /// Rows that are multiplied together: a flight alone has too few for fast products.
 const WAITING_ROWS: usize = 384;
 
-/// Gram matrix of all columns, and the number of rows behind it.
+/// Gram matrix of all columns, and the number of recorded values behind it.
 #[derive(Clone, Debug)]
 pub(crate) struct Gram {
     pub(crate) matrix: Mat<f64>,
@@ -33,9 +33,10 @@ impl Sum {
         }
     }
 
-    /// Adds a flight's whitened rows. They wait until there are many, whose products are made faster.
-    pub(crate) fn add(&mut self, rows: &Mat<f64>) {
-        self.gram.rows += rows.nrows();
+    /// Adds a flight's whitened rows, `recorded` of which hold a recorded value; the others are zero and count for nothing.
+    /// They wait until there are many, whose products are made faster.
+    pub(crate) fn add(&mut self, rows: &Mat<f64>, recorded: usize) {
+        self.gram.rows += recorded;
         if self.waiting_rows + rows.nrows() > self.waiting.nrows() {
             self.multiply_waiting();
         }

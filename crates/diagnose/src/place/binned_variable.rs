@@ -6,18 +6,12 @@ use effects::EffectReferences;
 
 use crate::residuals::rows::SegmentRow;
 use crate::signals::variables::Variable;
-
-/// Bins of a variable, at most.
-pub(crate) const BINS: usize = 5;
-/// Edges of the roll angle, degrees: most segments are flown wings level, so that quintiles would say nothing.
-const ROLL_EDGES_DEG: [f64; BINS - 1] = [0.3, 0.7, 1.5, 5.0];
-/// An edge may lie this far from its quintile, as a share of the segments, to be a number that reads well.
-const EDGE_TOLERANCE: f64 = 0.02;
+use crate::thresholds::{BINS, EDGE_TOLERANCE, ROLL_EDGES_DEG};
 
 /// A variable, the name of its bounds (a column, unit in the name), and its name and unit in words.
 type Entry = (Variable, &'static str, &'static str, &'static str);
 
-/// The variables of the specification but engine, in its order.
+/// Variables of regions but engine; of two that describe a region equally well, the earlier one is reported.
 const ENTRIES: [Entry; 16] = [
     (Variable::Mach, "mach", "mach", ""),
     (Variable::LiftCoefficient, "lift_coefficient", "lift_coefficient", ""),

@@ -107,22 +107,23 @@ impl Model {
     ) {
         let design = stacked.design;
         if let (Some(taught), Some(baseline)) = (&self.taught, design.baseline()) {
-            let count = baseline.remainder_terms();
-            terms.resize(count, 0.0);
+            let layout = baseline.layout();
+            terms.resize(layout.remainder.len(), 0.0);
             baseline.write_remainder(&row.response, terms);
-            for (k, &term) in terms.iter().enumerate().filter(|(_, term)| **term != 0.0) {
-                add(&mut into[0], taught.row(k), term);
+            let remainder = layout.remainder.zip(&*terms);
+            for (column, &term) in remainder.filter(|(_, term)| **term != 0.0) {
+                add(&mut into[0], taught.row(column), term);
             }
-            let contrasts = into.iter_mut().enumerate().skip(1).take(baseline.contrasts());
-            for (contrast, values) in contrasts.filter(|(contrast, _)| row.is_recorded[*contrast]) {
-                add(values, taught.row(count + contrast - 1), 1.0);
+            let contrasts = layout.contrasts.zip(into.iter_mut().enumerate().skip(1));
+            for (column, (contrast, values)) in contrasts {
+                if row.is_recorded[contrast] {
+                    add(values, taught.row(column), 1.0);
+                }
             }
-            // Behind remainder, split and deck: the environment, as the columns of the design are.
-            let first = taught.numbers.len() / taught.width - row.environment.len();
-            for (k, slope) in row.environment.iter().enumerate() {
+            for (column, slope) in layout.standing_effects.zip(&row.environment) {
                 for (channel, values) in into.iter_mut().enumerate() {
                     if slope[channel] != 0.0 {
-                        add(values, taught.row(first + k), slope[channel]);
+                        add(values, taught.row(column), slope[channel]);
                     }
                 }
             }

@@ -17,24 +17,16 @@ use crate::place::regions::{Candidate, Search, Series};
 use crate::search::analyse::Analysis;
 use crate::search::system::Stacked;
 use crate::signals::channels::MAXIMUM_CHANNELS;
+use crate::thresholds::{
+    FEWEST_FLIGHTS_OF_A_REGION, MOST_COMPARED, MOST_REGIONS, NEARLY_AS_LARGE, REGION_DRAWS,
+    REGION_P_VALUE,
+};
 
-/// Draws of noise: the first half for standard deviations, the second for the largest statistic.
-const DRAWS: usize = 400;
 /// Draws that are summed together.
 const GROUP: usize = 40;
-/// Places at most.
-const MOST: usize = 3;
-/// Probability of as large a statistic by noise alone, above which a place is not told.
-const SIGNIFICANT: f64 = 0.05;
-/// Fewest flights in a place.
-const FEWEST_FLIGHTS: usize = 3;
 /// Streams of random numbers: draws of noise, and resamples of flights behind intervals.
 const NOISE_STREAM: u64 = 1;
 const INTERVAL_STREAM: u64 = 2;
-/// Places whose statistic is at least this share of the largest are told apart by how well a step over them fits.
-const NEARLY: f64 = 0.9;
-/// At most as many of them.
-const MOST_COMPARED: usize = 200;
 /// Falls of χ² that differ by less are of one place and its complement.
 const EQUAL: f64 = 1e-6;
 
@@ -76,7 +68,7 @@ pub(crate) fn find(
     let told = Told { stacked, places: &places, gaps: &as_recorded, variances: &variances };
     let mut found = Vec::new();
     let mut everywhere = (1.0, None);
-    while found.len() < MOST {
+    while found.len() < MOST_REGIONS {
         let statistics = statistics(&search, &null, &left);
         if found.is_empty() {
             let level = search.candidates.iter().position(Candidate::is_everywhere);
@@ -86,7 +78,7 @@ pub(crate) fn find(
             break;
         };
         let p_value = null.p_value(statistics[index]);
-        if p_value > SIGNIFICANT {
+        if p_value > REGION_P_VALUE {
             break;
         }
         let candidate = &search.candidates[index];
@@ -96,7 +88,7 @@ pub(crate) fn find(
     if let (p_value, Some(index)) = everywhere
         && found.is_empty()
         && is_real
-        && p_value <= SIGNIFICANT
+        && p_value <= REGION_P_VALUE
     {
         let members: Vec<usize> = (0..data.segments.len()).collect();
         found.push(told.slice(&search.candidates[index], &members, p_value, seed));
@@ -139,19 +131,20 @@ fn null_of(
                     values[draw] = value;
                 }
             }
-            variances[segment] += channels[0].iter().map(|v| v * v).sum::<f64>() / DRAWS as f64;
+            variances[segment] +=
+                channels[0].iter().map(|v| v * v).sum::<f64>() / REGION_DRAWS as f64;
             search.add(&mut sums, segment, &values);
         });
         sums
     };
-    for _ in 0..DRAWS / 2 / GROUP {
+    for _ in 0..REGION_DRAWS / 2 / GROUP {
         let sums = group(source);
         search.for_each(&sums, |index, sums| {
             squares[index] += sums.iter().map(|sum| sum * sum).sum::<f64>();
         });
     }
-    let mut null = Null::of(&squares, DRAWS / 2);
-    for _ in 0..DRAWS / 2 / GROUP {
+    let mut null = Null::of(&squares, REGION_DRAWS / 2);
+    for _ in 0..REGION_DRAWS / 2 / GROUP {
         let sums = group(source);
         null.add(search, &sums);
     }
@@ -257,7 +250,7 @@ fn best(
         let segments = 0..told.gaps.total.len();
         segments.filter(|&k| search.candidates[*index].holds(told.places, k)).collect()
     };
-    let enough = |index: &usize| told.flights_of(&members(index)) >= FEWEST_FLIGHTS;
+    let enough = |index: &usize| told.flights_of(&members(index)) >= FEWEST_FLIGHTS_OF_A_REGION;
     let first = order.iter().copied().find(enough)?;
     if search.candidates[first].series != Series::FuelFlow {
         return Some((first, members(&first)));
@@ -265,7 +258,7 @@ fn best(
     let compared: Vec<usize> = order
         .into_iter()
         .skip_while(|&index| index != first)
-        .take_while(|&index| statistics[index] >= NEARLY * statistics[first])
+        .take_while(|&index| statistics[index] >= NEARLY_AS_LARGE * statistics[first])
         .filter(|&index| search.candidates[index].series == Series::FuelFlow)
         .filter(enough)
         .take(MOST_COMPARED)

@@ -1,11 +1,7 @@
 //! Sums over all places at once, by prefix sums over bins.
 
-use crate::place::binned_variable::{BINS, Place};
-
-/// Smallest and largest share of the segments that a place may hold.
-const SHARES: [f64; 2] = [0.05, 0.70];
-/// How much a second condition must raise the statistic.
-const SECOND_CONDITION: f64 = 1.15;
+use crate::place::binned_variable::Place;
+use crate::thresholds::{BINS, REGION_SHARES, SECOND_CONDITION};
 
 /// What is summed: fuel flow about its mean, or one engine's difference from the mean of all, as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,7 +119,8 @@ impl<'a> Search<'a> {
                     .map(|cell| counts[cell])
                     .sum();
                 let share = count as f64 / self.segments as f64;
-                if variables[0].is_some() && !(SHARES[0]..=SHARES[1]).contains(&share) {
+                if variables[0].is_some() && !(REGION_SHARES[0]..=REGION_SHARES[1]).contains(&share)
+                {
                     continue;
                 }
                 let ranges = [

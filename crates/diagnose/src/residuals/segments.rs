@@ -267,6 +267,14 @@ impl<'a> Data<'a> {
         })
     }
 
+    /// Values that were recorded in a flight: channels of its segments, and gauges. A channel that is not recorded in a
+    /// segment has a row of zeros, which is no value.
+    pub(crate) fn recorded_values(&self, flight: &FlightRows) -> usize {
+        let segments = &self.segments[flight.segments.clone()];
+        let recorded = |row: &SegmentRow| row.is_recorded.iter().filter(|&&is| is).count();
+        segments.iter().map(recorded).sum::<usize>() + usize::from(flight.gauge.is_some())
+    }
+
     pub(crate) fn columns(&self) -> usize {
         self.segments.first().map_or(0, |row| row.signatures.len())
     }

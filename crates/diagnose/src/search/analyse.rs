@@ -1,18 +1,15 @@
 //! One search, the leading models refined: the posterior that the verdict reads.
 
 use crate::hypotheses::backgrounds::{Background, Smoothed, backgrounds, diagonals, smoothed};
-use crate::hypotheses::evidence::{HEATING_SIZES_PERCENT, Scored, Scorer};
+use crate::hypotheses::evidence::{Scored, Scorer};
 use crate::math::eliminate::Reduced;
 use crate::math::gram::Gram;
 use crate::math::mixture::ln_sum;
+use crate::priors::HEATING_SIZES_PERCENT;
 use crate::search::refine::{Relinearised, refine};
 use crate::search::singles::{search_all, search_flight_scatter};
 use crate::search::system::{Problem, SmoothTerms, Space};
-
-/// Models that are refined.
-const REFINED: usize = 5;
-/// Models less probable than this are not worth refining.
-const WORTH_REFINING: f64 = 1e-4;
+use crate::thresholds::{REFINED, WORTH_REFINING};
 
 /// The posterior over models.
 pub(crate) struct Analysis {

@@ -3,20 +3,18 @@
 use faer::Mat;
 
 use crate::math::gram::Gram;
-
-/// Folds for everything that is judged on flights it has not seen.
-pub(crate) const FOLDS: usize = 5;
+use crate::thresholds::CLOSURE_FOLDS;
 
 /// Grams of all folds but one, made when first asked for.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Folds {
     each: core::cell::OnceCell<Vec<Gram>>,
-    sums: [core::cell::OnceCell<Gram>; FOLDS],
+    sums: [core::cell::OnceCell<Gram>; CLOSURE_FOLDS],
 }
 
 /// Fold of a flight by its place in the order of flying.
 pub(crate) const fn fold_of(flight: usize) -> usize {
-    flight % FOLDS
+    flight % CLOSURE_FOLDS
 }
 
 impl Folds {

@@ -7,18 +7,11 @@ use crate::library::Library;
 use crate::math::eliminate::{Changed, Reduced, integrate_few_out, integrate_out};
 use crate::math::linear::gather;
 use crate::math::mixture::ln_sum;
+use crate::priors::{AGNOSTIC_AMPLITUDES, AGNOSTIC_SPIKES, PRIOR_OUTSIDE};
 use crate::search::analyse::Analysis;
 use crate::search::system::Stacked;
 use crate::signals::variables::Variable;
-
-/// Prior probability that something outside the library acts.
-const PRIOR_OUTSIDE: f64 = 0.20;
-/// Amplitudes of an agnostic function, shares of fuel flow.
-const AMPLITUDES: [f64; 3] = [0.002, 0.005, 0.015];
-/// Spikes of every library effect behind it.
-const SPIKES: [f64; 2] = [0.0, 0.10];
-/// Named sets that agnostic functions are added to.
-const SETS: usize = 10;
+use crate::thresholds::AGNOSTIC_SETS;
 
 /// What the competition says.
 #[derive(Clone, Debug)]
@@ -54,7 +47,7 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
     let none =
         Scored { model: empty, ln_weight: 0.0, sizes: vec![], deviations: vec![], background: 0 };
     let mut sets: Vec<&Scored> =
-        core::iter::once(&none).chain(named_models(analysis).take(SETS)).collect();
+        core::iter::once(&none).chain(named_models(analysis).take(AGNOSTIC_SETS)).collect();
     add_singles(&mut sets, analysis, library);
     let mut weights = Weights { named: Vec::new(), agnostic: Vec::new() };
     for set in &sets {
@@ -172,7 +165,7 @@ impl Weights {
     ) {
         let &NamedSet { model, level, shifts, ln_share } = set;
         let prior = scorer.ln_prior(model) + ln_share;
-        for spike in SPIKES {
+        for spike in AGNOSTIC_SPIKES {
             let Some(under) = spiked(stacked, library, level, &model.columns, spike) else {
                 continue;
             };
@@ -187,9 +180,9 @@ impl Weights {
                 None => effect.map(Companion::Effect),
             };
             let blocks = stacked.design.blocks.len();
-            let share = (AMPLITUDES.len() * blocks).max(1) as f64;
+            let share = (AGNOSTIC_AMPLITUDES.len() * blocks).max(1) as f64;
             for block in 0..blocks {
-                for amplitude in AMPLITUDES {
+                for amplitude in AGNOSTIC_AMPLITUDES {
                     let ln = under.evidence(scorer, Some((block, amplitude)), shifts);
                     let ln = prior + PRIOR_OUTSIDE.ln() - share.ln() + ln;
                     self.agnostic.push(Agnostic { ln, block, beside });

@@ -5,8 +5,9 @@
 //! whose evidence is below what any posterior could show is dropped before its first logarithm.
 
 use crate::hypotheses::backgrounds::Background;
-use crate::hypotheses::evidence::{Model, NOISE_FREEDOM, Scored, Scorer, sign_factor};
+use crate::hypotheses::evidence::{Model, Scored, Scorer, sign_factor};
 use crate::math::vector_ln_exp::{exp, ln};
+use crate::priors::NOISE_FREEDOM;
 
 /// A model this much less probable than the best one, in ln, is left out: all together they hold less than 1e-13.
 const NEGLIGIBLE: f64 = 40.0;

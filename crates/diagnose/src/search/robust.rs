@@ -2,13 +2,11 @@
 
 use crate::library::Library;
 use crate::math::quantile::{QuantileType, quantile};
+use crate::priors::{ROBUST_EFFECT, ROBUST_SMOOTH, STUDENT_FREEDOM};
 use crate::search::analyse::Analysis;
 use crate::search::system::Stacked;
+use crate::thresholds::{HEAVY_KURTOSIS, LEAST_ROBUST_SCALE};
 
-/// Kurtosis of whitened residuals above which weights are used; 3 for normal ones.
-const HEAVY: f64 = 4.0;
-/// Degrees of freedom of the Student distribution behind the weights.
-const STUDENT: f64 = 4.0;
 /// Median of |x| over the standard deviation of a normal distribution, inverted.
 const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 
@@ -17,7 +15,7 @@ const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 /// ```text
 /// w = min(1, √(5/(4 + e²/s²))),  e the largest whitened residual of the segment, s their robust scale   [diagnosis.21]
 /// ```
-pub(crate) fn weights(
+pub(crate) fn outlier_weights(
     stacked: &Stacked<'_>,
     analysis: &Analysis,
     library: &Library,
@@ -26,9 +24,11 @@ pub(crate) fn weights(
     let design = stacked.design;
     let (columns, deviations): (Vec<usize>, Vec<f64>) = best
         .iter()
-        .map(|&column| (column, 3.0 * library.effects[library.columns[column].effect].typical))
+        .map(|&column| {
+            (column, ROBUST_EFFECT * library.effects[library.columns[column].effect].typical)
+        })
         .chain(design.nuisance.clone().map(|column| (column, 1.0)))
-        .chain(design.smooth.clone().map(|column| (column, 0.0015)))
+        .chain(design.smooth.clone().map(|column| (column, ROBUST_SMOOTH)))
         .unzip();
     let gram = stacked.gram(None);
     let solution = gram.fit(&columns, &deviations, design.residual())?;
@@ -47,28 +47,101 @@ pub(crate) fn weights(
             }
         }
         left.truncate(flight.segments.len() * channels);
-        for segment in left.chunks(channels) {
+        for (segment, row) in left.chunks(channels).zip(&data.segments[flight.segments.clone()]) {
             worst.push(segment.iter().fold(0.0_f64, |largest, e| largest.max(e.abs())));
+            // What is not recorded left a zero, which is no small residual.
+            let recorded = segment.iter().zip(row.is_recorded).filter(|(_, recorded)| *recorded);
+            all.extend(recorded.map(|(e, _)| *e));
         }
-        all.append(&mut left);
     }
     let count = all.len() as f64;
     let second = all.iter().map(|e| e * e).sum::<f64>() / count;
     let fourth = all.iter().map(|e| e.powi(4)).sum::<f64>() / count;
     let kurtosis = fourth / (second * second);
-    if !kurtosis.is_finite() || kurtosis <= HEAVY {
+    if !kurtosis.is_finite() || kurtosis <= HEAVY_KURTOSIS {
         return None;
     }
     let mut sizes: Vec<f64> = all.iter().map(|e| e.abs()).collect();
     sizes.sort_by(f64::total_cmp);
-    let scale = (MEDIAN_TO_DEVIATION * quantile(&sizes, 0.5, QuantileType::UpperType1)).max(0.3);
+    let scale = (MEDIAN_TO_DEVIATION * quantile(&sizes, 0.5, QuantileType::UpperType1))
+        .max(LEAST_ROBUST_SCALE);
     Some(
         worst
             .into_iter()
             .map(|e| {
                 let z = e / scale;
-                ((STUDENT + 1.0) / (STUDENT + z * z)).sqrt().min(1.0)
+                ((STUDENT_FREEDOM + 1.0) / (STUDENT_FREEDOM + z * z)).sqrt().min(1.0)
             })
             .collect(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use effects::EffectModel;
+
+    use super::*;
+    use crate::hypotheses::design::Design;
+    use crate::residuals::reference::Against;
+    use crate::residuals::segments::Data;
+    use crate::search::analyse::analyse;
+    use crate::search::system::Problem;
+    use crate::signals::record::FlightRecord;
+    use crate::signals::references::references_of;
+    use flight::Segment;
+    use test_support::fleet::{Background, Setup, exact_model, fly};
+
+    /// Rows, sum of squares of whitened residuals, and whether outlier weights are used.
+    fn noise_of(flights: &[Vec<Segment>]) -> (usize, f64, bool) {
+        let model = exact_model();
+        let records: Vec<FlightRecord<'_>> =
+            flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
+        let references = references_of(&model, model.drag_table(), &records).unwrap();
+        let effects = EffectModel::new(&model, model.drag_table(), references).unwrap();
+        let (data, library) =
+            Data::prepare(&effects, &records, Against::Table, |points, engines, starts| {
+                Library::of(&effects, points, engines, starts, |_| true)
+            });
+        let design = Design::of(&data, &references, None, None);
+        let stacked = Stacked::of(&data, &design, None);
+        let gram = stacked.gram(None);
+        let square = gram.matrix[(design.residual(), design.residual())];
+        let problem = Problem { stacked: &stacked, model: &effects, library: &library };
+        let analysis = analyse(problem, None).unwrap();
+        (gram.rows, square, outlier_weights(&stacked, &analysis, &library).is_some())
+    }
+
+    /// By hand: rows and squares of flights with N2 and of flights without are those of each kind alone, added. A channel
+    /// that is not recorded is no perfect residual of zero.
+    #[test]
+    fn what_is_not_recorded_is_not_counted() {
+        let setup = Setup { flights: 24, ..Setup::default() };
+        let mut flights = fly(5, &setup, &[], &Background::default()).flights;
+        let with_n2 = 13;
+        for segment in flights[with_n2..].iter_mut().flatten() {
+            segment.means.n2_percent.clear();
+        }
+        let (rows, square, _) = noise_of(&flights);
+        let (rows_with, square_with, _) = noise_of(&flights[..with_n2]);
+        let (rows_without, square_without, _) = noise_of(&flights[with_n2..]);
+        let (found, by_hand) = (
+            square / rows as f64,
+            (square_with + square_without) / (rows_with + rows_without) as f64,
+        );
+        assert!((square / (square_with + square_without) - 1.0).abs() < 1e-9);
+        assert!((found / by_hand - 1.0).abs() < 1e-9, "{rows} rows: {found}, by hand {by_hand}");
+    }
+
+    /// Zeros of channels that are not recorded make normal residuals look as if they had heavy tails.
+    #[test]
+    fn what_is_not_recorded_is_no_heavy_tail() {
+        let setup = Setup { flights: 24, ..Setup::default() };
+        let mut flights = fly(5, &setup, &[], &Background::default()).flights;
+        assert!(!noise_of(&flights).2);
+        for segment in flights[13..].iter_mut().flatten() {
+            segment.means.n2_percent.clear();
+            segment.means.fuel_flow_engine_kg_s.clear();
+        }
+        assert!(!noise_of(&flights).2);
+    }
 }

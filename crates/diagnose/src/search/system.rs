@@ -10,17 +10,11 @@ use crate::library::Library;
 use crate::math::eliminate::{Changed, Elimination, Reduced};
 use crate::math::gram::{Gram, Sum};
 use crate::math::linear::{gather, subtract_gram, symmetrize};
+use crate::priors::{TAUGHT_LARGEST_AMPLITUDE, TAUGHT_SCATTERS};
 use crate::residuals::segments::Data;
-use crate::search::folds::{FOLDS, Folds, fold_of};
+use crate::search::folds::{Folds, fold_of};
+use crate::thresholds::{CLOSURE_FOLDS, TAUGHT_CLEAN_AMPLITUDE, TAUGHT_CLEAN_SPIKE};
 
-/// Scatter between flights beyond what a baseline learnt, relative: all integrated over.
-const TAUGHT_SCATTERS: [f64; 2] = [0.0, 0.003];
-/// Smooth discrepancy that a taught remainder may have, the smallest amplitude of the background.
-pub(crate) const TAUGHT_TAU: f64 = 0.0015;
-/// Largest smooth discrepancy that a taught remainder is given at all: it was fitted to what the fleet flies.
-const TAUGHT_LARGEST_TAU: f64 = 0.004;
-/// Spike of every other effect that still counts as nothing beside a taught remainder.
-const TAUGHT_SPIKE: f64 = 0.05;
 /// Whitened rows are kept in memory up to this many numbers (64 MB); beyond they are made again.
 const KEPT_NUMBERS: usize = 8_000_000;
 
@@ -83,7 +77,7 @@ impl<'a> Stacked<'a> {
         let mut sum = Sum::of(design.columns);
         for index in 0..data.flights.len() {
             let rows = stacked.whitened(index);
-            sum.add(&rows);
+            sum.add(&rows, data.recorded_values(&data.flights[index]));
             let products = rows.transpose() * rows.col(design.smooth.start);
             let level = products.iter().copied().collect();
             drop(rows);
@@ -99,19 +93,20 @@ impl<'a> Stacked<'a> {
         self.folds.without(fold, || {
             let of = |fold: usize| {
                 let mut sum = Sum::of(self.design.columns);
-                for index in (fold..self.data.flights.len()).step_by(FOLDS) {
-                    sum.add(&self.whitened(index));
+                for index in (fold..self.data.flights.len()).step_by(CLOSURE_FOLDS) {
+                    let recorded = self.data.recorded_values(&self.data.flights[index]);
+                    sum.add(&self.whitened(index), recorded);
                 }
                 sum.finish()
             };
-            (0..FOLDS).map(of).collect()
+            (0..CLOSURE_FOLDS).map(of).collect()
         })
     }
 
     /// Smooth discrepancy that no agnostic function and no place is found in: a taught remainder is not exact, a table is
     /// taken at its word (its uncertainty is given apart).
     pub(crate) const fn clean_tau(&self) -> f64 {
-        if self.data.predictor.baseline.is_some() { TAUGHT_TAU } else { 0.0 }
+        if self.data.predictor.baseline.is_some() { TAUGHT_CLEAN_AMPLITUDE } else { 0.0 }
     }
 
     /// A level of scatter between flights, relative.
@@ -121,14 +116,14 @@ impl<'a> Stacked<'a> {
 
     /// Whether a smooth discrepancy of this amplitude is among the backgrounds.
     pub(crate) fn admits(&self, tau: f64) -> bool {
-        self.data.predictor.baseline.is_none() || tau <= TAUGHT_LARGEST_TAU
+        self.data.predictor.baseline.is_none() || tau <= TAUGHT_LARGEST_AMPLITUDE
     }
 
     /// Whether a background without a named effect is no finding: nothing at all against a table; against a taught
     /// remainder, small amounts of every other effect too. A smooth discrepancy is one: it has an amplitude for each of
     /// some thirty functions, and together they hide most of a per cent.
     pub(crate) fn is_nothing(&self, at: &Background) -> bool {
-        let spike = if self.data.predictor.baseline.is_some() { TAUGHT_SPIKE } else { 0.0 };
+        let spike = if self.data.predictor.baseline.is_some() { TAUGHT_CLEAN_SPIKE } else { 0.0 };
         at.tau == 0.0 && at.spike <= spike
     }
 

@@ -2,14 +2,12 @@
 
 use effects::Response;
 
+use crate::thresholds::{FARTHEST_LN_THRUST, SMALLEST_SLOPE};
+
 /// Coefficients of the N2 deck: a full quadratic in four variables.
 pub(crate) const DECK_TERMS: usize = 15;
 /// Scales that make the deck's variables dimensionless: ln F/δ, Mach number, ln δ, ln θ.
 const DECK_SCALES: [f64; 4] = [0.2, 0.05, 0.3, 0.04];
-/// Smallest slope d ln N2/d ln F that thrust is read from: an N2 off by 0.1 % is then a thrust off by 5 %.
-const SMALLEST_SLOPE: f64 = 0.02;
-/// Farthest from the predicted ln F/δ that the deck is followed. Beyond it N2 and the model disagree about more than thrust.
-const FARTHEST_LN_THRUST: f64 = 0.2;
 
 /// The N2 deck: ln(N2/√θt) as a full quadratic.
 #[derive(Clone, Debug, PartialEq)]

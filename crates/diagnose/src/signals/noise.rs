@@ -6,10 +6,9 @@ use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_rel
 use serde::{Deserialize, Serialize};
 
 use crate::math::cholesky::small_cholesky;
+use crate::priors::FLIGHT_SPLIT_DEVIATION;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 
-/// Flight-to-flight standard deviation of the split of thrust between engines, of ln(Wf1/Wf2): 1 %.
-const SPLIT_DEVIATION: f64 = 0.01;
 /// Place of the heating value among a segment's common loadings.
 pub(crate) const HEATING_LOADING: usize = 1;
 
@@ -219,7 +218,8 @@ fn common_loadings(
     };
     let mut sources =
         vec![(slopes.mass, relative_mass), (unit(0), sensors.lower_heating_value_percent / 100.0)];
-    sources.extend((1..=channels.contrasts).map(|contrast| (unit(contrast), SPLIT_DEVIATION)));
+    sources
+        .extend((1..=channels.contrasts).map(|contrast| (unit(contrast), FLIGHT_SPLIT_DEVIATION)));
     sources.extend([
         (slopes.mach, flight_bias.mach),
         (slopes.static_air_temperature, flight_bias.static_air_temperature_k),

@@ -2,6 +2,9 @@
 
 use flight::{Segment, Track};
 
+use crate::priors::GAUGE_DEVIATION_KG;
+use crate::thresholds::SMALLEST_BURN_KG;
+
 /// One flight: its stabilised segments, and what its tank gauges say.
 #[derive(Clone, Copy, Debug)]
 pub struct FlightRecord<'a> {
@@ -21,12 +24,6 @@ pub struct GaugeBurn {
     /// Standard deviation of the gauged fall, kg.
     pub deviation_kg: f64,
 }
-
-/// Standard deviation of the difference of two gauge readings, kg: 25 kg, a fuel-quantity indication to about 1 % of a
-/// business jet's tanks.
-const GAUGE_DEVIATION_KG: f64 = 25.0;
-/// Smallest burn that a comparison is made for, kg.
-const SMALLEST_BURN_KG: f64 = 400.0;
 
 impl GaugeBurn {
     /// Gauges against meters from the first to the last sample with a gauge reading; `None` where fuel quantity is not

@@ -1,5 +1,5 @@
-//! Segments of simulated reports against those of an independent implementation of the specification: two flights
-//! that are shipped with the crate, and all flights of three fleets where the reference results are at hand.
+//! Segments of simulated reports against those of an independent implementation of the book's page on stabilised segments:
+//! two flights that are shipped with the crate, and all flights of three fleets where the reference results are at hand.
 
 #![expect(clippy::disallowed_methods, reason = "tests read their fixtures")]
 

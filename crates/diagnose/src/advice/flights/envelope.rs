@@ -8,22 +8,11 @@ use crate::math::quantile::{QuantileType, quantile};
 use crate::residuals::planned::Recorded;
 use crate::residuals::segments::Data;
 use crate::signals::variables::Variable;
+use crate::thresholds::{
+    ADVISED_SEGMENTS, EDGE_MACH, EDGE_MASS, HEAVY, LEVEL_TOLERANCE_M, LIGHT, REDUCED_SEPARATION_TO,
+    SEGMENT_EVERY_S,
+};
 
-/// Their segments.
-pub(crate) const SEGMENTS: usize = 10;
-/// A flight level counts as flown when a segment was this near to it, m: 100 ft.
-const LEVEL_TOLERANCE_M: f64 = 30.48;
-/// Highest flight level of the band in which levels lie 1000 ft apart.
-const REDUCED_SEPARATION_TO: u32 = 410;
-/// Shares of the segments below the mass and the fuel used of a light and of a heavy aircraft.
-const LIGHT: f64 = 0.1;
-const HEAVY: f64 = 0.9;
-/// From one segment to the next, s: a new level or Mach number, settled and held. Our choice.
-const SEGMENT_EVERY_S: f64 = 600.0;
-/// How near to the edges of the drag table a flight on purpose may be planned: as Mach number, hundredths, and as a share of
-/// mass, since the aircraft will not be exactly there.
-const EDGE_MACH: u32 = 1;
-const EDGE_MASS: f64 = 0.02;
 /// Gross masses are rounded to this, kg.
 const MASS_STEP_KG: f64 = 100.0;
 
@@ -133,7 +122,7 @@ impl Envelope {
 
     /// Heavy, early in flight; light, late. One in the middle where they are not far enough apart.
     fn loadings(&self, mass_kg: &[f64], fuel_used_kg: &[f64]) -> Vec<Loading> {
-        let burned_kg = self.burn_kg * (SEGMENTS - 1) as f64;
+        let burned_kg = self.burn_kg * (ADVISED_SEGMENTS - 1) as f64;
         let round = |mass_kg: f64| (mass_kg / MASS_STEP_KG).round() * MASS_STEP_KG;
         let heavy = Loading {
             name: "heavy",

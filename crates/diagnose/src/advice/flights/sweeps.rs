@@ -2,14 +2,8 @@
 
 use effects::{EffectModel, EffectPoint};
 
-use crate::advice::flights::envelope::{Envelope, Loading, SEGMENTS};
-
-/// Most flight levels that Mach sweeps are tried at.
-const SWEEP_LEVELS: usize = 5;
-/// Narrowest Mach sweep, hundredths.
-const NARROWEST_MACH: u32 = 6;
-/// Narrowest level sweep, flight levels.
-const NARROWEST_LEVELS: u32 = 40;
+use crate::advice::flights::envelope::{Envelope, Loading};
+use crate::thresholds::{ADVISED_SEGMENTS, NARROWEST_LEVELS, NARROWEST_MACH, SWEEP_LEVELS};
 
 /// What a flight on purpose varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,16 +56,16 @@ fn mach_sweep(
     loading: &Loading,
 ) -> Option<TestFlight> {
     let (low, high) = longest_run(envelope.table_from..=envelope.fastest, |mach| {
-        [0, SEGMENTS - 1]
+        [0, ADVISED_SEGMENTS - 1]
             .iter()
             .all(|&place| envelope.point(model, level, mach, loading, place).is_some())
     })?;
     if high - low < NARROWEST_MACH {
         return None;
     }
-    let points = (0..SEGMENTS)
+    let points = (0..ADVISED_SEGMENTS)
         .map(|place| {
-            let along = place as f64 / (SEGMENTS - 1) as f64;
+            let along = place as f64 / (ADVISED_SEGMENTS - 1) as f64;
             let mach = (f64::from(low) + along * f64::from(high - low)) / 100.0;
             envelope.point_at(model, level, mach, loading, place)
         })
@@ -101,7 +95,7 @@ fn level_sweep(
     let last = u32::try_from(levels.len().checked_sub(1)?).ok()?;
     let (low, high) = longest_run(0..=last, |index| {
         let level = levels[index as usize];
-        [0, SEGMENTS - 1]
+        [0, ADVISED_SEGMENTS - 1]
             .iter()
             .all(|&place| envelope.point(model, level, mach, loading, place).is_some())
     })?;
@@ -110,9 +104,10 @@ fn level_sweep(
     if highest - lowest < NARROWEST_LEVELS {
         return None;
     }
-    let points = (0..SEGMENTS)
+    let points = (0..ADVISED_SEGMENTS)
         .map(|place| {
-            let index = (place * (levels.len() - 1) + (SEGMENTS - 1) / 2) / (SEGMENTS - 1);
+            let index =
+                (place * (levels.len() - 1) + (ADVISED_SEGMENTS - 1) / 2) / (ADVISED_SEGMENTS - 1);
             envelope.point(model, levels[index], mach, loading, place)
         })
         .collect::<Option<_>>()?;
@@ -128,7 +123,7 @@ fn level_sweep(
 fn steady(envelope: &Envelope, model: &EffectModel<'_>) -> Option<TestFlight> {
     let level = *envelope.levels.get(envelope.levels.len() / 2)?;
     let points = envelope.loadings.iter().rev().find_map(|loading| {
-        (0..SEGMENTS)
+        (0..ADVISED_SEGMENTS)
             .map(|place| envelope.point(model, level, envelope.usual[1], loading, place))
             .collect::<Option<_>>()
     })?;

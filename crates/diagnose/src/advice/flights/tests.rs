@@ -1,16 +1,16 @@
-use super::envelope::SEGMENTS;
 use super::*;
 use effects::ExtendedModel;
 use effects::{EffectReferences, Effects};
 use flight::Segment;
 use flight::effect::EffectId;
 
-use crate::advice::distances::{CONFUSED, squared};
+use crate::advice::distances::squared;
 use crate::hypotheses::design::Design;
 use crate::residuals::reference::Against;
 use crate::residuals::segments::Data;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::references_of;
+use crate::thresholds::{ADVISED_SEGMENTS, CONFUSED};
 
 use test_support::fleet::{Background, Setup, exact_model, fly, isa};
 
@@ -68,7 +68,7 @@ fn every_candidate_keeps_to_what_was_flown() {
         let pressure = |h: f64, mach: f64| isa(h).1 * mach * mach;
         let (_, most_pressure) = range(&|m| pressure(m.pressure_altitude_m, m.mach));
         for flight in &candidates {
-            assert_eq!(flight.points.len(), SEGMENTS, "{}", flight.words);
+            assert_eq!(flight.points.len(), ADVISED_SEGMENTS, "{}", flight.words);
             for p in &flight.points {
                 let response = effects.response(p, &Effects::none()).unwrap();
                 assert!(response.net_thrust_n > 0.0);
@@ -200,5 +200,22 @@ fn advice_is_ranked_and_repeats() {
             }
         }
         assert!(offered > 0);
+    });
+}
+
+/// Without a recorded N2 and without a baseline no nuisance column is one of a deck: measuring a deck changes no distance.
+#[test]
+fn a_measured_deck_shrinks_nothing_but_the_deck() {
+    let model = exact_model();
+    let mut flights = fleet(12);
+    for segment in flights.iter_mut().flatten() {
+        segment.means.n2_percent.clear();
+    }
+    with(&model, &flights, |stacked, _, library, distances| {
+        assert!(!stacked.data.channels.n2);
+        let largest = (0..library.columns.len())
+            .map(|k| distances.with_deck[(k, k)] / distances.gram[(k, k)] - 1.0)
+            .fold(0.0, f64::max);
+        assert!(largest.abs() < 1e-12, "information grows by up to {largest}");
     });
 }

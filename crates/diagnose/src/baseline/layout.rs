@@ -1,0 +1,134 @@
+//! Which nuisance column is what.
+//!
+//! Everything that a model is uncertain about and that no hypothesis names is a column of one block, the nuisance. Writers
+//! of the design, the posterior of a baseline and the draws of model errors all take their columns from here by name.
+
+use core::ops::Range;
+
+use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::signals::n2_deck::DECK_TERMS;
+
+/// Columns for the chord errors of a drag table: along lift coefficient and along Mach number.
+const CHORD_COLUMNS: usize = 2;
+
+/// Named ranges of nuisance columns, counted from the start of the nuisance. They follow one another without holes; a part
+/// that a model does not have is an empty range.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct NuisanceLayout {
+    /// Terms of the remainder, on fuel flow.
+    pub(crate) remainder: Range<usize>,
+    /// Levels of the contrasts between engines.
+    pub(crate) contrasts: Range<usize>,
+    /// Coefficients of the N2 deck.
+    pub(crate) deck: Range<usize>,
+    /// Sizes of the effects that a fleet shows at all times.
+    pub(crate) standing_effects: Range<usize>,
+    /// Chord errors of the drag table.
+    pub(crate) chords: Range<usize>,
+    /// Error of the recorded acceleration.
+    pub(crate) acceleration: Range<usize>,
+    /// Loadings of the drag table's nodes.
+    pub(crate) table: Range<usize>,
+}
+
+/// Whether the N2 deck is uncertain where no baseline has one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeckColumns {
+    Present,
+    Absent,
+}
+
+impl NuisanceLayout {
+    /// Of a baseline alone: what its covariance is over.
+    pub(crate) fn of_baseline(remainder: usize, contrasts: usize) -> Self {
+        Self::tiled([remainder, contrasts, DECK_TERMS, ENVIRONMENT.len(), 0, 0, 0])
+    }
+
+    /// The same with what is uncertain at any time: chords, acceleration and `table_rank` loadings of the table.
+    pub(crate) fn of_design_with_baseline(baseline: &Self, table_rank: usize) -> Self {
+        Self::tiled([
+            baseline.remainder.len(),
+            baseline.contrasts.len(),
+            baseline.deck.len(),
+            baseline.standing_effects.len(),
+            CHORD_COLUMNS,
+            1,
+            table_rank,
+        ])
+    }
+
+    /// Without a baseline.
+    pub(crate) fn of_design(deck: DeckColumns, table_rank: usize) -> Self {
+        let deck = if deck == DeckColumns::Present { DECK_TERMS } else { 0 };
+        Self::tiled([0, 0, deck, 0, CHORD_COLUMNS, 1, table_rank])
+    }
+
+    /// Widths in the order of the fields.
+    fn tiled(widths: [usize; 7]) -> Self {
+        let mut end = 0;
+        let [remainder, contrasts, deck, standing_effects, chords, acceleration, table] = widths
+            .map(|width| {
+                let range = end..end + width;
+                end = range.end;
+                range
+            });
+        Self { remainder, contrasts, deck, standing_effects, chords, acceleration, table }
+    }
+
+    /// Number of columns.
+    pub(crate) const fn len(&self) -> usize {
+        self.table.end
+    }
+
+    /// Columns of a baseline's coefficients: those that its covariance is over.
+    pub(crate) const fn of_baseline_range(&self) -> Range<usize> {
+        self.remainder.start..self.standing_effects.end
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every column belongs to exactly one range.
+    fn assert_tiled(layout: &NuisanceLayout) {
+        let mut owners = vec![0; layout.len()];
+        for range in [
+            &layout.remainder,
+            &layout.contrasts,
+            &layout.deck,
+            &layout.standing_effects,
+            &layout.chords,
+            &layout.acceleration,
+            &layout.table,
+        ] {
+            for column in range.clone() {
+                owners[column] += 1;
+            }
+        }
+        assert!(owners.iter().all(|&owner| owner == 1), "{layout:?}");
+    }
+
+    #[test]
+    fn ranges_tile_the_nuisance_without_holes() {
+        for contrasts in [0, 1, 3] {
+            let baseline = NuisanceLayout::of_baseline(40, contrasts);
+            assert_tiled(&baseline);
+            assert_eq!(baseline.of_baseline_range(), 0..baseline.len());
+            for rank in [0, 285] {
+                let design = NuisanceLayout::of_design_with_baseline(&baseline, rank);
+                assert_tiled(&design);
+                // What a baseline's covariance is over has the same places in the design.
+                assert_eq!(design.of_baseline_range(), baseline.of_baseline_range());
+                assert_eq!(design.standing_effects, baseline.standing_effects);
+                assert_eq!(design.len(), baseline.len() + CHORD_COLUMNS + 1 + rank);
+            }
+        }
+        for (deck, columns) in [(DeckColumns::Present, DECK_TERMS), (DeckColumns::Absent, 0)] {
+            let design = NuisanceLayout::of_design(deck, 7);
+            assert_tiled(&design);
+            assert_eq!(design.len(), columns + CHORD_COLUMNS + 1 + 7);
+            assert_eq!(design.deck, 0..columns);
+        }
+    }
+}

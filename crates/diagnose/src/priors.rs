@@ -1,0 +1,137 @@
+//! Every number of belief: what is taken for probable before a flight is looked at.
+
+use crate::deciding::deciding_numbers;
+
+deciding_numbers! {
+    "Which hypothesis" {
+        PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25], "",
+            "prior weights of no effect, of one, of two",
+            OurChoice "One is the likeliest, none and two are no surprise; three, which would have the rest, are not searched.";
+        PRIOR_OUTSIDE: f64 = 0.20, "",
+            "prior probability that something outside the library acts",
+            OurChoice "One cause in five: the library is long, but nobody can list every cause.";
+        EXPECTED_SIGN: f64 = 0.95, "",
+            "prior probability of the sign that physics expects",
+            OurChoice "A sign is a strong expectation and no law: one model in twenty errs the other way.";
+    }
+    "How large an effect is" {
+        PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)], "",
+            "prior standard deviations of an effect over its typical size, each with its probability",
+            OurChoice "Half of the belief on effects of three times the typical size, so that a large one is not shrunk away.";
+        KNOWN_DEVIATION: f64 = 0.15, "",
+            "prior standard deviation of a coefficient that physics says is 1",
+            OurChoice "Physics says 1; what is recorded of wind, position and turns is not exact, so that some 15 % are left.";
+        HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4], "% of fuel flow",
+            "sizes of scatter from flight to flight that are tried",
+            OurChoice "From half the typical 0.6 % to four times it, each twice the one before.";
+    }
+    "Hidden parameters that are tried" {
+        THROTTLE_PIVOTS: [f64; 5] = [0.6, 0.8, 1.0, 1.2, 1.5], "",
+            "corrected thrusts over their reference about which the throttle effect may pivot",
+            OurChoice "The range that cruise covers, about as far apart as the parabola is wide (0.25).";
+        N2_PIVOT: f64 = 1.0, "",
+            "the one thrust by N2 about which the throttle effect may pivot",
+            Measured "16 clean fleets: with all five pivots over N2, 7 had a throttle effect; with this one alone, none had.";
+        DIVERGENCE_MACHS: [f64; 6] = [0.74, 0.78, 0.82, 0.86, 0.90, 0.94], "Mach",
+            "drag-divergence Mach numbers that are tried where the aircraft file states none",
+            OurChoice "The range of transport and business aircraft.";
+        STEP_DATES: usize = 15, "",
+            "dates of a step that are tried, each with equally many flights between",
+            OurChoice "A date is then off by at most a thirty-second of the flights.";
+    }
+    "What else may act in the background" {
+        BACKGROUND_SPIKES: [f64; 4] = [0.0, 0.05, 0.15, 0.30], "of typical size",
+            "standard deviation of every effect that a hypothesis does not name",
+            OurChoice "From an otherwise exact model to one in which everything is a third off; all are averaged over.";
+        SMOOTH_AMPLITUDES: [f64; 4] = [0.0, 0.0015, 0.004, 0.010], "of fuel flow",
+            "amplitudes of the smooth discrepancy",
+            OurChoice "From none to 1 %, about what a table over lift coefficient and Mach number cannot hold; averaged over.";
+        TAUGHT_LARGEST_AMPLITUDE: f64 = 0.004, "of fuel flow",
+            "largest amplitude of the smooth discrepancy against a baseline",
+            OurChoice "The remainder was fitted to what the fleet flies, so that 1 % cannot be left.";
+        TAUGHT_SCATTERS: [f64; 2] = [0.0, 0.003], "of fuel flow",
+            "scatter between flights beyond what a baseline learnt",
+            OurChoice "A baseline knows the scatter from few flights: it may be more. Both are averaged over.";
+        SMOOTH_QUANTILES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], "",
+            "quantiles of a variable at which the smooth discrepancy has its knots",
+            OurChoice "A fifth of the segments between two knots, so that each is informed.";
+        PRODUCT_SCALE: f64 = 0.5, "",
+            "amplitude of a product of two variables over that of a function of one",
+            OurChoice "Discrepancies of one variable are taken for twice as large as those of two together.";
+    }
+    "Functions without a name" {
+        AGNOSTIC_AMPLITUDES: [f64; 3] = [0.002, 0.005, 0.015], "of fuel flow",
+            "amplitudes of a function of one variable that competes with the named effects",
+            OurChoice "From just visible to the size of a typical effect; averaged over.";
+        AGNOSTIC_SPIKES: [f64; 2] = [0.0, 0.10], "of typical size",
+            "standard deviation of every other effect behind such a function",
+            OurChoice "Fewer than in the search for named effects, because each costs a search; averaged over.";
+        AGNOSTIC_QUANTILES: [f64; 7] = [0.0, 0.17, 0.33, 0.5, 0.67, 0.83, 1.0], "",
+            "quantiles at which such a function has its knots",
+            OurChoice "A sixth of the segments between two knots: one piece more than the smooth discrepancy.";
+        SPLIT_SCALE: f64 = 2.0, "",
+            "amplitude of a difference between engines over that of all fuel flow",
+            Source "Arithmetic: what one engine of two burns more is half as much of the fuel flow of both.";
+    }
+    "Noise" {
+        NOISE_FREEDOM: f64 = 40.0, "",
+            "degrees of freedom of the prior of the noise scale",
+            OurChoice "The stated noise counts as much as 40 residuals: a scale of 1 within about 11 %.";
+        STUDENT_FREEDOM: f64 = 4.0, "",
+            "degrees of freedom of the Student distribution behind the weights of segments",
+            OurChoice "As law bayes has: an error of ten standard deviations keeps a twentieth of its weight.";
+        ROBUST_EFFECT: f64 = 3.0, "of typical size",
+            "prior standard deviation of the effects in the fit that weights come from",
+            OurChoice "The larger of the two prior scales: what an effect explains is no outlier.";
+        ROBUST_SMOOTH: f64 = 0.0015, "of fuel flow",
+            "prior standard deviation of the smooth terms in that fit",
+            OurChoice "The smallest amplitude of the smooth discrepancy, so that it explains no outlier.";
+        FLIGHT_SPLIT_DEVIATION: f64 = 0.01, "",
+            "standard deviation from flight to flight of ln(Wf1/Wf2)",
+            OurChoice "Engines of one aircraft are not set exactly alike; how far apart is a guess.";
+        GAUGE_DEVIATION_KG: f64 = 25.0, "kg",
+            "standard deviation of the difference of two gauge readings",
+            OurChoice "A fuel-quantity indication to about 1 % of a business jet's tanks.";
+    }
+    "What a baseline may be" {
+        REMAINDER_LEVEL_DEVIATION: f64 = 0.10, "of fuel flow",
+            "prior standard deviation of the remainder's level",
+            OurChoice "Wide: any fleet finds its level.";
+        REMAINDER_HAT_DEVIATION: f64 = 0.02, "of fuel flow",
+            "prior standard deviation of a hat function of one variable, before flights scale it",
+            OurChoice "What a table over two variables leaves is of the order of a per cent; the data scale it.";
+        REMAINDER_PRODUCT_DEVIATION: f64 = 0.005, "of fuel flow",
+            "prior standard deviation of a product of two variables, before flights scale it",
+            OurChoice "A quarter of that of a function of one variable; the data scale it.";
+        REMAINDER_SCALE_LN_DEVIATION: f64 = 1.0, "ln",
+            "prior spread of the factors by which flights scale these two",
+            OurChoice "A factor of e either way: weak.";
+        REMAINDER_QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0], "",
+            "quantiles of a variable at which the remainder has its knots",
+            OurChoice "An eighth of the segments between two knots: finer than the discrepancy it stands in for.";
+        TAUGHT_SPLIT_DEVIATION: f64 = 0.03, "",
+            "prior standard deviation of the level of ln(Wf1/Wf2)",
+            OurChoice "Two engines of one type differ by some per cent: the typical size of one engine's TSFC.";
+        DECK_DEVIATION: f64 = 0.02, "of N2",
+            "prior standard deviation of a deck coefficient about its least-squares value",
+            OurChoice "Wide: least squares over the same flights is only a start.";
+        CARRIED_DEVIATION: f64 = 1.0, "of typical size",
+            "prior standard deviation of an effect that a fleet shows at all times",
+            Measured "JSBSim, SIM-02: closure on unseen flights 0.90; at 3.0 it was 0.69, with 22 counts of trim drag.";
+        CARRIED_SLOPE_DEVIATION: f64 = 2.0, "of typical size",
+            "the same of isobaric slope",
+            OurChoice "Twice the typical 0.5: from geostrophic wind, 0, to a slope that nothing balances, 1.";
+        CARRIED_DRAG_RISE_MACHS: [f64; 3] = [0.82, 0.88, 0.94], "Mach",
+            "drag-divergence Mach numbers of the drag rises that a baseline carries",
+            OurChoice "Evenly over the upper part of the range that a diagnosis tries; flights mix them.";
+        USUAL_NOISE: f64 = 0.5, "",
+            "noise that is usual, over that of the aircraft file",
+            Measured "Simulated fleets, while the baseline was developed: factors of 0.3 to 0.55.";
+        USUAL_NOISE_LN_DEVIATION: f64 = 0.5, "ln",
+            "prior spread of the noise factors about what is usual",
+            OurChoice "From 0.3 to 0.8 is one standard deviation: few flights do not make noise vanish.";
+        DIAL_LIMITS: (f64, f64) = (0.03, 10.0), "",
+            "least and largest noise factor and scale of the remainder",
+            OurChoice "What few flights say is not believed beyond a factor of ten or thirty.";
+    }
+}

@@ -1,0 +1,241 @@
+//! Every number that decides a verdict or an answer.
+
+use crate::deciding::deciding_numbers;
+
+deciding_numbers! {
+    "Whether there is enough data" {
+        FEWEST_FLIGHTS_OF_A_NAME: usize = 6, "flights",
+            "fewest flights on which a diagnosis names anything",
+            OurChoice "Five folds of flights, and one fold that has more than one.";
+        FEWEST_SEGMENTS_OF_A_NAME: usize = 30, "segments",
+            "fewest segments on which a diagnosis names anything",
+            OurChoice "About as many as the library has effects.";
+        LEAST_SPREADS: [f64; 4] = [1e-3, 30.0, 1.0, 0.1], "Mach, m, kg, K",
+            "ranges of Mach number, pressure altitude, mass and SAT of which two must be exceeded",
+            OurChoice "Below them a condition was not varied: rounding and turbulence move it by as much.";
+        FEWEST_FLIGHTS_OF_A_BASELINE: usize = 5, "flights",
+            "fewest flights from which a baseline learns",
+            OurChoice "With fewer nothing is known of the scatter between flights.";
+        RECORDED_SHARE: f64 = 0.9, "of the segments",
+            "share of the segments that must have what an effect needs",
+            OurChoice "A column that is missing in every tenth segment is still a column.";
+        SMALLEST_BURN_KG: f64 = 400.0, "kg",
+            "smallest burn for which gauges are compared with meters",
+            OurChoice "There the deviation of the gauges, 25 kg, is 6 % of the burn.";
+        SMALLEST_SLOPE: f64 = 0.02, "d ln N2/d ln F",
+            "slope of the N2 deck from which thrust is read",
+            Source "Arithmetic: N2 off by 0.1 % is then a thrust off by 5 %.";
+        FARTHEST_LN_THRUST: f64 = 0.2, "ln F/δ",
+            "how far from the prediction the N2 deck is followed",
+            OurChoice "Beyond it N2 and the model disagree about more than thrust.";
+        INFORMED_SHARE: f64 = 0.25, "of the prior variance",
+            "most variance of the remainder at a point where it is added to a prediction",
+            OurChoice "Half of the prior's standard deviation: flights say as much as the prior, and more.";
+    }
+    "Gap or no gap" {
+        CLEAN_PROBABILITY: f64 = 0.05, "",
+            "probability of no effect below which a gap is real",
+            OurChoice "The usual one in twenty; it leaves 0.988 of 820 blind cases without an effect silent.";
+        TAUGHT_CLEAN_SPIKE: f64 = 0.05, "of typical size",
+            "amount of every effect that is no finding against a baseline",
+            Measured "10 pairs of periods, seeds of development: silent in 10 without an effect, TSFC +2 % found in 10.";
+        TAUGHT_CLEAN_AMPLITUDE: f64 = 0.0015, "of fuel flow",
+            "smooth discrepancy against a baseline that is left to neither agnostic functions nor regions",
+            OurChoice "A remainder is not exact: the smallest amplitude of the smooth discrepancy.";
+        SMALLEST_GAP: f64 = 0.15, "of the floor's square",
+            "excess over the noise floor below which closure is not measured and size alone shows no gap",
+            OurChoice "Below it the ratio that closure is has noise above and below the line.";
+        MORE_PROBABLE_THAN_NOT: f64 = 0.5, "",
+            "probability of a cause, or of all named ones, above which it carries the verdict",
+            OurChoice "More probable than not.";
+    }
+    "Verdict" {
+        OUTSIDE_PROBABILITY: f64 = 0.5, "",
+            "probability of a cause outside the library above which the verdict is \"outside the library\"",
+            OurChoice "More probable than not.";
+        OTHER_FORM: [f64; 2] = [0.8, 1.0], "of the explainable gap",
+            "closures between which a gap passes from something else to the effect in another form",
+            Measured "Two other simulators: effects in other forms close 0.94 to 0.98, effects the library lacks 0.25.";
+        CREDIBLE: f64 = 0.95, "",
+            "probability of the causes that the class of a verdict holds at least",
+            OurChoice "The usual 95 %.";
+        NORMAL_95: f64 = 1.96, "standard deviations",
+            "half width of a 95 % interval",
+            Source "The normal distribution's 97.5 % quantile, to two decimals as tables have it.";
+        SCATTER_INTERVAL: [f64; 2] = [0.5, 2.0], "of the size",
+            "interval of a scatter from flight to flight",
+            OurChoice "The sizes that are tried are factors of two apart.";
+        SCATTER_SHARE: f64 = 0.5, "of the size",
+            "standard deviation of such a scatter where it is applied to a model",
+            OurChoice "The same: known to about half of itself.";
+        FEWEST_CAUSES: usize = 3, "causes",
+            "causes that are listed whatever their probability",
+            OurChoice "A reader sees what came second and third.";
+        LISTED_PROBABILITY: f64 = 0.995, "",
+            "probability of the listed causes at which the list of more ends",
+            OurChoice "What is left is not worth a line.";
+        LEAST_LISTED: f64 = 1e-3, "",
+            "probability below which a further cause is not listed",
+            OurChoice "One in a thousand is not worth a line.";
+    }
+    "Search" {
+        HEAVY_KURTOSIS: f64 = 4.0, "",
+            "kurtosis of the whitened residuals above which segments are weighted",
+            OurChoice "A normal distribution has 3. Weights cost information, so that they need a reason.";
+        LEAST_ROBUST_SCALE: f64 = 0.3, "standard deviations",
+            "least scale of the residuals that weights are taken from",
+            OurChoice "Residuals that are far quieter than stated must not turn ordinary segments into outliers.";
+        REFINED: usize = 5, "hypotheses",
+            "leading hypotheses that are simulated again at their estimates",
+            OurChoice "Time grows with each; the fifth is rarely probable.";
+        WORTH_REFINING: f64 = 1e-4, "",
+            "probability below which a hypothesis is not simulated again",
+            OurChoice "What comes from it cannot be seen in the answer.";
+        AGNOSTIC_SETS: usize = 10, "hypotheses",
+            "leading hypotheses to which functions without a name are added",
+            OurChoice "Time grows with each; the tenth is rarely probable.";
+    }
+    "Closure, noise floor, intervals" {
+        CLOSURE_FOLDS: usize = 5, "folds",
+            "folds of flights on which closure is measured",
+            OurChoice "Four fifths of the flights still find what all of them find, and each is judged once.";
+        LEARNING_FOLDS: usize = 10, "folds",
+            "folds of flights by which a baseline learns the scatter between flights",
+            OurChoice "Sums over flights make a fold cheap, so that more can be kept to learn from.";
+        RESAMPLES: usize = 1000, "",
+            "resamples of flights behind an interval",
+            OurChoice "An end of a 95 % interval rests on 25 of them. 64 of 66 intervals of closure held the truth.";
+        REPLICATE_MACH: f64 = 0.02, "Mach",
+            "difference of Mach number up to which successive segments are replicates",
+            OurChoice "Within it the model's error hardly changes.";
+        REPLICATE_ALTITUDE_M: f64 = 100.0, "m",
+            "difference of pressure altitude up to which they are",
+            OurChoice "The same flight level.";
+        FEWEST_REPLICATES: usize = 20, "pairs",
+            "fewest replicates of which a noise floor is told",
+            OurChoice "A standard deviation is then known to about 16 %.";
+        FLEXIBLE_EFFECT: f64 = 3.0, "of typical size",
+            "prior standard deviation of effects in the flexible fit behind a noise floor",
+            OurChoice "The larger of the two prior scales: flexible on purpose.";
+        FLEXIBLE_SMOOTH: f64 = 0.004, "of fuel flow",
+            "prior standard deviation of smooth terms in that fit",
+            OurChoice "The third of the four amplitudes of the smooth discrepancy.";
+    }
+    "Regions" {
+        REGION_P_VALUE: f64 = 0.05, "",
+            "largest p-value of a region that is reported",
+            OurChoice "The usual 5 %: 6 of 150 clean virtual fleets had a region.";
+        MOST_REGIONS: usize = 3, "regions",
+            "regions that are reported at most",
+            OurChoice "The third is often what steps leave of a smooth effect already.";
+        FEWEST_FLIGHTS_OF_A_REGION: usize = 3, "flights",
+            "fewest flights that a region has segments of",
+            OurChoice "One flight, or two, may have a mass that is wrong.";
+        REGION_SHARES: [f64; 2] = [0.05, 0.70], "of the segments",
+            "least and largest region",
+            OurChoice "Below, noise stands out; above, it is the rest that is a region.";
+        SECOND_CONDITION: f64 = 1.15, "",
+            "factor by which a second condition must raise the statistic",
+            OurChoice "A simpler region is easier to use.";
+        NEARLY_AS_LARGE: f64 = 0.9, "of the largest",
+            "statistic of the regions that compete by likelihood",
+            OurChoice "Variables are correlated. With the competition 0.98 of the variables were named right, 0.88 before.";
+        MOST_COMPARED: usize = 200, "regions",
+            "regions that compete by likelihood at most",
+            OurChoice "A bound on time.";
+        REGION_DRAWS: usize = 400, "draws",
+            "draws of noise, half for standard deviations and half for p-values",
+            OurChoice "The least p-value is then 1 in 201, a tenth of the largest that is reported.";
+        BINS: usize = 5, "bins",
+            "bins of a variable",
+            OurChoice "Quintiles: coarse enough to be read, and to hold segments of many flights.";
+        ROLL_EDGES_DEG: [f64; BINS - 1] = [0.3, 0.7, 1.5, 5.0], "deg",
+            "edges of the bins of roll",
+            OurChoice "Most segments are flown wings level, so that quintiles would say nothing.";
+        EDGE_TOLERANCE: f64 = 0.02, "of the segments",
+            "how far an edge may lie from its quintile to be a number of few digits",
+            OurChoice "A number that reads well is worth a fiftieth of the segments.";
+    }
+    "Classes and what can be seen" {
+        CONFUSED: f64 = 9.0, "standard deviations squared",
+            "squared distance below which two effects share a class",
+            OurChoice "Three standard deviations.";
+        DETECTION: f64 = 4.0, "standard deviations",
+            "size of an effect that would just be seen",
+            OurChoice "By noise alone one look in 16 000 shows as much; the library has fewer than a hundred columns.";
+        PLAUSIBLE: f64 = 6.0, "of typical size",
+            "largest size at which an effect may pass for another one",
+            OurChoice "Twice the larger prior scale.";
+        PLAUSIBLE_KNOWN: f64 = 0.5, "",
+            "how far from 1 a coefficient that physics knows may be to pass for another effect",
+            OurChoice "Some three of its prior standard deviations (0.15).";
+    }
+    "Advice" {
+        LEAST_GAIN: f64 = 1.1, "",
+            "factor by which what is advised must raise the distance",
+            OurChoice "A tenth more is the least that is worth an effort.";
+        LEAST_GAIN_DEVIATIONS: f64 = 0.1, "standard deviations",
+            "what it must raise the distance by besides",
+            OurChoice "A tenth more of next to no distance is no gain.";
+        LEAST_DISTANCE: f64 = 1.0, "standard deviations",
+            "least distance that is worth six flights",
+            Measured "Blind trials: the right one of two was named in 0.71 at 1 to 2, in 0.38 at 0.5 to 1, in 0.33 below.";
+        WORTH_MIXING: f64 = 1.05, "",
+            "factor that flights of two sorts must gain over flights of one",
+            OurChoice "One sort is simpler to plan.";
+        ADVISED_FLIGHTS: usize = 6, "flights",
+            "flights that are advised",
+            OurChoice "What an operator may do in a week or two.";
+        ADVISED_SEGMENTS: usize = 10, "segments",
+            "segments of such a flight",
+            OurChoice "A flight of two hours has about as many.";
+        SEGMENT_EVERY_S: f64 = 600.0, "s",
+            "time from one segment to the next",
+            OurChoice "A new level or Mach number, settled and held.";
+        SWEEP_LEVELS: usize = 5, "levels",
+            "most flight levels at which Mach sweeps are tried",
+            OurChoice "A bound on time; they cover the range that was flown.";
+        NARROWEST_MACH: u32 = 6, "Mach/100",
+            "narrowest Mach sweep",
+            OurChoice "Ten segments over less are nearly one Mach number.";
+        NARROWEST_LEVELS: u32 = 40, "flight levels",
+            "narrowest level sweep",
+            OurChoice "4000 ft: less changes pressure by less than a fifth.";
+        LEVEL_TOLERANCE_M: f64 = 30.48, "m",
+            "how near a segment must be to a flight level for it to count as flown",
+            OurChoice "100 ft.";
+        REDUCED_SEPARATION_TO: u32 = 410, "flight level",
+            "highest level of the band in which levels lie 1000 ft apart",
+            Source "ICAO Annex 2, Appendix 3 (reduced vertical separation).";
+        LIGHT: f64 = 0.1, "of the segments",
+            "share of the segments below the mass of a light aircraft",
+            OurChoice "Light, and still usual.";
+        HEAVY: f64 = 0.9, "of the segments",
+            "share of the segments below the mass of a heavy aircraft",
+            OurChoice "Heavy, and still usual.";
+        EDGE_MACH: u32 = 1, "Mach/100",
+            "distance that an advised flight keeps from the edges of the drag table",
+            OurChoice "The aircraft will not be exactly there.";
+        EDGE_MASS: f64 = 0.02, "of the mass",
+            "the same along lift coefficient, as a share of mass",
+            OurChoice "The aircraft will not have exactly that mass.";
+        MEASURED_MASS: f64 = 0.003, "of the mass",
+            "standard deviation of a mass that is weighed",
+            OurChoice "What an operator may expect of scales; a guess, which the advice states.";
+        MEASURED_BURN_PERCENT: f64 = 0.15, "%",
+            "standard deviation of fuel flow held against tank gauges",
+            OurChoice "Over many flights the errors of the gauges average out; a guess, which the advice states.";
+        MEASURED_SAT_K: f64 = 0.5, "K",
+            "standard deviation of SAT held against a reanalysis",
+            OurChoice "A mean over many flights; a guess, which the advice states.";
+        MEASURED_MACH: f64 = 0.0015, "Mach",
+            "standard deviation of Mach number held against GPS and wind",
+            OurChoice "About 0.45 m/s of true airspeed in the mean; a guess, which the advice states.";
+        MEASURED_PRESSURE_PERCENT: f64 = 0.05, "% of p",
+            "standard deviation of static pressure held against GPS height and a reanalysis",
+            OurChoice "About 10 ft in the mean; a guess, which the advice states.";
+        DECK_MEASURED: f64 = 0.05, "",
+            "what measuring an N2 deck leaves of its uncertainty",
+            Source "Arithmetic: from the prior's 2 % to 0.1 %.";
+    }
+}
