@@ -8,19 +8,19 @@ use faer::Mat;
 use crate::baseline::Baseline;
 use crate::baseline::layout::{DeckColumns, NuisanceLayout};
 use crate::residuals::rows::{FlightRows, SegmentRow};
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::{Hats, Scaled, Variable};
 
-/// Prior standard deviation of a deck coefficient about its least-squares value where no deck was taught.
+/// Prior standard deviation of a deck coefficient about its least-squares value where no deck was learnt.
 const DECK_DEVIATION: f64 = 0.02;
-/// Split of the fuel flow between engines that an agnostic level is scaled to, against 1 for fuel flow.
+/// Split of the fuel flow between engines that an smooth term is scaled to, against 1 for fuel flow.
 const SPLIT_SCALE: f64 = 2.0;
 /// Quantiles at which the smooth background has its knots.
 const SMOOTH_QUANTILES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-/// Quantiles at which agnostic functions have theirs.
+/// Quantiles at which smooth terms have theirs.
 const AGNOSTIC_QUANTILES: [f64; 7] = [0.0, 0.17, 0.33, 0.5, 0.67, 0.83, 1.0];
 /// Amplitude of a product of two scaled variables in the smooth background.
 const PRODUCT_SCALE: f64 = 0.5;
@@ -53,7 +53,7 @@ const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
     (Variable::CenterOfGravity, Variable::LiftCoefficient),
     (Variable::Mach, Variable::Date),
 ];
-/// Without acceleration: its own error is in the residual, which hangs on it in every recording.
+/// Without acceleration: its own error is in the residual, which depends on it in every recording.
 const AGNOSTIC_VARIABLES: [Variable; 18] = [
     Variable::Mach,
     Variable::LiftCoefficient,
@@ -83,7 +83,7 @@ pub(crate) enum Acts {
     Split,
 }
 
-/// An agnostic function of one variable.
+/// A smooth term of one variable.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     pub(crate) variable: Variable,
@@ -92,7 +92,7 @@ pub(crate) struct Block {
     hats: Option<Hats>,
 }
 
-/// Which column is what: effects, nuisance, smooth background, agnostic functions, residual last.
+/// Which column is what: effects, nuisance, smooth background, smooth terms, residual last.
 #[derive(Clone, Debug)]
 pub(crate) struct Design<'a> {
     pub(crate) effects: usize,
@@ -117,8 +117,8 @@ struct Nuisance<'a> {
 }
 
 impl<'a> Design<'a> {
-    pub(crate) fn of(
-        data: &Data<'_>,
+    pub(crate) fn new(
+        data: &PreparedFlights<'_>,
         references: &EffectReferences,
         baseline: Option<&'a Baseline>,
         table: Option<&'a TableUncertainty>,
@@ -148,7 +148,9 @@ impl<'a> Design<'a> {
             .collect();
         let smooth_products: Vec<_> = SMOOTH_PRODUCTS
             .into_iter()
-            .filter_map(|(a, b)| Some((a, Scaled::of(&values(a)?), b, Scaled::of(&values(b)?))))
+            .filter_map(|(a, b)| {
+                Some((a, Scaled::from_values(&values(a)?), b, Scaled::from_values(&values(b)?)))
+            })
             .collect();
         let once = 1
             + smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
@@ -200,7 +202,7 @@ impl<'a> Design<'a> {
         self.columns - 1
     }
 
-    /// The same nuisance beside fewer columns of effects, without smooth background and agnostic functions.
+    /// The same nuisance with fewer columns of effects, without smooth background and smooth terms.
     pub(crate) fn of_nuisance(&self, effects: usize) -> Self {
         let nuisance = effects..effects + self.nuisance.len();
         Self {
@@ -216,8 +218,8 @@ impl<'a> Design<'a> {
         }
     }
 
-    /// All columns of a flight's fuel flow as they are, not whitened: one row a segment.
-    pub(crate) fn fuel_flow(&self, data: &Data<'_>, flight: &FlightRows) -> Mat<f64> {
+    /// All columns of a flight's fuel flow as they are, not whitened: one row per segment.
+    pub(crate) fn fuel_flow(&self, data: &PreparedFlights<'_>, flight: &FlightRows) -> Mat<f64> {
         let channels = data.channels.count();
         let mut matrix = Mat::<f64>::zeros(channels, self.columns);
         let mut rows = Mat::<f64>::zeros(flight.segments.len(), self.columns);
@@ -240,7 +242,7 @@ impl<'a> Design<'a> {
     /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
     pub(crate) fn whitened(
         &self,
-        data: &Data<'_>,
+        data: &PreparedFlights<'_>,
         flight: &FlightRows,
         weights: Option<&[f64]>,
     ) -> Mat<f64> {
@@ -274,7 +276,7 @@ impl<'a> Design<'a> {
 
     fn write_segment(
         &self,
-        data: &Data<'_>,
+        data: &PreparedFlights<'_>,
         row: &SegmentRow,
         first: usize,
         matrix: &mut Mat<f64>,
@@ -316,7 +318,7 @@ impl<'a> Design<'a> {
             }
             rows.put(column, &values);
         }
-        for (column, slope) in columns(&layout.standing_effects).zip(&row.environment) {
+        for (column, slope) in columns(&layout.standing_effects).zip(&row.standing_effects) {
             rows.put(column, slope);
         }
         for (column, chord) in columns(&layout.chords).zip(row.chords) {
@@ -383,7 +385,7 @@ impl<'a> Design<'a> {
         self.nuisance_columns(&self.nuisance_parts.layout.deck)
     }
 
-    /// What a baseline was taught, where there is one.
+    /// The baseline, where there is one.
     pub(crate) const fn baseline(&self) -> Option<&Baseline> {
         self.nuisance_parts.baseline
     }
@@ -463,7 +465,12 @@ struct RowsOfSegment<'a> {
 }
 
 impl<'a> RowsOfSegment<'a> {
-    fn new(data: &Data<'_>, row: &'a SegmentRow, first: usize, matrix: &'a mut Mat<f64>) -> Self {
+    fn new(
+        data: &PreparedFlights<'_>,
+        row: &'a SegmentRow,
+        first: usize,
+        matrix: &'a mut Mat<f64>,
+    ) -> Self {
         let channels = data.channels;
         let mut on_fuel = [0.0; MAXIMUM_CHANNELS];
         on_fuel[0] = 1.0;
@@ -509,7 +516,7 @@ impl<'a> RowsOfSegment<'a> {
 /// ```
 ///
 /// The sum of a drag factor and the opposite TSFC factor is that signature. The coefficient is nuisance, N(0, κ²).
-fn share_of_error(data: &Data<'_>) -> f64 {
+fn share_of_error(data: &PreparedFlights<'_>) -> f64 {
     let (mut error, mut square) = (0.0, 0.0);
     for row in &data.segments {
         error += row.acceleration_deviation_m_s2.powi(2);

@@ -4,7 +4,7 @@ use crate::judge::closure::Shrinkage;
 use crate::library::Library;
 use crate::search::folds::FOLDS;
 use crate::search::folds::fold_of;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 
 /// Two successive segments of a flight are replicates when Mach number and pressure altitude differ by no more.
 const ALIKE_MACH: f64 = 0.02;
@@ -22,7 +22,7 @@ const FLEXIBLE_SMOOTH: f64 = 0.004;
 /// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r²,   e what the best model leaves                      [diagnosis.30]
 /// ```
 pub(crate) fn replicate_floor(
-    stacked: &Stacked<'_>,
+    stacked: &WhitenedSystem<'_>,
     own: &Shrinkage,
     noise_scale: f64,
 ) -> Option<f64> {
@@ -52,7 +52,7 @@ pub(crate) fn replicate_floor(
 
 /// Mean square that a flexible model (all effects, smooth functions of all variables) leaves on folds of flights that it was
 /// not fitted to: an upper bound of the noise, by as much as it cannot learn. `None` where it cannot be fitted.
-pub(crate) fn held_out_floor(stacked: &Stacked<'_>, library: &Library) -> Option<f64> {
+pub(crate) fn held_out_floor(stacked: &WhitenedSystem<'_>, library: &Library) -> Option<f64> {
     let design = stacked.design;
     let (columns, deviations): (Vec<usize>, Vec<f64>) = library
         .effects

@@ -4,14 +4,14 @@ use effects::EffectPoint;
 
 use crate::library::Library;
 use crate::output::{Diagnosis, Gap, OutsideLibrary, Verdict, VerdictKind};
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 
 /// Fewest flights and segments that a name is given on.
 const FEWEST_FLIGHTS: usize = 6;
 const FEWEST_SEGMENTS: usize = 30;
 
 /// Why the data is too little for any name.
-pub(crate) fn too_little(data: &Data<'_>, library: &Library) -> Option<String> {
+pub(crate) fn too_little(data: &PreparedFlights<'_>, library: &Library) -> Option<String> {
     let (flights, segments) = (data.flights.len(), data.segments.len());
     if flights < FEWEST_FLIGHTS {
         return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS} are needed"));

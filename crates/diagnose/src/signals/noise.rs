@@ -11,7 +11,7 @@ use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 /// Flight-to-flight standard deviation of the split of thrust between engines, of ln(Wf1/Wf2): 1 %.
 const SPLIT_DEVIATION: f64 = 0.01;
 /// Place of the heating value among a segment's common loadings.
-pub(crate) const HEATING_LOADING: usize = 1;
+pub(crate) const HEATING_VALUE_LOADING: usize = 1;
 
 /// Factors on the sensors' standard deviations, learnt from clean flights; 1 before.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,7 +29,7 @@ impl Default for NoiseFactors {
     }
 }
 
-/// What is said of the noise besides the sensors' deviations from segment to segment.
+/// What is known of the noise in addition to the sensors' deviations from segment to segment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Statistics {
     pub(crate) factors: NoiseFactors,
@@ -48,7 +48,7 @@ pub(crate) struct SegmentNoise {
     pub(crate) acceleration: ByChannel,
 }
 
-/// What the noise of a segment follows from besides the segment itself.
+/// What the noise of a segment depends on, in addition to the segment itself.
 pub(crate) struct NoiseModel<'a> {
     pub(crate) model: &'a EffectModel<'a>,
     pub(crate) channels: Channels,
