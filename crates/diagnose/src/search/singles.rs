@@ -107,7 +107,11 @@ fn over<B, const K: usize>(
     scored(model, &sum, best.1)
 }
 
-fn scored<const K: usize>(model: Hypothesis, sum: &Mixture<K>, background: usize) -> ScoredHypothesis {
+fn scored<const K: usize>(
+    model: Hypothesis,
+    sum: &Mixture<K>,
+    background: usize,
+) -> ScoredHypothesis {
     let mean = sum.mean();
     ScoredHypothesis {
         model,
