@@ -91,7 +91,7 @@ mod tests {
             fuel_flow_per_drag_coefficient_kg_s: 10.0,
             variance,
         };
-        state.learn_flight(&[at(0.42, 0.78), at(0.45, 0.80), at(0.51, 0.76)]);
+        let _weights = state.learn_flight(&[at(0.42, 0.78), at(0.45, 0.80), at(0.51, 0.76)]);
         let posterior = state.solve().unwrap();
         let cells = [(0.42, 0.78), (0.45, 0.80), (0.51, 0.76)]
             .map(|(lift, mach)| grid.locate(lift, mach, Outside::Error).unwrap());

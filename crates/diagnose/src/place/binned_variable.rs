@@ -17,7 +17,7 @@ const EDGE_TOLERANCE: f64 = 0.02;
 /// A variable, the name of its bounds (a column, unit in the name), and its name and unit in words.
 type Entry = (Variable, &'static str, &'static str, &'static str);
 
-/// The variables of the specification but engine, in its order.
+/// Every variable that a region is described by, except the engine.
 const ENTRIES: [Entry; 16] = [
     (Variable::Mach, "mach", "mach", ""),
     (Variable::LiftCoefficient, "lift_coefficient", "lift_coefficient", ""),

@@ -56,7 +56,7 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// In words, as the specification calls it.
+    /// In words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
