@@ -1,4 +1,4 @@
-//! What a model remembers of clean flights beside its table: a smooth remainder, the N2 deck, the split between engines,
+//! What a model remembers of clean flights in addition to its table: a smooth remainder, the N2 deck, the split between engines,
 //! and how large the noise is. Each with its covariance.
 
 use effects::{EffectReferences, Response};
@@ -6,7 +6,7 @@ use faer::Mat;
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::layout::NuisanceLayout;
-use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::priors::{
     DECK_DEVIATION, REMAINDER_HAT_DEVIATION, REMAINDER_LEVEL_DEVIATION,
     REMAINDER_PRODUCT_DEVIATION, TAUGHT_SPLIT_DEVIATION,
@@ -22,7 +22,7 @@ pub(crate) mod standing_effects;
 /// Effects that the first model files with a baseline carried.
 const FIRST_CARRIED: usize = 3;
 
-/// A taught baseline. Reads and writes with serde, to the same bits.
+/// A learnt baseline. Reads and writes with serde, to the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Baseline {
@@ -53,12 +53,13 @@ pub(crate) struct Parts {
     /// Lower triangle, row by row, of the Cholesky factor of the covariance of remainder terms, splits and deck.
     pub(crate) factor: Vec<f64>,
     /// Sizes of the effects that the fleet shows at all times.
-    pub(crate) environment: Vec<f64>,
-    /// Remaining rms of ln fuel flow over what taught it.
+    #[serde(rename = "environment")]
+    pub(crate) standing_effects: Vec<f64>,
+    /// Remaining rms of ln fuel flow over the flights that it was learnt from.
     pub(crate) rms: f64,
 }
 
-/// Numbers that are no baseline.
+/// Numbers that are not a baseline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{quantity}: {found} numbers, expected {expected}")]
 pub struct BaselineLengthError {
@@ -74,19 +75,19 @@ impl Baseline {
         &self.parts.noise
     }
 
-    /// The conditions that effects are zero at: the mean of what taught it.
+    /// The conditions that effects are zero at: the mean over the flights that it was learnt from.
     #[must_use]
     pub const fn references(&self) -> &EffectReferences {
         &self.parts.references
     }
 
-    /// Flights and segments that taught it.
+    /// Numbers of flights and segments that it was learnt from.
     #[must_use]
     pub const fn taught_by(&self) -> (usize, usize) {
         (self.parts.flights, self.parts.segments)
     }
 
-    /// Root mean square of ln fuel flow that it leaves over what taught it.
+    /// Root mean square of ln fuel flow that it leaves over the flights that it was learnt from.
     #[must_use]
     pub const fn remaining_rms(&self) -> f64 {
         self.parts.rms
@@ -140,12 +141,12 @@ impl Baseline {
         self.remainder_mean(&terms)
     }
 
-    /// Sizes of effects that the fleet that taught it shows at all times, each in its unit: local gravity, rotating Earth and
+    /// Sizes of effects that its fleet shows at all times, each in its unit: local gravity, rotating Earth and
     /// isobaric slope, load factor, trim drag with the center of gravity, drag of a low wing, anti-ice bleed, and drag rise
     /// about three Mach numbers.
     #[must_use]
-    pub const fn environment(&self) -> &[f64] {
-        self.parts.environment.as_slice()
+    pub const fn standing_effects(&self) -> &[f64] {
+        self.parts.standing_effects.as_slice()
     }
 
     pub(crate) const fn contrasts(&self) -> usize {
@@ -233,13 +234,13 @@ impl Baseline {
         } else if layout.deck.contains(&index) {
             DECK_DEVIATION
         } else {
-            self.carried_deviation(index - layout.standing_effects.start)
+            self.standing_effect_deviation(index - layout.standing_effects.start)
         }
     }
 
     /// Prior standard deviation of a carried effect, in its unit.
-    fn carried_deviation(&self, carried: usize) -> f64 {
-        let effect = &ENVIRONMENT[carried];
+    fn standing_effect_deviation(&self, carried: usize) -> f64 {
+        let effect = &STANDING_EFFECTS[carried];
         effect.deviation * self.parts.references.typical_size(effect.id)
     }
 }
@@ -269,9 +270,9 @@ impl TryFrom<Parts> for Baseline {
         let layout = baseline.layout();
         check("means", baseline.parts.mean.len(), layout.contrasts.end)?;
         check("deck coefficients", baseline.parts.deck_coefficients.len(), DECK_TERMS)?;
-        let carried = baseline.parts.environment.len();
+        let carried = baseline.parts.standing_effects.len();
         if carried != FIRST_CARRIED {
-            check("carried effects", carried, ENVIRONMENT.len())?;
+            check("carried effects", carried, STANDING_EFFECTS.len())?;
         }
         let known = layout.standing_effects.start + carried;
         check("covariance factor", baseline.parts.factor.len(), known * (known + 1) / 2)?;
@@ -282,12 +283,12 @@ impl TryFrom<Parts> for Baseline {
                 factor[(i, j)] = values.next().copied().unwrap_or(0.0);
             }
         }
-        // An older file was taught nothing of the effects that were added since: their prior stands.
-        for k in carried..ENVIRONMENT.len() {
-            let deviation = baseline.carried_deviation(k);
+        // An older file holds no effect that was added since: the prior of those remains.
+        for k in carried..STANDING_EFFECTS.len() {
+            let deviation = baseline.standing_effect_deviation(k);
             let column = layout.standing_effects.start + k;
             factor[(column, column)] = deviation;
-            baseline.parts.environment.push(0.0);
+            baseline.parts.standing_effects.push(0.0);
         }
         if known < layout.len() {
             baseline.parts.factor = lower_triangle(&factor);

@@ -19,11 +19,11 @@ use crate::library::Library;
 use crate::output::addition::Addition;
 use crate::output::{Detectable, Diagnosis, NotTestable, OutsideLibrary};
 use crate::place::find::find;
-use crate::residuals::reference::Against;
-use crate::residuals::segments::Data;
+use crate::residuals::reference::Reference;
+use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::outside::compete;
-use crate::search::system::{Problem, Stacked};
+use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::TableUncertainty;
 
@@ -53,10 +53,10 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)
     };
-    let against = Against::taught_or_table(input.baseline);
+    let reference = Reference::from_baseline(input.baseline);
     let (data, library) =
-        Data::prepare(&model, input.flights, against, |points, engines, starts| {
-            Library::of(&model, points, engines, starts, chosen)
+        PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
+            Library::new(&model, points, engines, starts, chosen)
         });
     let not_testable = library
         .not_testable
@@ -72,8 +72,8 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         found.left_out = data.left_out;
         return Ok(found);
     }
-    let design = Design::of(&data, &references, input.baseline, input.table);
-    let stacked = Stacked::of(&data, &design, None);
+    let design = Design::new(&data, &references, input.baseline, input.table);
+    let stacked = WhitenedSystem::new(&data, &design, None);
     let mut notes = Vec::new();
     notes.extend(data.thrust_by_n2_note(&library));
     notes.extend(input.table.and_then(TableUncertainty::note));
@@ -89,7 +89,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     if let Some(weights) = crate::search::robust::outlier_weights(&stacked, &result.1, &library) {
         notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
         drop(result);
-        let stacked = Stacked::of(&data, &design, Some(weights));
+        let stacked = WhitenedSystem::new(&data, &design, Some(weights));
         result = conclude(
             Problem { stacked: &stacked, model: &model, library: &library },
             options,

@@ -22,13 +22,13 @@ pub(crate) struct Testable {
     /// Prior mean and standard deviation of θ; the standard deviation is mixed at once and three times where free.
     pub(crate) prior_mean: f64,
     pub(crate) prior_deviation: f64,
-    pub(crate) known: bool,
+    pub(crate) has_known_size: bool,
     /// Whether physics says which sign to expect.
-    pub(crate) positive: bool,
+    pub(crate) sign: EffectSign,
     /// First column and number of columns.
     pub(crate) first_column: usize,
     pub(crate) columns: usize,
-    /// The column that stands for the effect where one must do.
+    /// The column that represents the effect where a single one is needed.
     pub(crate) representative: usize,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Library {
 
 impl Library {
     /// The library for these points. `only` and `without` are the caller's choice.
-    pub(crate) fn of(
+    pub(crate) fn new(
         model: &EffectModel<'_>,
         points: &[EffectPoint],
         engines_recorded: bool,
@@ -96,8 +96,8 @@ impl Library {
             typical,
             prior_mean: if known { 1.0 } else { 0.0 },
             prior_deviation: if known { KNOWN_DEVIATION } else { typical },
-            known,
-            positive: id.entry().sign == EffectSign::Positive,
+            has_known_size: known,
+            sign: id.entry().sign,
             first_column,
             columns: grid.len(),
             representative: first_column + middle,
@@ -155,7 +155,7 @@ fn hidden_grid(
     }
 }
 
-/// Whether N2 stands for a thrust in enough segments.
+/// Whether thrust can be read from N2 in enough segments.
 fn tells_thrust_by_n2(points: &[EffectPoint]) -> bool {
     let without = points.iter().filter(|point| point.corrected_thrust_by_n2_n.is_none()).count();
     (without as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64

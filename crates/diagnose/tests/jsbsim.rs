@@ -95,7 +95,7 @@ fn what_was_changed_is_found_and_the_baseline_is_silent() {
 
     let half = clean.len() / 2;
     let taught = Baseline::learn(&model, model.drag_table(), &records(&clean[..half])).unwrap();
-    println!("env {:?}", taught.environment());
+    println!("env {:?}", taught.standing_effects());
     println!(
         "half {:?}: rms {:.4}, noise {:?}",
         taught.taught_by(),

@@ -52,7 +52,7 @@ impl Distances {
             }
             let confused = effect.all_columns().any(|l| {
                 let (squared, implied) = self.squared(column, l, size);
-                let plausible = if effect.known {
+                let plausible = if effect.has_known_size {
                     (implied - 1.0).abs() < PLAUSIBLE_KNOWN
                 } else {
                     implied.abs() < PLAUSIBLE * effect.typical

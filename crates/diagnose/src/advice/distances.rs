@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::hypotheses::design::Design;
-use crate::hypotheses::evidence::Scored;
+use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::library::Library;
 use crate::math::eliminate::integrate_out;
 use crate::math::gram::Gram;
@@ -123,12 +123,12 @@ impl Distances {
 
 /// Of each effect the column of the most probable model that it makes alone. Where an effect has a hidden parameter
 /// (Mdd, pivot, date), its distance from others is that at the value which the data support, not at an arbitrary one.
-pub(crate) fn leading_columns(library: &Library, models: &[(Scored, f64)]) -> Vec<usize> {
+pub(crate) fn leading_columns(library: &Library, models: &[(ScoredHypothesis, f64)]) -> Vec<usize> {
     let mut leading: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
     let mut found = vec![false; leading.len()];
     // Most probable first.
     for (scored, _) in models {
-        if let ([column], None) = (&scored.model.columns[..], scored.model.heating_percent) {
+        if let ([column], None) = (&scored.model.columns[..], scored.model.flight_scatter_percent) {
             let effect = library.columns[*column].effect;
             if !core::mem::replace(&mut found[effect], true) {
                 leading[effect] = *column;

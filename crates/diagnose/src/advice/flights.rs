@@ -16,7 +16,7 @@ use crate::advice::flights::information::{FlightInformation, Known, added};
 use crate::advice::flights::sweeps::{Kind, test_flights};
 use crate::library::{Column, Library};
 use crate::math::eliminate::integrate_out;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 use crate::thresholds::{ADVISED_FLIGHTS, LEAST_DISTANCE, WORTH_MIXING};
 
 mod envelope;
@@ -55,7 +55,7 @@ pub(crate) struct Advised {
 impl Conditions {
     /// For these columns of the library; `None` where there is nothing to tell apart or nothing else can be flown.
     pub(crate) fn of(
-        stacked: &Stacked<'_>,
+        stacked: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         library: &Library,
         distances: &Distances,

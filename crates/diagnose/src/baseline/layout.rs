@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::signals::n2_deck::DECK_TERMS;
 
 /// Columns for the chord errors of a drag table: along lift coefficient and along Mach number.
@@ -41,7 +41,7 @@ pub(crate) enum DeckColumns {
 impl NuisanceLayout {
     /// Of a baseline alone: what its covariance is over.
     pub(crate) fn of_baseline(remainder: usize, contrasts: usize) -> Self {
-        Self::tiled([remainder, contrasts, DECK_TERMS, ENVIRONMENT.len(), 0, 0, 0])
+        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), 0, 0, 0])
     }
 
     /// The same with what is uncertain at any time: chords, acceleration and `table_rank` loadings of the table.

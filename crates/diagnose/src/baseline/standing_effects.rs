@@ -5,7 +5,7 @@ use flight::effect::{EffectId, HiddenParameter};
 use crate::priors::{CARRIED_DEVIATION, CARRIED_DRAG_RISE_MACHS, CARRIED_SLOPE_DEVIATION};
 
 /// An effect that a baseline carries.
-pub(crate) struct Carried {
+pub(crate) struct StandingEffect {
     pub(crate) id: EffectId,
     pub(crate) hidden: HiddenParameter,
     /// Prior standard deviation of its size over the typical size; 1 is all that physics says where the size is known.
@@ -15,24 +15,24 @@ pub(crate) struct Carried {
 /// What a fleet shows at all times and no table over lift coefficient and Mach number, and no smooth remainder, can hold: the
 /// Earth and its air, and effects of signals that the remainder does not look at, or that bend faster than a table's cells.
 /// Whatever of it a baseline was taught is no change. The first three are what older model files hold.
-pub(crate) const ENVIRONMENT: [Carried; 10] = [
-    carried(EffectId::LocalGravity, CARRIED_DEVIATION),
-    carried(EffectId::RotatingEarth, CARRIED_DEVIATION),
-    carried(EffectId::IsobaricSlope, CARRIED_SLOPE_DEVIATION),
-    carried(EffectId::LoadFactor, CARRIED_DEVIATION),
-    carried(EffectId::TrimDragCg, CARRIED_DEVIATION),
-    carried(EffectId::AsymmetryDrag, CARRIED_DEVIATION),
-    carried(EffectId::AntiIceBleed, CARRIED_DEVIATION),
+pub(crate) const STANDING_EFFECTS: [StandingEffect; 10] = [
+    standing_effect(EffectId::LocalGravity, CARRIED_DEVIATION),
+    standing_effect(EffectId::RotatingEarth, CARRIED_DEVIATION),
+    standing_effect(EffectId::IsobaricSlope, CARRIED_SLOPE_DEVIATION),
+    standing_effect(EffectId::LoadFactor, CARRIED_DEVIATION),
+    standing_effect(EffectId::TrimDragCg, CARRIED_DEVIATION),
+    standing_effect(EffectId::AsymmetryDrag, CARRIED_DEVIATION),
+    standing_effect(EffectId::AntiIceBleed, CARRIED_DEVIATION),
     drag_rise(CARRIED_DRAG_RISE_MACHS[0]),
     drag_rise(CARRIED_DRAG_RISE_MACHS[1]),
     drag_rise(CARRIED_DRAG_RISE_MACHS[2]),
 ];
 
-pub(crate) const fn carried(id: EffectId, deviation: f64) -> Carried {
-    Carried { id, hidden: id.entry().hidden, deviation }
+pub(crate) const fn standing_effect(id: EffectId, deviation: f64) -> StandingEffect {
+    StandingEffect { id, hidden: id.entry().hidden, deviation }
 }
 
-const fn drag_rise(drag_divergence_mach: f64) -> Carried {
+const fn drag_rise(drag_divergence_mach: f64) -> StandingEffect {
     let hidden = HiddenParameter::DragDivergenceMach(drag_divergence_mach);
-    Carried { id: EffectId::WaveDrag, hidden, deviation: CARRIED_DEVIATION }
+    StandingEffect { id: EffectId::WaveDrag, hidden, deviation: CARRIED_DEVIATION }
 }

@@ -1,8 +1,8 @@
-//! Backgrounds: small matrices over the library's columns from which nuisance, a smooth discrepancy and a spike of every effect
+//! Backgrounds: small matrices over the library's columns from which nuisance, a smooth discrepancy and small amounts of every effect
 //! were integrated out.
 //!
 //! Difficult: refinement changes two columns and the residual and wants every background again. What is integrated out is
-//! not touched by that but for the spike, so that the changed columns follow through what was factored once.
+//! not touched by that but for the small amounts, so that the changed columns follow through what was factored once.
 
 use faer::Mat;
 
@@ -14,8 +14,8 @@ use crate::priors::{BACKGROUND_SPIKES, SMOOTH_AMPLITUDES};
 /// A background: Gram of the effects' columns, product with the residual, square of the residual.
 #[derive(Clone, Debug)]
 pub(crate) struct Background {
-    pub(crate) spike: f64,
-    pub(crate) tau: f64,
+    pub(crate) small_effects_scale: f64,
+    pub(crate) smooth_amplitude: f64,
     /// Which level of scatter between flights.
     pub(crate) scatter: usize,
     /// Where each column of the library lies in `gram`.
@@ -39,7 +39,7 @@ pub(crate) struct Diagonal {
 /// A Gram over the library's columns and the residual, smooth discrepancy of one amplitude integrated out.
 #[derive(Debug)]
 pub(crate) struct Smoothed {
-    tau: f64,
+    smooth_amplitude: f64,
     scatter: usize,
     matrix: Mat<f64>,
     ln_determinant: f64,
@@ -56,8 +56,8 @@ impl Background {
     ) -> Self {
         let last = own.len();
         let mut at = Self {
-            spike: 0.0,
-            tau: 0.0,
+            small_effects_scale: 0.0,
+            smooth_amplitude: 0.0,
             scatter: 0,
             places: vec![usize::MAX; columns],
             width: last,
@@ -85,8 +85,8 @@ impl Background {
     }
 }
 
-/// Integrates nuisance out of a Gram over a design's columns, agnostic ones included or not; the residual is the last: what is
-/// left are effects, smooth background, agnostic functions and residual.
+/// Integrates nuisance out of a Gram over a design's columns, smooth terms included or not; the residual is the last: what is
+/// left are effects, smooth background, smooth terms and residual.
 pub(crate) fn without_nuisance(
     gram: &Mat<f64>,
     design: &Design<'_>,
@@ -94,7 +94,7 @@ pub(crate) fn without_nuisance(
     let kept = (0..design.effects).chain(design.smooth.start..gram.ncols()).collect();
     let out: Vec<usize> = design.nuisance.clone().collect();
     let deviations = vec![1.0; out.len()];
-    Elimination::of(gram, kept, out, deviations)
+    Elimination::new(gram, kept, out, deviations)
 }
 
 /// Every smooth discrepancy that is admitted at every level of scatter between flights, from Grams without nuisance whose
@@ -108,43 +108,53 @@ pub(crate) fn smoothed(
     let mut all = Vec::new();
     for (scatter, reduced) in levels.iter().enumerate() {
         let residual = reduced.matrix.ncols() - 1;
-        for tau in SMOOTH_AMPLITUDES.into_iter().filter(|&tau| admits(tau)) {
+        for smooth_amplitude in
+            SMOOTH_AMPLITUDES.into_iter().filter(|&smooth_amplitude| admits(smooth_amplitude))
+        {
             let kept: Vec<usize> = (0..effects).chain([residual]).collect();
             let out: Vec<usize> =
-                if tau > 0.0 { (effects..effects + smooth).collect() } else { vec![] };
-            let deviations = vec![tau; out.len()];
-            let found = Elimination::of(&reduced.matrix, kept, out, deviations);
+                if smooth_amplitude > 0.0 { (effects..effects + smooth).collect() } else { vec![] };
+            let deviations = vec![smooth_amplitude; out.len()];
+            let found = Elimination::new(&reduced.matrix, kept, out, deviations);
             let Some((elimination, left)) = found else { continue };
             let ln_determinant = reduced.ln_determinant + left.ln_determinant;
-            all.push(Smoothed { tau, scatter, matrix: left.matrix, ln_determinant, elimination });
+            all.push(Smoothed {
+                smooth_amplitude,
+                scatter,
+                matrix: left.matrix,
+                ln_determinant,
+                elimination,
+            });
         }
     }
     all
 }
 
-/// Every background: every spike over every smooth discrepancy.
+/// Every background: every scale of small effects over every smooth discrepancy.
 pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Background> {
     let effects = library.columns.len();
     let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len() * smoothed.len());
-    for (under, spike) in
-        smoothed.iter().flat_map(|under| BACKGROUND_SPIKES.map(|spike| (under, spike)))
+    for (under, small_effects_scale) in smoothed
+        .iter()
+        .flat_map(|under| BACKGROUND_SPIKES.map(|small_effects_scale| (under, small_effects_scale)))
     {
-        let (out, deviations) = spike_of(library, spike);
+        let (out, deviations) = small_effects(library, small_effects_scale);
         let kept: Vec<usize> = (0..=effects).collect();
-        let Some(spiked) = integrate_out(&under.matrix, &kept, &out, &deviations) else {
+        let Some(with_small_effects) = integrate_out(&under.matrix, &kept, &out, &deviations)
+        else {
             continue;
         };
-        let m = &spiked.matrix;
+        let m = &with_small_effects.matrix;
         all.push(Background {
-            spike,
-            tau: under.tau,
+            small_effects_scale,
+            smooth_amplitude: under.smooth_amplitude,
             scatter: under.scatter,
             places: (0..effects).collect(),
             width: effects,
             gram: (0..effects).flat_map(|a| m.col_as_slice(a)[..effects].iter().copied()).collect(),
             product: m.col_as_slice(effects)[..effects].to_vec(),
             square: m[(effects, effects)],
-            ln_determinant: under.ln_determinant + spiked.ln_determinant,
+            ln_determinant: under.ln_determinant + with_small_effects.ln_determinant,
         });
     }
     all
@@ -154,10 +164,11 @@ pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Backg
 pub(crate) fn diagonals(smoothed: &[Smoothed], library: &Library) -> Vec<Diagonal> {
     let effects = library.columns.len();
     let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len() * smoothed.len());
-    for (under, spike) in
-        smoothed.iter().flat_map(|under| BACKGROUND_SPIKES.map(|spike| (under, spike)))
+    for (under, small_effects_scale) in smoothed
+        .iter()
+        .flat_map(|under| BACKGROUND_SPIKES.map(|small_effects_scale| (under, small_effects_scale)))
     {
-        let (out, deviations) = spike_of(library, spike);
+        let (out, deviations) = small_effects(library, small_effects_scale);
         let kept: Vec<usize> = (0..=effects).collect();
         let Some(elimination) = Elimination::projection(&under.matrix, kept, out, deviations)
         else {
@@ -175,17 +186,17 @@ pub(crate) fn diagonals(smoothed: &[Smoothed], library: &Library) -> Vec<Diagona
     all
 }
 
-/// Columns that a spike of every effect takes out, and its standard deviations.
-pub(crate) fn spike_of(library: &Library, spike: f64) -> (Vec<usize>, Vec<f64>) {
-    if spike == 0.0 {
+/// Columns that small amounts of every effect take out, and its standard deviations.
+pub(crate) fn small_effects(library: &Library, small_effects_scale: f64) -> (Vec<usize>, Vec<f64>) {
+    if small_effects_scale == 0.0 {
         return (vec![], vec![]);
     }
-    library.effects.iter().map(|e| (e.representative, spike * e.typical)).unzip()
+    library.effects.iter().map(|e| (e.representative, small_effects_scale * e.typical)).unzip()
 }
 
 impl Smoothed {
     pub(crate) fn is_of(&self, at: &Background) -> bool {
-        self.tau.total_cmp(&at.tau).is_eq() && self.scatter == at.scatter
+        self.smooth_amplitude.total_cmp(&at.smooth_amplitude).is_eq() && self.scatter == at.scatter
     }
 
     pub(crate) const fn scatter(&self) -> usize {
@@ -206,14 +217,23 @@ impl Smoothed {
         let mut matrix = self.matrix.clone();
         self.elimination.follow(changed).write(&mut matrix, &places);
         let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len());
-        for spike in BACKGROUND_SPIKES.into_iter().filter(|&spike| choose(spike)) {
-            let (out, deviations) = spike_of(library, spike);
-            let Some(spiked) = integrate_out(&matrix, &places, &out, &deviations) else {
+        for small_effects_scale in
+            BACKGROUND_SPIKES.into_iter().filter(|&small_effects_scale| choose(small_effects_scale))
+        {
+            let (out, deviations) = small_effects(library, small_effects_scale);
+            let Some(with_small_effects) = integrate_out(&matrix, &places, &out, &deviations)
+            else {
                 continue;
             };
-            let ln_determinant = self.ln_determinant + spiked.ln_determinant;
-            let at = Background::small(&spiked.matrix, columns, effects, ln_determinant);
-            all.push(Background { spike, tau: self.tau, scatter: self.scatter, ..at });
+            let ln_determinant = self.ln_determinant + with_small_effects.ln_determinant;
+            let at =
+                Background::small(&with_small_effects.matrix, columns, effects, ln_determinant);
+            all.push(Background {
+                small_effects_scale,
+                smooth_amplitude: self.smooth_amplitude,
+                scatter: self.scatter,
+                ..at
+            });
         }
         all
     }

@@ -11,7 +11,7 @@ use crate::priors::{
     AGNOSTIC_QUANTILES, DECK_DEVIATION, PRODUCT_SCALE, SMOOTH_QUANTILES, SPLIT_SCALE,
 };
 use crate::residuals::rows::{FlightRows, SegmentRow};
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::table_uncertainty::TableUncertainty;
@@ -48,7 +48,7 @@ const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
     (Variable::CenterOfGravity, Variable::LiftCoefficient),
     (Variable::Mach, Variable::Date),
 ];
-/// Without acceleration: its own error is in the residual, which hangs on it in every recording.
+/// Without acceleration: its own error is in the residual, which depends on it in every recording.
 const AGNOSTIC_VARIABLES: [Variable; 18] = [
     Variable::Mach,
     Variable::LiftCoefficient,
@@ -78,7 +78,7 @@ pub(crate) enum Acts {
     Split,
 }
 
-/// An agnostic function of one variable.
+/// A smooth term of one variable.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     pub(crate) variable: Variable,
@@ -87,7 +87,7 @@ pub(crate) struct Block {
     hats: Option<Hats>,
 }
 
-/// Which column is what: effects, nuisance, smooth background, agnostic functions, residual last.
+/// Which column is what: effects, nuisance, smooth background, smooth terms, residual last.
 #[derive(Clone, Debug)]
 pub(crate) struct Design<'a> {
     pub(crate) effects: usize,
@@ -112,8 +112,8 @@ struct Nuisance<'a> {
 }
 
 impl<'a> Design<'a> {
-    pub(crate) fn of(
-        data: &Data<'_>,
+    pub(crate) fn new(
+        data: &PreparedFlights<'_>,
         references: &EffectReferences,
         baseline: Option<&'a Baseline>,
         table: Option<&'a TableUncertainty>,
@@ -143,7 +143,9 @@ impl<'a> Design<'a> {
             .collect();
         let smooth_products: Vec<_> = SMOOTH_PRODUCTS
             .into_iter()
-            .filter_map(|(a, b)| Some((a, Scaled::of(&values(a)?), b, Scaled::of(&values(b)?))))
+            .filter_map(|(a, b)| {
+                Some((a, Scaled::from_values(&values(a)?), b, Scaled::from_values(&values(b)?)))
+            })
             .collect();
         let once = 1
             + smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
@@ -195,7 +197,7 @@ impl<'a> Design<'a> {
         self.columns - 1
     }
 
-    /// The same nuisance beside fewer columns of effects, without smooth background and agnostic functions.
+    /// The same nuisance with fewer columns of effects, without smooth background and smooth terms.
     pub(crate) fn of_nuisance(&self, effects: usize) -> Self {
         let nuisance = effects..effects + self.nuisance.len();
         Self {
@@ -211,8 +213,8 @@ impl<'a> Design<'a> {
         }
     }
 
-    /// All columns of a flight's fuel flow as they are, not whitened: one row a segment.
-    pub(crate) fn fuel_flow(&self, data: &Data<'_>, flight: &FlightRows) -> Mat<f64> {
+    /// All columns of a flight's fuel flow as they are, not whitened: one row per segment.
+    pub(crate) fn fuel_flow(&self, data: &PreparedFlights<'_>, flight: &FlightRows) -> Mat<f64> {
         let channels = data.channels.count();
         let mut matrix = Mat::<f64>::zeros(channels, self.columns);
         let mut rows = Mat::<f64>::zeros(flight.segments.len(), self.columns);
@@ -235,7 +237,7 @@ impl<'a> Design<'a> {
     /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
     pub(crate) fn whitened(
         &self,
-        data: &Data<'_>,
+        data: &PreparedFlights<'_>,
         flight: &FlightRows,
         weights: Option<&[f64]>,
     ) -> Mat<f64> {
@@ -269,7 +271,7 @@ impl<'a> Design<'a> {
 
     fn write_segment(
         &self,
-        data: &Data<'_>,
+        data: &PreparedFlights<'_>,
         row: &SegmentRow,
         first: usize,
         matrix: &mut Mat<f64>,
@@ -311,7 +313,7 @@ impl<'a> Design<'a> {
             }
             rows.put(column, &values);
         }
-        for (column, slope) in columns(&layout.standing_effects).zip(&row.environment) {
+        for (column, slope) in columns(&layout.standing_effects).zip(&row.standing_effects) {
             rows.put(column, slope);
         }
         for (column, chord) in columns(&layout.chords).zip(row.chords) {
@@ -378,7 +380,7 @@ impl<'a> Design<'a> {
         self.nuisance_columns(&self.nuisance_parts.layout.deck)
     }
 
-    /// What a baseline was taught, where there is one.
+    /// The baseline, where there is one.
     pub(crate) const fn baseline(&self) -> Option<&Baseline> {
         self.nuisance_parts.baseline
     }
@@ -458,7 +460,12 @@ struct RowsOfSegment<'a> {
 }
 
 impl<'a> RowsOfSegment<'a> {
-    fn new(data: &Data<'_>, row: &'a SegmentRow, first: usize, matrix: &'a mut Mat<f64>) -> Self {
+    fn new(
+        data: &PreparedFlights<'_>,
+        row: &'a SegmentRow,
+        first: usize,
+        matrix: &'a mut Mat<f64>,
+    ) -> Self {
         let channels = data.channels;
         let mut on_fuel = [0.0; MAXIMUM_CHANNELS];
         on_fuel[0] = 1.0;
@@ -504,7 +511,7 @@ impl<'a> RowsOfSegment<'a> {
 /// ```
 ///
 /// The sum of a drag factor and the opposite TSFC factor is that signature. The coefficient is nuisance, N(0, κ²).
-fn share_of_error(data: &Data<'_>) -> f64 {
+fn share_of_error(data: &PreparedFlights<'_>) -> f64 {
     let (mut error, mut square) = (0.0, 0.0);
     for row in &data.segments {
         error += row.acceleration_deviation_m_s2.powi(2);

@@ -1,9 +1,10 @@
 //! The search: every single effect and every pair, scored by closed-form Gaussian evidence over backgrounds.
 //!
 //! Difficult: everything happens on small matrices from which all that no hypothesis names (nuisance, smooth discrepancy,
-//! a spike of every other effect) was integrated out before. A model is a choice of columns; an effect with a hidden
+//! small amounts of every other effect) was integrated out before. A hypothesis is a choice of columns; an effect with a hidden
 //! parameter has several columns that share its prior mass.
 
+use flight::effect::EffectSign;
 use statrs::function::erf::erfc;
 
 use crate::hypotheses::backgrounds::Background;
@@ -13,25 +14,25 @@ use crate::priors::{
     EXPECTED_SIGN, HEATING_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
 };
 
-/// What a model is made of.
+/// What a hypothesis is made of.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Model {
+pub(crate) struct Hypothesis {
     /// Columns, at most two.
     pub(crate) columns: Vec<usize>,
     /// Flight-to-flight scatter, per cent.
-    pub(crate) heating_percent: Option<f64>,
+    pub(crate) flight_scatter_percent: Option<f64>,
 }
 
-/// A scored model.
+/// A hypothesis with its score.
 #[derive(Clone, Debug)]
-pub(crate) struct Scored {
-    pub(crate) model: Model,
+pub(crate) struct ScoredHypothesis {
+    pub(crate) model: Hypothesis,
     /// ln of evidence times prior, summed over backgrounds.
     pub(crate) ln_weight: f64,
     /// Posterior means and standard deviations of the sizes.
     pub(crate) sizes: Vec<f64>,
     pub(crate) deviations: Vec<f64>,
-    /// The background under which the model is most probable.
+    /// The background under which the hypothesis is most probable.
     pub(crate) background: usize,
 }
 
@@ -42,7 +43,7 @@ pub(crate) struct Prior {
     /// Standard deviations and ln probabilities.
     pub(crate) scales: [(f64, f64); 2],
     pub(crate) count: usize,
-    pub(crate) positive: bool,
+    pub(crate) sign: EffectSign,
 }
 
 /// What one column comes to in one background.
@@ -66,7 +67,7 @@ pub(crate) struct Scorer {
 }
 
 impl Scorer {
-    pub(crate) fn of(library: &Library, rows: usize) -> Self {
+    pub(crate) fn new(library: &Library, rows: usize) -> Self {
         let priors = library
             .columns
             .iter()
@@ -76,13 +77,13 @@ impl Scorer {
                     PRIOR_SCALES.map(|(scale, share)| (scale * effect.prior_deviation, share.ln()));
                 Prior {
                     mean: effect.prior_mean,
-                    scales: if effect.known {
+                    scales: if effect.has_known_size {
                         [(effect.prior_deviation, 0.0), (effect.prior_deviation, 0.0)]
                     } else {
                         free
                     },
-                    count: if effect.known { 1 } else { 2 },
-                    positive: effect.positive,
+                    count: if effect.has_known_size { 1 } else { 2 },
+                    sign: effect.sign,
                 }
             })
             .collect();
@@ -105,8 +106,8 @@ impl Scorer {
 
     /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters. Over all models the priors
     /// sum to one.
-    pub(crate) fn ln_prior(&self, model: &Model) -> f64 {
-        let size = model.columns.len() + usize::from(model.heating_percent.is_some());
+    pub(crate) fn ln_prior(&self, model: &Hypothesis) -> f64 {
+        let size = model.columns.len() + usize::from(model.flight_scatter_percent.is_some());
         let count = self.effects as f64;
         let choices = match size {
             0 => 1.0,
@@ -115,7 +116,7 @@ impl Scorer {
         };
         let hidden: f64 =
             model.columns.iter().map(|&column| self.ln_columns[self.effect_of[column]]).sum();
-        let heating = if model.heating_percent.is_some() {
+        let heating = if model.flight_scatter_percent.is_some() {
             (HEATING_SIZES_PERCENT.len() as f64).ln()
         } else {
             0.0
@@ -164,8 +165,8 @@ impl Scorer {
             let scale = (NOISE_FREEDOM + square) / (NOISE_FREEDOM + self.rows);
             let variance = scale / posterior;
             let size = size + shift;
-            let factor = (precision / posterior).sqrt()
-                * sign_factor(prior.positive, size / variance.sqrt());
+            let factor =
+                (precision / posterior).sqrt() * sign_factor(prior.sign, size / variance.sqrt());
             let ln = ln_share - self.power() * (NOISE_FREEDOM + square).ln();
             sum.add(ln, factor, size, variance);
         }
@@ -213,8 +214,8 @@ impl Scorer {
                     - self.power() * (NOISE_FREEDOM + square).ln()
                     + ln_a
                     + ln_b
-                    + ln_sign(prior_a.positive, (size_a + shifts[0]) / spread_a)
-                    + ln_sign(prior_b.positive, (size_b + shifts[1]) / spread_b);
+                    + ln_sign(prior_a.sign, (size_a + shifts[0]) / spread_a)
+                    + ln_sign(prior_b.sign, (size_b + shifts[1]) / spread_b);
                 sum.add(ln, [size_a + shifts[0], size_b + shifts[1]], [spread_a, spread_b]);
             }
         }
@@ -223,13 +224,13 @@ impl Scorer {
 }
 
 /// ln of [`sign_factor`].
-fn ln_sign(positive: bool, t: f64) -> f64 {
-    if positive { sign_factor(positive, t).ln() } else { 0.0 }
+fn ln_sign(sign: EffectSign, t: f64) -> f64 {
+    if sign == EffectSign::Positive { sign_factor(sign, t).ln() } else { 0.0 }
 }
 
 /// How much more probable the data are when the sign is the expected one: 2·(p Φ(t) + (1 − p) Φ(−t)).
-pub(crate) fn sign_factor(positive: bool, t: f64) -> f64 {
-    if !positive {
+pub(crate) fn sign_factor(sign: EffectSign, t: f64) -> f64 {
+    if sign != EffectSign::Positive {
         return 1.0;
     }
     if t > 8.0 {
@@ -249,7 +250,8 @@ mod tests {
     /// Every hypothesis: none, one of three effects (one of them with two columns, one of them scatter), every pair.
     #[test]
     fn prior_masses_sum_to_one() {
-        let prior = Prior { mean: 0.0, scales: [(1.0, 0.0); 2], count: 1, positive: false };
+        let prior =
+            Prior { mean: 0.0, scales: [(1.0, 0.0); 2], count: 1, sign: EffectSign::Either };
         let scorer = Scorer {
             priors: vec![prior; 3],
             effect_of: vec![0, 1, 1],
@@ -257,8 +259,8 @@ mod tests {
             effects: 3,
             rows: 10.0,
         };
-        let mass = |columns: &[usize], heating_percent: Option<f64>| {
-            scorer.ln_prior(&Model { columns: columns.to_vec(), heating_percent }).exp()
+        let mass = |columns: &[usize], flight_scatter_percent: Option<f64>| {
+            scorer.ln_prior(&Hypothesis { columns: columns.to_vec(), flight_scatter_percent }).exp()
         };
         let mut total: f64 = [&[][..], &[0], &[1], &[2], &[0, 1], &[0, 2]]
             .into_iter()
@@ -275,8 +277,8 @@ mod tests {
     #[test]
     fn signs_by_the_normal_table() {
         // Φ(1.96) = 0.975 002: 2·(0.95·0.975002 + 0.05·0.024998) = 1.855 004.
-        assert!((ln_sign(true, 1.96).exp() - 1.855_004).abs() < 1e-5);
-        assert!(ln_sign(false, -5.0).abs() < 1e-300);
+        assert!((ln_sign(EffectSign::Positive, 1.96).exp() - 1.855_004).abs() < 1e-5);
+        assert!(ln_sign(EffectSign::Either, -5.0).abs() < 1e-300);
     }
 
     /// The closed form against the marginal likelihood integrated on a grid of θ and of ln of the noise scale.
@@ -285,8 +287,12 @@ mod tests {
         let (gram, product, square, rows) = (7.0, 5.0, 12.0, 9.0);
         let matrix = faer::Mat::from_fn(2, 2, |i, j| [[gram, product], [product, square]][i][j]);
         let at = Background::small(&matrix, &[0], 1, 0.0);
-        let prior =
-            Prior { mean: 0.3, scales: [(0.8, 0.0), (0.8, 0.0)], count: 1, positive: false };
+        let prior = Prior {
+            mean: 0.3,
+            scales: [(0.8, 0.0), (0.8, 0.0)],
+            count: 1,
+            sign: EffectSign::Either,
+        };
         let scorer = Scorer {
             priors: vec![prior],
             effect_of: vec![0],

@@ -3,7 +3,7 @@
 use effects::EffectReferences;
 use flight::effect::{EffectId, HiddenParameter};
 
-use crate::hypotheses::evidence::Scored;
+use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::library::Library;
 use crate::output::addition::{AddedEffect, Addition};
 use crate::search::analyse::Analysis;
@@ -37,7 +37,7 @@ impl Addition {
                 }
             })
             .collect();
-        effects.extend(scored.model.heating_percent.map(|percent| AddedEffect {
+        effects.extend(scored.model.flight_scatter_percent.map(|percent| AddedEffect {
             effect: EffectId::FuelHeatingValue.to_string(),
             size: percent,
             standard_deviation: SCATTER_SHARE * percent,
@@ -49,11 +49,13 @@ impl Addition {
     }
 }
 
-fn named(scored: &Scored, library: &Library) -> Vec<String> {
+fn named(scored: &ScoredHypothesis, library: &Library) -> Vec<String> {
     let columns = scored.model.columns.iter();
     let mut names: Vec<String> = columns
         .map(|&column| library.effects[library.columns[column].effect].id.to_string())
         .collect();
-    names.extend(scored.model.heating_percent.map(|_| EffectId::FuelHeatingValue.to_string()));
+    names.extend(
+        scored.model.flight_scatter_percent.map(|_| EffectId::FuelHeatingValue.to_string()),
+    );
     names
 }

@@ -2,14 +2,14 @@
 
 use statrs::function::erf::erfc;
 
-use crate::hypotheses::evidence::Scored;
+use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::judge::closure::Shrinkage;
 use crate::judge::posterior::Posterior;
 use crate::output::Gap;
 use crate::priors::NOISE_FREEDOM;
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
     CLEAN_PROBABILITY, MORE_PROBABLE_THAN_NOT, NORMAL_95, OUTSIDE_PROBABILITY, SMALLEST_GAP,
 };
@@ -27,7 +27,7 @@ pub(crate) fn exceeds_uncertainty(gap: &Gap, unknown: f64) -> bool {
 }
 
 /// Mean square of ln fuel flow that the table, the chords of its cells and a taught remainder leave open.
-pub(crate) fn unknown_square(stacked: &Stacked<'_>) -> f64 {
+pub(crate) fn unknown_square(stacked: &WhitenedSystem<'_>) -> f64 {
     let (data, design) = (stacked.data, stacked.design);
     let sum: f64 = data
         .flights
@@ -60,7 +60,7 @@ pub(crate) fn is_vague(
 }
 
 /// Noise variance over what the sensors announce, of the best model.
-pub(crate) fn noise_scale(analysis: &Analysis, best: &Scored, rows: usize) -> f64 {
+pub(crate) fn noise_scale(analysis: &Analysis, best: &ScoredHypothesis, rows: usize) -> f64 {
     let at = &analysis.backgrounds[best.background.min(analysis.backgrounds.len() - 1)];
     let explained: f64 = best
         .model
@@ -74,7 +74,7 @@ pub(crate) fn noise_scale(analysis: &Analysis, best: &Scored, rows: usize) -> f6
 }
 
 pub(crate) fn gap_of(
-    stacked: &Stacked<'_>,
+    stacked: &WhitenedSystem<'_>,
     analysis: &Analysis,
     own: &Shrinkage,
     scale: f64,
@@ -94,7 +94,10 @@ pub(crate) fn gap_of(
         / (flights - 1.0).max(1.0);
     let half = NORMAL_95 * spread.sqrt() / count;
     // The largest deviation any effect makes of noise alone, with as many looks as columns (Bonferroni).
-    let plain = analysis.backgrounds.iter().find(|b| b.spike == 0.0 && b.tau == 0.0);
+    let plain = analysis
+        .backgrounds
+        .iter()
+        .find(|b| b.small_effects_scale == 0.0 && b.smooth_amplitude == 0.0);
     let p_value = plain.map_or(1.0, |at| {
         let columns = analysis.scorer.columns();
         let largest = (0..columns)

@@ -3,7 +3,7 @@
 use crate::judge::closure::Shrinkage;
 use crate::library::Library;
 use crate::search::folds::fold_of;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
     CLOSURE_FOLDS, FEWEST_REPLICATES, FLEXIBLE_EFFECT, FLEXIBLE_SMOOTH, REPLICATE_ALTITUDE_M,
     REPLICATE_MACH,
@@ -16,7 +16,7 @@ use crate::thresholds::{
 /// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r²,   e what the best model leaves                      [diagnosis.30]
 /// ```
 pub(crate) fn replicate_floor(
-    stacked: &Stacked<'_>,
+    stacked: &WhitenedSystem<'_>,
     own: &Shrinkage,
     noise_scale: f64,
 ) -> Option<f64> {
@@ -46,7 +46,7 @@ pub(crate) fn replicate_floor(
 
 /// Mean square that a flexible model (all effects, smooth functions of all variables) leaves on folds of flights that it was
 /// not fitted to: an upper bound of the noise, by as much as it cannot learn. `None` where it cannot be fitted.
-pub(crate) fn held_out_floor(stacked: &Stacked<'_>, library: &Library) -> Option<f64> {
+pub(crate) fn held_out_floor(stacked: &WhitenedSystem<'_>, library: &Library) -> Option<f64> {
     let design = stacked.design;
     let (columns, deviations): (Vec<usize>, Vec<f64>) = library
         .effects

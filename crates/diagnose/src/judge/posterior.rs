@@ -3,13 +3,13 @@
 use flight::effect::EffectId;
 
 use crate::advice::distances::Distances;
-use crate::hypotheses::evidence::Scored;
+use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::judge::closure::Shrinkage;
 use crate::library::Library;
 use crate::output::{Cause, Magnitude};
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
     FEWEST_CAUSES, LEAST_LISTED, LISTED_PROBABILITY, NORMAL_95, SCATTER_INTERVAL,
 };
@@ -21,7 +21,7 @@ pub(crate) struct Posterior {
     pub(crate) effect: Option<usize>,
     pub(crate) probability: f64,
     /// The most probable model in which it is the larger effect.
-    pub(crate) model: Scored,
+    pub(crate) model: ScoredHypothesis,
     /// Its place in that model.
     pub(crate) place: usize,
 }
@@ -42,7 +42,7 @@ impl Posterior {
 
 /// Probability of each effect to be the larger one of what acts, over models.
 pub(crate) fn dominant(
-    stacked: &Stacked<'_>,
+    stacked: &WhitenedSystem<'_>,
     analysis: &Analysis,
     library: &Library,
 ) -> Vec<Posterior> {
@@ -66,7 +66,7 @@ pub(crate) fn dominant(
                 (size * size * mean_squares[column], Some(library.columns[column].effect), place)
             })
             .collect();
-        if let Some(percent) = scored.model.heating_percent {
+        if let Some(percent) = scored.model.flight_scatter_percent {
             shares.push(((percent / 100.0).powi(2), None, 0));
         }
         let Some(&(_, effect, place)) = shares.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
@@ -132,7 +132,7 @@ pub(crate) fn name_of(library: &Library, effect: Option<usize>) -> String {
 
 fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
     let Some(effect) = posterior.effect else {
-        let percent = posterior.model.model.heating_percent.unwrap_or(0.0);
+        let percent = posterior.model.model.flight_scatter_percent.unwrap_or(0.0);
         return Magnitude {
             value: percent,
             unit: EffectId::FuelHeatingValue.entry().unit.to_owned(),

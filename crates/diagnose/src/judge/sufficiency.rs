@@ -4,11 +4,11 @@ use effects::EffectPoint;
 
 use crate::library::Library;
 use crate::output::{Diagnosis, Gap, OutsideLibrary, Verdict, VerdictKind};
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::thresholds::{FEWEST_FLIGHTS_OF_A_NAME, FEWEST_SEGMENTS_OF_A_NAME, LEAST_SPREADS};
 
 /// Why the data is too little for any name.
-pub(crate) fn too_little(data: &Data<'_>, library: &Library) -> Option<String> {
+pub(crate) fn too_little(data: &PreparedFlights<'_>, library: &Library) -> Option<String> {
     let (flights, segments) = (data.flights.len(), data.segments.len());
     if flights < FEWEST_FLIGHTS_OF_A_NAME {
         return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS_OF_A_NAME} are needed"));

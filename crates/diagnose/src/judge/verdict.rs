@@ -169,7 +169,7 @@ fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String
     let mut names = vec![name_of(library, top.effect)];
     if *probability > MORE_PROBABLE_THAN_NOT {
         let members = best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
-        let scatter = best.model.heating_percent.map(|_| None);
+        let scatter = best.model.flight_scatter_percent.map(|_| None);
         for member in members.chain(scatter) {
             let name = name_of(library, member);
             if !names.contains(&name) {

@@ -1,22 +1,22 @@
 //! How a baseline learns: noise and sizes by marginal likelihood, scatter between flights by flights left out, then the
-//! posterior. All of it on [`Moments`]; the flights themselves are looked at once.
+//! posterior. All of it on [`GramSums`]; the flights themselves are looked at once.
 
 use std::collections::BTreeMap;
 
 use faer::Mat;
 
 use crate::baseline::{Baseline, lower_triangle};
-use crate::learning::moments::{KINDS, LeftOut, Moments, Part};
+use crate::learning::moments::{CoupledChannels, GramSums, KINDS, LeftOut};
 use crate::math::cholesky::Cholesky;
 use crate::priors::{
     DIAL_LIMITS, REMAINDER_SCALE_LN_DEVIATION, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
 };
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::references::DiagnoseError;
 use crate::thresholds::LEARNING_FOLDS;
 
-/// Rounds over all dials, the first of them coarse.
+/// Rounds over all hyperparameters, the first of them coarse.
 const ROUNDS: usize = 12;
 /// Rounds of coarse steps. Our choice: a bound on time.
 const COARSE_ROUNDS: usize = 4;
@@ -24,44 +24,53 @@ const COARSE_ROUNDS: usize = 4;
 const COARSE_STEP: f64 = 1.6;
 /// Factor of a fine step. Our choice: noise need not be known better than to a tenth.
 const FINE_STEP: f64 = 1.1;
-/// Dials: noise within flights and between flights of three kinds of channels, sizes of hat functions and of products.
-const DIALS: usize = 8;
+/// Hyperparameters: noise within flights and between flights of three kinds of channels, sizes of hat functions and of products.
+const HYPERPARAMETERS: usize = 8;
 
-/// Coarse and fine steps that every dial is from its start: equal positions are equal settings.
-type Position = [(i32, i32); DIALS];
+/// Where the search is on its grid: for each hyperparameter the number of coarse and of fine steps from its start. Equal
+/// positions are equal values, so that likelihoods can be cached by position.
+type GridPosition = [(i32, i32); HYPERPARAMETERS];
 
 /// What the search has computed of one part already.
 #[derive(Default)]
-struct Known {
-    /// ln of the marginal likelihood by position; dials that the part does not feel are 0.
-    likelihoods: BTreeMap<Position, f64>,
+struct LikelihoodCache {
+    /// ln of the marginal likelihood by position; hyperparameters that the part does not feel are 0.
+    likelihoods: BTreeMap<GridPosition, f64>,
     /// The Gram matrix formed last, with Σ `ln|C_f|`, and the position of its noise.
-    gram: Option<(Position, Mat<f64>, f64)>,
+    gram: Option<(GridPosition, Mat<f64>, f64)>,
 }
 
 impl Baseline {
     /// Noise factors and sizes of the remainder by marginal likelihood: what is left of a flexible remainder is no measure
     /// of the noise, because the remainder has eaten part of it.
-    pub(super) fn tune(&mut self, moments: &Moments) {
-        let mut known: Vec<Known> = moments.parts.iter().map(|_| Known::default()).collect();
-        let mut position = [(0, 0); DIALS];
+    pub(super) fn tune(&mut self, moments: &GramSums) {
+        let mut known: Vec<LikelihoodCache> =
+            moments.parts.iter().map(|_| LikelihoodCache::default()).collect();
+        let mut position = [(0, 0); HYPERPARAMETERS];
         let mut best = self.ln_marginal(moments, &position, &mut known);
-        let live: [bool; DIALS] = core::array::from_fn(|dial| {
-            dial >= 2 * KINDS || moments.parts.iter().any(|part| part.kinds[dial % KINDS])
+        let live: [bool; HYPERPARAMETERS] = core::array::from_fn(|hyperparameter| {
+            hyperparameter >= 2 * KINDS
+                || moments.parts.iter().any(|part| part.kinds[hyperparameter % KINDS])
         });
         for round in 0..ROUNDS {
             let coarse = round < COARSE_ROUNDS;
             let mut moved = false;
-            for dial in (0..DIALS).filter(|&dial| live[dial]) {
+            for hyperparameter in
+                (0..HYPERPARAMETERS).filter(|&hyperparameter| live[hyperparameter])
+            {
                 for up in [true, false] {
                     let by = if coarse { COARSE_STEP } else { FINE_STEP };
                     let by = if up { by } else { 1.0 / by };
                     loop {
                         let mut next = position;
-                        let slot = if coarse { &mut next[dial].0 } else { &mut next[dial].1 };
+                        let slot = if coarse {
+                            &mut next[hyperparameter].0
+                        } else {
+                            &mut next[hyperparameter].1
+                        };
                         *slot += if up { 1 } else { -1 };
                         let before = (self.parts.noise, self.parts.scales);
-                        if !self.turn(dial, by) {
+                        if !self.scale(hyperparameter, by) {
                             break;
                         }
                         let found = self.ln_marginal(moments, &next, &mut known);
@@ -80,18 +89,18 @@ impl Baseline {
         }
     }
 
-    /// Turns a dial, unless that leaves its limits.
-    fn turn(&mut self, dial: usize, by: f64) -> bool {
-        let value = match dial {
-            0..3 => &mut self.parts.noise.within[dial],
-            3..6 => &mut self.parts.noise.between[dial - 3],
-            _ => &mut self.parts.scales[dial - 6],
+    /// Scales a hyperparameter, unless that leaves its limits.
+    fn scale(&mut self, hyperparameter: usize, by: f64) -> bool {
+        let value = match hyperparameter {
+            0..3 => &mut self.parts.noise.within[hyperparameter],
+            3..6 => &mut self.parts.noise.between[hyperparameter - 3],
+            _ => &mut self.parts.scales[hyperparameter - 6],
         };
-        let turned = *value * by;
+        let scaled = *value * by;
         let (low, high) = DIAL_LIMITS;
-        let inside = turned >= low && turned <= high;
+        let inside = scaled >= low && scaled <= high;
         if inside {
-            *value = turned;
+            *value = scaled;
         }
         inside
     }
@@ -104,7 +113,7 @@ impl Baseline {
     /// ```text
     /// Σ_f e_f²/(v_model + v_within + κ² v_between) = number of flights
     /// ```
-    pub(super) fn inflate(&mut self, moments: &Moments) {
+    pub(super) fn inflate(&mut self, moments: &GramSums) {
         let mut errors: [Vec<[f64; 3]>; KINDS] = [vec![], vec![], vec![]]; // squared error, known variance, between
         let all = moments.gram(&self.parts.noise, None);
         for fold in 0..LEARNING_FOLDS {
@@ -173,7 +182,11 @@ impl Baseline {
     }
 
     /// Posterior of all coefficients at the present noise.
-    pub(super) fn fit(&mut self, data: &Data<'_>, moments: &Moments) -> Result<(), DiagnoseError> {
+    pub(super) fn fit(
+        &mut self,
+        data: &PreparedFlights<'_>,
+        moments: &GramSums,
+    ) -> Result<(), DiagnoseError> {
         let width = self.factor.nrows();
         let gram = moments.gram(&self.parts.noise, None);
         let (solution, factor) = self.posterior(&gram).ok_or(DiagnoseError::Degenerate)?;
@@ -186,7 +199,7 @@ impl Baseline {
         let deck = layout.deck.zip(&data.predictor.deck.coefficients);
         self.parts.deck_coefficients =
             deck.map(|(column, coefficient)| coefficient + found(column)).collect();
-        self.parts.environment = layout.standing_effects.map(found).collect();
+        self.parts.standing_effects = layout.standing_effects.map(found).collect();
         // A covariance inverted in floating point may miss definiteness by rounding; a hair on the diagonal mends it.
         for k in 0..width {
             covariance[(k, k)] *= 1.0 + 1e-12;
@@ -199,9 +212,9 @@ impl Baseline {
             .iter()
             .map(|row| {
                 let carried: f64 = row
-                    .environment
+                    .standing_effects
                     .iter()
-                    .zip(&self.parts.environment)
+                    .zip(&self.parts.standing_effects)
                     .map(|(slope, size)| slope[0] * size)
                     .sum();
                 (row.residual[0] - self.mean_at(&row.response) - carried).powi(2)
@@ -216,24 +229,38 @@ impl Baseline {
     /// ```text
     /// −½ Σ_f ln|C_f| − ½ ln|1 + S G S| − ½ (y² − bᵀ S (1 + S G S)⁻¹ S b)                  [diagnosis.17]
     /// ```
-    fn ln_marginal(&self, moments: &Moments, position: &Position, known: &mut [Known]) -> f64 {
+    fn ln_marginal(
+        &self,
+        moments: &GramSums,
+        position: &GridPosition,
+        known: &mut [LikelihoodCache],
+    ) -> f64 {
         let parts = moments.parts.iter().zip(known);
         let likelihood: f64 =
             parts.map(|(part, known)| self.ln_marginal_of(part, position, known)).sum();
-        self.ln_prior_of_dials() + likelihood
+        self.ln_prior_of_hyperparameters() + likelihood
     }
 
     /// The same of kinds of channels that no other kind is coupled with.
-    fn ln_marginal_of(&self, part: &Part, position: &Position, known: &mut Known) -> f64 {
+    fn ln_marginal_of(
+        &self,
+        part: &CoupledChannels,
+        position: &GridPosition,
+        known: &mut LikelihoodCache,
+    ) -> f64 {
         // Sizes of the remainder concern fuel flow alone.
-        let feels = |dial: usize| part.kinds[if dial < 2 * KINDS { dial % KINDS } else { 0 }];
-        let felt: Position =
-            core::array::from_fn(|dial| if feels(dial) { position[dial] } else { (0, 0) });
+        let feels = |hyperparameter: usize| {
+            part.kinds[if hyperparameter < 2 * KINDS { hyperparameter % KINDS } else { 0 }]
+        };
+        let felt: GridPosition = core::array::from_fn(|hyperparameter| {
+            if feels(hyperparameter) { position[hyperparameter] } else { (0, 0) }
+        });
         if let Some(&likelihood) = known.likelihoods.get(&felt) {
             return likelihood;
         }
-        let of_noise: Position =
-            core::array::from_fn(|dial| if dial < 2 * KINDS { felt[dial] } else { (0, 0) });
+        let of_noise: GridPosition = core::array::from_fn(|hyperparameter| {
+            if hyperparameter < 2 * KINDS { felt[hyperparameter] } else { (0, 0) }
+        });
         let (gram, ln_noise) = match known.gram.take() {
             Some((at, gram, ln_noise)) if at == of_noise => (gram, ln_noise),
             _ => part.gram(&self.parts.noise, None),
@@ -244,7 +271,7 @@ impl Baseline {
         likelihood
     }
 
-    fn ln_marginal_at(&self, part: &Part, gram: &Mat<f64>, ln_noise: f64) -> f64 {
+    fn ln_marginal_at(&self, part: &CoupledChannels, gram: &Mat<f64>, ln_noise: f64) -> f64 {
         let width = part.columns.len() - 1; // the residual is the last
         let deviations: Vec<f64> =
             part.columns[..width].iter().map(|&column| self.prior_deviation(column)).collect();
@@ -265,8 +292,8 @@ impl Baseline {
         -0.5 * (ln_noise + factor.ln_determinant() + gram[(width, width)] - explained)
     }
 
-    /// Dials are log-normal about what is usual: a few flights do not make noise vanish.
-    fn ln_prior_of_dials(&self) -> f64 {
+    /// Hyperparameters are log-normal about what is usual: a few flights do not make noise vanish.
+    fn ln_prior_of_hyperparameters(&self) -> f64 {
         let NoiseFactors { within, between } = self.parts.noise;
         let of = |value: f64, center: f64, ln_deviation: f64| {
             let z = (value / center).ln() / ln_deviation;

@@ -4,13 +4,13 @@ use effects::ExtendedModel;
 use effects::{EffectModel, EffectReferences};
 use faer::Mat;
 
-use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, Parts};
-use crate::learning::moments::Moments;
+use crate::learning::moments::GramSums;
 use crate::library::Library;
 use crate::priors::REMAINDER_QUANTILES;
-use crate::residuals::reference::Against;
-use crate::residuals::segments::Data;
+use crate::residuals::reference::Reference;
+use crate::residuals::segments::PreparedFlights;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::{DiagnoseError, references_of};
@@ -45,12 +45,12 @@ impl Baseline {
     ) -> Result<Self, DiagnoseError> {
         let references = references_of(model, drag_table, flights)?;
         let effect_model = EffectModel::new(model, drag_table, references)?;
-        let (data, _) = Data::prepare(
+        let (data, _) = PreparedFlights::prepare(
             &effect_model,
             flights,
-            Against::NothingYet,
+            Reference::Untaught,
             |points, engines, starts| {
-                Library::of(&effect_model, points, engines, starts, |_| false)
+                Library::new(&effect_model, points, engines, starts, |_| false)
             },
         );
         if data.flights.len() < FEWEST_FLIGHTS_OF_A_BASELINE {
@@ -61,7 +61,7 @@ impl Baseline {
             });
         }
         let mut baseline = Self::prior(&data, &references);
-        let moments = Moments::of(&baseline, &data);
+        let moments = GramSums::new(&baseline, &data);
         baseline.tune(&moments);
         for _ in 0..INFLATIONS {
             baseline.inflate(&moments);
@@ -71,7 +71,7 @@ impl Baseline {
     }
 
     /// The baseline before it has learnt.
-    fn prior(data: &Data<'_>, references: &EffectReferences) -> Self {
+    fn prior(data: &PreparedFlights<'_>, references: &EffectReferences) -> Self {
         let values = |variable: Variable| -> Option<Vec<f64>> {
             data.segments
                 .iter()
@@ -87,13 +87,13 @@ impl Baseline {
         for (k, a) in VARIABLES.into_iter().enumerate() {
             for b in VARIABLES.into_iter().skip(k + 1) {
                 if let (Some(of_a), Some(of_b)) = (values(a), values(b)) {
-                    products.push((a, Scaled::of(&of_a), b, Scaled::of(&of_b)));
+                    products.push((a, Scaled::from_values(&of_a), b, Scaled::from_values(&of_b)));
                 }
             }
         }
         let local: Vec<(Variable, Scaled)> = LOCAL_VARIABLES
             .into_iter()
-            .filter_map(|v| Some((v, Scaled::of(&values(v)?))))
+            .filter_map(|v| Some((v, Scaled::from_values(&values(v)?))))
             .collect();
         let parts = Parts {
             flights: data.flights.len(),
@@ -110,7 +110,7 @@ impl Baseline {
             deck_coefficients: data.predictor.deck.coefficients.to_vec(),
             mean: Vec::new(),
             factor: Vec::new(),
-            environment: vec![0.0; ENVIRONMENT.len()],
+            standing_effects: vec![0.0; STANDING_EFFECTS.len()],
             rms: f64::NAN,
         };
         let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };

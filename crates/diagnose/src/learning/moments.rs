@@ -18,18 +18,21 @@ use crate::baseline::Baseline;
 use crate::math::cholesky::factor_and_project;
 use crate::math::linear::{subtract_gram, symmetrize};
 use crate::residuals::rows::SegmentRow;
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::whiten_within_segment;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 use crate::signals::noise::NoiseFactors;
 use crate::thresholds::LEARNING_FOLDS;
 
+#[cfg(test)]
+mod tests;
+
 /// Kinds of channels: fuel flow, engine against engine, N2.
 pub(super) const KINDS: usize = 3;
 
 /// All that learning asks of the data.
-pub(super) struct Moments {
-    pub(super) parts: Vec<Part>,
+pub(super) struct GramSums {
+    pub(super) parts: Vec<CoupledChannels>,
     /// What flights that are left out are judged on.
     pub(super) left_out: Vec<LeftOut>,
     /// Columns, the residual last.
@@ -37,14 +40,14 @@ pub(super) struct Moments {
 }
 
 /// Kinds of channels that are coupled with each other, and with no other kind.
-pub(super) struct Part {
+pub(super) struct CoupledChannels {
     pub(super) kinds: [bool; KINDS],
     /// Columns that are not zero in it, ascending; the residual last.
     pub(super) columns: Vec<usize>,
     /// Sums of each fold of flights, and of all.
-    folds: Vec<Within>,
-    all: Within,
-    flights: Vec<Common>,
+    folds: Vec<SegmentSums>,
+    all: SegmentSums,
+    flights: Vec<FlightSums>,
     /// Σ ln|C| of all segments at factors of 1.
     ln_noise: f64,
     /// Recorded channels of each kind.
@@ -61,19 +64,43 @@ pub(super) struct LeftOut {
     pub(super) between: f64,
 }
 
-/// `XᵀKX` of pairs of kinds, lower kind first; both triangles.
+/// What the own noise of segments contributes: one matrix per pair of kinds.
 #[derive(Clone)]
-struct Within {
-    pairs: Vec<(usize, usize, Mat<f64>)>,
+struct SegmentSums {
+    pairs: Vec<KindPair>,
+}
+
+/// `XᵀKX` of a pair of kinds; both triangles.
+#[derive(Clone)]
+struct KindPair {
+    lower_kind: usize,
+    upper_kind: usize,
+    sums: Mat<f64>,
 }
 
 /// What the common errors of one flight need.
-struct Common {
-    /// Kind of the column's channel, kind of the loading's, loading, Σ `K_ab` `x_a` `u_b` over the part's columns.
-    projections: Vec<(usize, usize, usize, Vec<f64>)>,
-    /// The same of two loadings.
-    inner: Vec<(usize, usize, usize, usize, f64)>,
+struct FlightSums {
+    projections: Vec<Projection>,
+    inner: Vec<LoadingProduct>,
     rank: usize,
+}
+
+/// Σ `K_ab` `x_a` `u_b` over a flight, for one loading u and every column x of coupled channels.
+struct Projection {
+    /// Kind of the column's channel.
+    column_kind: usize,
+    /// Kind of the loading's channel.
+    loading_kind: usize,
+    loading: usize,
+    sums: Vec<f64>,
+}
+
+/// Σ `K_ab` `u_a` `u_b` over a flight, for two loadings.
+#[derive(Clone, Copy)]
+struct LoadingProduct {
+    kinds: [usize; 2],
+    loadings: [usize; 2],
+    sum: f64,
 }
 
 /// A segment as sums need it.
@@ -88,9 +115,9 @@ struct Row {
     is_recorded: [bool; MAXIMUM_CHANNELS],
 }
 
-impl Moments {
+impl GramSums {
     /// Sums over data whose noise has factors of 1.
-    pub(super) fn of(baseline: &Baseline, data: &Data<'_>) -> Self {
+    pub(super) fn new(baseline: &Baseline, data: &PreparedFlights<'_>) -> Self {
         let count = data.channels.count();
         let kind_of: Vec<usize> = (0..count).map(|channel| data.channels.kind(channel)).collect();
         let mut rows = Vec::with_capacity(data.segments.len());
@@ -124,7 +151,7 @@ impl Moments {
         let columns = baseline.factor.nrows() + 1;
         let parts = parts_of(&rows, &kind_of)
             .into_iter()
-            .map(|kinds| Part::of(kinds, &rows, &kind_of, data.flights.len(), columns))
+            .map(|kinds| CoupledChannels::new(kinds, &rows, &kind_of, data.flights.len(), columns))
             .collect();
         Self { parts, left_out: left_out(data, &rows), columns }
     }
@@ -145,8 +172,8 @@ impl Moments {
     }
 }
 
-impl Part {
-    fn of(
+impl CoupledChannels {
+    fn new(
         kinds: [bool; KINDS],
         rows: &[Row],
         kind_of: &[usize],
@@ -168,18 +195,18 @@ impl Part {
                 recorded[kind_of[channel]] += usize::from(row.is_recorded[channel]);
             }
         }
-        let folds: Vec<Within> = (0..LEARNING_FOLDS)
+        let folds: Vec<SegmentSums> = (0..LEARNING_FOLDS)
             .map(|fold| {
                 let rows: Vec<&Row> =
                     rows.iter().filter(|row| row.flight % LEARNING_FOLDS == fold).collect();
-                Within::of(&rows, &channels, kind_of, &columns)
+                SegmentSums::new(&rows, &channels, kind_of, &columns)
             })
             .collect();
-        let all = Within::sum(&folds);
+        let all = SegmentSums::sum(&folds);
         let flights = (0..flights)
             .map(|flight| {
                 let rows: Vec<&Row> = rows.iter().filter(|row| row.flight == flight).collect();
-                Common::of(&rows, &channels, kind_of, &columns)
+                FlightSums::new(&rows, &channels, kind_of, &columns)
             })
             .collect();
         Self { kinds, columns, folds, all, flights, ln_noise, recorded }
@@ -190,10 +217,10 @@ impl Part {
         let size = self.columns.len();
         let within = fold.map_or(&self.all, |fold| &self.folds[fold]);
         let mut gram = Mat::<f64>::zeros(size, size);
-        for (a, b, sum) in &within.pairs {
-            let share = 1.0 / (noise.within[*a] * noise.within[*b]);
+        for pair in &within.pairs {
+            let share = 1.0 / (noise.within[pair.lower_kind] * noise.within[pair.upper_kind]);
             for column in 0..size {
-                let from = sum.col_as_slice(column);
+                let from = pair.sums.col_as_slice(column);
                 let into = gram.col_as_slice_mut(column);
                 for (into, from) in into[column..].iter_mut().zip(&from[column..]) {
                     *into += share * from;
@@ -204,7 +231,7 @@ impl Part {
         for kind in 0..KINDS {
             ln_noise += 2.0 * self.recorded[kind] as f64 * noise.within[kind].ln();
         }
-        let kept: Vec<&Common> = self
+        let kept: Vec<&FlightSums> = self
             .flights
             .iter()
             .enumerate()
@@ -223,8 +250,8 @@ impl Part {
     }
 }
 
-impl Within {
-    fn of(rows: &[&Row], channels: &[usize], kind_of: &[usize], columns: &[usize]) -> Self {
+impl SegmentSums {
+    fn new(rows: &[&Row], channels: &[usize], kind_of: &[usize], columns: &[usize]) -> Self {
         // Most columns act on one channel only: products are taken over the columns that do.
         let used: Vec<Vec<usize>> = channels
             .iter()
@@ -234,7 +261,7 @@ impl Within {
                     .collect()
             })
             .collect();
-        let mut pairs: Vec<(usize, usize, Mat<f64>)> = Vec::new();
+        let mut pairs: Vec<KindPair> = Vec::new();
         for (p, &c) in channels.iter().enumerate() {
             for (q, &d) in channels.iter().enumerate().take(p + 1) {
                 if rows.iter().all(|row| row.inverse[c][d] == 0.0) {
@@ -248,12 +275,14 @@ impl Within {
                 });
                 let product = left.transpose() * &right;
                 let (a, b) = (kind_of[c].min(kind_of[d]), kind_of[c].max(kind_of[d]));
-                let known = pairs.iter().position(|pair| (pair.0, pair.1) == (a, b));
+                let known =
+                    pairs.iter().position(|pair| (pair.lower_kind, pair.upper_kind) == (a, b));
                 let at = known.unwrap_or_else(|| {
-                    pairs.push((a, b, Mat::zeros(columns.len(), columns.len())));
+                    let sums = Mat::zeros(columns.len(), columns.len());
+                    pairs.push(KindPair { lower_kind: a, upper_kind: b, sums });
                     pairs.len() - 1
                 });
-                let sum = &mut pairs[at].2;
+                let sum = &mut pairs[at].sums;
                 for (j, &column) in used[q].iter().enumerate() {
                     for (i, &row) in used[p].iter().enumerate() {
                         sum[(row, column)] += product[(i, j)];
@@ -270,10 +299,11 @@ impl Within {
     fn sum(folds: &[Self]) -> Self {
         let mut all = Self { pairs: Vec::new() };
         for fold in folds {
-            for (a, b, sum) in &fold.pairs {
-                match all.pairs.iter_mut().find(|pair| (pair.0, pair.1) == (*a, *b)) {
-                    Some(pair) => pair.2 += sum,
-                    None => all.pairs.push((*a, *b, sum.clone())),
+            for pair in &fold.pairs {
+                let kinds = (pair.lower_kind, pair.upper_kind);
+                match all.pairs.iter_mut().find(|p| (p.lower_kind, p.upper_kind) == kinds) {
+                    Some(known) => known.sums += &pair.sums,
+                    None => all.pairs.push(pair.clone()),
                 }
             }
         }
@@ -281,14 +311,14 @@ impl Within {
     }
 }
 
-impl Common {
-    fn of(rows: &[&Row], channels: &[usize], kind_of: &[usize], columns: &[usize]) -> Self {
+impl FlightSums {
+    fn new(rows: &[&Row], channels: &[usize], kind_of: &[usize], columns: &[usize]) -> Self {
         let loadings = rows.first().map_or(0, |row| row.common.len());
         let acting: Vec<usize> = (0..loadings)
             .filter(|&r| rows.iter().any(|row| channels.iter().any(|&c| row.common[r][c] != 0.0)))
             .collect();
-        let mut projections: Vec<(usize, usize, usize, Vec<f64>)> = Vec::new();
-        let mut inner: Vec<(usize, usize, usize, usize, f64)> = Vec::new();
+        let mut projections: Vec<Projection> = Vec::new();
+        let mut inner: Vec<LoadingProduct> = Vec::new();
         for row in rows {
             for &c in channels {
                 for &d in channels {
@@ -298,33 +328,38 @@ impl Common {
                         if by == 0.0 {
                             continue;
                         }
-                        let known = projections.iter().position(|p| (p.0, p.1, p.2) == (a, b, r));
+                        let known = projections
+                            .iter()
+                            .position(|p| (p.column_kind, p.loading_kind, p.loading) == (a, b, r));
                         let at = known.unwrap_or_else(|| {
-                            projections.push((a, b, r, vec![0.0; columns.len()]));
+                            projections.push(Projection {
+                                column_kind: a,
+                                loading_kind: b,
+                                loading: r,
+                                sums: vec![0.0; columns.len()],
+                            });
                             projections.len() - 1
                         });
-                        for (slot, &column) in projections[at].3.iter_mut().zip(columns) {
+                        for (slot, &column) in projections[at].sums.iter_mut().zip(columns) {
                             *slot += row.raw[column][c] * by;
                         }
                         for (s, &other) in acting.iter().enumerate() {
                             let value = row.common[other][c] * by;
                             if value != 0.0 {
-                                inner.push((a, b, s, r, value));
+                                let (kinds, loadings) = ([a, b], [s, r]);
+                                inner.push(LoadingProduct { kinds, loadings, sum: value });
                             }
                         }
                     }
                 }
             }
         }
-        inner.sort_by_key(|entry| (entry.0, entry.1, entry.2, entry.3));
-        let mut summed: Vec<(usize, usize, usize, usize, f64)> = Vec::new();
+        let key = |entry: &LoadingProduct| (entry.kinds, entry.loadings);
+        inner.sort_by_key(key);
+        let mut summed: Vec<LoadingProduct> = Vec::new();
         for entry in inner {
             match summed.last_mut() {
-                Some(last)
-                    if (last.0, last.1, last.2, last.3) == (entry.0, entry.1, entry.2, entry.3) =>
-                {
-                    last.4 += entry.4;
-                }
+                Some(last) if key(last) == key(&entry) => last.sum += entry.sum,
                 _ => summed.push(entry),
             }
         }
@@ -335,12 +370,12 @@ impl Common {
     fn write(&self, noise: &NoiseFactors, into: &mut Mat<f64>, at: usize) -> f64 {
         let (within, between) = (&noise.within, &noise.between);
         let mut inner = Mat::<f64>::identity(self.rank, self.rank);
-        for &(a, b, s, r, value) in &self.inner {
+        for &LoadingProduct { kinds: [a, b], loadings: [s, r], sum: value } in &self.inner {
             inner[(s, r)] += value * between[a] * between[b] / (within[a] * within[b]);
         }
-        for (a, b, r, projection) in &self.projections {
-            let share = between[*b] / (within[*a] * within[*b]);
-            for (slot, value) in into.col_as_slice_mut(at + r).iter_mut().zip(projection) {
+        for Projection { column_kind, loading_kind, loading, sums } in &self.projections {
+            let share = between[*loading_kind] / (within[*column_kind] * within[*loading_kind]);
+            for (slot, value) in into.col_as_slice_mut(at + loading).iter_mut().zip(sums) {
                 *slot += share * value;
             }
         }
@@ -382,7 +417,7 @@ fn parts_of(rows: &[Row], kind_of: &[usize]) -> Vec<[bool; KINDS]> {
         .collect()
 }
 
-fn left_out(data: &Data<'_>, rows: &[Row]) -> Vec<LeftOut> {
+fn left_out(data: &PreparedFlights<'_>, rows: &[Row]) -> Vec<LeftOut> {
     let mut found = Vec::new();
     for (flight, range) in data.flights.iter().enumerate() {
         let segments = &data.segments[range.segments.clone()];
@@ -421,7 +456,11 @@ fn left_out(data: &Data<'_>, rows: &[Row]) -> Vec<LeftOut> {
 
 impl Baseline {
     /// Raw values of every column and, last, the residual.
-    fn raw_row(&self, data: &Data<'_>, row: &SegmentRow) -> Vec<[f64; MAXIMUM_CHANNELS]> {
+    fn raw_row(
+        &self,
+        data: &PreparedFlights<'_>,
+        row: &SegmentRow,
+    ) -> Vec<[f64; MAXIMUM_CHANNELS]> {
         let layout = self.layout();
         let mut remainder = vec![0.0; layout.remainder.len()];
         self.write_remainder(&row.response, &mut remainder);
@@ -442,136 +481,10 @@ impl Baseline {
                 }
             }
         }
-        raw[layout.standing_effects].copy_from_slice(&row.environment);
+        raw[layout.standing_effects].copy_from_slice(&row.standing_effects);
         if let Some(last) = raw.last_mut() {
             *last = row.residual;
         }
         raw
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use faer::Side;
-    use faer::linalg::solvers::Solve;
-
-    use super::*;
-
-    const COUNT: usize = 3;
-    const COLUMNS: usize = 6;
-
-    /// Numbers without order, from −½ to ½: the golden ratio's multiples.
-    fn number(k: &mut f64) -> f64 {
-        *k += 1.0;
-        (*k * 0.618_033_988_749_895).fract() - 0.5
-    }
-
-    /// Segments of three flights with fuel flow, a contrast and N2, the contrast coupled with the others or not.
-    fn rows(coupled: bool) -> (Vec<Row>, Vec<Mat<f64>>) {
-        let mut k = 0.0;
-        let couples = |a: usize, b: usize| coupled || (a == 1) == (b == 1);
-        let mut covariances = Vec::new();
-        let rows = (0..11)
-            .map(|segment| {
-                let root = Mat::from_fn(COUNT, COUNT, |a, b| {
-                    let value = number(&mut k);
-                    if a == b {
-                        1.0 + value
-                    } else if couples(a, b) {
-                        value
-                    } else {
-                        0.0
-                    }
-                });
-                let covariance = &root * root.transpose();
-                let inverse =
-                    covariance.llt(Side::Lower).unwrap().solve(Mat::<f64>::identity(3, 3));
-                let values = |k: &mut f64, of: &dyn Fn(usize) -> bool| {
-                    let mut values = [0.0; MAXIMUM_CHANNELS];
-                    for (channel, slot) in values.iter_mut().enumerate().take(COUNT) {
-                        *slot = if of(channel) { number(k) } else { 0.0 };
-                    }
-                    values
-                };
-                let row = Row {
-                    flight: segment / 4,
-                    raw: vec![
-                        values(&mut k, &|channel| channel == 0),
-                        values(&mut k, &|channel| channel == 0),
-                        values(&mut k, &|channel| channel == 1),
-                        values(&mut k, &|channel| channel == 2),
-                        values(&mut k, &|channel| couples(channel, 0)),
-                        values(&mut k, &|_| true), // the residual
-                    ],
-                    inverse: core::array::from_fn(|a| {
-                        core::array::from_fn(|b| if a < 3 && b < 3 { inverse[(a, b)] } else { 0.0 })
-                    }),
-                    common: vec![
-                        values(&mut k, &|channel| channel != 1),
-                        values(&mut k, &|channel| channel == 1),
-                    ],
-                    ln_noise: core::array::from_fn(|channel| {
-                        // Of the covariance as a whole; it is only summed.
-                        if channel == 0 { covariance.determinant().ln() } else { 0.0 }
-                    }),
-                    is_recorded: [true, true, true, false, false],
-                };
-                covariances.push(covariance);
-                row
-            })
-            .collect();
-        (rows, covariances)
-    }
-
-    /// The same by the covariance of each whole flight, inverted.
-    fn by_inverse(rows: &[Row], covariances: &[Mat<f64>], noise: &NoiseFactors) -> (Mat<f64>, f64) {
-        let mut gram = Mat::<f64>::zeros(COLUMNS, COLUMNS);
-        let mut ln_noise = 0.0;
-        for flight in 0..3 {
-            let of: Vec<usize> = (0..rows.len()).filter(|&s| rows[s].flight == flight).collect();
-            let columns = Mat::from_fn(of.len() * COUNT, COLUMNS, |at, column| {
-                rows[of[at / COUNT]].raw[column][at % COUNT]
-            });
-            let loadings = Mat::from_fn(of.len() * COUNT, 2, |at, loading| {
-                rows[of[at / COUNT]].common[loading][at % COUNT] * noise.between[at % COUNT]
-            });
-            let own = Mat::from_fn(of.len() * COUNT, of.len() * COUNT, |i, j| {
-                let (a, b) = (i % COUNT, j % COUNT);
-                let by = noise.within[a] * noise.within[b];
-                if i / COUNT == j / COUNT { by * covariances[of[i / COUNT]][(a, b)] } else { 0.0 }
-            });
-            let covariance = &own + &loadings * loadings.transpose();
-            ln_noise += covariance.determinant().ln();
-            gram += columns.transpose() * covariance.llt(Side::Lower).unwrap().solve(&columns);
-        }
-        (gram, ln_noise)
-    }
-
-    #[test]
-    fn gram_is_that_of_the_inverse_covariance_at_any_noise() {
-        let noise = NoiseFactors { within: [0.3, 1.7, 0.8], between: [1.9, 0.4, 0.6] };
-        for (coupled, parts) in [(true, 1), (false, 2)] {
-            let (rows, covariances) = rows(coupled);
-            let kinds = parts_of(&rows, &[0, 1, 2]);
-            assert_eq!(kinds.len(), parts);
-            let parts: Vec<Part> =
-                kinds.iter().map(|kinds| Part::of(*kinds, &rows, &[0, 1, 2], 3, COLUMNS)).collect();
-            let (expected, ln_noise) = by_inverse(&rows, &covariances, &noise);
-            let found: f64 = parts.iter().map(|part| part.gram(&noise, None).1).sum();
-            assert!((found - ln_noise).abs() < 1e-10, "{found} {ln_noise}");
-            let moments = Moments { parts, left_out: Vec::new(), columns: COLUMNS };
-            let all = moments.gram(&noise, None);
-            let mut by_folds = Mat::<f64>::zeros(COLUMNS, COLUMNS);
-            for fold in 0..LEARNING_FOLDS {
-                by_folds += moments.gram(&noise, Some(fold));
-            }
-            for i in 0..COLUMNS {
-                for j in 0..COLUMNS {
-                    let tolerance = 1e-10 * (expected[(i, i)] * expected[(j, j)]).sqrt();
-                    assert!((all[(i, j)] - expected[(i, j)]).abs() < tolerance, "{i} {j}");
-                    assert!((by_folds[(i, j)] - expected[(i, j)]).abs() < tolerance, "{i} {j}");
-                }
-            }
-        }
     }
 }

@@ -38,7 +38,7 @@ pub(crate) struct Changed {
 
 impl Elimination {
     /// Integrates `out` out; `None` where the matrix is not positive definite.
-    pub(crate) fn of(
+    pub(crate) fn new(
         gram: &Mat<f64>,
         kept: Vec<usize>,
         out: Vec<usize>,
@@ -155,7 +155,7 @@ pub(crate) fn integrate_out(
     out: &[usize],
     deviations: &[f64],
 ) -> Option<Reduced> {
-    let found = Elimination::of(gram, kept.to_vec(), out.to_vec(), deviations.to_vec())?;
+    let found = Elimination::new(gram, kept.to_vec(), out.to_vec(), deviations.to_vec())?;
     Some(found.1)
 }
 
@@ -254,7 +254,7 @@ mod tests {
         let mut after = before.clone();
         changed.write(&mut after, &[3]);
         let expected = integrate_out(&after, &kept, &out, &[0.6]).unwrap();
-        let (elimination, left) = Elimination::of(&before, kept, out, vec![0.6]).unwrap();
+        let (elimination, left) = Elimination::new(&before, kept, out, vec![0.6]).unwrap();
         let followed = elimination.follow(&changed);
         let mut found = left.matrix;
         followed.write(&mut found, &[2]);

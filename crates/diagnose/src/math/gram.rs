@@ -25,7 +25,7 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
-    pub(crate) fn of(columns: usize) -> Self {
+    pub(crate) fn new(columns: usize) -> Self {
         Self {
             gram: Gram { matrix: Mat::zeros(columns, columns), rows: 0 },
             waiting: Mat::zeros(WAITING_ROWS, columns),

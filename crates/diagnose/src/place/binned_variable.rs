@@ -1,4 +1,4 @@
-//! Variables that a place is said in: their names, their edges, and which bin a segment is in.
+//! Variables that describe a region: their names, their edges, and which bin a segment is in.
 
 use std::collections::BTreeMap;
 
@@ -35,7 +35,7 @@ pub(crate) const ENGINE: &str = "engine";
 
 /// A variable cut into bins.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct BinnedVariable {
     entry: Entry,
     /// Inner edges, ascending; a segment is in bin k where exactly k edges are not above its value.
     edges: Vec<f64>,
@@ -59,25 +59,28 @@ pub(crate) fn value_of(
     }
 }
 
-/// The variable whose bounds have this name; `None` for an engine's, and for a name that is none.
+/// The variable whose bounds have this name; `None` for an engine's, and for an unknown name.
 pub(crate) fn variable_named(name: &str) -> Option<Variable> {
     ENTRIES.iter().find(|entry| entry.1 == name).map(|entry| entry.0)
 }
 
 /// Every variable that all segments have, and that falls into two bins at least.
-pub(crate) fn places(segments: &[SegmentRow], references: &EffectReferences) -> Vec<Place> {
+pub(crate) fn places(
+    segments: &[SegmentRow],
+    references: &EffectReferences,
+) -> Vec<BinnedVariable> {
     ENTRIES
         .into_iter()
         .filter_map(|entry| {
             let values: Option<Vec<f64>> =
                 segments.iter().map(|row| value_of(entry.0, row, references)).collect();
-            Place::of(entry, &values?)
+            BinnedVariable::new(entry, &values?)
         })
         .collect()
 }
 
-impl Place {
-    fn of(entry: Entry, values: &[f64]) -> Option<Self> {
+impl BinnedVariable {
+    fn new(entry: Entry, values: &[f64]) -> Option<Self> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let (first, last) = (*sorted.first()?, *sorted.last()?);
@@ -250,7 +253,7 @@ mod tests {
     #[test]
     fn quintiles_of_a_hundred() {
         let values: Vec<f64> = (0..100).map(f64::from).collect();
-        let place = Place::of(ENTRIES[8], &values).unwrap();
+        let place = BinnedVariable::new(ENTRIES[8], &values).unwrap();
         assert_eq!(place.edges, [20.0, 40.0, 60.0, 80.0]);
         assert_eq!(place.bins[79..81], [3, 4]);
         assert_eq!(place.words(4, 5), "mass >= 80 kg");
@@ -264,7 +267,7 @@ mod tests {
         // Ten flights of ten segments, a day apart from 2019-06-01T00:00Z on (1 559 347 200 s).
         let values: Vec<f64> =
             (0..100).map(|k| 1_559_347_200.0 + 86_400.0 * f64::from(k / 10)).collect();
-        let place = Place::of(ENTRIES[9], &values).unwrap();
+        let place = BinnedVariable::new(ENTRIES[9], &values).unwrap();
         assert_eq!(place.count(), 5);
         assert_eq!(place.words(4, 5), "after 2019-06-08");
         assert_eq!(place.words(0, 1), "before 2019-06-03");
@@ -273,13 +276,13 @@ mod tests {
         // Two flights on one day: the time tells them apart.
         let values: Vec<f64> =
             (0..10).map(|k| 1_559_347_200.0 + 3600.0 * f64::from(k / 5)).collect();
-        let place = Place::of(ENTRIES[9], &values).unwrap();
+        let place = BinnedVariable::new(ENTRIES[9], &values).unwrap();
         assert_eq!(place.words(1, 2), "after 2019-06-01T00:00:00Z");
     }
 
     #[test]
     fn what_does_not_vary_is_no_place() {
-        assert!(Place::of(ENTRIES[0], &[0.8; 50]).is_none());
-        assert!(Place::of(ENTRIES[0], &[0.8, f64::NAN]).is_none());
+        assert!(BinnedVariable::new(ENTRIES[0], &[0.8; 50]).is_none());
+        assert!(BinnedVariable::new(ENTRIES[0], &[0.8, f64::NAN]).is_none());
     }
 }

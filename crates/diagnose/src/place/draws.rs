@@ -1,7 +1,7 @@
 //! What noise alone would make of the residuals: draws of everything that is uncertain.
 //!
 //! Sensors within a segment, what a flight has in common, and what the model does not know for sure (remainder, split
-//! between engines, environment, chords and nodes of the table), which is the same for all flights.
+//! between engines, standing effects, chords and nodes of the table), which is the same for all flights.
 
 use faer::Mat;
 use lut::Outside;
@@ -9,18 +9,18 @@ use lut::Outside;
 use crate::math::cholesky::Cholesky;
 use crate::math::random::RandomStream;
 use crate::residuals::rows::SegmentRow;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 
 /// How noisy the flights are beyond what the sensors announce.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Level {
+pub(crate) struct NoiseLevel {
     /// Factor on the noise's standard deviations.
     pub(crate) factor: f64,
     /// Scatter of fuel flow from flight to flight beyond that, relative.
     pub(crate) scatter: f64,
 }
 
-/// Rows of numbers, one a draw.
+/// Rows of numbers, one per draw.
 #[derive(Clone, Debug, Default)]
 struct Rows {
     width: usize,
@@ -50,15 +50,15 @@ fn add(into: &mut [f64], from: &[f64], by: f64) {
 }
 
 /// What all flights have in common in each draw.
-struct Model {
+struct ModelErrorDraws {
     taught: Option<Rows>,
     smooth: Option<Rows>,
     chords: Rows,
     nodes: Option<Rows>,
 }
 
-impl Model {
-    fn draw(stacked: &Stacked<'_>, source: &mut RandomStream, width: usize) -> Self {
+impl ModelErrorDraws {
+    fn draw(stacked: &WhitenedSystem<'_>, source: &mut RandomStream, width: usize) -> Self {
         let design = stacked.design;
         let taught = design.baseline().map(|baseline| {
             let factor = baseline.factor();
@@ -71,11 +71,11 @@ impl Model {
             }
             rows
         });
-        let tau = stacked.clean_tau();
-        let smooth = (tau > 0.0).then(|| {
+        let smooth_amplitude = stacked.clean_smooth_amplitude();
+        let smooth = (smooth_amplitude > 0.0).then(|| {
             let mut rows = Rows::normal(source, design.smooth_terms(), width);
             for number in &mut rows.numbers {
-                *number *= tau;
+                *number *= smooth_amplitude;
             }
             rows
         });
@@ -99,7 +99,7 @@ impl Model {
     /// Adds what the model does not know, at a segment, to fuel flow and contrasts.
     fn add_at(
         &self,
-        stacked: &Stacked<'_>,
+        stacked: &WhitenedSystem<'_>,
         row: &SegmentRow,
         chords: [f64; 2],
         terms: &mut Vec<f64>,
@@ -120,7 +120,7 @@ impl Model {
                     add(values, taught.row(column), 1.0);
                 }
             }
-            for (column, slope) in layout.standing_effects.zip(&row.environment) {
+            for (column, slope) in layout.standing_effects.zip(&row.standing_effects) {
                 for (channel, values) in into.iter_mut().enumerate() {
                     if slope[channel] != 0.0 {
                         add(values, taught.row(column), slope[channel]);
@@ -151,9 +151,9 @@ impl Model {
 }
 
 /// How far chords of the drag table may be off in fuel flow, relative, along lift coefficient and Mach number, at every
-/// segment. A taught remainder was taught on the same chords: of them only counts what its functions cannot follow
+/// segment. A learnt remainder has seen the same chords: only the part that its functions cannot follow counts
 /// (least squares).
-pub(crate) fn chords(stacked: &Stacked<'_>) -> Vec<[f64; 2]> {
+pub(crate) fn chords(stacked: &WhitenedSystem<'_>) -> Vec<[f64; 2]> {
     let segments = &stacked.data.segments;
     let mut chords: Vec<[f64; 2]> =
         segments.iter().map(|row| row.chords.map(|chord| chord * row.drag_over_thrust)).collect();
@@ -194,10 +194,10 @@ pub(crate) fn chords(stacked: &Stacked<'_>) -> Vec<[f64; 2]> {
 /// e = k·(L z_segment + Σ_r u_r z_flight,r) + s·z_flight + N z,   every z of N(0, 1)                [diagnosis.24]
 /// ```
 ///
-/// k and s: [`Level`]; L and u: \[diagnosis.14\]; N: the columns of what the model does not know.
+/// k and s: [`NoiseLevel`]; L and u: \[diagnosis.14\]; N: the columns of what the model does not know.
 pub(crate) fn draw(
-    stacked: &Stacked<'_>,
-    level: Level,
+    stacked: &WhitenedSystem<'_>,
+    level: NoiseLevel,
     chords: &[[f64; 2]],
     source: &mut RandomStream,
     width: usize,
@@ -205,7 +205,7 @@ pub(crate) fn draw(
 ) {
     let data = stacked.data;
     let channels = 1 + data.channels.contrasts;
-    let model = Model::draw(stacked, source, width);
+    let model = ModelErrorDraws::draw(stacked, source, width);
     let mut values = vec![vec![0.0; width]; channels];
     let mut own = vec![vec![0.0; width]; channels];
     let mut terms = Vec::new();

@@ -9,13 +9,13 @@ use std::collections::BTreeMap;
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::output::Slice;
-use crate::place::binned_variable::{ENGINE, Place, places};
-use crate::place::draws::{Level, chords, draw};
+use crate::place::binned_variable::{BinnedVariable, ENGINE, places};
+use crate::place::draws::{NoiseLevel, chords, draw};
 use crate::place::likelihood::Noise;
 use crate::place::null::Null;
-use crate::place::regions::{Candidate, Search, Series};
+use crate::place::regions::{Region, Search, Series};
 use crate::search::analyse::Analysis;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::thresholds::{
     FEWEST_FLIGHTS_OF_A_REGION, MOST_COMPARED, MOST_REGIONS, NEARLY_AS_LARGE, REGION_DRAWS,
@@ -48,7 +48,7 @@ struct Gaps {
 /// # Errors of method
 /// Sizes are those of the place that stands out most, which is a little more than it is (winner's curse).
 pub(crate) fn find(
-    stacked: &Stacked<'_>,
+    stacked: &WhitenedSystem<'_>,
     analysis: &Analysis,
     noise_scale: f64,
     is_real: bool,
@@ -57,13 +57,13 @@ pub(crate) fn find(
     let data = stacked.data;
     let places = places(&data.segments, stacked.design.references());
     let engines = if data.channels.contrasts > 0 { data.channels.contrasts + 1 } else { 0 };
-    let search = Search::of(&places, data.segments.len(), engines);
+    let search = Search::new(&places, data.segments.len(), engines);
     let mut source = RandomStream::new(seed, NOISE_STREAM);
     let level = level(stacked, analysis, noise_scale);
     let (null, variances) = null_of(stacked, &search, level, &mut source);
 
     let as_recorded = gaps(stacked);
-    let noise = Noise::of(stacked, level);
+    let noise = Noise::new(stacked, level);
     let mut left = expected_errors_removed(stacked, &as_recorded);
     let told = Told { stacked, places: &places, gaps: &as_recorded, variances: &variances };
     let mut found = Vec::new();
@@ -71,7 +71,7 @@ pub(crate) fn find(
     while found.len() < MOST_REGIONS {
         let statistics = statistics(&search, &null, &left);
         if found.is_empty() {
-            let level = search.candidates.iter().position(Candidate::is_everywhere);
+            let level = search.regions.iter().position(Region::is_everywhere);
             everywhere = (level.map_or(1.0, |k| null.p_value_everywhere(statistics[k])), level);
         }
         let Some((index, members)) = best(&search, &statistics, &told, &left, &noise) else {
@@ -81,7 +81,7 @@ pub(crate) fn find(
         if p_value > REGION_P_VALUE {
             break;
         }
-        let candidate = &search.candidates[index];
+        let candidate = &search.regions[index];
         found.push(told.slice(candidate, &members, p_value, seed));
         take_out(&mut left, candidate, &members, engines);
     }
@@ -91,30 +91,31 @@ pub(crate) fn find(
         && p_value <= REGION_P_VALUE
     {
         let members: Vec<usize> = (0..data.segments.len()).collect();
-        found.push(told.slice(&search.candidates[index], &members, p_value, seed));
+        found.push(told.slice(&search.regions[index], &members, p_value, seed));
     }
     found
 }
 
 /// Noise as the best model finds it, never less than announced.
-fn level(stacked: &Stacked<'_>, analysis: &Analysis, noise_scale: f64) -> Level {
+fn level(stacked: &WhitenedSystem<'_>, analysis: &Analysis, noise_scale: f64) -> NoiseLevel {
     let best = analysis.models.first().map(|(scored, _)| scored);
     let background = best.and_then(|scored| analysis.backgrounds.get(scored.background));
     let integrated = background.map_or(0.0, |at| stacked.scatter(at.scatter));
-    let heating = best.and_then(|scored| scored.model.heating_percent).map_or(0.0, |p| p / 100.0);
-    Level { factor: noise_scale.max(1.0).sqrt(), scatter: integrated.max(heating) }
+    let heating =
+        best.and_then(|scored| scored.model.flight_scatter_percent).map_or(0.0, |p| p / 100.0);
+    NoiseLevel { factor: noise_scale.max(1.0).sqrt(), scatter: integrated.max(heating) }
 }
 
 /// What noise alone does to every place; and the variance that it gives each segment's fuel flow.
 fn null_of(
-    stacked: &Stacked<'_>,
+    stacked: &WhitenedSystem<'_>,
     search: &Search<'_>,
-    level: Level,
+    level: NoiseLevel,
     source: &mut RandomStream,
 ) -> (Null, Vec<f64>) {
     let engines = stacked.data.channels.contrasts + 1;
     let chords = chords(stacked);
-    let mut squares = vec![0.0; search.candidates.len()];
+    let mut squares = vec![0.0; search.regions.len()];
     let mut variances = vec![0.0; stacked.data.segments.len()];
     let mut values = vec![vec![0.0; GROUP]; search.series().len()];
     let mut group = |source: &mut RandomStream| {
@@ -143,7 +144,7 @@ fn null_of(
             squares[index] += sums.iter().map(|sum| sum * sum).sum::<f64>();
         });
     }
-    let mut null = Null::of(&squares, REGION_DRAWS / 2);
+    let mut null = Null::new(&squares, REGION_DRAWS / 2);
     for _ in 0..REGION_DRAWS / 2 / GROUP {
         let sums = group(source);
         null.add(search, &sums);
@@ -169,7 +170,7 @@ fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
     apart
 }
 
-fn gaps(stacked: &Stacked<'_>) -> Gaps {
+fn gaps(stacked: &WhitenedSystem<'_>) -> Gaps {
     let data = stacked.data;
     let contrasts = data.channels.contrasts;
     let total = data.segments.iter().map(|row| row.residual[0]).collect();
@@ -195,7 +196,7 @@ fn gaps(stacked: &Stacked<'_>) -> Gaps {
 /// ```text
 /// E(δ | V̇G) = (V̇G − mean)·σ_δ²/var(V̇G),   ∂ ln Wf/∂V̇G = m/F                                    [diagnosis.27]
 /// ```
-fn expected_errors_removed(stacked: &Stacked<'_>, gaps: &Gaps) -> Gaps {
+fn expected_errors_removed(stacked: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
     let segments = &stacked.data.segments;
     let count = segments.len() as f64;
     let mean = segments.iter().map(|row| row.point.acceleration_m_s2).sum::<f64>() / count;
@@ -227,12 +228,12 @@ fn statistics(search: &Search<'_>, null: &Null, gaps: &Gaps) -> Vec<f64> {
         }
         search.add(&mut sums, segment, &values);
     }
-    let mut statistics = vec![0.0; search.candidates.len()];
+    let mut statistics = vec![0.0; search.regions.len()];
     search.for_each(&sums, |index, sum| statistics[index] = null.statistic(search, index, sum[0]));
     statistics
 }
 
-/// The place that stands out most, with its segments. Variables hang together, so that several places stand out nearly
+/// The place that stands out most, with its segments. Variables are correlated, so that several regions are nearly
 /// alike: of those a step over the place decides, which fits best by likelihood; of a place and its complement, which fit
 /// alike, the larger gap.
 fn best(
@@ -242,24 +243,23 @@ fn best(
     left: &Gaps,
     noise: &Noise<'_>,
 ) -> Option<(usize, Vec<usize>)> {
-    let mut order: Vec<usize> = (0..search.candidates.len())
-        .filter(|&index| !search.candidates[index].is_everywhere())
-        .collect();
+    let mut order: Vec<usize> =
+        (0..search.regions.len()).filter(|&index| !search.regions[index].is_everywhere()).collect();
     order.sort_by(|&a, &b| statistics[b].total_cmp(&statistics[a]));
     let members = |index: &usize| -> Vec<usize> {
         let segments = 0..told.gaps.total.len();
-        segments.filter(|&k| search.candidates[*index].holds(told.places, k)).collect()
+        segments.filter(|&k| search.regions[*index].holds(told.places, k)).collect()
     };
     let enough = |index: &usize| told.flights_of(&members(index)) >= FEWEST_FLIGHTS_OF_A_REGION;
     let first = order.iter().copied().find(enough)?;
-    if search.candidates[first].series != Series::FuelFlow {
+    if search.regions[first].series != Series::FuelFlow {
         return Some((first, members(&first)));
     }
     let compared: Vec<usize> = order
         .into_iter()
         .skip_while(|&index| index != first)
         .take_while(|&index| statistics[index] >= NEARLY_AS_LARGE * statistics[first])
-        .filter(|&index| search.candidates[index].series == Series::FuelFlow)
+        .filter(|&index| search.regions[index].series == Series::FuelFlow)
         .filter(enough)
         .take(MOST_COMPARED)
         .collect();
@@ -274,7 +274,7 @@ fn best(
     let weighed: Vec<f64> = compared
         .iter()
         .zip(&falls)
-        .map(|(&index, fall)| fall * search.candidates[index].weight().powi(2))
+        .map(|(&index, fall)| fall * search.regions[index].weight().powi(2))
         .collect();
     let largest = weighed.iter().copied().fold(0.0, f64::max);
     compared
@@ -283,15 +283,15 @@ fn best(
         .filter(|(_, fall)| *fall >= largest * (1.0 - EQUAL))
         .map(|(index, _)| {
             let inside = members(&index);
-            (told.mean(&search.candidates[index], &inside).abs(), index, inside)
+            (told.mean(&search.regions[index], &inside).abs(), index, inside)
         })
         // The first of equals, so that the order of variables decides.
         .reduce(|a, b| if b.0 > a.0 { b } else { a })
         .map(|(_, index, inside)| (index, inside))
 }
 
-/// Takes out what makes a place stand out: its excess over the rest, or what its engine does apart from the others.
-fn take_out(left: &mut Gaps, candidate: &Candidate, members: &[usize], engines: usize) {
+/// Removes what distinguishes a region: its excess over the rest, or what its engine does apart from the others.
+fn take_out(left: &mut Gaps, candidate: &Region, members: &[usize], engines: usize) {
     let count = members.len() as f64;
     let mean_of = |values: &[f64]| members.iter().map(|&k| values[k]).sum::<f64>() / count;
     match candidate.series {
@@ -317,10 +317,10 @@ fn take_out(left: &mut Gaps, candidate: &Candidate, members: &[usize], engines: 
     }
 }
 
-/// What a place is told with.
+/// What describes a region.
 struct Told<'a> {
-    stacked: &'a Stacked<'a>,
-    places: &'a [Place],
+    stacked: &'a WhitenedSystem<'a>,
+    places: &'a [BinnedVariable],
     gaps: &'a Gaps,
     variances: &'a [f64],
 }
@@ -347,8 +347,9 @@ impl Told<'_> {
         sums
     }
 
-    /// The engine that a place is told of: of two engines, whose series is one, the one whose own gap is larger.
-    fn engine(&self, candidate: &Candidate, members: &[usize]) -> Option<usize> {
+    /// The engine that a region is reported for. Two engines share one series (their contrast), so the one whose own gap is
+    /// larger is named.
+    fn engine(&self, candidate: &Region, members: &[usize]) -> Option<usize> {
         let Series::Engine(engine) = candidate.series else { return None };
         if self.gaps.apart.len() != 2 {
             return Some(engine);
@@ -361,12 +362,12 @@ impl Told<'_> {
         self.gaps.total[segment] + engine.map_or(0.0, |engine| self.gaps.apart[engine][segment])
     }
 
-    fn mean(&self, candidate: &Candidate, members: &[usize]) -> f64 {
+    fn mean(&self, candidate: &Region, members: &[usize]) -> f64 {
         let engine = self.engine(candidate, members);
         members.iter().map(|&k| self.value(engine, k)).sum::<f64>() / members.len() as f64
     }
 
-    fn slice(&self, candidate: &Candidate, members: &[usize], p_value: f64, seed: u64) -> Slice {
+    fn slice(&self, candidate: &Region, members: &[usize], p_value: f64, seed: u64) -> Slice {
         let engine = self.engine(candidate, members);
         let by_flight = self.by_flight(members, |segment| self.value(engine, segment));
         let mut words = Vec::new();

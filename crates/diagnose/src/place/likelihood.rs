@@ -1,21 +1,21 @@
-//! How much better a step over a place fits the gap, with the noise that flights have in common taken into account.
+//! How much better a step over a region fits the gap, with the noise that flights have in common taken into account.
 
 use faer::Mat;
 
 use crate::math::cholesky::Cholesky;
-use crate::place::draws::Level;
-use crate::search::system::Stacked;
+use crate::place::draws::NoiseLevel;
+use crate::search::system::WhitenedSystem;
 
 /// Products aᵀC⁻¹b over all flights, C the noise of fuel flow: a segment's own, and what its flight has in common.
 pub(crate) struct Noise<'a> {
     flights: Vec<OfFlight>,
-    stacked: &'a Stacked<'a>,
+    stacked: &'a WhitenedSystem<'a>,
 }
 
 struct OfFlight {
     /// 1/σ² of each segment.
     weights: Vec<f64>,
-    /// Loadings of what is common, scaled by 1/σ²: one row a segment.
+    /// Loadings of what is common, scaled by 1/σ²: one row per segment.
     loadings: Vec<Vec<f64>>,
     /// Of 1 + UᵀD⁻¹U.
     inner: Option<Cholesky>,
@@ -28,7 +28,7 @@ struct Projected {
 }
 
 impl<'a> Noise<'a> {
-    pub(crate) fn of(stacked: &'a Stacked<'a>, level: Level) -> Self {
+    pub(crate) fn new(stacked: &'a WhitenedSystem<'a>, level: NoiseLevel) -> Self {
         let data = stacked.data;
         let flights = data
             .flights
@@ -102,7 +102,7 @@ impl<'a> Noise<'a> {
         sum
     }
 
-    /// Fall of χ² by a step over a place, of any size, beside a level of any size.
+    /// Fall of χ² by a step over a region, of any size, beside a level of any size.
     ///
     /// ```text
     /// (xᵀC⁻¹y)²/xᵀC⁻¹x,  x the place less its projection on the level, products with C⁻¹             [diagnosis.29]

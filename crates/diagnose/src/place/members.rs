@@ -1,4 +1,4 @@
-//! Which segments lie in a place.
+//! Which segments lie in a region.
 
 use effects::{EffectModel, EffectPoint, Effects};
 
@@ -9,7 +9,7 @@ use crate::signals::channels::mean_n2_percent;
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::variables::Variable;
 
-/// Why nothing lies in a place.
+/// Why no segment lies in a region.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SliceError {
@@ -24,7 +24,7 @@ pub enum SliceError {
     Model(#[from] DiagnoseError),
 }
 
-/// Of every segment, flight by flight, whether it lies within the bounds of a place. What the model cannot predict lies
+/// Of every segment, flight by flight, whether it lies within the bounds of a region. What the model cannot predict lies
 /// nowhere; an engine has no bounds here.
 ///
 /// # Errors

@@ -1,30 +1,26 @@
-//! The largest deviation that noise alone makes of any place.
+//! The largest deviation that noise alone makes of any region.
 
 use crate::place::regions::{Search, Sums};
 
-/// Standard deviation of every place's sum, and in each draw the largest statistic of any place.
+/// Standard deviation of every region's sum, and in each draw the largest statistic of any region.
 pub(crate) struct Null {
     deviations: Vec<f64>,
     largest: Vec<f64>,
-    /// Statistic of everywhere, which is no place and takes no part in the search.
+    /// Statistic of everywhere, which is not a region and takes no part in the search.
     everywhere: Vec<f64>,
 }
 
 impl Null {
     /// From sums of squares over draws.
-    pub(crate) fn of(squares: &[f64], draws: usize) -> Self {
+    pub(crate) fn new(squares: &[f64], draws: usize) -> Self {
         let deviations = squares.iter().map(|square| (square / draws as f64).sqrt()).collect();
         Self { deviations, largest: vec![], everywhere: vec![] }
     }
 
-    /// Statistic of a place: its sum over the standard deviation that noise gives it, weighed by its conditions.
+    /// Statistic of a region: its sum over the standard deviation that noise gives it, weighed by its conditions.
     pub(crate) fn statistic(&self, search: &Search<'_>, index: usize, sum: f64) -> f64 {
         let deviation = self.deviations[index];
-        if deviation > 0.0 {
-            sum.abs() / deviation * search.candidates[index].weight()
-        } else {
-            0.0
-        }
+        if deviation > 0.0 { sum.abs() / deviation * search.regions[index].weight() } else { 0.0 }
     }
 
     /// Adds draws that took no part in the standard deviations.
@@ -33,11 +29,11 @@ impl Null {
         let mut everywhere = Vec::with_capacity(sums.width);
         search.for_each(sums, |index, sums| {
             let deviation = self.deviations[index];
-            if search.candidates[index].is_everywhere() {
+            if search.regions[index].is_everywhere() {
                 let of = |sum: &f64| self.statistic(search, index, *sum);
                 everywhere.extend(sums.iter().map(of));
             } else if deviation > 0.0 {
-                let by = search.candidates[index].weight() / deviation;
+                let by = search.regions[index].weight() / deviation;
                 for (slot, sum) in largest.iter_mut().zip(sums) {
                     *slot = slot.max(by * sum.abs());
                 }

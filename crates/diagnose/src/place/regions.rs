@@ -1,6 +1,6 @@
 //! Sums over all places at once, by prefix sums over bins.
 
-use crate::place::binned_variable::Place;
+use crate::place::binned_variable::BinnedVariable;
 use crate::thresholds::{BINS, REGION_SHARES, SECOND_CONDITION};
 
 /// What is summed: fuel flow about its mean, or one engine's difference from the mean of all, as it is.
@@ -12,7 +12,7 @@ pub(crate) enum Series {
 
 /// A place: bins `low..high` of one or two variables, of all engines or of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Candidate {
+pub(crate) struct Region {
     pub(crate) series: Series,
     /// Index of the variable, and its bins.
     pub(crate) ranges: [Option<(usize, usize, usize)>; 2],
@@ -20,8 +20,8 @@ pub(crate) struct Candidate {
     share: f64,
 }
 
-impl Candidate {
-    pub(crate) fn holds(&self, places: &[Place], segment: usize) -> bool {
+impl Region {
+    pub(crate) fn holds(&self, places: &[BinnedVariable], segment: usize) -> bool {
         self.ranges.iter().flatten().all(|&(place, low, high)| {
             let bin = usize::from(places[place].bins[segment]);
             (low..high).contains(&bin)
@@ -56,11 +56,11 @@ struct Table {
 
 /// All places that are looked at.
 pub(crate) struct Search<'a> {
-    places: &'a [Place],
+    places: &'a [BinnedVariable],
     tables: Vec<Table>,
     cells: usize,
     /// Ordered by table.
-    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) regions: Vec<Region>,
     segments: usize,
     series: Vec<Series>,
 }
@@ -75,13 +75,13 @@ pub(crate) struct Sums {
 
 impl<'a> Search<'a> {
     /// `engines` that are looked at one by one (none where fuel flow is not recorded by engine).
-    pub(crate) fn of(places: &'a [Place], segments: usize, engines: usize) -> Self {
+    pub(crate) fn new(places: &'a [BinnedVariable], segments: usize, engines: usize) -> Self {
         // Of two engines one series says all: the other's is its negative.
         let apart = if engines == 2 { 1 } else { engines };
         let series: Vec<Series> =
             core::iter::once(Series::FuelFlow).chain((0..apart).map(Series::Engine)).collect();
         let mut search =
-            Self { places, tables: vec![], cells: 0, candidates: vec![], segments, series };
+            Self { places, tables: vec![], cells: 0, regions: vec![], segments, series };
         for k in 0..search.series.len() {
             search.table(k, [None; 2]);
             for first in 0..places.len() {
@@ -128,7 +128,7 @@ impl<'a> Search<'a> {
                     variables[1].map(|place| (place, left, right)),
                 ];
                 let series = self.series[series];
-                self.candidates.push(Candidate { series, ranges, table, share });
+                self.regions.push(Region { series, ranges, table, share });
             }
         }
     }
@@ -167,7 +167,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Hands over the sum over every place, about the mean where fuel flow is looked at, in the order of candidates.
+    /// Hands over the sum over every place, about the mean where fuel flow is looked at, in the order of regions.
     ///
     /// ```text
     /// S = Σ_{i in place} (y_i − ȳ)
@@ -177,7 +177,7 @@ impl<'a> Search<'a> {
         let mut prefix = vec![0.0; (BINS + 1) * (BINS + 1) * width];
         let mut out = vec![0.0; width];
         let mut made = usize::MAX;
-        for (index, candidate) in self.candidates.iter().enumerate() {
+        for (index, candidate) in self.regions.iter().enumerate() {
             if made != candidate.table {
                 made = candidate.table;
                 self.prefix(sums, made, &mut prefix);

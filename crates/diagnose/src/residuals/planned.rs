@@ -7,9 +7,9 @@ use flight::{MAXIMUM_ENGINES, SegmentMeans};
 
 use crate::library::Library;
 use crate::residuals::gauges::gauge_row;
-use crate::residuals::reference::Against;
+use crate::residuals::reference::Reference;
 use crate::residuals::rows::FlightRows;
-use crate::residuals::segments::{Data, Inside, add_wander_to};
+use crate::residuals::segments::{Inside, PreparedFlights, add_wander_to};
 use crate::residuals::signatures::Differences;
 use crate::signals::record::GaugeBurn;
 
@@ -22,7 +22,7 @@ pub(crate) struct Recorded {
     pub(crate) gauge_deviation: Option<f64>,
 }
 
-impl Data<'_> {
+impl PreparedFlights<'_> {
     /// One planned flight as data of its own: noise, nuisance and the signatures of the library's columns as for flights
     /// that were flown, residuals of zero. `None` where the model cannot predict a point.
     pub(crate) fn planned(
@@ -32,10 +32,10 @@ impl Data<'_> {
         points: &[EffectPoint],
         recorded: Recorded,
     ) -> Option<Self> {
-        let against = Against::taught_or_table(self.predictor.baseline);
-        let statistics = against.statistics(model);
+        let reference = Reference::from_baseline(self.predictor.baseline);
+        let statistics = reference.statistics(model);
         let samples: Vec<u32> = (0..u32::try_from(recorded.samples).ok()?).collect();
-        let differences = Differences::of(model, library, self.predictor.baseline);
+        let differences = Differences::new(model, library, self.predictor.baseline);
         let mut segments = Vec::with_capacity(points.len());
         for &point in points {
             let (known, response) = model.known_point(&point).ok()?;

@@ -6,7 +6,7 @@ use crate::baseline::Baseline;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS, contrasts};
 use crate::signals::n2_deck::Deck;
 
-/// What turns a response into the prediction of every channel: deck, and what a baseline was taught.
+/// What turns a response into the prediction of every channel: deck, and what a baseline has learnt.
 #[derive(Clone, Debug)]
 pub(crate) struct Predictor<'a> {
     pub(crate) channels: Channels,

@@ -1,4 +1,4 @@
-//! What flights are held against.
+//! What flights are compared with.
 
 use effects::EffectModel;
 use perf_model::aircraft::{FlightBias, FuelFlowDrift};
@@ -6,26 +6,26 @@ use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 use crate::baseline::Baseline;
 use crate::signals::noise::{NoiseFactors, Statistics};
 
-/// What flights are held against, and with it where their noise is known from.
+/// What flights are compared with, which also decides where their noise is known from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Against<'a> {
+pub(crate) enum Reference<'a> {
     /// A table alone: the aircraft file states the noise.
     Table,
     /// A table whose remainder and noise are about to be learnt.
-    NothingYet,
-    /// A table and what it was taught of clean flights, noise included.
+    Untaught,
+    /// A table and what was learnt from clean flights, noise included.
     Baseline(&'a Baseline),
 }
 
-impl<'a> Against<'a> {
-    /// What was taught, where there is something; else the table.
-    pub(crate) fn taught_or_table(baseline: Option<&'a Baseline>) -> Self {
+impl<'a> Reference<'a> {
+    /// The baseline where there is one, else the table alone.
+    pub(crate) fn from_baseline(baseline: Option<&'a Baseline>) -> Self {
         baseline.map_or(Self::Table, Self::Baseline)
     }
 
     pub(crate) fn baseline(self) -> Option<&'a Baseline> {
         match self {
-            Self::Table | Self::NothingYet => None,
+            Self::Table | Self::Untaught => None,
             Self::Baseline(baseline) => Some(baseline),
         }
     }

@@ -2,7 +2,7 @@
 
 use effects::{EffectPoint, KnownPoint, Response};
 
-use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 use crate::signals::n2_deck::DECK_TERMS;
 use crate::signals::noise::SegmentNoise;
@@ -22,7 +22,7 @@ pub(crate) struct SegmentRow {
     pub(crate) signatures: Vec<ByChannel>,
     pub(crate) noise: SegmentNoise,
     /// ∂channel/∂θ of the effects that a baseline carries; 0 where an input is not recorded.
-    pub(crate) environment: [ByChannel; ENVIRONMENT.len()],
+    pub(crate) standing_effects: [ByChannel; STANDING_EFFECTS.len()],
     /// Deck terms at the prediction.
     pub(crate) deck: [f64; DECK_TERMS],
     /// ∂(N2 channel)/∂(ln F).

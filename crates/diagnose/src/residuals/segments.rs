@@ -11,25 +11,27 @@ use flight::effect::{EffectId, HiddenParameter, StepTarget};
 use perf_model::variance::mean_acceleration_deviation_m_s2;
 
 use crate::baseline::Baseline;
-use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::library::Library;
 use crate::residuals::chords::chord_errors;
 use crate::residuals::gauges::gauge_row;
 use crate::residuals::predictor::Predictor;
-use crate::residuals::reference::Against;
+use crate::residuals::reference::Reference;
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::signatures::Differences;
 use crate::signals::channels::{
     ByChannel, Channels, MAXIMUM_CHANNELS, has_n2, mean_n2_percent, recorded_channels,
 };
 use crate::signals::n2_deck::Deck;
-use crate::signals::noise::{HEATING_LOADING, NoiseModel, SegmentNoise, Statistics, add_wander};
+use crate::signals::noise::{
+    HEATING_VALUE_LOADING, NoiseModel, SegmentNoise, Statistics, add_wander,
+};
 use crate::signals::record::FlightRecord;
 use crate::signals::record::GaugeBurn;
 
 /// Everything ready.
 #[derive(Clone, Debug)]
-pub(crate) struct Data<'a> {
+pub(crate) struct PreparedFlights<'a> {
     pub(crate) channels: Channels,
     pub(crate) predictor: Predictor<'a>,
     pub(crate) flights: Vec<FlightRows>,
@@ -49,7 +51,7 @@ pub(crate) struct Inside<'a> {
 }
 
 impl Inside<'_> {
-    /// Says what thrust the recorded N2 stands for.
+    /// Looks up the thrust that belongs to the recorded N2.
     pub(crate) fn look_up_n2(&mut self, deck: &Deck) {
         let by_n2_n = mean_n2_percent(&self.means)
             .and_then(|percent| deck.corrected_thrust_n(percent, &self.response));
@@ -99,18 +101,18 @@ pub(crate) fn reason(error: &effects::EffectError) -> &'static str {
     }
 }
 
-impl<'a> Data<'a> {
+impl<'a> PreparedFlights<'a> {
     /// Prepares the flights against a model. `effects` are already part of the model (none, as a rule).
     pub(crate) fn prepare(
         model: &EffectModel<'_>,
         flights: &[FlightRecord<'_>],
-        against: Against<'a>,
+        reference: Reference<'a>,
         library_of: impl FnOnce(&[EffectPoint], bool, &[f64]) -> Library,
     ) -> (Self, Library) {
         let mut left_out = BTreeMap::new();
         let mut inside = inside(model, flights, &mut left_out);
         let channels = channels_of(model, &inside);
-        let baseline = against.baseline();
+        let baseline = reference.baseline();
         let deck = deck_of(&inside, channels, baseline);
         if channels.n2 {
             for kept in inside.iter_mut().flat_map(|(segments, _)| segments) {
@@ -122,7 +124,7 @@ impl<'a> Data<'a> {
         let starts: Vec<f64> =
             inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
         let library = library_of(&points, channels.contrasts > 0, &starts);
-        let statistics = against.statistics(model);
+        let statistics = reference.statistics(model);
 
         let mut data = Self {
             channels,
@@ -131,7 +133,7 @@ impl<'a> Data<'a> {
             segments: Vec::with_capacity(points.len()),
             left_out,
         };
-        let differences = Differences::of(model, &library, baseline);
+        let differences = Differences::new(model, &library, baseline);
         for (segments, gauges) in inside {
             let first = data.segments.len();
             for segment in segments {
@@ -175,14 +177,14 @@ impl<'a> Data<'a> {
         let mut noise = noise_model.segment_noise(&kept.point, kept.rows.len(), is_recorded)?;
         // Scatter between flights that the model contains is no gap: it adds to what a flight has in common.
         let scatter = model.applied().map_or(0.0, AppliedEffects::fuel_heating_value_deviation);
-        if let Some(heating) = noise.common.get_mut(HEATING_LOADING) {
+        if let Some(heating) = noise.common.get_mut(HEATING_VALUE_LOADING) {
             heating[0] = heating[0].hypot(scatter);
         }
         let mut row = SegmentRow {
             point: kept.point,
             known: kept.known,
             response: kept.response,
-            environment: [[0.0; MAXIMUM_CHANNELS]; ENVIRONMENT.len()],
+            standing_effects: [[0.0; MAXIMUM_CHANNELS]; STANDING_EFFECTS.len()],
             is_recorded,
             residual,
             signatures: vec![],
@@ -199,13 +201,13 @@ impl<'a> Data<'a> {
             samples: kept.rows.len(),
             chords: chord_errors(model, &kept.response),
         };
-        for (slot, carried) in row.environment.iter_mut().zip(&differences.environment) {
+        for (slot, carried) in row.standing_effects.iter_mut().zip(&differences.standing_effects) {
             *slot = carried
                 .signature(model, &row.known, row.is_recorded, &self.predictor)
                 .unwrap_or([0.0; MAXIMUM_CHANNELS]);
         }
         if let Some(baseline) = self.predictor.baseline {
-            for (slope, carried) in row.environment.iter().zip(baseline.environment()) {
+            for (slope, carried) in row.standing_effects.iter().zip(baseline.standing_effects()) {
                 #[expect(clippy::needless_range_loop, reason = "channels of two vectors")]
                 for channel in 0..channels.count() {
                     row.residual[channel] -= carried * slope[channel];
@@ -251,7 +253,7 @@ impl<'a> Data<'a> {
         signatures
     }
 
-    /// Where N2 is recorded but stands for no thrust near the predicted one: how often.
+    /// How often a recorded N2 belongs to no thrust near the predicted one.
     pub(crate) fn thrust_by_n2_note(&self, library: &Library) -> Option<String> {
         let recorded = self.segments.iter().filter(|row| row.n2_percent.is_some()).count();
         let silent = |row: &&SegmentRow| {

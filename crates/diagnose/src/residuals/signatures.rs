@@ -4,7 +4,7 @@ use effects::{EffectModel, Effects, KnownPoint, Trial};
 use flight::effect::{EffectId, HiddenParameter};
 
 use crate::baseline::Baseline;
-use crate::baseline::standing_effects::ENVIRONMENT;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::library::Library;
 use crate::residuals::predictor::Predictor;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
@@ -19,7 +19,7 @@ pub(crate) struct Difference {
 
 impl Difference {
     /// About `at`, whose other effects stay.
-    pub(crate) fn of(
+    pub(crate) fn new(
         model: &EffectModel<'_>,
         at: &Effects,
         id: EffectId,
@@ -53,11 +53,11 @@ impl Difference {
 /// Differences of every column of a library, and of what a baseline carries.
 pub(crate) struct Differences {
     pub(crate) columns: Vec<Difference>,
-    pub(crate) environment: Vec<Difference>,
+    pub(crate) standing_effects: Vec<Difference>,
 }
 
 impl Differences {
-    pub(crate) fn of(
+    pub(crate) fn new(
         model: &EffectModel<'_>,
         library: &Library,
         baseline: Option<&Baseline>,
@@ -69,19 +69,19 @@ impl Differences {
             .map(|column| {
                 let effect = &library.effects[column.effect];
                 let hidden = column.hidden;
-                Difference::of(model, &none, effect.id, hidden, 0.5 * effect.typical)
+                Difference::new(model, &none, effect.id, hidden, 0.5 * effect.typical)
             })
             .collect();
-        // Only where there is a baseline to carry them, or one to be taught (then there is no library).
+        // Only where there is a baseline to carry them, or one is about to be learnt (then there is no library).
         let carries = baseline.is_some() || library.columns.is_empty();
-        let environment = ENVIRONMENT
+        let standing_effects = STANDING_EFFECTS
             .iter()
             .filter(|_| carries)
             .map(|carried| {
                 let step = 0.5 * model.references().typical_size(carried.id);
-                Difference::of(model, &none, carried.id, carried.hidden, step)
+                Difference::new(model, &none, carried.id, carried.hidden, step)
             })
             .collect();
-        Self { columns, environment }
+        Self { columns, standing_effects }
     }
 }

@@ -8,7 +8,7 @@ use faer::{Mat, Side};
 
 use crate::math::cholesky::solve_small_lower;
 use crate::residuals::rows::SegmentRow;
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::signals::channels::ByChannel;
 
 /// L⁻¹·values with the segment's own Cholesky factor.
@@ -28,7 +28,7 @@ pub(crate) fn whiten_within_segment(
 ///
 /// Returns `ln|1 + UᵀU|`, what the common errors add to the ln of the covariance's determinant.
 pub(crate) fn whiten_flight(
-    data: &Data<'_>,
+    data: &PreparedFlights<'_>,
     segments: &[SegmentRow],
     matrix: &mut Mat<f64>,
 ) -> f64 {

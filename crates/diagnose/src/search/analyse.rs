@@ -1,28 +1,29 @@
 //! One search, the leading models refined: the posterior that the verdict reads.
 
 use crate::hypotheses::backgrounds::{Background, Smoothed, backgrounds, diagonals, smoothed};
-use crate::hypotheses::evidence::{Scored, Scorer};
+use crate::hypotheses::evidence::{ScoredHypothesis, Scorer};
 use crate::math::eliminate::Reduced;
 use crate::math::gram::Gram;
 use crate::math::mixture::ln_sum;
 use crate::priors::HEATING_SIZES_PERCENT;
 use crate::search::refine::{Relinearised, refine};
 use crate::search::singles::{search_all, search_flight_scatter};
-use crate::search::system::{Problem, SmoothTerms, Space};
+use crate::search::system::{EliminatedGrams, Problem, SmoothTerms};
 use crate::thresholds::{REFINED, WORTH_REFINING};
 
 /// The posterior over models.
 pub(crate) struct Analysis {
     pub(crate) scorer: Scorer,
     pub(crate) backgrounds: Vec<Background>,
-    /// Without nuisance, at every level of scatter between flights.
-    pub(crate) space: Space,
+    /// Gram matrices with the nuisance integrated out, for every amount of scatter between flights.
+    pub(crate) space: EliminatedGrams,
     /// Models, most probable first, with their probabilities.
-    pub(crate) models: Vec<(Scored, f64)>,
+    pub(crate) models: Vec<(ScoredHypothesis, f64)>,
     pub(crate) refined: Vec<Relinearised>,
-    /// Without nuisance, with this much scatter between flights, per cent: where scatter alone is no hopeless cause.
+    /// Gram matrices with the nuisance integrated out, at each size of flight-to-flight scatter (per cent) that is itself a
+    /// probable cause.
     pub(crate) heating: Vec<(f64, Reduced)>,
-    /// Probability of no effect in backgrounds that are no finding.
+    /// Probability of no effect, summed over the backgrounds that do not count as a finding.
     pub(crate) clean: f64,
 }
 
@@ -38,9 +39,9 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
         levels.push(level);
         reduced.push(left);
     }
-    let space = Space { smoothed: smooth_out(problem, &reduced), levels, reduced };
+    let space = EliminatedGrams { smoothed: smooth_out(problem, &reduced), levels, reduced };
     let all = backgrounds(&space.smoothed, library);
-    let scorer = Scorer::of(library, gram.rows);
+    let scorer = Scorer::new(library, gram.rows);
     let search = search_all(&scorer, &all, 2, |at| stacked.is_nothing(at));
     let mut models = search.models;
     if without.is_none() {
@@ -57,7 +58,7 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
     for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| without.is_none()) {
         let scatter_alone = models.iter().any(|m| {
             m.model.columns.is_empty()
-                && m.model.heating_percent.is_some_and(|p| p.total_cmp(&percent).is_eq())
+                && m.model.flight_scatter_percent.is_some_and(|p| p.total_cmp(&percent).is_eq())
                 && (m.ln_weight - total).exp() > WORTH_REFINING
         });
         if scatter_alone {
@@ -80,12 +81,18 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
 /// Every smooth discrepancy that is admitted, over Grams without nuisance.
 fn smooth_out(problem: Problem<'_>, reduced: &[Reduced]) -> Vec<Smoothed> {
     let Problem { stacked, library, .. } = problem;
-    smoothed(reduced, library.columns.len(), stacked.design.smooth.len(), |tau| stacked.admits(tau))
+    smoothed(reduced, library.columns.len(), stacked.design.smooth.len(), |smooth_amplitude| {
+        stacked.admits(smooth_amplitude)
+    })
 }
 
 /// Models with scatter between flights, alone and with one effect, where the library has it and it is no part of the noise
 /// already.
-fn with_flight_scatter(problem: Problem<'_>, gram: &Gram, scorer: &Scorer) -> Option<Vec<Scored>> {
+fn with_flight_scatter(
+    problem: Problem<'_>,
+    gram: &Gram,
+    scorer: &Scorer,
+) -> Option<Vec<ScoredHypothesis>> {
     let Problem { stacked, library, .. } = problem;
     let mut models = Vec::new();
     for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| library.heating_value) {
@@ -104,15 +111,15 @@ fn with_flight_scatter(problem: Problem<'_>, gram: &Gram, scorer: &Scorer) -> Op
 fn refine_leading(
     problem: Problem<'_>,
     scorer: &Scorer,
-    space: &Space,
+    space: &EliminatedGrams,
     backgrounds: &[Background],
-    models: &mut [Scored],
+    models: &mut [ScoredHypothesis],
 ) -> Vec<Relinearised> {
     let total = ln_sum(models.iter().map(|m| m.ln_weight));
     let leading: Vec<usize> = (0..models.len())
         .filter(|&k| {
             let model = &models[k].model;
-            !model.columns.is_empty() && model.heating_percent.is_none()
+            !model.columns.is_empty() && model.flight_scatter_percent.is_none()
         })
         .take(REFINED)
         .take_while(|&k| (models[k].ln_weight - total).exp() >= WORTH_REFINING)

@@ -1,30 +1,30 @@
-//! Outside the library: agnostic functions of one variable compete with the named effects.
+//! Outside the library: smooth terms of one variable compete with the named effects.
 
-use crate::hypotheses::backgrounds::{Background, spike_of};
+use crate::hypotheses::backgrounds::{Background, small_effects};
 use crate::hypotheses::design::Acts;
-use crate::hypotheses::evidence::{Model, Scored, Scorer, Single};
+use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, Single};
 use crate::library::Library;
 use crate::math::eliminate::{Changed, Reduced, integrate_few_out, integrate_out};
 use crate::math::linear::gather;
 use crate::math::mixture::ln_sum;
 use crate::priors::{AGNOSTIC_AMPLITUDES, AGNOSTIC_SPIKES, PRIOR_OUTSIDE};
 use crate::search::analyse::Analysis;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 use crate::signals::variables::Variable;
 use crate::thresholds::AGNOSTIC_SETS;
 
 /// What the competition says.
 #[derive(Clone, Debug)]
 pub(crate) struct Outside {
-    /// Probability that an agnostic function is needed.
+    /// Probability that a smooth term is needed.
     pub(crate) probability: f64,
-    /// The variable that it hangs on, and how it acts.
+    /// The variable that it depends on, and how it acts.
     pub(crate) variable: Option<(Variable, Acts)>,
-    /// If one is needed: the probability of each companion to act beside it.
+    /// If one is needed: the probability of each companion to act in addition to it.
     beside: Vec<(Companion, f64)>,
 }
 
-/// A named cause that an agnostic function may have beside it.
+/// A named cause that may act together with a smooth term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Companion {
     /// An effect of the library.
@@ -34,22 +34,31 @@ pub(crate) enum Companion {
 }
 
 impl Outside {
-    /// If an agnostic function is needed: the probability that this acts beside it.
+    /// If a smooth term is needed: the probability that this acts in addition to it.
     pub(crate) fn beside(&self, companion: Companion) -> f64 {
         self.beside.iter().filter(|b| b.0 == companion).map(|b| b.1).sum()
     }
 }
 
-/// Lets agnostic functions compete with the most probable named sets.
-pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Library) -> Outside {
+/// Lets smooth terms compete with the most probable named sets.
+pub(crate) fn compete(
+    stacked: &WhitenedSystem<'_>,
+    analysis: &Analysis,
+    library: &Library,
+) -> Outside {
     let scorer = &analysis.scorer;
-    let empty = Model { columns: vec![], heating_percent: None };
-    let none =
-        Scored { model: empty, ln_weight: 0.0, sizes: vec![], deviations: vec![], background: 0 };
-    let mut sets: Vec<&Scored> =
+    let empty = Hypothesis { columns: vec![], flight_scatter_percent: None };
+    let none = ScoredHypothesis {
+        model: empty,
+        ln_weight: 0.0,
+        sizes: vec![],
+        deviations: vec![],
+        background: 0,
+    };
+    let mut sets: Vec<&ScoredHypothesis> =
         core::iter::once(&none).chain(named_models(analysis).take(AGNOSTIC_SETS)).collect();
     add_singles(&mut sets, analysis, library);
-    let mut weights = Weights { named: Vec::new(), agnostic: Vec::new() };
+    let mut weights = Weights { named: Vec::new(), smooth_terms: Vec::new() };
     for set in &sets {
         let refined = analysis
             .refined
@@ -64,24 +73,25 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             weights.add(stacked, library, scorer, &set);
         }
     }
-    // Scatter between flights is a named cause too, and what hangs on a flight's conditions looks like it until a function
-    // of them competes. The other sets are summed over levels of scatter, which these replace.
+    // Flight-to-flight scatter is a named cause as well: an effect that depends on a flight's conditions looks like scatter
+    // until a function of those conditions competes. The sets above are summed over all amounts of scatter; here each size
+    // replaces them.
     let levels_ln = (analysis.space.reduced.len() as f64).ln();
     for (percent, reduced) in &analysis.heating {
-        let model = Model { columns: vec![], heating_percent: Some(*percent) };
+        let model = Hypothesis { columns: vec![], flight_scatter_percent: Some(*percent) };
         let level = (reduced, None);
         let set = NamedSet { model: &model, level, shifts: &[], ln_share: levels_ln };
         weights.add(stacked, library, scorer, &set);
     }
-    let Weights { named, agnostic } = weights;
+    let Weights { named, smooth_terms } = weights;
     let inside = ln_sum(named);
-    let outside = ln_sum(agnostic.iter().map(|a| a.ln));
+    let outside = ln_sum(smooth_terms.iter().map(|a| a.ln));
     let probability = 1.0 / (1.0 + (inside - outside).clamp(-500.0, 500.0).exp());
     // The variable: weights summed over sets and amplitudes.
     let blocks = &stacked.design.blocks;
     let best = (0..blocks.len())
         .map(|block| {
-            let ln = ln_sum(agnostic.iter().filter(|a| a.block == block).map(|a| a.ln));
+            let ln = ln_sum(smooth_terms.iter().filter(|a| a.block == block).map(|a| a.ln));
             (ln, block)
         })
         .max_by(|a, b| a.0.total_cmp(&b.0));
@@ -92,7 +102,8 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
             .map(Companion::Effect)
             .chain([Companion::Scatter])
             .map(|companion| {
-                let with = agnostic.iter().filter(|a| a.beside == Some(companion)).map(|a| a.ln);
+                let with =
+                    smooth_terms.iter().filter(|a| a.beside == Some(companion)).map(|a| a.ln);
                 (companion, (ln_sum(with) - outside).exp())
             })
             .filter(|(_, probability)| *probability > 0.0)
@@ -101,17 +112,21 @@ pub(crate) fn compete(stacked: &Stacked<'_>, analysis: &Analysis, library: &Libr
 }
 
 /// Models with a named effect and without scatter between flights, most probable first.
-fn named_models(analysis: &Analysis) -> impl Iterator<Item = &Scored> {
+fn named_models(analysis: &Analysis) -> impl Iterator<Item = &ScoredHypothesis> {
     analysis
         .models
         .iter()
         .map(|(scored, _)| scored)
-        .filter(|s| !s.model.columns.is_empty() && s.model.heating_percent.is_none())
+        .filter(|s| !s.model.columns.is_empty() && s.model.flight_scatter_percent.is_none())
 }
 
-/// Adds the best single model of every effect that a set holds: agnostic functions join at most one effect, and the sets may
+/// Adds the best single model of every effect that a set holds: smooth terms join at most one effect, and the sets may
 /// all be pairs.
-fn add_singles<'a>(sets: &mut Vec<&'a Scored>, analysis: &'a Analysis, library: &Library) {
+fn add_singles<'a>(
+    sets: &mut Vec<&'a ScoredHypothesis>,
+    analysis: &'a Analysis,
+    library: &Library,
+) {
     let effect = |column: usize| library.columns[column].effect;
     let mut wanted: Vec<usize> =
         sets.iter().flat_map(|s| &s.model.columns).map(|&column| effect(column)).collect();
@@ -129,14 +144,14 @@ fn add_singles<'a>(sets: &mut Vec<&'a Scored>, analysis: &'a Analysis, library: 
     }
 }
 
-/// ln weights of sets without an agnostic function, and of sets with one.
+/// ln weights of sets without a smooth term, and of sets with one.
 struct Weights {
     named: Vec<f64>,
-    agnostic: Vec<Agnostic>,
+    smooth_terms: Vec<WithSmoothTerm>,
 }
 
-/// A set with an agnostic function.
-struct Agnostic {
+/// A set with a smooth term.
+struct WithSmoothTerm {
     ln: f64,
     block: usize,
     /// What the set names.
@@ -145,7 +160,7 @@ struct Agnostic {
 
 /// A named set at one level of scatter between flights.
 struct NamedSet<'a> {
-    model: &'a Model,
+    model: &'a Hypothesis,
     /// The Gram without nuisance at that level, and what takes the place of its own columns there.
     level: (&'a Reduced, Option<&'a Changed>),
     /// Where the set was linearised.
@@ -155,18 +170,20 @@ struct NamedSet<'a> {
 }
 
 impl Weights {
-    /// Adds a named set at one level of scatter and every spike, alone and with each agnostic function.
+    /// Adds a named set at one level of scatter and every spike, alone and with each smooth terms.
     fn add(
         &mut self,
-        stacked: &Stacked<'_>,
+        stacked: &WhitenedSystem<'_>,
         library: &Library,
         scorer: &Scorer,
         set: &NamedSet<'_>,
     ) {
         let &NamedSet { model, level, shifts, ln_share } = set;
         let prior = scorer.ln_prior(model) + ln_share;
-        for spike in AGNOSTIC_SPIKES {
-            let Some(under) = spiked(stacked, library, level, &model.columns, spike) else {
+        for small_effects_scale in AGNOSTIC_SPIKES {
+            let Some(under) =
+                with_small_effects(stacked, library, level, &model.columns, small_effects_scale)
+            else {
                 continue;
             };
             let alone = under.evidence(scorer, None, shifts);
@@ -175,7 +192,7 @@ impl Weights {
                 continue;
             }
             let effect = model.columns.first().map(|&column| library.columns[column].effect);
-            let beside = match model.heating_percent {
+            let beside = match model.flight_scatter_percent {
                 Some(_) => Some(Companion::Scatter),
                 None => effect.map(Companion::Effect),
             };
@@ -185,7 +202,7 @@ impl Weights {
                 for amplitude in AGNOSTIC_AMPLITUDES {
                     let ln = under.evidence(scorer, Some((block, amplitude)), shifts);
                     let ln = prior + PRIOR_OUTSIDE.ln() - share.ln() + ln;
-                    self.agnostic.push(Agnostic { ln, block, beside });
+                    self.smooth_terms.push(WithSmoothTerm { ln, block, beside });
                 }
             }
         }
@@ -199,12 +216,12 @@ struct Under<'a> {
     blocks: Vec<core::ops::Range<usize>>,
 }
 
-fn spiked<'a>(
-    stacked: &Stacked<'_>,
+fn with_small_effects<'a>(
+    stacked: &WhitenedSystem<'_>,
     library: &Library,
     (reduced, changed): (&Reduced, Option<&Changed>),
     columns: &'a [usize],
-    spike: f64,
+    small_effects_scale: f64,
 ) -> Option<Under<'a>> {
     let design = stacked.design;
     // Columns of `reduced`: effects, smooth, blocks one after the other, residual.
@@ -212,7 +229,7 @@ fn spiked<'a>(
     let residual = reduced.matrix.ncols() - 1;
     let mut kept: Vec<usize> = columns.to_vec();
     let mut blocks = Vec::new();
-    // Agnostic functions compete beside at most one effect.
+    // Smooth terms are combined with at most one effect.
     if columns.len() <= 1 {
         let mut at = first_block;
         for block in &design.blocks {
@@ -223,15 +240,15 @@ fn spiked<'a>(
         }
     }
     kept.push(residual);
-    let (mut out, mut deviations) = spike_of(library, spike);
-    // What a taught remainder may lack is no discovery.
-    let tau = stacked.clean_tau();
-    if tau > 0.0 {
+    let (mut out, mut deviations) = small_effects(library, small_effects_scale);
+    // What a learnt remainder may lack does not count as a discovery.
+    let smooth_amplitude = stacked.clean_smooth_amplitude();
+    if smooth_amplitude > 0.0 {
         out.extend(design.effects..first_block);
-        deviations.extend(vec![tau; design.smooth.len()]);
+        deviations.extend(vec![smooth_amplitude; design.smooth.len()]);
     }
     let own: Vec<usize> = columns.iter().copied().chain([residual]).collect();
-    let mut spiked = match changed {
+    let mut with_small_effects = match changed {
         Some(changed) => {
             // Only what is looked at, with the columns that changed.
             let used: Vec<usize> = kept.iter().chain(&out).copied().collect();
@@ -243,8 +260,8 @@ fn spiked<'a>(
         }
         None => integrate_out(&reduced.matrix, &kept, &out, &deviations)?,
     };
-    spiked.ln_determinant += reduced.ln_determinant;
-    Some(Under { reduced: spiked, columns, blocks })
+    with_small_effects.ln_determinant += reduced.ln_determinant;
+    Some(Under { reduced: with_small_effects, columns, blocks })
 }
 
 impl Under<'_> {

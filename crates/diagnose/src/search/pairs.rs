@@ -4,8 +4,10 @@
 //! scales. Backgrounds lie side by side, eight to a step, and each step is written so that compilers make vectors of it. A pair
 //! whose evidence is below what any posterior could show is dropped before its first logarithm.
 
+use flight::effect::EffectSign;
+
 use crate::hypotheses::backgrounds::Background;
-use crate::hypotheses::evidence::{Model, Scored, Scorer, sign_factor};
+use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, sign_factor};
 use crate::math::vector_ln_exp::{exp, ln};
 use crate::priors::NOISE_FREEDOM;
 
@@ -43,8 +45,12 @@ struct Terms {
     step: usize,
 }
 
-/// Every pair of columns of different effects that is not negligible beside `best`, the ln weight of the best smaller model.
-pub(crate) fn search(scorer: &Scorer, backgrounds: &[Background], best: f64) -> Vec<Scored> {
+/// Every pair of columns of different effects that is not negligible against `best`, the ln weight of the best smaller model.
+pub(crate) fn search(
+    scorer: &Scorer,
+    backgrounds: &[Background],
+    best: f64,
+) -> Vec<ScoredHypothesis> {
     let columns: Vec<Vec<Column>> =
         (0..scorer.columns()).map(|column| scales(scorer, backgrounds, column)).collect();
     let mut best = best;
@@ -56,7 +62,7 @@ pub(crate) fn search(scorer: &Scorer, backgrounds: &[Background], best: f64) -> 
             if scorer.effect_of[a] == scorer.effect_of[b] {
                 continue;
             }
-            let model = Model { columns: vec![a, b], heating_percent: None };
+            let model = Hypothesis { columns: vec![a, b], flight_scatter_percent: None };
             let prior = scorer.ln_prior(&model) - (backgrounds.len() as f64).ln();
             let by_prior = (prior / scorer.power()).exp();
             for (place, at) in backgrounds.iter().enumerate() {
@@ -70,8 +76,8 @@ pub(crate) fn search(scorer: &Scorer, backgrounds: &[Background], best: f64) -> 
                     }
                 }
             }
-            let positive = [scorer.priors[a].positive, scorer.priors[b].positive];
-            if let Some(scored) = scratch.scored(model, positive) {
+            let signs = [scorer.priors[a].sign, scorer.priors[b].sign];
+            if let Some(scored) = scratch.scored(model, signs) {
                 if scored.ln_weight > best {
                     best = scored.ln_weight;
                     scratch.limit(best - NEGLIGIBLE);
@@ -83,7 +89,7 @@ pub(crate) fn search(scorer: &Scorer, backgrounds: &[Background], best: f64) -> 
     models
 }
 
-/// One number a background, `rest` where there is none.
+/// One number per background, `rest` where there is none.
 fn lanes(backgrounds: &[Background], rest: f64, of: impl Fn(&Background) -> f64) -> Vec<Lanes> {
     let mut all = vec![[rest; WIDTH]; backgrounds.len().div_ceil(WIDTH)];
     for (place, at) in backgrounds.iter().enumerate() {
@@ -195,7 +201,7 @@ impl Scratch {
     }
 
     /// The mixture of all terms; `None` where none was kept.
-    fn scored(&mut self, model: Model, positive: [bool; 2]) -> Option<Scored> {
+    fn scored(&mut self, model: Hypothesis, signs: [EffectSign; 2]) -> Option<ScoredHypothesis> {
         let largest =
             self.terms.iter().flat_map(|terms| terms.ln).fold(f64::NEG_INFINITY, f64::max);
         if largest == f64::NEG_INFINITY {
@@ -210,11 +216,13 @@ impl Scratch {
                 let weight = terms.factor[k] * exp(below);
                 *kept = if below >= -NEGLIGIBLE { weight } else { 0.0 };
             }
-            for (which, _) in positive.iter().enumerate().filter(|(_, positive)| **positive) {
+            for (which, _) in
+                signs.iter().enumerate().filter(|(_, sign)| **sign == EffectSign::Positive)
+            {
                 for (k, weight) in weights.iter_mut().enumerate() {
                     if *weight > 0.0 {
                         let t = terms.sizes[which][k] / terms.variances[which][k].sqrt();
-                        *weight *= sign_factor(true, t);
+                        *weight *= sign_factor(EffectSign::Positive, t);
                     }
                 }
             }
@@ -243,7 +251,7 @@ impl Scratch {
         });
         let background =
             (0..flat.len()).reduce(|best, k| if flat[k] > flat[best] { k } else { best });
-        Some(Scored {
+        Some(ScoredHypothesis {
             model,
             ln_weight: largest + total.ln(),
             sizes: sizes.to_vec(),
@@ -263,26 +271,26 @@ mod tests {
     #[test]
     fn same_as_one_pair_at_a_time() {
         let columns = 4;
-        let prior = |mean: f64, deviation: f64, positive: bool| Prior {
+        let prior = |mean: f64, deviation: f64, sign: EffectSign| Prior {
             mean,
             scales: [(deviation, 0.5_f64.ln()), (3.0 * deviation, 0.5_f64.ln())],
             count: 2,
-            positive,
+            sign,
         };
         let scorer = Scorer {
             priors: vec![
-                prior(0.0, 1.0, true),
-                prior(1.0, 0.15, false),
-                prior(0.0, 2.0, true),
-                prior(0.0, 0.5, false),
+                prior(0.0, 1.0, EffectSign::Positive),
+                prior(1.0, 0.15, EffectSign::Either),
+                prior(0.0, 2.0, EffectSign::Positive),
+                prior(0.0, 0.5, EffectSign::Either),
             ],
             effect_of: vec![0, 1, 2, 2],
             ln_columns: vec![0.0, 0.0, 2.0_f64.ln()],
             effects: 3,
             rows: 60.0,
         };
-        let background = |spike: f64| {
-            let shrink = 1.0 / (1.0 + spike);
+        let background = |small_effects_scale: f64| {
+            let shrink = 1.0 / (1.0 + small_effects_scale);
             // A Gram and a product of whole numbers, positive definite by its diagonal.
             let gram = [
                 [40.0, 10.0, -5.0, 3.0],
@@ -299,8 +307,9 @@ mod tests {
                 matrix[(i, columns)] = shrink * product[i];
             }
             matrix[(columns, columns)] = 75.0;
-            let mut at = Background::small(&matrix, &[0, 1, 2, 3], columns, 3.0 * spike);
-            at.spike = spike;
+            let mut at =
+                Background::small(&matrix, &[0, 1, 2, 3], columns, 3.0 * small_effects_scale);
+            at.small_effects_scale = small_effects_scale;
             at
         };
         let backgrounds = [background(0.0), background(0.3)];
@@ -321,7 +330,7 @@ mod tests {
                 assert!((scored.deviations[k] - mean.deviations[k]).abs() < 1e-12, "{a} {b}");
             }
         }
-        // What is negligible beside a better model is left out, and nothing else is.
+        // Only what is negligible against a better model is left out.
         let best = found.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
         assert!(search(&scorer, &backgrounds, best + 2.0 * NEGLIGIBLE).is_empty());
         assert_eq!(search(&scorer, &backgrounds, best).len(), found.len());

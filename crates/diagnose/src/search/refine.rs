@@ -7,7 +7,7 @@ use effects::{EffectModel, Effects, Trial};
 use faer::{Mat, MatMut, MatRef};
 
 use crate::hypotheses::backgrounds::Background;
-use crate::hypotheses::evidence::{Scored, Scorer};
+use crate::hypotheses::evidence::{ScoredHypothesis, Scorer};
 use crate::library::Library;
 use crate::math::eliminate::Changed;
 use crate::math::mixture::Mixture;
@@ -15,7 +15,7 @@ use crate::residuals::rows::FlightRows;
 use crate::residuals::signatures::Difference;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::search::folds::fold_of;
-use crate::search::system::{Problem, SmoothTerms, Space, Stacked};
+use crate::search::system::{EliminatedGrams, Problem, SmoothTerms, WhitenedSystem};
 use crate::signals::channels::MAXIMUM_CHANNELS;
 
 /// Largest number of re-linearisations of a model.
@@ -26,7 +26,7 @@ const CONVERGED: f64 = 0.02;
 /// A model linearised at its own estimate.
 #[derive(Clone, Debug)]
 pub(crate) struct Relinearised {
-    pub(crate) scored: Scored,
+    pub(crate) scored: ScoredHypothesis,
     /// Its own columns and the residual, in the Gram without nuisance at every level of scatter between flights.
     pub(crate) changed: Vec<Changed>,
     /// Where it was linearised.
@@ -45,8 +45,8 @@ pub(crate) fn effects_of(library: &Library, columns: &[usize], sizes: &[f64]) ->
 }
 
 /// One model on its way.
-struct Run<'a> {
-    start: &'a Scored,
+struct Relinearisation<'a> {
+    start: &'a ScoredHypothesis,
     at: &'a Background,
     sizes: Vec<f64>,
 }
@@ -56,16 +56,16 @@ struct Run<'a> {
 pub(crate) fn refine(
     problem: Problem<'_>,
     scorer: &Scorer,
-    space: &Space,
-    starts: &[(&Scored, &Background)],
+    space: &EliminatedGrams,
+    starts: &[(&ScoredHypothesis, &Background)],
     without: Option<usize>,
 ) -> Vec<Option<Relinearised>> {
     let Problem { stacked, model, library } = problem;
     // Smooth terms compete once, at the end, and never on folds.
     let smooth_terms = if without.is_none() { SmoothTerms::Kept } else { SmoothTerms::LeftOut };
-    let mut runs: Vec<Option<Run<'_>>> = starts
+    let mut runs: Vec<Option<Relinearisation<'_>>> = starts
         .iter()
-        .map(|&(start, at)| Some(Run { start, at, sizes: start.sizes.clone() }))
+        .map(|&(start, at)| Some(Relinearisation { start, at, sizes: start.sizes.clone() }))
         .collect();
     let mut refined: Vec<Option<Relinearised>> = starts.iter().map(|_| None).collect();
     for step in 0..=STEPS {
@@ -76,9 +76,9 @@ pub(crate) fn refine(
         let linear: Vec<Linear> = running
             .iter()
             .filter_map(|&k| runs[k].as_ref())
-            .map(|run| Linear::of(model, library, &run.start.model.columns, &run.sizes))
+            .map(|run| Linear::new(model, library, &run.start.model.columns, &run.sizes))
             .collect();
-        let mut fresh = Fresh::of(stacked, model, &linear, without);
+        let mut fresh = RelinearisedRows::new(stacked, model, &linear, without);
         let mut products = fresh.products(stacked, smooth_terms);
         let mut finished = Vec::new();
         for (place, &k) in running.iter().enumerate() {
@@ -88,7 +88,7 @@ pub(crate) fn refine(
                 continue;
             }
             let columns = &run.start.model.columns;
-            let changed = products.of(&fresh, place);
+            let changed = products.changed(&fresh, place);
             let found = estimate(space, scorer, library, run, &changed, &fresh.levels_of(place))
                 .filter(|found| found.iter().all(|size| size.is_finite()));
             let Some(found) = found else {
@@ -107,12 +107,12 @@ pub(crate) fn refine(
             }
         }
         if smooth_terms == SmoothTerms::Kept && !finished.is_empty() {
-            products.add_agnostic(stacked, &fresh);
+            products.add_smooth_terms(stacked, &fresh);
         }
         for place in finished {
             let k = running[place];
             let Some(run) = runs[k].take() else { continue };
-            let changed = products.of(&fresh, place);
+            let changed = products.changed(&fresh, place);
             let levels = fresh.levels_of(place);
             refined[k] = Some(score_everywhere(library, scorer, space, run, &changed, &levels));
         }
@@ -123,12 +123,12 @@ pub(crate) fn refine(
 fn score_everywhere(
     library: &Library,
     scorer: &Scorer,
-    space: &Space,
-    run: Run<'_>,
+    space: &EliminatedGrams,
+    run: Relinearisation<'_>,
     changed: &Changed,
     levels: &Mat<f64>,
 ) -> Relinearised {
-    let Run { start, sizes: shifts, .. } = run;
+    let Relinearisation { start, sizes: shifts, .. } = run;
     let columns = &start.model.columns;
     let followed: Vec<Changed> =
         space.levels.iter().map(|level| level.follow(changed.clone(), levels)).collect();
@@ -163,25 +163,32 @@ fn score_everywhere(
         let mean = sum.mean();
         (mean.ln, mean.sizes.to_vec(), mean.deviations.to_vec())
     };
-    let scored =
-        Scored { model: start.model.clone(), ln_weight, sizes, deviations, background: best.1 };
+    let scored = ScoredHypothesis {
+        model: start.model.clone(),
+        ln_weight,
+        sizes,
+        deviations,
+        background: best.1,
+    };
     Relinearised { scored, changed: followed, shifts }
 }
 
 /// Sizes in the background that the model was found in; `None` where that cannot be made.
 fn estimate(
-    space: &Space,
+    space: &EliminatedGrams,
     scorer: &Scorer,
     library: &Library,
-    run: &Run<'_>,
+    run: &Relinearisation<'_>,
     changed: &Changed,
     levels: &Mat<f64>,
 ) -> Option<Vec<f64>> {
     let under = space.smoothed.iter().find(|under| under.is_of(run.at))?;
     let followed = space.levels[under.scatter()].follow(changed.clone(), levels);
     let columns = &run.start.model.columns;
-    let spike = |spike: f64| spike.total_cmp(&run.at.spike).is_eq();
-    let one = under.changed(library, columns, &followed, spike);
+    let small_effects_scale = |small_effects_scale: f64| {
+        small_effects_scale.total_cmp(&run.at.small_effects_scale).is_eq()
+    };
+    let one = under.changed(library, columns, &followed, small_effects_scale);
     let at = one.first()?;
     Some(match columns[..] {
         [a, b] => scorer.two(at, [a, b], [run.sizes[0], run.sizes[1]]).sizes.to_vec(),
@@ -199,11 +206,11 @@ struct Linear {
 }
 
 impl Linear {
-    fn of(model: &EffectModel<'_>, library: &Library, columns: &[usize], sizes: &[f64]) -> Self {
+    fn new(model: &EffectModel<'_>, library: &Library, columns: &[usize], sizes: &[f64]) -> Self {
         let effects = effects_of(library, columns, sizes);
         let difference = |&column: &usize| {
             let effect = &library.effects[library.columns[column].effect];
-            Difference::of(
+            Difference::new(
                 model,
                 &effects,
                 effect.id,
@@ -226,7 +233,7 @@ impl Linear {
 }
 
 /// The rows of all models' own columns and residuals, model after model.
-struct Fresh {
+struct RelinearisedRows {
     /// Of each flight; none of a fold that is left out.
     flights: Vec<Option<Mat<f64>>>,
     /// Products with each flight's fuel-flow level.
@@ -235,9 +242,9 @@ struct Fresh {
     starts: Vec<usize>,
 }
 
-impl Fresh {
-    fn of(
-        stacked: &Stacked<'_>,
+impl RelinearisedRows {
+    fn new(
+        stacked: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         linear: &[Linear],
         without: Option<usize>,
@@ -264,7 +271,7 @@ impl Fresh {
     /// Whitened rows of a flight. Residuals are less what the sizes explain, but not yet the residual itself.
     fn rows(
         &self,
-        stacked: &Stacked<'_>,
+        stacked: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         linear: &[Linear],
         index: usize,
@@ -318,8 +325,8 @@ impl Fresh {
         fresh
     }
 
-    /// Completes the residuals, and multiplies with all but the agnostic columns.
-    fn products(&mut self, stacked: &Stacked<'_>, smooth_terms: SmoothTerms) -> Products {
+    /// Completes the residuals, and multiplies with all but the columns of smooth terms.
+    fn products(&mut self, stacked: &WhitenedSystem<'_>, smooth_terms: SmoothTerms) -> OwnProducts {
         let design = stacked.design;
         let width = self.levels.ncols();
         let end = design.smooth.end;
@@ -328,7 +335,7 @@ impl Fresh {
             SmoothTerms::LeftOut => end,
         };
         let mut products =
-            Products { cross: Mat::zeros(last + 1, width), own: Mat::zeros(width, width) };
+            OwnProducts { cross: Mat::zeros(last + 1, width), own: Mat::zeros(width, width) };
         for (index, rows) in self.flights.iter_mut().enumerate() {
             let Some(rows) = rows else { continue };
             let whitened = stacked.whitened(index);
@@ -356,13 +363,13 @@ impl Fresh {
 }
 
 /// Products of all models' own columns and residuals with a design's columns, residual last, and with each other.
-struct Products {
+struct OwnProducts {
     cross: Mat<f64>,
     own: Mat<f64>,
 }
 
-impl Products {
-    fn of(&self, fresh: &Fresh, place: usize) -> Changed {
+impl OwnProducts {
+    fn changed(&self, fresh: &RelinearisedRows, place: usize) -> Changed {
         let (start, end) = (fresh.starts[place], fresh.starts[place + 1]);
         let width = end - start;
         Changed {
@@ -371,8 +378,8 @@ impl Products {
         }
     }
 
-    /// Products with agnostic columns, which were left open.
-    fn add_agnostic(&mut self, stacked: &Stacked<'_>, fresh: &Fresh) {
+    /// Products with columns of smooth terms, which were left open.
+    fn add_smooth_terms(&mut self, stacked: &WhitenedSystem<'_>, fresh: &RelinearisedRows) {
         let design = stacked.design;
         let (start, end) = (design.smooth.end, design.residual());
         for (index, rows) in fresh.flights.iter().enumerate() {

@@ -4,7 +4,7 @@ use crate::library::Library;
 use crate::math::quantile::{QuantileType, quantile};
 use crate::priors::{ROBUST_EFFECT, ROBUST_SMOOTH, STUDENT_FREEDOM};
 use crate::search::analyse::Analysis;
-use crate::search::system::Stacked;
+use crate::search::system::WhitenedSystem;
 use crate::thresholds::{HEAVY_KURTOSIS, LEAST_ROBUST_SCALE};
 
 /// Median of |x| over the standard deviation of a normal distribution, inverted.
@@ -16,7 +16,7 @@ const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 /// w = min(1, √(5/(4 + e²/s²))),  e the largest whitened residual of the segment, s their robust scale   [diagnosis.21]
 /// ```
 pub(crate) fn outlier_weights(
-    stacked: &Stacked<'_>,
+    stacked: &WhitenedSystem<'_>,
     analysis: &Analysis,
     library: &Library,
 ) -> Option<Vec<f64>> {
@@ -82,8 +82,8 @@ mod tests {
 
     use super::*;
     use crate::hypotheses::design::Design;
-    use crate::residuals::reference::Against;
-    use crate::residuals::segments::Data;
+    use crate::residuals::reference::Reference;
+    use crate::residuals::segments::PreparedFlights;
     use crate::search::analyse::analyse;
     use crate::search::system::Problem;
     use crate::signals::record::FlightRecord;
@@ -98,12 +98,14 @@ mod tests {
             flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
         let references = references_of(&model, model.drag_table(), &records).unwrap();
         let effects = EffectModel::new(&model, model.drag_table(), references).unwrap();
-        let (data, library) =
-            Data::prepare(&effects, &records, Against::Table, |points, engines, starts| {
-                Library::of(&effects, points, engines, starts, |_| true)
-            });
-        let design = Design::of(&data, &references, None, None);
-        let stacked = Stacked::of(&data, &design, None);
+        let (data, library) = PreparedFlights::prepare(
+            &effects,
+            &records,
+            Reference::Table,
+            |points, engines, starts| Library::new(&effects, points, engines, starts, |_| true),
+        );
+        let design = Design::new(&data, &references, None, None);
+        let stacked = WhitenedSystem::new(&data, &design, None);
         let gram = stacked.gram(None);
         let square = gram.matrix[(design.residual(), design.residual())];
         let problem = Problem { stacked: &stacked, model: &effects, library: &library };

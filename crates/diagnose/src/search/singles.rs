@@ -1,18 +1,18 @@
 //! The search over no effect and single effects, with pairs behind them.
 
 use crate::hypotheses::backgrounds::{Background, Diagonal};
-use crate::hypotheses::evidence::{Model, Scored, Scorer, Single};
+use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, Single};
 use crate::math::mixture::{Evidence, Mixture, ln_sum};
 
 /// All models with their scores.
 #[derive(Clone, Debug)]
 pub(crate) struct Search {
-    pub(crate) models: Vec<Scored>,
-    /// ln weight of no effect in backgrounds that are no finding.
+    pub(crate) models: Vec<ScoredHypothesis>,
+    /// ln weight of no effect, summed over the backgrounds that do not count as a finding.
     pub(crate) ln_clean: f64,
 }
 
-/// Every model of at most `largest` effects. `is_nothing` says which backgrounds without an effect are no finding.
+/// Every model of at most `largest` effects. `is_nothing` is true for backgrounds that do not count as a finding.
 pub(crate) fn search_all(
     scorer: &Scorer,
     backgrounds: &[Background],
@@ -24,7 +24,7 @@ pub(crate) fn search_all(
     let mut models = Vec::new();
     let mut ln_clean = f64::NEG_INFINITY;
 
-    let none = Model { columns: vec![], heating_percent: None };
+    let none = Hypothesis { columns: vec![], flight_scatter_percent: None };
     let prior = scorer.ln_prior(&none) + ln_background;
     let mut sum = Mixture::<0>::new();
     let mut best = (f64::NEG_INFINITY, 0);
@@ -39,7 +39,7 @@ pub(crate) fn search_all(
     models.push(scored(none, &sum, best.1));
 
     for column in 0..columns {
-        let model = Model { columns: vec![column], heating_percent: None };
+        let model = Hypothesis { columns: vec![column], flight_scatter_percent: None };
         let prior = scorer.ln_prior(&model) + ln_background;
         models.push(over(backgrounds, model, |at| {
             let mut evidence = scorer.one(at, column, 0.0);
@@ -59,10 +59,10 @@ pub(crate) fn search_flight_scatter(
     scorer: &Scorer,
     backgrounds: &[Diagonal],
     percent: f64,
-) -> Vec<Scored> {
+) -> Vec<ScoredHypothesis> {
     let ln_background = -(backgrounds.len() as f64).ln();
     let mut models = Vec::new();
-    let alone = Model { columns: vec![], heating_percent: Some(percent) };
+    let alone = Hypothesis { columns: vec![], flight_scatter_percent: Some(percent) };
     let prior = scorer.ln_prior(&alone) + ln_background;
     models.push(over(backgrounds, alone, |at| Evidence {
         ln: scorer.nothing(at.square, at.ln_determinant) + prior,
@@ -70,7 +70,7 @@ pub(crate) fn search_flight_scatter(
         deviations: [],
     }));
     for column in 0..scorer.priors.len() {
-        let model = Model { columns: vec![column], heating_percent: Some(percent) };
+        let model = Hypothesis { columns: vec![column], flight_scatter_percent: Some(percent) };
         let prior = scorer.ln_prior(&model) + ln_background;
         models.push(over(backgrounds, model, |at| {
             let mut evidence = scorer.single(
@@ -92,9 +92,9 @@ pub(crate) fn search_flight_scatter(
 
 fn over<B, const K: usize>(
     backgrounds: &[B],
-    model: Model,
+    model: Hypothesis,
     evidence: impl Fn(&B) -> Evidence<K>,
-) -> Scored {
+) -> ScoredHypothesis {
     let mut sum = Mixture::<K>::new();
     let mut best = (f64::NEG_INFINITY, 0);
     for (k, at) in backgrounds.iter().enumerate() {
@@ -107,9 +107,13 @@ fn over<B, const K: usize>(
     scored(model, &sum, best.1)
 }
 
-fn scored<const K: usize>(model: Model, sum: &Mixture<K>, background: usize) -> Scored {
+fn scored<const K: usize>(
+    model: Hypothesis,
+    sum: &Mixture<K>,
+    background: usize,
+) -> ScoredHypothesis {
     let mean = sum.mean();
-    Scored {
+    ScoredHypothesis {
         model,
         ln_weight: mean.ln,
         sizes: mean.sizes.to_vec(),

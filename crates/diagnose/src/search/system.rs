@@ -11,16 +11,16 @@ use crate::math::eliminate::{Changed, Elimination, Reduced};
 use crate::math::gram::{Gram, Sum};
 use crate::math::linear::{gather, subtract_gram, symmetrize};
 use crate::priors::{TAUGHT_LARGEST_AMPLITUDE, TAUGHT_SCATTERS};
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::search::folds::{Folds, fold_of};
 use crate::thresholds::{CLOSURE_FOLDS, TAUGHT_CLEAN_AMPLITUDE, TAUGHT_CLEAN_SPIKE};
 
 /// Whitened rows are kept in memory up to this many numbers (64 MB); beyond they are made again.
 const KEPT_NUMBERS: usize = 8_000_000;
 
-/// Data, columns, Gram matrices.
-pub(crate) struct Stacked<'a> {
-    pub(crate) data: &'a Data<'a>,
+/// The whitened linear system of all flights: data, columns, Gram matrices.
+pub(crate) struct WhitenedSystem<'a> {
+    pub(crate) data: &'a PreparedFlights<'a>,
     pub(crate) design: &'a Design<'a>,
     gram: Gram,
     folds: Folds,
@@ -35,7 +35,7 @@ pub(crate) struct Stacked<'a> {
 /// What every step of the search works on: the linear system, the model behind it, the effects that are looked for.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a> {
-    pub(crate) stacked: &'a Stacked<'a>,
+    pub(crate) stacked: &'a WhitenedSystem<'a>,
     pub(crate) model: &'a EffectModel<'a>,
     pub(crate) library: &'a Library,
 }
@@ -47,9 +47,9 @@ pub(crate) enum SmoothTerms {
     LeftOut,
 }
 
-impl<'a> Stacked<'a> {
-    pub(crate) fn of(
-        data: &'a Data<'a>,
+impl<'a> WhitenedSystem<'a> {
+    pub(crate) fn new(
+        data: &'a PreparedFlights<'a>,
         design: &'a Design<'a>,
         weights: Option<Vec<f64>>,
     ) -> Self {
@@ -74,7 +74,7 @@ impl<'a> Stacked<'a> {
             scatters,
             levels: Vec::with_capacity(data.flights.len()),
         };
-        let mut sum = Sum::of(design.columns);
+        let mut sum = Sum::new(design.columns);
         for index in 0..data.flights.len() {
             let rows = stacked.whitened(index);
             sum.add(&rows, data.recorded_values(&data.flights[index]));
@@ -92,7 +92,7 @@ impl<'a> Stacked<'a> {
         let Some(fold) = without else { return &self.gram };
         self.folds.without(fold, || {
             let of = |fold: usize| {
-                let mut sum = Sum::of(self.design.columns);
+                let mut sum = Sum::new(self.design.columns);
                 for index in (fold..self.data.flights.len()).step_by(CLOSURE_FOLDS) {
                     let recorded = self.data.recorded_values(&self.data.flights[index]);
                     sum.add(&self.whitened(index), recorded);
@@ -103,9 +103,9 @@ impl<'a> Stacked<'a> {
         })
     }
 
-    /// Smooth discrepancy that no agnostic function and no place is found in: a taught remainder is not exact, a table is
+    /// Smooth discrepancy in which neither a smooth term nor a region is reported: a learnt remainder is not exact, a table is
     /// taken at its word (its uncertainty is given apart).
-    pub(crate) const fn clean_tau(&self) -> f64 {
+    pub(crate) const fn clean_smooth_amplitude(&self) -> f64 {
         if self.data.predictor.baseline.is_some() { TAUGHT_CLEAN_AMPLITUDE } else { 0.0 }
     }
 
@@ -115,16 +115,17 @@ impl<'a> Stacked<'a> {
     }
 
     /// Whether a smooth discrepancy of this amplitude is among the backgrounds.
-    pub(crate) fn admits(&self, tau: f64) -> bool {
-        self.data.predictor.baseline.is_none() || tau <= TAUGHT_LARGEST_AMPLITUDE
+    pub(crate) fn admits(&self, smooth_amplitude: f64) -> bool {
+        self.data.predictor.baseline.is_none() || smooth_amplitude <= TAUGHT_LARGEST_AMPLITUDE
     }
 
     /// Whether a background without a named effect is no finding: nothing at all against a table; against a taught
     /// remainder, small amounts of every other effect too. A smooth discrepancy is one: it has an amplitude for each of
     /// some thirty functions, and together they hide most of a per cent.
     pub(crate) fn is_nothing(&self, at: &Background) -> bool {
-        let spike = if self.data.predictor.baseline.is_some() { TAUGHT_CLEAN_SPIKE } else { 0.0 };
-        at.tau == 0.0 && at.spike <= spike
+        let small_effects_scale =
+            if self.data.predictor.baseline.is_some() { TAUGHT_CLEAN_SPIKE } else { 0.0 };
+        at.smooth_amplitude == 0.0 && at.small_effects_scale <= small_effects_scale
     }
 
     /// Whitened rows of a flight.
@@ -191,7 +192,7 @@ impl<'a> Stacked<'a> {
         (Scatter { scaled, roots }, ln_determinant)
     }
 
-    /// Columns of a Gram without nuisance before it is taken out: all of the design, or all but the agnostic ones; the
+    /// Columns of a Gram without nuisance before it is taken out: all of the design, or all but the smooth terms; the
     /// residual is the last.
     fn columns_of(&self, smooth_terms: SmoothTerms) -> Vec<usize> {
         let end = match smooth_terms {
@@ -208,23 +209,23 @@ impl<'a> Stacked<'a> {
         relative: f64,
         without: Option<usize>,
         smooth_terms: SmoothTerms,
-    ) -> Option<(Level, Reduced)> {
+    ) -> Option<(ScatterElimination, Reduced)> {
         let columns = self.columns_of(smooth_terms);
         if relative == 0.0 && smooth_terms == SmoothTerms::Kept {
             let (elimination, reduced) = without_nuisance(&gram.matrix, self.design)?;
-            return Some((Level { scatter: None, elimination }, reduced));
+            return Some((ScatterElimination { scatter: None, elimination }, reduced));
         }
         let mut matrix = gather(&gram.matrix, &columns, &columns);
         if relative == 0.0 {
             let (elimination, reduced) = without_nuisance(&matrix, self.design)?;
-            return Some((Level { scatter: None, elimination }, reduced));
+            return Some((ScatterElimination { scatter: None, elimination }, reduced));
         }
         let (scatter, ln_determinant) = self.scatter_of(&columns, relative, without);
         subtract_gram(&mut matrix, &scatter.scaled);
         symmetrize(&mut matrix);
         let (elimination, mut reduced) = without_nuisance(&matrix, self.design)?;
         reduced.ln_determinant += ln_determinant;
-        Some((Level { scatter: Some(scatter), elimination }, reduced))
+        Some((ScatterElimination { scatter: Some(scatter), elimination }, reduced))
     }
 }
 
@@ -237,12 +238,12 @@ struct Scatter {
 }
 
 /// How a Gram without nuisance was made, at one level of scatter between flights.
-pub(crate) struct Level {
+pub(crate) struct ScatterElimination {
     scatter: Option<Scatter>,
     elimination: Elimination,
 }
 
-impl Level {
+impl ScatterElimination {
     /// What becomes of changed columns; `levels` are their products with each flight's fuel-flow level, one row a flight.
     pub(crate) fn follow(&self, mut changed: Changed, levels: &Mat<f64>) -> Changed {
         if let Some(Scatter { scaled, roots }) = &self.scatter {
@@ -256,8 +257,8 @@ impl Level {
 }
 
 /// Grams without nuisance at every level of scatter, and every smooth discrepancy over them: where columns that change follow.
-pub(crate) struct Space {
-    pub(crate) levels: Vec<Level>,
+pub(crate) struct EliminatedGrams {
+    pub(crate) levels: Vec<ScatterElimination>,
     pub(crate) reduced: Vec<Reduced>,
     pub(crate) smoothed: Vec<Smoothed>,
 }

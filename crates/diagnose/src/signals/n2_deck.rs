@@ -1,4 +1,4 @@
-//! The N2 deck: which N2 stands for which corrected thrust, and the other way round.
+//! The N2 deck: which N2 belongs to which corrected thrust, and the other way round.
 
 use effects::Response;
 
@@ -85,7 +85,7 @@ impl Deck {
         (c[1] + 2.0 * c[5] * v[0] + c[6] * v[1] + c[7] * v[2] + c[8] * v[3]) / DECK_SCALES[0]
     }
 
-    /// The corrected thrust that a recorded N2 stands for at the Mach number, pressure and temperature of `response`, N:
+    /// The corrected thrust that a recorded N2 belongs to at the Mach number, pressure and temperature of `response`, N:
     /// the deck's quadratic solved for ln F/δ, from the predicted thrust on.
     ///
     /// ```text
@@ -171,7 +171,7 @@ mod tests {
                 assert!((found / (60_000.0 * l.exp()) - 1.0).abs() < 1e-12, "{q} {l}: {found}");
             }
         }
-        // At another predicted thrust the same N2 stands for the same thrust.
+        // At another predicted thrust the same N2 belongs to the same thrust.
         let elsewhere = Response { ln_corrected_thrust: 55_000.0_f64.ln(), ..response() };
         let found = deck(-0.05).corrected_thrust_n(n2_percent(-0.05, 0.05), &elsewhere).unwrap();
         assert!((found / (60_000.0 * 0.05_f64.exp()) - 1.0).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
 use effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
-use perf_model::aircraft::{FlightBias, FuelFlowDrift, SensorDeviations};
+use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::priors::FLIGHT_SPLIT_DEVIATION;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 
 /// Place of the heating value among a segment's common loadings.
-pub(crate) const HEATING_LOADING: usize = 1;
+pub(crate) const HEATING_VALUE_LOADING: usize = 1;
 
 /// Factors on the sensors' standard deviations, learnt from clean flights; 1 before.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,7 +28,7 @@ impl Default for NoiseFactors {
     }
 }
 
-/// What is said of the noise besides the sensors' deviations from segment to segment.
+/// What is known of the noise in addition to the sensors' deviations from segment to segment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Statistics {
     pub(crate) factors: NoiseFactors,
@@ -47,7 +47,7 @@ pub(crate) struct SegmentNoise {
     pub(crate) acceleration: ByChannel,
 }
 
-/// What the noise of a segment follows from besides the segment itself.
+/// What the noise of a segment depends on, in addition to the segment itself.
 pub(crate) struct NoiseModel<'a> {
     pub(crate) model: &'a EffectModel<'a>,
     pub(crate) channels: Channels,
@@ -70,13 +70,12 @@ impl NoiseModel<'_> {
         samples: usize,
         recorded: [bool; MAXIMUM_CHANNELS],
     ) -> Result<SegmentNoise, EffectError> {
-        let Self { model, channels, statistics, .. } = *self;
+        let Self { model, channels, .. } = *self;
         let sensors = model.aircraft().sensors();
         let slopes = self.slopes(point)?;
         let relative_mass = sensors.mass.relative_to(units::Mass::kilograms(point.mass_kg));
         let covariance = self.own_covariance(&slopes, samples, recorded);
-        let common =
-            common_loadings(&slopes, sensors, relative_mass, recorded, channels, statistics);
+        let common = self.common_loadings(&slopes, relative_mass, recorded);
         let mut added = [0.0; MAXIMUM_CHANNELS];
         for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
             added[channel] = slopes.acceleration[channel] * point.acceleration_m_s2;
@@ -189,6 +188,50 @@ impl NoiseModel<'_> {
         }
         covariance
     }
+
+    /// Loadings on what all segments of a flight have in common: mass, heating value, one split a contrast, Mach number, SAT,
+    /// pressure altitude, N2.
+    fn common_loadings(
+        &self,
+        slopes: &Slopes,
+        relative_mass: f64,
+        recorded: [bool; MAXIMUM_CHANNELS],
+    ) -> Vec<ByChannel> {
+        let Self { model, channels, statistics, .. } = *self;
+        let sensors = model.aircraft().sensors();
+        let Statistics { factors, flight_bias, .. } = statistics;
+        let unit = |row: usize| {
+            let mut slope = [0.0; MAXIMUM_CHANNELS];
+            slope[row] = 1.0;
+            slope
+        };
+        let mut sources = vec![
+            (slopes.mass, relative_mass),
+            (unit(0), sensors.lower_heating_value_percent / 100.0),
+        ];
+        sources.extend(
+            (1..=channels.contrasts).map(|contrast| (unit(contrast), FLIGHT_SPLIT_DEVIATION)),
+        );
+        sources.extend([
+            (slopes.mach, flight_bias.mach),
+            (slopes.static_air_temperature, flight_bias.static_air_temperature_k),
+            (slopes.pressure_altitude, flight_bias.pressure_altitude_m),
+        ]);
+        if channels.n2 {
+            sources.push((unit(channels.n2_row()), flight_bias.n2_percent / 100.0));
+        }
+        sources
+            .into_iter()
+            .map(|(slope, deviation)| {
+                let mut loading = [0.0; MAXIMUM_CHANNELS];
+                for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
+                    let factor = factors.between[channels.kind(channel)];
+                    loading[channel] = slope[channel] * deviation * factor;
+                }
+                loading
+            })
+            .collect()
+    }
 }
 
 /// Slopes of the channels along what sensors measure.
@@ -198,47 +241,6 @@ struct Slopes {
     static_air_temperature: ByChannel,
     pressure_altitude: ByChannel,
     mass: ByChannel,
-}
-
-/// Loadings on what all segments of a flight have in common: mass, heating value, one split a contrast, Mach number, SAT,
-/// pressure altitude, N2.
-fn common_loadings(
-    slopes: &Slopes,
-    sensors: &SensorDeviations,
-    relative_mass: f64,
-    recorded: [bool; MAXIMUM_CHANNELS],
-    channels: Channels,
-    statistics: &Statistics,
-) -> Vec<ByChannel> {
-    let Statistics { factors, flight_bias, .. } = statistics;
-    let unit = |row: usize| {
-        let mut slope = [0.0; MAXIMUM_CHANNELS];
-        slope[row] = 1.0;
-        slope
-    };
-    let mut sources =
-        vec![(slopes.mass, relative_mass), (unit(0), sensors.lower_heating_value_percent / 100.0)];
-    sources
-        .extend((1..=channels.contrasts).map(|contrast| (unit(contrast), FLIGHT_SPLIT_DEVIATION)));
-    sources.extend([
-        (slopes.mach, flight_bias.mach),
-        (slopes.static_air_temperature, flight_bias.static_air_temperature_k),
-        (slopes.pressure_altitude, flight_bias.pressure_altitude_m),
-    ]);
-    if channels.n2 {
-        sources.push((unit(channels.n2_row()), flight_bias.n2_percent / 100.0));
-    }
-    sources
-        .into_iter()
-        .map(|(slope, deviation)| {
-            let mut loading = [0.0; MAXIMUM_CHANNELS];
-            for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
-                let factor = factors.between[channels.kind(channel)];
-                loading[channel] = slope[channel] * deviation * factor;
-            }
-            loading
-        })
-        .collect()
 }
 
 /// Adds the flow meters' wander to what the segments of a flight have in common, one loading a segment.

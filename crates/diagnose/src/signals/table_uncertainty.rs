@@ -17,7 +17,7 @@ const MAXIMUM_NUMBERS: usize = 16_000_000;
 /// Share of a node's variance that may be left out: 3 % of its standard deviation.
 const NEGLIGIBLE_SHARE: f64 = 1e-3;
 
-/// Uncertainty of a drag table: a factor of the covariance of its nodes' relative errors, one row a node.
+/// Uncertainty of a drag table: a factor of the covariance of its nodes' relative errors, one row per node.
 ///
 /// The covariance is `factor · factorᵀ`; a diagonal one (node standard deviations alone) has as many columns as nodes.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ pub struct TableUncertainty {
     missing_share: Option<f64>,
 }
 
-/// Why numbers are no uncertainty of a table.
+/// Why numbers are not the uncertainty of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableUncertaintyError {
@@ -43,7 +43,7 @@ pub enum TableUncertaintyError {
         /// Columns of the factor.
         rank: usize,
     },
-    /// A matrix that is no covariance.
+    /// A matrix that is not a covariance.
     #[error("the covariance of the table's nodes is not positive definite")]
     NotPositiveDefinite,
     /// A number that is not finite.
@@ -77,7 +77,7 @@ impl TableUncertainty {
     /// From the covariance of the nodes' relative errors, row by row.
     ///
     /// # Errors
-    /// [`TableUncertaintyError`] for a wrong length, or numbers that are no covariance.
+    /// [`TableUncertaintyError`] for a wrong length, or numbers that are not a covariance.
     pub fn from_covariance(
         grid: Arc<Grid>,
         covariance: &[Vec<f64>],

@@ -251,7 +251,7 @@ pub(crate) struct Scaled {
 }
 
 impl Scaled {
-    pub(crate) fn of(values: &[f64]) -> Self {
+    pub(crate) fn from_values(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
         let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / count;
@@ -297,6 +297,6 @@ mod tests {
     fn what_does_not_spread_has_no_hats() {
         assert!(Hats::at_quantiles(&[3.0; 20], &[0.0, 0.5, 1.0]).is_none());
         assert!(Hats::at_quantiles(&[], &[0.0, 0.5, 1.0]).is_none());
-        assert_eq!(Scaled::of(&[2.0; 5]).at(7.0), 0.0);
+        assert_eq!(Scaled::from_values(&[2.0; 5]).at(7.0), 0.0);
     }
 }

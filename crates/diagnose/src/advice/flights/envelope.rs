@@ -6,7 +6,7 @@ use units::{Mach, PressureAltitude, Temperature};
 
 use crate::math::quantile::{QuantileType, quantile};
 use crate::residuals::planned::Recorded;
-use crate::residuals::segments::Data;
+use crate::residuals::segments::PreparedFlights;
 use crate::signals::variables::Variable;
 use crate::thresholds::{
     ADVISED_SEGMENTS, EDGE_MACH, EDGE_MASS, HEAVY, LEVEL_TOLERANCE_M, LIGHT, REDUCED_SEPARATION_TO,
@@ -58,7 +58,7 @@ impl Envelope {
     ///
     /// Whatever is neither Mach number, pressure altitude, mass nor fuel used is as usual: the median; wind and position
     /// those of the segment whose eastward speed is the median; the date is the last one.
-    pub(crate) fn of(data: &Data<'_>, model: &EffectModel<'_>) -> Option<Self> {
+    pub(crate) fn of(data: &PreparedFlights<'_>, model: &EffectModel<'_>) -> Option<Self> {
         let of = |value: &dyn Fn(&EffectPoint) -> f64| {
             sorted(data.segments.iter().map(|row| value(&row.point)).collect())
         };
@@ -205,7 +205,7 @@ impl Envelope {
 }
 
 /// Conditions that are not swept.
-fn template(data: &Data<'_>, model: &EffectModel<'_>) -> Option<EffectPoint> {
+fn template(data: &PreparedFlights<'_>, model: &EffectModel<'_>) -> Option<EffectPoint> {
     let median = |value: &dyn Fn(&EffectPoint) -> Option<f64>| {
         let found: Vec<f64> = data.segments.iter().filter_map(|row| value(&row.point)).collect();
         (2 * found.len() > data.segments.len()).then(|| flown_quantile(&sorted(found), 0.5))

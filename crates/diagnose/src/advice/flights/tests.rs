@@ -6,8 +6,8 @@ use flight::effect::EffectId;
 
 use crate::advice::distances::squared;
 use crate::hypotheses::design::Design;
-use crate::residuals::reference::Against;
-use crate::residuals::segments::Data;
+use crate::residuals::reference::Reference;
+use crate::residuals::segments::PreparedFlights;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::references_of;
 use crate::thresholds::{ADVISED_SEGMENTS, CONFUSED};
@@ -18,18 +18,20 @@ use test_support::fleet::{Background, Setup, exact_model, fly, isa};
 fn with<R>(
     model: &ExtendedModel,
     flights: &[Vec<Segment>],
-    then: impl FnOnce(&Stacked<'_>, &EffectModel<'_>, &Library, &Distances) -> R,
+    then: impl FnOnce(&WhitenedSystem<'_>, &EffectModel<'_>, &Library, &Distances) -> R,
 ) -> R {
     let records: Vec<FlightRecord<'_>> =
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
     let references: EffectReferences = references_of(model, model.drag_table(), &records).unwrap();
     let effects = EffectModel::new(model, model.drag_table(), references).unwrap();
-    let (data, library) =
-        Data::prepare(&effects, &records, Against::Table, |points, engines, starts| {
-            Library::of(&effects, points, engines, starts, |_| true)
-        });
-    let design = Design::of(&data, &references, None, None);
-    let stacked = Stacked::of(&data, &design, None);
+    let (data, library) = PreparedFlights::prepare(
+        &effects,
+        &records,
+        Reference::Table,
+        |points, engines, starts| Library::new(&effects, points, engines, starts, |_| true),
+    );
+    let design = Design::new(&data, &references, None, None);
+    let stacked = WhitenedSystem::new(&data, &design, None);
     let leading = library.effects.iter().map(|effect| effect.representative).collect();
     let distances = Distances::of(stacked.gram(None), &design, leading).unwrap();
     then(&stacked, &effects, &library, &distances)
