@@ -3,7 +3,8 @@
 //! What it is: the pieces between the stages. [`reduction`] takes a report to its stabilised segments, [`learning`] teaches a
 //! model one flight after the other, [`evaluation`] holds segments against a table, [`model_file`] is a model with what it
 //! has learnt, as text and back. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), what
-//! a run came to ([`summary`], [`diagnosis_document`]), and a diagnosis in words ([`diagnosis_text`]).
+//! a run came to ([`summary`], [`diagnosis_document`]), and a diagnosis in words
+//! ([`diagnosis_text`], [`diagnosis_words`]).
 //! What it is not: it opens no file, starts no thread, reads no clock and prints nothing. It computes no drag, no fuel flow
 //! and no verdict; those are the stages'.
 //!
@@ -38,11 +39,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod addition_record;
 pub mod checksum;
 pub mod columns;
 pub mod condition_means;
+pub mod diagnosed_tail;
 pub mod diagnosis_document;
 pub mod diagnosis_text;
+pub mod diagnosis_words;
 pub mod difference;
 pub mod evaluation;
 pub mod learning;

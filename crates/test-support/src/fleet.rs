@@ -80,7 +80,11 @@ pub fn typical(id: EffectId) -> f64 {
 /// An effect at a multiple of its typical size, sign drawn where physics leaves it open.
 pub fn plant(id: EffectId, times: f64, random: &mut Random) -> Planted {
     let size = typical(id) * if id.is_known() { 1.0 } else { times };
-    let sign = if id.is_one_sided() || id.is_known() || random.uniform(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 };
+    let sign = if id.is_one_sided() || id.is_known() || random.uniform(0.0, 1.0) < 0.5 {
+        1.0
+    } else {
+        -1.0
+    };
     Planted { id, size: sign * size }
 }
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::VerdictKind;
 use flight::effect::EffectId;
+use pipeline::diagnosis_document::VerdictKind;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -263,8 +263,7 @@ impl<'a> SortedCases<'a> {
         // What depends on no variable has no place that could be named: scatter between flights differs by flight at
         // random.
         let has_place = |c: &&Case| {
-            EffectId::from_name(c.truth())
-                .is_some_and(|id| !id.entry().driven_by.is_empty())
+            EffectId::from_name(c.truth()).is_some_and(|id| !id.entry().driven_by.is_empty())
         };
         let placed = planted
             .iter()

@@ -4,12 +4,11 @@
 //! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
 //! is linear in segments.
 
-use std::collections::BTreeMap;
-
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::output::Slice;
-use crate::place::binned_variable::{ENGINE, Place, places};
+use crate::output::region::Region;
+use crate::place::binned_variable::{Place, places};
 use crate::place::draws::{Level, chords, draw};
 use crate::place::likelihood::Noise;
 use crate::place::null::Null;
@@ -376,24 +375,16 @@ impl Told<'_> {
     fn slice(&self, candidate: &Candidate, members: &[usize], p_value: f64, seed: u64) -> Slice {
         let engine = self.engine(candidate, members);
         let by_flight = self.by_flight(members, |segment| self.value(engine, segment));
-        let mut words = Vec::new();
-        let mut bounds = BTreeMap::new();
-        if let Some(engine) = engine {
-            let number = (engine + 1) as f64;
-            words.push(format!("engine {number}"));
-            bounds.insert(ENGINE.to_owned(), [Some(number), Some(number)]);
-        }
-        for &(place, low, high) in candidate.ranges.iter().flatten() {
-            words.push(self.places[place].words(low, high));
-            let (name, range) = self.places[place].bounds(low, high);
-            bounds.insert(name, range);
-        }
-        if words.is_empty() {
-            words.push("everywhere".to_owned());
-        }
+        let conditions = candidate.ranges.iter().flatten();
+        #[expect(clippy::cast_possible_truncation, reason = "four engines at most")]
+        let region = Region {
+            engine: engine.map(|engine| (engine + 1) as u8),
+            conditions: conditions
+                .map(|&(place, low, high)| self.places[place].condition(low, high))
+                .collect(),
+        };
         Slice {
-            slice: words.join(" and "),
-            bounds,
+            region,
             segments: members.len(),
             mean_gap_percent: 100.0 * self.mean(candidate, members),
             ci95: bootstrap_mean(&by_flight, seed).map(|end| 100.0 * end),
