@@ -125,10 +125,9 @@ pub use output::measurement::{
 };
 pub use output::note::{LeftOutReason, Note};
 pub use output::region::{Condition, Edge, Region};
-pub use output::verdict::{Found, Insufficient, Rest, RestKind, Unexplained, Verdict};
+pub use output::verdict::{Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict};
 pub use output::{
-    ActsOn, Cause, Closure, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary,
-    Slice,
+    ActsOn, Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
 };
 pub use place::members::region_members;
 pub use signals::noise::NoiseFactors;

@@ -11,7 +11,7 @@ use crate::output::addition::Addition;
 use crate::output::measurement::Separation;
 use crate::output::note::{LeftOutReason, Note};
 use crate::output::region::Region;
-use crate::output::verdict::Verdict;
+use crate::output::verdict::{Closure, Verdict};
 use crate::signals::variables::Variable;
 
 pub(crate) mod addition;
@@ -127,15 +127,6 @@ pub struct Magnitude {
     /// Size.
     pub value: f64,
     /// 95 % interval.
-    pub ci95: [f64; 2],
-}
-
-/// Share of the explainable gap that is closed on flights that neither choice nor fit has seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closure {
-    /// The share; 1 is all of it, below 0 the gap widens.
-    pub share: f64,
-    /// Its 95 % interval.
     pub ci95: [f64; 2],
 }
 

@@ -2,7 +2,6 @@
 
 use flight::effect::EffectId;
 
-use crate::output::Closure;
 use crate::output::measurement::Separation;
 use crate::signals::variables::Variable;
 
@@ -98,6 +97,15 @@ pub enum RestKind {
     OtherForm,
     /// Something else.
     SomethingElse,
+}
+
+/// Share of the explainable gap that is closed on flights that neither choice nor fit has seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closure {
+    /// The share; 1 is all of it, below 0 the gap widens.
+    pub share: f64,
+    /// Its 95 % interval.
+    pub ci95: [f64; 2],
 }
 
 impl Verdict {
