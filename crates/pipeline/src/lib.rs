@@ -32,7 +32,7 @@
 //! let guide = Guide::from_csv(include_bytes!("../../perf-model/tests/golden/guide.csv"))?;
 //! let initial = initial_model(&aircraft, &guide)?;
 //! let text = ModelFile::from_initial(&initial, &guide).to_text()?;
-//! assert_eq!(ModelFile::from_text(&text)?.initial, initial.model);
+//! assert_eq!(ModelFile::from_text(&text)?.initial, initial.model.into());
 //! // One digit that a disk or an editor changed is noticed.
 //! let damaged = text.replacen("94.94690688", "94.94690689", 1);
 //! assert!(ModelFile::from_text(&damaged).is_err());
