@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use diagnose::{FlightRecord, Input, Options, VerdictKind, diagnose};
+use diagnose::{FlightRecord, Input, Options, diagnose};
+use flight::effect::EffectId;
 use test_support::fleet::{Background, Setup, exact_model, fly};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -20,9 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
     let found = diagnose(&Input::against(&model, &records), &Options::default())?;
     // Fuel flow alone cannot say whether engine or airframe: both are in the class, and neither is sure.
-    assert_eq!(found.verdict.kind, VerdictKind::Effects);
-    assert!(found.verdict.class.contains(&"tsfc_factor".to_owned()));
-    assert!(found.verdict.class.contains(&"drag_factor".to_owned()));
-    assert!(found.verdict.probability < 0.9);
+    let verdict = found.verdict.found().ok_or("an effect explains the gap")?;
+    assert!(verdict.class.contains(&EffectId::TsfcFactor));
+    assert!(verdict.class.contains(&EffectId::DragFactor));
+    assert!(verdict.probability < 0.9);
     Ok(())
 }

@@ -12,7 +12,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use diagnose::{FlightRecord, Input, Options, VerdictKind, diagnose};
+use diagnose::{FlightRecord, Input, Options, Verdict, diagnose};
 use flight::{FlightIdentity, Segment, SegmentMeans};
 use test_support::fleet::{Background, Random, Setup, exact_model, fly, plant};
 
@@ -50,10 +50,10 @@ fn main() {
         "segments {} seconds {shortest:.4} peak_kb {} verdict {:?} {}",
         found.segments,
         peak.unwrap_or_default(),
-        found.verdict.kind,
-        found.causes.first().map_or("", |cause| cause.effect.as_str()),
+        found.verdict,
+        found.causes.first().map_or_else(String::new, |cause| cause.effect.to_string()),
     );
-    assert_ne!(found.verdict.kind, VerdictKind::InsufficientData);
+    assert!(!matches!(found.verdict, Verdict::InsufficientData(_)));
 }
 
 /// One row a segment: flight, Mach, pressure altitude m, SAT K, mass kg, fuel used kg, latitude, track, cross-wind to the left

@@ -17,7 +17,9 @@ use crate::judge::sufficiency::{insufficient, too_little};
 use crate::judge::verdict::{Findings, advisor, beside, closed, credit, verdict};
 use crate::library::Library;
 use crate::output::addition::Addition;
-use crate::output::{Detectable, Diagnosis, NotTestable, OutsideLibrary};
+use crate::output::note::Note;
+use crate::output::verdict::Insufficient;
+use crate::output::{ActsOn, Detectable, Diagnosis, NotTestable, OutsideLibrary};
 use crate::place::find::find;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
@@ -39,11 +41,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (None, None) => match references_of(input.model, input.drag_table, input.flights) {
             Ok(found) => found,
             Err(DiagnoseError::Model(EffectModelError::NothingInside { segments })) => {
-                return Ok(insufficient(
-                    0,
-                    0,
-                    &format!("none of {segments} segments is inside the drag table"),
-                ));
+                return Ok(insufficient(0, 0, Insufficient::NothingInside { segments }));
             }
             Err(error) => return Err(error),
         },
@@ -61,13 +59,10 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     let not_testable = library
         .not_testable
         .iter()
-        .map(|(id, needs)| NotTestable {
-            effect: id.to_string(),
-            needs: needs.iter().map(|&name| name.to_owned()).collect(),
-        })
+        .map(|(id, needs)| NotTestable { effect: *id, needs: needs.clone() })
         .collect();
     if let Some(reason) = too_little(&data, &library) {
-        let mut found = insufficient(data.flights.len(), data.segments.len(), &reason);
+        let mut found = insufficient(data.flights.len(), data.segments.len(), reason);
         found.not_testable = not_testable;
         found.left_out = data.left_out;
         return Ok(found);
@@ -76,9 +71,9 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     let stacked = WhitenedSystem::new(&data, &design, None);
     let mut notes = Vec::new();
     notes.extend(data.thrust_by_n2_note(&library));
-    notes.extend(input.table.and_then(TableUncertainty::note));
+    notes.extend(input.table.and_then(table_in_columns));
     if input.references.is_none() && input.baseline.is_none() {
-        notes.push("references of effects are the means of these flights".to_owned());
+        notes.push(Note::ReferencesAreMeans);
     }
     let mut result = conclude(
         Problem { stacked: &stacked, model: &model, library: &library },
@@ -87,7 +82,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     )?;
     // Heavy tails show only beside the best model; then everything is done again with weights.
     if let Some(weights) = crate::search::robust::outlier_weights(&stacked, &result.1, &library) {
-        notes.push("whitened residuals have heavy tails: segments are weighed".to_owned());
+        notes.push(Note::HeavyTails);
         drop(result);
         let stacked = WhitenedSystem::new(&data, &design, Some(weights));
         result = conclude(
@@ -106,7 +101,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
 fn conclude(
     problem: Problem<'_>,
     options: &Options,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<(Diagnosis, Analysis), DiagnoseError> {
     let Problem { stacked, model, library } = problem;
     let analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
@@ -162,21 +157,20 @@ fn conclude(
     let causes = causes(&analysis, &outside, &distances, library, &posteriors, unseen.as_ref());
     let detectable = detectable(library, &distances, &classes, &advisor);
     let diagnosis = Diagnosis {
-        tail: String::new(),
         flights: stacked.data.flights.len(),
         segments: stacked.data.segments.len(),
         gap,
         r#where: places,
         causes,
         not_testable: vec![],
-        addition: Addition::of(&analysis, library, &verdict.effects, *model.references())
-            .filter(|_| !verdict.effects.is_empty()),
+        addition: Addition::of(&analysis, library, verdict.effects(), *model.references())
+            .filter(|_| !verdict.effects().is_empty()),
         verdict,
         detectable,
         outside: OutsideLibrary {
             probability: outside.probability,
-            variable: outside.variable.map(|(variable, _)| variable.words().to_owned()),
-            acts_on: outside.variable.map(|(_, acts)| acts_words(acts).to_owned()),
+            variable: outside.variable.map(|(variable, _)| variable),
+            acts_on: outside.variable.map(|(_, acts)| acts_on(acts)),
         },
         left_out: std::collections::BTreeMap::new(),
         notes: vec![],
@@ -191,17 +185,15 @@ fn detectable(
     classes: &[Vec<usize>],
     advisor: &Advisor<'_>,
 ) -> Vec<Detectable> {
-    let name = |effect: usize| library.effects[effect].id.to_string();
+    let id = |effect: usize| library.effects[effect].id;
     (0..library.effects.len())
         .map(|effect| {
             let smallest = distances.smallest_detectable(effect);
             let class = classes.iter().find(|class| class.contains(&effect));
             Detectable {
-                effect: name(effect),
+                effect: id(effect),
                 smallest: smallest.is_finite().then_some(smallest),
-                unit: library.effects[effect].id.entry().unit.to_owned(),
-                class: class
-                    .map_or_else(Vec::new, |class| class.iter().map(|&e| name(e)).collect()),
+                class: class.map_or_else(Vec::new, |class| class.iter().map(|&e| id(e)).collect()),
                 nearest_other: distances.nearest_other(library, effect),
                 nearest_pair: distances.nearest_pair(library, effect),
                 separations: class.map_or_else(Vec::new, |class| advisor.beforehand(effect, class)),
@@ -210,10 +202,19 @@ fn detectable(
         .collect()
 }
 
-const fn acts_words(acts: Acts) -> &'static str {
+const fn acts_on(acts: Acts) -> ActsOn {
     match acts {
-        Acts::FuelFlow => "fuel flow",
-        Acts::Thrust => "thrust",
-        Acts::Split => "one engine",
+        Acts::FuelFlow => ActsOn::FuelFlow,
+        Acts::Thrust => ActsOn::Thrust,
+        Acts::Split => ActsOn::OneEngine,
     }
+}
+
+/// What of a large table's uncertainty is left out.
+fn table_in_columns(table: &TableUncertainty) -> Option<Note> {
+    table.missing_share().map(|missing_share| Note::TableInColumns {
+        nodes: table.grid().nodes(),
+        columns: table.rank(),
+        missing_share,
+    })
 }

@@ -1,7 +1,9 @@
 //! The columns of the search: every testable effect, one column for each value of a hidden parameter.
 
 use effects::{EffectModel, EffectPoint};
-use flight::effect::{EffectId, EffectSign, HiddenParameter, StepTarget, ThrottleArgument};
+use flight::effect::{
+    EffectId, EffectSign, HiddenParameter, NeededInput, StepTarget, ThrottleArgument,
+};
 
 use crate::priors::{DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, STEP_DATES, THROTTLE_PIVOTS};
 use crate::thresholds::RECORDED_SHARE;
@@ -44,7 +46,7 @@ impl Testable {
 pub(crate) struct Library {
     pub(crate) effects: Vec<Testable>,
     pub(crate) columns: Vec<Column>,
-    pub(crate) not_testable: Vec<(EffectId, Vec<&'static str>)>,
+    pub(crate) not_testable: Vec<(EffectId, Vec<NeededInput>)>,
     /// `fuel_heating_value`, a variance: not among the columns.
     pub(crate) heating_value: bool,
 }
@@ -111,16 +113,16 @@ fn lacking(
     id: EffectId,
     points: &[EffectPoint],
     engines_recorded: bool,
-) -> Option<Vec<&'static str>> {
+) -> Option<Vec<NeededInput>> {
     if matches!(id, EffectId::TsfcEngine(_) | EffectId::FuelFlowGainEngine(_)) && !engines_recorded
     {
-        return Some(vec!["WF(k)"]);
+        return Some(vec![NeededInput::FuelFlowPerEngine]);
     }
     let missing = points.iter().filter(|point| point.lacks(id).is_some()).count();
     if (missing as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64 {
         return None;
     }
-    Some(id.entry().needs.iter().map(|needed| needed.name()).collect())
+    Some(id.entry().needs.to_vec())
 }
 
 fn hidden_grid(

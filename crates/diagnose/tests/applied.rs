@@ -1,7 +1,7 @@
 //! Diagnosing the same flights with the model that was extended by what they showed finds nothing left.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use diagnose::{Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose};
+use diagnose::{Diagnosis, FlightRecord, Input, Options, Verdict, diagnose};
 use effects::AppliedEffects;
 use effects::ExtendedModel;
 use flight::effect::EffectId;
@@ -36,26 +36,26 @@ fn nothing_is_left_after_applying() {
         let size = if known { 1.0 } else { 1.5 * typical(id) };
         let fleet = fly(31, &Setup::default(), &[Planted { id, size }], &Background::default());
         let found = run(&model, &fleet);
-        assert_eq!(found.verdict.kind, VerdictKind::Effects, "{id}: {:?}", found.verdict);
+        let named = found.verdict.effects().to_vec();
+        assert!(!named.is_empty(), "{id}: {:?}", found.verdict);
         let addition = found.addition.unwrap();
-        assert_eq!(addition.effects[0].effect, found.verdict.effects[0]);
-        let layer = addition.layer().unwrap();
+        assert_eq!(addition.effects[0].effect, named[0]);
+        let layer = addition.layer();
         let extended = model.with_effects(AppliedEffects::new(vec![layer])).unwrap();
         let left = run(&extended, &fleet);
         eprintln!(
-            "{id}: {:?}, gap {:.2} -> {:.2} %, floor {:.2} %, then {:?} {:?}",
+            "{id}: {:?}, gap {:.2} -> {:.2} %, floor {:.2} %, then {:?}",
             addition.effects,
             found.gap.rms_percent,
             left.gap.rms_percent,
             left.gap.noise_floor_rms_percent,
-            left.verdict.kind,
-            left.verdict.effects
+            left.verdict
         );
-        assert_eq!(left.verdict.kind, VerdictKind::NoGap, "{id}: {:?}", left.verdict);
+        assert_eq!(left.verdict, Verdict::NoGap, "{id}: {:?}", left.verdict);
         assert!(left.gap.rms_percent < found.gap.rms_percent, "{id}");
-        if found.verdict.effects == ["local_gravity"] {
+        if named == [EffectId::LocalGravity] {
             // What physics knows and the model contains is no candidate any more.
-            assert!(left.detectable.iter().all(|entry| entry.effect != "local_gravity"));
+            assert!(left.detectable.iter().all(|entry| entry.effect != EffectId::LocalGravity));
         }
     }
 }

@@ -2,7 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{
-    Baseline, DiagnoseError, Diagnosis, FlightRecord, Input, Options, VerdictKind, diagnose,
+    Baseline, DiagnoseError, Diagnosis, FlightRecord, Input, LeftOutReason, Options, Verdict,
+    diagnose,
 };
 use effects::ExtendedModel;
 use flight::effect::EffectId;
@@ -17,29 +18,14 @@ fn run(model: &ExtendedModel, fleet: &Fleet) -> Diagnosis {
     let records = records(fleet);
     let input = Input::against(model, &records);
     let found = diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap();
-    // serde_json writes a number that is not finite as null; every null must be one that the format knows.
-    let text = serde_json::to_string(&found).unwrap();
-    let nulls = text.matches("null").count();
-    let known = [
-        "closure",
-        "closure_ci95",
-        "rms_after_percent",
-        "smallest",
-        "variable",
-        "acts_on",
-        "addition",
-        "floor_by_replicates_rms_percent",
-        "floor_by_held_out_fit_rms_percent",
-        "center_of_gravity_percent_mac",
-    ]
-    .iter()
-    .map(|field| text.matches(&format!("\"{field}\":null")).count())
-    .sum::<usize>()
-        // A region that is open on one side.
-        + text.matches("[null,").count()
-        + text.matches(",null]").count();
-    assert_eq!(nulls, known, "{text}");
+    let text = format!("{found:?}");
+    let mut words = text.split(|c: char| !c.is_alphanumeric());
+    assert!(words.all(|word| word != "NaN" && word != "inf"), "{text}");
     found
+}
+
+fn is_insufficient(found: &Diagnosis) -> bool {
+    matches!(found.verdict, Verdict::InsufficientData(_))
 }
 
 fn planted() -> Vec<Planted> {
@@ -55,8 +41,8 @@ fn too_few_flights_or_segments() {
     let model = exact_model();
     for (flights, segments) in [(1, 10), (1, 3), (3, 1), (5, 20), (6, 4)] {
         let found = run(&model, &small(flights, segments));
-        assert_eq!(found.verdict.kind, VerdictKind::InsufficientData, "{flights} × {segments}");
-        assert!(found.causes.is_empty() && !found.verdict.advice.is_empty());
+        assert!(is_insufficient(&found), "{flights} × {segments}: {:?}", found.verdict);
+        assert!(found.causes.is_empty());
     }
 }
 
@@ -69,7 +55,7 @@ fn all_at_one_condition() {
         segment.means = one.clone();
     }
     let found = run(&model, &fleet);
-    assert_eq!(found.verdict.kind, VerdictKind::InsufficientData, "{:?}", found.verdict);
+    assert!(is_insufficient(&found), "{:?}", found.verdict);
 }
 
 #[test]
@@ -79,14 +65,15 @@ fn outside_the_table_nothing_is_used_and_the_reason_is_kept() {
     for segment in fleet.flights.iter_mut().flatten() {
         segment.means.mass_kg *= 4.0; // the reports of a larger type
     }
-    assert_eq!(run(&model, &fleet).verdict.kind, VerdictKind::InsufficientData);
+    assert!(is_insufficient(&run(&model, &fleet)));
 
     let mut fleet = small(60, 5);
     for segment in fleet.flights.iter_mut().take(20).flatten() {
         segment.means.mass_kg *= 4.0;
     }
     let found = run(&model, &fleet);
-    assert_eq!(found.left_out.get("outside the drag table"), Some(&100), "{:?}", found.left_out);
+    let outside = found.left_out.get(&LeftOutReason::OutsideTable);
+    assert_eq!(outside, Some(&100), "{:?}", found.left_out);
     assert_eq!(found.flights, 40);
 }
 
@@ -105,14 +92,17 @@ fn missing_optional_columns_are_said_and_the_rest_is_found() {
         means.center_of_gravity_percent_mac = None;
     }
     let found = run(&model, &fleet);
-    let lacking: Vec<&str> = found.not_testable.iter().map(|n| n.effect.as_str()).collect();
-    for effect in
-        ["trim_drag_cg", "asymmetry_drag", "load_factor", "tsfc_engine_1", "isobaric_slope"]
-    {
+    let lacking: Vec<EffectId> = found.not_testable.iter().map(|n| n.effect).collect();
+    for effect in [
+        EffectId::TrimDragCg,
+        EffectId::AsymmetryDrag,
+        EffectId::LoadFactor,
+        EffectId::TsfcEngine(1),
+        EffectId::IsobaricSlope,
+    ] {
         assert!(lacking.contains(&effect), "{effect} in {lacking:?}");
     }
-    assert_eq!(found.verdict.kind, VerdictKind::Effects);
-    assert!(found.verdict.class.contains(&"zero_lift_drag".to_owned()), "{:?}", found.verdict);
+    assert!(found.verdict.class().contains(&EffectId::ZeroLiftDrag), "{:?}", found.verdict);
 }
 
 #[test]
@@ -146,7 +136,7 @@ fn a_baseline_wants_flights_and_reads_back_to_the_same_bits() {
 fn same_input_same_bytes() {
     let model = exact_model();
     let fleet = small(30, 6);
-    let once = serde_json::to_string(&run(&model, &fleet)).unwrap();
-    let twice = serde_json::to_string(&run(&model, &fleet)).unwrap();
+    let once = format!("{:?}", run(&model, &fleet));
+    let twice = format!("{:?}", run(&model, &fleet));
     assert_eq!(once, twice);
 }

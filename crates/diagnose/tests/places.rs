@@ -1,7 +1,9 @@
 //! Where a gap lies, on the virtual fleet: planted effects by their place, engines and dates, and what has no place.
 #![expect(clippy::unwrap_used, reason = "a test")]
 
-use diagnose::{Diagnosis, FlightRecord, Input, Options, SliceError, diagnose, slice_members};
+use diagnose::{
+    Diagnosis, FlightRecord, Input, Options, Region, Variable, diagnose, region_members,
+};
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
 
@@ -16,9 +18,9 @@ fn place(fleet: &Fleet, options: &Options) -> Diagnosis {
     let input = Input::against(&model, &records);
     let found = diagnose(&input, options).unwrap();
     for slice in &found.r#where {
-        let members = slice_members(&input, slice).unwrap();
+        let members = region_members(&input, &slice.region).unwrap();
         let count = members.iter().flatten().filter(|&&inside| inside).count();
-        assert_eq!(count, slice.segments, "bounds and segments of {}", slice.slice);
+        assert_eq!(count, slice.segments, "bounds and segments of {:?}", slice.region);
     }
     found
 }
@@ -36,8 +38,7 @@ fn an_engine_is_a_place() {
     // Engine 2 alone burns 3 % more; both engines together 1.5 %.
     let found = place(&with(401, EffectId::TsfcEngine(2), 3.0), &options());
     let first = &found.r#where[0];
-    assert_eq!(first.slice, "engine 2");
-    assert_eq!(first.bounds["engine"], [Some(2.0), Some(2.0)]);
+    assert_eq!(first.region, Region { engine: Some(2), conditions: vec![] });
     assert!(first.ci95[0] < 3.0 && first.ci95[1] > 3.0, "{first:?}");
     assert!((first.share_of_gap - 1.0).abs() < 0.15, "{first:?}");
 }
@@ -46,9 +47,8 @@ fn an_engine_is_a_place() {
 fn a_level_lies_everywhere() {
     let found = place(&with(402, EffectId::TsfcFactor, 2.0), &options());
     let first = &found.r#where[0];
-    assert_eq!(first.slice, "everywhere");
+    assert!(first.region.is_everywhere() && found.r#where.len() == 1);
     assert_eq!(first.segments, found.segments);
-    assert!(first.bounds.is_empty() && found.r#where.len() == 1);
     assert!(first.ci95[0] < 2.0 && first.ci95[1] > 2.0, "{first:?}");
 }
 
@@ -58,7 +58,9 @@ fn a_drag_rise_lies_at_high_mach_number() {
     let found = place(&fleet, &options());
     let first = &found.r#where[0];
     // By the truth's formula the drag rise starts at M 0.80 and grows with the third power above.
-    assert!(first.bounds["mach"][0].unwrap() > 0.82 && first.bounds["mach"][1].is_none());
+    let conditions = &first.region.conditions;
+    let fast = conditions.iter().find(|one| one.variable == Variable::Mach).unwrap();
+    assert!(fast.from.unwrap().value > 0.82 && fast.to.is_none());
     assert!(first.p_value <= 0.01 && first.mean_gap_percent > 0.5, "{first:?}");
     // The same seed finds the same to the last bit.
     assert_eq!(place(&fleet, &options()).r#where, found.r#where);
@@ -72,14 +74,4 @@ fn without_gap_no_place() {
         .filter(|fleet| !place(fleet, &options()).r#where.is_empty())
         .count();
     assert!(alarms <= 1, "{alarms}");
-}
-
-#[test]
-fn bounds_that_are_no_variable_are_refused() {
-    let mut found = place(&with(402, EffectId::TsfcFactor, 2.0), &options());
-    found.r#where[0].bounds.insert("phase_of_moon".to_owned(), [None, Some(1.0)]);
-    let model = exact_model();
-    let input = Input::against(&model, &[]);
-    let error = slice_members(&input, &found.r#where[0]).unwrap_err();
-    assert_eq!(error, SliceError::UnknownVariable { name: "phase_of_moon".to_owned() });
 }

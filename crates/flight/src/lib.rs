@@ -30,7 +30,7 @@ pub use header::{Assumption, FlightIdentity, MissingColumn, ReportHeader, second
 pub use jiff::Timestamp;
 pub use observation::{Observation, ObservationVariance};
 pub use report::{FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportDataError};
-pub use segment::{Segment, SegmentMeans};
+pub use segment::{Cruise, Segment, SegmentMeans};
 pub use track::{
     DroppedRun, DroppedRunReason, SampleRun, Sampling, TemperatureSource, Track, TrackDataError,
     TrackParts,

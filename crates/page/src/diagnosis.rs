@@ -1,11 +1,14 @@
 //! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be detected.
 
-use diagnose::{Cause, Diagnosis, Separation, VerdictKind};
+use diagnose::{Cause, Diagnosis, Separation, Verdict};
+use flight::effect::{EffectId, HiddenParameter};
 use maud::{Markup, html};
 
 use crate::fleet;
 use crate::frame::framed;
+use pipeline::diagnosed_tail::DiagnosedTail;
 use pipeline::diagnosis_text;
+use pipeline::diagnosis_words::{joined, measurement_words, region_words};
 use pipeline::summary::{ReportsSummary, counted};
 
 /// Causes shown for each tail.
@@ -15,7 +18,7 @@ const SEPARATIONS_SHOWN: usize = 2;
 
 /// The page of diagnoses, with the counts of the reports behind them.
 #[must_use]
-pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[Diagnosis]) -> String {
+pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[DiagnosedTail]) -> String {
     let title = "Diagnosis of performance models";
     let body = html! {
         p.run {
@@ -28,17 +31,20 @@ pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[Diagnosis]) -> String {
     framed(title, true, &body)
 }
 
-fn section(diagnosis: &Diagnosis) -> Markup {
+fn section(diagnosed: &DiagnosedTail) -> Markup {
+    let diagnosis = &diagnosed.diagnosis;
+    let separating = diagnosis.verdict.found().map_or(&[][..], |found| &found.separations);
+    let notes = diagnosed.notes();
     html! {
         section {
-            h2 { @if diagnosis.tail == "*" { "All tails" } @else { (diagnosis.tail) } }
-            @for (place, line) in diagnosis_text::lines(diagnosis).iter().skip(1).enumerate() {
+            h2 { (diagnosed.name()) }
+            @for (place, line) in diagnosis_text::lines(diagnosed).iter().skip(1).enumerate() {
                 p { @if place == 0 {
                     (counted(diagnosis.flights, "flight")) ", " (counted(diagnosis.segments, "segment")) ". "
                 } (line) }
             }
             (places(diagnosis))
-            @if diagnosis.verdict.kind != VerdictKind::InsufficientData {
+            @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) {
                 (causes(&diagnosis.causes))
                 p {
                     "A cause outside the library of effects: probability "
@@ -47,15 +53,15 @@ fn section(diagnosis: &Diagnosis) -> Markup {
                 }
                 (floors(diagnosis))
             }
-            @if !diagnosis.verdict.separations.is_empty() {
+            @if !separating.is_empty() {
                 h3 { "What would distinguish them" }
-                (separations(diagnosis.verdict.separations.iter().map(|one| (None, one))))
+                (separations(separating.iter().map(|one| (None, one))))
             }
             (detectable(diagnosis))
             (beforehand(diagnosis))
-            @if !diagnosis.notes.is_empty() {
+            @if !notes.is_empty() {
                 h3 { "Notes" }
-                ul { @for note in &diagnosis.notes { li { (note) } } }
+                ul { @for note in &notes { li { (note) } } }
             }
         }
     }
@@ -72,7 +78,7 @@ fn places(diagnosis: &Diagnosis) -> Markup {
                     th scope="col" { "p, search accounted for" }
                 } }
                 tbody { @for place in &diagnosis.r#where { tr {
-                    th scope="row" { (place.slice) }
+                    th scope="row" { (region_words(&place.region)) }
                     td { (place.segments) }
                     td { (format!("{:+.2}", place.mean_gap_percent)) }
                     td { (format!("{:+.2} to {:+.2}", place.ci95[0], place.ci95[1])) }
@@ -116,8 +122,8 @@ fn causes(causes: &[Cause]) -> Markup {
                 td { (format!("{:.3}", cause.probability)) }
                 td { (format!("{:+.4}", cause.magnitude.value)) }
                 td { (format!("{:+.4} to {:+.4}", cause.magnitude.ci95[0], cause.magnitude.ci95[1])) }
-                td { (cause.magnitude.unit) @if !cause.hidden.is_empty() { "; " (cause.hidden) } }
-                td { @if let Some(share) = cause.closure { (format!("{:.0} %", 100.0 * share)) } @else { "–" } }
+                td { (cause.effect.entry().unit) @if cause.hidden != HiddenParameter::None { "; " (cause.hidden) } }
+                td { @if let Some(closure) = cause.closure { (format!("{:.0} %", 100.0 * closure.share)) } @else { "–" } }
                 td { (others(cause)) }
             } } }
         }
@@ -125,9 +131,9 @@ fn causes(causes: &[Cause]) -> Markup {
 }
 
 fn others(cause: &Cause) -> String {
-    let others: Vec<&str> =
-        cause.class.iter().filter(|name| **name != cause.effect).map(String::as_str).collect();
-    if others.is_empty() { "–".to_owned() } else { others.join(", ") }
+    let others: Vec<EffectId> =
+        cause.class.iter().copied().filter(|id| *id != cause.effect).collect();
+    if others.is_empty() { "–".to_owned() } else { joined(&others, ", ") }
 }
 
 fn detectable(diagnosis: &Diagnosis) -> Markup {
@@ -141,7 +147,7 @@ fn detectable(diagnosis: &Diagnosis) -> Markup {
                 tbody { @for one in &diagnosis.detectable { tr {
                     th scope="row" { (one.effect) }
                     td { @if let Some(size) = one.smallest { (format!("{size:.4}")) } @else { "–" } }
-                    td { (one.unit) }
+                    td { (one.effect.entry().unit) }
                 } } }
             }
         }
@@ -156,7 +162,7 @@ fn beforehand(diagnosis: &Diagnosis) -> Markup {
         .iter()
         .flat_map(|one| {
             let shown = one.separations.iter().take(SEPARATIONS_SHOWN);
-            shown.map(|separation| (Some(one.effect.as_str()), separation))
+            shown.map(|separation| (Some(one.effect), separation))
         })
         .collect();
     html! {
@@ -167,7 +173,9 @@ fn beforehand(diagnosis: &Diagnosis) -> Markup {
     }
 }
 
-fn separations<'a>(all: impl Iterator<Item = (Option<&'a str>, &'a Separation)> + Clone) -> Markup {
+fn separations<'a>(
+    all: impl Iterator<Item = (Option<EffectId>, &'a Separation)> + Clone,
+) -> Markup {
     let named = all.clone().any(|(effect, _)| effect.is_some());
     html! {
         table {
@@ -179,7 +187,7 @@ fn separations<'a>(all: impl Iterator<Item = (Option<&'a str>, &'a Separation)> 
             } }
             tbody { @for (effect, one) in all { tr {
                 @if let Some(effect) = effect { th scope="row" { (effect) } }
-                td { (one.measurement) } td { (one.from) }
+                td { (measurement_words(&one.measurement)) } td { (one.from) }
                 td { (format!("{:.1}", one.distance_now)) } td { (format!("{:.1}", one.distance_then)) }
                 td { @if let Some(distance) = one.distance_ordinary_flights { (format!("{distance:.1}")) } @else { "–" } }
             } } }

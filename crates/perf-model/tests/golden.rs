@@ -8,9 +8,10 @@
 
 use std::sync::Arc;
 
-use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans};
+use flight::{Cruise, FlightIdentity, Segment, SegmentMeans};
 use perf_model::{Aircraft, FlightPoints, Guide, InitialModel, initial_model};
 use test_support::outside_data;
+use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, Temperature, TrueAirspeed};
 
 const WIDE: &str = "lift_coefficient: (0.10, 0.80, 0.05), mach: (0.50, 0.95, 0.05)";
 const COMPACT: &str = "lift_coefficient: (0.30, 0.60, 0.05), mach: (0.76, 0.88, 0.02)";
@@ -56,30 +57,16 @@ fn segment(header: &[String], row: &[String]) -> (Segment, [f64; 4]) {
     let value = |name: &str| number(&row[header.iter().position(|column| column == name).unwrap()]);
     let means = SegmentMeans {
         time_s: value("time_s"),
-        pressure_altitude_m: value("pressure_altitude_m"),
-        static_air_temperature_k: value("static_air_temperature_k"),
-        mach: value("mach"),
-        true_airspeed_m_s: value("true_airspeed_m_s"),
         ground_speed_m_s: value("ground_speed_m_s"),
         acceleration_m_s2: value("acceleration_m_s2"),
-        vertical_speed_m_s: 0.0,
-        mass_kg: value("mass_kg"),
-        fuel_flow_total_kg_s: value("fuel_flow_kg_s"),
-        fuel_flow_engine_kg_s: vec![],
-        fuel_used_kg: 0.0,
-        drift_deg: None,
-        roll_deg: None,
-        roll_squared_deg2: None,
-        n2_percent: vec![],
-        latitude_deg: None,
-        longitude_deg: None,
-        true_heading_deg: None,
-        center_of_gravity_percent_mac: None,
-        total_air_temperature_k: None,
-        n1_percent: [None; MAXIMUM_ENGINES],
-        exhaust_gas_temperature_k: [None; MAXIMUM_ENGINES],
-        fuel_quantity_kg: None,
-        anti_ice: None,
+        ..SegmentMeans::cruise(&Cruise {
+            pressure_altitude: PressureAltitude::meters(value("pressure_altitude_m")),
+            static_air_temperature: Temperature::kelvin(value("static_air_temperature_k")),
+            mach: Mach::new(value("mach")),
+            true_airspeed: TrueAirspeed::meters_per_second(value("true_airspeed_m_s")),
+            mass: Mass::kilograms(value("mass_kg")),
+            fuel_flow_total: FuelFlowTotal::kilograms_per_second(value("fuel_flow_kg_s")),
+        })
     };
     let identity = FlightIdentity {
         tail: "SIM-01".into(),

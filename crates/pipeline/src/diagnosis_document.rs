@@ -1,9 +1,16 @@
 //! `diagnosis.json`: every diagnosis of a run, and what became of its reports.
 
-use diagnose::Diagnosis;
 use serde::Serialize;
 
+use crate::diagnosed_tail::DiagnosedTail;
 use crate::summary::{RefusedSummary, ReportsSummary};
+
+mod tail;
+
+pub use tail::{
+    CauseRecord, DetectableRecord, GapRecord, MagnitudeRecord, NotTestableRecord,
+    OutsideLibraryRecord, SeparationRecord, SliceRecord, TailDiagnosis, VerdictKind, VerdictRecord,
+};
 
 /// Schema of [`DiagnosisDocument`].
 pub const SCHEMA: &str = "cruisefit.diagnosis/1";
@@ -13,7 +20,7 @@ pub const SCHEMA: &str = "cruisefit.diagnosis/1";
 pub struct DiagnosisDocument<'a> {
     schema: &'static str,
     reports: DiagnosedReports<'a>,
-    diagnoses: &'a [Diagnosis],
+    diagnoses: Vec<TailDiagnosis>,
 }
 
 #[derive(Debug, Serialize)]
@@ -24,9 +31,13 @@ struct DiagnosedReports<'a> {
 
 impl<'a> DiagnosisDocument<'a> {
     /// The document of these diagnoses, and of what became of the reports.
-    pub fn new(reports: &'a ReportsSummary, diagnoses: &'a [Diagnosis]) -> Self {
+    pub fn new(reports: &'a ReportsSummary, diagnoses: &[DiagnosedTail]) -> Self {
         let reports = DiagnosedReports { read: reports.read, refused: &reports.refused };
-        Self { schema: SCHEMA, reports, diagnoses }
+        Self {
+            schema: SCHEMA,
+            reports,
+            diagnoses: diagnoses.iter().map(TailDiagnosis::from).collect(),
+        }
     }
 
     /// As JSON, with a final line end.

@@ -3,9 +3,13 @@
 //! Limits are said where they hold: what cannot be told apart, what was not testable, how much is left. An effect is named
 //! by what it does *and* by its id, so that a reader without the library's table knows what is meant.
 
-use diagnose::{Diagnosis, Verdict, VerdictKind};
+use diagnose::{Closure, Diagnosis, Found, Verdict};
 use flight::effect::{EffectGroup, EffectId};
 
+use crate::diagnosed_tail::DiagnosedTail;
+use crate::diagnosis_words::{
+    acts_on_words, advice, joined, measurement_words, region_words, variable_words,
+};
 use crate::statistics::NORMAL_95;
 use crate::summary::counted;
 
@@ -47,31 +51,35 @@ const fn consequence(group: EffectGroup) -> &'static str {
 }
 
 /// The diagnosis in about a dozen lines, each a sentence or two; the tail's name is the first one's.
-pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
-    let verdict = &diagnosis.verdict;
+pub fn lines(diagnosed: &DiagnosedTail) -> Vec<String> {
+    let diagnosis = &diagnosed.diagnosis;
     let mut lines = vec![format!(
         "{}: {}, {}.",
-        if diagnosis.tail == "*" { "All tails" } else { &diagnosis.tail },
+        diagnosed.name(),
         counted(diagnosis.flights, "flight"),
         counted(diagnosis.segments, "segment"),
     )];
-    if verdict.kind == VerdictKind::InsufficientData {
-        lines.push(format!("No verdict, insufficient data. {}", verdict.advice));
-        return lines;
-    }
+    let found = match &diagnosis.verdict {
+        Verdict::InsufficientData(_) => {
+            let advice = advice(&diagnosis.verdict);
+            lines.push(format!("No verdict, insufficient data. {advice}"));
+            return lines;
+        }
+        Verdict::NoGap => silent(diagnosis),
+        Verdict::Effects(found) => named(diagnosis, found),
+        Verdict::OutsideLibrary(_) => unnamed(diagnosis),
+    };
     lines.push(gap(diagnosis));
     lines.extend(places(diagnosis));
-    match verdict.kind {
-        VerdictKind::NoGap => lines.extend(silent(diagnosis)),
-        VerdictKind::Effects => lines.extend(named(diagnosis)),
-        VerdictKind::OutsideLibrary => lines.extend(unnamed(diagnosis)),
-        VerdictKind::InsufficientData => {}
-    }
+    lines.extend(found);
     if !diagnosis.not_testable.is_empty() {
         let names: Vec<String> = diagnosis
             .not_testable
             .iter()
-            .map(|entry| format!("{} (needs {})", entry.effect, entry.needs.join(", ")))
+            .map(|entry| {
+                let needs: Vec<&str> = entry.needs.iter().map(|needed| needed.name()).collect();
+                format!("{} (needs {})", entry.effect, needs.join(", "))
+            })
             .collect();
         lines.push(format!("Not testable with this data: {}.", names.join("; ")));
     }
@@ -96,13 +104,13 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
         .iter()
         .enumerate()
         .map(|(rank, place)| {
-            if place.bounds.is_empty() && place.slice == "everywhere" {
+            if place.region.is_everywhere() {
                 return "It has no place: it is everywhere.".to_owned();
             }
             format!(
                 "{} at {}: {:+.2} % there ({:+.2} to {:+.2}), {} of the explainable gap, p {:.3}.",
                 if rank == 0 { "It sits" } else { "And" },
-                place.slice,
+                region_words(&place.region),
                 place.mean_gap_percent,
                 place.ci95[0],
                 place.ci95[1],
@@ -121,9 +129,8 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
     let told: Vec<String> = TOLD_WHEN_SILENT
         .iter()
         .filter_map(|id| {
-            let name = id.to_string();
-            let entry = diagnosis.detectable.iter().find(|entry| entry.effect == name)?;
-            Some(format!("{name} {} {}", figure(entry.smallest?), entry.unit))
+            let entry = diagnosis.detectable.iter().find(|entry| entry.effect == *id)?;
+            Some(format!("{id} {} {}", figure(entry.smallest?), id.entry().unit))
         })
         .collect();
     let mut lines = vec!["Nothing beyond the noise: the model fits these flights.".to_owned()];
@@ -133,66 +140,72 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
     lines
 }
 
-fn named(diagnosis: &Diagnosis) -> Vec<String> {
-    let verdict = &diagnosis.verdict;
-    let open = verdict.probability < PROBABLE;
+fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
+    let open = found.probability < PROBABLE;
     let mut lines = Vec::new();
-    for (place, name) in verdict.effects.iter().enumerate() {
-        let what = effect_told(diagnosis, name);
+    for (place, id) in found.effects.iter().enumerate() {
+        let what = effect_told(diagnosis, *id);
         lines.push(if place == 0 && open {
             format!(
                 "No cause stands out. The most probable is {what}, probability {:.2}: do not act on it.",
-                verdict.probability
+                found.probability
             )
         } else if place == 0 {
-            format!("Cause: {what}, probability {:.2}.", verdict.probability)
+            format!("Cause: {what}, probability {:.2}.", found.probability)
         } else {
             format!("Together with: {what}.")
         });
     }
     if !open {
-        lines.extend(follows(verdict));
+        lines.extend(follows(found));
     }
+    lines.push(closes(diagnosis, found));
+    let others: Vec<EffectId> =
+        found.class.iter().copied().filter(|id| !found.effects.contains(id)).collect();
+    if !others.is_empty() {
+        lines.push(format!("These flights cannot tell it from: {}.", joined(&others, ", ")));
+    }
+    lines.extend(to_be_sure(found));
+    lines.extend(rivals(diagnosis, found));
+    lines
+}
+
+/// How far the gap shrinks.
+fn closes(diagnosis: &Diagnosis, found: &Found) -> String {
     let after = diagnosis.causes.iter().find_map(|cause| cause.rms_after_percent);
-    match (after, verdict.closure, verdict.closure_ci95) {
-        (Some(after), Some(closure), Some([low, high])) => lines.push(format!(
+    match (after, found.closure) {
+        (Some(after), Some(Closure { share, ci95: [low, high] })) => format!(
             "Added to the model it leaves {after:.2} % on flights that it was not fitted to: {:.0} % of what can be \
              explained ({:.0} to {:.0}).",
-            100.0 * closure,
+            100.0 * share,
             100.0 * low,
             100.0 * high
-        )),
-        (None, Some(closure), Some([low, high])) => lines.push(format!(
+        ),
+        (None, Some(Closure { share, ci95: [low, high] })) => format!(
             "Chosen anew on four fifths of the flights, it closes {:.0} % of what can be explained on the rest ({:.0} to \
              {:.0}).",
-            100.0 * closure,
+            100.0 * share,
             100.0 * low,
             100.0 * high
-        )),
-        _ => lines.push("The gap is too small to measure how far it shrinks.".to_owned()),
+        ),
+        (_, None) => "The gap is too small to measure how far it shrinks.".to_owned(),
     }
-    let others: Vec<&str> = verdict
-        .class
-        .iter()
-        .filter(|name| !verdict.effects.contains(name))
-        .map(String::as_str)
-        .collect();
-    if !others.is_empty() {
-        lines.push(format!("These flights cannot tell it from: {}.", others.join(", ")));
-    }
-    // One measurement often separates from several effects: it is told once, where it does most.
-    let mut told: Vec<&str> = Vec::new();
-    for separation in &verdict.separations {
+}
+
+/// The best measurements or flights. One often separates from several effects: it is told once, where it does most.
+fn to_be_sure(found: &Found) -> Vec<String> {
+    let mut told: Vec<String> = Vec::new();
+    let mut lines = Vec::new();
+    for separation in &found.separations {
+        let measurement = measurement_words(&separation.measurement);
         if told.len() == SEPARATIONS_TOLD {
             break;
         }
-        if told.contains(&separation.measurement.as_str()) {
+        if told.contains(&measurement) {
             continue;
         }
-        told.push(&separation.measurement);
         lines.push(format!(
-            "To be sure: {} (tells it from {}: {:.1} to {:.1} standard deviations{}).",
-            separation.measurement,
+            "To be sure: {measurement} (tells it from {}: {:.1} to {:.1} standard deviations{}).",
             separation.from,
             separation.distance_now,
             separation.distance_then,
@@ -200,20 +213,20 @@ fn named(diagnosis: &Diagnosis) -> Vec<String> {
                 "; six ordinary flights {distance:.1}"
             ))
         ));
+        told.push(measurement);
     }
-    lines.extend(rivals(diagnosis));
     lines
 }
 
 fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
     let outside = &diagnosis.outside;
-    let told = |words: &str, what: Option<&String>| {
+    let told = |words: &str, what: Option<&str>| {
         what.map_or_else(String::new, |what| format!("{words}{what}"))
     };
     let mut lines = vec![format!(
         "A real gap that no effect of the library explains{}{} (probability {:.2}).",
-        told("; it hangs on ", outside.variable.as_ref()),
-        told(" and acts on ", outside.acts_on.as_ref()),
+        told("; it hangs on ", outside.variable.map(variable_words)),
+        told(" and acts on ", outside.acts_on.map(acts_on_words)),
         outside.probability
     )];
     if let Some(cause) = diagnosis.causes.first() {
@@ -222,7 +235,9 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
             cause.effect,
             cause.closure.map_or_else(
                 || "how much it closes could not be measured".to_owned(),
-                |closure| format!("it closes {:.0} % on unseen flights", 100.0 * closure.max(0.0))
+                |closure| {
+                    format!("it closes {:.0} % on unseen flights", 100.0 * closure.share.max(0.0))
+                }
             )
         ));
     }
@@ -231,15 +246,10 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
 }
 
 /// What follows from the verdict; not before it is clear whether the recording errs or the aircraft.
-fn follows(verdict: &Verdict) -> Option<String> {
-    let ids: Vec<EffectId> = verdict
-        .effects
-        .iter()
-        .chain(&verdict.class)
-        .filter_map(|name| EffectId::from_name(name))
-        .collect();
-    let first = ids.first()?;
-    if ids.iter().all(|id| id.is_of_recordings() == first.is_of_recordings()) {
+fn follows(found: &Found) -> Option<String> {
+    let first = found.effects.first()?;
+    let mut ids = found.effects.iter().chain(&found.class);
+    if ids.all(|id| id.is_of_recordings() == first.is_of_recordings()) {
         return Some(consequence(first.entry().group).to_owned());
     }
     Some(
@@ -250,21 +260,18 @@ fn follows(verdict: &Verdict) -> Option<String> {
 }
 
 /// Other causes that the data leave open.
-fn rivals(diagnosis: &Diagnosis) -> Vec<String> {
-    let verdict = &diagnosis.verdict;
+fn rivals(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
     let mut told: Vec<String> = diagnosis
         .causes
         .iter()
-        .filter(|cause| !verdict.effects.contains(&cause.effect) && cause.probability >= LEAST_TOLD)
+        .filter(|cause| !found.effects.contains(&cause.effect) && cause.probability >= LEAST_TOLD)
         .take(OTHERS_TOLD)
         .map(|cause| format!("{} {:.2}", cause.effect, cause.probability))
         .collect();
     if diagnosis.outside.probability >= LEAST_TOLD {
-        let hangs = diagnosis
-            .outside
-            .variable
-            .as_ref()
-            .map_or_else(String::new, |variable| format!(" that hangs on {variable}"));
+        let variable = diagnosis.outside.variable.map(variable_words);
+        let hangs =
+            variable.map_or_else(String::new, |variable| format!(" that hangs on {variable}"));
         told.push(format!(
             "something outside the library{hangs} {:.2}",
             diagnosis.outside.probability
@@ -278,22 +285,20 @@ fn rivals(diagnosis: &Diagnosis) -> Vec<String> {
 }
 
 /// "earlier drag rise with Mach number, `wave_drag` +0.0080 ± 0.0010 Mach", without the backticks.
-fn effect_told(diagnosis: &Diagnosis, name: &str) -> String {
-    let cause = diagnosis.causes.iter().find(|cause| cause.effect == name);
+fn effect_told(diagnosis: &Diagnosis, id: EffectId) -> String {
+    let cause = diagnosis.causes.iter().find(|cause| cause.effect == id);
     let added = diagnosis
         .addition
         .as_ref()
-        .and_then(|addition| addition.effects.iter().find(|added| added.effect == name));
+        .and_then(|addition| addition.effects.iter().find(|added| added.effect == id));
     let size = added.map(|added| (added.size, added.standard_deviation)).or_else(|| {
         let [low, high] = cause?.magnitude.ci95;
         Some((cause?.magnitude.value, (high - low) / (2.0 * NORMAL_95)))
     });
-    let (Some(id), Some((size, deviation))) = (EffectId::from_name(name), size) else {
-        return name.to_owned();
-    };
-    let hidden = cause.map_or("", |cause| cause.hidden.as_str());
+    let Some((size, deviation)) = size else { return id.to_string() };
+    let hidden = cause.map_or_else(String::new, |cause| cause.hidden.to_string());
     format!(
-        "{}, {name} {}{} ± {} {}{}",
+        "{}, {id} {}{} ± {} {}{}",
         id.phrase(size),
         if size < 0.0 { "−" } else { "+" },
         figure(size.abs()),

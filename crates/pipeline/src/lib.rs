@@ -3,7 +3,8 @@
 //! What it is: the pieces between the stages. [`reduction`] takes a report to its stabilised segments, [`learning`] teaches a
 //! model one flight after the other, [`evaluation`] holds segments against a table, [`model_file`] is a model with what it
 //! has learnt, as text and back. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), what
-//! a run came to ([`summary`], [`diagnosis_document`]), and a diagnosis in words ([`diagnosis_text`]).
+//! a run came to ([`summary`], [`diagnosis_document`]), and a diagnosis in words
+//! ([`diagnosis_text`], [`diagnosis_words`]).
 //! What it is not: it opens no file, starts no thread, reads no clock and prints nothing. It computes no drag, no fuel flow
 //! and no verdict; those are the stages'.
 //!
@@ -31,18 +32,21 @@
 //! let guide = Guide::from_csv(include_bytes!("../../perf-model/tests/golden/guide.csv"))?;
 //! let initial = initial_model(&aircraft, &guide)?;
 //! let text = ModelFile::from_initial(&initial, &guide).to_text()?;
-//! assert_eq!(ModelFile::from_text(&text)?.initial, initial.model);
+//! assert_eq!(ModelFile::from_text(&text)?.initial, initial.model.into());
 //! // One digit that a disk or an editor changed is noticed.
 //! let damaged = text.replacen("94.94690688", "94.94690689", 1);
 //! assert!(ModelFile::from_text(&damaged).is_err());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod addition_record;
 pub mod checksum;
 pub mod columns;
 pub mod condition_means;
+pub mod diagnosed_tail;
 pub mod diagnosis_document;
 pub mod diagnosis_text;
+pub mod diagnosis_words;
 pub mod difference;
 pub mod evaluation;
 pub mod learning;

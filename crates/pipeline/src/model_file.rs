@@ -8,7 +8,7 @@
 mod applied;
 mod text;
 
-pub use applied::{AppliedRecord, DiagnosisRecord, ExtendError};
+pub use applied::{AppliedRecord, DiagnosisRecord};
 pub use text::ModelTextError;
 
 use std::sync::Arc;

@@ -3,6 +3,8 @@
 
 use diagnose::{FlightRecord, Input, Options, diagnose};
 use flight::effect::EffectId;
+use pipeline::diagnosis_document::VerdictKind;
+use pipeline::diagnosis_words::joined;
 use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
 use trials::{Case, Planted, Scores};
 
@@ -44,10 +46,10 @@ fn main() {
             };
             let found = diagnose(&input, &options).unwrap();
             count += 1;
-            let top = found.causes.first().map_or(String::new(), |c| c.effect.clone());
+            let top = found.causes.first().map_or_else(String::new, |c| c.effect.to_string());
             let p = found.causes.first().map_or(0.0, |c| c.probability);
             let size = planted.first().map_or(0.0, |p| p.size);
-            let own = found.causes.iter().find(|c| c.effect == id.to_string());
+            let own = found.causes.iter().find(|c| c.effect == id);
             let whole = (what == "struck").then(|| {
                 diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()
             });
@@ -66,23 +68,23 @@ fn main() {
                 "{:<26} {:+.4} | {:?} top {:<24} p {:.3} est {:+.4} pout {:.2} {:?} closure {:?} gap {:.2}/{:.2} pval {:.1e} class {:?} | {} | ci {:?} near {:?} closures {:?}",
                 id.to_string(),
                 size,
-                found.verdict.kind,
+                VerdictKind::from(&found.verdict),
                 top,
                 p,
                 own.map_or(f64::NAN, |c| c.magnitude.value),
                 found.outside.probability,
                 found.outside.variable,
-                found.verdict.closure,
+                found.verdict.closure().map(|closure| closure.share),
                 found.gap.rms_percent,
                 found.gap.noise_floor_rms_percent,
                 found.gap.p_value,
-                found.verdict.class,
-                found.verdict.effects.join("+"),
-                found.verdict.closure_ci95,
+                found.verdict.class(),
+                joined(found.verdict.effects(), "+"),
+                found.verdict.closure().map(|closure| closure.ci95),
                 found
                     .detectable
                     .iter()
-                    .find(|d| d.effect == id.to_string())
+                    .find(|d| d.effect == id)
                     .map(|d| (d.nearest_other, d.nearest_pair)),
                 cases.last().and_then(|case| case.nearest),
             );

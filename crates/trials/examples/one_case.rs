@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("truth sealed: sha256 {}", seal.hash());
 
     let diagnosed = DiagnosedCase::run(&plan, spec)?;
-    println!("verdict: {:?}", diagnosed.diagnosis().verdict.effects);
+    println!("verdict: {:?}", diagnosed.diagnosis().verdict.effects());
 
     let truth = seal.open(spec.number, sealed.as_bytes())?;
     let result = diagnosed.score(&truth, seal.hash_of(spec.number))?;

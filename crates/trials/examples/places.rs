@@ -2,10 +2,12 @@
 //! `places SEED REPEATS [null | effects | closure | cost] [effect]`; of `cost` REPEATS is the number of flights.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a development tool")]
 
-use diagnose::{Diagnosis, FlightRecord, Input, Options, diagnose, references_of, slice_members};
+use diagnose::{Diagnosis, FlightRecord, Input, Options, diagnose, references_of, region_members};
 use effects::ExtendedModel;
 use effects::{EffectModel, EffectPoint, Effects};
 use flight::effect::EffectId;
+use pipeline::diagnosis_document::VerdictKind;
+use pipeline::diagnosis_words::region_words;
 use test_support::fleet::{Background, Fleet, Random, Setup, exact_model, fly, plant};
 use trials::places::{names_driver, spread, worst_region_overlap};
 
@@ -68,11 +70,16 @@ fn nulls(model: &ExtendedModel, seed: u64, repeats: u64) {
         seconds += took;
         if let Some(first) = found.r#where.first() {
             alarms += 1;
-            two += u32::from(first.bounds.len() == 2);
-            everywhere += u32::from(first.bounds.is_empty());
+            let region = &first.region;
+            let conditions = region.conditions.len() + usize::from(region.engine.is_some());
+            two += u32::from(conditions == 2);
+            everywhere += u32::from(region.is_everywhere());
             println!(
                 "{} p {:.4} {:+.2} % {:?}",
-                first.slice, first.p_value, first.mean_gap_percent, found.verdict.kind
+                region_words(region),
+                first.p_value,
+                first.mean_gap_percent,
+                VerdictKind::from(&found.verdict)
             );
         }
     }
@@ -116,7 +123,7 @@ fn effects(model: &ExtendedModel, seed: u64, repeats: u64, closure: bool, only: 
             let spread_percent = 100.0 * spread(&inside);
             let first = found.r#where.first();
             let members: Option<Vec<bool>> = first.map(|first| {
-                slice_members(&input(model, &records), first)
+                region_members(&input(model, &records), &first.region)
                     .unwrap()
                     .into_iter()
                     .flatten()
@@ -126,8 +133,8 @@ fn effects(model: &ExtendedModel, seed: u64, repeats: u64, closure: bool, only: 
                     .collect()
             });
             let overlap = members.and_then(|m| worst_region_overlap(&inside, &m)).unwrap_or(0.0);
-            let significant = first.is_some_and(|first| !first.bounds.is_empty());
-            let driver = first.is_some_and(|first| names_driver(id, first));
+            let significant = first.is_some_and(|first| !first.region.is_everywhere());
+            let driver = first.is_some_and(|first| names_driver(id, &first.region));
             println!(
                 "{:<26} spread {:.2} % driver {} overlap {:.2} gap {:.2} % | {} | {:.3} s",
                 id.to_string(),
@@ -140,7 +147,7 @@ fn effects(model: &ExtendedModel, seed: u64, repeats: u64, closure: bool, only: 
                     .iter()
                     .map(|s| format!(
                         "{} ({:+.2} [{:+.2}, {:+.2}] %, share {:.2}, p {:.3})",
-                        s.slice,
+                        region_words(&s.region),
                         s.mean_gap_percent,
                         s.ci95[0],
                         s.ci95[1],
@@ -192,15 +199,15 @@ fn closed(
     println!(
         "{:<26} closure {:?} {:?} oracle {:?} before {:.3} floor {:.3} oracle floor {:.3} replicates {:?} held out {:?} | {:?} | {took:.3} s",
         id.to_string(),
-        found.verdict.closure,
-        found.verdict.closure_ci95,
+        found.verdict.closure().map(|closure| closure.share),
+        found.verdict.closure().map(|closure| closure.ci95),
         oracle,
         100.0 * before.sqrt(),
         found.gap.noise_floor_rms_percent,
         100.0 * floor.sqrt(),
         found.gap.floor_by_replicates_rms_percent.map(rounded),
         found.gap.floor_by_held_out_fit_rms_percent.map(rounded),
-        found.verdict.kind,
+        VerdictKind::from(&found.verdict),
     );
 }
 

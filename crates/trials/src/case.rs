@@ -2,6 +2,7 @@
 
 use diagnose::Diagnosis;
 use flight::effect::EffectId;
+use pipeline::diagnosis_words::variable_words;
 use serde::{Deserialize, Serialize};
 
 use crate::diagnosis_inputs::DiagnosisInputs;
@@ -105,9 +106,12 @@ impl DiagnosedCase {
             times: truth.times,
             flights: found.flights,
             segments: found.segments,
-            named: found.verdict.effects.clone(),
+            named: found.verdict.effects().iter().map(ToString::to_string).collect(),
             outside_probability: found.outside.probability,
-            outside_variable: found.outside.variable.clone(),
+            outside_variable: found
+                .outside
+                .variable
+                .map(|variable| variable_words(variable).to_owned()),
             noise_floor_rms_percent: found.gap.noise_floor_rms_percent,
             scored,
         })

@@ -39,9 +39,6 @@ pub enum CaseFailure {
     /// The diagnosis.
     #[error(transparent)]
     Diagnose(#[from] diagnose::DiagnoseError),
-    /// A place that the diagnosis named.
-    #[error(transparent)]
-    Slice(#[from] diagnose::SliceError),
     /// A model that takes no effects.
     #[error(transparent)]
     Effects(#[from] effects::EffectModelError),

@@ -1,10 +1,7 @@
 //! Scores of where a gap was said to lie.
 
-use std::collections::BTreeMap;
-
-use flight::effect::EffectId;
-
-use diagnose::Slice;
+use diagnose::{Region, Variable};
+use flight::effect::{DrivingVariable, EffectId};
 
 /// The truly worst segments: as many as asked for, those where the effect is largest in the direction of its sign.
 /// Of equal ones the first.
@@ -52,23 +49,21 @@ pub fn spread(effect: &[f64]) -> f64 {
     (effect.iter().map(|e| (e - mean) * (e - mean)).sum::<f64>() / count).sqrt()
 }
 
-/// Whether a place is said in a variable that drives the effect.
+/// Whether a region is bounded in a variable that drives the effect.
 #[must_use]
-pub fn names_driver(id: EffectId, slice: &Slice) -> bool {
-    has_driver(id, &slice.bounds)
-}
-
-fn has_driver(id: EffectId, bounds: &BTreeMap<String, [Option<f64>; 2]>) -> bool {
-    id.entry().driven_by.iter().any(|variable| bounds.contains_key(variable.name()))
+pub fn names_driver(id: EffectId, region: &Region) -> bool {
+    id.entry().driven_by.iter().any(|&driver| match driver {
+        DrivingVariable::Engine => region.engine.is_some(),
+        _ => region.conditions.iter().any(|c| c.variable == Variable::from(driver)),
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use diagnose::{Input, SliceError, slice_members};
-    use simulate::{AircraftTruth, Preset, Sensors, TruthPhysics};
+    use diagnose::{Condition, Edge};
+    use pipeline::diagnosis_words::bounds_name;
 
     use super::*;
-    use crate::reference_model::{COARSE, reference_model};
 
     #[test]
     fn overlap_by_hand() {
@@ -85,36 +80,19 @@ mod tests {
     }
 
     #[test]
-    fn drivers_are_names_of_bounds() {
-        let truth = AircraftTruth::preset(Preset::CitationX).unwrap();
-        let model =
-            reference_model(&truth, TruthPhysics::plain(), &Sensors::transport(), &COARSE, None)
-                .unwrap();
-        let input = Input::against(&model, &[]);
-        let is_known = |name: &str| {
-            let place = Slice {
-                slice: String::new(),
-                bounds: BTreeMap::from([(name.to_owned(), [None, Some(1.0)])]),
-                segments: 0,
-                mean_gap_percent: 0.0,
-                ci95: [0.0; 2],
-                share_of_gap: 0.0,
-                p_value: 1.0,
-            };
-            // Without flights there are no members either; only an unknown name is refused as such.
-            !matches!(slice_members(&input, &place), Err(SliceError::UnknownVariable { .. }))
-        };
-        assert!(!is_known("phase_of_moon"));
+    fn drivers_are_variables_of_regions() {
         for id in EffectId::library(2) {
-            for name in id.entry().driven_by.iter().map(|variable| variable.name()) {
-                assert!(is_known(name), "{id}: {name}");
+            for driver in id.entry().driven_by {
+                assert_eq!(driver.name(), bounds_name(Variable::from(*driver)), "{id}");
             }
         }
-        let bounds = BTreeMap::from([("mach".to_owned(), [Some(0.86), None])]);
-        assert!(has_driver(EffectId::WaveDrag, &bounds));
-        assert!(!has_driver(EffectId::TrimDragCg, &bounds));
-        let engine = BTreeMap::from([("engine".to_owned(), [Some(2.0), Some(2.0)])]);
-        assert!(has_driver(EffectId::TsfcEngine(2), &engine));
+        let from = Some(Edge { value: 0.86, flown_below: 0.859 });
+        let fast = Condition { variable: Variable::Mach, from, to: None };
+        let fast = Region { engine: None, conditions: vec![fast] };
+        assert!(names_driver(EffectId::WaveDrag, &fast));
+        assert!(!names_driver(EffectId::TrimDragCg, &fast));
+        let engine = Region { engine: Some(2), conditions: vec![] };
+        assert!(names_driver(EffectId::TsfcEngine(2), &engine));
     }
 
     #[test]

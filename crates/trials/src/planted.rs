@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use crate::places::{names_driver, spread, worst_region_overlap};
 use crate::scored_case::Located;
-use diagnose::{Diagnosis, Slice, slice_members};
+use diagnose::{Diagnosis, Region, Slice, region_members};
 use effects::{EffectModel, EffectPoint, Effects};
 use flight::Segment;
 use flight::effect::EffectId;
@@ -92,20 +92,24 @@ impl PlantedGap {
         }
         let effect: Vec<f64> = self.0.values().copied().collect();
         let overlap = match place {
-            Some(slice) => self.overlap(inputs, slice)?,
+            Some(slice) => self.overlap(inputs, &slice.region)?,
             None => None,
         };
         Ok(Some(Located {
             spread_percent: 100.0 * spread(&effect),
             significant: place.is_some(),
-            driver_named: place.is_some_and(|slice| names_driver(id, slice)),
+            driver_named: place.is_some_and(|slice| names_driver(id, &slice.region)),
             overlap: overlap.unwrap_or(0.0),
         }))
     }
 
-    fn overlap(&self, inputs: &DiagnosisInputs, slice: &Slice) -> Result<Option<f64>, CaseFailure> {
+    fn overlap(
+        &self,
+        inputs: &DiagnosisInputs,
+        region: &Region,
+    ) -> Result<Option<f64>, CaseFailure> {
         let records = inputs.records();
-        let members = slice_members(&inputs.input(&records), slice)?;
+        let members = region_members(&inputs.input(&records), region)?;
         let mut effect = Vec::new();
         let mut inside = Vec::new();
         for (record, members) in records.iter().zip(&members) {
@@ -123,7 +127,7 @@ impl PlantedGap {
 
 /// A place, and none by chance. "Everywhere" is none.
 fn is_place(slice: &Slice) -> bool {
-    !slice.bounds.is_empty() && slice.p_value <= SIGNIFICANT
+    !slice.region.is_everywhere() && slice.p_value <= SIGNIFICANT
 }
 
 /// ln recorded − ln predicted fuel flow of every segment that the model can predict with these effects.

@@ -1,7 +1,8 @@
 //! What counts of one case: what was planted against what was diagnosed.
 
-use diagnose::{Diagnosis, VerdictKind};
+use diagnose::{Detectable, Diagnosis};
 use flight::effect::EffectId;
+use pipeline::diagnosis_document::VerdictKind;
 use serde::{Deserialize, Serialize};
 
 /// A probability from which a name counts as sure. Our choice.
@@ -69,14 +70,13 @@ impl Case {
     /// Takes from a diagnosis what counts.
     #[must_use]
     pub fn from_diagnosis(planted: Planted, found: &Diagnosis) -> Self {
-        let top = found.causes.first().map(|cause| (cause.effect.clone(), cause.probability));
+        let top = found.causes.first().map(|cause| (cause.effect.to_string(), cause.probability));
         let own = planted.effects.first();
-        let detectable =
-            own.and_then(|(name, _)| found.detectable.iter().find(|d| d.effect == *name));
-        let mut class = found.verdict.class.clone();
+        let detectable = own.and_then(|(name, _)| detectable_of(found, name));
+        let mut class = names(found.verdict.class());
         if let Some((name, _)) = &top {
-            let typical = found.detectable.iter().find(|d| d.effect == *name);
-            class.extend(typical.into_iter().flat_map(|d| d.class.iter().cloned()));
+            let typical = detectable_of(found, name);
+            class.extend(typical.into_iter().flat_map(|d| names(&d.class)));
         }
         let total: f64 = found.causes.iter().map(|cause| cause.probability).sum();
         let mut sum = 0.0;
@@ -86,25 +86,25 @@ impl Case {
                 break;
             }
             sum += cause.probability;
-            credible.push(cause.effect.clone());
+            credible.push(cause.effect.to_string());
         }
         let magnitude = own
             .zip(found.causes.first())
-            .filter(|((name, _), cause)| *name == cause.effect)
+            .filter(|((name, _), cause)| *name == cause.effect.to_string())
             .map(|((_, size), cause)| (*size, &cause.magnitude));
         Self {
-            verdict: found.verdict.kind,
+            verdict: VerdictKind::from(&found.verdict),
             top,
-            top_three: found.causes.iter().take(3).map(|cause| cause.effect.clone()).collect(),
+            top_three: found.causes.iter().take(3).map(|cause| cause.effect.to_string()).collect(),
             class,
             credible,
-            named: found.verdict.effects.clone(),
+            named: names(found.verdict.effects()),
             planted_closure: None,
             located: None,
             size_error: magnitude.map(|(size, found)| found.value / size - 1.0),
             interval_holds: magnitude
                 .map(|(size, found)| found.ci95[0] <= size && size <= found.ci95[1]),
-            closure: found.verdict.closure,
+            closure: found.verdict.closure().map(|closure| closure.share),
             gap_rms_percent: found.gap.rms_percent,
             nearest: detectable.map(|d| (d.nearest_other, d.nearest_pair)),
             planted,
@@ -114,8 +114,7 @@ impl Case {
     /// Takes the distance of the planted effect from others out of a diagnosis with the whole library: one that was struck
     /// does not know it.
     pub fn take_distance(&mut self, whole: &Diagnosis) {
-        let name = self.truth();
-        let own = whole.detectable.iter().find(|d| d.effect == name);
+        let own = detectable_of(whole, self.truth());
         self.nearest = own.map(|d| (d.nearest_other, d.nearest_pair));
     }
 
@@ -178,4 +177,14 @@ impl Case {
             VerdictKind::Effects => self.top.as_ref().map_or_else(String::new, |t| t.0.clone()),
         }
     }
+}
+
+fn names(effects: &[EffectId]) -> Vec<String> {
+    effects.iter().map(ToString::to_string).collect()
+}
+
+/// What a diagnosis says about an effect by name; `None` for one outside its library.
+fn detectable_of<'a>(found: &'a Diagnosis, name: &str) -> Option<&'a Detectable> {
+    let id = EffectId::from_name(name)?;
+    found.detectable.iter().find(|detectable| detectable.effect == id)
 }

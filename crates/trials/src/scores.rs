@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::VerdictKind;
 use flight::effect::EffectId;
+use pipeline::diagnosis_document::VerdictKind;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 

@@ -207,7 +207,7 @@ fn goals_of(group: &Group) -> Vec<Goal> {
 mod tests {
     use super::*;
     use crate::scored_case::Planted;
-    use diagnose::VerdictKind;
+    use pipeline::diagnosis_document::VerdictKind;
 
     fn result(case: usize, kind: Kind, verdict: VerdictKind) -> CaseResult {
         let effects = match kind {

@@ -5,7 +5,7 @@ mod apply;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-use diagnose::{Diagnosis, FlightRecord, Input, Options, diagnose};
+use diagnose::{FlightRecord, Input, Options, diagnose};
 use flight::effect::EffectId;
 use rayon::prelude::*;
 
@@ -16,6 +16,7 @@ use crate::files::{make_folder, write_atomically};
 use crate::models::Models;
 use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
+use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
 use pipeline::diagnosis_document::DiagnosisDocument;
 use pipeline::model_file::ModelFile;
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
@@ -56,8 +57,8 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let html = page::diagnosis(&reports, &diagnoses);
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();
-    for diagnosis in &diagnoses {
-        append_lines(diagnosis, &mut text);
+    for diagnosed in &diagnoses {
+        append_lines(diagnosed, &mut text);
     }
     let refused_reports = reading.refused.len();
     if let Some(folder) = &arguments.apply {
@@ -133,7 +134,7 @@ fn group<'a>(
         }
         // A pool has one model: a difference between models is not a gap of either.
         let (key, name) = if arguments.pool {
-            (model.initial.aircraft().type_code().to_owned(), "*".to_owned())
+            (model.initial.aircraft().type_code().to_owned(), POOL.to_owned())
         } else {
             (flight.reduced.identity.tail.clone(), flight.reduced.identity.tail.clone())
         };
@@ -165,7 +166,7 @@ fn diagnose_group(
     group: &Group<'_>,
     options: &Options,
     table_only: bool,
-) -> Result<Diagnosis, Failure> {
+) -> Result<DiagnosedTail, Failure> {
     let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
         argument: "--model",
         reason: format!("tail {}: {reason}", group.name),
@@ -190,10 +191,10 @@ fn diagnose_group(
         table: table.as_ref(),
         references: baseline.map(|baseline| *baseline.references()),
     };
-    let mut diagnosis = diagnose(&input, options).map_err(|error| wrong(&error))?;
-    diagnosis.tail.clone_from(&group.name);
+    let diagnosis = diagnose(&input, options).map_err(|error| wrong(&error))?;
+    let mut run_notes = Vec::new();
     if baseline.is_none() && !table_only {
-        diagnosis.notes.push(
+        run_notes.push(
             "the model has learnt no remainder (law bayes learns one from five flights): everything that a table cannot hold \
              counts as gap"
                 .to_owned(),
@@ -202,18 +203,18 @@ fn diagnose_group(
     let mut seen = BTreeSet::new();
     for note in group.flights.iter().flat_map(|flight| &flight.reduced.notes) {
         if seen.insert(note) {
-            diagnosis.notes.push(note.clone());
+            run_notes.push(note.clone());
         }
     }
-    Ok(diagnosis)
+    Ok(DiagnosedTail { tail: group.name.clone(), diagnosis, run_notes })
 }
 
 /// The diagnosis in a dozen lines, and what was assumed.
-fn append_lines(diagnosis: &Diagnosis, text: &mut String) {
-    for (place, line) in diagnosis_text::lines(diagnosis).into_iter().enumerate() {
+fn append_lines(diagnosed: &DiagnosedTail, text: &mut String) {
+    for (place, line) in diagnosis_text::lines(diagnosed).into_iter().enumerate() {
         let _ = writeln!(text, "{}{line}", if place == 0 { "" } else { "  " });
     }
-    for note in &diagnosis.notes {
+    for note in diagnosed.notes() {
         let _ = writeln!(text, "  Note: {note}.");
     }
     text.push('\n');

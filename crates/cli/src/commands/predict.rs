@@ -4,10 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use effects::AppliedEffects;
-use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans, Timestamp};
+use flight::{Cruise, FlightIdentity, Segment, SegmentMeans, Timestamp};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use perf_model::{FlightPointRow, FlightPoints};
-use units::FuelFlowTotal;
+use units::{FuelFlowTotal, Temperature};
 
 use crate::args::PredictArgs;
 use crate::columns;
@@ -187,36 +187,20 @@ fn imagined_segment(
     prediction: &perf_model::Prediction,
     model: &effects::ExtendedModel,
 ) -> Segment {
-    let total = prediction.fuel_flow_total.to_kilograms_per_second();
     let engines = model.aircraft().engines();
-    let means = SegmentMeans {
-        time_s: 0.0,
-        pressure_altitude_m: point.pressure_altitude.to_meters(),
-        static_air_temperature_k: point
+    let cruise = SegmentMeans::cruise(&Cruise {
+        pressure_altitude: point.pressure_altitude,
+        static_air_temperature: point
             .static_air_temperature()
-            .map_or(f64::NAN, units::Temperature::to_kelvin),
-        mach: point.mach.value(),
-        true_airspeed_m_s: prediction.true_airspeed.to_meters_per_second(),
-        ground_speed_m_s: prediction.true_airspeed.to_meters_per_second(),
-        acceleration_m_s2: 0.0,
-        vertical_speed_m_s: 0.0,
-        mass_kg: point.mass.to_kilograms(),
-        fuel_flow_total_kg_s: total,
-        fuel_flow_engine_kg_s: vec![total / engines as f64; engines],
-        fuel_used_kg: 0.0,
-        drift_deg: None,
-        roll_deg: None,
-        roll_squared_deg2: None,
-        n2_percent: Vec::new(),
-        latitude_deg: None,
-        longitude_deg: None,
-        true_heading_deg: None,
-        center_of_gravity_percent_mac: None,
-        total_air_temperature_k: None,
-        n1_percent: [None; MAXIMUM_ENGINES],
-        exhaust_gas_temperature_k: [None; MAXIMUM_ENGINES],
-        fuel_quantity_kg: None,
-        anti_ice: None,
+            .unwrap_or(Temperature::kelvin(f64::NAN)),
+        mach: point.mach,
+        true_airspeed: prediction.true_airspeed,
+        mass: point.mass,
+        fuel_flow_total: prediction.fuel_flow_total,
+    });
+    let means = SegmentMeans {
+        fuel_flow_engine_kg_s: vec![cruise.fuel_flow_total_kg_s / engines as f64; engines],
+        ..cruise
     };
     let identity = FlightIdentity {
         tail: String::new(),

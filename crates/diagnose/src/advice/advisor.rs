@@ -3,7 +3,7 @@
 use crate::advice::distances::Distances;
 use crate::advice::flights::Conditions;
 use crate::library::Library;
-use crate::output::Separation;
+use crate::output::measurement::{Measurement, Separation};
 use crate::search::system::Problem;
 use crate::thresholds::CONFUSED;
 
@@ -37,15 +37,15 @@ impl<'a> Advisor<'a> {
 
     /// What would tell a column at a size from another effect, whatever the other's hidden parameter; the best first.
     pub(crate) fn between(&self, column: usize, size: f64, other: usize) -> Vec<Separation> {
-        let from = self.library.effects[other].id.to_string();
+        let from = self.library.effects[other].id;
         let others = self.library.effects[other].all_columns();
         let mut all: Vec<Separation> = self
             .distances
             .measurements(self.library, column, others.clone(), size)
             .into_iter()
             .map(|found| Separation {
-                from: from.clone(),
-                measurement: found.words.to_owned(),
+                from,
+                measurement: found.measurement,
                 distance_now: found.before,
                 distance_then: found.after,
                 distance_ordinary_flights: None,
@@ -54,8 +54,8 @@ impl<'a> Advisor<'a> {
         let flights =
             self.conditions.iter().flat_map(|at| at.advised(column, others.clone(), size));
         all.extend(flights.map(|found| Separation {
-            from: from.clone(),
-            measurement: found.words,
+            from,
+            measurement: Measurement::Flights(found.flights),
             distance_now: found.before,
             distance_then: found.after,
             distance_ordinary_flights: Some(found.ordinary),

@@ -2,8 +2,8 @@
 //!
 //! What it is: a fixed list of flights (a Mach sweep at a constant level, a level sweep at a constant Mach number, heavy or
 //! light) inside what this fleet has shown to be possible, their rows made by the same signatures, noise and nuisance as
-//! those of real flights, and the distance that six of them put between two effects, beside what six more ordinary flights
-//! would do. Most pairs gain little: then nothing is said.
+//! those of real flights, and the distance that six of them put between two effects, compared with what six more ordinary
+//! flights would do. Most pairs gain little: then nothing is said.
 //! What it is not: a flight planner. Weather, traffic and the aircraft's limits are not known here; nothing faster, higher,
 //! lower, heavier, lighter or with more thrust, lift coefficient or dynamic pressure than was flown is proposed.
 
@@ -13,9 +13,10 @@ use faer::Mat;
 use crate::advice::distances::{Distances, gains, squared_from_any};
 use crate::advice::flights::envelope::Envelope;
 use crate::advice::flights::information::{FlightInformation, Known, added};
-use crate::advice::flights::sweeps::{Kind, test_flights};
+use crate::advice::flights::sweeps::test_flights;
 use crate::library::{Column, Library};
 use crate::math::eliminate::integrate_out;
+use crate::output::measurement::{FlightsOnPurpose, Sweep};
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{ADVISED_FLIGHTS, LEAST_DISTANCE, WORTH_MIXING};
 
@@ -37,16 +38,30 @@ pub(crate) struct Conditions {
 /// Six flights, of one kind.
 struct Program {
     kind: Kind,
-    /// Whether it has two sorts of flights.
-    mixed: bool,
-    words: String,
+    flights: FlightsOnPurpose,
     gram: Mat<f64>,
 }
 
+/// What flights on purpose vary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Mach,
+    Level,
+}
+
+impl From<Sweep> for Kind {
+    fn from(sweep: Sweep) -> Self {
+        match sweep {
+            Sweep::Mach { .. } => Self::Mach,
+            Sweep::Level { .. } => Self::Level,
+        }
+    }
+}
+
 /// An advice: flights, and the distance between two effects now, with them, and with as many ordinary ones.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Advised {
-    pub(crate) words: String,
+    pub(crate) flights: FlightsOnPurpose,
     pub(crate) before: f64,
     pub(crate) ordinary: f64,
     pub(crate) after: f64,
@@ -78,22 +93,26 @@ impl Conditions {
             heating_value: false,
         };
         let weight = stacked.mean_weight();
-        let mut flights: Vec<(Kind, String, FlightInformation)> = Vec::new();
+        let mut steady: Vec<FlightInformation> = Vec::new();
+        let mut sweeps: Vec<(Sweep, FlightInformation)> = Vec::new();
         for flight in test_flights(&envelope, model) {
             let planned = stacked.data.planned(model, &few, &flight.points, envelope.recorded);
             let Some(planned) = planned else { continue };
             let rows = design.whitened(&planned, &planned.flights[0], None);
             let rows = faer::Scale(weight) * rows;
-            flights.push((flight.kind, flight.words, known.flight(&rows)));
+            let information = known.flight(&rows);
+            match flight.sweep {
+                Some(sweep) => sweeps.push((sweep, information)),
+                None => steady.push(information),
+            }
         }
         let now = distances.gram_of(&columns);
         let mut ordinary =
             vec![more_of_the_same(&gram.matrix, &columns, nuisance, stacked.data.flights.len())?];
-        for (_, _, steady) in flights.iter().filter(|(kind, _, _)| *kind == Kind::Steady) {
-            ordinary.push(&now + added(&[(steady, ADVISED_FLIGHTS as f64)])?);
+        for flight in &steady {
+            ordinary.push(&now + added(&[(flight, ADVISED_FLIGHTS as f64)])?);
         }
-        flights.retain(|(kind, _, _)| *kind != Kind::Steady);
-        let programs = programs(&flights, &now);
+        let programs = programs(&sweeps, &now);
         (!programs.is_empty()).then_some(Self { columns, now, ordinary, programs })
     }
 
@@ -123,12 +142,13 @@ impl Conditions {
                 .filter(|program| program.kind == kind)
                 .map(|program| (distance(&program.gram), program))
                 .reduce(|best, next| {
-                    let worth = if next.1.mixed && !best.1.mixed { WORTH_MIXING } else { 1.0 };
+                    let more = next.1.is_mixed() && !best.1.is_mixed();
+                    let worth = if more { WORTH_MIXING } else { 1.0 };
                     if next.0 > worth * best.0 { next } else { best }
                 });
             let worth = |after: f64| after >= LEAST_DISTANCE && gains(ordinary, after);
             found.extend(best.filter(|(after, _)| worth(*after)).map(|(after, program)| Advised {
-                words: program.words.clone(),
+                flights: program.flights,
                 before,
                 ordinary,
                 after,
@@ -139,23 +159,32 @@ impl Conditions {
     }
 }
 
+impl Program {
+    /// Whether it has two sorts of flights.
+    const fn is_mixed(&self) -> bool {
+        matches!(self.flights, FlightsOnPurpose::TwoSorts(_))
+    }
+}
+
 /// Six flights of one sort first, then three each of two sorts of one kind.
-fn programs(flights: &[(Kind, String, FlightInformation)], now: &Mat<f64>) -> Vec<Program> {
+fn programs(flights: &[(Sweep, FlightInformation)], now: &Mat<f64>) -> Vec<Program> {
     let mut programs = Vec::new();
-    let mut add = |kind: Kind, words: String, parts: &[(&FlightInformation, f64)]| {
+    let mut add = |kind: Kind, flights: FlightsOnPurpose, parts: &[(&FlightInformation, f64)]| {
         if let Some(more) = added(parts) {
-            programs.push(Program { kind, mixed: parts.len() > 1, words, gram: now + more });
+            programs.push(Program { kind, flights, gram: now + more });
         }
     };
-    for (kind, words, flight) in flights {
-        add(*kind, format!("six flights with {words}"), &[(flight, ADVISED_FLIGHTS as f64)]);
+    for &(sweep, ref flight) in flights {
+        let six = FlightsOnPurpose::OneSort(sweep);
+        add(Kind::from(sweep), six, &[(flight, ADVISED_FLIGHTS as f64)]);
     }
     let half = ADVISED_FLIGHTS as f64 / 2.0;
-    for (place, (kind, words, flight)) in flights.iter().enumerate() {
-        for (_, other_words, other) in flights[place + 1..].iter().filter(|other| other.0 == *kind)
-        {
-            let words = format!("three flights with {words}, and three with {other_words}");
-            add(*kind, words, &[(flight, half), (other, half)]);
+    for (place, &(sweep, ref flight)) in flights.iter().enumerate() {
+        let kind = Kind::from(sweep);
+        let others = flights[place + 1..].iter().filter(|other| Kind::from(other.0) == kind);
+        for &(other_sweep, ref other) in others {
+            let three_each = FlightsOnPurpose::TwoSorts([sweep, other_sweep]);
+            add(kind, three_each, &[(flight, half), (other, half)]);
         }
     }
     programs

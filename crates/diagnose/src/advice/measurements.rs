@@ -2,14 +2,15 @@
 
 use crate::advice::distances::{Distances, gains, squared_from_any};
 use crate::library::Library;
+use crate::output::measurement::Measurement;
 use crate::thresholds::{
     MEASURED_BURN_PERCENT, MEASURED_MACH, MEASURED_MASS, MEASURED_PRESSURE_PERCENT, MEASURED_SAT_K,
 };
 
 /// A measurement that separates two effects, with the distance before and after.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Measurement {
-    pub(crate) words: &'static str,
+pub(crate) struct Gain {
+    pub(crate) measurement: Measurement,
     pub(crate) before: f64,
     pub(crate) after: f64,
 }
@@ -23,7 +24,7 @@ impl Distances {
         k: usize,
         others: core::ops::Range<usize>,
         size: f64,
-    ) -> Vec<Measurement> {
+    ) -> Vec<Gain> {
         use flight::effect::EffectId;
         let before = self.squared_from_any(k, others.clone(), size).sqrt();
         let mut found = Vec::new();
@@ -39,21 +40,13 @@ impl Distances {
             .count()
             .max(1) as f64;
         let offers = [
-            (EffectId::ZeroFuelMassBias, mass_kg, "weigh the aircraft (to 0.3 % of its mass)"),
-            (EffectId::FuelFlowGain, MEASURED_BURN_PERCENT, "compare with tank gauges (to 0.15 %)"),
-            (EffectId::TemperatureBias, MEASURED_SAT_K, "compare SAT with a reanalysis (to 0.5 K)"),
-            (
-                EffectId::MachBias,
-                MEASURED_MACH,
-                "compare true airspeed with GPS and wind (to Mach 0.0015)",
-            ),
-            (
-                EffectId::StaticPressureBias,
-                MEASURED_PRESSURE_PERCENT,
-                "compare pressure altitude with GPS height and a reanalysis (to 0.05 % of p)",
-            ),
+            (EffectId::ZeroFuelMassBias, mass_kg, Measurement::Weighing),
+            (EffectId::FuelFlowGain, MEASURED_BURN_PERCENT, Measurement::TankGauges),
+            (EffectId::TemperatureBias, MEASURED_SAT_K, Measurement::TemperatureReanalysis),
+            (EffectId::MachBias, MEASURED_MACH, Measurement::AirspeedByGps),
+            (EffectId::StaticPressureBias, MEASURED_PRESSURE_PERCENT, Measurement::AltitudeByGps),
         ];
-        for (id, deviation, words) in offers {
+        for (id, deviation, measurement) in offers {
             let mut gram = self.gram.clone();
             let mut touched = false;
             for column in others.clone().chain([k]) {
@@ -69,12 +62,12 @@ impl Distances {
             }
             if touched {
                 let after = squared_from_any(&gram, k, others.clone(), size).sqrt();
-                found.push(Measurement { words, before, after });
+                found.push(Gain { measurement, before, after });
             }
         }
         let after = squared_from_any(&self.with_deck, k, others, size).sqrt();
-        found.push(Measurement { words: "measure an N2 deck (to 0.1 %)", before, after });
-        found.retain(|m| gains(m.before, m.after));
+        found.push(Gain { measurement: Measurement::N2Deck, before, after });
+        found.retain(|gain| gains(gain.before, gain.after));
         found.sort_by(|a, b| b.after.total_cmp(&a.after));
         found
     }

@@ -1,11 +1,12 @@
-//! The probability of each effect, and what is printed of it.
+//! The probability of each effect, and the causes made from it.
 
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 
 use crate::advice::distances::Distances;
 use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::judge::closure::Shrinkage;
 use crate::library::Library;
+use crate::output::verdict::Closure;
 use crate::output::{Cause, Magnitude};
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
@@ -53,7 +54,7 @@ pub(crate) fn dominant(
                 / count
         })
         .collect();
-    // One entry an effect, flight-to-flight scatter last.
+    // One entry per effect, flight-to-flight scatter last.
     let mut found: Vec<Option<Posterior>> = vec![None; library.effects.len() + 1];
     for (scored, probability) in &analysis.models {
         let mut shares: Vec<(f64, Option<usize>, usize)> = scored
@@ -111,58 +112,53 @@ pub(crate) fn causes(
         }
         sum += posterior.probability;
         let is_best = posterior.model.model == best.model;
-        let closure = unseen.filter(|_| is_best).and_then(Shrinkage::closure);
         causes.push(Cause {
-            effect: name_of(library, posterior.effect),
+            effect: id_of(library, posterior.effect),
             probability: posterior.probability * inside,
             class: class_of(distances, library, posterior),
-            magnitude: magnitude(library, posterior),
+            magnitude: magnitude(posterior),
             rms_after_percent: unseen.filter(|_| is_best).map(|s| 100.0 * s.after().sqrt()),
-            closure: closure.map(|c| c.0),
-            closure_ci95: closure.map(|c| c.1),
-            hidden: hidden_words(library, posterior),
+            closure: closed_unseen(unseen.filter(|_| is_best)),
+            hidden: hidden_of(library, posterior),
         });
     }
     causes
 }
 
-pub(crate) fn name_of(library: &Library, effect: Option<usize>) -> String {
-    effect.map_or(EffectId::FuelHeatingValue, |e| library.effects[e].id).to_string()
+/// The id of an effect of the library; `None` for scatter between flights.
+pub(crate) fn id_of(library: &Library, effect: Option<usize>) -> EffectId {
+    effect.map_or(EffectId::FuelHeatingValue, |e| library.effects[e].id)
 }
 
-fn magnitude(library: &Library, posterior: &Posterior) -> Magnitude {
-    let Some(effect) = posterior.effect else {
+/// What closes on unseen flights, where that was measured.
+pub(crate) fn closed_unseen(unseen: Option<&Shrinkage>) -> Option<Closure> {
+    let (share, ci95) = unseen.and_then(Shrinkage::closure)?;
+    Some(Closure { share, ci95 })
+}
+
+fn magnitude(posterior: &Posterior) -> Magnitude {
+    if posterior.effect.is_none() {
         let percent = posterior.model.model.flight_scatter_percent.unwrap_or(0.0);
-        return Magnitude {
-            value: percent,
-            unit: EffectId::FuelHeatingValue.entry().unit.to_owned(),
-            ci95: SCATTER_INTERVAL.map(|factor| factor * percent),
-        };
-    };
+        return Magnitude { value: percent, ci95: SCATTER_INTERVAL.map(|factor| factor * percent) };
+    }
     let value = posterior.model.sizes[posterior.place];
     let half = NORMAL_95 * posterior.model.deviations[posterior.place];
-    Magnitude {
-        value,
-        unit: library.effects[effect].id.entry().unit.to_owned(),
-        ci95: [value - half, value + half],
-    }
+    Magnitude { value, ci95: [value - half, value + half] }
 }
 
 pub(crate) fn class_of(
     distances: &Distances,
     library: &Library,
     posterior: &Posterior,
-) -> Vec<String> {
+) -> Vec<EffectId> {
     match posterior.confused(distances, library) {
-        None => vec![name_of(library, None)],
-        Some(effects) => effects.into_iter().map(|effect| name_of(library, Some(effect))).collect(),
+        None => vec![id_of(library, None)],
+        Some(effects) => effects.into_iter().map(|effect| library.effects[effect].id).collect(),
     }
 }
 
-fn hidden_words(library: &Library, posterior: &Posterior) -> String {
-    if posterior.effect.is_none() {
-        return String::new();
-    }
-    let column = &library.columns[posterior.model.model.columns[posterior.place]];
-    column.hidden.to_string()
+fn hidden_of(library: &Library, posterior: &Posterior) -> HiddenParameter {
+    posterior
+        .column_and_size()
+        .map_or(HiddenParameter::None, |(column, _)| library.columns[column].hidden)
 }

@@ -1,25 +1,26 @@
 //! Whether the data is enough for any name.
 
+use std::collections::BTreeMap;
+
 use effects::EffectPoint;
 
 use crate::library::Library;
-use crate::output::{Diagnosis, Gap, OutsideLibrary, Verdict, VerdictKind};
+use crate::output::verdict::{Insufficient, Verdict};
+use crate::output::{Diagnosis, Gap, OutsideLibrary};
 use crate::residuals::segments::PreparedFlights;
 use crate::thresholds::{FEWEST_FLIGHTS_OF_A_NAME, FEWEST_SEGMENTS_OF_A_NAME, LEAST_SPREADS};
 
 /// Why the data is too little for any name.
-pub(crate) fn too_little(data: &PreparedFlights<'_>, library: &Library) -> Option<String> {
+pub(crate) fn too_little(data: &PreparedFlights<'_>, library: &Library) -> Option<Insufficient> {
     let (flights, segments) = (data.flights.len(), data.segments.len());
     if flights < FEWEST_FLIGHTS_OF_A_NAME {
-        return Some(format!("{flights} flights, at least {FEWEST_FLIGHTS_OF_A_NAME} are needed"));
+        return Some(Insufficient::Flights { found: flights, needed: FEWEST_FLIGHTS_OF_A_NAME });
     }
     if segments < FEWEST_SEGMENTS_OF_A_NAME {
-        return Some(format!(
-            "{segments} segments, at least {FEWEST_SEGMENTS_OF_A_NAME} are needed"
-        ));
+        return Some(Insufficient::Segments { found: segments, needed: FEWEST_SEGMENTS_OF_A_NAME });
     }
     if library.effects.is_empty() {
-        return Some("no effect of the library can be tested".to_owned());
+        return Some(Insufficient::NothingTestable);
     }
     let spread = |of: &dyn Fn(&EffectPoint) -> f64| {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -37,50 +38,32 @@ pub(crate) fn too_little(data: &PreparedFlights<'_>, library: &Library) -> Optio
         spread(&|p| p.static_air_temperature_k) > LEAST_SPREADS[3],
     ];
     if conditions.iter().filter(|varied| **varied).count() < 2 {
-        return Some("all segments were flown at the same conditions".to_owned());
+        return Some(Insufficient::OneCondition);
     }
     let first = data.segments[0].residual[0];
     if data.segments.iter().all(|row| (row.residual[0] - first).abs() < 1e-12) {
-        return Some(
-            "the residuals of all segments are equal: fuel flow was computed, not measured"
-                .to_owned(),
-        );
+        return Some(Insufficient::ComputedFuelFlow);
     }
     None
 }
 
-pub(crate) fn insufficient(flights: usize, segments: usize, reason: &str) -> Diagnosis {
+pub(crate) const fn insufficient(
+    flights: usize,
+    segments: usize,
+    reason: Insufficient,
+) -> Diagnosis {
     Diagnosis {
-        tail: String::new(),
         flights,
         segments,
-        gap: Gap {
-            mean_percent: 0.0,
-            rms_percent: 0.0,
-            rms_ci95: [0.0; 2],
-            noise_floor_rms_percent: 0.0,
-            floor_by_replicates_rms_percent: None,
-            floor_by_held_out_fit_rms_percent: None,
-            detected: false,
-            p_value: 1.0,
-        },
+        gap: Gap::UNMEASURED,
         r#where: vec![],
         causes: vec![],
         not_testable: vec![],
-        verdict: Verdict {
-            kind: VerdictKind::InsufficientData,
-            effects: vec![],
-            class: vec![],
-            probability: 0.0,
-            closure: None,
-            closure_ci95: None,
-            advice: format!("Too little data: {reason}."),
-            separations: vec![],
-        },
+        verdict: Verdict::InsufficientData(reason),
         addition: None,
         detectable: vec![],
         outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None },
-        left_out: std::collections::BTreeMap::new(),
+        left_out: BTreeMap::new(),
         notes: vec![],
     }
 }

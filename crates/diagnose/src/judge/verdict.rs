@@ -1,13 +1,15 @@
-//! What is said in the end: a name, its class, advice; or that nothing in the library fits.
+//! The conclusion: an effect, its class, advice; or that nothing in the library fits.
 
-use core::fmt::Write as _;
+use flight::effect::EffectId;
 
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
-use crate::judge::posterior::{Posterior, class_of, name_of};
+use crate::judge::posterior::{Posterior, class_of, closed_unseen, id_of};
 use crate::library::Library;
-use crate::output::{Separation, Verdict, VerdictKind};
+use crate::output::measurement::Separation;
+use crate::output::note::Note;
+use crate::output::verdict::{Found, Rest, RestKind, Unexplained, Verdict};
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
 use crate::search::system::Problem;
@@ -69,86 +71,50 @@ pub(crate) struct Findings<'a> {
     pub(crate) unseen: Option<&'a Shrinkage>,
 }
 
-/// The verdict; what else it would say goes to `notes`.
-pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<String>) -> Verdict {
-    let &Findings { analysis, library, distances, advisor, outside, smooth_term, .. } = findings;
-    let &Findings { posteriors, own, unseen, .. } = findings;
-    let closure = unseen.and_then(Shrinkage::closure);
-    let mut verdict = Verdict {
-        kind: VerdictKind::NoGap,
-        effects: vec![],
-        class: vec![],
-        probability: 0.0,
-        closure: closure.map(|c| c.0),
-        closure_ci95: closure.map(|c| c.1),
-        advice: String::new(),
-        separations: vec![],
-    };
-    let Some(top) = posteriors.first() else {
-        verdict.closure = None;
-        verdict.closure_ci95 = None;
-        "Nothing beyond the noise. `detectable` says how large each effect would have to be."
-            .clone_into(&mut verdict.advice);
-        return verdict;
-    };
+/// The verdict; what named effects leave goes to `notes` too.
+pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict {
+    let &Findings { library, outside, smooth_term, posteriors, own, unseen, .. } = findings;
+    let Some(top) = posteriors.first() else { return Verdict::NoGap };
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
-    let variable = outside.variable.map_or("no variable", |(variable, _)| variable.words());
+    let variable = outside.variable.map(|(variable, _)| variable);
     let closed = closed(unseen, own);
     if outside.probability > OUTSIDE_PROBABILITY
         || (smooth_term > OUTSIDE_PROBABILITY && named < MORE_PROBABLE_THAN_NOT)
     {
-        verdict.kind = VerdictKind::OutsideLibrary;
-        verdict.probability = outside.probability.max(1.0 - named);
-        verdict.advice =
-            format!("A gap that no effect of the library explains; it hangs on {variable}.");
-        if let Some((closed, _)) = closed {
-            let _ = write!(
-                verdict.advice,
-                " The nearest, {}, closes {:.0} % of it.",
-                name_of(library, top.effect),
-                100.0 * closed.clamp(0.0, 1.0)
-            );
-        }
-        return verdict;
+        return Verdict::OutsideLibrary(Unexplained {
+            probability: outside.probability.max(1.0 - named),
+            closure: closed_unseen(unseen),
+            variable,
+            nearest: id_of(library, top.effect),
+            nearest_closes: closed.map(|(share, _)| share),
+        });
     }
-    verdict.kind = VerdictKind::Effects;
-    verdict.probability = top.probability * (1.0 - outside.probability);
-    verdict.effects = set_of(analysis, library, top);
-    verdict.class = class_of(distances, library, top);
+    let is_form =
+        closed.is_none_or(|(share, _)| share >= f64::midpoint(OTHER_FORM[0], OTHER_FORM[1]));
+    let kind = if is_form { RestKind::OtherForm } else { RestKind::SomethingElse };
+    let rest = (smooth_term > OUTSIDE_PROBABILITY).then_some(Rest { kind, variable });
+    notes.extend(rest.map(Note::Rest));
+    Verdict::Effects(found(findings, top, rest))
+}
+
+/// The effects that the leading cause is of, and what it could be taken for.
+fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
+    let &Findings { analysis, library, distances, advisor, outside, posteriors, .. } = findings;
+    let mut class = class_of(distances, library, top);
     // What the evidence leaves open belongs to the class too, however far apart sizes typical of it would be.
     for posterior in credible(posteriors) {
-        let name = name_of(library, posterior.effect);
-        if !verdict.class.contains(&name) {
-            verdict.class.push(name);
+        let id = id_of(library, posterior.effect);
+        if !class.contains(&id) {
+            class.push(id);
         }
     }
-    verdict.separations = separations(advisor, library, top, &verdict.class);
-    let rest = (smooth_term > OUTSIDE_PROBABILITY).then(|| Rest {
-        variable,
-        is_form: closed
-            .is_none_or(|(share, _)| share >= f64::midpoint(OTHER_FORM[0], OTHER_FORM[1])),
-    });
-    if let Some(rest) = &rest {
-        notes.push(rest.words());
-    }
-    verdict.advice = advice(&verdict, rest.as_ref());
-    verdict
-}
-
-/// What an agnostic function sees beside a named effect.
-struct Rest {
-    variable: &'static str,
-    /// The effect itself in another form; else something else.
-    is_form: bool,
-}
-
-impl Rest {
-    fn words(&self) -> String {
-        if self.is_form {
-            format!("the form of the effect differs in {}", self.variable)
-        } else {
-            format!("something else acts beside the effect; it hangs on {}", self.variable)
-        }
+    Found {
+        effects: set_of(analysis, library, top),
+        probability: top.probability * (1.0 - outside.probability),
+        closure: closed_unseen(findings.unseen),
+        rest,
+        separations: separations(advisor, library, top, &class),
+        class,
     }
 }
 
@@ -164,20 +130,20 @@ fn credible(posteriors: &[Posterior]) -> impl Iterator<Item = &Posterior> {
 }
 
 /// The effects that act together, where a pair is more probable than not; else the top effect.
-fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<String> {
+fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<EffectId> {
     let (best, probability) = &analysis.models[0];
-    let mut names = vec![name_of(library, top.effect)];
+    let mut set = vec![id_of(library, top.effect)];
     if *probability > MORE_PROBABLE_THAN_NOT {
         let members = best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
         let scatter = best.model.flight_scatter_percent.map(|_| None);
         for member in members.chain(scatter) {
-            let name = name_of(library, member);
-            if !names.contains(&name) {
-                names.push(name);
+            let id = id_of(library, member);
+            if !set.contains(&id) {
+                set.push(id);
             }
         }
     }
-    names
+    set
 }
 
 /// Who is asked for advice: about the leading effect of every probable cause, and what could be taken for it.
@@ -204,36 +170,15 @@ fn separations(
     advisor: &Advisor<'_>,
     library: &Library,
     top: &Posterior,
-    class: &[String],
+    class: &[EffectId],
 ) -> Vec<Separation> {
     let Some((column, size)) = top.column_and_size() else { return vec![] };
     let mut all = Vec::new();
     for (index, effect) in library.effects.iter().enumerate() {
-        if Some(index) != top.effect && class.contains(&effect.id.to_string()) {
+        if Some(index) != top.effect && class.contains(&effect.id) {
             all.extend(advisor.between(column, size, index));
         }
     }
     best_first(&mut all);
     all
-}
-
-fn advice(verdict: &Verdict, rest: Option<&Rest>) -> String {
-    let mut words = if verdict.class.len() > 1 {
-        format!("One of {}: these flights cannot tell them apart.", verdict.class.join(", "))
-    } else {
-        format!("{}.", verdict.effects.join(" and "))
-    };
-    match rest {
-        Some(Rest { variable, is_form: true }) => {
-            let _ = write!(words, " Its form differs from the library's in {variable}.");
-        }
-        Some(Rest { variable, is_form: false }) => {
-            let _ = write!(words, " Something else acts beside it, which hangs on {variable}.");
-        }
-        None => {}
-    }
-    if let Some(best) = verdict.separations.first() {
-        let _ = write!(words, " To be sure: {} ({}).", best.measurement, best.distances_told());
-    }
-    words
 }

@@ -1,45 +1,39 @@
-//! Variables that describe a region: their names, their edges, and which bin a segment is in.
-
-use std::collections::BTreeMap;
+//! Variables that a place is said in: their edges, and which bin a segment is in.
 
 use effects::EffectReferences;
 
+use crate::output::region::{Condition, Edge};
 use crate::residuals::rows::SegmentRow;
 use crate::signals::variables::Variable;
 use crate::thresholds::{BINS, EDGE_TOLERANCE, ROLL_EDGES_DEG};
 
-/// A variable, the name of its bounds (a column, unit in the name), and its name and unit in words.
-type Entry = (Variable, &'static str, &'static str, &'static str);
-
-/// Variables of regions but engine; of two that describe a region equally well, the earlier one is reported.
-const ENTRIES: [Entry; 16] = [
-    (Variable::Mach, "mach", "mach", ""),
-    (Variable::LiftCoefficient, "lift_coefficient", "lift_coefficient", ""),
-    (Variable::PressureAltitude, "pressure_altitude_m", "pressure_altitude", " m"),
-    (Variable::CorrectedThrust, "corrected_thrust_ratio", "corrected_thrust_ratio", ""),
-    (Variable::N2, "n2_percent", "n2", " %"),
-    (Variable::IsaDeviation, "isa_deviation_k", "isa_deviation", " K"),
-    (Variable::StaticAirTemperature, "static_air_temperature_k", "static_air_temperature", " K"),
-    (Variable::FuelUsed, "fuel_used_kg", "fuel_used", " kg"),
-    (Variable::Mass, "mass_kg", "mass", " kg"),
-    (Variable::Date, "date_s", "date", ""),
-    (Variable::Roll, "roll_deg", "roll", " deg"),
-    (Variable::Acceleration, "acceleration_m_s2", "acceleration", " m/s2"),
-    (Variable::CrossWind, "cross_wind_m_s", "cross_wind", " m/s"),
-    (Variable::Latitude, "latitude_deg", "latitude", " deg"),
-    (Variable::CenterOfGravity, "center_of_gravity_percent_mac", "center_of_gravity", " %MAC"),
-    (Variable::EastwardSpeed, "eastward_speed_m_s", "eastward_speed", " m/s"),
+/// The variables that places are said in, besides the engine.
+const VARIABLES: [Variable; 16] = [
+    Variable::Mach,
+    Variable::LiftCoefficient,
+    Variable::PressureAltitude,
+    Variable::CorrectedThrust,
+    Variable::N2,
+    Variable::IsaDeviation,
+    Variable::StaticAirTemperature,
+    Variable::FuelUsed,
+    Variable::Mass,
+    Variable::Date,
+    Variable::Roll,
+    Variable::Acceleration,
+    Variable::CrossWind,
+    Variable::Latitude,
+    Variable::CenterOfGravity,
+    Variable::EastwardSpeed,
 ];
-/// Name of the bounds of an engine.
-pub(crate) const ENGINE: &str = "engine";
 
 /// A variable cut into bins.
 #[derive(Clone, Debug)]
 pub(crate) struct BinnedVariable {
-    entry: Entry,
+    variable: Variable,
     /// Inner edges, ascending; a segment is in bin k where exactly k edges are not above its value.
     edges: Vec<f64>,
-    /// Of dates: the instant of the last flight before each edge.
+    /// The largest value below each edge: of dates the last segment before it.
     before: Vec<f64>,
     /// Bin of each segment.
     pub(crate) bins: Vec<u8>,
@@ -59,35 +53,30 @@ pub(crate) fn value_of(
     }
 }
 
-/// The variable whose bounds have this name; `None` for an engine's, and for an unknown name.
-pub(crate) fn variable_named(name: &str) -> Option<Variable> {
-    ENTRIES.iter().find(|entry| entry.1 == name).map(|entry| entry.0)
-}
-
 /// Every variable that all segments have, and that falls into two bins at least.
 pub(crate) fn places(
     segments: &[SegmentRow],
     references: &EffectReferences,
 ) -> Vec<BinnedVariable> {
-    ENTRIES
+    VARIABLES
         .into_iter()
-        .filter_map(|entry| {
+        .filter_map(|variable| {
             let values: Option<Vec<f64>> =
-                segments.iter().map(|row| value_of(entry.0, row, references)).collect();
-            BinnedVariable::new(entry, &values?)
+                segments.iter().map(|row| value_of(variable, row, references)).collect();
+            BinnedVariable::new(variable, &values?)
         })
         .collect()
 }
 
 impl BinnedVariable {
-    fn new(entry: Entry, values: &[f64]) -> Option<Self> {
+    fn new(variable: Variable, values: &[f64]) -> Option<Self> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let (first, last) = (*sorted.first()?, *sorted.last()?);
         if !first.is_finite() || !last.is_finite() {
             return None;
         }
-        let mut edges: Vec<f64> = match entry.0 {
+        let mut edges: Vec<f64> = match variable {
             Variable::Roll => ROLL_EDGES_DEG.to_vec(),
             Variable::Date => (1..BINS).map(|k| flight_boundary(&sorted, share(k))).collect(),
             _ => (1..BINS).filter_map(|k| readable_edge(&sorted, share(k))).collect(),
@@ -102,73 +91,22 @@ impl BinnedVariable {
             .map(|edge| sorted[sorted.partition_point(|value| value < edge) - 1])
             .collect();
         let bins = values.iter().map(|&value| bin(&edges, value)).collect();
-        Some(Self { entry, edges, before, bins })
+        Some(Self { variable, edges, before, bins })
     }
 
     pub(crate) fn count(&self) -> usize {
         self.edges.len() + 1
     }
 
-    /// Bounds of bins `low..high`: not below the first, below the second; open ends without number.
-    pub(crate) fn bounds(&self, low: usize, high: usize) -> (String, [Option<f64>; 2]) {
-        let from = (low > 0).then(|| self.edges[low - 1]);
-        let to = (high < self.count()).then(|| self.edges[high - 1]);
-        (self.entry.1.to_owned(), [from, to])
-    }
-
-    /// Bins `low..high` in words.
-    pub(crate) fn words(&self, low: usize, high: usize) -> String {
-        let (_, name, unit) = (self.entry.1, self.entry.2, self.entry.3);
-        let (_, [from, to]) = self.bounds(low, high);
-        if self.entry.0 == Variable::Date {
-            return self.dates(low, high);
-        }
-        match (from, to) {
-            (Some(from), Some(to)) => format!("{name} {from} to {to}{unit}"),
-            (Some(from), None) => format!("{name} >= {from}{unit}"),
-            (None, Some(to)) => format!("{name} < {to}{unit}"),
-            (None, None) => name.to_owned(),
+    /// Bins `low..high` as a condition; open at the ends.
+    pub(crate) fn condition(&self, low: usize, high: usize) -> Condition {
+        let edge = |edge: usize| Edge { value: self.edges[edge], flown_below: self.before[edge] };
+        Condition {
+            variable: self.variable,
+            from: (low > 0).then(|| edge(low - 1)),
+            to: (high < self.count()).then(|| edge(high - 1)),
         }
     }
-
-    /// "after" is after the day of the last flight before; "before" is before the day of the first flight beyond. Where
-    /// both sides of an edge were flown on one day, its time is said too.
-    fn dates(&self, low: usize, high: usize) -> String {
-        let words = |edge: usize, of_before: bool| {
-            let (before_s, from_s) = (self.before[edge], self.edges[edge]);
-            let (before, from) = (instant(before_s), instant(from_s));
-            let same_day = before.get(..10) == from.get(..10);
-            let chosen = if of_before { before } else { from };
-            if same_day { chosen } else { chosen.get(..10).unwrap_or(&chosen).to_owned() }
-        };
-        let after = (low > 0).then(|| words(low - 1, true));
-        let before = (high < self.count()).then(|| words(high - 1, false));
-        match (after, before) {
-            (Some(after), Some(before)) => format!("after {after} and before {before}"),
-            (Some(after), None) => format!("after {after}"),
-            (None, Some(before)) => format!("before {before}"),
-            (None, None) => "date".to_owned(),
-        }
-    }
-}
-
-/// Whether a value lies within bounds.
-pub(crate) fn is_within(value: f64, bounds: [Option<f64>; 2]) -> bool {
-    bounds[0].is_none_or(|from| value >= from) && bounds[1].is_none_or(|to| value < to)
-}
-
-/// Names of bounds that are not known here.
-pub(crate) fn unknown_names(bounds: &BTreeMap<String, [Option<f64>; 2]>) -> Vec<&str> {
-    bounds
-        .keys()
-        .map(String::as_str)
-        .filter(|name| *name != ENGINE && variable_named(name).is_none())
-        .collect()
-}
-
-fn instant(seconds: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
-    flight::Timestamp::from_second(seconds as i64).map_or_else(|_| String::new(), |t| t.to_string())
 }
 
 const fn share(edge: usize) -> f64 {
@@ -253,13 +191,14 @@ mod tests {
     #[test]
     fn quintiles_of_a_hundred() {
         let values: Vec<f64> = (0..100).map(f64::from).collect();
-        let place = BinnedVariable::new(ENTRIES[8], &values).unwrap();
+        let place = BinnedVariable::new(Variable::Mass, &values).unwrap();
         assert_eq!(place.edges, [20.0, 40.0, 60.0, 80.0]);
         assert_eq!(place.bins[79..81], [3, 4]);
-        assert_eq!(place.words(4, 5), "mass >= 80 kg");
-        assert_eq!(place.words(1, 3), "mass 20 to 60 kg");
-        assert_eq!(place.words(0, 1), "mass < 20 kg");
-        assert_eq!(place.bounds(0, 1), ("mass_kg".to_owned(), [None, Some(20.0)]));
+        let edge = |value: f64| Some(Edge { value, flown_below: value - 1.0 });
+        let mass = |from, to| Condition { variable: Variable::Mass, from, to };
+        assert_eq!(place.condition(4, 5), mass(edge(80.0), None));
+        assert_eq!(place.condition(1, 3), mass(edge(20.0), edge(60.0)));
+        assert_eq!(place.condition(0, 1), mass(None, edge(20.0)));
     }
 
     #[test]
@@ -267,22 +206,19 @@ mod tests {
         // Ten flights of ten segments, a day apart from 2019-06-01T00:00Z on (1 559 347 200 s).
         let values: Vec<f64> =
             (0..100).map(|k| 1_559_347_200.0 + 86_400.0 * f64::from(k / 10)).collect();
-        let place = BinnedVariable::new(ENTRIES[9], &values).unwrap();
+        let place = BinnedVariable::new(Variable::Date, &values).unwrap();
         assert_eq!(place.count(), 5);
-        assert_eq!(place.words(4, 5), "after 2019-06-08");
-        assert_eq!(place.words(0, 1), "before 2019-06-03");
-        assert_eq!(place.words(1, 2), "after 2019-06-02 and before 2019-06-05");
-        assert_eq!(place.bounds(4, 5).1, [Some(1_559_347_200.0 + 8.0 * 86_400.0), None]);
-        // Two flights on one day: the time tells them apart.
-        let values: Vec<f64> =
-            (0..10).map(|k| 1_559_347_200.0 + 3600.0 * f64::from(k / 5)).collect();
-        let place = BinnedVariable::new(ENTRIES[9], &values).unwrap();
-        assert_eq!(place.words(1, 2), "after 2019-06-01T00:00:00Z");
+        // Midnight before the ninth flight, and the flight of the day before.
+        let from = place.condition(4, 5).from.unwrap();
+        assert!((from.value - (1_559_347_200.0 + 8.0 * 86_400.0)).abs() < 1e-9);
+        assert!((from.flown_below - (1_559_347_200.0 + 7.0 * 86_400.0)).abs() < 1e-9);
+        assert_eq!(place.condition(4, 5).to, None);
+        assert_eq!(place.condition(0, 1).from, None);
     }
 
     #[test]
     fn what_does_not_vary_is_no_place() {
-        assert!(BinnedVariable::new(ENTRIES[0], &[0.8; 50]).is_none());
-        assert!(BinnedVariable::new(ENTRIES[0], &[0.8, f64::NAN]).is_none());
+        assert!(BinnedVariable::new(Variable::Mach, &[0.8; 50]).is_none());
+        assert!(BinnedVariable::new(Variable::Mach, &[0.8, f64::NAN]).is_none());
     }
 }

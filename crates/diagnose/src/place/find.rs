@@ -4,16 +4,15 @@
 //! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
 //! is linear in segments.
 
-use std::collections::BTreeMap;
-
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::output::Slice;
-use crate::place::binned_variable::{BinnedVariable, ENGINE, places};
+use crate::output::region::Region;
+use crate::place::binned_variable::{BinnedVariable, places};
 use crate::place::draws::{NoiseLevel, chords, draw};
 use crate::place::likelihood::Noise;
 use crate::place::null::Null;
-use crate::place::regions::{Region, Search, Series};
+use crate::place::regions::{BinnedRegion, Search, Series};
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
 use crate::signals::channels::MAXIMUM_CHANNELS;
@@ -71,7 +70,7 @@ pub(crate) fn find(
     while found.len() < MOST_REGIONS {
         let statistics = statistics(&search, &null, &left);
         if found.is_empty() {
-            let level = search.regions.iter().position(Region::is_everywhere);
+            let level = search.regions.iter().position(BinnedRegion::is_everywhere);
             everywhere = (level.map_or(1.0, |k| null.p_value_everywhere(statistics[k])), level);
         }
         let Some((index, members)) = best(&search, &statistics, &told, &left, &noise) else {
@@ -291,7 +290,7 @@ fn best(
 }
 
 /// Removes what distinguishes a region: its excess over the rest, or what its engine does apart from the others.
-fn take_out(left: &mut Gaps, candidate: &Region, members: &[usize], engines: usize) {
+fn take_out(left: &mut Gaps, candidate: &BinnedRegion, members: &[usize], engines: usize) {
     let count = members.len() as f64;
     let mean_of = |values: &[f64]| members.iter().map(|&k| values[k]).sum::<f64>() / count;
     match candidate.series {
@@ -349,7 +348,7 @@ impl Told<'_> {
 
     /// The engine that a region is reported for. Two engines share one series (their contrast), so the one whose own gap is
     /// larger is named.
-    fn engine(&self, candidate: &Region, members: &[usize]) -> Option<usize> {
+    fn engine(&self, candidate: &BinnedRegion, members: &[usize]) -> Option<usize> {
         let Series::Engine(engine) = candidate.series else { return None };
         if self.gaps.apart.len() != 2 {
             return Some(engine);
@@ -362,32 +361,24 @@ impl Told<'_> {
         self.gaps.total[segment] + engine.map_or(0.0, |engine| self.gaps.apart[engine][segment])
     }
 
-    fn mean(&self, candidate: &Region, members: &[usize]) -> f64 {
+    fn mean(&self, candidate: &BinnedRegion, members: &[usize]) -> f64 {
         let engine = self.engine(candidate, members);
         members.iter().map(|&k| self.value(engine, k)).sum::<f64>() / members.len() as f64
     }
 
-    fn slice(&self, candidate: &Region, members: &[usize], p_value: f64, seed: u64) -> Slice {
+    fn slice(&self, candidate: &BinnedRegion, members: &[usize], p_value: f64, seed: u64) -> Slice {
         let engine = self.engine(candidate, members);
         let by_flight = self.by_flight(members, |segment| self.value(engine, segment));
-        let mut words = Vec::new();
-        let mut bounds = BTreeMap::new();
-        if let Some(engine) = engine {
-            let number = (engine + 1) as f64;
-            words.push(format!("engine {number}"));
-            bounds.insert(ENGINE.to_owned(), [Some(number), Some(number)]);
-        }
-        for &(place, low, high) in candidate.ranges.iter().flatten() {
-            words.push(self.places[place].words(low, high));
-            let (name, range) = self.places[place].bounds(low, high);
-            bounds.insert(name, range);
-        }
-        if words.is_empty() {
-            words.push("everywhere".to_owned());
-        }
+        let conditions = candidate.ranges.iter().flatten();
+        #[expect(clippy::cast_possible_truncation, reason = "four engines at most")]
+        let region = Region {
+            engine: engine.map(|engine| (engine + 1) as u8),
+            conditions: conditions
+                .map(|&(place, low, high)| self.places[place].condition(low, high))
+                .collect(),
+        };
         Slice {
-            slice: words.join(" and "),
-            bounds,
+            region,
             segments: members.len(),
             mean_gap_percent: 100.0 * self.mean(candidate, members),
             ci95: bootstrap_mean(&by_flight, seed).map(|end| 100.0 * end),

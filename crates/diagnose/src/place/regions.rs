@@ -12,7 +12,7 @@ pub(crate) enum Series {
 
 /// A place: bins `low..high` of one or two variables, of all engines or of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Region {
+pub(crate) struct BinnedRegion {
     pub(crate) series: Series,
     /// Index of the variable, and its bins.
     pub(crate) ranges: [Option<(usize, usize, usize)>; 2],
@@ -20,7 +20,7 @@ pub(crate) struct Region {
     share: f64,
 }
 
-impl Region {
+impl BinnedRegion {
     pub(crate) fn holds(&self, places: &[BinnedVariable], segment: usize) -> bool {
         self.ranges.iter().flatten().all(|&(place, low, high)| {
             let bin = usize::from(places[place].bins[segment]);
@@ -60,7 +60,7 @@ pub(crate) struct Search<'a> {
     tables: Vec<Table>,
     cells: usize,
     /// Ordered by table.
-    pub(crate) regions: Vec<Region>,
+    pub(crate) regions: Vec<BinnedRegion>,
     segments: usize,
     series: Vec<Series>,
 }
@@ -128,7 +128,7 @@ impl<'a> Search<'a> {
                     variables[1].map(|place| (place, left, right)),
                 ];
                 let series = self.series[series];
-                self.regions.push(Region { series, ranges, table, share });
+                self.regions.push(BinnedRegion { series, ranges, table, share });
             }
         }
     }

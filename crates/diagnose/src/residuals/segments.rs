@@ -13,6 +13,7 @@ use perf_model::variance::mean_acceleration_deviation_m_s2;
 use crate::baseline::Baseline;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::library::Library;
+use crate::output::note::{LeftOutReason, Note};
 use crate::residuals::chords::chord_errors;
 use crate::residuals::gauges::gauge_row;
 use crate::residuals::predictor::Predictor;
@@ -37,7 +38,7 @@ pub(crate) struct PreparedFlights<'a> {
     pub(crate) flights: Vec<FlightRows>,
     pub(crate) segments: Vec<SegmentRow>,
     /// Segments that were left out, by reason.
-    pub(crate) left_out: BTreeMap<String, usize>,
+    pub(crate) left_out: BTreeMap<LeftOutReason, usize>,
 }
 
 /// A segment that the model can predict, before signatures.
@@ -64,7 +65,7 @@ impl Inside<'_> {
 fn inside<'a>(
     model: &EffectModel<'_>,
     flights: &[FlightRecord<'a>],
-    left_out: &mut BTreeMap<String, usize>,
+    left_out: &mut BTreeMap<LeftOutReason, usize>,
 ) -> Vec<(Vec<Inside<'a>>, Option<GaugeBurn>)> {
     let engines = model.aircraft().engines();
     let mut all = Vec::with_capacity(flights.len());
@@ -80,8 +81,8 @@ fn inside<'a>(
             let flow_kg_s = segment.means.fuel_flow_total_kg_s;
             match found {
                 Ok(inside) if flow_kg_s.is_finite() && flow_kg_s > 0.0 => kept.push(inside),
-                Ok(_) => *left_out.entry("fuel flow not positive".to_owned()).or_default() += 1,
-                Err(error) => *left_out.entry(reason(&error).to_owned()).or_default() += 1,
+                Ok(_) => *left_out.entry(LeftOutReason::FuelFlowNotPositive).or_default() += 1,
+                Err(error) => *left_out.entry(reason(&error)).or_default() += 1,
             }
         }
         if !kept.is_empty() {
@@ -91,13 +92,13 @@ fn inside<'a>(
     all
 }
 
-pub(crate) fn reason(error: &effects::EffectError) -> &'static str {
+const fn reason(error: &effects::EffectError) -> LeftOutReason {
     use effects::EffectError;
     match error {
-        EffectError::OutsideTable { .. } => "outside the drag table",
-        EffectError::OutOfDomain(_) => "a mean outside its domain",
-        EffectError::ThrustNotPositive { .. } => "no thrust left",
-        _ => "not predictable",
+        EffectError::OutsideTable { .. } => LeftOutReason::OutsideTable,
+        EffectError::OutOfDomain(_) => LeftOutReason::OutOfDomain,
+        EffectError::ThrustNotPositive { .. } => LeftOutReason::NoThrust,
+        _ => LeftOutReason::NotPredictable,
     }
 }
 
@@ -140,7 +141,7 @@ impl<'a> PreparedFlights<'a> {
                 match data.row(model, &segment, &library, &differences, &statistics) {
                     Ok(row) => data.segments.push(row),
                     Err(error) => {
-                        *data.left_out.entry(reason(&error).to_owned()).or_default() += 1;
+                        *data.left_out.entry(reason(&error)).or_default() += 1;
                     }
                 }
             }
@@ -253,20 +254,16 @@ impl<'a> PreparedFlights<'a> {
         signatures
     }
 
-    /// How often a recorded N2 belongs to no thrust near the predicted one.
-    pub(crate) fn thrust_by_n2_note(&self, library: &Library) -> Option<String> {
+    /// Where N2 is recorded but indicates no thrust near the predicted one: how often.
+    pub(crate) fn thrust_by_n2_note(&self, library: &Library) -> Option<Note> {
         let recorded = self.segments.iter().filter(|row| row.n2_percent.is_some()).count();
         let silent = |row: &&SegmentRow| {
             row.n2_percent.is_some() && row.point.corrected_thrust_by_n2_n.is_none()
         };
         let silent = self.segments.iter().filter(silent).count();
         let looked_for = library.effects.iter().any(|e| e.id == EffectId::TsfcThrottle);
-        (self.channels.n2 && looked_for && silent > 0).then(|| {
-            format!(
-                "N2 of {silent} of {recorded} segments stands for no thrust near the predicted one: \
-                 tsfc_throttle is over corrected thrust there"
-            )
-        })
+        (self.channels.n2 && looked_for && silent > 0)
+            .then_some(Note::N2WithoutThrust { silent, recorded })
     }
 
     /// Values that were recorded in a flight: channels of its segments, and gauges. A channel that is not recorded in a

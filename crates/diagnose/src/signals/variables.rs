@@ -1,6 +1,7 @@
 //! The physical variables that a gap may hang on, and hat functions over them.
 
 use effects::{EffectPoint, EffectReferences, Response};
+use flight::effect::DrivingVariable;
 use serde::{Deserialize, Serialize};
 use units::convert::RADIANS_PER_DEGREE;
 
@@ -9,7 +10,6 @@ use crate::math::quantile::{QuantileType, quantile};
 /// A variable of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-#[non_exhaustive]
 pub enum Variable {
     /// Mach number.
     Mach,
@@ -23,7 +23,7 @@ pub enum Variable {
     IsaDeviation,
     /// Static air temperature, K.
     StaticAirTemperature,
-    /// Date, years since the reference.
+    /// Date: years since the reference; the bounds of a region are s since 1970.
     Date,
     /// Fuel used, kg.
     FuelUsed,
@@ -56,34 +56,6 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// In words, as verdicts and pages say it.
-    #[must_use]
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Mach => "Mach number",
-            Self::LiftCoefficient => "lift coefficient",
-            Self::PressureAltitude => "pressure altitude",
-            Self::CorrectedThrust => "corrected thrust",
-            Self::IsaDeviation => "ISA deviation",
-            Self::StaticAirTemperature => "SAT",
-            Self::Date => "date",
-            Self::FuelUsed => "fuel used",
-            Self::Roll => "roll",
-            Self::Acceleration => "acceleration",
-            Self::CrossWind => "cross-wind",
-            Self::Latitude => "latitude",
-            Self::EastwardSpeed => "eastward speed",
-            Self::CenterOfGravity => "CG",
-            Self::Mass => "mass",
-            Self::LatitudeCrossWind => "latitude with cross-wind",
-            Self::CenterOfGravityLift => "CG with lift coefficient",
-            Self::MachLift => "Mach number with lift coefficient",
-            Self::MachExcess => "high Mach number",
-            Self::Engine => "engine",
-            Self::N2 => "N2",
-        }
-    }
-
     /// The value at a segment; `None` where an input is not recorded.
     pub(crate) fn value(
         self,
@@ -165,6 +137,30 @@ impl Variable {
             }
             Self::Mass => response.mass_kg,
             _ => 0.0,
+        }
+    }
+}
+
+/// The variable that bounds of a region are said in.
+impl From<DrivingVariable> for Variable {
+    fn from(driver: DrivingVariable) -> Self {
+        match driver {
+            DrivingVariable::Mach => Self::Mach,
+            DrivingVariable::StaticAirTemperature => Self::StaticAirTemperature,
+            DrivingVariable::PressureAltitude => Self::PressureAltitude,
+            DrivingVariable::Roll => Self::Roll,
+            DrivingVariable::CorrectedThrust => Self::CorrectedThrust,
+            DrivingVariable::N2 => Self::N2,
+            DrivingVariable::CrossWind => Self::CrossWind,
+            DrivingVariable::Latitude => Self::Latitude,
+            DrivingVariable::Date => Self::Date,
+            DrivingVariable::FuelUsed => Self::FuelUsed,
+            DrivingVariable::Mass => Self::Mass,
+            DrivingVariable::CenterOfGravity => Self::CenterOfGravity,
+            DrivingVariable::LiftCoefficient => Self::LiftCoefficient,
+            DrivingVariable::IsaDeviation => Self::IsaDeviation,
+            DrivingVariable::EastwardSpeed => Self::EastwardSpeed,
+            DrivingVariable::Engine => Self::Engine,
         }
     }
 }

@@ -1,9 +1,10 @@
 use std::sync::Arc;
 
 use flight::effect::{HiddenParameter, StepTarget, ThrottleArgument};
-use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment};
+use flight::{Cruise, FlightIdentity, Segment};
 use lut::surface::{Basis, Surface};
 use perf_model::PerformanceModel;
+use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, Temperature, TrueAirspeed};
 
 use super::*;
 use crate::mean::mean_references;
@@ -225,30 +226,18 @@ fn segment() -> Segment {
         rows: vec![3, 4, 5, 7, 8, 9, 10, 12],
         means: SegmentMeans {
             time_s: 570.25,
-            pressure_altitude_m: 12_496.8,
-            static_air_temperature_k: 220.4,
-            mach: 0.803,
-            true_airspeed_m_s: 239.4,
             ground_speed_m_s: 215.0,
             acceleration_m_s2: 0.004,
-            vertical_speed_m_s: 0.0,
-            mass_kg: 13_500.0,
-            fuel_flow_total_kg_s: 0.5,
             fuel_flow_engine_kg_s: vec![0.26, 0.24],
             fuel_used_kg: 1000.0,
-            drift_deg: None,
-            roll_deg: None,
-            roll_squared_deg2: None,
-            n2_percent: vec![],
-            latitude_deg: None,
-            longitude_deg: None,
-            true_heading_deg: None,
-            center_of_gravity_percent_mac: None,
-            total_air_temperature_k: None,
-            n1_percent: [None; MAXIMUM_ENGINES],
-            exhaust_gas_temperature_k: [None; MAXIMUM_ENGINES],
-            fuel_quantity_kg: None,
-            anti_ice: None,
+            ..SegmentMeans::cruise(&Cruise {
+                pressure_altitude: PressureAltitude::meters(12_496.8),
+                static_air_temperature: Temperature::kelvin(220.4),
+                mach: Mach::new(0.803),
+                true_airspeed: TrueAirspeed::meters_per_second(239.4),
+                mass: Mass::kilograms(13_500.0),
+                fuel_flow_total: FuelFlowTotal::kilograms_per_second(0.5),
+            })
         },
         temperature_assumed: false,
     }

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use flight::{FlightIdentity, SegmentMeans};
+use flight::{Cruise, FlightIdentity, SegmentMeans};
+use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, Temperature, TrueAirspeed};
 
 use super::*;
 use crate::{Guide, PerformanceModel, initial_model};
@@ -32,30 +33,18 @@ pub(crate) fn segment() -> Segment {
         rows: vec![3, 4, 5, 7, 8, 9, 10, 12],
         means: SegmentMeans {
             time_s: 570.25,
-            pressure_altitude_m: 12_496.8,
-            static_air_temperature_k: 220.4,
-            mach: 0.803,
-            true_airspeed_m_s: 239.4,
             ground_speed_m_s: 215.0,
             acceleration_m_s2: 0.004,
-            vertical_speed_m_s: 0.0,
-            mass_kg: 29_000.0,
-            fuel_flow_total_kg_s: 0.5,
             fuel_flow_engine_kg_s: vec![0.26, 0.24],
             fuel_used_kg: 1000.0,
-            drift_deg: None,
-            roll_deg: None,
-            roll_squared_deg2: None,
-            n2_percent: vec![],
-            latitude_deg: None,
-            longitude_deg: None,
-            true_heading_deg: None,
-            center_of_gravity_percent_mac: None,
-            total_air_temperature_k: None,
-            n1_percent: [None; flight::MAXIMUM_ENGINES],
-            exhaust_gas_temperature_k: [None; flight::MAXIMUM_ENGINES],
-            fuel_quantity_kg: None,
-            anti_ice: None,
+            ..SegmentMeans::cruise(&Cruise {
+                pressure_altitude: PressureAltitude::meters(12_496.8),
+                static_air_temperature: Temperature::kelvin(220.4),
+                mach: Mach::new(0.803),
+                true_airspeed: TrueAirspeed::meters_per_second(239.4),
+                mass: Mass::kilograms(29_000.0),
+                fuel_flow_total: FuelFlowTotal::kilograms_per_second(0.5),
+            })
         },
         temperature_assumed: false,
     }

@@ -2,21 +2,30 @@
 
 use std::fmt::Write;
 
-use diagnose::{AddedEffect, Addition, UnknownEffect};
+use diagnose::{AddedEffect, Addition};
 use effects::{AppliedEffects, EffectModelError};
-use flight::effect::{EffectId, HiddenParameter};
+use flight::effect::HiddenParameter;
 use serde::{Deserialize, Serialize};
 
 use super::ModelFile;
+use crate::addition_record::{AdditionRecord, UnknownEffect};
+use crate::diagnosed_tail::POOL;
 
 /// What one diagnosis added to the model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AppliedRecord {
     /// Effects with sizes and hidden parameters, and what they are zero at.
     pub addition: Addition,
     /// Where they come from.
     pub diagnosis: DiagnosisRecord,
+}
+
+/// [`AppliedRecord`] as a model file has it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "AppliedRecord")]
+pub(super) struct AppliedText {
+    addition: AdditionRecord,
+    diagnosis: DiagnosisRecord,
 }
 
 /// A diagnosis that was applied.
@@ -39,16 +48,21 @@ pub struct DiagnosisRecord {
     pub class: Vec<String>,
 }
 
-/// Why a model cannot contain what a diagnosis found.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ExtendError {
-    /// A name that no effect has.
-    #[error(transparent)]
-    Unknown(#[from] UnknownEffect),
-    /// An effect that the model cannot take.
-    #[error(transparent)]
-    Effect(#[from] EffectModelError),
+impl From<&AppliedRecord> for AppliedText {
+    fn from(record: &AppliedRecord) -> Self {
+        Self {
+            addition: AdditionRecord::from(&record.addition),
+            diagnosis: record.diagnosis.clone(),
+        }
+    }
+}
+
+impl TryFrom<AppliedText> for AppliedRecord {
+    type Error = UnknownEffect;
+
+    fn try_from(text: AppliedText) -> Result<Self, UnknownEffect> {
+        Ok(Self { addition: Addition::try_from(text.addition)?, diagnosis: text.diagnosis })
+    }
 }
 
 impl AppliedRecord {
@@ -60,7 +74,7 @@ impl AppliedRecord {
 
 /// One effect with size and unit, in words.
 fn told(added: &AddedEffect) -> String {
-    let unit = EffectId::from_name(&added.effect).map_or("", |id| id.entry().unit);
+    let unit = added.effect.entry().unit;
     let mut words =
         format!("{} {:+.4} ± {:.4} {unit}", added.effect, added.size, added.standard_deviation);
     // Writing to a string cannot fail.
@@ -78,26 +92,19 @@ fn told(added: &AddedEffect) -> String {
 }
 
 /// Applied effects as the performance model takes them.
-///
-/// # Errors
-/// A name that no effect has.
-pub(super) fn layers_of(applied: &[AppliedRecord]) -> Result<AppliedEffects, UnknownEffect> {
-    let layers = applied
-        .iter()
-        .map(|record| record.addition.layer())
-        .collect::<Result<Vec<_>, UnknownEffect>>()?;
-    Ok(AppliedEffects::new(layers))
+pub(super) fn layers_of(applied: &[AppliedRecord]) -> AppliedEffects {
+    AppliedEffects::new(applied.iter().map(|record| record.addition.layer()).collect())
 }
 
 impl ModelFile {
     /// The model with the effects of one more diagnosis.
     ///
     /// # Errors
-    /// An effect of an unknown name, or one that the model cannot take.
-    pub fn extended(&self, record: AppliedRecord) -> Result<Self, ExtendError> {
+    /// An effect that the model cannot take.
+    pub fn extended(&self, record: AppliedRecord) -> Result<Self, EffectModelError> {
         let mut applied = self.applied.clone();
         applied.push(record);
-        let initial = self.initial.with_effects(layers_of(&applied)?)?;
+        let initial = self.initial.with_effects(layers_of(&applied))?;
         Ok(Self { initial, applied, ..self.clone() })
     }
 
@@ -105,7 +112,7 @@ impl ModelFile {
     pub fn tail(&self) -> Option<&str> {
         let applied = self.applied.last().map(|record| record.diagnosis.tail.as_str());
         let learnt = self.learnt.as_ref().map(|learnt| learnt.tail.as_str());
-        applied.filter(|tail| *tail != "*").or(learnt)
+        applied.filter(|tail| *tail != POOL).or(learnt)
     }
 
     /// The effects that the model contains in words; "none" for none.

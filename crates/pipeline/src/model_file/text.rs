@@ -14,6 +14,7 @@ use ron::ser::PrettyConfig;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::applied::{AppliedText, layers_of};
 use super::{
     AppliedRecord, FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile,
     PaperSettings, PaperState,
@@ -88,7 +89,7 @@ struct Document {
     settings: LawSettings,
     learnt: Option<LearntText>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    effects: Vec<AppliedRecord>,
+    effects: Vec<AppliedText>,
     #[serde(default)]
     checksum: String,
 }
@@ -200,7 +201,7 @@ fn document_of(model: &ModelFile) -> Document {
         },
         settings: model.settings,
         learnt: model.learnt.as_ref().map(learnt_to_text),
-        effects: model.applied.clone(),
+        effects: model.applied.iter().map(AppliedText::from).collect(),
         checksum: String::new(),
     }
 }
@@ -252,9 +253,11 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
         flags_from_text("initial.extrapolated", &document.initial.extrapolated, nodes)?,
     )
     .map_err(|error| value("initial", error))?;
-    let effects =
-        super::applied::layers_of(&document.effects).map_err(|error| value("effects", error))?;
-    let initial = ExtendedModel::new(initial, effects).map_err(|error| value("effects", error))?;
+    let applied = document.effects.into_iter().map(AppliedRecord::try_from);
+    let applied: Vec<AppliedRecord> =
+        applied.collect::<Result<_, _>>().map_err(|error| value("effects", error))?;
+    let initial = ExtendedModel::new(initial, layers_of(&applied))
+        .map_err(|error| value("effects", error))?;
     let settings = document.settings;
     let learnt = match document.learnt {
         None => None,
@@ -263,7 +266,7 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
             Some(Learnt { tail, criteria, law, references, baseline, ledger })
         }
     };
-    Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied: document.effects })
+    Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied })
 }
 
 fn law_of(

@@ -3,13 +3,15 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use diagnose::{Diagnosis, VerdictKind};
+use diagnose::{Diagnosis, Verdict};
 
 use super::Group;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{file_stem_of_tail, make_folder};
 use crate::models::write_model;
+use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
+use pipeline::diagnosis_words::joined;
 use pipeline::model_file::{AppliedRecord, DiagnosisRecord};
 
 /// Writes the extended model of every group whose verdict names its effects unambiguously. The other groups are
@@ -20,13 +22,13 @@ use pipeline::model_file::{AppliedRecord, DiagnosisRecord};
 pub(super) fn apply(
     folder: &Path,
     groups: &[Group<'_>],
-    diagnoses: &[Diagnosis],
+    diagnoses: &[DiagnosedTail],
 ) -> Result<Outcome, Failure> {
     make_folder(folder)?;
     let mut outcome = Outcome::default();
-    for (group, diagnosis) in groups.iter().zip(diagnoses) {
+    for (group, diagnosed) in groups.iter().zip(diagnoses) {
         let path = folder.join(format!("{}.ron", file_stem(group)));
-        let result = match chosen(group, diagnosis) {
+        let result = match chosen(group, &diagnosed.diagnosis) {
             Choice::Nothing(reason) => format!("nothing applied: {reason}"),
             Choice::Refused(reason) => {
                 outcome.refused.push(RefusedReport::whole(path, reason));
@@ -51,7 +53,7 @@ pub(super) fn apply(
 
 /// The model of one tail is named after the tail, that of a pool after its type.
 fn file_stem(group: &Group<'_>) -> String {
-    if group.name == "*" {
+    if group.name == POOL {
         file_stem_of_tail(group.model.initial.aircraft().type_code())
     } else {
         file_stem_of_tail(&group.name)
@@ -65,27 +67,26 @@ enum Choice {
 }
 
 fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
-    let verdict = &diagnosis.verdict;
-    match verdict.kind {
-        VerdictKind::Effects => {}
-        VerdictKind::NoGap => return Choice::Nothing("no gap beyond the noise"),
-        VerdictKind::OutsideLibrary => {
+    let found = match &diagnosis.verdict {
+        Verdict::Effects(found) => found,
+        Verdict::NoGap => return Choice::Nothing("no gap beyond the noise"),
+        Verdict::OutsideLibrary(_) => {
             return Choice::Nothing("no effect of the library explains the gap");
         }
-        VerdictKind::InsufficientData => return Choice::Nothing("insufficient data"),
-    }
-    if verdict.class.iter().any(|member| !verdict.effects.contains(member)) {
+        Verdict::InsufficientData(_) => return Choice::Nothing("insufficient data"),
+    };
+    if found.class.iter().any(|member| !found.effects.contains(member)) {
         return Choice::Refused(format!(
             "tail {}: nothing applied, these flights cannot distinguish {}; name the right one with --effects",
             group.name,
-            verdict.class.join(", ")
+            joined(&found.class, ", ")
         ));
     }
     let Some(addition) = diagnosis.addition.clone() else {
         return Choice::Refused(format!(
             "tail {}: nothing applied, no model holds exactly {}",
             group.name,
-            verdict.effects.join(" and ")
+            joined(&found.effects, " and ")
         ));
     };
     let starts = || group.flights.iter().map(|flight| flight.reduced.identity.start);
@@ -98,8 +99,8 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
             segments: diagnosis.segments as u64,
             first: word(starts().min()),
             last: word(starts().max()),
-            probability: verdict.probability,
-            class: verdict.class.clone(),
+            probability: found.probability,
+            class: found.class.iter().map(ToString::to_string).collect(),
         },
     })
 }

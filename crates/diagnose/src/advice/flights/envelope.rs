@@ -5,6 +5,7 @@ use units::convert::METERS_PER_FOOT;
 use units::{Mach, PressureAltitude, Temperature};
 
 use crate::math::quantile::{QuantileType, quantile};
+use crate::output::measurement::LoadingKind;
 use crate::residuals::planned::Recorded;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::variables::Variable;
@@ -19,7 +20,7 @@ const MASS_STEP_KG: f64 = 100.0;
 /// Gross mass and fuel used at the beginning of a flight on purpose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Loading {
-    pub(crate) name: &'static str,
+    pub(crate) kind: LoadingKind,
     pub(crate) mass_kg: f64,
     pub(crate) fuel_used_kg: f64,
 }
@@ -125,12 +126,12 @@ impl Envelope {
         let burned_kg = self.burn_kg * (ADVISED_SEGMENTS - 1) as f64;
         let round = |mass_kg: f64| (mass_kg / MASS_STEP_KG).round() * MASS_STEP_KG;
         let heavy = Loading {
-            name: "heavy",
+            kind: LoadingKind::Heavy,
             mass_kg: round(flown_quantile(mass_kg, HEAVY)),
             fuel_used_kg: flown_quantile(fuel_used_kg, LIGHT),
         };
         let light = Loading {
-            name: "light",
+            kind: LoadingKind::Light,
             mass_kg: round(flown_quantile(mass_kg, LIGHT) + burned_kg),
             fuel_used_kg: (flown_quantile(fuel_used_kg, HEAVY) - burned_kg).max(0.0),
         };
@@ -138,7 +139,7 @@ impl Envelope {
             return vec![heavy, light];
         }
         let usual = Loading {
-            name: "of usual mass",
+            kind: LoadingKind::Usual,
             mass_kg: round(flown_quantile(mass_kg, 0.5) + 0.5 * burned_kg),
             fuel_used_kg: (flown_quantile(fuel_used_kg, 0.5) - 0.5 * burned_kg).max(0.0),
         };

@@ -3,25 +3,14 @@
 use effects::{EffectModel, EffectPoint};
 
 use crate::advice::flights::envelope::{Envelope, Loading};
+use crate::output::measurement::{Sweep, SweepLoading};
 use crate::thresholds::{ADVISED_SEGMENTS, NARROWEST_LEVELS, NARROWEST_MACH, SWEEP_LEVELS};
-
-/// What a flight on purpose varies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Kind {
-    /// Nothing: the middle of what is flown, to compare with.
-    Steady,
-    /// Mach number at constant pressure altitude.
-    Mach,
-    /// Pressure altitude at constant Mach number.
-    Level,
-}
 
 /// A flight on purpose: ten segments.
 #[derive(Clone, Debug)]
 pub(crate) struct TestFlight {
-    pub(crate) kind: Kind,
-    /// "a Mach sweep 0.72 to 0.88 at FL370, heavy (from 14.2 t)".
-    pub(crate) words: String,
+    /// What it varies; `None` for nothing: the middle of what is flown, to compare with.
+    pub(crate) sweep: Option<Sweep>,
     pub(crate) points: Vec<EffectPoint>,
 }
 
@@ -70,18 +59,13 @@ fn mach_sweep(
             envelope.point_at(model, level, mach, loading, place)
         })
         .collect::<Option<_>>()?;
-    let slower = if low < envelope.slowest {
-        format!(" (slower than any flown, {})", mach_words(envelope.slowest))
-    } else {
-        String::new()
+    let sweep = Sweep::Mach {
+        hundredths: [low, high],
+        below_slowest_flown: (low < envelope.slowest).then_some(envelope.slowest),
+        level,
+        loading: loading.of_sweep(),
     };
-    let words = format!(
-        "a Mach sweep {} to {}{slower} at FL{level}, {}",
-        mach_words(low),
-        mach_words(high),
-        loading_words(loading)
-    );
-    Some(TestFlight { kind: Kind::Mach, words, points })
+    Some(TestFlight { sweep: Some(sweep), points })
 }
 
 /// The widest range of flight levels at a Mach number that stays inside the envelope, climbed through.
@@ -111,12 +95,12 @@ fn level_sweep(
             envelope.point(model, levels[index], mach, loading, place)
         })
         .collect::<Option<_>>()?;
-    let words = format!(
-        "levels from FL{lowest} to FL{highest} at Mach {}, {}",
-        mach_words(mach),
-        loading_words(loading)
-    );
-    Some(TestFlight { kind: Kind::Level, words, points })
+    let sweep = Sweep::Level {
+        levels: [lowest, highest],
+        mach_hundredths: mach,
+        loading: loading.of_sweep(),
+    };
+    Some(TestFlight { sweep: Some(sweep), points })
 }
 
 /// Ten segments in the middle of what is flown, at the first loading that allows it.
@@ -127,7 +111,7 @@ fn steady(envelope: &Envelope, model: &EffectModel<'_>) -> Option<TestFlight> {
             .map(|place| envelope.point(model, level, envelope.usual[1], loading, place))
             .collect::<Option<_>>()
     })?;
-    Some(TestFlight { kind: Kind::Steady, words: String::new(), points })
+    Some(TestFlight { sweep: None, points })
 }
 
 /// First and last of the longest run of numbers that pass; the first one of equals.
@@ -156,12 +140,11 @@ fn spread(values: &[u32], most: usize) -> Vec<u32> {
     (0..most).map(|k| values[k * (values.len() - 1) / (most - 1)]).collect()
 }
 
-fn mach_words(hundredths: u32) -> String {
-    format!("{:.2}", f64::from(hundredths) / 100.0)
-}
-
-fn loading_words(loading: &Loading) -> String {
-    format!("{} (from {:.1} t)", loading.name, loading.mass_kg / 1000.0)
+impl Loading {
+    /// As an advice has it.
+    const fn of_sweep(&self) -> SweepLoading {
+        SweepLoading { kind: self.kind, mass_kg: self.mass_kg }
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,46 @@
+//! What was assumed, and why segments were left out.
+
+use crate::output::verdict::Rest;
+
+/// Something that was assumed, or that a reader of the diagnosis should know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Note {
+    /// N2 of some segments indicates no thrust near the predicted one: `tsfc_throttle` is over corrected thrust there.
+    N2WithoutThrust {
+        /// Segments where it indicates none.
+        silent: usize,
+        /// Segments with N2.
+        recorded: usize,
+    },
+    /// References of effects are the means of these flights.
+    ReferencesAreMeans,
+    /// Whitened residuals have heavy tails: segments are weighed.
+    HeavyTails,
+    /// The uncertainty of a large drag table is kept for the nodes that these flights visit; elsewhere the table counts as
+    /// known.
+    TableInColumns {
+        /// Nodes of the table.
+        nodes: usize,
+        /// Columns of the factor of their covariance.
+        columns: usize,
+        /// Largest share of a visited node's variance that the columns leave out.
+        missing_share: f64,
+    },
+    /// Named effects leave something that depends on one variable.
+    Rest(Rest),
+}
+
+/// Why a segment was left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LeftOutReason {
+    /// Its fuel flow is not positive, or no number.
+    FuelFlowNotPositive,
+    /// It is outside the drag table.
+    OutsideTable,
+    /// One of its means is outside its domain.
+    OutOfDomain,
+    /// No thrust is left to fly it.
+    NoThrust,
+    /// It cannot be predicted for another reason.
+    NotPredictable,
+}

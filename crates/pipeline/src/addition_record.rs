@@ -1,0 +1,145 @@
+//! What a verdict adds to a model, as `diagnosis.json` and model files have it.
+
+use diagnose::{AddedEffect, Addition};
+use effects::EffectReferences;
+use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
+use serde::{Deserialize, Serialize};
+
+/// Effects of a verdict and what they are zero at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Addition")]
+pub struct AdditionRecord {
+    effects: Vec<AddedEffectRecord>,
+    references: EffectReferences,
+}
+
+/// One effect: each hidden parameter by its name, those that the effect does not have left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "AddedEffect")]
+struct AddedEffectRecord {
+    effect: String,
+    size: f64,
+    standard_deviation: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    throttle_pivot: Option<f64>,
+    /// Left out where it is corrected thrust.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    throttle_argument: Option<ThrottleArgument>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    drag_divergence_mach: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    step_from_s: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    step_target: Option<StepTarget>,
+}
+
+/// A name that no effect has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no effect is called {name:?}")]
+pub struct UnknownEffect {
+    /// What was found.
+    pub name: String,
+}
+
+impl From<&Addition> for AdditionRecord {
+    fn from(addition: &Addition) -> Self {
+        Self {
+            effects: addition.effects.iter().map(AddedEffectRecord::from).collect(),
+            references: addition.references,
+        }
+    }
+}
+
+impl TryFrom<AdditionRecord> for Addition {
+    type Error = UnknownEffect;
+
+    fn try_from(record: AdditionRecord) -> Result<Self, UnknownEffect> {
+        let effects = record.effects.into_iter().map(AddedEffect::try_from);
+        Ok(Self { effects: effects.collect::<Result<_, _>>()?, references: record.references })
+    }
+}
+
+impl From<&AddedEffect> for AddedEffectRecord {
+    fn from(added: &AddedEffect) -> Self {
+        let mut record = Self {
+            effect: added.effect.to_string(),
+            size: added.size,
+            standard_deviation: added.standard_deviation,
+            throttle_pivot: None,
+            throttle_argument: None,
+            drag_divergence_mach: None,
+            step_from_s: None,
+            step_target: None,
+        };
+        match added.hidden {
+            HiddenParameter::None => {}
+            HiddenParameter::DragDivergenceMach(mach) => record.drag_divergence_mach = Some(mach),
+            HiddenParameter::Throttle { pivot, argument } => {
+                record.throttle_pivot = Some(pivot);
+                record.throttle_argument =
+                    (argument != ThrottleArgument::CorrectedThrust).then_some(argument);
+            }
+            HiddenParameter::Step { from_s, target } => {
+                record.step_from_s = Some(from_s);
+                record.step_target = Some(target);
+            }
+        }
+        record
+    }
+}
+
+impl TryFrom<AddedEffectRecord> for AddedEffect {
+    type Error = UnknownEffect;
+
+    fn try_from(record: AddedEffectRecord) -> Result<Self, UnknownEffect> {
+        let Some(effect) = EffectId::from_name(&record.effect) else {
+            return Err(UnknownEffect { name: record.effect });
+        };
+        let hidden = match effect.entry().hidden {
+            HiddenParameter::None => HiddenParameter::None,
+            HiddenParameter::DragDivergenceMach(mach) => {
+                HiddenParameter::DragDivergenceMach(record.drag_divergence_mach.unwrap_or(mach))
+            }
+            HiddenParameter::Throttle { pivot, argument } => HiddenParameter::Throttle {
+                pivot: record.throttle_pivot.unwrap_or(pivot),
+                argument: record.throttle_argument.unwrap_or(argument),
+            },
+            HiddenParameter::Step { from_s, target } => HiddenParameter::Step {
+                from_s: record.step_from_s.unwrap_or(from_s),
+                target: record.step_target.unwrap_or(target),
+            },
+        };
+        let AddedEffectRecord { size, standard_deviation, .. } = record;
+        Ok(Self { effect, size, standard_deviation, hidden })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_told_a_throttle_effect_is_kept() {
+        // As files had it before N2 could tell a throttle effect, and after.
+        let before =
+            r#"(effect:"tsfc_throttle",size:0.6,standard_deviation:0.1,throttle_pivot:Some(0.8))"#;
+        let record: AddedEffectRecord = ron::from_str(before).unwrap();
+        let added = AddedEffect::try_from(record).unwrap();
+        let over = |argument| HiddenParameter::Throttle { pivot: 0.8, argument };
+        assert_eq!(added.effect, EffectId::TsfcThrottle);
+        assert_eq!(added.hidden, over(ThrottleArgument::CorrectedThrust));
+        assert_eq!(ron::to_string(&AddedEffectRecord::from(&added)).unwrap(), before);
+        let by_n2 = AddedEffect { hidden: over(ThrottleArgument::N2), ..added };
+        let text = ron::to_string(&AddedEffectRecord::from(&by_n2)).unwrap();
+        let record: AddedEffectRecord = ron::from_str(&text).unwrap();
+        assert_eq!(AddedEffect::try_from(record).unwrap(), by_n2);
+    }
+
+    #[test]
+    fn a_name_that_no_effect_has_is_refused() {
+        let text = r#"(effect:"drag_faktor",size:1.0,standard_deviation:0.1)"#;
+        let record: AddedEffectRecord = ron::from_str(text).unwrap();
+        let unknown = UnknownEffect { name: "drag_faktor".to_owned() };
+        assert_eq!(AddedEffect::try_from(record), Err(unknown));
+    }
+}

@@ -1,0 +1,388 @@
+//! One tail's part of `diagnosis.json`.
+
+use std::collections::BTreeMap;
+
+use diagnose::{
+    Cause, Closure, Detectable, Diagnosis, Gap, OutsideLibrary, Region, Separation, Slice, Verdict,
+};
+use flight::effect::EffectId;
+use serde::{Deserialize, Serialize};
+
+use crate::addition_record::AdditionRecord;
+use crate::diagnosed_tail::DiagnosedTail;
+use crate::diagnosis_words::{
+    ENGINE_BOUNDS, acts_on_words, advice, bounds_name, left_out_words, measurement_words,
+    region_words, variable_words,
+};
+
+/// One tail's diagnosis. Field names, their order and meanings are the format's.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TailDiagnosis {
+    /// Whose; `*` for a pool.
+    pub tail: String,
+    /// Flights that were used.
+    pub flights: usize,
+    /// Segments that were used.
+    pub segments: usize,
+    /// The gap before anything is added to the model.
+    pub gap: GapRecord,
+    /// Where the gap lies.
+    pub r#where: Vec<SliceRecord>,
+    /// Causes, the most probable first.
+    pub causes: Vec<CauseRecord>,
+    /// Effects that this data cannot test, and what they need.
+    pub not_testable: Vec<NotTestableRecord>,
+    /// The conclusion.
+    pub verdict: VerdictRecord,
+    /// What the verdict would add to the model; `null` where it names no effect.
+    #[serde(default)]
+    pub addition: Option<AdditionRecord>,
+    /// For every testable effect the size that would just be seen, and its class.
+    pub detectable: Vec<DetectableRecord>,
+    /// Probability that something outside the library acts, and the variable that it depends on.
+    pub outside: OutsideLibraryRecord,
+    /// Segments left out, by reason.
+    pub left_out: BTreeMap<String, usize>,
+    /// What was assumed: references of the data at hand, proxies, robust weights.
+    pub notes: Vec<String>,
+}
+
+/// The gap: ln recorded − ln predicted fuel flow, in per cent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GapRecord {
+    /// Mean.
+    pub mean_percent: f64,
+    /// Root mean square.
+    pub rms_percent: f64,
+    /// 95 % interval of the rms, by flight.
+    pub rms_ci95: [f64; 2],
+    /// Root mean square that noise alone makes: the propagated one.
+    pub noise_floor_rms_percent: f64,
+    /// The same by replicates: what differs between like segments of one flight. `null` where closure is not measured, or
+    /// for too few of them.
+    #[serde(default)]
+    pub floor_by_replicates_rms_percent: Option<f64>,
+    /// What a flexible model leaves on flights it was not fitted to: an upper bound. `null` where closure is not measured.
+    #[serde(default)]
+    pub floor_by_held_out_fit_rms_percent: Option<f64>,
+    /// Whether there is more than noise.
+    pub detected: bool,
+    /// Probability of as large a deviation without any effect, all effects looked at.
+    pub p_value: f64,
+}
+
+/// A place where the gap lies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SliceRecord {
+    /// In words.
+    pub slice: String,
+    /// Bounds by variable.
+    pub bounds: BTreeMap<String, [Option<f64>; 2]>,
+    /// Segments in it.
+    pub segments: usize,
+    /// Mean gap.
+    pub mean_gap_percent: f64,
+    /// 95 % interval by flight.
+    pub ci95: [f64; 2],
+    /// Share of the explainable gap.
+    pub share_of_gap: f64,
+    /// Accounts for the search.
+    pub p_value: f64,
+}
+
+/// A cause.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CauseRecord {
+    /// Name of the effect.
+    pub effect: String,
+    /// Probability that it is the larger one of what acts.
+    pub probability: f64,
+    /// Effects that this data cannot tell from it, itself first.
+    pub class: Vec<String>,
+    /// Its size.
+    pub magnitude: MagnitudeRecord,
+    /// Root mean square of the gap with it in the model, on flights it was not fitted to; `null` where not computed.
+    pub rms_after_percent: Option<f64>,
+    /// Share of the explainable gap that it closes on those flights.
+    pub closure: Option<f64>,
+    /// Interval of the closure.
+    pub closure_ci95: Option<[f64; 2]>,
+    /// Hidden parameters in words ("from 2019-06-02 on fuel flow"); empty for most effects.
+    pub hidden: String,
+}
+
+/// Size with unit and interval.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MagnitudeRecord {
+    /// Size in the effect's unit.
+    pub value: f64,
+    /// The unit.
+    pub unit: String,
+    /// 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+/// An effect that cannot be tested.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NotTestableRecord {
+    /// Name of the effect.
+    pub effect: String,
+    /// Columns it needs.
+    pub needs: Vec<String>,
+}
+
+/// Kind of a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VerdictKind {
+    /// Nothing beyond the noise.
+    NoGap,
+    /// One effect, or a set acting together.
+    Effects,
+    /// A gap that is real and that no library effect explains.
+    OutsideLibrary,
+    /// Too little to say anything.
+    InsufficientData,
+}
+
+/// The verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VerdictRecord {
+    /// Kind.
+    pub kind: VerdictKind,
+    /// Effects that act.
+    pub effects: Vec<String>,
+    /// Effects that this data cannot tell from the first.
+    pub class: Vec<String>,
+    /// Probability of the first effect.
+    pub probability: f64,
+    /// Share of the explainable gap closed on unseen flights; `null` where the gap is too small.
+    pub closure: Option<f64>,
+    /// Its 95 % interval.
+    pub closure_ci95: Option<[f64; 2]>,
+    /// One sentence or two: what to do.
+    pub advice: String,
+    /// Measurements and flights on purpose that would separate the class, the best first.
+    pub separations: Vec<SeparationRecord>,
+}
+
+/// A measurement, or flights on purpose, that separate two effects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeparationRecord {
+    /// The effect that would be told from the first.
+    pub from: String,
+    /// What to measure or to fly.
+    pub measurement: String,
+    /// Distance between them now, in standard deviations.
+    pub distance_now: f64,
+    /// And with the measurement or the flights.
+    pub distance_then: f64,
+    /// Of flights on purpose: with as many ordinary flights instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distance_ordinary_flights: Option<f64>,
+}
+
+/// What an effect would have to be to be seen.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DetectableRecord {
+    /// Name of the effect.
+    pub effect: String,
+    /// Smallest size seen with about 60 % probability; `null` where the data say nothing about it.
+    pub smallest: Option<f64>,
+    /// Unit of the size.
+    pub unit: String,
+    /// Effects that this data cannot tell from it at typical sizes, itself included.
+    pub class: Vec<String>,
+    /// Distance at the typical size from the nearest single other effect, in noise standard deviations.
+    pub nearest_other: f64,
+    /// Distance at the typical size from the nearest pair of others.
+    pub nearest_pair: f64,
+    /// Measurements and flights on purpose that would tell it, at the typical size, from the nearest other effect of its
+    /// class, the best first; empty where none is nearer than three noise standard deviations.
+    #[serde(default)]
+    pub separations: Vec<SeparationRecord>,
+}
+
+/// Probability of a cause outside the library.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OutsideLibraryRecord {
+    /// Probability.
+    pub probability: f64,
+    /// The variable that what is left depends on.
+    pub variable: Option<String>,
+    /// Whether it acts on thrust (drag, weight), fuel flow or one engine.
+    pub acts_on: Option<String>,
+}
+
+impl From<&DiagnosedTail> for TailDiagnosis {
+    fn from(diagnosed: &DiagnosedTail) -> Self {
+        let Diagnosis {
+            flights,
+            segments,
+            gap,
+            r#where: places,
+            causes,
+            not_testable,
+            verdict,
+            addition,
+            detectable,
+            outside,
+            left_out,
+            notes: _,
+        } = &diagnosed.diagnosis;
+        let left_out = left_out.iter().map(|(reason, count)| (left_out_words(*reason), *count));
+        Self {
+            tail: diagnosed.tail.clone(),
+            flights: *flights,
+            segments: *segments,
+            gap: GapRecord::from(gap),
+            r#where: places.iter().map(SliceRecord::from).collect(),
+            causes: causes.iter().map(CauseRecord::from).collect(),
+            not_testable: not_testable
+                .iter()
+                .map(|entry| NotTestableRecord {
+                    effect: entry.effect.to_string(),
+                    needs: entry.needs.iter().map(|needed| needed.name().to_owned()).collect(),
+                })
+                .collect(),
+            verdict: VerdictRecord::from(verdict),
+            addition: addition.as_ref().map(AdditionRecord::from),
+            detectable: detectable.iter().map(DetectableRecord::from).collect(),
+            outside: OutsideLibraryRecord::from(outside),
+            left_out: left_out.map(|(words, count)| (words.to_owned(), count)).collect(),
+            notes: diagnosed.notes(),
+        }
+    }
+}
+
+impl From<&Gap> for GapRecord {
+    fn from(gap: &Gap) -> Self {
+        Self {
+            mean_percent: gap.mean_percent,
+            rms_percent: gap.rms_percent,
+            rms_ci95: gap.rms_ci95,
+            noise_floor_rms_percent: gap.noise_floor_rms_percent,
+            floor_by_replicates_rms_percent: gap.floor_by_replicates_rms_percent,
+            floor_by_held_out_fit_rms_percent: gap.floor_by_held_out_fit_rms_percent,
+            detected: gap.detected,
+            p_value: gap.p_value,
+        }
+    }
+}
+
+impl From<&Slice> for SliceRecord {
+    fn from(slice: &Slice) -> Self {
+        Self {
+            slice: region_words(&slice.region),
+            bounds: bounds(&slice.region),
+            segments: slice.segments,
+            mean_gap_percent: slice.mean_gap_percent,
+            ci95: slice.ci95,
+            share_of_gap: slice.share_of_gap,
+            p_value: slice.p_value,
+        }
+    }
+}
+
+fn bounds(region: &Region) -> BTreeMap<String, [Option<f64>; 2]> {
+    let engine = region.engine.map(|engine| {
+        (ENGINE_BOUNDS.to_owned(), [Some(f64::from(engine)), Some(f64::from(engine))])
+    });
+    let conditions = region.conditions.iter().map(|condition| {
+        let ends = [condition.from, condition.to].map(|end| end.map(|edge| edge.value));
+        (bounds_name(condition.variable).to_owned(), ends)
+    });
+    engine.into_iter().chain(conditions).collect()
+}
+
+impl From<&Cause> for CauseRecord {
+    fn from(cause: &Cause) -> Self {
+        Self {
+            effect: cause.effect.to_string(),
+            probability: cause.probability,
+            class: names(&cause.class),
+            magnitude: MagnitudeRecord {
+                value: cause.magnitude.value,
+                unit: cause.effect.entry().unit.to_owned(),
+                ci95: cause.magnitude.ci95,
+            },
+            rms_after_percent: cause.rms_after_percent,
+            closure: cause.closure.map(|closure| closure.share),
+            closure_ci95: cause.closure.map(|closure| closure.ci95),
+            hidden: cause.hidden.to_string(),
+        }
+    }
+}
+
+impl From<&Verdict> for VerdictKind {
+    fn from(verdict: &Verdict) -> Self {
+        match verdict {
+            Verdict::NoGap => Self::NoGap,
+            Verdict::Effects(_) => Self::Effects,
+            Verdict::OutsideLibrary(_) => Self::OutsideLibrary,
+            Verdict::InsufficientData(_) => Self::InsufficientData,
+        }
+    }
+}
+
+impl From<&Verdict> for VerdictRecord {
+    fn from(verdict: &Verdict) -> Self {
+        let closure: Option<Closure> = verdict.closure();
+        Self {
+            kind: VerdictKind::from(verdict),
+            effects: names(verdict.effects()),
+            class: names(verdict.class()),
+            probability: match verdict {
+                Verdict::NoGap | Verdict::InsufficientData(_) => 0.0,
+                Verdict::OutsideLibrary(unexplained) => unexplained.probability,
+                Verdict::Effects(found) => found.probability,
+            },
+            closure: closure.map(|closure| closure.share),
+            closure_ci95: closure.map(|closure| closure.ci95),
+            advice: advice(verdict),
+            separations: verdict.found().map_or_else(Vec::new, |found| {
+                found.separations.iter().map(SeparationRecord::from).collect()
+            }),
+        }
+    }
+}
+
+impl From<&Separation> for SeparationRecord {
+    fn from(separation: &Separation) -> Self {
+        Self {
+            from: separation.from.to_string(),
+            measurement: measurement_words(&separation.measurement),
+            distance_now: separation.distance_now,
+            distance_then: separation.distance_then,
+            distance_ordinary_flights: separation.distance_ordinary_flights,
+        }
+    }
+}
+
+impl From<&Detectable> for DetectableRecord {
+    fn from(detectable: &Detectable) -> Self {
+        Self {
+            effect: detectable.effect.to_string(),
+            smallest: detectable.smallest,
+            unit: detectable.effect.entry().unit.to_owned(),
+            class: names(&detectable.class),
+            nearest_other: detectable.nearest_other,
+            nearest_pair: detectable.nearest_pair,
+            separations: detectable.separations.iter().map(SeparationRecord::from).collect(),
+        }
+    }
+}
+
+impl From<&OutsideLibrary> for OutsideLibraryRecord {
+    fn from(outside: &OutsideLibrary) -> Self {
+        Self {
+            probability: outside.probability,
+            variable: outside.variable.map(|variable| variable_words(variable).to_owned()),
+            acts_on: outside.acts_on.map(|acts_on| acts_on_words(acts_on).to_owned()),
+        }
+    }
+}
+
+fn names(effects: &[EffectId]) -> Vec<String> {
+    effects.iter().map(ToString::to_string).collect()
+}

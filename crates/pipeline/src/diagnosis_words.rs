@@ -1,0 +1,244 @@
+//! The words of a diagnosis: measurements, places, notes and advice in English, as `diagnosis.json` and the page have them.
+
+use std::fmt::Write as _;
+
+use diagnose::{
+    ActsOn, FlightsOnPurpose, Found, Insufficient, LeftOutReason, LoadingKind, Measurement, Note,
+    Rest, RestKind, Separation, Sweep, SweepLoading, Unexplained, Variable, Verdict,
+};
+use flight::effect::EffectId;
+
+mod region;
+
+pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
+
+/// What to do after a verdict: one sentence or two.
+pub fn advice(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::NoGap => {
+            "Nothing beyond the noise. `detectable` says how large each effect would have to be."
+                .to_owned()
+        }
+        Verdict::InsufficientData(reason) => {
+            format!("Too little data: {}.", insufficient_words(*reason))
+        }
+        Verdict::OutsideLibrary(unexplained) => unexplained_words(unexplained),
+        Verdict::Effects(found) => found_words(found),
+    }
+}
+
+fn unexplained_words(unexplained: &Unexplained) -> String {
+    let mut words = format!(
+        "A gap that no effect of the library explains; it hangs on {}.",
+        variable_or_none(unexplained.variable)
+    );
+    if let Some(share) = unexplained.nearest_closes {
+        let _ = write!(
+            words,
+            " The nearest, {}, closes {:.0} % of it.",
+            unexplained.nearest,
+            100.0 * share.clamp(0.0, 1.0)
+        );
+    }
+    words
+}
+
+fn found_words(found: &Found) -> String {
+    let mut words = if found.class.len() > 1 {
+        format!("One of {}: these flights cannot tell them apart.", joined(&found.class, ", "))
+    } else {
+        format!("{}.", joined(&found.effects, " and "))
+    };
+    if let Some(Rest { kind, variable }) = found.rest {
+        let variable = variable_or_none(variable);
+        let _ = match kind {
+            RestKind::OtherForm => {
+                write!(words, " Its form differs from the library's in {variable}.")
+            }
+            RestKind::SomethingElse => {
+                write!(words, " Something else acts beside it, which hangs on {variable}.")
+            }
+        };
+    }
+    if let Some(best) = found.separations.first() {
+        let measurement = measurement_words(&best.measurement);
+        let _ = write!(words, " To be sure: {measurement} ({}).", distances_words(best));
+    }
+    words
+}
+
+/// Names of effects, one after the other.
+pub fn joined(effects: &[EffectId], between: &str) -> String {
+    effects.iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
+}
+
+/// Why the data is too little.
+pub fn insufficient_words(reason: Insufficient) -> String {
+    match reason {
+        Insufficient::NothingInside { segments } => {
+            format!("none of {segments} segments is inside the drag table")
+        }
+        Insufficient::Flights { found, needed } => {
+            format!("{found} flights, at least {needed} are needed")
+        }
+        Insufficient::Segments { found, needed } => {
+            format!("{found} segments, at least {needed} are needed")
+        }
+        Insufficient::NothingTestable => "no effect of the library can be tested".to_owned(),
+        Insufficient::OneCondition => "all segments were flown at the same conditions".to_owned(),
+        Insufficient::ComputedFuelFlow => {
+            "the residuals of all segments are equal: fuel flow was computed, not measured"
+                .to_owned()
+        }
+    }
+}
+
+/// The distances of a separation: "3.1 to 5.2 standard deviations from `wave_drag`; six ordinary flights 3.3", without the
+/// backticks.
+pub fn distances_words(separation: &Separation) -> String {
+    let ordinary = separation
+        .distance_ordinary_flights
+        .map_or_else(String::new, |distance| format!("; six ordinary flights {distance:.1}"));
+    format!(
+        "{:.1} to {:.1} standard deviations from {}{ordinary}",
+        separation.distance_now, separation.distance_then, separation.from
+    )
+}
+
+/// What to measure or to fly, as an order.
+pub fn measurement_words(measurement: &Measurement) -> String {
+    match measurement {
+        Measurement::Weighing => "weigh the aircraft (to 0.3 % of its mass)".to_owned(),
+        Measurement::TankGauges => "compare with tank gauges (to 0.15 %)".to_owned(),
+        Measurement::TemperatureReanalysis => "compare SAT with a reanalysis (to 0.5 K)".to_owned(),
+        Measurement::AirspeedByGps => {
+            "compare true airspeed with GPS and wind (to Mach 0.0015)".to_owned()
+        }
+        Measurement::AltitudeByGps => {
+            "compare pressure altitude with GPS height and a reanalysis (to 0.05 % of p)".to_owned()
+        }
+        Measurement::N2Deck => "measure an N2 deck (to 0.1 %)".to_owned(),
+        Measurement::Flights(FlightsOnPurpose::OneSort(sweep)) => {
+            format!("six flights with {}", sweep_words(sweep))
+        }
+        Measurement::Flights(FlightsOnPurpose::TwoSorts([one, other])) => {
+            format!(
+                "three flights with {}, and three with {}",
+                sweep_words(one),
+                sweep_words(other)
+            )
+        }
+    }
+}
+
+/// "a Mach sweep 0.72 to 0.88 at FL370, heavy (from 14.2 t)".
+fn sweep_words(sweep: &Sweep) -> String {
+    match *sweep {
+        Sweep::Mach { hundredths: [low, high], below_slowest_flown, level, loading } => {
+            let slower = below_slowest_flown.map_or_else(String::new, |slowest| {
+                format!(" (slower than any flown, {})", mach_words(slowest))
+            });
+            format!(
+                "a Mach sweep {} to {}{slower} at FL{level}, {}",
+                mach_words(low),
+                mach_words(high),
+                loading_words(loading)
+            )
+        }
+        Sweep::Level { levels: [lowest, highest], mach_hundredths, loading } => format!(
+            "levels from FL{lowest} to FL{highest} at Mach {}, {}",
+            mach_words(mach_hundredths),
+            loading_words(loading)
+        ),
+    }
+}
+
+fn mach_words(hundredths: u32) -> String {
+    format!("{:.2}", f64::from(hundredths) / 100.0)
+}
+
+fn loading_words(loading: SweepLoading) -> String {
+    let name = match loading.kind {
+        LoadingKind::Heavy => "heavy",
+        LoadingKind::Usual => "of usual mass",
+        LoadingKind::Light => "light",
+    };
+    format!("{name} (from {:.1} t)", loading.mass_kg / 1000.0)
+}
+
+/// What was assumed, without a final stop.
+pub fn note_words(note: &Note) -> String {
+    match *note {
+        Note::N2WithoutThrust { silent, recorded } => format!(
+            "N2 of {silent} of {recorded} segments stands for no thrust near the predicted one: \
+             tsfc_throttle is over corrected thrust there"
+        ),
+        Note::ReferencesAreMeans => {
+            "references of effects are the means of these flights".to_owned()
+        }
+        Note::TableInColumns { nodes, columns, missing_share } => format!(
+            "the drag table has {nodes} nodes: its uncertainty is kept in {columns} columns for the nodes that these flights visit \
+             (up to {:.2} % of a node's variance left out), and advice on flights elsewhere counts the rest as known",
+            100.0 * missing_share
+        ),
+        Note::HeavyTails => "whitened residuals have heavy tails: segments are weighed".to_owned(),
+        Note::Rest(Rest { kind: RestKind::OtherForm, variable }) => {
+            format!("the form of the effect differs in {}", variable_or_none(variable))
+        }
+        Note::Rest(Rest { kind: RestKind::SomethingElse, variable }) => {
+            let variable = variable_or_none(variable);
+            format!("something else acts beside the effect; it hangs on {variable}")
+        }
+    }
+}
+
+/// Why segments were left out.
+pub const fn left_out_words(reason: LeftOutReason) -> &'static str {
+    match reason {
+        LeftOutReason::FuelFlowNotPositive => "fuel flow not positive",
+        LeftOutReason::OutsideTable => "outside the drag table",
+        LeftOutReason::OutOfDomain => "a mean outside its domain",
+        LeftOutReason::NoThrust => "no thrust left",
+        LeftOutReason::NotPredictable => "not predictable",
+    }
+}
+
+/// What a cause outside the library acts on.
+pub const fn acts_on_words(acts_on: ActsOn) -> &'static str {
+    match acts_on {
+        ActsOn::FuelFlow => "fuel flow",
+        ActsOn::Thrust => "thrust",
+        ActsOn::OneEngine => "one engine",
+    }
+}
+
+/// A variable in the words of the field.
+pub const fn variable_words(variable: Variable) -> &'static str {
+    match variable {
+        Variable::Mach => "Mach number",
+        Variable::LiftCoefficient => "lift coefficient",
+        Variable::PressureAltitude => "pressure altitude",
+        Variable::CorrectedThrust => "corrected thrust",
+        Variable::IsaDeviation => "ISA deviation",
+        Variable::StaticAirTemperature => "SAT",
+        Variable::Date => "date",
+        Variable::FuelUsed => "fuel used",
+        Variable::Roll => "roll",
+        Variable::Acceleration => "acceleration",
+        Variable::CrossWind => "cross-wind",
+        Variable::Latitude => "latitude",
+        Variable::EastwardSpeed => "eastward speed",
+        Variable::CenterOfGravity => "CG",
+        Variable::Mass => "mass",
+        Variable::LatitudeCrossWind => "latitude with cross-wind",
+        Variable::CenterOfGravityLift => "CG with lift coefficient",
+        Variable::MachLift => "Mach number with lift coefficient",
+        Variable::MachExcess => "high Mach number",
+        Variable::Engine => "engine",
+        Variable::N2 => "N2",
+    }
+}
+
+fn variable_or_none(variable: Option<Variable>) -> &'static str {
+    variable.map_or("no variable", variable_words)
+}
