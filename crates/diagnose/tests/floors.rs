@@ -1,5 +1,11 @@
 //! The floors of this crate: a module imports from its own floor or a lower one, and the files of a floor import each other
 //! in no circle.
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test that reads the sources"
+)]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -106,7 +106,7 @@ impl TableUncertainty {
     /// ```
     ///
     /// It ends when every visited node has at most a thousandth of its variance left (a smooth table needs far fewer columns
-    /// than nodes), or at the largest rank; [`note`](Self::note) states what is missing. Of nodes that nobody
+    /// than nodes), or at the largest rank; [`missing_share`](Self::missing_share) is what is left out. Of nodes that nobody
     /// visits it has the part that they share with visited ones.
     ///
     /// # Source
@@ -282,8 +282,8 @@ mod tests {
             }
         }
         // Elsewhere it never has more than there is.
-        for node in 0..nodes {
-            assert!(some.covariance(node, node) <= variances[node] * (1.0 + 1e-12));
+        for (node, variance) in variances.iter().enumerate() {
+            assert!(some.covariance(node, node) <= variance * (1.0 + 1e-12));
         }
         assert!(some.missing_share().is_some());
         assert_eq!(some.grid().nodes(), 30);
