@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Builds the book to docs/book and checks it: no warning, every internal link and anchor, every page in SUMMARY.md.
 #
-#     docs/build.sh            # build and check
-#     docs/build.sh serve      # the same, then `mdbook serve`
+#     docs/build.sh            # then look at docs/book/index.html: it loads nothing from a network
 #
 # What is missing is installed to target/book-tools, in the versions below, which belong together (mdbook-katex brings
 # KaTeX 0.16.4). Needs cargo, python3, and npm for the fonts of the equations; a network at the first run only.
@@ -17,7 +16,7 @@ tools="${BOOK_TOOLS:-$PWD/target/book-tools}"
 export PATH="$tools/bin:$PATH"
 
 [ "$(mdbook --version 2>/dev/null)" = "mdbook v$MDBOOK" ] ||
-  cargo install mdbook --version "$MDBOOK" --locked --no-default-features --features search,serve --root "$tools"
+  cargo install mdbook --version "$MDBOOK" --locked --no-default-features --features search --root "$tools"
 [ "$(mdbook-katex --version 2>/dev/null)" = "mdbook-katex $MDBOOK_KATEX" ] ||
   cargo install mdbook-katex --version "$MDBOOK_KATEX" --locked --root "$tools"
 if ! grep -qs "KaTeX $KATEX" docs/katex.css; then
@@ -34,7 +33,3 @@ if grep -Eq 'WARN|ERROR' "$log"; then
   exit 1
 fi
 python3 docs/check_book.py docs/book
-
-if [ "${1:-}" = serve ]; then
-  exec mdbook serve docs
-fi

@@ -12,7 +12,7 @@ use crate::judge::gap::{
     exceeds_uncertainty, gap_of, is_real, is_vague, noise_scale, unknown_square,
 };
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
-use crate::judge::posterior::{causes, dominant};
+use crate::judge::posterior::{CauseEvidence, causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
 use crate::judge::verdict::{Findings, advisor, beside, closed, credit, verdict};
 use crate::library::Library;
@@ -24,7 +24,7 @@ use crate::place::find::find;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
-use crate::search::outside::compete;
+use crate::search::outside::{Outside, compete};
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::TableUncertainty;
@@ -117,13 +117,10 @@ fn conclude(
     let mut gap = gap_of(stacked, &analysis, &own, scale);
     let real = is_real(&analysis, &outside) || exceeds_uncertainty(&gap, unknown_square(stacked));
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
-    // What a taught remainder leaves need not be noise; but a name that makes other flights worse is none.
-    let makes_worse = stacked.data.predictor.baseline.is_some()
-        && unseen.as_ref().and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0);
-    gap.detected = real && !is_vague(&gap, &outside, posteriors.first(), makes_worse);
+    let worse = makes_worse(stacked, unseen.as_ref());
+    gap.detected = real && !is_vague(&gap, &outside, posteriors.first(), worse);
     let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {
-        let percent = |square: f64| 100.0 * square.sqrt();
         gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
         gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
     }
@@ -154,7 +151,14 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let causes = causes(&analysis, &outside, &distances, library, &posteriors, unseen.as_ref());
+    let evidence = CauseEvidence {
+        analysis: &analysis,
+        outside: &outside,
+        distances: &distances,
+        library,
+        unseen: unseen.as_ref(),
+    };
+    let causes = causes(&evidence, &posteriors);
     let detectable = detectable(library, &distances, &classes, &advisor);
     let diagnosis = Diagnosis {
         flights: stacked.data.flights.len(),
@@ -167,15 +171,32 @@ fn conclude(
             .filter(|_| !verdict.effects().is_empty()),
         verdict,
         detectable,
-        outside: OutsideLibrary {
-            probability: outside.probability,
-            variable: outside.variable.map(|(variable, _)| variable),
-            acts_on: outside.variable.map(|(_, acts)| acts_on(acts)),
-        },
+        outside: outside_library(&outside),
         left_out: std::collections::BTreeMap::new(),
         notes: vec![],
     };
     Ok((diagnosis, analysis))
+}
+
+/// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does
+/// this is wrong.
+fn makes_worse(stacked: &WhitenedSystem<'_>, unseen: Option<&Shrinkage>) -> bool {
+    stacked.data.predictor.baseline.is_some()
+        && unseen.and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0)
+}
+
+/// Root of a mean square, %.
+fn percent(mean_square: f64) -> f64 {
+    100.0 * mean_square.sqrt()
+}
+
+/// What is reported of a cause outside the library.
+fn outside_library(outside: &Outside) -> OutsideLibrary {
+    OutsideLibrary {
+        probability: outside.probability,
+        variable: outside.variable.map(|(variable, _)| variable),
+        acts_on: outside.variable.map(|(_, acts)| acts_on(acts)),
+    }
 }
 
 /// Of every effect the size that would just be seen, what it cannot be told from, and what would tell it.

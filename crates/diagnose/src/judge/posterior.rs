@@ -91,14 +91,19 @@ pub(crate) fn dominant(
     all
 }
 
-pub(crate) fn causes(
-    analysis: &Analysis,
-    outside: &Outside,
-    distances: &Distances,
-    library: &Library,
-    posteriors: &[Posterior],
-    unseen: Option<&Shrinkage>,
-) -> Vec<Cause> {
+/// What the list of causes is made from, besides the posteriors.
+pub(crate) struct CauseEvidence<'a> {
+    pub(crate) analysis: &'a Analysis,
+    pub(crate) outside: &'a Outside,
+    pub(crate) distances: &'a Distances,
+    pub(crate) library: &'a Library,
+    /// How far the gap shrinks on unseen flights, where that was measured.
+    pub(crate) unseen: Option<&'a Shrinkage>,
+}
+
+/// Causes worth listing, the most probable first.
+pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> Vec<Cause> {
+    let CauseEvidence { analysis, outside, distances, library, unseen } = *evidence;
     let inside = 1.0 - outside.probability;
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let best = &analysis.models[0].0;

@@ -188,6 +188,16 @@ pub(crate) fn chords(stacked: &WhitenedSystem<'_>) -> Vec<[f64; 2]> {
     chords
 }
 
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drawing<'a> {
+    pub(crate) level: NoiseLevel,
+    /// Errors of the table's chords at every segment.
+    pub(crate) chords: &'a [[f64; 2]],
+    /// Number of draws.
+    pub(crate) width: usize,
+}
+
 /// Draws `width` times the residuals of every segment, channel by channel, and hands them over segment by segment.
 ///
 /// ```text
@@ -197,12 +207,11 @@ pub(crate) fn chords(stacked: &WhitenedSystem<'_>) -> Vec<[f64; 2]> {
 /// k and s: [`NoiseLevel`]; L and u: \[diagnosis.14\]; N: the columns of what the model does not know.
 pub(crate) fn draw(
     stacked: &WhitenedSystem<'_>,
-    level: NoiseLevel,
-    chords: &[[f64; 2]],
+    drawing: &Drawing<'_>,
     source: &mut RandomStream,
-    width: usize,
     mut each: impl FnMut(usize, &[Vec<f64>]),
 ) {
+    let Drawing { level, chords, width } = *drawing;
     let data = stacked.data;
     let channels = 1 + data.channels.contrasts;
     let model = ModelErrorDraws::draw(stacked, source, width);

@@ -9,7 +9,7 @@ use crate::math::random::RandomStream;
 use crate::output::Slice;
 use crate::output::region::Region;
 use crate::place::binned_variable::{BinnedVariable, places};
-use crate::place::draws::{NoiseLevel, chords, draw};
+use crate::place::draws::{Drawing, NoiseLevel, chords, draw};
 use crate::place::likelihood::Noise;
 use crate::place::null::Null;
 use crate::place::regions::{BinnedRegion, Search, Series};
@@ -119,22 +119,27 @@ fn null_of(
     let mut values = vec![vec![0.0; GROUP]; search.series().len()];
     let mut group = |source: &mut RandomStream| {
         let mut sums = search.sums(GROUP);
-        draw(stacked, level, &chords, source, GROUP, |segment, channels| {
-            values[0].copy_from_slice(&channels[0]);
-            for draw in 0..if search.series().len() > 1 { GROUP } else { 0 } {
-                let mut contrasts = [0.0; MAXIMUM_CHANNELS];
-                for (slot, channel) in contrasts.iter_mut().zip(&channels[1..]) {
-                    *slot = channel[draw];
+        draw(
+            stacked,
+            &Drawing { level, chords: &chords, width: GROUP },
+            source,
+            |segment, channels| {
+                values[0].copy_from_slice(&channels[0]);
+                for draw in 0..if search.series().len() > 1 { GROUP } else { 0 } {
+                    let mut contrasts = [0.0; MAXIMUM_CHANNELS];
+                    for (slot, channel) in contrasts.iter_mut().zip(&channels[1..]) {
+                        *slot = channel[draw];
+                    }
+                    let apart = engines_apart(&contrasts[..engines - 1]);
+                    for (values, value) in values[1..].iter_mut().zip(apart) {
+                        values[draw] = value;
+                    }
                 }
-                let apart = engines_apart(&contrasts[..engines - 1]);
-                for (values, value) in values[1..].iter_mut().zip(apart) {
-                    values[draw] = value;
-                }
-            }
-            variances[segment] +=
-                channels[0].iter().map(|v| v * v).sum::<f64>() / REGION_DRAWS as f64;
-            search.add(&mut sums, segment, &values);
-        });
+                variances[segment] +=
+                    channels[0].iter().map(|v| v * v).sum::<f64>() / REGION_DRAWS as f64;
+                search.add(&mut sums, segment, &values);
+            },
+        );
         sums
     };
     for _ in 0..REGION_DRAWS / 2 / GROUP {

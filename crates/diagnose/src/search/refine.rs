@@ -68,6 +68,7 @@ pub(crate) fn refine(
         .map(|&(start, at)| Some(Relinearisation { start, at, sizes: start.sizes.clone() }))
         .collect();
     let mut refined: Vec<Option<Relinearised>> = starts.iter().map(|_| None).collect();
+    let rescoring = Rescoring { library, scorer, space };
     for step in 0..=STEPS {
         let running: Vec<usize> = (0..runs.len()).filter(|&k| runs[k].is_some()).collect();
         if running.is_empty() {
@@ -89,7 +90,7 @@ pub(crate) fn refine(
             }
             let columns = &run.start.model.columns;
             let changed = products.changed(&fresh, place);
-            let found = estimate(space, scorer, library, run, &changed, &fresh.levels_of(place))
+            let found = estimate(rescoring, run, &changed, &fresh.levels_of(place))
                 .filter(|found| found.iter().all(|size| size.is_finite()));
             let Some(found) = found else {
                 runs[k] = None;
@@ -114,20 +115,28 @@ pub(crate) fn refine(
             let Some(run) = runs[k].take() else { continue };
             let changed = products.changed(&fresh, place);
             let levels = fresh.levels_of(place);
-            refined[k] = Some(score_everywhere(library, scorer, space, run, &changed, &levels));
+            refined[k] = Some(score_everywhere(rescoring, run, &changed, &levels));
         }
     }
     refined
 }
 
+/// What a relinearised hypothesis is scored with.
+#[derive(Clone, Copy)]
+struct Rescoring<'a> {
+    library: &'a Library,
+    scorer: &'a Scorer,
+    space: &'a EliminatedGrams,
+}
+
+/// The hypothesis in every background.
 fn score_everywhere(
-    library: &Library,
-    scorer: &Scorer,
-    space: &EliminatedGrams,
+    rescoring: Rescoring<'_>,
     run: Relinearisation<'_>,
     changed: &Changed,
     levels: &Mat<f64>,
 ) -> Relinearised {
+    let Rescoring { library, scorer, space } = rescoring;
     let Relinearisation { start, sizes: shifts, .. } = run;
     let columns = &start.model.columns;
     let followed: Vec<Changed> =
@@ -175,13 +184,12 @@ fn score_everywhere(
 
 /// Sizes in the background that the model was found in; `None` where that cannot be made.
 fn estimate(
-    space: &EliminatedGrams,
-    scorer: &Scorer,
-    library: &Library,
+    rescoring: Rescoring<'_>,
     run: &Relinearisation<'_>,
     changed: &Changed,
     levels: &Mat<f64>,
 ) -> Option<Vec<f64>> {
+    let Rescoring { library, scorer, space } = rescoring;
     let under = space.smoothed.iter().find(|under| under.is_of(run.at))?;
     let followed = space.levels[under.scatter()].follow(changed.clone(), levels);
     let columns = &run.start.model.columns;
