@@ -13,7 +13,7 @@ use crate::diagnosis_words::{
 use crate::statistics::NORMAL_95;
 use crate::summary::counted;
 
-/// Effects whose smallest visible size is told where nothing was found: one of each kind that a person would think of.
+/// Effects whose smallest visible size is printed where nothing was found: one of each kind that a person would think of.
 const TOLD_WHEN_SILENT: [EffectId; 6] = [
     EffectId::DragFactor,
     EffectId::ZeroLiftDrag,
@@ -27,7 +27,7 @@ const OTHERS_TOLD: usize = 3;
 const LEAST_TOLD: f64 = 0.02;
 /// Measurements or flights that are told. Our choice: the best two.
 const SEPARATIONS_TOLD: usize = 2;
-/// Probability below which no cause is told as one. Our choice: more probable than not.
+/// Probability below which no cause is printed as one. Our choice: more probable than not.
 const PROBABLE: f64 = 0.5;
 
 /// What follows from an effect of this group for predictions.
@@ -109,7 +109,7 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
             }
             format!(
                 "{} at {}: {:+.2} % there ({:+.2} to {:+.2}), {} of the explainable gap, p {:.3}.",
-                if rank == 0 { "It sits" } else { "And" },
+                if rank == 0 { "It lies" } else { "And" },
                 region_words(&place.region),
                 place.mean_gap_percent,
                 place.ci95[0],
@@ -192,7 +192,7 @@ fn closes(diagnosis: &Diagnosis, found: &Found) -> String {
     }
 }
 
-/// The best measurements or flights. One often separates from several effects: it is told once, where it does most.
+/// The best measurements or flights. One often separates from several effects: it is printed once, where it separates most.
 fn to_be_sure(found: &Found) -> Vec<String> {
     let mut told: Vec<String> = Vec::new();
     let mut lines = Vec::new();
@@ -205,7 +205,7 @@ fn to_be_sure(found: &Found) -> Vec<String> {
             continue;
         }
         lines.push(format!(
-            "To be sure: {measurement} (tells it from {}: {:.1} to {:.1} standard deviations{}).",
+            "To be sure: {measurement} (distinguishes it from {}: {:.1} to {:.1} standard deviations{}).",
             separation.from,
             separation.distance_now,
             separation.distance_then,
@@ -225,7 +225,7 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
     };
     let mut lines = vec![format!(
         "A real gap that no effect of the library explains{}{} (probability {:.2}).",
-        told("; it hangs on ", outside.variable.map(variable_words)),
+        told("; it depends on ", outside.variable.map(variable_words)),
         told(" and acts on ", outside.acts_on.map(acts_on_words)),
         outside.probability
     )];
@@ -271,7 +271,7 @@ fn rivals(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
     if diagnosis.outside.probability >= LEAST_TOLD {
         let variable = diagnosis.outside.variable.map(variable_words);
         let hangs =
-            variable.map_or_else(String::new, |variable| format!(" that hangs on {variable}"));
+            variable.map_or_else(String::new, |variable| format!(" that depends on {variable}"));
         told.push(format!(
             "something outside the library{hangs} {:.2}",
             diagnosis.outside.probability

@@ -29,7 +29,7 @@ pub fn advice(verdict: &Verdict) -> String {
 
 fn unexplained_words(unexplained: &Unexplained) -> String {
     let mut words = format!(
-        "A gap that no effect of the library explains; it hangs on {}.",
+        "A gap that no effect of the library explains; it depends on {}.",
         variable_or_none(unexplained.variable)
     );
     if let Some(share) = unexplained.nearest_closes {
@@ -56,7 +56,7 @@ fn found_words(found: &Found) -> String {
                 write!(words, " Its form differs from the library's in {variable}.")
             }
             RestKind::SomethingElse => {
-                write!(words, " Something else acts beside it, which hangs on {variable}.")
+                write!(words, " Something else acts in addition to it and depends on {variable}.")
             }
         };
     }
@@ -187,7 +187,7 @@ pub fn note_words(note: &Note) -> String {
         }
         Note::Rest(Rest { kind: RestKind::SomethingElse, variable }) => {
             let variable = variable_or_none(variable);
-            format!("something else acts beside the effect; it hangs on {variable}")
+            format!("something else acts in addition to the effect; it depends on {variable}")
         }
     }
 }

@@ -38,7 +38,7 @@ pub struct CaseResult {
     pub segments: usize,
     /// Effects that the verdict names.
     pub named: Vec<String>,
-    /// Probability of a cause outside the library, and the variable that it hangs on.
+    /// Probability of a cause outside the library, and the variable that it depends on.
     pub outside_probability: f64,
     /// The variable.
     pub outside_variable: Option<String>,

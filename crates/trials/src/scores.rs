@@ -386,7 +386,7 @@ mod tests {
         let place =
             Located { spread_percent: 0.4, significant: true, driver_named: false, overlap: 0.7 };
         let placed = Case { located: Some(place.clone()), ..case("wave_drag", a, 0.95) };
-        // Scatter between flights hangs on no variable.
+        // Scatter between flights depends on no variable.
         let nowhere = Case { located: Some(place), ..case("fuel_heating_value", a, 0.95) };
         let scores = Scores::from_cases(&[
             pair, half, null, silent, struck, imitable, outside, placed, nowhere,
