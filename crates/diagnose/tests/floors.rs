@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Floors from the ground up.
-const FLOORS: [&str; 20] = [
+const FLOORS: [&str; 19] = [
     "deciding",
     "priors",
     "thresholds",
@@ -31,7 +31,6 @@ const FLOORS: [&str; 20] = [
     "judge",
     "diagnosis",
     "numbers",
-    "trial",
     "lib",
 ];
 
