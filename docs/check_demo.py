@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds README.md to the program: what `cruisefit demo` prints is what stands between the `demo-output` marks.
+"""Holds README.md to the program: what `cruisefit demo` prints is the text between the `demo-output` marks.
 
     python3 docs/check_demo.py target/release/cruisefit
 

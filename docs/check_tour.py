@@ -4,7 +4,7 @@
     python3 docs/check_tour.py target/release/cruisefit
 
 Every `$ cruisefit …` of a `console` block runs, in the page's order, in a folder of its own with the repository's fixtures. Each
-line that the page shows below it must be among the lines printed, in that order; `…` stands for anything. Standard library only.
+line that the page shows below it must be among the lines printed, in that order; `…` matches anything. Standard library only.
 """
 
 import os

@@ -45,7 +45,7 @@ class Bench:
             sys.exit(f"{arguments}: {found.stderr}")
 
     def fly(self, name, seed, flights, truth=""):
-        """Reports of a tail, clean where `truth` says nothing."""
+        """Reports of a tail, clean where `truth` is empty."""
         plan, reports = self.root / f"{name}.ron", self.root / name
         plan.write_text(f'(seed: {seed}, tails: [(tail: "T-001", {truth} flights: {flights})])')
         shutil.rmtree(reports, ignore_errors=True)

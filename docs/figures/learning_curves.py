@@ -228,7 +228,7 @@ def legend(drawing, x, y, names):
 
 
 def curves_figure(file, title, fleets):
-    """One column a fleet: mean above, standard deviation below."""
+    """One column per fleet: mean above, standard deviation below."""
     width, height, left, gap = 250, 170, 62, 38
     drawing = Drawing(max(440, left + len(fleets) * (width + gap)), 2 * height + 150, title)
     legend(drawing, left, 20, LAWS)

@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn what_told_a_throttle_effect_is_kept() {
-        // As files had it before N2 could tell a throttle effect, and after.
+        // As in files from before N2 could determine a throttle effect, and after.
         let before =
             r#"(effect:"tsfc_throttle",size:0.6,standard_deviation:0.1,throttle_pivot:Some(0.8))"#;
         let record: AddedEffectRecord = ron::from_str(before).unwrap();

@@ -1,6 +1,6 @@
 //! A diagnosis in plain words: the same dozen lines on the terminal and at the top of the page.
 //!
-//! Limits are said where they hold: what cannot be told apart, what was not testable, how much is left. An effect is named
+//! Limits are stated where they hold: what cannot be distinguished, what was not testable, how much is left. An effect is named
 //! by what it does *and* by its id, so that a reader without the library's table knows what is meant.
 
 use diagnose::{Closure, Diagnosis, Found, Verdict};
@@ -22,10 +22,10 @@ const TOLD_WHEN_SILENT: [EffectId; 6] = [
     EffectId::ZeroFuelMassBias,
     EffectId::MachBias,
 ];
-/// Other causes than the verdict's that are told, and the least probability that is. Our choice: a dozen lines in all.
+/// Number of causes other than the verdict's that are printed, and their least probability. Our choice: a dozen lines in all.
 const OTHERS_TOLD: usize = 3;
 const LEAST_TOLD: f64 = 0.02;
-/// Measurements or flights that are told. Our choice: the best two.
+/// Measurements or flights that are printed. Our choice: the best two.
 const SEPARATIONS_TOLD: usize = 2;
 /// Probability below which no cause is printed as one. Our choice: more probable than not.
 const PROBABLE: f64 = 0.5;

@@ -1,4 +1,4 @@
-//! What a table says of segments, and what a run knows of each tail at its end: the material of summary, tables, pages.
+//! What a table predicts for segments, and the results of each tail at the end of a run: the material of summary, tables, pages.
 
 use adapt::paper;
 use effects::ExtendedModel;
@@ -17,9 +17,9 @@ pub struct TailResult {
     pub tail: String,
     /// Its model, with what it has learnt.
     pub model: ModelFile,
-    /// Every segment, with what the initial (or given) table says of it.
+    /// Every segment, with what the initial (or given) table predicts for it.
     pub rows: Vec<SegmentRow>,
-    /// What the final table says of each segment, as long as `rows`; empty where nothing is adapted.
+    /// What the final table predicts for each segment, as long as `rows`; empty where nothing is adapted.
     pub after: Vec<Option<Evaluated>>,
     /// The figures.
     pub summary: TailSummary,
@@ -27,7 +27,7 @@ pub struct TailResult {
     pub notes: Vec<String>,
 }
 
-/// Counts that the segments do not tell.
+/// Counts that do not follow from the segments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TailCounts {
     /// All flights.
@@ -38,7 +38,7 @@ pub struct TailCounts {
     pub samples: u64,
 }
 
-/// A tail's model and segments, before anything is said of their errors.
+/// A tail's model and segments, before their errors are computed.
 #[derive(Clone, Debug)]
 pub struct TailData {
     /// Tail.
@@ -47,7 +47,7 @@ pub struct TailData {
     pub model: ModelFile,
     /// Its segments, in the order of the table that is written.
     pub segments: Vec<Segment>,
-    /// Counts that the segments do not tell.
+    /// Counts that do not follow from the segments.
     pub counts: TailCounts,
     /// What is worth knowing about its data, each once.
     pub notes: Vec<String>,
@@ -94,7 +94,7 @@ impl TailResult {
     }
 }
 
-/// What a table on the model's grid says of each segment; `None` for a state that the model is not defined for. A
+/// What a table on the model's grid predicts for each segment; `None` for a state that the model is not defined for. A
 /// segment outside the grid keeps its coefficients and has no error.
 ///
 /// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
@@ -130,7 +130,7 @@ pub fn evaluate(
         .collect()
 }
 
-/// What a table says of an observation; `None` outside its grid.
+/// What a table predicts for an observation; `None` outside its grid.
 pub fn error_percent(table: &Table, observation: &Observation) -> Option<f64> {
     let cell =
         table.grid().locate(observation.lift_coefficient, observation.mach, Outside::Error).ok()?;

@@ -77,7 +77,7 @@ pub fn begin(
 /// segments at once; [`settle`] brings the table up to date.
 ///
 /// # Errors
-/// A threshold that is none, or a table whose nodes no longer determine its polynomial; the flight is then not learnt.
+/// An invalid threshold, or a table whose nodes no longer determine its polynomial; the flight is then not learnt.
 pub fn learn_flight(
     initial: &ExtendedModel,
     learnt: &mut Learnt,
@@ -128,7 +128,7 @@ pub fn learn_flight(
 /// Brings the table up to date with what was learnt: the one solve of law `bayes`, nothing for law `paper`.
 ///
 /// # Errors
-/// A state that is no information (a damaged file).
+/// A state that is not valid information (a damaged file).
 pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
     if let LawState::Bayes { state, posterior } = &mut learnt.law {
         **posterior = state.solve()?;
@@ -143,7 +143,7 @@ pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
     Ok(())
 }
 
-/// Learns, from every segment of a tail, what no table can hold (law `bayes`). Fewer than five flights teach nothing.
+/// Learns, from every segment of a tail, what no table can hold (law `bayes`). From fewer than five flights nothing is learnt.
 pub fn remember_remainder(initial: &ExtendedModel, learnt: &mut Learnt, segments: &[Segment]) {
     let LawState::Bayes { posterior, .. } = &learnt.law else { return };
     let flights: Vec<FlightRecord<'_>> = segments

@@ -1,15 +1,15 @@
 //! The chain from cruise reports to an adapted, evaluated and diagnosed model, as a library.
 //!
-//! What it is: the pieces between the stages. [`reduction`] takes a report to its stabilised segments, [`learning`] teaches a
-//! model one flight after the other, [`evaluation`] holds segments against a table, [`model_file`] is a model with what it
-//! has learnt, as text and back. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), what
-//! a run came to ([`summary`], [`diagnosis_document`]), and a diagnosis in words
+//! What it is: the pieces between the stages. [`reduction`] takes a report to its stabilised segments, [`learning`] fits a
+//! model one flight after the other, [`evaluation`] compares segments with a table, [`model_file`] is a model with what it
+//! has learnt, as text and back. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), the
+//! results of a run ([`summary`], [`diagnosis_document`]), and a diagnosis in words
 //! ([`diagnosis_text`], [`diagnosis_words`]).
 //! What it is not: it opens no file, starts no thread, reads no clock and prints nothing. It computes no drag, no fuel flow
 //! and no verdict; those are the stages'.
 //!
 //! The one design decision: text in, text out. JSON, CSV, RON and English are made here from the stages' typed results, and
-//! nowhere below; whoever calls decides where the bytes come from and where they go. That costs a copy of every file in
+//! nowhere below; the caller decides where the bytes come from and where they go. That costs a copy of every file in
 //! memory.
 //!
 //! Limits:

@@ -63,7 +63,7 @@ pub struct GuideRecord {
 pub struct LawSettings {
     /// Of law `paper`.
     pub paper: PaperSettings,
-    /// Of law `bayes`; the defaults where the file does not say.
+    /// Of law `bayes`; the defaults where the file does not state them.
     #[serde(default = "BayesSettings::physical_2026")]
     pub bayes: BayesSettings,
 }
@@ -138,7 +138,7 @@ impl LawState {
         }
     }
 
-    /// The drag table as it stands.
+    /// The current drag table.
     pub const fn drag_coefficient(&self) -> &Table {
         match self {
             Self::Paper { state, .. } => state.drag_coefficient(),
@@ -217,7 +217,7 @@ impl ModelFile {
     /// A model from the text of its file.
     ///
     /// # Errors
-    /// A text that is no model, is of a newer format, or whose checksum does not match.
+    /// A text that is not a model, is of a newer format, or whose checksum does not match.
     pub fn from_text(text: &str) -> Result<Self, ModelTextError> {
         text::parse(text)
     }
@@ -230,7 +230,7 @@ impl ModelFile {
         text::print(self)
     }
 
-    /// The drag table as it stands: learnt, or initial.
+    /// The current drag table: learnt, or initial.
     pub fn drag_coefficient(&self) -> &Table {
         self.learnt
             .as_ref()

@@ -46,7 +46,7 @@ impl ReducedFlight {
         let identity = Arc::new(header.identity.clone());
         let track = track::derive(report)?;
         if let TemperatureSource::AssumedIsa { isa_deviation_k } = track.temperature_source() {
-            // A mapping that assumes it has said so already.
+            // A mapping that assumes it has reported so already.
             if !notes.iter().any(|note| note.contains("static air temperature")) {
                 notes.push(format!("static air temperature assumed: ISA {isa_deviation_k:+} K"));
             }

@@ -6,7 +6,7 @@ use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans};
 
 use crate::columns::Columns;
 
-/// What a model says of a segment.
+/// What a model predicts for a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluated {
     /// Lift coefficient.
@@ -19,7 +19,7 @@ pub struct Evaluated {
     pub error_percent: Option<f64>,
 }
 
-/// A row: a segment and, with a model, what the model says.
+/// A row: a segment and, with a model, what the model predicts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SegmentRow {
     /// The segment.
@@ -28,14 +28,14 @@ pub struct SegmentRow {
     pub evaluated: Option<Evaluated>,
 }
 
-/// Why a text is no table of segments.
+/// Why a text is not a table of segments.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SegmentsTableError {
     /// Not a table of comma-separated values.
     #[error(transparent)]
     Csv(#[from] csv::Error),
-    /// A column that every table of segments has is not there.
+    /// A column that every table of segments has is missing.
     #[error("column {column} is missing")]
     MissingColumn {
         /// Its name.
@@ -163,7 +163,7 @@ pub fn table(rows: &[SegmentRow], engines: usize) -> Columns {
     columns
 }
 
-/// Number of engines that these segments speak of, for [`table`].
+/// Number of engines in these segments, for [`table`].
 pub fn engines_of(rows: &[SegmentRow]) -> usize {
     rows.iter()
         .map(|row| {
@@ -173,7 +173,7 @@ pub fn engines_of(rows: &[SegmentRow]) -> usize {
         .unwrap_or(0)
 }
 
-/// Reads a table of segments back, as [`table`] wrote it. What a model said is left out: it is computed anew.
+/// Reads a table of segments back, as [`table`] wrote it. A model's predictions are left out: they are computed again.
 ///
 /// # Errors
 /// A missing column, or a field that is not what its column holds, with line and column name.

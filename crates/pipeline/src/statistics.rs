@@ -1,4 +1,4 @@
-//! The four figures in which errors are told, and the order in which they are summed.
+//! The four figures by which errors are reported, and the order in which they are summed.
 
 use serde::Serialize;
 

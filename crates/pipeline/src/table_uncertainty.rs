@@ -11,7 +11,7 @@ use crate::model_file::ModelFile;
 /// Most nodes of a table whose full covariance is taken; beyond, that of the nodes which the flights at hand visit.
 const NODES_WITH_COVARIANCE: usize = 700;
 
-/// What a model's table does not know where these flights are; `None` by a law that does not say.
+/// Uncertainty of a model's table where these flights are; `None` for a law that does not state it.
 ///
 /// # Errors
 /// A covariance that is invalid.
@@ -39,7 +39,7 @@ pub fn of_posterior(
     let grid = drag_table.grid();
     let nodes = grid.nodes();
     if nodes > NODES_WITH_COVARIANCE {
-        // Flights of which none is inside the table visit no node; the diagnosis says why it cannot say more.
+        // Flights of which none is inside the table visit no node; the diagnosis states why it has no result.
         let visited = visited_nodes(model, drag_table, flights).unwrap_or_default();
         return of_visited(posterior, grid, &visited);
     }

@@ -181,7 +181,7 @@ fn effects(model: &ExtendedModel, seed: u64, repeats: u64, closure: bool, only: 
     }
 }
 
-/// Closure as found beside the truth: same noise, effect off.
+/// Closure as found, with the truth: same noise, effect off.
 fn closed(
     id: EffectId,
     found: &Diagnosis,

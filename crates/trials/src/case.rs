@@ -13,7 +13,7 @@ use crate::planted::PlantedGap;
 use crate::scored_case::Case;
 use crate::seal::CaseTruth;
 
-/// Distance beyond which none is told.
+/// Distance beyond which none is reported.
 const FARTHEST: f64 = 1e6;
 
 /// What came of one case.

@@ -149,8 +149,8 @@ fn learnable() -> TruthPhysics {
     TruthPhysics { trim_drag: Switch::Off, asymmetry: Switch::Off, ..TruthPhysics::full() }
 }
 
-/// Where effects are nothing: means over the flights that the model knows; of an exact model, over those diagnosed. Dates
-/// go on to the last flight, so that ageing does not end with what was learnt.
+/// Conditions at which effects are zero: means over the flights that the model has learnt; of an exact model, over those
+/// diagnosed. Dates continue to the last flight, so that ageing does not end with what was learnt.
 fn references(
     bare: &Plan,
     designed: &Simulation,

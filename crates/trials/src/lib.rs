@@ -1,8 +1,8 @@
 //! Blind trials of the diagnosis: a virtual aircraft flies with an effect that its model lacks.
 //!
-//! What it is: a [`TrialPlan`] says what is planted, how large, how often; [`DiagnosedCase::run`] draws, flies and diagnoses
+//! What it is: a [`TrialPlan`] states what is planted, how large, how often; [`DiagnosedCase::run`] draws, flies and diagnoses
 //! one case; [`DiagnosedCase::score`] holds the verdict against the truth; [`summarize`] makes [`SCORES`] of all cases.
-//! What it is not: it opens no file and starts no thread. Cases do not know of each other; whoever runs them writes them
+//! What it is not: it opens no file and starts no thread. Cases are independent of each other; the caller who runs them writes them
 //! down and may run them in any order.
 //!
 //! The one design decision: three worlds, kept apart by types. [`DrawnCase`] knows what was planted and flies it;

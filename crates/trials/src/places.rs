@@ -1,4 +1,4 @@
-//! Scores of where a gap was said to lie.
+//! Scores of the regions that were reported for a gap.
 
 use diagnose::{Region, Variable};
 use flight::effect::{DrivingVariable, EffectId};
@@ -67,12 +67,12 @@ mod tests {
 
     #[test]
     fn overlap_by_hand() {
-        // Largest two of 5, 1, 4, 2, 3: the first and the third. Said: the first and the last: one of three.
+        // Largest two of 5, 1, 4, 2, 3: the first and the third. Reported: the first and the last: one of three.
         let effect = [5.0, 1.0, 4.0, 2.0, 3.0];
         assert_eq!(worst_region(&effect, 2, true), [true, false, true, false, false]);
         let said = [true, false, false, false, true];
         assert_eq!(worst_region_overlap(&effect, &said), Some(1.0 / 3.0));
-        // Said where it is least: the second and the fourth, exactly.
+        // Reported where it is least: the second and the fourth, exactly.
         let said = [false, true, false, true, false];
         assert_eq!(worst_region_overlap(&effect, &said), Some(1.0));
         assert_eq!(worst_region_overlap(&effect, &[false; 5]), None);
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn overlap_of_a_place_by_hand() {
-        // Two of the three worst were said, and one that is not: 2 of 4.
+        // Two of the three worst were reported, and one that is not: 2 of 4.
         let effect = [0.0, 1.0, 2.0, 3.0, 0.5];
         let said = [true, false, true, true, false];
         assert_eq!(worst_region_overlap(&effect, &said), Some(0.5));

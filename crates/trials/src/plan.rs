@@ -82,11 +82,11 @@ const fn once() -> f64 {
 pub enum ReferenceModel {
     /// The truth without the effect, sampled on a fine grid.
     Exact,
-    /// A wrong initial model, taught by law `bayes` on clean flights.
+    /// A wrong initial model, adapted by law `bayes` to clean flights.
     Adapted,
 }
 
-/// What there is beside the planted effect.
+/// What acts in addition to the planted effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Background {
@@ -152,7 +152,7 @@ pub struct Floor {
     pub most: Option<f64>,
 }
 
-/// Why a text is no plan of trials.
+/// Why a text is not a plan of trials.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrialPlanError {
@@ -172,7 +172,7 @@ pub enum TrialPlanError {
     /// Two parts of one model, background, kind and size.
     #[error("the part {label} occurs twice")]
     PartTwice {
-        /// What tells a part from every other.
+        /// What distinguishes a part from every other.
         label: String,
     },
 }
@@ -325,7 +325,7 @@ impl TrialPlan {
 }
 
 impl Part {
-    /// What tells it from every other part of a plan.
+    /// What distinguishes it from every other part of a plan.
     pub fn label(&self) -> String {
         format!("{:?}/{:?}/{:?}/{}", self.reference_model, self.background, self.kind, self.times)
     }
@@ -366,7 +366,7 @@ mod tests {
         let alone = TrialPlan::from_ron(&text("")).unwrap().cases(2);
         let more = "(denied: exact, background: clean, kind: null, repeats: 3),";
         let after = TrialPlan::from_ron(&text(more)).unwrap().cases(2);
-        // 29 effects of an aircraft with two engines: 27 of the library's table, two of them an engine each.
+        // 29 effects of an aircraft with two engines: 27 of the library's table, two of them once per engine.
         assert_eq!(alone.len(), EffectId::library(2).len());
         assert_eq!(after.len(), alone.len() + 3);
         for (one, other) in alone.iter().zip(&after[3..]) {

@@ -22,7 +22,7 @@ use crate::seal::CaseTruth;
 /// Largest p-value of a place that is reported: that of the diagnosis, the usual 5 %.
 const SIGNIFICANT: f64 = 0.05;
 
-/// Flight and first row: what tells a segment on both flights.
+/// Flight and first row, which identify a segment in both sets of flights.
 type Key = (String, u32);
 
 /// Gap that the planted effect makes, ln of fuel flow, of every segment that both flights have.
@@ -67,7 +67,7 @@ impl PlantedGap {
         (whole > 0.0).then(|| 1.0 - left / whole)
     }
 
-    /// Where the gap was said to lie against where it lies.
+    /// The region reported for the gap against the true one.
     pub(crate) fn located(
         &self,
         inputs: &DiagnosisInputs,
@@ -125,7 +125,7 @@ impl PlantedGap {
     }
 }
 
-/// A place, and none by chance. "Everywhere" is none.
+/// A region that is not by chance. "Everywhere" does not count.
 fn is_place(slice: &Slice) -> bool {
     !slice.region.is_everywhere() && slice.p_value <= SIGNIFICANT
 }

@@ -44,7 +44,7 @@ pub struct Case {
     /// flights flown without the effect.
     #[serde(default)]
     pub planted_closure: Option<f64>,
-    /// Where the gap was said to lie, where the caller knows where it truly lies.
+    /// The region reported for the gap, where the caller knows the true one.
     #[serde(default)]
     pub located: Option<Located>,
     /// Rms of the gap before, %.
@@ -53,12 +53,12 @@ pub struct Case {
     pub nearest: Option<(f64, f64)>,
 }
 
-/// Where the gap was said to lie against where it truly lies.
+/// The region reported for the gap against the true one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Located {
     /// Standard deviation of the planted gap within the data, %: how much of it has a place at all.
     pub spread_percent: f64,
-    /// Whether a place was reported that is none by chance (p ≤ 0.05), "everywhere" being no place.
+    /// Whether a region was reported that is not by chance (p ≤ 0.05); "everywhere" is not a region.
     pub significant: bool,
     /// Whether its first place is along the variable that the planted gap follows closest.
     pub driver_named: bool,
@@ -168,7 +168,7 @@ impl Case {
         self.verdict == VerdictKind::Effects
     }
 
-    /// What the verdict says in one name, for the table of confusions.
+    /// The verdict in one name, for the table of confusions.
     pub(crate) fn said(&self) -> String {
         match self.verdict {
             VerdictKind::NoGap => "no_gap".to_owned(),
@@ -183,7 +183,7 @@ fn names(effects: &[EffectId]) -> Vec<String> {
     effects.iter().map(ToString::to_string).collect()
 }
 
-/// What a diagnosis says about an effect by name; `None` for one outside its library.
+/// What a diagnosis reports about an effect by name; `None` for one outside its library.
 fn detectable_of<'a>(found: &'a Diagnosis, name: &str) -> Option<&'a Detectable> {
     let id = EffectId::from_name(name)?;
     found.detectable.iter().find(|detectable| detectable.effect == id)

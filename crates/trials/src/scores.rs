@@ -12,7 +12,7 @@ use crate::share::Share;
 
 /// Distance from the nearest pair, in standard deviations, from which a struck effect cannot be imitated. Our choice.
 const INIMITABLE: f64 = 5.0;
-/// Distance from the nearest other effect, in standard deviations, from which an effect can be told apart. Our choice.
+/// Distance from the nearest other effect, in standard deviations, from which an effect can be distinguished. Our choice.
 const SEPARABLE: f64 = 4.0;
 /// Gap above which closure is scored, %: below, noise decides how much of it closes. Our choice.
 const CLOSABLE: f64 = 0.5;
@@ -21,7 +21,7 @@ const PLACED: f64 = 0.35;
 /// Bins of stated probability for the calibration error.
 const BINS: usize = 10;
 
-/// One score: all that is said of it.
+/// One score, as it is reported.
 #[derive(Clone, Copy, Debug)]
 pub struct Score {
     /// What it is called, in a plan and in `trials.json` in snake case.
@@ -128,7 +128,7 @@ scores! {
 }
 
 impl ScoreName {
-    /// All that is said of it.
+    /// What is reported of it.
     #[must_use]
     pub fn score(self) -> &'static Score {
         // Enum and table come from one list: the position is the same in both.
@@ -243,7 +243,7 @@ struct SortedCases<'a> {
     outside: Vec<&'a Case>,
     /// Two effects.
     pairs: Vec<&'a Case>,
-    /// Where gaps that vary with a variable were said to lie.
+    /// Regions reported for gaps that vary with a variable.
     placed: Vec<&'a Located>,
 }
 

@@ -67,13 +67,13 @@ impl Seal {
         Self { hashes: texts.into_iter().map(|text| sha256(text.as_bytes())).collect() }
     }
 
-    /// The hash over the hashes of all cases, hexadecimal: what is told before the first diagnosis.
+    /// The hash over the hashes of all cases, hexadecimal: what is printed before the first diagnosis.
     #[must_use]
     pub fn hash(&self) -> String {
         sha256(self.hashes.join("\n").as_bytes())
     }
 
-    /// The hash of a case's truth; empty for a case that is none.
+    /// The hash of a case's truth; empty for an unknown case.
     #[must_use]
     pub fn hash_of(&self, case: usize) -> &str {
         case.checked_sub(1).and_then(|index| self.hashes.get(index)).map_or("", String::as_str)

@@ -1,10 +1,10 @@
-//! What the aircraft file of a case says of the virtual aircraft's sensors.
+//! What the aircraft file of a case states about the virtual aircraft's sensors.
 
 use atmos::constants::ISOTHERMAL_SCALE_HEIGHT_M;
 use perf_model::aircraft::{FlightBias, FuelFlowDrift, MassDeviation, SensorDeviations};
 use simulate::{AircraftTruth, ChannelSensor, DRIFT_TIME_CONSTANT_S, Scatter, Sensors};
 
-/// What the aircraft file says of the fleet's sensors: what they do within a flight and from flight to flight, as an operator
+/// What the aircraft file states about the fleet's sensors: how they err within a flight and from flight to flight, as an operator
 /// sees it in past reports.
 ///
 /// A slow wander of variance σ² and time constant τ has, over a time T, a mean of variance

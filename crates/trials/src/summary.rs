@@ -1,4 +1,4 @@
-//! Scores of a run: by model, background and size, each beside its goal.
+//! Scores of a run: by model, background and size, each with its goal.
 
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ pub struct Trials {
     schema: &'static str,
     /// Seed of the plan.
     pub seed: u64,
-    /// SHA-256 over the sealed truths, as told before the first diagnosis.
+    /// SHA-256 over the sealed truths, as printed before the first diagnosis.
     pub seal_sha256: String,
     /// Cases that came to nothing, with the reason.
     pub failed: Vec<(usize, String)>,

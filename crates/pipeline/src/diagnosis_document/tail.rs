@@ -97,7 +97,7 @@ pub struct CauseRecord {
     pub effect: String,
     /// Probability that it is the larger one of what acts.
     pub probability: f64,
-    /// Effects that this data cannot tell from it, itself first.
+    /// Effects that these data cannot distinguish from it, itself first.
     pub class: Vec<String>,
     /// Its size.
     pub magnitude: MagnitudeRecord,
@@ -141,7 +141,7 @@ pub enum VerdictKind {
     Effects,
     /// A gap that is real and that no library effect explains.
     OutsideLibrary,
-    /// Too little to say anything.
+    /// Too few data for a result.
     InsufficientData,
 }
 
@@ -152,7 +152,7 @@ pub struct VerdictRecord {
     pub kind: VerdictKind,
     /// Effects that act.
     pub effects: Vec<String>,
-    /// Effects that this data cannot tell from the first.
+    /// Effects that these data cannot distinguish from the first.
     pub class: Vec<String>,
     /// Probability of the first effect.
     pub probability: f64,
@@ -169,7 +169,7 @@ pub struct VerdictRecord {
 /// A measurement, or flights on purpose, that separate two effects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeparationRecord {
-    /// The effect that would be told from the first.
+    /// The effect that would be distinguished from the first.
     pub from: String,
     /// What to measure or to fly.
     pub measurement: String,
@@ -187,17 +187,17 @@ pub struct SeparationRecord {
 pub struct DetectableRecord {
     /// Name of the effect.
     pub effect: String,
-    /// Smallest size seen with about 60 % probability; `null` where the data say nothing about it.
+    /// Smallest size seen with about 60 % probability; `null` where the data do not determine it.
     pub smallest: Option<f64>,
     /// Unit of the size.
     pub unit: String,
-    /// Effects that this data cannot tell from it at typical sizes, itself included.
+    /// Effects that these data cannot distinguish from it at typical sizes, itself included.
     pub class: Vec<String>,
     /// Distance at the typical size from the nearest single other effect, in noise standard deviations.
     pub nearest_other: f64,
     /// Distance at the typical size from the nearest pair of others.
     pub nearest_pair: f64,
-    /// Measurements and flights on purpose that would tell it, at the typical size, from the nearest other effect of its
+    /// Measurements and advised flights that would distinguish it, at the typical size, from the nearest other effect of its
     /// class, the best first; empty where none is nearer than three noise standard deviations.
     #[serde(default)]
     pub separations: Vec<SeparationRecord>,

@@ -45,7 +45,7 @@ const fn names(variable: Variable) -> (&'static str, &'static str, &'static str)
         }
         Variable::EastwardSpeed => ("eastward_speed_m_s", "eastward_speed", " m/s"),
         Variable::Engine => (ENGINE_BOUNDS, "engine", ""),
-        // No place of a diagnosis is said in these.
+        // No region of a diagnosis is described by these.
         Variable::LatitudeCrossWind => ("latitude_cross_wind", "latitude_cross_wind", ""),
         Variable::CenterOfGravityLift => ("center_of_gravity_lift", "center_of_gravity_lift", ""),
         Variable::MachLift => ("mach_lift", "mach_lift", ""),
@@ -68,7 +68,7 @@ fn condition_words(condition: &Condition) -> String {
 }
 
 /// "after" is after the day of the last flight before; "before" is before the day of the first flight beyond. Where both
-/// sides of an edge were flown on one day, its time is said too.
+/// sides of an edge were flown on one day, its time is given too.
 fn date_words(from: Option<Edge>, to: Option<Edge>) -> String {
     let day = |chosen_s: f64, edge: Edge| {
         let same_day = instant(edge.flown_below).get(..10) == instant(edge.value).get(..10);
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(words(edge(9.0), None), "after 2019-06-08");
         assert_eq!(words(None, edge(3.0)), "before 2019-06-03");
         assert_eq!(words(edge(3.0), edge(5.0)), "after 2019-06-02 and before 2019-06-05");
-        // Two flights on one day: the time tells them apart.
+        // Two flights on one day: the time distinguishes them.
         let within = Some(Edge { value: day(1.0) + 3600.0, flown_below: day(1.0) });
         assert_eq!(words(within, None), "after 2019-06-01T00:00:00Z");
     }

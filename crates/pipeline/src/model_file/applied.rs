@@ -44,7 +44,7 @@ pub struct DiagnosisRecord {
     pub last: String,
     /// Probability of the first effect.
     pub probability: f64,
-    /// Effects that the flights could not tell from it.
+    /// Effects that the flights could not distinguish from it.
     pub class: Vec<String>,
 }
 
@@ -123,7 +123,7 @@ impl ModelFile {
         self.applied.iter().map(AppliedRecord::told).collect::<Vec<_>>().join("; ")
     }
 
-    /// What to say of the effects where recordings are held against the model; `None` without any.
+    /// What to print about the effects where recordings are compared with the model; `None` without any.
     pub fn note_of_effects(&self) -> Option<String> {
         (!self.applied.is_empty())
             .then(|| format!("the model contains applied effects: {}", self.told_effects()))

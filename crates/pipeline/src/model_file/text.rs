@@ -25,7 +25,7 @@ use crate::condition_means::ConditionMeans;
 /// Begins the last line but one; everything before it is what the checksum is of.
 const CHECKSUM: &str = "\n    checksum: \"";
 
-/// Why a text is no model.
+/// Why a text is not a model.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelTextError {
