@@ -1,6 +1,7 @@
 //! Effects on drag, on the weight that lift carries, and on the force along the path.
 
 use atmos::gravity;
+use flight::effect::EffectId;
 use lut::surface::Surface;
 use units::convert::{DAYS_PER_YEAR, RADIANS_PER_DEGREE, SECONDS_PER_DAY, STANDARD_GRAVITY_M_S2};
 use units::{Angle, GeometricAltitude};
@@ -65,8 +66,8 @@ pub(crate) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
 /// heading where drift is not recorded. ϕ is the root of the mean squared roll angle.
 pub(crate) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> f64 {
     let mut gravity_m_s2 = STANDARD_GRAVITY_M_S2;
-    let local_gravity = layers.sum(|terms| terms.local_gravity);
-    let rotating_earth = layers.sum(|terms| terms.rotating_earth);
+    let local_gravity = layers.sum(|terms| terms.size(EffectId::LocalGravity));
+    let rotating_earth = layers.sum(|terms| terms.size(EffectId::RotatingEarth));
     if let Some(latitude_deg) = point.latitude_deg {
         let latitude = Angle::degrees(latitude_deg);
         let height = GeometricAltitude::meters(point.pressure_altitude_m);
@@ -87,7 +88,7 @@ pub(crate) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> 
             gravity_m_s2 -= rotating_earth * lighter.to_meters_per_second_squared();
         }
     }
-    let load_factor = layers.sum(|terms| terms.load_factor);
+    let load_factor = layers.sum(|terms| terms.size(EffectId::LoadFactor));
     if load_factor != 0.0
         && let Some(roll_squared_deg2) = point.roll_squared_deg2
     {
@@ -108,7 +109,7 @@ pub(crate) fn apparent_gravity_m_s2(point: &EffectPoint, layers: Layers<'_>) -> 
 /// this exactly.
 pub(crate) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<'_>) -> f64 {
     let mut force_n = flown.mass_kg * point.acceleration_m_s2;
-    let isobaric_slope = layers.sum(|terms| terms.isobaric_slope);
+    let isobaric_slope = layers.sum(|terms| terms.size(EffectId::IsobaricSlope));
     if isobaric_slope != 0.0
         && let (Some(latitude_deg), Some(drift_deg)) = (point.latitude_deg, point.drift_deg)
     {
@@ -145,38 +146,38 @@ fn drag_with_layer(below: AtTable<'_>, point: &EffectPoint, flown: &AsFlown, ter
     let AtTable { drag_coefficient, lift_coefficient, polar } = below;
     let references = &terms.references;
     let mach = flown.mach;
-    let mut drag = drag_coefficient + terms.zero_lift_drag;
-    if terms.induced_drag != 0.0 {
+    let mut drag = drag_coefficient + terms.size(EffectId::ZeroLiftDrag);
+    if terms.size(EffectId::InducedDrag) != 0.0 {
         let [_, _, _, k0, k1, k2] = polar.coefficients;
         let factor = k0 + k1 * mach + k2 * mach * mach;
-        drag += terms.induced_drag * factor * lift_coefficient * lift_coefficient;
+        drag += terms.size(EffectId::InducedDrag) * factor * lift_coefficient * lift_coefficient;
     }
-    if terms.wave_drag_mach != 0.0 {
+    if terms.size(EffectId::WaveDrag) != 0.0 {
         let divergence = terms.drag_divergence_mach;
-        drag += drag_rise(mach, lift_coefficient, divergence - terms.wave_drag_mach)
+        drag += drag_rise(mach, lift_coefficient, divergence - terms.size(EffectId::WaveDrag))
             - drag_rise(mach, lift_coefficient, divergence);
     }
-    if terms.reynolds_exponent != 0.0 || terms.airframe_ageing_per_year != 0.0 {
+    if terms.size(EffectId::ReynoldsNumber) != 0.0 || terms.size(EffectId::AirframeAgeing) != 0.0 {
         let zero_lift = polar.value(0.0, mach);
         let ratio = flown.unit_reynolds_number_per_m / references.unit_reynolds_number_per_m;
         drag += zero_lift
-            * (ratio.powf(-terms.reynolds_exponent) - 1.0
-                + terms.airframe_ageing_per_year * years_since_reference(point, terms));
+            * (ratio.powf(-terms.size(EffectId::ReynoldsNumber)) - 1.0
+                + terms.size(EffectId::AirframeAgeing) * years_since_reference(point, terms));
     }
-    if terms.trim_drag_per_10_percent_mac != 0.0
+    if terms.size(EffectId::TrimDragCg) != 0.0
         && let (Some(center), Some(reference)) =
             (point.center_of_gravity_percent_mac, references.center_of_gravity_percent_mac)
     {
-        drag += terms.trim_drag_per_10_percent_mac * (reference - center) / 10.0 * lift_coefficient
+        drag += terms.size(EffectId::TrimDragCg) * (reference - center) / 10.0 * lift_coefficient
             / TRIM_LIFT_COEFFICIENT;
     }
-    if terms.asymmetry_drag_per_deg2 != 0.0
+    if terms.size(EffectId::AsymmetryDrag) != 0.0
         && let Some(roll_squared_deg2) = point.roll_squared_deg2
         && roll_squared_deg2 < WINGS_LEVEL_DEG * WINGS_LEVEL_DEG
     {
-        drag += terms.asymmetry_drag_per_deg2 * roll_squared_deg2;
+        drag += terms.size(EffectId::AsymmetryDrag) * roll_squared_deg2;
     }
-    drag *= 1.0 + terms.drag_factor;
+    drag *= 1.0 + terms.size(EffectId::DragFactor);
     if terms.step_drag != 0.0 && point.date_s >= terms.step_from_s {
         drag *= 1.0 + terms.step_drag;
     }

@@ -1,7 +1,7 @@
 //! Effects on TSFC and fuel flow, and on the readings of the flow meters.
 
 use flight::MAXIMUM_ENGINES;
-use flight::effect::ThrottleArgument;
+use flight::effect::{EffectId, ThrottleArgument};
 
 use crate::drag::years_since_reference;
 use crate::point::EffectPoint;
@@ -48,8 +48,8 @@ pub(crate) fn recorded_fuel_flow(
     let (mut factor, mut all) = (1.0, 1.0);
     for terms in layers.iter() {
         factor *= tsfc_factor(corrected_thrust_n, point, flown, terms);
-        if terms.anti_ice_bleed != 0.0 {
-            all *= 1.0 + terms.anti_ice_bleed * anti_ice_on(point, flown);
+        if terms.size(EffectId::AntiIceBleed) != 0.0 {
+            all *= 1.0 + terms.size(EffectId::AntiIceBleed) * anti_ice_on(point, flown);
         }
         if terms.step_fuel_flow != 0.0 && point.date_s >= terms.step_from_s {
             all *= 1.0 + terms.step_fuel_flow;
@@ -57,8 +57,9 @@ pub(crate) fn recorded_fuel_flow(
     }
     let share = 1.0 / engines as f64;
     let thrust_flow_kg_s = net_thrust_n * tsfc_kg_per_n_s * factor * share;
-    let aside_kg_s =
-        layers.sum(|terms| terms.power_offtake * terms.references.fuel_flow_total_kg_s) * share;
+    let aside_kg_s = layers
+        .sum(|terms| terms.size(EffectId::PowerOfftake) * terms.references.fuel_flow_total_kg_s)
+        * share;
     let mut each = [0.0; MAXIMUM_ENGINES];
     let mut total = 0.0;
     for (engine, flow) in each.iter_mut().enumerate().take(engines) {
@@ -80,25 +81,26 @@ fn tsfc_factor(
     terms: &Terms,
 ) -> f64 {
     let references = &terms.references;
-    let mut factor = 1.0 + terms.tsfc_factor;
-    if terms.tsfc_mach_exponent != 0.0 {
-        factor *= ((1.0 + flown.mach) / (1.0 + references.mach)).powf(terms.tsfc_mach_exponent);
+    let mut factor = 1.0 + terms.size(EffectId::TsfcFactor);
+    if terms.size(EffectId::TsfcMachExponent) != 0.0 {
+        factor *= ((1.0 + flown.mach) / (1.0 + references.mach))
+            .powf(terms.size(EffectId::TsfcMachExponent));
     }
-    if terms.tsfc_temperature_exponent != 0.0 {
+    if terms.size(EffectId::TsfcTemperatureExponent) != 0.0 {
         factor *= (flown.temperature_ratio / references.temperature_ratio)
-            .powf(terms.tsfc_temperature_exponent);
+            .powf(terms.size(EffectId::TsfcTemperatureExponent));
     }
-    if terms.tsfc_throttle != 0.0 {
+    if terms.size(EffectId::TsfcThrottle) != 0.0 {
         let by_n2_n = match terms.throttle_argument {
             ThrottleArgument::CorrectedThrust => None,
             ThrottleArgument::N2 => point.corrected_thrust_by_n2_n,
         };
         let x = by_n2_n.unwrap_or(corrected_thrust_n) / references.corrected_thrust_n;
         let distance = (x - terms.throttle_pivot) / THROTTLE_WIDTH;
-        factor *= 1.0 + terms.tsfc_throttle * distance * distance;
+        factor *= 1.0 + terms.size(EffectId::TsfcThrottle) * distance * distance;
     }
-    if terms.engine_ageing_per_year != 0.0 {
-        factor *= 1.0 + terms.engine_ageing_per_year * years_since_reference(point, terms);
+    if terms.size(EffectId::EngineAgeing) != 0.0 {
+        factor *= 1.0 + terms.size(EffectId::EngineAgeing) * years_since_reference(point, terms);
     }
     factor
 }

@@ -26,13 +26,13 @@
 //! |---|---|---|
 //! | `flight/src/effect.rs` | one line in the list: documentation, id, entry | there is no such id |
 //! | `flight/src/effect/airframe.rs` or its neighbours | the entry: name, unit, typical size, sign, inputs, words | the list's line does not compile |
-//! | `effects/src/terms.rs` | its coefficient in the equations' unit: field, zero in `none`, arm of `add` | the `match` of `Terms::add` is not exhaustive |
-//! | `effects/src/drag.rs`, `engine.rs` or `recorded.rs` | the equation, and a row of hand-made values in `model/tests.rs` | the test of signatures names the effect without a row |
-//! | `simulate/src/terms/resolve.rs`, and `drag.rs`, `fuel.rs` or their neighbours | the truth's own form of it | a flown effect changes nothing, and the test of flown effects names it |
-//! | `simulate/tests/flights/effects.rs` | the channels that it changes | the `match` of the test of flown effects is not exhaustive |
-//! | `flight/src/effect/tests.rs`, `simulate/tests/flights/plans.rs` | the number of effects | the tests of the library's size and of clutter fail |
-//! | `docs/src/theory/numbers_that_decide.md` | its typical size; `diagnose/examples/numbers_that_decide.rs` writes the page | the example's test finds the page different |
-//! | `docs/src/theory/diagnosis.md`, `virtual_aircraft.md` | the equation, and the truth's own form | the pages lack it: neither the compiler nor a test names them |
+//! | `effects/src/drag.rs`, `engine.rs` or `recorded.rs` | the equation, which reads `terms.size(EffectId::…)` | the test of signatures finds no slope |
+//! | `effects/src/model/tests.rs` | the slope by hand | the test of signatures names the effect without a row |
+//! | `simulate/src/terms/resolve.rs` | the truth's own form: a function added to drag or fuel flow | a flown effect changes nothing, and the test of flown effects names it |
+//!
+//! `diagnose/examples/numbers_that_decide.rs` then writes the book's page of numbers again (its test finds the page different
+//! until then), and the equation and the truth's own form want a line each in `docs/src/theory`, whose check names an
+//! effect that they do not mention.
 //!
 //! A new kind of hidden parameter is a variant of [`flight::effect::HiddenParameter`]; the compiler names the places that match on
 //! it.

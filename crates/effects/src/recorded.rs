@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use atmos::{airspeed, isa, viscosity};
 use flight::SegmentMeans;
+use flight::effect::EffectId;
 use units::{Pressure, PressureAltitude, Temperature, TrueAirspeed, check_within};
 
 use crate::error::EffectError;
@@ -40,25 +41,26 @@ pub(crate) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
     let recorded_mach = positive("Mach number", "Mach", point.mach)?;
     let recorded_sat_k = positive("static air temperature", "K", point.static_air_temperature_k)?;
     let recorded_tas_m_s = positive("true airspeed", "m/s", point.true_airspeed_m_s)?;
-    let pressure_factor = 1.0 + terms.static_pressure_bias;
+    let pressure_factor = 1.0 + terms.size(EffectId::StaticPressureBias);
     positive("static pressure's recorded over true value", "1", pressure_factor)?;
     let recorded_pressure = isa::pressure(PressureAltitude::meters(point.pressure_altitude_m))?;
     let static_pressure = Pressure::pascals(recorded_pressure.to_pascals() / pressure_factor);
-    let unbiased = recorded_mach - terms.mach_bias;
-    let mach = if terms.static_pressure_bias == 0.0 {
+    let unbiased = recorded_mach - terms.size(EffectId::MachBias);
+    let mach = if terms.size(EffectId::StaticPressureBias) == 0.0 {
         unbiased
     } else {
         let total = (1.0 + 0.2 * unbiased * unbiased) * pressure_factor.powf(2.0 / 7.0);
         ((total - 1.0) / 0.2).max(0.0).sqrt()
     };
     positive("Mach number less its error", "Mach", mach)?;
-    let sat_k = recorded_sat_k - terms.temperature_bias_k;
+    let sat_k = recorded_sat_k - terms.size(EffectId::TemperatureBias);
     positive("static air temperature less its error", "K", sat_k)?;
     let true_airspeed_m_s =
         recorded_tas_m_s * (mach / recorded_mach) * (sat_k / recorded_sat_k).sqrt();
     let mass_kg = point.mass_kg
-        + terms.zero_fuel_mass_kg
-        + point.fuel_used_kg * (terms.fuel_quantity_gain + counted_too_much(point, terms));
+        + terms.size(EffectId::ZeroFuelMassBias)
+        + point.fuel_used_kg
+            * (terms.size(EffectId::FuelQuantityGain) + counted_too_much(point, terms));
     positive("gross mass", "kg", mass_kg)?;
 
     let sat = Temperature::kelvin(sat_k);
@@ -119,13 +121,15 @@ fn corrected(
     corrected.static_air_temperature_k = flown.static_air_temperature_k;
     corrected.true_airspeed_m_s = flown.true_airspeed_m_s;
     corrected.mass_kg = flown.mass_kg;
-    if terms.static_pressure_bias != 0.0 {
+    if terms.size(EffectId::StaticPressureBias) != 0.0 {
         let recorded = isa::pressure(PressureAltitude::meters(means.pressure_altitude_m))?;
-        let flown = Pressure::pascals(recorded.to_pascals() / (1.0 + terms.static_pressure_bias));
+        let flown = Pressure::pascals(
+            recorded.to_pascals() / (1.0 + terms.size(EffectId::StaticPressureBias)),
+        );
         corrected.pressure_altitude_m = isa::pressure_altitude(flown)?.to_meters();
     }
     let counted = counted_too_much(&point, terms);
-    corrected.fuel_used_kg *= 1.0 - terms.fuel_quantity_gain - counted;
+    corrected.fuel_used_kg *= 1.0 - terms.size(EffectId::FuelQuantityGain) - counted;
     corrected.fuel_flow_total_kg_s *= 1.0 - counted;
     for (flow, gain) in corrected.fuel_flow_engine_kg_s.iter_mut().zip(terms.fuel_flow_gain) {
         *flow /= 1.0 + gain;

@@ -251,18 +251,29 @@ impl Column {
     /// Whether `-` (not available for this sample) is allowed in it, and the column may be absent without `MISSING`.
     #[must_use]
     pub const fn is_optional(self) -> bool {
-        matches!(
-            self,
+        match self {
             Self::Latitude
-                | Self::Longitude
-                | Self::TrueHeading
-                | Self::CenterOfGravity
-                | Self::TotalAirTemperature
-                | Self::N1(_)
-                | Self::ExhaustGasTemperature(_)
-                | Self::FuelQuantity
-                | Self::AntiIce
-        )
+            | Self::Longitude
+            | Self::TrueHeading
+            | Self::CenterOfGravity
+            | Self::TotalAirTemperature
+            | Self::N1(_)
+            | Self::ExhaustGasTemperature(_)
+            | Self::FuelQuantity
+            | Self::AntiIce => true,
+            Self::Time
+            | Self::PressureAltitude
+            | Self::StaticAirTemperature
+            | Self::Mach
+            | Self::TrueAirspeed
+            | Self::GroundSpeed
+            | Self::Roll
+            | Self::Drift
+            | Self::N2(_)
+            | Self::FuelFlowEngine(_)
+            | Self::FuelFlowTotal
+            | Self::FuelUsed => false,
+        }
     }
 
     /// Inclusive range in the stored unit. The upper limits that depend on the report (total fuel flow by the number of

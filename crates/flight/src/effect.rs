@@ -29,9 +29,22 @@ macro_rules! effects {
             $($(#[$doc])* $id $(($engine))?,)*
         }
 
+        /// Effects without an engine's number, for their place in the list.
+        enum Place {
+            $($id,)*
+        }
+
         impl EffectId {
             /// Every effect in the library's order; of effects of single engines, that of engine 1.
             pub const ALL: &[Self] = &[$(Self::$id $((<$engine>::MIN + 1))?,)*];
+
+            /// Index in [`ALL`](Self::ALL), whatever the engine.
+            #[must_use]
+            pub const fn index(self) -> usize {
+                match self {
+                    $(Self::$id $((effects!(@any $engine)))? => Place::$id as usize,)*
+                }
+            }
 
             /// The library's entry.
             #[must_use]

@@ -215,12 +215,35 @@ impl Report {
 }
 
 fn check_columns(columns: &ReportColumns) -> Result<(), ReportDataError> {
-    let samples = columns.time_s.len();
+    // Field by field, so that the compiler names a new one that is not checked.
+    let ReportColumns {
+        time_s,
+        pressure_altitude_m,
+        static_air_temperature_k,
+        mach,
+        true_airspeed_m_s,
+        ground_speed_m_s,
+        roll_deg,
+        drift_deg,
+        n2_percent,
+        fuel_flow,
+        fuel_used_kg,
+        latitude_deg,
+        longitude_deg,
+        true_heading_deg,
+        center_of_gravity_percent_mac,
+        total_air_temperature_k,
+        n1_percent,
+        exhaust_gas_temperature_k,
+        fuel_quantity_kg,
+        anti_ice,
+    } = columns;
+    let samples = time_s.len();
     if samples < 3 {
         return Err(ReportDataError::TooFewSamples { found: samples });
     }
-    check_full("time_s", &columns.time_s, samples)?;
-    for (sample, pair) in columns.time_s.windows(2).enumerate() {
+    check_full("time_s", time_s, samples)?;
+    for (sample, pair) in time_s.windows(2).enumerate() {
         if pair[1] <= pair[0] {
             return Err(ReportDataError::TimeNotIncreasing {
                 sample: sample + 1,
@@ -229,44 +252,48 @@ fn check_columns(columns: &ReportColumns) -> Result<(), ReportDataError> {
             });
         }
     }
-    check_full("pressure_altitude_m", &columns.pressure_altitude_m, samples)?;
-    check_full("mach", &columns.mach, samples)?;
-    check_full("true_airspeed_m_s", &columns.true_airspeed_m_s, samples)?;
-    check_full("ground_speed_m_s", &columns.ground_speed_m_s, samples)?;
-    check_full("fuel_used_kg", &columns.fuel_used_kg, samples)?;
+    check_full("pressure_altitude_m", pressure_altitude_m, samples)?;
+    check_full("mach", mach, samples)?;
+    check_full("true_airspeed_m_s", true_airspeed_m_s, samples)?;
+    check_full("ground_speed_m_s", ground_speed_m_s, samples)?;
+    check_full("fuel_used_kg", fuel_used_kg, samples)?;
     for (name, column) in [
-        ("static_air_temperature_k", &columns.static_air_temperature_k),
-        ("roll_deg", &columns.roll_deg),
-        ("drift_deg", &columns.drift_deg),
+        ("static_air_temperature_k", static_air_temperature_k),
+        ("roll_deg", roll_deg),
+        ("drift_deg", drift_deg),
     ] {
         if let Some(values) = column {
             check_full(name, values, samples)?;
         }
     }
-    check_engines(columns, samples)?;
+    check_engines(fuel_flow, n2_percent.as_deref(), samples)?;
     for (name, column) in [
-        ("latitude_deg", &columns.latitude_deg),
-        ("longitude_deg", &columns.longitude_deg),
-        ("true_heading_deg", &columns.true_heading_deg),
-        ("center_of_gravity_percent_mac", &columns.center_of_gravity_percent_mac),
-        ("total_air_temperature_k", &columns.total_air_temperature_k),
-        ("fuel_quantity_kg", &columns.fuel_quantity_kg),
-        ("anti_ice", &columns.anti_ice),
+        ("latitude_deg", latitude_deg),
+        ("longitude_deg", longitude_deg),
+        ("true_heading_deg", true_heading_deg),
+        ("center_of_gravity_percent_mac", center_of_gravity_percent_mac),
+        ("total_air_temperature_k", total_air_temperature_k),
+        ("fuel_quantity_kg", fuel_quantity_kg),
+        ("anti_ice", anti_ice),
     ] {
         check_optional(name, column.as_ref(), samples)?;
     }
-    for column in &columns.n1_percent {
+    for column in n1_percent {
         check_optional("n1_percent", column.as_ref(), samples)?;
     }
-    for column in &columns.exhaust_gas_temperature_k {
+    for column in exhaust_gas_temperature_k {
         check_optional("exhaust_gas_temperature_k", column.as_ref(), samples)?;
     }
     Ok(())
 }
 
-fn check_engines(columns: &ReportColumns, samples: usize) -> Result<(), ReportDataError> {
+fn check_engines(
+    fuel_flow: &FuelFlowColumns,
+    n2_percent: Option<&[Vec<f64>]>,
+    samples: usize,
+) -> Result<(), ReportDataError> {
     let one_to_four = "1 to 4";
-    match &columns.fuel_flow {
+    match fuel_flow {
         FuelFlowColumns::Total(total) => check_full("fuel_flow", total, samples)?,
         FuelFlowColumns::PerEngine(engines) => {
             if !(1..=MAXIMUM_ENGINES).contains(&engines.len()) {
@@ -281,7 +308,7 @@ fn check_engines(columns: &ReportColumns, samples: usize) -> Result<(), ReportDa
             }
         }
     }
-    if let Some(engines) = &columns.n2_percent {
+    if let Some(engines) = n2_percent {
         if !(1..=MAXIMUM_ENGINES).contains(&engines.len()) {
             return Err(ReportDataError::Engines {
                 column: "n2_percent",
@@ -289,7 +316,7 @@ fn check_engines(columns: &ReportColumns, samples: usize) -> Result<(), ReportDa
                 expected: one_to_four,
             });
         }
-        if let FuelFlowColumns::PerEngine(flows) = &columns.fuel_flow
+        if let FuelFlowColumns::PerEngine(flows) = fuel_flow
             && flows.len() != engines.len()
         {
             return Err(ReportDataError::Engines {

@@ -1,7 +1,7 @@
 //! Reports into the text of format 1.
 
 use flight::column::Column;
-use flight::{Assumption, FuelFlowColumns, Report, ReportHeader};
+use flight::{Assumption, FuelFlowColumns, Report, ReportColumns, ReportHeader};
 
 use crate::cruise_text::{FORMAT_NAME, FORMAT_VERSION, Reader};
 use crate::refusal::Refusal;
@@ -75,27 +75,49 @@ impl Values<'_> {
 
 /// The columns that the report has, in the order of the format's sample.
 fn columns_of(report: &Report) -> Vec<(Column, Values<'_>)> {
-    let data = report.columns();
+    // Field by field, so that the compiler names a new one that is not written.
+    let ReportColumns {
+        time_s,
+        pressure_altitude_m,
+        static_air_temperature_k,
+        mach,
+        true_airspeed_m_s,
+        ground_speed_m_s,
+        roll_deg,
+        drift_deg,
+        n2_percent,
+        fuel_flow,
+        fuel_used_kg,
+        latitude_deg,
+        longitude_deg,
+        true_heading_deg,
+        center_of_gravity_percent_mac,
+        total_air_temperature_k,
+        n1_percent,
+        exhaust_gas_temperature_k,
+        fuel_quantity_kg,
+        anti_ice,
+    } = report.columns();
     let mut columns = Vec::new();
     let mut all = |column, values| columns.push((column, Values::All(values)));
-    all(Column::Time, &data.time_s);
-    all(Column::PressureAltitude, &data.pressure_altitude_m);
-    if let Some(values) = &data.static_air_temperature_k {
+    all(Column::Time, time_s);
+    all(Column::PressureAltitude, pressure_altitude_m);
+    if let Some(values) = static_air_temperature_k {
         all(Column::StaticAirTemperature, values);
     }
-    all(Column::Mach, &data.mach);
-    all(Column::TrueAirspeed, &data.true_airspeed_m_s);
-    all(Column::GroundSpeed, &data.ground_speed_m_s);
-    if let Some(values) = &data.roll_deg {
+    all(Column::Mach, mach);
+    all(Column::TrueAirspeed, true_airspeed_m_s);
+    all(Column::GroundSpeed, ground_speed_m_s);
+    if let Some(values) = roll_deg {
         all(Column::Roll, values);
     }
-    if let Some(values) = &data.drift_deg {
+    if let Some(values) = drift_deg {
         all(Column::Drift, values);
     }
-    for (engine, values) in (1..).zip(data.n2_percent.iter().flatten()) {
+    for (engine, values) in (1..).zip(n2_percent.iter().flatten()) {
         all(Column::N2(engine), values);
     }
-    match &data.fuel_flow {
+    match fuel_flow {
         FuelFlowColumns::Total(values) => all(Column::FuelFlowTotal, values),
         FuelFlowColumns::PerEngine(engines) => {
             for (engine, values) in (1..).zip(engines) {
@@ -103,18 +125,17 @@ fn columns_of(report: &Report) -> Vec<(Column, Values<'_>)> {
             }
         }
     }
-    all(Column::FuelUsed, &data.fuel_used_kg);
+    all(Column::FuelUsed, fuel_used_kg);
     let optional = [
-        (Column::Latitude, &data.latitude_deg),
-        (Column::Longitude, &data.longitude_deg),
-        (Column::TrueHeading, &data.true_heading_deg),
-        (Column::CenterOfGravity, &data.center_of_gravity_percent_mac),
-        (Column::TotalAirTemperature, &data.total_air_temperature_k),
+        (Column::Latitude, latitude_deg),
+        (Column::Longitude, longitude_deg),
+        (Column::TrueHeading, true_heading_deg),
+        (Column::CenterOfGravity, center_of_gravity_percent_mac),
+        (Column::TotalAirTemperature, total_air_temperature_k),
     ];
-    let rotor_speeds = (1..).map(Column::N1).zip(&data.n1_percent);
-    let gas_temperatures =
-        (1..).map(Column::ExhaustGasTemperature).zip(&data.exhaust_gas_temperature_k);
-    let last = [(Column::FuelQuantity, &data.fuel_quantity_kg), (Column::AntiIce, &data.anti_ice)];
+    let rotor_speeds = (1..).map(Column::N1).zip(n1_percent);
+    let gas_temperatures = (1..).map(Column::ExhaustGasTemperature).zip(exhaust_gas_temperature_k);
+    let last = [(Column::FuelQuantity, fuel_quantity_kg), (Column::AntiIce, anti_ice)];
     columns.extend(
         optional
             .into_iter()

@@ -37,6 +37,51 @@ fn every_optional_part() {
     assert_eq!(written, with_comments);
 }
 
+/// Every column that the format defines is read and written again, an optional one with a sample that is not available.
+#[test]
+fn every_column_comes_back() {
+    // Where the fuel flow of all engines is recorded, that of each engine is not.
+    for absent in [Column::FuelFlowTotal, Column::FuelFlowEngine(1)] {
+        let columns: Vec<Column> = Column::ALL.into_iter().filter(|c| *c != absent).collect();
+        let line = |word: &dyn Fn(Column) -> String| {
+            columns.iter().map(|column| word(*column)).collect::<Vec<_>>().join(" ")
+        };
+        let header: String = SAMPLE
+            .lines()
+            .take_while(|l| !l.starts_with("TIME"))
+            .map(|l| format!("{l}\n"))
+            .collect();
+        let mut text = header;
+        text.push_str(&line(&|column| column.name()));
+        text.push('\n');
+        text.push_str(&line(&|column| column.canonical_unit().to_owned()));
+        text.push('\n');
+        for sample in 0..3 {
+            let value = |column: Column| match column {
+                Column::Time => (60 * sample).to_string(),
+                Column::FuelUsed => (1000 + 10 * sample).to_string(),
+                optional if optional.is_optional() && sample == 1 => "-".to_owned(),
+                other => {
+                    let range = other.range();
+                    let least = range.minimum.unwrap_or(0.0);
+                    // Whole numbers where the range holds one: anti-ice is 0 or 1.
+                    let middle = 0.5 * (least + range.maximum.unwrap_or(least + 2.0));
+                    if middle.ceil() <= range.maximum.unwrap_or(middle + 1.0) {
+                        middle.ceil().to_string()
+                    } else {
+                        middle.to_string()
+                    }
+                }
+            };
+            text.push_str(&line(&value));
+            text.push('\n');
+        }
+        let written = write(&read(&text), &TextLayout::exact(), &[]).unwrap();
+        let table = |text: &str| text[text.find("\nTIME").unwrap()..].to_owned();
+        assert_eq!(table(&written), table(&text), "{absent:?}");
+    }
+}
+
 #[test]
 fn what_the_text_cannot_hold_is_refused() {
     let layout = TextLayout::industry();

@@ -28,6 +28,21 @@ pub struct EffectEntry {
     pub phrase: Phrase,
 }
 
+impl EffectEntry {
+    /// What a size of 1 in this unit is in the equations: a share for per cent, a drag coefficient for drag counts, else
+    /// the unit itself.
+    #[must_use]
+    pub fn unit_factor(&self) -> f64 {
+        if self.unit.starts_with('%') {
+            0.01
+        } else if self.unit.contains("counts") {
+            1e-4
+        } else {
+            1.0
+        }
+    }
+}
+
 /// The description of an effect in words; `{k}` is an engine's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phrase {

@@ -15,11 +15,47 @@ fn names_go_both_ways_and_are_unique() {
 
 #[test]
 fn effects_of_single_engines_follow_the_number_of_engines() {
-    // The table has 29 rows, two of which are one effect per engine (with a single engine that is 'all').
-    assert_eq!(EffectId::library(1).len(), 27);
-    assert_eq!(EffectId::library(2).len(), 31);
+    // Each of them is one effect per engine; with a single engine it is the effect of all engines.
+    let single = EffectId::ALL.iter().filter(|id| id.engine().is_some()).count();
+    let others = EffectId::ALL.len() - single;
+    assert_eq!(single, 2);
+    for (engines, of_each) in [(1, 0), (2, 2), (4, 4)] {
+        assert_eq!(EffectId::library(engines).len(), others + of_each * single);
+    }
     assert!(EffectId::library(2).contains(&EffectId::TsfcEngine(2)));
     assert!(!EffectId::library(2).contains(&EffectId::TsfcEngine(3)));
+}
+
+#[test]
+fn places_in_the_list_and_factors_of_the_units() {
+    for (place, id) in EffectId::ALL.iter().enumerate() {
+        assert_eq!(id.index(), place);
+    }
+    assert_eq!(EffectId::TsfcEngine(3).index(), EffectId::TsfcEngine(1).index());
+    // 2 % are 0.02, 5 drag counts are 0.0005, 0.006 Mach are 0.006.
+    let factors: std::collections::BTreeSet<_> = EffectId::ALL
+        .iter()
+        .map(|id| (id.entry().unit, id.entry().unit_factor().to_string()))
+        .collect();
+    let by_hand = [
+        ("%", "0.01"),
+        ("% of K", "0.01"),
+        ("% of p", "0.01"),
+        ("% rms", "0.01"),
+        ("%/year", "0.01"),
+        ("1", "1"),
+        ("K", "1"),
+        ("Mach", "1"),
+        ("counts per 10 %MAC forward", "0.0001"),
+        ("counts/deg²", "0.0001"),
+        ("drag counts", "0.0001"),
+        ("exponent", "1"),
+        ("kg", "1"),
+        ("known, 1", "1"),
+    ];
+    let by_hand: std::collections::BTreeSet<_> =
+        by_hand.into_iter().map(|(unit, factor)| (unit, factor.to_owned())).collect();
+    assert_eq!(factors, by_hand);
 }
 
 #[test]

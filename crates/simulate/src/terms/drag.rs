@@ -45,10 +45,19 @@ pub(crate) struct DragTerms {
     pub(crate) asymmetry_effect: f64,
     /// Factor of all drag.
     pub(crate) factor: f64,
-    /// Bump: drag coefficient and Mach number.
-    pub(crate) mach_bump: Option<(f64, f64)>,
-    /// Spoilers: drag coefficient and lift coefficient where they begin.
-    pub(crate) spoiler_float: Option<(f64, f64)>,
+    /// Added drag coefficients of forms of their own.
+    pub(crate) added: Vec<AddedDrag>,
+}
+
+/// An added drag coefficient of a form of its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AddedDrag {
+    /// Drag coefficient at full size.
+    pub(crate) drag_coefficient: f64,
+    /// Where it acts, in the variable of the form.
+    pub(crate) at: f64,
+    /// Share of the full size at a point: of `at` and the point.
+    pub(crate) share: fn(f64, &DragInputs) -> f64,
 }
 
 /// One friction term: weight of the relative change of the skin friction from a reference, and one over that reference.
@@ -106,8 +115,7 @@ impl DragTerms {
                 * DRAG_COEFFICIENT_PER_COUNT,
             asymmetry_effect: 0.0,
             factor: 1.0,
-            mach_bump: None,
-            spoiler_float: None,
+            added: Vec::new(),
         }
     }
 }
@@ -151,16 +159,23 @@ impl Terms {
         }
         let roll = at.roll_deg.abs();
         drag += (terms.asymmetry + terms.asymmetry_effect * (0.9 + 0.2 * roll)) * roll * roll;
-        if let Some((height, center)) = terms.mach_bump {
-            let distance = (mach - center) / MACH_BUMP_WIDTH;
-            drag += height * (-distance * distance).exp();
-        }
-        if let Some((height, from)) = terms.spoiler_float {
-            let up = ((lift_coefficient - from) / SPOILER_RAMP).clamp(0.0, 1.0);
-            drag += height * up * up * (3.0 - 2.0 * up);
+        for term in &terms.added {
+            drag += term.drag_coefficient * (term.share)(term.at, at);
         }
         drag * terms.factor
     }
+}
+
+/// Bump of drag around one Mach number.
+pub(crate) fn mach_bump(center_mach: f64, at: &DragInputs) -> f64 {
+    let distance = (at.mach - center_mach) / MACH_BUMP_WIDTH;
+    (-distance * distance).exp()
+}
+
+/// Spoilers that float up beyond a lift coefficient: a smooth step.
+pub(crate) fn floating_spoilers(from_lift_coefficient: f64, at: &DragInputs) -> f64 {
+    let up = ((at.lift_coefficient - from_lift_coefficient) / SPOILER_RAMP).clamp(0.0, 1.0);
+    up * up * (3.0 - 2.0 * up)
 }
 
 /// Roughness drag relative to its value at a reference Mach number: friction falls as the wall warms.

@@ -57,8 +57,8 @@ pub(crate) struct FuelTerms {
     pub(crate) power_offtake: Option<(f64, f64)>,
     /// Relative fuel flow while anti-ice is on, at a reference corrected thrust, N.
     pub(crate) anti_ice: Option<(f64, f64)>,
-    pub(crate) combustor_loss: f64,
-    pub(crate) fuel_temperature: f64,
+    /// Growth of all fuel flow by forms of their own: relative size, and the share of it at a point.
+    pub(crate) added: Vec<(f64, fn(&FuelInputs) -> f64)>,
     /// Reference over actual heating value: factor of all fuel.
     pub(crate) heating_value_factor: f64,
 }
@@ -77,8 +77,7 @@ impl FuelTerms {
             offtake_kg_s: physics.offtake.factor() * engine.offtake_fuel_flow_kg_s,
             power_offtake: None,
             anti_ice: None,
-            combustor_loss: 0.0,
-            fuel_temperature: 0.0,
+            added: Vec::new(),
             heating_value_factor: 1.0,
         }
     }
@@ -125,15 +124,8 @@ impl Terms {
         {
             all *= 1.0 + size * (reference_n / corrected_thrust_n.max(0.1 * reference_n)).sqrt();
         }
-        if terms.combustor_loss != 0.0 {
-            let (none, whole) = COMBUSTOR_PRESSURES_PA;
-            let deep = ((none - at.static_pressure_pa) / (none - whole)).clamp(0.0, 1.0);
-            all *= 1.0 + terms.combustor_loss * deep * deep;
-        }
-        if terms.fuel_temperature != 0.0 {
-            all *= 1.0
-                + terms.fuel_temperature * (at.fuel_temperature_k - FUEL_TEMPERATURE.0)
-                    / FUEL_TEMPERATURE.1;
+        for (size, share) in &terms.added {
+            all *= 1.0 + size * share(at);
         }
 
         let mut flows = [0.0; MAXIMUM_ENGINES];
@@ -144,6 +136,18 @@ impl Terms {
         }
         flows
     }
+}
+
+/// Combustion that loses efficiency at low static pressure.
+pub(crate) fn combustor_loss(at: &FuelInputs) -> f64 {
+    let (none, whole) = COMBUSTOR_PRESSURES_PA;
+    let deep = ((none - at.static_pressure_pa) / (none - whole)).clamp(0.0, 1.0);
+    deep * deep
+}
+
+/// Fuel warmer than the reference.
+pub(crate) fn warm_fuel(at: &FuelInputs) -> f64 {
+    (at.fuel_temperature_k - FUEL_TEMPERATURE.0) / FUEL_TEMPERATURE.1
 }
 
 /// Relative growth of TSFC off the pivot: steeper below than above.

@@ -4,8 +4,8 @@ use flight::effect::{EffectId, StepTarget};
 use serde::{Deserialize, Serialize};
 
 use super::Terms;
-use super::drag::FrictionTerm;
-use super::fuel::ThrottleTerm;
+use super::drag::{AddedDrag, FrictionTerm, floating_spoilers, mach_bump};
+use super::fuel::{ThrottleTerm, combustor_loss, warm_fuel};
 use crate::aircraft::DRAG_COEFFICIENT_PER_COUNT;
 use crate::effect::{OutsideEffect, PlannedEffect, TruthEffect};
 
@@ -71,20 +71,20 @@ impl Terms {
                 }
             }
             TruthEffect::Outside(outside) => match outside {
-                OutsideEffect::MachBump => {
-                    self.drag.mach_bump = Some((
-                        size * DRAG_COEFFICIENT_PER_COUNT,
-                        effect.at.unwrap_or(DEFAULT_BUMP_MACH),
-                    ));
+                OutsideEffect::MachBump => self.drag.added.push(AddedDrag {
+                    drag_coefficient: size * DRAG_COEFFICIENT_PER_COUNT,
+                    at: effect.at.unwrap_or(DEFAULT_BUMP_MACH),
+                    share: mach_bump,
+                }),
+                OutsideEffect::SpoilerFloat => self.drag.added.push(AddedDrag {
+                    drag_coefficient: size * DRAG_COEFFICIENT_PER_COUNT,
+                    at: effect.at.unwrap_or(DEFAULT_SPOILER_LIFT_COEFFICIENT),
+                    share: floating_spoilers,
+                }),
+                OutsideEffect::CombustorLoss => {
+                    self.fuel.added.push((size * PERCENT, combustor_loss));
                 }
-                OutsideEffect::SpoilerFloat => {
-                    self.drag.spoiler_float = Some((
-                        size * DRAG_COEFFICIENT_PER_COUNT,
-                        effect.at.unwrap_or(DEFAULT_SPOILER_LIFT_COEFFICIENT),
-                    ));
-                }
-                OutsideEffect::CombustorLoss => self.fuel.combustor_loss += size * PERCENT,
-                OutsideEffect::FuelTemperature => self.fuel.fuel_temperature += size * PERCENT,
+                OutsideEffect::FuelTemperature => self.fuel.added.push((size * PERCENT, warm_fuel)),
             },
         }
     }

@@ -29,6 +29,18 @@ fn files_are_short() {
     only_known(rule, long.map(|(path, _)| path));
 }
 
+/// The page of the virtual aircraft gives the truth's own form of every effect.
+#[test]
+fn every_effect_has_its_form_in_the_book() {
+    let page = std::fs::read_to_string(root().join("docs/src/theory/virtual_aircraft.md")).unwrap();
+    let absent: Vec<String> = flight::effect::EffectId::ALL
+        .iter()
+        .map(|id| format!("`{}`", id.entry().name.replace("{k}", "k")))
+        .filter(|name| !page.contains(name))
+        .collect();
+    assert_eq!(absent, Vec::<String>::new());
+}
+
 #[test]
 fn functions_are_short() {
     let long =
