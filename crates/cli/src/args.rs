@@ -40,8 +40,12 @@ pub(crate) struct Common {
 pub(crate) enum Command {
     /// Initial model of an aircraft from its flight-planning guide
     Init(InitArgs),
+    /// Aircraft file and guide of a public model of the type, where the operator's own guide is not at hand
+    Guide(GuideArgs),
     /// Adapt models to cruise reports, one model per tail
     Adapt(AdaptArgs),
+    /// What is wrong with reports, before any modelling: units, signs, stuck channels, dates, flights given twice
+    Check(CheckArgs),
     /// Stabilised segments only, no model needed
     Segment(SegmentArgs),
     /// Fit the settings of law `bayes` to past reports, by marginal likelihood
@@ -95,6 +99,35 @@ pub(crate) struct ModelArgs {
     pub(crate) models: Vec<PathBuf>,
 }
 
+/// `check`
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// Reports.
+    #[command(flatten)]
+    pub(crate) reports: ReportsArgs,
+    /// Also compare with this model (the book), or folder of models: shows masses in the wrong unit. A report uses the
+    /// model of its tail, otherwise the one of its type
+    #[arg(long = "model", value_name = "MODEL.ron")]
+    pub(crate) models: Vec<PathBuf>,
+    /// Also write the findings as JSON (schema `cruisefit.check/1`)
+    #[arg(long, value_name = "OUT.json")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+/// `guide`
+#[derive(Debug, Args)]
+pub(crate) struct GuideArgs {
+    /// ICAO type designator (A320, B738, …)
+    #[arg(long = "type", value_name = "TYPE", required_unless_present = "list")]
+    pub(crate) type_code: Option<String>,
+    /// List the types, and those that another one represents
+    #[arg(long, conflicts_with = "type_code")]
+    pub(crate) list: bool,
+    /// Folder to write to: AIRCRAFT.ron, guide.csv
+    #[arg(long, short, value_name = "DIR", required_unless_present = "list")]
+    pub(crate) output: Option<PathBuf>,
+}
+
 /// `init`
 #[derive(Debug, Args)]
 pub(crate) struct InitArgs {
@@ -107,6 +140,9 @@ pub(crate) struct InitArgs {
     /// Model file to write
     #[arg(long, short, value_name = "MODEL.ron")]
     pub(crate) output: PathBuf,
+    /// Write the model although the guide has serious findings
+    #[arg(long)]
+    pub(crate) accept: bool,
 }
 
 /// The adaptation laws.
@@ -143,6 +179,9 @@ pub(crate) struct AdaptArgs {
     /// Start over: an existing folder is kept under another name
     #[arg(long)]
     pub(crate) restart: bool,
+    /// Also learn tails that are more than 15 % off the book on average
+    #[arg(long)]
+    pub(crate) accept: bool,
 }
 
 /// `tune`
@@ -247,6 +286,7 @@ pub(crate) struct EvaluateArgs {
 
 /// `diagnose`
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct DiagnoseArgs {
     /// Reports.
     #[command(flatten)]
@@ -276,6 +316,9 @@ pub(crate) struct DiagnoseArgs {
     /// Also diagnose flights that the model has learnt
     #[arg(long)]
     pub(crate) allow_learnt: bool,
+    /// Also diagnose tails that are more than 15 % off the book on average
+    #[arg(long)]
+    pub(crate) accept: bool,
 }
 
 /// `show`

@@ -1,11 +1,13 @@
 //! The commands: each turns its arguments into an [`Outcome`], or reports why nothing was done.
 
 pub(crate) mod adapt;
+pub(crate) mod check;
 pub(crate) mod demo;
 pub(crate) mod diagnose;
 pub(crate) mod evaluate;
 pub(crate) mod export;
 pub(crate) mod golden;
+pub(crate) mod guide;
 pub(crate) mod init;
 pub(crate) mod merge;
 pub(crate) mod predict;

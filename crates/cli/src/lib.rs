@@ -19,6 +19,7 @@ mod files;
 mod folder;
 mod inputs;
 mod models;
+mod plausibility;
 mod progress;
 mod reading;
 mod simulated_reports;
@@ -50,7 +51,9 @@ pub fn run() -> ExitCode {
 fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure> {
     match command {
         Command::Init(arguments) => commands::init::run(arguments),
+        Command::Guide(arguments) => commands::guide::run(arguments),
         Command::Adapt(arguments) => commands::adapt::run(arguments, progress),
+        Command::Check(arguments) => commands::check::run(arguments, progress),
         Command::Segment(arguments) => commands::segment::run(arguments, progress),
         Command::Tune(arguments) => commands::tune::run(arguments, progress),
         Command::Merge(arguments) => commands::merge::run(arguments),

@@ -7,6 +7,8 @@ pub enum Severity {
     Note,
     /// The result may suffer.
     Warning,
+    /// Results from it are worthless unless it is explained.
+    Serious,
 }
 
 /// Something noticed about data that is not a reason to refuse it.

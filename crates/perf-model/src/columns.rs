@@ -27,6 +27,14 @@ pub(crate) const FUEL_FLOW_LB_H: Column =
     column("fuel_flow_lb_h", "total fuel flow", "lb/h", 1.0, 400_000.0);
 pub(crate) const FUEL_FLOW_KG_H: Column =
     column("fuel_flow_kg_h", "total fuel flow", "kg/h", 0.5, 181_000.0);
+// As the cruise report's limit for one engine, and a single engine's smallest.
+pub(crate) const FUEL_FLOW_PER_ENGINE_LB_H: Column =
+    column("fuel_flow_per_engine_lb_h", "fuel flow per engine", "lb/h", 1.0, 100_000.0);
+pub(crate) const FUEL_FLOW_PER_ENGINE_KG_H: Column =
+    column("fuel_flow_per_engine_kg_h", "fuel flow per engine", "kg/h", 0.5, 45_000.0);
+// Hundreds of feet.
+pub(crate) const FLIGHT_LEVEL: Column =
+    column("flight_level", "pressure altitude", "flight level", -20.0, 600.0);
 // Wider than any certified envelope (about ±40 K); a column of absolute temperatures is still detected.
 pub(crate) const ISA_DEVIATION_C: Column =
     column("isa_deviation_c", "deviation from the ISA", "°C", -50.0, 50.0);

@@ -69,6 +69,9 @@ pub enum CsvErrorReason {
         /// Its name, or the names of which one is required.
         expected: String,
     },
+    /// A flow of one engine where the number of engines is not known.
+    #[error("fuel flow per engine needs the number of engines, as an aircraft file states it")]
+    EnginesUnknown,
     /// Two columns of the same quantity in different units.
     #[error("column is the same quantity as {other}, expected only one of the two")]
     ConflictingColumn {
@@ -197,13 +200,25 @@ impl CsvText {
         }
     }
 
-    /// Like [`find_either`](Self::find_either), where one of the two is required.
-    pub(crate) fn require_either<'c>(
+    /// The column that the file has of several of one meaning, of which one is required, and where it is.
+    pub(crate) fn require_one_of<'c>(
         &self,
-        columns: [&'c Column; 2],
+        columns: &[&'c Column],
     ) -> Result<(usize, &'c Column), CsvError> {
-        self.find_either(columns)?
-            .ok_or_else(|| self.missing(format!("{} or {}", columns[0].name, columns[1].name)))
+        let mut found: Vec<(usize, &'c Column)> =
+            columns.iter().filter_map(|column| Some((self.find(column)?, *column))).collect();
+        found.sort_by_key(|(index, _)| *index);
+        match found[..] {
+            [one] => Ok(one),
+            [(_, first), (index, _), ..] => {
+                Err(self
+                    .header_error(index, CsvErrorReason::ConflictingColumn { other: first.name }))
+            }
+            [] => {
+                let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+                Err(self.missing(names.join(" or ")))
+            }
+        }
     }
 
     /// A field as a number within its column's limits.
@@ -237,7 +252,7 @@ impl CsvText {
         CsvError { line: row.line, ..self.header_error(index, reason) }
     }
 
-    fn header_error(&self, index: usize, reason: CsvErrorReason) -> CsvError {
+    pub(crate) fn header_error(&self, index: usize, reason: CsvErrorReason) -> CsvError {
         let name = self.header[index].trim().to_owned();
         CsvError {
             line: self.header_line,

@@ -7,7 +7,8 @@ use units::{
 };
 
 use crate::columns::{
-    FUEL_FLOW_KG_H, FUEL_FLOW_LB_H, ISA_DEVIATION_C, MASS_KG, MAXIMUM_MACH, MINIMUM_MACH,
+    FLIGHT_LEVEL, FUEL_FLOW_KG_H, FUEL_FLOW_LB_H, FUEL_FLOW_PER_ENGINE_KG_H,
+    FUEL_FLOW_PER_ENGINE_LB_H, ISA_DEVIATION_C, MACH, MASS_KG, MAXIMUM_MACH, MINIMUM_MACH,
     PRESSURE_ALTITUDE_FT, TRUE_AIRSPEED_KT, WEIGHT_LB,
 };
 use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Row};
@@ -36,22 +37,27 @@ pub struct GuidePoint {
 }
 
 /// Columns that a guide may have.
-const COLUMNS: [Column; 7] = [
+const COLUMNS: [Column; 11] = [
     WEIGHT_LB,
     MASS_KG,
     PRESSURE_ALTITUDE_FT,
+    FLIGHT_LEVEL,
     TRUE_AIRSPEED_KT,
+    MACH,
     FUEL_FLOW_LB_H,
     FUEL_FLOW_KG_H,
+    FUEL_FLOW_PER_ENGINE_LB_H,
+    FUEL_FLOW_PER_ENGINE_KG_H,
     ISA_DEVIATION_C,
 ];
 
 impl Guide {
     /// Reads a guide.
     ///
-    /// Comma-separated; the header determines the columns: `weight_lb` or `mass_kg`; `pressure_altitude_ft`;
-    /// `true_airspeed_kt`; `fuel_flow_lb_h` or `fuel_flow_kg_h`, all engines; optionally `isa_deviation_c`. Columns
-    /// whose name begins with `X-` are ignored.
+    /// Comma-separated; the header determines the columns, in any order: `weight_lb` or `mass_kg`;
+    /// `pressure_altitude_ft` or `flight_level`; `true_airspeed_kt` or `mach`; `fuel_flow_lb_h` or `fuel_flow_kg_h`, all
+    /// engines; optionally `isa_deviation_c`. Columns whose name begins with `X-` are ignored. For a flow per engine see
+    /// [`from_csv_of_engines`](Self::from_csv_of_engines).
     ///
     /// ```
     /// use perf_model::Guide;
@@ -70,40 +76,16 @@ impl Guide {
     /// [`CsvError`] at the first fault: an unknown, missing or repeated column, a row with too few or too many fields,
     /// a field that is not a number or outside the quantity's limits, an airspeed outside Mach 0.1 to 0.99.
     pub fn from_csv(text: &[u8]) -> Result<Self, CsvError> {
-        let file = CsvText::read(text, &COLUMNS)?;
-        let (mass, mass_column) = file.require_either([&WEIGHT_LB, &MASS_KG])?;
-        let pressure_altitude = file.require(&PRESSURE_ALTITUDE_FT)?;
-        let true_airspeed = file.require(&TRUE_AIRSPEED_KT)?;
-        let (flow, flow_column) = file.require_either([&FUEL_FLOW_LB_H, &FUEL_FLOW_KG_H])?;
-        let isa_deviation = file.find(&ISA_DEVIATION_C);
+        read(text, None)
+    }
 
-        let point = |row: &Row| -> Result<GuidePoint, CsvError> {
-            let point = GuidePoint {
-                line: row.line,
-                mass: mass_in(mass_column, file.number(row, mass, mass_column)?),
-                pressure_altitude: PressureAltitude::feet(file.number(
-                    row,
-                    pressure_altitude,
-                    &PRESSURE_ALTITUDE_FT,
-                )?),
-                true_airspeed: TrueAirspeed::knots(file.number(
-                    row,
-                    true_airspeed,
-                    &TRUE_AIRSPEED_KT,
-                )?),
-                fuel_flow_total: fuel_flow_in(flow_column, file.number(row, flow, flow_column)?),
-                isa_deviation: TemperatureDifference::kelvin(match isa_deviation {
-                    Some(index) => file.number(row, index, &ISA_DEVIATION_C)?,
-                    None => 0.0,
-                }),
-            };
-            point.mach().map_err(|domain| {
-                file.error(row, true_airspeed, CsvErrorReason::Inconsistent { domain })
-            })?;
-            Ok(point)
-        };
-        let points = file.rows.iter().map(point).collect::<Result<_, _>>()?;
-        Ok(Self { points })
+    /// The same where the flow may also be that of one engine, as an aircraft's manual prints it:
+    /// `fuel_flow_per_engine_lb_h` or `fuel_flow_per_engine_kg_h`.
+    ///
+    /// # Errors
+    /// As [`from_csv`](Self::from_csv).
+    pub fn from_csv_of_engines(text: &[u8], engines: u8) -> Result<Self, CsvError> {
+        read(text, Some(engines))
     }
 
     /// The rows, in the file's order; one or more.
@@ -139,13 +121,86 @@ pub(crate) fn mass_in(column: &Column, value: f64) -> Mass {
     if column.name == WEIGHT_LB.name { Mass::pounds(value) } else { Mass::kilograms(value) }
 }
 
-/// A total fuel flow in the unit of its column.
+/// A fuel flow in the unit of its column.
 pub(crate) fn fuel_flow_in(column: &Column, value: f64) -> FuelFlowTotal {
-    if column.name == FUEL_FLOW_LB_H.name {
+    if [FUEL_FLOW_LB_H.name, FUEL_FLOW_PER_ENGINE_LB_H.name].contains(&column.name) {
         FuelFlowTotal::pounds_per_hour(value)
     } else {
         FuelFlowTotal::kilograms_per_hour(value)
     }
+}
+
+fn read(text: &[u8], engines: Option<u8>) -> Result<Guide, CsvError> {
+    let file = CsvText::read(text, &COLUMNS)?;
+    let columns = Columns {
+        mass: file.require_one_of(&[&WEIGHT_LB, &MASS_KG])?,
+        altitude: file.require_one_of(&[&PRESSURE_ALTITUDE_FT, &FLIGHT_LEVEL])?,
+        speed: file.require_one_of(&[&TRUE_AIRSPEED_KT, &MACH])?,
+        flow: file.require_one_of(&[
+            &FUEL_FLOW_LB_H,
+            &FUEL_FLOW_KG_H,
+            &FUEL_FLOW_PER_ENGINE_LB_H,
+            &FUEL_FLOW_PER_ENGINE_KG_H,
+        ])?,
+        isa_deviation: file.find(&ISA_DEVIATION_C),
+    };
+    let (index, flow) = columns.flow;
+    if is_per_engine(flow) && engines.is_none() {
+        return Err(file.header_error(index, CsvErrorReason::EnginesUnknown));
+    }
+    let points = file
+        .rows
+        .iter()
+        .map(|row| columns.point(&file, row, f64::from(engines.unwrap_or(1))))
+        .collect::<Result<_, _>>()?;
+    Ok(Guide { points })
+}
+
+/// Where a file has its columns, and which of each meaning.
+struct Columns {
+    mass: (usize, &'static Column),
+    altitude: (usize, &'static Column),
+    speed: (usize, &'static Column),
+    flow: (usize, &'static Column),
+    isa_deviation: Option<usize>,
+}
+
+impl Columns {
+    fn point(&self, file: &CsvText, row: &Row, engines: f64) -> Result<GuidePoint, CsvError> {
+        let number = |(index, column): (usize, &'static Column)| file.number(row, index, column);
+        let altitude = number(self.altitude)?;
+        let feet_per_unit = if self.altitude.1.name == FLIGHT_LEVEL.name { 100.0 } else { 1.0 };
+        let pressure_altitude = PressureAltitude::feet(feet_per_unit * altitude);
+        let isa_deviation = TemperatureDifference::kelvin(match self.isa_deviation {
+            Some(index) => file.number(row, index, &ISA_DEVIATION_C)?,
+            None => 0.0,
+        });
+        let speed = number(self.speed)?;
+        let inconsistent =
+            |domain| file.error(row, self.speed.0, CsvErrorReason::Inconsistent { domain });
+        let true_airspeed = if self.speed.1.name == MACH.name {
+            let sat = isa::temperature(pressure_altitude).map_err(inconsistent)? + isa_deviation;
+            airspeed::mach_to_true_airspeed(Mach::new(speed), sat)
+        } else {
+            TrueAirspeed::knots(speed)
+        };
+        let flow = number(self.flow)?;
+        let times = if is_per_engine(self.flow.1) { engines } else { 1.0 };
+        let point = GuidePoint {
+            line: row.line,
+            mass: mass_in(self.mass.1, number(self.mass)?),
+            pressure_altitude,
+            true_airspeed,
+            fuel_flow_total: fuel_flow_in(self.flow.1, times * flow),
+            isa_deviation,
+        };
+        point.mach().map_err(inconsistent)?;
+        Ok(point)
+    }
+}
+
+fn is_per_engine(column: &Column) -> bool {
+    [FUEL_FLOW_PER_ENGINE_LB_H.name, FUEL_FLOW_PER_ENGINE_KG_H.name].contains(&column.name)
 }
 
 #[cfg(test)]
@@ -187,12 +242,29 @@ mod tests {
     }
 
     #[test]
+    fn as_a_manual_prints_it() {
+        // FL 410, Mach 0.8194 is 470 kt within 0.02 kt (previous test); 844 lb/h for each of two engines are 1688 lb/h.
+        let text = "weight_lb,flight_level,mach,fuel_flow_per_engine_lb_h\n30000,410,0.81943,844\n";
+        let manual = Guide::from_csv_of_engines(text.as_bytes(), 2).unwrap();
+        let plain = read(&format!("{HEADER}\n30000,41000,470,1688\n")).unwrap();
+        let (manual, plain) = (manual.points()[0], plain.points()[0]);
+        assert!((manual.true_airspeed.to_knots() - 470.0).abs() < 0.02);
+        assert_eq!(manual.pressure_altitude, plain.pressure_altitude);
+        assert_eq!(manual.fuel_flow_total, plain.fuel_flow_total);
+        assert_eq!(
+            message(text),
+            "line 1, column 4 (fuel_flow_per_engine_lb_h): fuel flow per engine needs the number of \
+             engines, as an aircraft file states it"
+        );
+    }
+
+    #[test]
     fn faults_of_the_header() {
         assert_eq!(
             message("weight_lb,pressure_altitude_ft,tas_kt,fuel_flow_lb_h\n1,2,3,4\n"),
             "line 1, column 3 (tas_kt): unknown column, expected one of weight_lb, mass_kg, \
-             pressure_altitude_ft, true_airspeed_kt, fuel_flow_lb_h, fuel_flow_kg_h, isa_deviation_c, \
-             or a name beginning with X-"
+             pressure_altitude_ft, flight_level, true_airspeed_kt, mach, fuel_flow_lb_h, fuel_flow_kg_h, \
+             fuel_flow_per_engine_lb_h, fuel_flow_per_engine_kg_h, isa_deviation_c, or a name beginning with X-"
         );
         assert_eq!(
             message(&format!("{HEADER},weight_lb\n1,2,3,4,5\n")),
@@ -204,11 +276,12 @@ mod tests {
         );
         assert_eq!(
             message("weight_lb,pressure_altitude_ft,true_airspeed_kt\n1,2,3\n"),
-            "line 1: missing column fuel_flow_lb_h or fuel_flow_kg_h"
+            "line 1: missing column fuel_flow_lb_h or fuel_flow_kg_h or fuel_flow_per_engine_lb_h or \
+             fuel_flow_per_engine_kg_h"
         );
         assert_eq!(
             message("\n\nmass_kg,true_airspeed_kt,fuel_flow_kg_h\n1,2,3\n"),
-            "line 3: missing column pressure_altitude_ft"
+            "line 3: missing column pressure_altitude_ft or flight_level"
         );
         assert!(message("").starts_with("line 1: no header, expected column names: weight_lb"));
         assert_eq!(message(&format!("{HEADER}\n")), "line 1: no rows after the header");

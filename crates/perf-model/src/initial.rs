@@ -195,7 +195,7 @@ pub fn initial_model(
         pressure_altitudes,
         extrapolated_nodes,
     };
-    let findings = findings::from_fit(&fit, guide, grid.nodes());
+    let findings = findings::of_guide(aircraft, guide, &rows, &fit);
     Ok(InitialModel { model, fit, findings })
 }
 

@@ -2,7 +2,7 @@
 //! fuel flow that a drag table predicts, and the first table, from a flight-planning guide.
 //!
 //! What it is: equations as small free functions ([`forces`], [`mod@tsfc`], [`fuel_flow`], [`mod@specific_range`]); the
-//! [`Aircraft`] with its file; the [`Guide`] and [`FlightPoints`] files; [`initial_model`]; and [`PerformanceModel`],
+//! [`Aircraft`] with its file; a public model of 68 types ([`poll_schumann`]); the [`Guide`] and [`FlightPoints`] files; [`initial_model`]; and [`PerformanceModel`],
 //! which turns a segment into an observation with its [`variance`] and a flight point into a prediction.
 //! What it is not: it adapts nothing, diagnoses nothing and opens no file: text in, text out.
 //!
@@ -50,6 +50,7 @@ mod guide;
 pub mod initial;
 pub mod model;
 mod points;
+pub mod poll_schumann;
 pub mod specific_range;
 pub mod state;
 pub mod tsfc;

@@ -155,7 +155,7 @@ struct Columns<'c> {
 impl Columns<'static> {
     fn find_in(file: &CsvText) -> Result<Self, CsvError> {
         Ok(Self {
-            mass: file.require_either([&WEIGHT_LB, &MASS_KG])?,
+            mass: file.require_one_of(&[&WEIGHT_LB, &MASS_KG])?,
             pressure_altitude: file.require(&PRESSURE_ALTITUDE_FT)?,
             mach: file.require(&MACH)?,
             isa_deviation: file.find(&ISA_DEVIATION_C),

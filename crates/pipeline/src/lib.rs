@@ -2,7 +2,8 @@
 //!
 //! What it is: the pieces between the stages. [`reduction`] takes a report to its stabilised segments, [`learning`] fits a
 //! model one flight after the other, [`evaluation`] compares segments with a table, [`model_file`] is a model with what it
-//! has learnt, as text and back. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), the
+//! has learnt, as text and back; [`check`] finds what is wrong with
+//! recorded data. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), the
 //! results of a run ([`summary`], [`diagnosis_document`]), and a diagnosis in words
 //! ([`diagnosis_text`], [`diagnosis_words`]).
 //! What it is not: it opens no file, starts no thread, reads no clock and prints nothing. It computes no drag, no fuel flow
@@ -40,6 +41,7 @@
 //! ```
 
 pub mod addition_record;
+pub mod check;
 pub mod checksum;
 pub mod columns;
 pub mod condition_means;

@@ -7,6 +7,8 @@ use flight::{FlightIdentity, Report, Segment, TemperatureSource};
 use segmenter::{Tally, TrimCriteria};
 use track::TrackError;
 
+use crate::check::{FlightCheck, check_report};
+
 /// One flight, reduced to its segments.
 #[derive(Clone, Debug)]
 pub struct ReducedFlight {
@@ -26,6 +28,8 @@ pub struct ReducedFlight {
     pub tally: Tally,
     /// What is worth knowing, each a sentence.
     pub notes: Vec<String>,
+    /// What is wrong with the data.
+    pub check: FlightCheck,
 }
 
 impl ReducedFlight {
@@ -39,6 +43,7 @@ impl ReducedFlight {
         criteria: &TrimCriteria,
         mut notes: Vec<String>,
     ) -> Result<Self, TrackError> {
+        let check = check_report(&report);
         let samples = report.len();
         let engines = report.engines();
         let header = report.header();
@@ -67,6 +72,7 @@ impl ReducedFlight {
             gauges: GaugeBurn::of_track(&track),
             tally: segmentation.tally,
             notes,
+            check,
         })
     }
 }

@@ -9,6 +9,7 @@ use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::folder::{Folder, StoredTail};
 use crate::models::Models;
+use crate::plausibility;
 use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
 use pipeline::evaluation::{TailCounts, TailData, TailResult};
@@ -26,6 +27,11 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     let chosen = choose_models(&models, &mut reading, arguments)?;
+    let book_of = |flight: &FlightRead| {
+        let model = models.for_flight(flight).ok()?;
+        Some((&model.initial, model.initial.drag_table()))
+    };
+    plausibility::set_aside_absurd(&mut reading, book_of, arguments.accept);
     let nothing_left = reading.flights.is_empty();
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
     let folder = Folder::open(&arguments.output, arguments.restart)?;

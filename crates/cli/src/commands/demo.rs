@@ -34,6 +34,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
     );
     let model = folder.join("MODEL.ron");
     let initial = init::run(&InitArgs {
+        accept: false,
         aircraft: folder.join("AIRCRAFT.ron"),
         guide: folder.join("guide.csv"),
         output: model.clone(),
@@ -76,6 +77,7 @@ fn adapt_by_both_laws(
         let adapted = folder.join(format!("adapted-{name}"));
         let learnt = adapt::run(
             &AdaptArgs {
+                accept: false,
                 reports: reports_arguments(teaching),
                 models: ModelArgs { models: vec![folder.join("MODEL.ron")] },
                 output: adapted.clone(),
@@ -149,6 +151,7 @@ fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<
     );
     let found = diagnose::run(
         &DiagnoseArgs {
+            accept: false,
             reports: reports_arguments(&[later.join("N750CF")]),
             models: ModelArgs { models: vec![folder.join("adapted-bayes/models/N750CF.ron")] },
             output: folder.join("diagnosis"),

@@ -14,6 +14,7 @@ use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::Models;
+use crate::plausibility;
 use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
 use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
@@ -35,6 +36,11 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let models = Models::read(&arguments.models.models)?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
+    let book_of = |flight: &FlightRead| {
+        let model = models.for_flight(flight).ok()?;
+        Some((&model.initial, model.drag_coefficient()))
+    };
+    plausibility::set_aside_absurd(&mut reading, book_of, arguments.accept);
     let groups = group(&models, &mut reading, arguments);
     check_refused(&reading.refused, files, arguments.reports.strict, groups.is_empty())?;
     make_folder(&arguments.output)?;

@@ -123,6 +123,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
         tempfile::tempdir().map_err(|error| Failure::unwritable(&std::env::temp_dir(), error))?;
     let model_path = scratch.path().join("MODEL.ron");
     let _ = init::run(&InitArgs {
+        accept: true,
         aircraft: folder.join(&golden.aircraft),
         guide: folder.join(&golden.guide),
         output: model_path.clone(),
@@ -130,6 +131,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
     let output = scratch.path().join("adapted");
     let outcome = adapt::run(
         &AdaptArgs {
+            accept: true,
             reports: ReportsArgs {
                 reports: golden.reports.iter().map(|report| folder.join(report)).collect(),
                 mapping: None,

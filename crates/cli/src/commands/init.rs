@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use flight::Severity;
+use flight::{Finding, Severity};
 use perf_model::{Aircraft, Guide};
 
 use crate::args::InitArgs;
@@ -20,10 +20,14 @@ pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?).map_err(|error| {
         Failure::bad_file(&arguments.aircraft, format!("not an aircraft file: {error}"))
     })?;
-    let guide = Guide::from_csv(read_text(&arguments.guide)?.as_bytes())
-        .map_err(|error| Failure::bad_file(&arguments.guide, error))?;
+    let guide = Guide::from_csv_of_engines(
+        read_text(&arguments.guide)?.as_bytes(),
+        u8::try_from(aircraft.engines()).unwrap_or(1),
+    )
+    .map_err(|error| Failure::bad_file(&arguments.guide, error))?;
     let initial = perf_model::initial_model(&aircraft, &guide)
         .map_err(|error| Failure::bad_file(&arguments.guide, chain(&error)))?;
+    refuse_serious(arguments, &initial.findings)?;
     let model = ModelFile::from_initial(&initial, &guide);
     write_model(&model, &arguments.output)?;
     let mut text = String::new();
@@ -54,11 +58,33 @@ pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
         grid.nodes()
     );
     for finding in &initial.findings {
-        let word = if finding.severity >= Severity::Warning { "Warning" } else { "Note" };
-        let _ = writeln!(text, "{word}: {}.", finding.message);
+        let word = match finding.severity {
+            Severity::Serious => "SERIOUS",
+            Severity::Warning => "Warning",
+            Severity::Note => "Note",
+        };
+        let line = finding.line.map_or_else(String::new, |line| format!("line {line}: "));
+        let _ = writeln!(text, "{word}: {line}{}.", finding.message.trim_end_matches('?'));
     }
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
     Ok(Outcome::text(text))
+}
+
+/// A guide in other units than its columns say gives a model that nothing can be compared with.
+fn refuse_serious(arguments: &InitArgs, findings: &[Finding]) -> Result<(), Failure> {
+    let serious: Vec<&str> = findings
+        .iter()
+        .filter(|finding| finding.severity >= Severity::Serious)
+        .map(|finding| finding.message.as_str())
+        .collect();
+    if serious.is_empty() || arguments.accept {
+        return Ok(());
+    }
+    Err(Failure::BadFile {
+        path: show(&arguments.guide),
+        reason: serious.join("; "),
+        help: Some("nothing was written; --accept writes the model nevertheless".to_owned()),
+    })
 }
 
 /// An error with its causes, in one sentence.

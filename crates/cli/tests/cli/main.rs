@@ -9,8 +9,11 @@
 mod applied;
 mod architecture;
 mod bad_input;
+mod check;
 mod commands;
 mod diagnosis;
+mod guide;
+mod json_schema;
 mod reference;
 mod remainder;
 mod same_bytes;

@@ -2,8 +2,8 @@
 
 use flight::{Finding, Severity};
 
-use super::GuideFit;
-use crate::Guide;
+use super::{GuideFit, GuideObservation};
+use crate::{Aircraft, Guide, poll_schumann};
 
 /// Growth of an error above which the guide has too few rows somewhere in its range: a guide rounded to 0.5 % is off by
 /// more than 2.5 % there. Guides that span weights, altitudes and speeds reach 1 to 3.
@@ -14,7 +14,105 @@ const LARGE_RESIDUAL_PERCENT: f64 = 5.0;
 /// A row with a residual of this many times the root mean square is probably mistyped.
 const ODD_ROW_FACTOR: f64 = 5.0;
 
-pub(super) fn from_fit(fit: &GuideFit, guide: &Guide, nodes: usize) -> Vec<Finding> {
+/// Lift-to-drag ratios of aircraft in cruise: 9 for a light jet, 21 for the best airliner. A flow halved or a mass in lb
+/// under kg doubles it.
+const LIFT_TO_DRAG: (f64, f64) = (6.0, 24.0);
+/// Beyond these a light jet or a sailplane-like wing is possible, a wrong unit more likely.
+const USUAL_LIFT_TO_DRAG: (f64, f64) = (9.0, 21.0);
+/// Lift coefficients of cruise, the median of a guide.
+const LIFT_COEFFICIENT: (f64, f64) = (0.15, 0.75);
+/// Mean deviation from the public model of the type worth a word, %: two such models differ by up to 15 %.
+const PUBLIC_WARNING_PERCENT: f64 = 15.0;
+/// And beyond which a column is in another unit, %.
+const PUBLIC_SERIOUS_PERCENT: f64 = 30.0;
+
+/// Findings about a guide, from its rows and from the fit.
+pub(super) fn of_guide(
+    aircraft: &Aircraft,
+    guide: &Guide,
+    rows: &[GuideObservation],
+    fit: &GuideFit,
+) -> Vec<Finding> {
+    let mut findings: Vec<Finding> =
+        [lift_to_drag(rows), lift_coefficient(rows), against_public(aircraft, guide)]
+            .into_iter()
+            .flatten()
+            .collect();
+    findings.extend(from_fit(fit, guide, aircraft.grid().nodes()));
+    findings
+}
+
+fn finding(severity: Severity, code: &'static str, message: String) -> Finding {
+    Finding { severity, code, message, line: None }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+fn lift_to_drag(rows: &[GuideObservation]) -> Option<Finding> {
+    let ratio =
+        median(rows.iter().map(|row| row.lift_coefficient / row.drag_coefficient).collect());
+    let (low, high) = USUAL_LIFT_TO_DRAG;
+    if (low..=high).contains(&ratio) {
+        return None;
+    }
+    let is_possible = (LIFT_TO_DRAG.0..=LIFT_TO_DRAG.1).contains(&ratio);
+    let cause = if ratio > high {
+        "mass in lb under mass_kg, flow of one engine as total, flow in kg/h under lb/h, or too large a TSFC"
+    } else {
+        "mass in kg under weight_lb, flow in lb/h under kg/h, or too small a TSFC"
+    };
+    Some(finding(
+        if is_possible { Severity::Warning } else { Severity::Serious },
+        "guide-lift-to-drag",
+        format!(
+            "the guide makes a lift-to-drag ratio of {ratio:.1} (median), aircraft in cruise have {low} to {high}: {cause}"
+        ),
+    ))
+}
+
+fn lift_coefficient(rows: &[GuideObservation]) -> Option<Finding> {
+    let value = median(rows.iter().map(|row| row.lift_coefficient).collect());
+    let (low, high) = LIFT_COEFFICIENT;
+    if (low..=high).contains(&value) {
+        return None;
+    }
+    let cause = if value > high {
+        "mass in lb under mass_kg, or too small a wing area"
+    } else {
+        "mass in kg under weight_lb, or too large a wing area"
+    };
+    Some(finding(
+        Severity::Serious,
+        "guide-lift-coefficient",
+        format!(
+            "the guide's median lift coefficient is {value:.2}, cruise is flown at {low} to {high}: {cause}"
+        ),
+    ))
+}
+
+/// Against the public model, for a type that has one.
+fn against_public(aircraft: &Aircraft, guide: &Guide) -> Option<Finding> {
+    let parameters = poll_schumann::find(aircraft.type_code())?;
+    let percent = poll_schumann::mean_deviation_percent(parameters, guide)?;
+    if percent.abs() < PUBLIC_WARNING_PERCENT {
+        return None;
+    }
+    let severity =
+        if percent.abs() > PUBLIC_SERIOUS_PERCENT { Severity::Serious } else { Severity::Warning };
+    Some(finding(
+        severity,
+        "guide-against-public-model",
+        format!(
+            "fuel flow of the guide is {percent:+.0} % off the public model of {} on average: check the units of mass and flow, and whether the flow is of all engines",
+            parameters.type_code
+        ),
+    ))
+}
+
+fn from_fit(fit: &GuideFit, guide: &Guide, nodes: usize) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut find = |severity, code, message, line| {
         findings.push(Finding { severity, code, message, line });

@@ -1,0 +1,47 @@
+//! `cruisefit check`: what is wrong with reports, before any modelling.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use pipeline::check::CheckDocument;
+use pipeline::summary::{RefusedSummary, ReportsSummary};
+
+use crate::args::CheckArgs;
+use crate::commands::{Outcome, check_refused, prepare};
+use crate::failure::Failure;
+use crate::files::write_atomically;
+use crate::models::Models;
+use crate::plausibility;
+use crate::progress::Progress;
+use crate::reading::FlightRead;
+
+/// Runs the command.
+///
+/// # Errors
+/// A reason for which nothing was done.
+pub(crate) fn run(arguments: &CheckArgs, progress: Progress) -> Result<Outcome, Failure> {
+    let models =
+        if arguments.models.is_empty() { None } else { Some(Models::read(&arguments.models)?) };
+    let reading = prepare(&arguments.reports, progress)?;
+    let files = reading.files();
+    let nothing_left = reading.flights.is_empty();
+    check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
+    let now_s = SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs_f64());
+    let mut findings = plausibility::findings(&reading.flights, now_s);
+    if let Some(models) = &models {
+        let book_of = |flight: &FlightRead| {
+            let model = models.for_flight(flight).ok()?;
+            Some((&model.initial, model.drag_coefficient()))
+        };
+        findings.extend(plausibility::against_book(&reading.flights, book_of));
+    }
+    let reports = ReportsSummary {
+        read: reading.flights.len(),
+        already_known: 0,
+        refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+    };
+    let document = CheckDocument::new(reports, findings);
+    if let Some(path) = &arguments.json {
+        write_atomically(path, &document.to_json())?;
+    }
+    Ok(Outcome { text: document.to_text(), refused: reading.refused })
+}

@@ -1,0 +1,89 @@
+//! `cruisefit guide`: aircraft file and guide of a public model of the type.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use perf_model::poll_schumann::{self, Parameters, STATED_ACCURACY_PERCENT, guide::PublicGuide};
+
+use crate::args::GuideArgs;
+use crate::commands::Outcome;
+use crate::failure::{Failure, show};
+use crate::files::{make_folder, write_atomically};
+
+/// Runs the command.
+///
+/// # Errors
+/// A type without a public model, or a folder that cannot be written.
+pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
+    let (Some(code), Some(folder)) = (&arguments.type_code, &arguments.output) else {
+        return Ok(Outcome::text(list()));
+    };
+    let Some(parameters) = poll_schumann::find(code) else {
+        return Err(Failure::BadArgument {
+            argument: "--type",
+            reason: format!("no public model of {code}; `cruisefit guide --list` shows the types"),
+        });
+    };
+    let bad = |reason: String| Failure::BadArgument { argument: "--type", reason };
+    let code = code.to_ascii_uppercase();
+    let guide =
+        poll_schumann::guide::guide(&code, parameters).map_err(|error| bad(error.to_string()))?;
+    let aircraft = aircraft_text(&guide, parameters).map_err(bad)?;
+    make_folder(folder)?;
+    write_atomically(&folder.join("AIRCRAFT.ron"), aircraft.as_bytes())?;
+    write_atomically(&folder.join("guide.csv"), guide.to_csv().as_bytes())?;
+    Ok(Outcome::text(text(&guide, parameters, folder)))
+}
+
+fn text(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> String {
+    let mut text = format!("{} ({})", guide.aircraft.name, guide.aircraft.type_code);
+    if parameters.type_code != guide.aircraft.type_code {
+        let _ = write!(text, ", represented by {}", parameters.type_code);
+    }
+    let _ = write!(
+        text,
+        ": {} points.\n\
+         Source: Poll and Schumann, The Aeronautical Journal 125 (1284), 2021. Its authors expect fuel burn within {STATED_ACCURACY_PERCENT} % \
+         in the majority of cases; engine option and age of a tail are not in it.\n\
+         The TSFC law misses the model's engine by {:.1} % (root mean square).\n\
+         Written to {folder}: AIRCRAFT.ron, guide.csv. Next:\n    \
+         cruisefit init --aircraft {folder}/AIRCRAFT.ron --guide {folder}/guide.csv -o MODEL.ron\n",
+        guide.points.len(),
+        guide.tsfc_residual_percent,
+        folder = show(folder)
+    );
+    text
+}
+
+fn aircraft_text(guide: &PublicGuide, parameters: &Parameters) -> Result<String, String> {
+    let config = ron::ser::PrettyConfig::new().struct_names(false);
+    let body =
+        ron::ser::to_string_pretty(&guide.aircraft, config).map_err(|error| error.to_string())?;
+    Ok(format!(
+        "// Public model of Poll and Schumann (The Aeronautical Journal 125 (1284), 2021), parameters of {} as in pycontrails 0.63.5.\n\
+         // Fuel burn within {STATED_ACCURACY_PERCENT} % in the majority of cases; not the manufacturer's book, and not for flight planning.\n\
+         // The TSFC law is the one nearest to the model's engine: {:.1} % root mean square remain.\n{body}\n",
+        parameters.type_code, guide.tsfc_residual_percent
+    ))
+}
+
+fn list() -> String {
+    let mut represented: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (synonym, by) in poll_schumann::synonyms() {
+        represented.entry(by).or_default().push(synonym);
+    }
+    let mut text = String::new();
+    for parameters in poll_schumann::types() {
+        let _ = write!(
+            text,
+            "{}  {} {}",
+            parameters.type_code, parameters.manufacturer, parameters.variant
+        );
+        if let Some(synonyms) = represented.get(parameters.type_code.as_str()) {
+            let _ = write!(text, "; also {}", synonyms.join(", "));
+        }
+        text.push('\n');
+    }
+    text
+}

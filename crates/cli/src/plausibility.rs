@@ -1,0 +1,88 @@
+//! Serious findings before anything is learnt from flights, and what is absurd set aside.
+
+use std::collections::BTreeMap;
+
+use effects::ExtendedModel;
+use flight::Severity;
+use lut::Table;
+use pipeline::check::{DataFinding, FlightCheck, book, check_flights};
+use pipeline::evaluation::evaluate;
+
+use crate::failure::RefusedReport;
+use crate::reading::{FlightRead, Reading};
+
+/// A model and the table of it that flights are compared with.
+pub(crate) type Book<'m> = (&'m ExtendedModel, &'m Table);
+
+/// What is wrong with flights, each by itself and with each other. `now_s` is the present, s since 1970; without it a
+/// result does not depend on the day.
+pub(crate) fn findings(flights: &[FlightRead], now_s: Option<f64>) -> Vec<DataFinding> {
+    let mut ordered: Vec<&FlightRead> = flights.iter().collect();
+    ordered.sort_by(|one, other| one.order(other));
+    let checks: Vec<&FlightCheck> = ordered.iter().map(|flight| &flight.reduced.check).collect();
+    let mut findings: Vec<DataFinding> =
+        checks.iter().flat_map(|check| check.findings.iter().cloned()).collect();
+    findings.extend(check_flights(&checks, now_s));
+    findings
+}
+
+/// What is wrong with the flights of each tail against the book of its model.
+pub(crate) fn against_book<'m>(
+    flights: &[FlightRead],
+    model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
+) -> Vec<DataFinding> {
+    let mut tails: BTreeMap<&str, Vec<&FlightRead>> = BTreeMap::new();
+    for flight in flights {
+        tails.entry(&flight.reduced.identity.tail).or_default().push(flight);
+    }
+    let mut findings = Vec::new();
+    for (tail, mut of_tail) in tails {
+        let Some((model, table)) = of_tail.first().and_then(|flight| model_of(flight)) else {
+            continue;
+        };
+        of_tail.sort_by(|one, other| one.order(other));
+        let segments: Vec<flight::Segment> =
+            of_tail.iter().flat_map(|flight| flight.reduced.segments.iter().cloned()).collect();
+        let evaluated = evaluate(model, table, &segments);
+        findings.extend(book::against_book(tail, &evaluated));
+    }
+    findings
+}
+
+/// Says serious findings on standard error, and unless they are accepted moves the flights of tails that are absurdly far
+/// off the book to the refused ones.
+pub(crate) fn set_aside_absurd<'m>(
+    reading: &mut Reading,
+    model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
+    accept: bool,
+) {
+    let mut serious = findings(&reading.flights, None);
+    let of_book = against_book(&reading.flights, model_of);
+    serious.extend(of_book.iter().cloned());
+    serious.retain(|finding| finding.severity >= Severity::Serious);
+    if !serious.is_empty() {
+        eprint!("{}", pipeline::check::to_text(&serious));
+        eprintln!("`cruisefit check` with the same arguments tells all that was found.");
+    }
+    if accept {
+        return;
+    }
+    let absurd: BTreeMap<String, String> = of_book
+        .into_iter()
+        .filter(|finding| finding.code == book::DEVIATION)
+        .map(|finding| {
+            let reason = format!(
+                "{}: {}; likely {}; --accept uses it nevertheless",
+                finding.tail, finding.message, finding.likely_cause
+            );
+            (finding.tail, reason)
+        })
+        .collect();
+    let flights = std::mem::take(&mut reading.flights);
+    for flight in flights {
+        match absurd.get(&flight.reduced.identity.tail) {
+            Some(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
+            None => reading.flights.push(flight),
+        }
+    }
+}

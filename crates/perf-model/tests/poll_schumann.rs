@@ -1,0 +1,131 @@
+//! The public model against pycontrails 0.63.5, and the guides made of it.
+//!
+//! `poll_schumann/make_oracle.py` writes the table: four points of each of the 68 types.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
+
+use perf_model::poll_schumann::{self, cruise, find, guide, synonyms, types};
+use perf_model::{Aircraft, Guide, initial_model};
+use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
+
+const ORACLE: &str = include_str!("poll_schumann/oracle.csv");
+
+#[test]
+fn agrees_with_pycontrails_to_a_millionth() {
+    let mut rows = 0;
+    for line in ORACLE.lines().skip(1) {
+        let (code, numbers) = line.split_once(',').unwrap();
+        let numbers: Vec<f64> = numbers.split(',').map(|field| field.parse().unwrap()).collect();
+        let [mass, altitude, mach, deviation, lift, drag, efficiency, flow] = numbers[..] else {
+            panic!("{line}")
+        };
+        let ours = cruise(
+            find(code).unwrap(),
+            Mass::kilograms(mass),
+            PressureAltitude::feet(altitude),
+            Mach::new(mach),
+            TemperatureDifference::kelvin(deviation),
+        )
+        .unwrap();
+        for (found, expected) in [
+            (ours.lift_coefficient, lift),
+            (ours.drag_coefficient, drag),
+            (ours.efficiency, efficiency),
+            (ours.fuel_flow_total.to_kilograms_per_second(), flow),
+        ] {
+            assert!((found / expected - 1.0).abs() < 1e-6, "{line}: {found}, {expected}");
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, 4 * 68);
+}
+
+#[test]
+fn every_type_and_synonym_is_found() {
+    assert_eq!(types().len(), 68);
+    assert_eq!(synonyms().count(), 103);
+    for (synonym, by) in synonyms() {
+        assert_eq!(find(synonym).unwrap().type_code, by, "{synonym}");
+    }
+    assert_eq!(find("a320").unwrap().variant, "A320-200");
+    assert!(find("C172").is_none());
+}
+
+/// The initial model of each guide is within the model's stated accuracy of the model, root mean square.
+#[test]
+fn every_type_gives_a_guide_that_init_takes_without_a_serious_finding() {
+    for parameters in types() {
+        let code = &parameters.type_code;
+        let made = guide::guide(code, parameters).unwrap();
+        let aircraft = Aircraft::new(made.aircraft.clone()).unwrap();
+        let guide = Guide::from_csv(made.to_csv().as_bytes()).unwrap();
+        assert!(made.points.len() >= 60, "{code}: {} points", made.points.len());
+        let deviation = poll_schumann::mean_deviation_percent(parameters, &guide).unwrap();
+        assert!(deviation.abs() < 0.05, "{code}: {deviation} %"); // the CSV's rounding
+        let initial = initial_model(&aircraft, &guide).unwrap();
+        assert!(
+            initial.fit.residual_rms_percent < poll_schumann::STATED_ACCURACY_PERCENT,
+            "{code}: {} %",
+            initial.fit.residual_rms_percent
+        );
+        assert!(made.tsfc_residual_percent < 5.0, "{code}: {}", made.tsfc_residual_percent);
+        for finding in &initial.findings {
+            assert!(finding.severity < flight::Severity::Serious, "{code}: {}", finding.message);
+        }
+    }
+}
+
+/// Slips of a guide: each is serious or warned of. The public model shows them for its types, the ratio of lift to drag for any.
+#[test]
+fn a_guide_in_the_wrong_unit_is_a_serious_finding() {
+    let parameters = find("A320").unwrap();
+    for type_code in ["A320", "MY-OWN"] {
+        let made = guide::guide(type_code, parameters).unwrap();
+        let aircraft = Aircraft::new(made.aircraft.clone()).unwrap();
+        let csv = made.to_csv();
+        let slips: [(&str, String); 4] = [
+            ("lb under kg", scaled(&csv, 0, 2.204_622_6)),
+            ("kg under lb", scaled(&csv, 0, 0.453_592_37)),
+            ("half the flow", scaled(&csv, 3, 0.5)),
+            ("lb/h under kg/h", scaled(&csv, 3, 2.204_622_6)),
+        ];
+        for (name, text) in slips {
+            let guide = Guide::from_csv(text.as_bytes()).unwrap();
+            let Ok(initial) = initial_model(&aircraft, &guide) else { continue };
+            let worst = initial
+                .findings
+                .iter()
+                .filter(|one| one.code != "guide-extrapolated-nodes")
+                .map(|one| one.severity)
+                .max();
+            // A small aircraft could have such a ratio of lift to drag: without its type there is a warning.
+            let is_warning_enough =
+                type_code != "A320" && !["lb under kg", "half the flow"].contains(&name);
+            let least = if is_warning_enough {
+                flight::Severity::Warning
+            } else {
+                flight::Severity::Serious
+            };
+            assert!(worst >= Some(least), "{type_code}, {name}: {:?}", initial.findings);
+        }
+    }
+}
+
+/// A column of a CSV times a factor.
+fn scaled(csv: &str, column: usize, factor: f64) -> String {
+    let mut lines = csv.lines();
+    let mut text = format!("{}\n", lines.next().unwrap());
+    for line in lines {
+        let fields: Vec<String> = line
+            .split(',')
+            .enumerate()
+            .map(|(index, field)| {
+                let times = if index == column { factor } else { 1.0 };
+                (times * field.parse::<f64>().unwrap()).to_string()
+            })
+            .collect();
+        text.push_str(&fields.join(","));
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,162 @@
+//! What is wrong with recorded data, before any model is trusted with it: units, signs, stuck channels, dates,
+//! flights given twice.
+//!
+//! A cruise report carries every speed twice (true airspeed; Mach number with temperature), fuel twice (flow and its
+//! counter) and motion twice (ground speed and position), so that most slips of a unit show without any model. What only
+//! a model shows (a mass in the wrong unit where everything else is right) is in [`book`].
+
+mod air;
+pub mod book;
+mod channels;
+mod document;
+mod flights;
+mod fuel;
+mod ground;
+mod load;
+mod slips;
+
+use flight::{FlightIdentity, Report, Severity};
+use serde::Serialize;
+
+pub use document::{CheckDocument, SCHEMA, to_text};
+pub use flights::check_flights;
+
+use crate::checksum::sha256;
+
+/// Something that is, or may be, wrong with the data of a flight or of a tail.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DataFinding {
+    /// How much it matters: `serious` where results from these data are worthless.
+    #[serde(serialize_with = "severity_word")]
+    pub severity: Severity,
+    /// Stable name of the kind of finding.
+    pub code: &'static str,
+    /// Tail.
+    pub tail: String,
+    /// Flight; empty where the finding is about all flights of the tail.
+    pub flight: String,
+    /// START of the flight; empty as `flight` is.
+    pub start: String,
+    /// What was measured, in `unit`.
+    pub size: f64,
+    /// Unit of `size`; `-` for a ratio.
+    pub unit: &'static str,
+    /// What was found, with values.
+    pub message: String,
+    /// What probably caused it.
+    pub likely_cause: String,
+    /// The line of report or mapping that would mend it.
+    pub remedy: String,
+}
+
+/// A finding about a flight before the flight is named.
+#[derive(Clone, Debug, PartialEq)]
+struct Draft {
+    severity: Severity,
+    code: &'static str,
+    size: f64,
+    unit: &'static str,
+    message: String,
+    likely_cause: String,
+    remedy: String,
+}
+
+/// What was found in one report, with what is needed to compare flights with each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightCheck {
+    /// Who and when.
+    pub identity: FlightIdentity,
+    /// Instants of first and last sample, s since 1970.
+    pub instants_s: (f64, f64),
+    /// SHA-256 of the recorded columns: the same in a copy under another name or date.
+    pub fingerprint: String,
+    /// What was found.
+    pub findings: Vec<DataFinding>,
+}
+
+/// Checks one report by itself.
+#[must_use]
+pub fn check_report(report: &Report) -> FlightCheck {
+    let identity = report.header().identity.clone();
+    let time_s = &report.columns().time_s;
+    let start_s = identity.start_s();
+    let drafts = [
+        load::check(report),
+        air::check(report),
+        ground::check(report),
+        fuel::check(report),
+        channels::check(report),
+    ];
+    let mut findings: Vec<DataFinding> =
+        drafts.into_iter().flatten().map(|draft| draft.of(&identity)).collect();
+    findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
+    let (first, last) = (time_s.first().copied(), time_s.last().copied());
+    FlightCheck {
+        instants_s: (start_s + first.unwrap_or(0.0), start_s + last.unwrap_or(0.0)),
+        fingerprint: fingerprint(report),
+        identity,
+        findings,
+    }
+}
+
+impl Draft {
+    fn of(self, identity: &FlightIdentity) -> DataFinding {
+        DataFinding {
+            severity: self.severity,
+            code: self.code,
+            tail: identity.tail.clone(),
+            flight: identity.flight.clone(),
+            start: identity.start.to_string(),
+            size: self.size,
+            unit: self.unit,
+            message: self.message,
+            likely_cause: self.likely_cause,
+            remedy: self.remedy,
+        }
+    }
+}
+
+/// The word for a severity in JSON and tables.
+#[must_use]
+pub const fn word(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Note => "note",
+        Severity::Warning => "warning",
+        Severity::Serious => "serious",
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde calls")]
+fn severity_word<S: serde::Serializer>(
+    severity: &Severity,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(word(*severity))
+}
+
+fn fingerprint(report: &Report) -> String {
+    let columns = report.columns();
+    let mut bytes = Vec::new();
+    for series in [
+        &columns.pressure_altitude_m,
+        &columns.mach,
+        &columns.ground_speed_m_s,
+        &columns.true_airspeed_m_s,
+    ] {
+        bytes.extend(series.iter().flat_map(|value| value.to_le_bytes()));
+    }
+    let samples = columns.time_s.len();
+    bytes
+        .extend((0..samples).flat_map(|sample| columns.fuel_flow.total_kg_s(sample).to_le_bytes()));
+    sha256(&bytes)
+}
+
+/// Arithmetic mean; `None` of nothing.
+fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0_u32);
+    for value in values {
+        sum += value;
+        count += 1;
+    }
+    (count > 0).then(|| sum / f64::from(count))
+}

@@ -1,0 +1,107 @@
+//! Recorded flights against the book: what only a model shows.
+
+use flight::Severity;
+
+use super::{DataFinding, mean};
+use crate::segments_table::Evaluated;
+
+/// Code of the finding that a tail is farther off the book than an aircraft can be.
+pub const DEVIATION: &str = "book-deviation";
+/// Mean deviation from the book beyond which it is a slip rather than an aircraft, %. Old aircraft burn 5 to 8 % more
+/// than their book, a public model of the type is within 10 to 15 %.
+pub const PLAUSIBLE_PERCENT: f64 = 15.0;
+/// Share of segments outside the table from which that is worth a word.
+const OUTSIDE_SHARE: f64 = 0.5;
+/// Lift coefficients of cruise end below this; masses twice as large do not.
+const HIGHEST_CRUISE_LIFT_COEFFICIENT: f64 = 0.75;
+/// And begin above this.
+const LOWEST_CRUISE_LIFT_COEFFICIENT: f64 = 0.22;
+
+/// What the segments of a tail say against the table of its book.
+#[must_use]
+pub fn against_book(tail: &str, evaluated: &[Option<Evaluated>]) -> Vec<DataFinding> {
+    let errors: Vec<f64> =
+        evaluated.iter().flatten().filter_map(|segment| segment.error_percent).collect();
+    let lift = mean(evaluated.iter().flatten().map(|segment| segment.lift_coefficient));
+    [deviation(tail, &errors, lift), outside(tail, errors.len(), evaluated.len(), lift)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+fn deviation(tail: &str, errors: &[f64], lift: Option<f64>) -> Option<DataFinding> {
+    let percent = mean(errors.iter().copied())?;
+    if percent.abs() <= PLAUSIBLE_PERCENT {
+        return None;
+    }
+    let (likely_cause, remedy) = causes(percent, lift);
+    Some(DataFinding {
+        severity: Severity::Serious,
+        code: DEVIATION,
+        tail: tail.to_owned(),
+        flight: String::new(),
+        start: String::new(),
+        size: percent,
+        unit: "%",
+        message: format!(
+            "recorded fuel flow is {percent:+.1} % off the book on average of {} segments; beyond ±{PLAUSIBLE_PERCENT} % is rarely an aircraft",
+            errors.len()
+        ),
+        likely_cause: likely_cause.to_owned(),
+        remedy: remedy.to_owned(),
+    })
+}
+
+fn causes(percent: f64, lift: Option<f64>) -> (&'static str, &'static str) {
+    let lift = lift.unwrap_or(0.5);
+    if lift > HIGHEST_CRUISE_LIFT_COEFFICIENT {
+        return (
+            "mass in lb declared as kg, or ALT or MACH in another unit",
+            "unit lb for ZFW and FOB",
+        );
+    }
+    if lift < LOWEST_CRUISE_LIFT_COEFFICIENT {
+        return (
+            "mass in kg declared as lb, or ALT or MACH in another unit",
+            "unit kg for ZFW and FOB",
+        );
+    }
+    // Predicted over recorded flow: 2 for one engine of two, 2.2 for kg read as lb.
+    let ratio = 1.0 - percent / 100.0;
+    if ratio > 1.6 {
+        ("WF: flow of one engine as total, or kg/h declared as lb/h", "scale 2 or unit kg/h for WF")
+    } else if ratio < 0.65 {
+        ("WF: lb/h declared as kg/h, or the total given for each engine", "unit lb/h for WF")
+    } else {
+        (
+            "another engine or variant than the book's, or a load sheet in another unit",
+            "the guide of this variant",
+        )
+    }
+}
+
+fn outside(tail: &str, inside: usize, all: usize, lift: Option<f64>) -> Option<DataFinding> {
+    #[expect(clippy::cast_precision_loss, reason = "segments are far fewer than 2^53")]
+    let share = 1.0 - inside as f64 / all.max(1) as f64;
+    if all == 0 || share <= OUTSIDE_SHARE {
+        return None;
+    }
+    Some(DataFinding {
+        severity: if inside == 0 { Severity::Serious } else { Severity::Warning },
+        code: "outside-table",
+        tail: tail.to_owned(),
+        flight: String::new(),
+        start: String::new(),
+        size: 100.0 * share,
+        unit: "%",
+        message: format!(
+            "{} of {all} segments lie outside the model's table{}",
+            all - inside,
+            lift.map_or_else(String::new, |lift| format!(
+                ", lift coefficient {lift:.2} on average"
+            ))
+        ),
+        likely_cause: "mass, ALT or MACH in another unit, or a table that is too small".to_owned(),
+        remedy: "check the units, or widen `table` in the aircraft file".to_owned(),
+    })
+}

@@ -1,0 +1,282 @@
+//! Channels that do not move, move in coarse steps, or hold another scale.
+
+use flight::{FuelFlowColumns, OptionalColumn, Report, Severity};
+use units::convert::{
+    KILOGRAMS_PER_SECOND_PER_KILOGRAM_PER_HOUR, METERS_PER_SECOND_PER_KNOT, RADIANS_PER_DEGREE,
+};
+
+use super::{Draft, mean};
+
+/// A channel that keeps one value this long, while it moves otherwise or others do, is stuck, s.
+const STUCK_S: f64 = 1500.0;
+/// Fewest samples from which a channel is judged.
+const FEWEST_SAMPLES: usize = 12;
+/// A run at one value is remarkable where less than this share of the other neighbours are equal.
+const EQUAL_NEIGHBORS: f64 = 0.25;
+/// Centres of gravity of aircraft in flight, % of the mean aerodynamic chord.
+const CENTER_OF_GRAVITY_PERCENT_MAC: (f64, f64) = (3.0, 60.0);
+/// Rotor speeds of engines in cruise, %.
+const ROTOR_SPEED_PERCENT: (f64, f64) = (35.0, 118.0);
+
+pub(super) fn check(report: &Report) -> Vec<Draft> {
+    let mut findings = Vec::new();
+    let channels = channels(report);
+    let moving = channels.iter().filter(|channel| channel.distinct() > 2).count();
+    for channel in &channels {
+        findings.extend(channel.stuck(&report.columns().time_s, moving > 0));
+        findings.extend(channel.coarse());
+    }
+    findings.extend(rotor_scale(report));
+    findings.extend(center_of_gravity(report));
+    findings.extend(heading_scale(report));
+    findings
+}
+
+/// A recorded channel that moves in every cruise.
+struct Channel {
+    name: String,
+    values: Vec<f64>,
+    /// Step between neighbouring values from which the channel is coarse, in its stored unit and in words.
+    coarse: (f64, &'static str),
+}
+
+fn channels(report: &Report) -> Vec<Channel> {
+    let columns = report.columns();
+    let mut channels = Vec::new();
+    let mut push = |name: String, values: &[f64], coarse: (f64, &'static str)| {
+        channels.push(Channel { name, values: values.to_vec(), coarse });
+    };
+    let knot = METERS_PER_SECOND_PER_KNOT;
+    push("GSPD".to_owned(), &columns.ground_speed_m_s, (4.5 * knot, "5 kt"));
+    push("VTAS".to_owned(), &columns.true_airspeed_m_s, (4.5 * knot, "5 kt"));
+    let is_assumed = !report.header().assumed.is_empty();
+    if let (Some(values), false) = (&columns.static_air_temperature_k, is_assumed) {
+        push("SAT".to_owned(), values, (1.9, "2 K"));
+    }
+    push("MACH".to_owned(), &columns.mach, (0.0095, "0.01"));
+    let per_hour = KILOGRAMS_PER_SECOND_PER_KILOGRAM_PER_HOUR;
+    match &columns.fuel_flow {
+        FuelFlowColumns::Total(total) => {
+            push("WF".to_owned(), total, (95.0 * per_hour, "100 kg/h"));
+        }
+        FuelFlowColumns::PerEngine(engines) => {
+            for (engine, values) in engines.iter().enumerate() {
+                push(format!("WF({})", engine + 1), values, (45.0 * per_hour, "50 kg/h"));
+            }
+        }
+    }
+    channels
+}
+
+impl Channel {
+    /// Number of different values, counted to 3.
+    fn distinct(&self) -> usize {
+        let mut seen: Vec<f64> = Vec::new();
+        for value in &self.values {
+            if !seen.contains(value) {
+                seen.push(*value);
+            }
+            if seen.len() > 2 {
+                break;
+            }
+        }
+        seen.len()
+    }
+
+    fn stuck(&self, time_s: &[f64], others_move: bool) -> Option<Draft> {
+        if self.values.len() < FEWEST_SAMPLES || !others_move {
+            return None;
+        }
+        let (first, last) = self.longest_run();
+        let run_s = time_s[last] - time_s[first];
+        if run_s < STUCK_S {
+            return None;
+        }
+        let (low, high) = self.extremes();
+        let is_whole = first == 0 && last + 1 == self.values.len();
+        let outside = self.values.len() - (last - first + 1);
+        let equal = self.equal_neighbors(first, last);
+        // A channel of few steps repeats itself: only what moves finely elsewhere is stuck here.
+        if !is_whole && (outside < FEWEST_SAMPLES || equal > EQUAL_NEIGHBORS) {
+            return None;
+        }
+        // A Mach number that an autopilot holds, or temperature and speed of calm air, may stay at one printed value.
+        if is_whole && !self.name.starts_with("WF") && !self.name.starts_with("GSPD") {
+            return None;
+        }
+        let value = self.values[first];
+        let at_limit = !is_whole && (value <= low || value >= high);
+        Some(Draft {
+            severity: if is_whole { Severity::Serious } else { Severity::Warning },
+            code: if at_limit { "channel-saturated" } else { "channel-stuck" },
+            size: run_s,
+            unit: "s",
+            message: format!(
+                "{} keeps one value for {run_s:.0} s from {:.0} s on{}",
+                self.name,
+                time_s[first],
+                if at_limit { ", its largest or smallest" } else { "" }
+            ),
+            likely_cause: if at_limit {
+                "the recorder's range ends there".to_owned()
+            } else {
+                "the sensor or its bus label stopped, or the column is a constant".to_owned()
+            },
+            remedy: format!("leave these samples of {} out", self.name),
+        })
+    }
+
+    /// First and last sample of the longest run of one value.
+    fn longest_run(&self) -> (usize, usize) {
+        let (mut best, mut first) = ((0, 0), 0);
+        for sample in 1..=self.values.len() {
+            let goes_on = sample < self.values.len()
+                && self.values[sample].to_bits() == self.values[first].to_bits();
+            if !goes_on {
+                if sample - 1 - first > best.1 - best.0 {
+                    best = (first, sample - 1);
+                }
+                first = sample;
+            }
+        }
+        best
+    }
+
+    /// Share of equal neighbours outside a run.
+    fn equal_neighbors(&self, first: usize, last: usize) -> f64 {
+        let outside = |sample: usize| sample < first || sample >= last;
+        let (mut equal, mut pairs) = (0.0, 0.0);
+        for sample in (0..self.values.len().saturating_sub(1)).filter(|sample| outside(*sample)) {
+            pairs += 1.0;
+            if self.values[sample].to_bits() == self.values[sample + 1].to_bits() {
+                equal += 1.0;
+            }
+        }
+        if pairs > 0.0 { equal / pairs } else { 1.0 }
+    }
+
+    fn extremes(&self) -> (f64, f64) {
+        self.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        })
+    }
+
+    /// Steps that are large for the channel. At least four values have to be met: two levels of a cruise are no step.
+    fn coarse(&self) -> Option<Draft> {
+        let mut sorted = self.values.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.dedup();
+        let fewest = if self.name == "MACH" { 3 } else { 4 };
+        if self.values.len() < FEWEST_SAMPLES || sorted.len() < fewest {
+            return None;
+        }
+        let step = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let (limit, words) = self.coarse;
+        if step < limit {
+            return None;
+        }
+        Some(Draft {
+            severity: Severity::Warning,
+            code: "channel-coarse",
+            size: step / limit,
+            unit: "-",
+            message: format!("{} moves in steps of {words} or more", self.name),
+            likely_cause: "rounded where it was decoded or exported".to_owned(),
+            remedy: format!("export {} with all digits of its recorder", self.name),
+        })
+    }
+}
+
+/// Rotor speeds as fractions.
+fn rotor_scale(report: &Report) -> Option<Draft> {
+    let columns = report.columns();
+    let n2 = columns.n2_percent.as_ref()?;
+    let percent = mean(n2.iter().flatten().copied())?;
+    let (low, high) = ROTOR_SPEED_PERCENT;
+    if (low..=high).contains(&percent) {
+        return None;
+    }
+    let is_fraction = percent <= 1.3;
+    Some(Draft {
+        severity: Severity::Serious,
+        code: "rotor-speed-scale",
+        size: percent,
+        unit: "%",
+        message: format!("N2 is {percent:.2} % on average"),
+        likely_cause: if is_fraction {
+            "N2: fractions declared as per cent"
+        } else {
+            "N2 is another quantity"
+        }
+        .to_owned(),
+        remedy: if is_fraction {
+            "N2: scale 100"
+        } else {
+            "map N2 to the high-pressure rotor speed"
+        }
+        .to_owned(),
+    })
+}
+
+fn center_of_gravity(report: &Report) -> Option<Draft> {
+    let percent = mean_of(report.columns().center_of_gravity_percent_mac.as_ref())?;
+    let (low, high) = CENTER_OF_GRAVITY_PERCENT_MAC;
+    if (low..=high).contains(&percent) {
+        return None;
+    }
+    let (likely_cause, remedy) = if (-high..=-low).contains(&percent) {
+        ("CG: sign reversed", "CG: scale -1 (positive behind the leading edge)")
+    } else if (0.01 * low..=0.01 * high).contains(&percent) {
+        ("CG: fraction of the chord declared as per cent", "CG: scale 100")
+    } else {
+        ("CG is a moment arm or an index, not per cent of the chord", "CG: convert to %MAC")
+    };
+    Some(Draft {
+        severity: Severity::Warning,
+        code: "center-of-gravity",
+        size: percent,
+        unit: "%MAC",
+        message: format!(
+            "centre of gravity {percent:.2} % of the mean aerodynamic chord on average"
+        ),
+        likely_cause: likely_cause.to_owned(),
+        remedy: remedy.to_owned(),
+    })
+}
+
+/// Headings in radians: never beyond 2π, and of a flight that does not go north.
+fn heading_scale(report: &Report) -> Option<Draft> {
+    let columns = report.columns();
+    let headings = columns.true_heading_deg.as_ref()?;
+    let (latitudes, longitudes) = (columns.latitude_deg.as_ref()?, columns.longitude_deg.as_ref()?);
+    let largest =
+        headings.iter().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    if largest > 2.0 * core::f64::consts::PI || headings.iter().flatten().count() < FEWEST_SAMPLES {
+        return None;
+    }
+    // Flown east or west by more than a tenth of the way north or south: the heading cannot be within 6.3° of north.
+    let change = |values: &OptionalColumn| {
+        let first = values.iter().flatten().next().copied()?;
+        values.iter().flatten().next_back().map(|last| last - first)
+    };
+    let north = change(latitudes)?;
+    let latitude = mean_of(Some(latitudes))?;
+    let east = change(longitudes)? * (latitude * RADIANS_PER_DEGREE).cos();
+    let is_straight_north = north > 0.0 && east.abs() < 0.3 * north;
+    if is_straight_north || north.hypot(east) < 1.0 {
+        return None;
+    }
+    Some(Draft {
+        severity: Severity::Warning,
+        code: "heading-scale",
+        size: largest,
+        unit: "deg",
+        message: format!("HDG never exceeds {largest:.2}, but the positions do not go north"),
+        likely_cause: "HDG: radians declared as degrees".to_owned(),
+        remedy: "HDG: scale 57.29578".to_owned(),
+    })
+}
+
+fn mean_of(column: Option<&OptionalColumn>) -> Option<f64> {
+    mean(column?.iter().flatten().copied())
+}

@@ -1,0 +1,191 @@
+//! Fuel flow against the fuel that it should add up to, and engine against engine.
+
+use flight::{FuelFlowColumns, Report, Severity};
+
+use super::slips::{self, FUEL};
+use super::{Draft, mean};
+
+/// Shortest time over which an integral is compared with a counter, s: below it a counter in steps of 10 kg says little.
+const SHORTEST_S: f64 = 600.0;
+/// Difference of fuel used and integral that is worth a word. Flow meters are good to 1 %, counters add the same flow;
+/// a meter that is read 3 % high by one of the two computers is within this.
+const WARNING_SHARE: f64 = 0.04;
+/// Difference above which mass or flow is wrong by more than any meter.
+const SERIOUS_SHARE: f64 = 0.12;
+/// Coarsest step of a counter that is allowed for, kg.
+const COUNTER_STEP_KG: f64 = 10.0;
+/// Engines at the same rotor speed burn the same within a few per cent; a worn engine 3 %.
+const ASYMMETRY_SHARE: f64 = 0.05;
+/// Rotor speeds that are called the same, % of rated speed.
+const SAME_ROTOR_SPEED_PERCENT: f64 = 0.6;
+
+pub(super) fn check(report: &Report) -> Vec<Draft> {
+    let mut findings: Vec<Draft> = used_against_flow(report).into_iter().collect();
+    findings.extend(quantity_against_flow(report));
+    findings.extend(asymmetry(report));
+    findings
+}
+
+/// Fuel burnt between two samples by the meters: trapezoids, kg.
+fn integral_kg(report: &Report, first: usize, last: usize) -> f64 {
+    let columns = report.columns();
+    (first..last)
+        .map(|sample| {
+            let flow =
+                columns.fuel_flow.total_kg_s(sample) + columns.fuel_flow.total_kg_s(sample + 1);
+            0.5 * flow * (columns.time_s[sample + 1] - columns.time_s[sample])
+        })
+        .sum()
+}
+
+fn used_against_flow(report: &Report) -> Option<Draft> {
+    let columns = report.columns();
+    let last = report.len() - 1;
+    if columns.time_s[last] - columns.time_s[0] < SHORTEST_S {
+        return None;
+    }
+    let by_flow_kg = integral_kg(report, 0, last);
+    let by_counter_kg = columns.fuel_used_kg[last] - columns.fuel_used_kg[0];
+    let ratio = by_counter_kg / by_flow_kg;
+    let allowed = COUNTER_STEP_KG / by_flow_kg;
+    if (ratio - 1.0).abs() < WARNING_SHARE + allowed {
+        return None;
+    }
+    let (likely_cause, remedy) = explain(ratio, report);
+    let serious = (ratio - 1.0).abs() > SERIOUS_SHARE + allowed;
+    Some(Draft {
+        severity: if serious { Severity::Serious } else { Severity::Warning },
+        code: "fuel-used-against-flow",
+        size: ratio,
+        unit: "-",
+        message: format!(
+            "fuel used rises by {by_counter_kg:.0} kg, the integral of fuel flow is {by_flow_kg:.0} kg: ratio {ratio:.3}"
+        ),
+        likely_cause,
+        remedy,
+    })
+}
+
+fn explain(ratio: f64, report: &Report) -> (String, String) {
+    if ratio.abs() < 0.02 {
+        return (
+            "FU does not count: it is constant, or it is not fuel used".to_owned(),
+            "map FU to the counter of fuel used, or derive mass from gross weight".to_owned(),
+        );
+    }
+    // Where only a total is recorded the number of engines is unknown: 2, 3 and 4 are tried.
+    let counts = report.engines().map_or(2..=4, |engines| engines..=engines);
+    for engines in counts.filter(|engines| *engines > 1) {
+        #[expect(clippy::cast_precision_loss, reason = "engines are at most four")]
+        let factor = engines as f64;
+        if slips::is_near(ratio, factor) {
+            return (
+                format!("WF is the flow of one of {engines} engines"),
+                format!("scale {engines} for WF, or one WF(k) for each engine"),
+            );
+        }
+        if slips::is_near(ratio, 1.0 / factor) {
+            return (
+                format!(
+                    "each WF(k) holds the flow of all {engines} engines, or FU counts one engine"
+                ),
+                "WF instead of WF(k), or FU of all engines".to_owned(),
+            );
+        }
+    }
+    match slips::find(&FUEL, ratio) {
+        Some(slip) => (slip.cause.to_owned(), slip.remedy.to_owned()),
+        None => (
+            "unit of WF, FU or TIME; a meter that reads wrong; a counter of one engine".to_owned(),
+            "compare the units of WF, FU and TIME with the recorder's list".to_owned(),
+        ),
+    }
+}
+
+/// Tank gauges against flow meters.
+fn quantity_against_flow(report: &Report) -> Option<Draft> {
+    let columns = report.columns();
+    let quantity = columns.fuel_quantity_kg.as_ref()?;
+    let first = quantity.iter().position(Option::is_some)?;
+    let last = quantity.iter().rposition(Option::is_some)?;
+    if columns.time_s[last] - columns.time_s[first] < 3.0 * SHORTEST_S {
+        return None;
+    }
+    let by_gauges_kg = quantity[first]? - quantity[last]?;
+    let by_flow_kg = integral_kg(report, first, last);
+    let ratio = by_gauges_kg / by_flow_kg;
+    // Gauges are good to 1 % of what the tanks hold, which may be ten times what was burnt here.
+    let allowed = 0.01 * quantity[first]? / by_flow_kg;
+    if (ratio - 1.0).abs() < 2.0 * WARNING_SHARE + allowed {
+        return None;
+    }
+    let slip = slips::find(&FUEL, ratio);
+    Some(Draft {
+        severity: Severity::Warning,
+        code: "fuel-quantity-against-flow",
+        size: ratio,
+        unit: "-",
+        message: format!(
+            "fuel quantity falls by {by_gauges_kg:.0} kg, the integral of fuel flow is {by_flow_kg:.0} kg: ratio {ratio:.3}"
+        ),
+        likely_cause: slip
+            .map_or("unit of FQ, or one tank instead of all", |slip| slip.cause)
+            .to_owned(),
+        remedy: "declare FQ in the unit of its recorder, summed over all tanks".to_owned(),
+    })
+}
+
+/// Engines that burn differently at the same rotor speed.
+fn asymmetry(report: &Report) -> Option<Draft> {
+    let columns = report.columns();
+    let FuelFlowColumns::PerEngine(flows) = &columns.fuel_flow else { return None };
+    let mut worst: Option<(f64, usize, &'static str)> = None;
+    let together = mean((0..report.len()).map(|sample| columns.fuel_flow.total_kg_s(sample)))?;
+    #[expect(clippy::cast_precision_loss, reason = "engines are at most four")]
+    let average = together / flows.len() as f64;
+    for (engine, flow) in flows.iter().enumerate() {
+        let share = mean(flow.iter().copied())? / average - 1.0;
+        let Some((difference, rotor)) = rotor_difference(report, engine) else { continue };
+        if share.abs() > 0.5 * ASYMMETRY_SHARE
+            && difference.abs() < SAME_ROTOR_SPEED_PERCENT
+            && worst.is_none_or(|(known, ..)| share.abs() > known.abs())
+        {
+            worst = Some((share, engine + 1, rotor));
+        }
+    }
+    let (share, engine, rotor) = worst?;
+    // Against the other engines, not against the average that holds this one too.
+    #[expect(clippy::cast_precision_loss, reason = "engines are at most four")]
+    let engines = flows.len() as f64;
+    let others = (engines - 1.0 - share) / (engines - 1.0);
+    let percent = 100.0 * ((1.0 + share) / others - 1.0);
+    Some(Draft {
+        severity: Severity::Warning,
+        code: "engine-asymmetry",
+        size: percent,
+        unit: "%",
+        message: format!(
+            "engine {engine} burns {percent:+.1} % against the others at the same {rotor}"
+        ),
+        likely_cause: "a flow meter that reads wrong, or an engine that is worn".to_owned(),
+        remedy: format!(
+            "compare the meter of engine {engine}; leave it as it is if the engine is worn"
+        ),
+    })
+}
+
+/// Rotor speed of an engine less the mean of all, %, and which rotor: N1 where it is recorded.
+fn rotor_difference(report: &Report, engine: usize) -> Option<(f64, &'static str)> {
+    let columns = report.columns();
+    let engines = report.engines()?;
+    let n1: Option<Vec<f64>> = (0..engines)
+        .map(|index| mean(columns.n1_percent[index].as_ref()?.iter().flatten().copied()))
+        .collect();
+    let (means, rotor) = if let Some(means) = n1 {
+        (means, "N1")
+    } else {
+        let n2 = columns.n2_percent.as_ref()?;
+        (n2.iter().map(|values| mean(values.iter().copied())).collect::<Option<Vec<_>>>()?, "N2")
+    };
+    Some((means[engine] - mean(means.iter().copied())?, rotor))
+}

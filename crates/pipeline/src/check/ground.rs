@@ -1,0 +1,255 @@
+//! Ground speed and angles against position and heading.
+
+use core::f64::consts::PI;
+
+use flight::{Report, Severity};
+use units::convert::{METERS_PER_SECOND_PER_KNOT, RADIANS_PER_DEGREE};
+
+use super::slips::{self, SPEED};
+use super::{Draft, mean};
+
+/// Mean radius of the earth, m (IUGG: (2a + b)/3 of WGS 84). A sphere is within 0.5 % of the ellipsoid.
+const EARTH_RADIUS_M: f64 = 6_371_008.8;
+/// Positions are compared over steps at least this long, s: rounding to 0.01° is 0.7 km, 1.5 % of what is flown.
+const STEP_S: f64 = 300.0;
+/// Way flown over great circle up to which a step is straight.
+const STRAIGHT: f64 = 1.02;
+/// Fewest straight steps from which anything is said.
+const FEWEST_LEGS: usize = 3;
+/// Longest step over which a track is taken as straight, s.
+const LONGEST_STEP_S: f64 = 1200.0;
+/// Difference of ground speed from the positions' worth a word.
+const WARNING_SHARE: f64 = 0.06;
+const SERIOUS_SHARE: f64 = 0.15;
+/// Mean wind along a cruise that no jet stream has, kt.
+const STRONGEST_WIND_KT: f64 = 180.0;
+/// How far a wind may move the ratio of ground speed to true airspeed from that of a slip.
+const BLURRED_BY_WIND: f64 = 0.25;
+/// Angles are judged where the drift is larger than this on average, degrees.
+const SMALLEST_DRIFT_DEG: f64 = 1.5;
+/// Residual of track − heading − drift that is a wrong angle rather than rounding, degrees.
+const WRONG_ANGLE_DEG: f64 = 3.0;
+/// Rolls that turn an aircraft, degrees.
+const TURNING_ROLL_DEG: f64 = 5.0;
+
+pub(super) fn check(report: &Report) -> Vec<Draft> {
+    let legs = legs(report);
+    let wind = wind(report);
+    [speed(report, &legs, wind), drift(report, &legs), roll(report)].into_iter().flatten().collect()
+}
+
+/// A straight step between two positions.
+struct Leg {
+    first: usize,
+    last: usize,
+    speed_m_s: f64,
+    track_deg: f64,
+}
+
+/// The straight steps; none where they are too few to say anything.
+fn legs(report: &Report) -> Vec<Leg> {
+    let columns = report.columns();
+    let (Some(latitudes), Some(longitudes)) = (&columns.latitude_deg, &columns.longitude_deg)
+    else {
+        return Vec::new();
+    };
+    let position = |sample: usize| Some((latitudes[sample]?, longitudes[sample]?));
+    let positions: Vec<Option<Position>> = (0..report.len()).map(position).collect();
+    let mut legs = Vec::new();
+    let mut begun: Option<usize> = None;
+    for sample in 0..report.len() {
+        let Some(to) = positions[sample] else { continue };
+        let Some(first) = begun else {
+            begun = Some(sample);
+            continue;
+        };
+        let seconds = columns.time_s[sample] - columns.time_s[first];
+        if seconds < STEP_S {
+            continue;
+        }
+        begun = Some(sample);
+        if let Some(from) = positions[first]
+            && seconds < LONGEST_STEP_S
+            && is_straight(&positions, first, sample)
+        {
+            let (distance_m, track_deg) = great_circle(from, to);
+            legs.push(Leg { first, last: sample, speed_m_s: distance_m / seconds, track_deg });
+        }
+    }
+    if legs.len() < FEWEST_LEGS { Vec::new() } else { legs }
+}
+
+/// Whether the way from one sample to another over three between them is hardly longer than the great circle.
+fn is_straight(positions: &[Option<Position>], first: usize, last: usize) -> bool {
+    let by_quarters: Vec<Position> =
+        (0..=4).filter_map(|quarter| positions[first + (last - first) * quarter / 4]).collect();
+    let way_m: f64 = by_quarters.windows(2).map(|pair| great_circle(pair[0], pair[1]).0).sum();
+    match (by_quarters.first(), by_quarters.last()) {
+        (Some(from), Some(to)) => way_m <= STRAIGHT * great_circle(*from, *to).0,
+        _ => false,
+    }
+}
+
+/// Latitude and longitude, degrees.
+type Position = (f64, f64);
+
+/// Distance in m and initial course in degrees from one position (latitude, longitude in degrees) to another, on a
+/// sphere.
+fn great_circle(from_deg: Position, to_deg: Position) -> (f64, f64) {
+    let [from_latitude, to_latitude] =
+        [from_deg.0, to_deg.0].map(|angle| angle * RADIANS_PER_DEGREE);
+    let longitude = (to_deg.1 - from_deg.1) * RADIANS_PER_DEGREE;
+    let haversine = (0.5 * (to_latitude - from_latitude)).sin().powi(2)
+        + from_latitude.cos() * to_latitude.cos() * (0.5 * longitude).sin().powi(2);
+    let course = f64::atan2(
+        longitude.sin() * to_latitude.cos(),
+        from_latitude.cos() * to_latitude.sin()
+            - from_latitude.sin() * to_latitude.cos() * longitude.cos(),
+    );
+    let distance_m = 2.0 * EARTH_RADIUS_M * haversine.sqrt().clamp(0.0, 1.0).asin();
+    (distance_m, course / RADIANS_PER_DEGREE)
+}
+
+/// An angle brought to -180 to 180 degrees.
+fn wrapped(angle_deg: f64) -> f64 {
+    let turns = (angle_deg * RADIANS_PER_DEGREE + PI).rem_euclid(2.0 * PI) - PI;
+    turns / RADIANS_PER_DEGREE
+}
+
+/// Mean speed of the wind that ground speed, true airspeed and drift give, kt, and ground over true airspeed.
+fn wind(report: &Report) -> (f64, f64) {
+    let columns = report.columns();
+    let mut winds = Vec::new();
+    let mut ratios = Vec::new();
+    for sample in 0..report.len() {
+        let (ground, air) = (columns.ground_speed_m_s[sample], columns.true_airspeed_m_s[sample]);
+        let drift = columns.drift_deg.as_ref().map_or(0.0, |drift| drift[sample]);
+        let squared =
+            ground * ground + air * air - 2.0 * ground * air * (drift * RADIANS_PER_DEGREE).cos();
+        winds.push(squared.max(0.0).sqrt() / METERS_PER_SECOND_PER_KNOT);
+        ratios.push(ground / air);
+    }
+    (mean(winds).unwrap_or(0.0), mean(ratios).unwrap_or(1.0))
+}
+
+fn speed(report: &Report, legs: &[Leg], (wind_kt, over_air): (f64, f64)) -> Option<Draft> {
+    let columns = report.columns();
+    let by_position = mean(legs.iter().map(|leg| {
+        let samples = &columns.ground_speed_m_s[leg.first..=leg.last];
+        mean(samples.iter().copied()).unwrap_or(0.0) / leg.speed_m_s.max(1.0)
+    }));
+    if let Some(ratio) = by_position
+        && (ratio - 1.0).abs() > WARNING_SHARE
+    {
+        let slip = slips::find(&SPEED, ratio);
+        let serious = (ratio - 1.0).abs() > SERIOUS_SHARE;
+        return Some(Draft {
+            severity: if serious { Severity::Serious } else { Severity::Warning },
+            code: "ground-speed-against-position",
+            size: ratio,
+            unit: "-",
+            message: format!("ground speed is {ratio:.3} of the speed at which the positions move"),
+            likely_cause: slip.map_or_else(
+                || "LAT and LON swapped or in another unit, TIME in another unit, or GSPD another speed".to_owned(),
+                |slip| format!("GSPD: {}", slip.cause),
+            ),
+            remedy: slip.map_or_else(
+                || "compare GSPD, LAT, LON and TIME with the recorder's list".to_owned(),
+                |slip| format!("GSPD: {}", slip.remedy),
+            ),
+        });
+    }
+    if wind_kt < STRONGEST_WIND_KT {
+        return None;
+    }
+    // Without positions the wind itself blurs the ratio: the nearest slip is the best guess.
+    let slip = slips::find_within(&SPEED, over_air, BLURRED_BY_WIND);
+    Some(Draft {
+        severity: Severity::Serious,
+        code: "wind-impossible",
+        size: wind_kt,
+        unit: "kt",
+        message: format!(
+            "ground speed, true airspeed and drift make a mean wind of {wind_kt:.0} kt (ground speed {over_air:.2} of true airspeed)"
+        ),
+        likely_cause: slip.map_or_else(
+            || "GSPD, VTAS or DRIFT is in another unit".to_owned(),
+            |slip| format!("GSPD: {}", slip.cause),
+        ),
+        remedy: "compare the units of GSPD, VTAS and DRIFT with the recorder's list".to_owned(),
+    })
+}
+
+/// Track from the positions less heading and drift, by either sign of the drift.
+fn drift(report: &Report, legs: &[Leg]) -> Option<Draft> {
+    let columns = report.columns();
+    let headings = columns.true_heading_deg.as_ref()?;
+    let drifts = columns.drift_deg.as_ref()?;
+    let (mut as_declared, mut as_negated, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
+    for leg in legs {
+        let middle = usize::midpoint(leg.first, leg.last);
+        let Some(heading) = headings[middle] else { continue };
+        let crab = wrapped(leg.track_deg - heading);
+        let drift = drifts[middle];
+        as_declared.push(wrapped(crab - drift).abs());
+        as_negated.push(wrapped(crab + drift).abs());
+        sizes.push(drift.abs());
+    }
+    let (declared, negated, size) = (mean(as_declared)?, mean(as_negated)?, mean(sizes)?);
+    if declared < WRONG_ANGLE_DEG || size < SMALLEST_DRIFT_DEG {
+        return None;
+    }
+    let is_sign = negated < 0.5 * declared;
+    Some(Draft {
+        severity: Severity::Warning,
+        code: if is_sign { "drift-sign" } else { "heading-against-track" },
+        size: declared,
+        unit: "deg",
+        message: format!(
+            "track from the positions less heading is {declared:.1}° off the drift angle, {negated:.1}° with its sign reversed"
+        ),
+        likely_cause: if is_sign {
+            "DRIFT is heading minus track (positive to the left)".to_owned()
+        } else {
+            "HDG is magnetic, or holds the track".to_owned()
+        },
+        remedy: if is_sign {
+            "DRIFT: scale -1 (track minus heading)".to_owned()
+        } else {
+            "map HDG to true heading".to_owned()
+        },
+    })
+}
+
+/// Turns in the direction opposite to the roll.
+fn roll(report: &Report) -> Option<Draft> {
+    let columns = report.columns();
+    let headings = columns.true_heading_deg.as_ref()?;
+    let rolls = columns.roll_deg.as_ref()?;
+    let (mut agreeing, mut opposed) = (0_u32, 0_u32);
+    for sample in 1..report.len().saturating_sub(1) {
+        let (Some(before), Some(after)) = (headings[sample - 1], headings[sample + 1]) else {
+            continue;
+        };
+        let turned = wrapped(after - before);
+        if rolls[sample].abs() < TURNING_ROLL_DEG || turned.abs() < 1.0 {
+            continue;
+        }
+        if (turned > 0.0) == (rolls[sample] > 0.0) { agreeing += 1 } else { opposed += 1 }
+    }
+    if opposed < 3 || opposed < 4 * agreeing {
+        return None;
+    }
+    Some(Draft {
+        severity: Severity::Warning,
+        code: "roll-sign",
+        size: f64::from(opposed),
+        unit: "samples",
+        message: format!(
+            "in {opposed} of {} samples of a turn the heading moves against the roll",
+            opposed + agreeing
+        ),
+        likely_cause: "ROLL is positive to the left".to_owned(),
+        remedy: "ROLL: scale -1 (positive with the right wing down)".to_owned(),
+    })
+}
