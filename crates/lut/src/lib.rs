@@ -1,8 +1,9 @@
 //! Checked axes, rectangular look-up tables with their cell weights and gradients, and six-coefficient polynomial
 //! surfaces.
 //!
-//! What it is not: a general interpolation library. Tables have two axes and are bilinear; there are no terms of
-//! aviation, no units and no policy about what to do with a value.
+//! What it is not: a general interpolation library. Tables have two axes and are bilinear, with one smooth surface through
+//! their nodes ([`SmoothCell`]) for who needs slopes; there are no terms of aviation, no units and no policy about what
+//! to do with a value.
 //!
 //! The one design decision: looking up has two steps. [`Grid::locate`] turns a point into a [`Cell`] (four nodes, four
 //! weights, four distances), and a [`Table`] is read with the cell. Code that changes a table needs the cell anyway,
@@ -33,10 +34,12 @@
 mod axis;
 mod cell;
 mod grid;
+mod smooth;
 pub mod surface;
 mod table;
 
 pub use axis::{Axis, AxisError, SNAP};
 pub use cell::Cell;
 pub use grid::{Grid, Outside, OutsideGrid};
+pub use smooth::SmoothCell;
 pub use table::{Table, TableError};

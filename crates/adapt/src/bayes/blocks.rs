@@ -147,6 +147,22 @@ impl BlockFactor {
             .collect()
     }
 
+    /// L⁻ᵀ·z in node order, for independent standard normal numbers z: a vector of covariance A⁻¹.
+    pub(super) fn correlate(&self, standard_normal: &[f64]) -> Vec<f64> {
+        let mut parts = self.parts(1);
+        for (node, &value) in standard_normal.iter().enumerate() {
+            let (block, place) = self.layout.place(node);
+            parts[block][(place, 0)] = value;
+        }
+        self.solve_upper(&mut parts);
+        (0..standard_normal.len())
+            .map(|node| {
+                let (block, place) = self.layout.place(node);
+                parts[block][(place, 0)]
+            })
+            .collect()
+    }
+
     /// Rᵀ·A⁻¹·R for columns R given as (node, value) lists: covariances of linear combinations of nodes.
     pub(super) fn quadratic_forms(&self, columns: &[Vec<(usize, f64)>]) -> Mat<f64> {
         let mut parts = self.parts(columns.len());

@@ -176,6 +176,26 @@ impl Posterior {
         self.factor.solve(&unit)
     }
 
+    /// A table drawn from the distribution of what is known: what the drag may also be, given what was learnt. As many
+    /// independent standard normal numbers are needed as there are nodes; the same numbers give the same table. Drag
+    /// is kept physical as in [`drag`](Self::drag).
+    ///
+    /// # Panics
+    /// Where there are fewer numbers than nodes.
+    #[must_use]
+    pub fn drawn(&self, standard_normal: &[f64]) -> Table {
+        let nodes = self.correction.len();
+        let deviation = self.factor.correlate(&standard_normal[..nodes]);
+        let mut drag = self.initial.clone();
+        let mut precisions = vec![0.0; nodes];
+        for (node, value) in drag.values_mut().iter_mut().enumerate() {
+            precisions[node] = (*value * self.standard_deviation[node]).powi(-2);
+            *value *= 1.0 + self.correction[node] + deviation[node];
+        }
+        let _ = project(&self.initial, drag.values_mut(), &precisions);
+        drag
+    }
+
     /// Covariances of linear combinations of corrections.
     pub(super) fn covariances_of(&self, columns: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
         let forms = self.factor.quadratic_forms(columns);

@@ -371,3 +371,43 @@ fn intervals_cover_what_they_say() {
     assert!((0.92..=0.98).contains(&of_nodes), "{of_nodes}");
     assert!((0.92..=0.98).contains(&of_segments), "{of_segments}");
 }
+
+/// Drawn tables have the covariance of the solution: with unit vectors for the random numbers, their outer products sum to
+/// the inverse of the precision, whose columns are solved for on their own.
+#[test]
+fn drawn_tables_have_the_covariance_that_is_stated() {
+    // So small that drag stays physical whatever is drawn.
+    const SCALE: f64 = 1e-3;
+    let grid = even_grid();
+    let initial = polar(&grid);
+    let posterior =
+        BayesState::new(&initial, BayesSettings::physical_2026()).unwrap().solve().unwrap();
+    let nodes = grid.nodes();
+    let drawn = |unit: Option<usize>| {
+        let mut numbers = vec![0.0; nodes];
+        if let Some(unit) = unit {
+            numbers[unit] = SCALE;
+        }
+        posterior.drawn(&numbers)
+    };
+    let mean = drawn(None);
+    assert_eq!(mean.values(), posterior.drag().values());
+    let deviations: Vec<Vec<f64>> = (0..nodes)
+        .map(|unit| {
+            let table = drawn(Some(unit));
+            let deviation = |node: usize| {
+                (table.value_at_node(node) - mean.value_at_node(node))
+                    / (SCALE * initial.value_at_node(node))
+            };
+            (0..nodes).map(deviation).collect()
+        })
+        .collect();
+    for one in [0, nodes / 2, nodes - 1] {
+        let stated = posterior.covariances_with(one);
+        for other in 0..nodes {
+            let found: f64 = deviations.iter().map(|of| of[one] * of[other]).sum();
+            let scale = posterior.standard_deviation()[one] * posterior.standard_deviation()[other];
+            assert!((found - stated[other]).abs() < 1e-9 * scale, "{one} {other}: {found}");
+        }
+    }
+}
