@@ -60,8 +60,10 @@ pub(crate) enum Command {
     Diagnose(DiagnoseArgs),
     /// Show what a model file holds
     Show(ShowArgs),
-    /// Export a model's table as CSV
+    /// Export a model's drag: CSV, polynomial, OpenAP, JSBSim, JSON
     Export(ExportArgs),
+    /// Maximum-range, long-range and cost-index Mach numbers and best levels by a model, compared with the book's
+    Optimum(OptimumArgs),
     /// Compare a whole run with expected files, or accept it as expected
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -282,6 +284,15 @@ pub(crate) struct EvaluateArgs {
     /// Also write the summary as JSON
     #[arg(long, value_name = "OUT.json")]
     pub(crate) json: Option<PathBuf>,
+    /// Also write each segment's residual, .csv or .parquet. A flight that the model has learnt is predicted by the table
+    /// as it was before, which needs the reports of all flights that were learnt until then; column `predicted_by`
+    /// states it
+    #[arg(long, short, value_name = "RESIDUALS")]
+    pub(crate) output: Option<PathBuf>,
+    /// Also write the fuel factor of each tail against the book (the initial table), in all and by condition, .csv or
+    /// .parquet
+    #[arg(long, value_name = "FACTORS")]
+    pub(crate) fuel_factors: Option<PathBuf>,
 }
 
 /// `diagnose`
@@ -335,13 +346,79 @@ pub(crate) struct ExportArgs {
     /// Model file
     #[arg(value_name = "MODEL.ron")]
     pub(crate) model: PathBuf,
-    /// CSV file to write [default: standard output]
-    #[arg(long, short, value_name = "TABLE.csv")]
+    /// File to write [default: standard output]
+    #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Export the six-coefficient polynomial nearest to the table instead, with its covariance where the law provides
-    /// one
-    #[arg(long)]
+    /// What to write
+    #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
+    pub(crate) format: ExportFormat,
+    /// Mach number of OpenAP's drag polar [default: the mean one of the learnt flights, or the guide's middle]
+    #[arg(long, value_name = "MACH")]
+    pub(crate) mach: Option<f64>,
+    /// The same as --format polynomial
+    #[arg(long, conflicts_with = "format")]
     pub(crate) polynomial: bool,
+}
+
+/// What `export` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExportFormat {
+    /// The table, one row per node, as CSV
+    Csv,
+    /// The six-coefficient polynomial nearest to the table as CSV, with its covariance where the law provides one
+    Polynomial,
+    /// The drag polar of OpenAP, cd0 and k at one Mach number, as YAML
+    Openap,
+    /// A drag function of JSBSim with a table over lift coefficient squared and Mach number, as XML
+    Jsbsim,
+    /// Table, TSFC law and equations as JSON, for programs in other languages
+    Json,
+}
+
+/// `optimum`
+#[derive(Debug, Args)]
+pub(crate) struct OptimumArgs {
+    /// Model file
+    #[arg(long, value_name = "MODEL.ron")]
+    pub(crate) model: PathBuf,
+    /// Cost index, in kilograms of fuel per minute (Airbus); one of Boeing's, 100 lb/h, is 0.756
+    #[arg(long, value_name = "N", value_parser = cost_index)]
+    pub(crate) cost_index: Option<f64>,
+    /// Gross masses, kg [default: five about the mean of the learnt flights, or about the guide's middle]
+    #[arg(long, value_name = "KG,…", value_delimiter = ',')]
+    pub(crate) mass_kg: Vec<f64>,
+    /// Deviations from the ISA, degrees Celsius
+    #[arg(
+        long,
+        value_name = "C,…",
+        value_delimiter = ',',
+        default_value = "0",
+        allow_negative_numbers = true
+    )]
+    pub(crate) isa_deviation: Vec<f64>,
+    /// Tailwinds, kt; negative for headwinds
+    #[arg(
+        long,
+        value_name = "KT,…",
+        value_delimiter = ',',
+        default_value = "0",
+        allow_negative_numbers = true
+    )]
+    pub(crate) tailwind: Vec<f64>,
+    /// Pressure altitudes to choose from, ft [default: 25000 to 43000, every 1000]; thrust,
+    /// buffet and ceiling are not known to a model
+    #[arg(long, value_name = "FT,…", value_delimiter = ',')]
+    pub(crate) levels: Vec<f64>,
+    /// File to write, .csv, .parquet or .json; may be given several times
+    #[arg(long, short, value_name = "OUT")]
+    pub(crate) output: Vec<PathBuf>,
+}
+
+fn cost_index(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("expected a number of kilograms per minute, 0 or more".to_owned()),
+    }
 }
 
 /// `golden`

@@ -62,6 +62,7 @@ fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure
         Command::Diagnose(arguments) => commands::diagnose::run(arguments, progress),
         Command::Show(arguments) => commands::show::run(arguments),
         Command::Export(arguments) => commands::export::run(arguments),
+        Command::Optimum(arguments) => commands::optimum::run(arguments),
         Command::Golden(command) => commands::golden::run(command),
         Command::Simulate(arguments) => commands::simulate::run(arguments, progress),
         Command::Trial(arguments) => commands::trial::run(arguments, progress),

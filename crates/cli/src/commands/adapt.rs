@@ -17,6 +17,8 @@ use pipeline::learning::{self, FlightToLearn, LawChoice};
 use pipeline::model_file::{Learnt, LedgerEntry, ModelFile, PaperSettings};
 use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 
+pub(super) mod dates;
+
 /// Runs the command.
 ///
 /// # Errors
@@ -26,6 +28,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     check_threshold(arguments)?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
+    dates::refuse_impossible(&mut reading, flight::Timestamp::now());
     let chosen = choose_models(&models, &mut reading, arguments)?;
     let book_of = |flight: &FlightRead| {
         let model = models.for_flight(flight).ok()?;
@@ -287,10 +290,12 @@ impl Job {
         let mut refused = Vec::new();
         let mut notes = self.warnings;
         notes.extend(model.note_of_effects());
+        let dated = dates::Dates::of(&model, &self.flights);
         let mut flights_new = 0;
         for flight in self.flights {
             let Some(learnt) = &mut model.learnt else { break };
-            match learn_one(&model.initial, learnt, &flight) {
+            let segments_as_dated = dated.as_dated(&flight);
+            match learn_one(&model.initial, learnt, &flight, &segments_as_dated) {
                 Ok(()) => {
                     flights_new += 1;
                     flight.add_notes(&mut notes);
@@ -323,6 +328,7 @@ fn learn_one(
     initial: &effects::ExtendedModel,
     learnt: &mut Learnt,
     flight: &FlightRead,
+    segments: &[flight::Segment],
 ) -> Result<(), learning::LearningError> {
     let entry = LedgerEntry {
         tail: flight.reduced.identity.tail.clone(),
@@ -333,11 +339,7 @@ fn learn_one(
         segments: 0,
         outside_table: 0,
     };
-    let result = learning::learn_flight(
-        initial,
-        learnt,
-        &FlightToLearn { entry, segments: &flight.reduced.segments },
-    )?;
+    let result = learning::learn_flight(initial, learnt, &FlightToLearn { entry, segments })?;
     tracing::debug!(
         tail = flight.reduced.identity.tail,
         flight = flight.reduced.identity.flight,

@@ -208,8 +208,10 @@ fn unseen_errors(
         reports: reports_arguments(reports),
         models: ModelArgs { models: vec![model.to_owned()] },
         json: None,
+        output: None,
+        fuel_factors: None,
     };
-    let (summary, _) = evaluate::evaluate(&arguments, Progress::Hidden)?;
+    let summary = evaluate::evaluate(&arguments, Progress::Hidden)?.summary;
     Ok(summary.tails.first().map_or((ErrorStatistics::of(&[]), None), |tail| {
         (tail.fuel_flow_error_percent.before, tail.interval95_coverage)
     }))

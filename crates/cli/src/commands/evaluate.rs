@@ -1,16 +1,24 @@
 //! `cruisefit evaluate`: the fuel-flow error of a model over reports; nothing is adapted.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use effects::ExtendedModel;
+use flight::{FlightIdentity, Segment};
 
 use crate::args::EvaluateArgs;
+use crate::columns;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport};
 use crate::files::write_atomically;
 use crate::models::Models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
-use pipeline::evaluation::{TailCounts, TailData, TailResult};
+use pipeline::evaluation::{self, TailCounts, TailData, TailResult};
+use pipeline::fuel_factor::{self, FuelFactor};
 use pipeline::model_file::ModelFile;
+use pipeline::residuals::{self, FlightResiduals, GivenFlight};
+use pipeline::segments_table::Evaluated;
 use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 
 /// Runs the command.
@@ -18,11 +26,34 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Failure> {
-    let (summary, refused) = evaluate(arguments, progress)?;
+    let Evaluation { summary, refused, tails } = evaluate(arguments, progress)?;
     if let Some(path) = &arguments.json {
         write_atomically(path, &summary.to_json())?;
     }
+    if let Some(path) = &arguments.output {
+        let segments: Vec<Vec<Segment>> = tails.iter().map(EvaluatedTail::segments).collect();
+        let mut flights = Vec::new();
+        for (tail, segments) in tails.iter().zip(&segments) {
+            flights.extend(tail.residuals(segments)?);
+        }
+        let rows: Vec<(&[Segment], &FlightResiduals)> =
+            flights.iter().map(|(segments, residuals)| (*segments, residuals)).collect();
+        columns::write(&residuals::columns(&rows), Some(path))?;
+    }
+    if let Some(path) = &arguments.fuel_factors {
+        let factors: Vec<FuelFactor> = tails.iter().flat_map(EvaluatedTail::fuel_factors).collect();
+        columns::write(&fuel_factor::columns(&factors), Some(path))?;
+    }
     Ok(Outcome { text: summary.to_text(), refused })
+}
+
+/// What an evaluation came to.
+#[derive(Debug)]
+pub(crate) struct Evaluation {
+    /// The figures.
+    pub(crate) summary: Summary,
+    refused: Vec<RefusedReport>,
+    tails: Vec<EvaluatedTail>,
 }
 
 /// The error of the models over the reports, and what was refused.
@@ -32,7 +63,7 @@ pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcom
 pub(crate) fn evaluate(
     arguments: &EvaluateArgs,
     progress: Progress,
-) -> Result<(Summary, Vec<RefusedReport>), Failure> {
+) -> Result<Evaluation, Failure> {
     let models = Models::read(&arguments.models.models)?;
     let reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
@@ -51,9 +82,9 @@ pub(crate) fn evaluate(
     refused.sort_by(|one, other| one.path.cmp(&other.path));
     check_refused(&refused, files, arguments.reports.strict, by_tail.is_empty())?;
     let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
-    let tails = by_tail
+    let tails: Vec<EvaluatedTail> = by_tail
         .into_iter()
-        .map(|(tail, (model, flights))| evaluate_tail(tail, model, flights).summary)
+        .map(|(tail, (model, flights))| EvaluatedTail::of(tail, model, flights))
         .collect();
     let summary = Summary {
         schema: SCHEMA,
@@ -62,22 +93,77 @@ pub(crate) fn evaluate(
             already_known: 0,
             refused: refused.iter().map(RefusedSummary::from).collect(),
         },
-        tails,
+        tails: tails.iter().map(|tail| tail.result.summary.clone()).collect(),
     };
-    Ok((summary, refused))
+    Ok(Evaluation { summary, refused, tails })
 }
 
-fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -> TailResult {
-    flights.sort_by(FlightRead::order);
-    let counts = TailCounts {
-        flights: flights.len(),
-        flights_new: flights.len(),
-        samples: flights.iter().map(|flight| flight.reduced.samples as u64).sum(),
-    };
-    let mut notes: Vec<String> = model.note_of_effects().into_iter().collect();
-    for flight in &flights {
-        flight.add_notes(&mut notes);
+/// A tail with what its model says of it.
+#[derive(Debug)]
+struct EvaluatedTail {
+    result: TailResult,
+    /// Identity, content and number of segments of each flight, in the order of the result's rows.
+    flights: Vec<(Arc<FlightIdentity>, String, usize)>,
+}
+
+impl EvaluatedTail {
+    fn of(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -> Self {
+        flights.sort_by(FlightRead::order);
+        let counts = TailCounts {
+            flights: flights.len(),
+            flights_new: flights.len(),
+            samples: flights.iter().map(|flight| flight.reduced.samples as u64).sum(),
+        };
+        let mut notes: Vec<String> = model.note_of_effects().into_iter().collect();
+        for flight in &flights {
+            flight.add_notes(&mut notes);
+        }
+        let given = flights
+            .iter()
+            .map(|flight| {
+                let reduced = &flight.reduced;
+                (Arc::clone(&reduced.identity), flight.content.clone(), reduced.segments.len())
+            })
+            .collect();
+        let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
+        let data = TailData { tail, model, segments, counts, notes };
+        Self { result: TailResult::as_given(data), flights: given }
     }
-    let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
-    TailResult::as_given(TailData { tail, model, segments, counts, notes })
+
+    /// All segments, flight by flight.
+    fn segments(&self) -> Vec<Segment> {
+        self.result.rows.iter().map(|row| row.segment.clone()).collect()
+    }
+
+    /// The residuals of each flight, by the model before it learnt it where that can be had.
+    fn residuals<'s>(
+        &self,
+        all: &'s [Segment],
+    ) -> Result<Vec<(&'s [Segment], FlightResiduals)>, Failure> {
+        let mut given = Vec::new();
+        let mut of_flight: Vec<&'s [Segment]> = Vec::new();
+        let mut as_given: Vec<Vec<Option<Evaluated>>> = Vec::new();
+        let mut first = 0;
+        for (identity, content, count) in &self.flights {
+            let segments = &all[first..first + count];
+            let rows = &self.result.rows[first..first + count];
+            given.push(GivenFlight { identity, content, segments });
+            of_flight.push(segments);
+            as_given.push(rows.iter().map(|row| row.evaluated).collect());
+            first += count;
+        }
+        let found =
+            residuals::before_learning(&self.result.model, &given, as_given).map_err(|error| {
+                Failure::BadArgument { argument: "--model", reason: error.to_string() }
+            })?;
+        Ok(of_flight.into_iter().zip(found).collect())
+    }
+
+    /// The fuel factors of the tail against its book: the initial table, without effects.
+    fn fuel_factors(&self) -> Vec<FuelFactor> {
+        let book = ExtendedModel::from(self.result.model.initial.base().clone());
+        let segments = self.segments();
+        let evaluated = evaluation::evaluate(&book, book.drag_table(), &segments);
+        fuel_factor::of_tail(&self.result.tail, &segments, &evaluated)
+    }
 }

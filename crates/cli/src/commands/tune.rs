@@ -7,6 +7,7 @@ use adapt::bayes::{BayesSettings, Search, SettingValues, search_half_life, tune}
 use flight::Observation;
 
 use crate::args::{HalfLifeChoice, TuneArgs};
+use crate::commands::adapt::dates::refuse_impossible;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
 use crate::models::{read_model, write_model};
@@ -27,6 +28,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
     }
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
+    refuse_impossible(&mut reading, flight::Timestamp::now());
     check_refused(&reading.refused, files, arguments.reports.strict, reading.flights.is_empty())?;
     reading.flights.sort_by(FlightRead::order);
     let mut by_tail: BTreeMap<&str, usize> = BTreeMap::new();

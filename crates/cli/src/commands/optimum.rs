@@ -1,0 +1,122 @@
+//! `cruisefit optimum`: what a flight management system would fly with a model, and with the book.
+
+use std::path::Path;
+
+use pipeline::optimum::{
+    self, ConditionOptimum, CostIndex, DRAWS, MassAndDay, OptimumDocument, OptimumModel, Question,
+};
+use rayon::prelude::*;
+use units::{Mass, PressureAltitude, TemperatureDifference, TrueAirspeed};
+
+use crate::args::OptimumArgs;
+use crate::columns;
+use crate::commands::Outcome;
+use crate::failure::{Failure, show};
+use crate::files::write_atomically;
+use crate::models::read_model;
+
+/// Seed of the models drawn for the intervals: the same model gives the same intervals.
+const SEED: u64 = 1;
+
+/// Runs the command.
+///
+/// # Errors
+/// A reason for which nothing was done.
+pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
+    check_endings(&arguments.output)?;
+    let file = read_model(&arguments.model)?;
+    let model = OptimumModel::new(&file, DRAWS, SEED)
+        .map_err(|error| Failure::bad_file(&arguments.model, error))?;
+    let masses = match &arguments.mass_kg[..] {
+        [] => optimum::usual_masses(&file).unwrap_or_default(),
+        given => positive("--mass-kg", given)?.into_iter().map(Mass::kilograms).collect(),
+    };
+    let mut levels = match &arguments.levels[..] {
+        [] => optimum::usual_levels(),
+        given => positive("--levels", given)?.into_iter().map(PressureAltitude::feet).collect(),
+    };
+    levels.sort_by(|one, other| one.to_feet().total_cmp(&other.to_feet()));
+    let cost_index = arguments.cost_index.map(CostIndex::kilograms_per_minute);
+    let tailwinds = finite("--tailwind", &arguments.tailwind)?;
+    let question = Question {
+        levels,
+        tailwinds: tailwinds.into_iter().map(TrueAirspeed::knots).collect(),
+        cost_index,
+    };
+    let days = finite("--isa-deviation", &arguments.isa_deviation)?;
+    let asked: Vec<MassAndDay> = masses
+        .iter()
+        .flat_map(|mass| {
+            days.iter().map(|day| MassAndDay {
+                mass: *mass,
+                isa_deviation: TemperatureDifference::kelvin(*day),
+            })
+        })
+        .collect();
+    let found: Vec<Vec<ConditionOptimum>> =
+        asked.par_iter().map(|condition| optimum::at(&model, *condition, &question)).collect();
+    let conditions: Vec<ConditionOptimum> = found.into_iter().flatten().collect();
+    for path in &arguments.output {
+        write(path, &OptimumDocument::new(&file, cost_index, &conditions), &conditions)?;
+    }
+    let mut text = optimum::table(&conditions);
+    if file.learnt.is_none() {
+        text.push_str("The model has learnt nothing: it is the book itself.\n");
+    } else if file.posterior().is_none() {
+        text.push_str(
+            "Law paper does not say how well it knows its table: there are no intervals.\n",
+        );
+    }
+    for path in &arguments.output {
+        text.push_str(&format!("Written to {}\n", show(path)));
+    }
+    Ok(Outcome::text(text))
+}
+
+fn write(
+    path: &Path,
+    document: &OptimumDocument<'_>,
+    conditions: &[ConditionOptimum],
+) -> Result<(), Failure> {
+    if ending(path) == Some("json") {
+        let json = document.to_json().map_err(|error| Failure::unwritable(path, error))?;
+        write_atomically(path, json.as_bytes())
+    } else {
+        columns::write(&optimum::columns(conditions), Some(path))
+    }
+}
+
+/// Before anything is computed.
+fn check_endings(paths: &[std::path::PathBuf]) -> Result<(), Failure> {
+    let wrong = paths.iter().find(|path| !matches!(ending(path), Some("csv" | "parquet" | "json")));
+    wrong.map_or(Ok(()), |path| {
+        Err(Failure::BadArgument {
+            argument: "--output",
+            reason: format!("{} ends neither in .csv nor in .parquet nor in .json", path.display()),
+        })
+    })
+}
+
+fn ending(path: &Path) -> Option<&str> {
+    path.extension().and_then(|ending| ending.to_str())
+}
+
+fn finite(argument: &'static str, values: &[f64]) -> Result<Vec<f64>, Failure> {
+    match values.iter().find(|value| !value.is_finite()) {
+        None => Ok(values.to_vec()),
+        Some(value) => Err(Failure::BadArgument {
+            argument,
+            reason: format!("found {value}, expected finite numbers"),
+        }),
+    }
+}
+
+fn positive(argument: &'static str, values: &[f64]) -> Result<Vec<f64>, Failure> {
+    match values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+        None => Ok(values.to_vec()),
+        Some(value) => Err(Failure::BadArgument {
+            argument,
+            reason: format!("found {value}, expected positive numbers"),
+        }),
+    }
+}

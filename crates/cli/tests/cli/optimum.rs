@@ -1,0 +1,119 @@
+//! `cruisefit optimum` on a learnt model.
+
+use crate::json_schema::violations;
+use crate::support::{adapt, cruisefit, csv_columns, fixture, initial_model};
+
+#[test]
+fn optima_as_table_csv_and_json() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    adapt(&model, &output, &[fixture("reports")], &[]).expect(0);
+    let learnt = output.join("models/SIM-01.ron");
+    let (csv, json) = (scratch.path().join("optimum.csv"), scratch.path().join("optimum.json"));
+    let arguments = |extra: &[&str]| -> Vec<std::ffi::OsString> {
+        let mut all: Vec<std::ffi::OsString> = vec!["optimum".into(), "--model".into()];
+        all.push(learnt.clone().into());
+        all.extend(extra.iter().map(Into::into));
+        all
+    };
+    let files = [csv.to_str().unwrap(), json.to_str().unwrap()];
+    let asked = ["--mass-kg", "28000,32000", "--cost-index", "5", "-o", files[0], "-o", files[1]];
+    let ran = cruisefit(&arguments(&asked)).expect(0);
+    assert_eq!(ran.stdout.lines().filter(|line| line.starts_with("maximum range")).count(), 2);
+    let first = std::fs::read(&json).unwrap();
+    cruisefit(&arguments(&asked)).expect(0);
+    assert_eq!(std::fs::read(&json).unwrap(), first, "same input, same bytes");
+
+    let document: serde_json::Value = serde_json::from_slice(&first).unwrap();
+    let schema = crate::support::root().join("docs/schemas/optimum-1.json");
+    let schema: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(schema).unwrap()).unwrap();
+    assert_eq!(violations(&schema, &document), Vec::<String>::new());
+
+    let table = csv_columns(&csv);
+    let number = |name: &str, row: usize| table[name][row].parse::<f64>().unwrap();
+    assert!(!table["mach"].is_empty());
+    for row in 0..table["mach"].len() {
+        assert!(number("mach_ci95_low", row) <= number("mach_ci95_high", row));
+        // A time that costs nothing is never a reason to fly slower than one that costs something.
+        if table["kind"][row] == "cost_index" {
+            assert!(number("mach", row) >= number("mach", row - 2), "row {row}");
+        }
+        // By the model itself its own optimum is never worse than the book's.
+        if table["kind"][row] != "long_range" {
+            assert!(number("saving_kg_h", row) >= 0.0);
+        }
+    }
+    cruisefit(&arguments(&["-o", "x.txt"])).expect(2).says("ends neither in .csv");
+    cruisefit(&arguments(&["--mass-kg", "-1"])).expect(2);
+}
+
+/// The virtual aircraft's own optima, found by brute force over its truth: thousandth by thousandth, each trimmed.
+///
+/// Forty flights teach. Wherever the model has its optimum inside what it knows, flying it costs the truth less fuel than
+/// flying the book's. How much more than the truth's own optimum it costs is printed: nothing promises a figure.
+#[test]
+fn optima_of_the_virtual_aircraft_by_brute_force() {
+    let scratch = tempfile::tempdir().unwrap();
+    let at = |name: &str| scratch.path().join(name);
+    let text = |path: &std::path::Path| path.to_str().unwrap().to_owned();
+    let plan = "(seed: 4711, tails: [(tail: \"T-001\", flights: Designed((flights: 40)))])";
+    std::fs::write(at("plan.ron"), plan).unwrap();
+    cruisefit(&["simulate", "ghazi-2020", "-o", &text(&at("study"))]).expect(0);
+    cruisefit(&["simulate", &text(&at("plan.ron")), "-o", &text(&at("fleet"))]).expect(0);
+    let (aircraft, guide) = (text(&at("study/AIRCRAFT.ron")), text(&at("study/guide.csv")));
+    let model = text(&at("MODEL.ron"));
+    cruisefit(&["init", "--aircraft", &aircraft, "--guide", &guide, "-o", &model]).expect(0);
+    let fleet = at("fleet").join("T-001");
+    adapt(std::path::Path::new(&model), &at("out"), &[fleet], &["--no-remainder"]).expect(0);
+    let (learnt, csv) = (text(&at("out/models/T-001.ron")), text(&at("optimum.csv")));
+    let masses = [12_500.0, 13_500.0, 14_500.0];
+    let levels = [37_000.0, 40_000.0, 43_000.0];
+    let asked = ["--mass-kg", "12500,13500,14500", "--levels", "37000,40000,43000"];
+    cruisefit(&[&["optimum", "--model", &learnt, "-o", &csv][..], &asked[..]].concat()).expect(0);
+
+    let truth = simulate::AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
+    let physics = simulate::Plan::from_ron(plan).unwrap().physics;
+    let table = csv_columns(std::path::Path::new(&csv));
+    let mut compared = 0;
+    for row in 0..table["mach"].len() {
+        let number = |name: &str| table[name][row].parse::<f64>().unwrap();
+        let inside = table["at_edge"][row].is_empty();
+        if table["kind"][row] != "maximum_range" || !inside {
+            continue;
+        }
+        let (mass, level) = (number("mass_kg"), number("pressure_altitude_ft"));
+        assert!(masses.contains(&mass) && levels.contains(&level));
+        let fuel_per_distance = |mach: f64| {
+            let pressure_altitude = units::PressureAltitude::feet(level);
+            let trimmed = truth.trim(
+                &simulate::TrimPoint {
+                    mass: units::Mass::kilograms(mass),
+                    pressure_altitude,
+                    mach: units::Mach::new(mach),
+                    sat: atmos::isa::temperature(pressure_altitude).unwrap(),
+                    center_of_gravity_percent_mac: truth.airframe.trim.reference_percent_mac,
+                },
+                physics,
+            );
+            trimmed.map_or(f64::INFINITY, |t| t.fuel_flow_kg_s / t.true_airspeed_m_s)
+        };
+        let machs = (550..950_u32).map(|thousandths| f64::from(thousandths) / 1000.0);
+        let best =
+            machs.min_by(|a, b| fuel_per_distance(*a).total_cmp(&fuel_per_distance(*b))).unwrap();
+        let regret = |mach: f64| 100.0 * (fuel_per_distance(mach) / fuel_per_distance(best) - 1.0);
+        eprintln!(
+            "{mass} kg, {level} ft: own {} ({}–{}), book {}, truth {best}; regret {:.3} %, book {:.3} %",
+            number("mach"),
+            number("mach_ci95_low"),
+            number("mach_ci95_high"),
+            number("book_mach"),
+            regret(number("mach")),
+            regret(number("book_mach"))
+        );
+        assert!(regret(number("mach")) < regret(number("book_mach")));
+        compared += 1;
+    }
+    assert!(compared >= 3, "{compared} optima inside what is informed");
+}

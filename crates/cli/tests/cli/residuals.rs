@@ -1,0 +1,103 @@
+//! Residuals and fuel factors of `evaluate`.
+
+use std::path::{Path, PathBuf};
+
+use crate::support::{adapt, cruisefit, csv_columns, fixture, initial_model};
+
+fn report(flight: u32) -> PathBuf {
+    fixture(&format!("reports/{flight:04}.txt"))
+}
+
+fn evaluate(model: &Path, reports: &[PathBuf], option: &str, output: &Path) {
+    let mut arguments: Vec<std::ffi::OsString> = vec!["evaluate".into()];
+    arguments.extend(reports.iter().map(|path| path.as_os_str().to_owned()));
+    arguments.extend(["--model".into(), model.as_os_str().to_owned()]);
+    arguments.extend([option.into(), output.as_os_str().to_owned()]);
+    cruisefit(&arguments).expect(0);
+}
+
+fn numbers(columns: &std::collections::BTreeMap<String, Vec<String>>, name: &str) -> Vec<f64> {
+    columns[name].iter().map(|field| field.parse().unwrap()).collect()
+}
+
+/// The model before it learnt the third flight is the one that learnt the first two: both predict it alike.
+#[test]
+fn a_learnt_flight_is_predicted_by_the_model_before_it() {
+    for law in ["bayes", "paper"] {
+        let scratch = tempfile::tempdir().unwrap();
+        let initial = initial_model(scratch.path());
+        let (two, three) = (scratch.path().join("two"), scratch.path().join("three"));
+        let reports: Vec<PathBuf> = (1..=3).map(report).collect();
+        let options = ["--law", law, "--no-remainder"];
+        adapt(&initial, &two, &reports[..2], &options).expect(0);
+        adapt(&initial, &three, &reports, &options).expect(0);
+        let (before, again) = (scratch.path().join("before.csv"), scratch.path().join("again.csv"));
+        evaluate(&two.join("models/SIM-01.ron"), &reports[2..], "-o", &before);
+        evaluate(&three.join("models/SIM-01.ron"), &reports, "-o", &again);
+        let (before, again) = (csv_columns(&before), csv_columns(&again));
+        assert!(before["predicted_by"].iter().all(|by| by == "not_learnt"));
+        assert!(again["predicted_by"].iter().all(|by| by == "before_learning"));
+        let third: Vec<usize> =
+            (0..again["flight"].len()).filter(|row| again["flight"][*row] == "0003").collect();
+        assert_eq!(third.len(), before["flight"].len());
+        for name in ["error_percent", "predicted_fuel_flow_kg_s", "flight_mean_error_percent"] {
+            let again: Vec<f64> = numbers(&again, name).split_off(third[0]);
+            for (one, other) in numbers(&before, name).iter().zip(&again) {
+                assert!(
+                    (one - other).abs() < 1e-9 * one.abs().max(1.0),
+                    "{law} {name}: {one} {other}"
+                );
+            }
+        }
+    }
+}
+
+/// Without the first report of the ledger nothing can be learnt again: the rows say that the model knows the flights.
+#[test]
+fn without_an_earlier_report_a_learnt_flight_says_so() {
+    let scratch = tempfile::tempdir().unwrap();
+    let initial = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    let reports: Vec<PathBuf> = (1..=4).map(report).collect();
+    adapt(&initial, &output, &reports[..3], &[]).expect(0);
+    let table = scratch.path().join("residuals.csv");
+    evaluate(&output.join("models/SIM-01.ron"), &reports[1..], "-o", &table);
+    let columns = csv_columns(&table);
+    for (flight, by) in columns["flight"].iter().zip(&columns["predicted_by"]) {
+        assert_eq!(by, if flight == "0004" { "not_learnt" } else { "learnt" });
+    }
+}
+
+/// Against the book whatever the model has learnt; the ratio by hand from the table of residuals of the initial model.
+#[test]
+fn fuel_factors_are_against_the_book() {
+    let scratch = tempfile::tempdir().unwrap();
+    let initial = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    let reports: Vec<PathBuf> = (1..=4).map(report).collect();
+    adapt(&initial, &output, &reports, &[]).expect(0);
+    let [by_initial, by_learnt, residuals] =
+        ["initial.csv", "learnt.csv", "residuals.csv"].map(|name| scratch.path().join(name));
+    evaluate(&initial, &reports, "--fuel-factors", &by_initial);
+    evaluate(&output.join("models/SIM-01.ron"), &reports, "--fuel-factors", &by_learnt);
+    assert_eq!(std::fs::read(&by_initial).unwrap(), std::fs::read(&by_learnt).unwrap());
+    evaluate(&initial, &reports, "-o", &residuals);
+    let rows = csv_columns(&residuals);
+    let (recorded, predicted) =
+        (numbers(&rows, "fuel_flow_kg_s"), numbers(&rows, "predicted_fuel_flow_kg_s"));
+    let mut flights: std::collections::BTreeMap<&str, Vec<f64>> = std::collections::BTreeMap::new();
+    for (row, flight) in rows["flight"].iter().enumerate() {
+        flights.entry(flight).or_default().push((recorded[row] / predicted[row]).ln());
+    }
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let by_flight: Vec<f64> = flights.values().map(|values| mean(values)).collect();
+    let expected = 100.0 * mean(&by_flight).exp_m1();
+    let factors = csv_columns(&by_initial);
+    assert_eq!(factors["condition"][0], "all");
+    let factor = numbers(&factors, "fuel_factor_percent_of_predicted")[0];
+    assert!((factor - expected).abs() < 1e-9, "{factor} {expected}");
+    let entered = numbers(&factors, "perf_factor_percent")[0];
+    assert!(entered >= factor && entered - factor < 0.1);
+    assert!(numbers(&factors, "error_percent_of_recorded")[0] < factor);
+    assert!(numbers(&factors, "specific_range_deviation_percent")[0] < 0.0);
+}

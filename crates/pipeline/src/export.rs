@@ -1,0 +1,38 @@
+//! A model's drag for other programs: OpenAP, JSBSim, and as JSON for any language.
+//!
+//! Drag alone is handed on: neither the effects that a model contains nor its remainder are in a table.
+
+mod jsbsim;
+mod json;
+mod openap;
+
+pub use jsbsim::jsbsim;
+pub use json::{SCHEMA, json};
+pub use openap::{OpenapError, OpenapPolar, openap};
+
+use crate::model_file::ModelFile;
+
+/// Which nodes guide or learnt flights inform.
+fn informed(model: &ModelFile) -> Vec<bool> {
+    let by_flights = model.learnt.as_ref().map(|learnt| learnt.law.informed());
+    let by_guide = model.initial.extrapolated().iter().map(|extrapolated| !extrapolated);
+    by_guide
+        .enumerate()
+        .map(|(node, by_guide)| {
+            by_guide || by_flights.as_ref().is_some_and(|informed| informed[node])
+        })
+        .collect()
+}
+
+/// The model's name, tail and number of learnt flights, for a comment.
+fn origin(model: &ModelFile) -> String {
+    let aircraft = model.initial.aircraft();
+    let learnt = model.learnt.as_ref().map_or_else(
+        || "initial model, nothing learnt".to_owned(),
+        |learnt| format!("tail {}, {} flights learnt", learnt.tail, learnt.ledger.len()),
+    );
+    format!("{} ({}), {learnt}", aircraft.name(), aircraft.type_code())
+}
+
+#[cfg(test)]
+mod tests;
