@@ -46,6 +46,8 @@ pub(crate) enum Command {
     Adapt(AdaptArgs),
     /// What is wrong with reports, before any modelling: units, signs, stuck channels, dates, flights given twice
     Check(CheckArgs),
+    /// Remove a flight from what a tail has learnt (a wrong load sheet), as if it had never been learnt
+    Forget(ForgetArgs),
     /// Stabilised segments only, no model needed
     Segment(SegmentArgs),
     /// Fit the settings of law `bayes` to past reports, by marginal likelihood
@@ -145,6 +147,9 @@ pub(crate) struct InitArgs {
     /// Write the model although the guide has serious findings
     #[arg(long)]
     pub(crate) accept: bool,
+    /// Replace a file that this command did not make
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// The adaptation laws.
@@ -178,12 +183,39 @@ pub(crate) struct AdaptArgs {
     /// counts it as gap
     #[arg(long)]
     pub(crate) no_remainder: bool,
+    /// Learn a report in place of a known flight that it contradicts: other content under the same name and START, the
+    /// same hours under another name. The tail is learnt anew from its first flight on
+    #[arg(long)]
+    pub(crate) relearn: bool,
     /// Start over: an existing folder is kept under another name
     #[arg(long)]
     pub(crate) restart: bool,
     /// Also learn tails that are more than 15 % off the book on average
     #[arg(long)]
     pub(crate) accept: bool,
+    /// Wait while another process writes the folder, instead of refusing
+    #[arg(long)]
+    pub(crate) wait: bool,
+}
+
+/// `forget`
+#[derive(Debug, Args)]
+pub(crate) struct ForgetArgs {
+    /// Folder that `adapt` wrote
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// Tail
+    #[arg(long, value_name = "TAIL")]
+    pub(crate) tail: String,
+    /// Flight, as its report names it
+    #[arg(long, value_name = "FLIGHT")]
+    pub(crate) flight: String,
+    /// START of the flight, where several have its name
+    #[arg(long, value_name = "START")]
+    pub(crate) start: Option<String>,
+    /// Wait while another process writes the folder, instead of refusing
+    #[arg(long)]
+    pub(crate) wait: bool,
 }
 
 /// `tune`
@@ -203,6 +235,9 @@ pub(crate) struct TuneArgs {
     /// searched
     #[arg(long, value_name = "DAYS|none|search")]
     pub(crate) half_life: Option<HalfLifeChoice>,
+    /// Replace a file that this command did not make
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// What `tune` does about the half-life.
@@ -239,6 +274,9 @@ pub(crate) struct MergeArgs {
     /// Model file to write
     #[arg(long, short, value_name = "MODEL.ron")]
     pub(crate) output: PathBuf,
+    /// Replace a file that this command did not make
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// `segment`
@@ -451,6 +489,9 @@ pub(crate) struct SimulateArgs {
     /// Also write the true state of each sample: TAIL/FLIGHT-states.csv
     #[arg(long)]
     pub(crate) states: bool,
+    /// Write into a folder that holds something else; reports of another plan are removed from it
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// `trial`

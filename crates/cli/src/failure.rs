@@ -84,6 +84,22 @@ pub(crate) enum Failure {
         /// Both values.
         difference: String,
     },
+    /// A folder that another process is writing.
+    #[error("{folder} is being written by {holder}")]
+    #[diagnostic(help("--wait waits until it is done"))]
+    Busy {
+        /// The folder.
+        folder: String,
+        /// Process, host and time, as its lock has them.
+        holder: String,
+    },
+    /// A file that would be lost.
+    #[error("{path} exists and was not made by this command")]
+    #[diagnostic(help("choose another name, or --force to replace it"))]
+    WouldReplace {
+        /// The file or folder.
+        path: String,
+    },
     /// An argument that is invalid.
     #[error("{argument}: {reason}")]
     BadArgument {

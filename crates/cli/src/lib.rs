@@ -23,6 +23,7 @@ mod plausibility;
 mod progress;
 mod reading;
 mod simulated_reports;
+mod threads;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -30,7 +31,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use tracing_subscriber::EnvFilter;
 
-use args::{Cli, Command, Common};
+use args::{Cli, Command};
 use commands::Outcome;
 use failure::{DONE, Failure, NOTHING_DONE, SOME_REFUSED};
 use progress::Progress;
@@ -44,7 +45,7 @@ pub fn run() -> ExitCode {
         Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
     }));
     let progress = if cli.common.no_progress { Progress::Hidden } else { Progress::Shown };
-    let result = in_pool(&cli.common, || run_command(&cli.command, progress));
+    let result = threads::in_pool(cli.common.threads, || run_command(&cli.command, progress));
     ExitCode::from(print_result(result))
 }
 
@@ -54,6 +55,7 @@ fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure
         Command::Guide(arguments) => commands::guide::run(arguments),
         Command::Adapt(arguments) => commands::adapt::run(arguments, progress),
         Command::Check(arguments) => commands::check::run(arguments, progress),
+        Command::Forget(arguments) => commands::forget::run(arguments),
         Command::Segment(arguments) => commands::segment::run(arguments, progress),
         Command::Tune(arguments) => commands::tune::run(arguments, progress),
         Command::Merge(arguments) => commands::merge::run(arguments),
@@ -68,22 +70,6 @@ fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure
         Command::Trial(arguments) => commands::trial::run(arguments, progress),
         Command::Demo(arguments) => commands::demo::run(arguments, progress),
     }
-}
-
-/// Runs in a pool of as many threads as were asked for.
-fn in_pool<T: Send>(
-    common: &Common,
-    work: impl FnOnce() -> Result<T, Failure> + Send,
-) -> Result<T, Failure> {
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = common.threads {
-        builder = builder.num_threads(usize::from(threads));
-    }
-    let pool = builder.build().map_err(|error| Failure::BadArgument {
-        argument: "--threads",
-        reason: error.to_string(),
-    })?;
-    pool.install(work)
 }
 
 fn start_logging(verbose: u8) {

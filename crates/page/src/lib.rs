@@ -11,7 +11,7 @@
 //!
 //! Limits:
 //! - The page of a large fleet draws a share of the segments, and states so; figures and tables cover all.
-//! - Some 300 tails make a page of 10 MB; more belong in several runs.
+//! - A page holds the charts of at most [`TAILS_ON_ONE_PAGE`] tails; the tails of a larger fleet have a page each.
 //!
 //! ```
 //! use pipeline::summary::{ReportsSummary, SCHEMA, Summary};
@@ -40,4 +40,7 @@ mod text;
 mod view;
 
 pub use diagnosis::diagnosis;
-pub use report::report;
+pub use report::{
+    Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
+    tail_page,
+};

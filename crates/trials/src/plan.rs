@@ -152,6 +152,9 @@ pub struct Floor {
     pub most: Option<f64>,
 }
 
+/// Most repeats of a part: each is a simulation and a diagnosis of a minute.
+const MOST_REPEATS: usize = 10_000;
+
 /// Why a text is not a plan of trials.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -249,6 +252,9 @@ impl TrialPlan {
             return wrong("smooth_error_percent", &self.smooth_error_percent, "0 to 5");
         }
         for (index, part) in self.parts.iter().enumerate() {
+            if !(1..=MOST_REPEATS).contains(&part.repeats) {
+                return wrong("repeats", &part.repeats, "1 to 10000");
+            }
             if !(0.01..=10.0).contains(&part.times) {
                 return wrong("times", &part.times, "0.01 to 10");
             }

@@ -25,7 +25,7 @@ const TEACHING_FLIGHTS: usize = 30;
 pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, Failure> {
     let folder = &arguments.output;
     let mut text = String::new();
-    let flights = simulated_reports::demonstration()?.write(folder, progress)?;
+    let flights = simulated_reports::demonstration()?.write(folder, progress)?.flights;
     let _ = writeln!(
         text,
         "A virtual Citation X, tail N750CF: {flights} cruise reports, a flight-planning guide whose drag is wrong, and \
@@ -38,6 +38,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
         aircraft: folder.join("AIRCRAFT.ron"),
         guide: folder.join("guide.csv"),
         output: model.clone(),
+        force: true,
     })?;
     let _ = writeln!(
         text,
@@ -84,7 +85,9 @@ fn adapt_by_both_laws(
                 law,
                 threshold,
                 no_remainder: false,
+                relearn: false,
                 restart: adapted.exists(),
+                wait: false,
             },
             progress,
         )?;
@@ -141,7 +144,8 @@ fn judge(
 fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<(), Failure> {
     let later = folder.join("later");
     let flights =
-        simulated_reports::write(&simulated_reports::demonstration_later()?, &later, progress)?;
+        simulated_reports::write(&simulated_reports::demonstration_later()?, &later, progress)?
+            .flights;
     let sealed = later.join("TRUTH.json");
     let hash = hash_of(&sealed)?;
     let _ = writeln!(

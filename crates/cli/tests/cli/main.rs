@@ -14,6 +14,7 @@ mod commands;
 mod dates;
 mod diagnosis;
 mod export;
+mod folder;
 mod guide;
 mod json_schema;
 mod optimum;
