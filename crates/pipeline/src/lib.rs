@@ -55,6 +55,7 @@ pub mod learning;
 pub mod merging;
 pub mod model_file;
 pub mod model_table;
+pub mod monitoring;
 pub mod reduction;
 pub mod segments_table;
 pub mod statistics;
