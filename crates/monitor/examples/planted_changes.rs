@@ -2,6 +2,13 @@
 //! found that is not there. Prints a table; with `--series` the series themselves, for another program to read.
 //!
 //! `cargo run --release -p cruisefit-monitor --example planted_changes -- [SEED [CASES]] [--series]`
+#![expect(
+    clippy::print_stdout,
+    clippy::expect_used,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "an example shows its result and stops where it has none; its numbers are small"
+)]
 
 use flight::Timestamp;
 use monitor::{ChangeBeliefs, FlightDeviation, History, Series};

@@ -151,3 +151,29 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
         values[count / 2 - 1].midpoint(values[count / 2])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Oracle: numerical integration of min(z², 2.5²) over the normal density, and the quartile of the distribution from its
+    /// table, 0.6745.
+    #[test]
+    fn constants_of_the_robust_scale() {
+        let step = 1e-4;
+        let integral: f64 = (-100_000..100_000)
+            .map(|k| (f64::from(k) + 0.5) * step)
+            .map(|z| (z * z).min(HUBER_LIMIT * HUBER_LIMIT) * (-0.5 * z * z).exp() * step)
+            .sum::<f64>()
+            / core::f64::consts::TAU.sqrt();
+        assert!((integral - HUBER_CONSISTENCY).abs() < 1e-6, "{integral}");
+        assert!((1.0 / NORMAL_MEDIAN_FACTOR - 0.6745).abs() < 5e-5);
+    }
+
+    #[test]
+    fn median_by_hand() {
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);
+        assert_eq!(median(&mut []), 0.0);
+    }
+}

@@ -26,12 +26,12 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
     for fleet in document.fleet.iter().filter(|fleet| fleet.tails > 1) {
         let _ = writeln!(
             text,
-            "Fleet {}: {}, mean {} %, trend {} %/year; tails differ by {:.2} % (std).",
+            "Fleet {}: {}, mean {} %, std between tails {:.2} %,\n  trend {} %/year.",
             fleet.aircraft_type,
             counted(fleet.tails, "tail"),
             signed(&fleet.deviation_percent),
+            fleet.between_tails_percent,
             signed(&fleet.trend_percent_per_year),
-            fleet.between_tails_percent
         );
     }
     for tail in &document.tails {
@@ -70,12 +70,12 @@ fn tails(document: &MonitorDocument) -> String {
             tail.flights.len().to_string(),
             signed(&tail.deviation_percent),
             signed(&tail.trend_percent_per_year),
-            format!("{:+.2}", airbus.specific_range_deviation_percent),
+            plain(airbus.specific_range_deviation_percent, 2),
             airbus
                 .specific_range_deviation_std_percent
                 .map_or_else(|| "–".to_owned(), |std| format!("{std:.2}")),
-            format!("{:+.1}", airbus.retained_fuel_factor_percent),
-            format!("{:+.0}", tail.cost.fuel_kg_per_flight),
+            plain(airbus.retained_fuel_factor_percent, 1),
+            plain(tail.cost.fuel_kg_per_flight, 0),
         ]);
     }
     let mut text = aligned(&rows);
@@ -93,7 +93,7 @@ fn append_cost(tail: &TailDocument, text: &mut String) {
         (cost.price_per_year, "in price"),
     ]
     .into_iter()
-    .filter_map(|(value, unit)| value.map(|value| format!("{value:+.0} {unit}")))
+    .filter_map(|(value, unit)| value.map(|value| format!("{} {unit}", plain(value, 0))))
     .collect();
     // Fuel a year alone follows from the table; it is printed where it was asked for what follows from it.
     if figures.len() > 1 {
@@ -112,8 +112,8 @@ fn months(document: &MonitorDocument) -> String {
                 month.flights.to_string(),
                 signed(&month.deviation_percent),
                 month.before_learning_percent.as_ref().map_or_else(|| "–".to_owned(), signed),
-                format!("{:+.2}", month.specific_range_deviation_percent.value),
-                format!("{:+.1}", month.retained_fuel_factor_percent),
+                plain(month.specific_range_deviation_percent.value, 2),
+                plain(month.retained_fuel_factor_percent, 1),
             ]);
         }
     }
@@ -157,8 +157,12 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
 
 /// `+1.23 ± 0.20`.
 fn signed(figure: &Figure) -> String {
-    let value = format!("{:+.2}", figure.value);
-    format!("{} ± {:.2}", value.replace('-', "\u{2212}"), figure.half_width())
+    format!("{} ± {:.2}", plain(figure.value, 2), figure.half_width())
+}
+
+/// With its sign, the minus sign as in print.
+fn plain(value: f64, decimals: usize) -> String {
+    format!("{value:+.decimals$}").replace('-', "\u{2212}")
 }
 
 /// The day of an instant as it is written in a document.
