@@ -335,7 +335,7 @@ pub(crate) struct MonitorArgs {
     /// Print a row for each month instead of one for each tail
     #[arg(long)]
     pub(crate) month: bool,
-    /// Folder to write to: monitor.json and tails, months, flights, changes, events, fleet, alerts as .csv
+    /// Folder to write to: monitor.html, monitor.json, and tails, months, flights, changes, events, fleet, alerts as .csv
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Print the JSON document instead of the table

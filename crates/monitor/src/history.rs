@@ -1,5 +1,7 @@
 //! One series read as a history: noise, changes with the interval of their dates, trend, levels, effects of events.
 
+use core::ops::Range;
+
 use flight::Timestamp;
 
 use crate::filter::{ChangeFilter, EventBefore, FilteredFlight};
@@ -93,11 +95,7 @@ impl History {
     ///
     /// `None` without a flight.
     #[must_use]
-    pub fn mean_percent(
-        &self,
-        series: &Series,
-        flights: core::ops::Range<usize>,
-    ) -> Option<Estimate> {
+    pub fn mean_percent(&self, series: &Series, flights: Range<usize>) -> Option<Estimate> {
         let of = series.flights().get(flights.clone())?;
         let weights = self.weights.get(flights)?;
         let weight: f64 = weights.iter().sum();
@@ -131,7 +129,7 @@ fn filter(
 }
 
 /// The changes of the most probable division that are more probable than not: each with the probability of all starts nearer
-/// to it than to another, and with the interval that holds 95 % of that.
+/// to it than to another.
 fn changes(filter: &ChangeFilter) -> Vec<Change> {
     let division = filter.best_division();
     let probabilities = filter.probabilities();
@@ -142,33 +140,51 @@ fn changes(filter: &ChangeFilter) -> Vec<Change> {
         let to = division
             .get(place + 1)
             .map_or(probabilities.len(), |after| first_flight.midpoint(*after) + 1);
-        let near = &probabilities[from..to];
-        let sum: f64 = near.iter().sum();
+        let sum: f64 = probabilities[from..to].iter().sum();
         if sum < REPORTED_PROBABILITY {
             continue;
         }
-        let tail = (1.0 - DATE_INTERVAL) / 2.0 * sum;
-        let mut below = 0.0;
-        let (mut earliest, mut latest) = (first_flight, first_flight);
-        for (offset, probability) in near.iter().enumerate() {
-            if below <= tail {
-                earliest = from + offset;
-            }
-            if below < sum - tail {
-                latest = from + offset;
-            }
-            below += probability;
-        }
+        let (earliest, latest) = date_interval(&probabilities, from..to, first_flight);
         found.push(Change {
             first_flight,
-            earliest: earliest.min(first_flight),
-            latest: latest.max(first_flight),
+            earliest,
+            latest,
             probability: sum.min(1.0),
             step_percent: Estimate { value: 0.0, deviation: 0.0 },
             event: None,
         });
     }
     found
+}
+
+/// First and last flight of the interval that is grown from the most probable flight, always to the side that is more
+/// probable, until a change lies in it with 95 % of the probability of one. What is left over is the small probability of
+/// further changes, which is spread over all flights and says nothing about the date of this one.
+fn date_interval(
+    probabilities: &[f64],
+    within: Range<usize>,
+    first_flight: usize,
+) -> (usize, usize) {
+    let sum: f64 = probabilities[within.clone()].iter().sum();
+    let needed = DATE_INTERVAL * sum.min(1.0);
+    let (mut earliest, mut latest) = (first_flight, first_flight);
+    let mut held = probabilities[first_flight];
+    while held < needed {
+        let before = (earliest > within.start).then(|| probabilities[earliest - 1]);
+        let after = (latest + 1 < within.end).then(|| probabilities[latest + 1]);
+        match (before, after) {
+            (None, None) => break,
+            (Some(before), after) if after.is_none_or(|after| before > after) => {
+                earliest -= 1;
+                held += before;
+            }
+            (_, after) => {
+                latest += 1;
+                held += after.unwrap_or(0.0);
+            }
+        }
+    }
+    (earliest, latest)
 }
 
 /// A change within whose interval an event lies is that event's: the nearest one.

@@ -67,7 +67,7 @@ pub const CORRELATION_ERROR: f64 = 1.2;
 /// 2.5).
 pub const HUBER_LIMIT: f64 = 2.5;
 /// E min(z², 2.5²) of a standard normal z: 2Φ(c) − 1 − 2cφ(c) + 2c²(1 − Φ(c)) at c = 2.5.
-pub const HUBER_CONSISTENCY: f64 = 0.977_561;
+pub const HUBER_CONSISTENCY: f64 = 0.977_559_983;
 
 /// Flights on either side of a flight whose median it is compared with when outliers are weighed.
 pub const MEDIAN_REACH: usize = 5;

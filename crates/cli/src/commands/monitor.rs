@@ -77,7 +77,7 @@ pub(crate) fn run(
         write(folder, &document)?;
         if !arguments.json {
             printed.push_str(&format!(
-                "Written to {}: monitor.json and tables (.csv)\n",
+                "Written to {}: monitor.html, monitor.json, tables (.csv)\n",
                 show(folder)
             ));
         }
@@ -96,6 +96,7 @@ fn print(arguments: &MonitorArgs, document: &MonitorDocument) -> Result<String, 
 fn write(folder: &Path, document: &MonitorDocument) -> Result<(), Failure> {
     make_folder(folder)?;
     write_atomically(&folder.join("monitor.json"), &document.to_json())?;
+    write_atomically(&folder.join("monitor.html"), page::monitoring(document).as_bytes())?;
     for table in tables(document) {
         columns::write(&table.columns, Some(&folder.join(format!("{}.csv", table.name))))?;
     }

@@ -72,8 +72,7 @@ fn density_probabilities_and_best_division_by_brute_force() {
     }
 }
 
-/// What is forgotten of a long history is too little to matter: the evidence with and without forgetting is compared by
-/// summing over all starts.
+/// What is forgotten of a long history is too little to matter. Oracle: the same sums over all starts, none forgotten.
 #[test]
 fn forgetting_does_not_matter() {
     let beliefs = ChangeBeliefs::of_2026();
@@ -86,8 +85,9 @@ fn forgetting_does_not_matter() {
     let y: Vec<f64> = (0..600).map(|k| if k < 350 { noise() } else { 0.8 + noise() }).collect();
     let filter = filtered(beliefs, &y, None);
     let mut sums = RunningSums::new();
-    let mut density = vec![0.0_f64];
     let stay = (1.0 - beliefs.change_between_flights).ln();
+    let mut density = vec![0.0_f64];
+    let mut shares: Vec<Vec<f64>> = Vec::new();
     for (index, value) in y.iter().enumerate() {
         sums.push(0.01 * index as f64, *value, 4.0);
         let summand = |start: usize| {
@@ -97,10 +97,22 @@ fn forgetting_does_not_matter() {
                 + stay * (index - start) as f64
                 + sums.piece(start, index + 1).log_evidence(&beliefs)
         };
-        let largest = (0..=index).map(summand).fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = (0..=index).map(|start| (summand(start) - largest).exp()).sum();
+        let summands: Vec<f64> = (0..=index).map(summand).collect();
+        let largest = summands.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = summands.iter().map(|summand| (summand - largest).exp()).sum();
         density.push(largest + sum.ln());
+        shares.push(summands.iter().map(|s| (s - density[index + 1]).exp()).collect());
     }
-    assert!((filter.log_density() - density[y.len()]).abs() < 1e-3);
+    let mut exact = vec![0.0; y.len() + 1];
+    exact[y.len()] = 1.0;
+    for end in (1..=y.len()).rev() {
+        for start in 0..end {
+            exact[start] += exact[end] * shares[end - 1][start];
+        }
+    }
+    for (flight, probability) in filter.probabilities().iter().enumerate() {
+        assert!((probability - exact[flight]).abs() < 1e-3, "flight {flight}");
+    }
+    assert_eq!(filter.best_division(), [350]);
     assert!(filter.starts.len() <= MOST_STARTS);
 }

@@ -57,8 +57,10 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
     text
 }
 
-const LEGEND: &str = "Positive: burns more than predicted; ± is half a 95 % interval. DSR: deviation of specific\n\
-     range, negative is worse. Factor: mean of three months, rounded up to 0.1 %.\n";
+const LEGEND: &str = "Positive: burns more than predicted; ± is half a 95 % interval.\n\
+     DSR: deviation of specific range, negative is worse.\n\
+     Factor: mean of three months' fuel factors, rounded up to 0.1 %.\n\
+     A change has the 95 % interval of its date and the probability p of a change.\n";
 
 fn tails(document: &MonitorDocument) -> String {
     let head = ["tail", "flights", "level", "trend/year", "DSR", "std", "factor", "kg/flight"];
@@ -123,10 +125,9 @@ fn months(document: &MonitorDocument) -> String {
 fn append_changes(tail: &TailDocument, text: &mut String) {
     for change in &tail.changes {
         let engine = change.engine.map_or_else(String::new, |engine| format!(" engine {engine}"));
-        let event = change.event.as_ref().map_or_else(String::new, |kind| format!(", {kind}"));
         let _ = writeln!(
             text,
-            "{}{engine}: {} % since {} ({} to {}), probability {:.2}{event}",
+            "{}{engine}: {} % on {} ({} to {}), p {:.2}",
             tail.tail,
             signed(&change.step_percent),
             date(&change.since),
@@ -134,6 +135,9 @@ fn append_changes(tail: &TailDocument, text: &mut String) {
             date(&change.since_ci95[1]),
             change.probability,
         );
+        if let Some(kind) = &change.event {
+            let _ = writeln!(text, "  with the recorded event: {kind}");
+        }
     }
     for event in &tail.events {
         let effect = event.effect_percent.as_ref().map_or_else(
@@ -160,9 +164,9 @@ fn signed(figure: &Figure) -> String {
     format!("{} ± {:.2}", plain(figure.value, 2), figure.half_width())
 }
 
-/// With its sign, the minus sign as in print.
+/// With its sign.
 fn plain(value: f64, decimals: usize) -> String {
-    format!("{value:+.decimals$}").replace('-', "\u{2212}")
+    format!("{value:+.decimals$}")
 }
 
 /// The day of an instant as it is written in a document.
