@@ -18,7 +18,6 @@ mod monitor;
 mod reference;
 mod remainder;
 mod same_bytes;
-mod schema;
 mod state;
 mod support;
 mod trial;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::schema::breaches;
+use crate::json_schema::violations;
 use crate::support::{
     Ran, adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, root,
 };
@@ -41,8 +41,8 @@ fn tables_json_and_text_agree_and_hold_their_schema() {
     let json = monitor(&adapted, &["--json"]).expect(0).stdout;
     assert_eq!(json.as_bytes(), std::fs::read(output.join("monitor.json")).unwrap());
     let document: Value = serde_json::from_str(&json).unwrap();
-    let schema = std::fs::read(root().join("docs/schema/monitor.json")).unwrap();
-    let found = breaches(&document, &serde_json::from_slice(&schema).unwrap());
+    let schema = std::fs::read(root().join("docs/schemas/monitor-1.json")).unwrap();
+    let found = violations(&serde_json::from_slice(&schema).unwrap(), &document);
     assert!(found.is_empty(), "{found:#?}");
     let tail = &document["tails"][0];
     let flights = csv_columns(&output.join("flights.csv"));
