@@ -12,6 +12,7 @@ pub(crate) mod guide;
 pub(crate) mod init;
 pub(crate) mod merge;
 pub(crate) mod optimum;
+pub(crate) mod monitor;
 pub(crate) mod predict;
 pub(crate) mod segment;
 pub(crate) mod show;

@@ -11,6 +11,8 @@ pub(crate) const DONE: u8 = 0;
 pub(crate) const SOME_REFUSED: u8 = 1;
 /// Exit status 2: nothing was done.
 pub(crate) const NOTHING_DONE: u8 = 2;
+/// Exit status 3: done, and a rule of `monitor --alert` fired.
+pub(crate) const ALERTS_RAISED: u8 = 3;
 
 /// A reason for which nothing was done.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

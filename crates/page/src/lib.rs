@@ -1,8 +1,8 @@
 //! The result of a run as one plain page for a performance engineer to read, print and forward.
 //!
 //! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis`]
-//! that of diagnoses (verdicts, causes with sizes, what cannot be tested, what would just be detected). Both are
-//! strings of HTML with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
+//! that of diagnoses (verdicts, causes with sizes, what cannot be tested, what would just be detected),
+//! [`monitoring`] that of months and fleets. All are strings of HTML with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
 //! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures
 //! are taken from the results unchanged.
 //!
@@ -27,6 +27,7 @@ mod envelope;
 mod errors;
 mod fleet;
 mod frame;
+mod monitoring;
 mod place;
 mod polars;
 mod report;
@@ -44,3 +45,4 @@ pub use report::{
     Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
     tail_page,
 };
+pub use monitoring::monitoring;

@@ -18,6 +18,7 @@ mod folder;
 mod guide;
 mod json_schema;
 mod optimum;
+mod monitor;
 mod reference;
 mod remainder;
 mod residuals;
