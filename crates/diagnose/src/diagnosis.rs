@@ -9,11 +9,12 @@ use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
 use crate::judge::closure::{Shrinkage, in_sample, nested};
 use crate::judge::gap::{
-    exceeds_uncertainty, gap_of, is_real, is_vague, noise_scale, unknown_square,
+    exceeds_uncertainty, gap_of, is_large, is_real, is_vague, noise_scale, unknown_square,
 };
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{CauseEvidence, causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
+use crate::judge::table::TableFinding;
 use crate::judge::verdict::{Findings, advisor, beside, closed, credit, verdict};
 use crate::library::Library;
 use crate::output::addition::Addition;
@@ -27,7 +28,10 @@ use crate::search::analyse::{Analysis, analyse};
 use crate::search::outside::{Outside, compete};
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
-use crate::signals::table_uncertainty::TableUncertainty;
+use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
+use crate::thresholds::{
+    LARGEST_NOISE, MORE_PROBABLE_THAN_NOT, OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
+};
 
 /// Diagnoses one set of flights.
 ///
@@ -52,10 +56,13 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
             && !options.without.contains(&id)
     };
     let reference = Reference::from_baseline(input.baseline);
-    let (data, library) =
+    let (data, mut library) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
             Library::new(&model, points, engines, starts, chosen)
         });
+    if input.table.map(TableUncertainty::origin) == Some(TableOrigin::Book) {
+        library.believe_book();
+    }
     let not_testable = library
         .not_testable
         .iter()
@@ -115,10 +122,34 @@ fn conclude(
     let posteriors = dominant(stacked, &analysis, library);
     let own = in_sample(problem, &best.model.columns, &best.sizes, scale, options.seed);
     let mut gap = gap_of(stacked, &analysis, &own, scale);
-    let real = is_real(&analysis, &outside) || exceeds_uncertainty(&gap, unknown_square(stacked));
+    let exceeds = exceeds_uncertainty(&gap, unknown_square(stacked));
+    let real = is_real(&analysis, &outside) || exceeds;
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
     let worse = makes_worse(stacked, unseen.as_ref());
-    gap.detected = real && !is_vague(&gap, &outside, posteriors.first(), worse);
+    let table = TableFinding::of(stacked, &analysis, library)
+        .filter(|table| table.probability > MORE_PROBABLE_THAN_NOT);
+    let large = table.is_some() || is_large(stacked, &gap, posteriors.first());
+    let smooth_term = outside.probability;
+    let is_scatter = posteriors.first().is_some_and(|top| top.effect.is_none());
+    outside.probability *= 1.0
+        - credit(
+            beside(&outside, &distances, library, posteriors.first()),
+            closed(unseen.as_ref(), &own).filter(|_| !is_scatter),
+        );
+    if table.is_none() && is_unproven(unseen.as_ref().filter(|_| !is_scatter), scale) {
+        outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
+    }
+    // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
+    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
+    let something = table.is_some()
+        || exceeds
+        || smooth_term > OUTSIDE_PROBABILITY
+        || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
+    gap.detected = real
+        && large
+        && something
+        && (table.is_some() || !is_vague(&gap, &outside, posteriors.first(), worse));
+    let table = table.filter(|_| gap.detected);
     let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {
         gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
@@ -129,14 +160,6 @@ fn conclude(
     } else {
         find(stacked, &analysis, scale, gap.detected, options.seed)
     };
-    let found_outside = outside.probability;
-    let top = posteriors.first();
-    let is_scatter = top.is_some_and(|top| top.effect.is_none());
-    outside.probability *= 1.0
-        - credit(
-            beside(&outside, &distances, library, top),
-            closed(unseen.as_ref(), &own).filter(|_| !is_scatter),
-        );
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {
@@ -145,8 +168,9 @@ fn conclude(
         distances: &distances,
         advisor: &advisor,
         outside: &outside,
-        smooth_term: found_outside,
+        smooth_term,
         posteriors: if gap.detected { &posteriors } else { &[] },
+        table: table.as_ref(),
         own: &own,
         unseen: unseen.as_ref(),
     };
@@ -157,6 +181,7 @@ fn conclude(
         distances: &distances,
         library,
         unseen: unseen.as_ref(),
+        table: table.as_ref(),
     };
     let causes = causes(&evidence, &posteriors);
     let detectable = detectable(library, &distances, &classes, &advisor);
@@ -168,7 +193,7 @@ fn conclude(
         causes,
         not_testable: vec![],
         addition: Addition::of(&analysis, library, verdict.effects(), *model.references())
-            .filter(|_| !verdict.effects().is_empty()),
+            .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
         verdict,
         detectable,
         outside: outside_library(&outside),
@@ -176,6 +201,13 @@ fn conclude(
         notes: vec![],
     };
     Ok((diagnosis, analysis))
+}
+
+/// Whether a name is not borne out: its closure on flights that it was not fitted to may be none, or what it leaves is far more
+/// than noise.
+fn is_unproven(unseen: Option<&Shrinkage>, noise_scale: f64) -> bool {
+    noise_scale > LARGEST_NOISE
+        || unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
 }
 
 /// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does

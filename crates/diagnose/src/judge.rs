@@ -6,4 +6,5 @@ pub(crate) mod gap;
 pub(crate) mod noise_floors;
 pub(crate) mod posterior;
 pub(crate) mod sufficiency;
+pub(crate) mod table;
 pub(crate) mod verdict;

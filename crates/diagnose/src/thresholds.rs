@@ -45,6 +45,15 @@ deciding_numbers! {
         SMALLEST_GAP: f64 = 0.15, "of the floor's square",
             "excess over the noise floor below which closure is not measured and size alone shows no gap",
             OurChoice "Below it the ratio that closure is has noise above and below the line.";
+        SMALLEST_GAP_PERCENT: f64 = 0.15, "% rms",
+            "root mean square of what is explained, or of the excess over the floor, below which there is no gap",
+            OurChoice "No operator acts on less, however many flights show it.";
+        UNPROVEN_SHARE: f64 = 0.5, "",
+            "share of its probability that a name keeps where the interval of its closure on unseen flights holds zero",
+            OurChoice "A name that other flights do not bear out is not more probable than not.";
+        LARGEST_NOISE: f64 = 10.0, "times the stated variance",
+            "noise of the best hypothesis beyond which it explains nothing, and no name keeps more than that share",
+            OurChoice "Sensors three times worse than stated are noise; beyond, something else is.";
         MORE_PROBABLE_THAN_NOT: f64 = 0.5, "",
             "probability of a cause, or of all named ones, above which it carries the verdict",
             OurChoice "More probable than not.";
@@ -59,6 +68,9 @@ deciding_numbers! {
         CREDIBLE: f64 = 0.95, "",
             "probability of the causes that the class of a verdict holds at least",
             OurChoice "The usual 95 %.";
+        SIZE_ALONE: f64 = 20.0, "",
+            "factor within which a cause must be of the leading one, prior sizes left out, to be in its class",
+            OurChoice "One in twenty, as for a gap: what only the prior sizes decide is open.";
         NORMAL_95: f64 = 1.96, "standard deviations",
             "half width of a 95 % interval",
             Source "The normal distribution's 97.5 % quantile, to two decimals as tables have it.";

@@ -44,6 +44,9 @@ fn unexplained_words(unexplained: &Unexplained) -> String {
 }
 
 fn found_words(found: &Found) -> String {
+    if found.effects.first() == Some(&EffectId::DragTable) {
+        return table_words(found);
+    }
     let mut words = if found.class.len() > 1 {
         format!("One of {}: these flights cannot tell them apart.", joined(&found.class, ", "))
     } else {
@@ -63,6 +66,29 @@ fn found_words(found: &Found) -> String {
     if let Some(best) = found.separations.first() {
         let measurement = measurement_words(&best.measurement);
         let _ = write!(words, " To be sure: {measurement} ({}).", distances_words(best));
+    }
+    words
+}
+
+/// A guide whose drag is off: adapting comes first.
+fn table_words(found: &Found) -> String {
+    let mut words = "The drag of the guide is off, as a table over lift coefficient and Mach number can hold it: adapt \
+                     first, then diagnose flights that the adapted model has not learnt."
+        .to_owned();
+    if let Some(beside) = &found.beside {
+        let _ = if beside.class.len() > 1 {
+            write!(
+                words,
+                " Something that no table can hold acts in addition: one of {}, which these flights cannot tell apart.",
+                joined(&beside.class, ", ")
+            )
+        } else {
+            write!(words, " No table can hold what acts in addition: {}.", joined(&beside.effects, " and "))
+        };
+    }
+    if let Some(best) = found.separations.first() {
+        let measurement = measurement_words(&best.measurement);
+        let _ = write!(words, " To be sure of it: {measurement} ({}).", distances_words(best));
     }
     words
 }

@@ -44,6 +44,7 @@ pub(crate) fn reference_model(
         mean_aerodynamic_chord_m: Some(truth.airframe.mean_aerodynamic_chord_m),
         drag_divergence_mach: None,
         reference_lhv_mj_kg: None,
+        table_uncertainty_percent: None,
         sensors: stated_sensors(sensors, &Scatter::default(), truth),
     })?;
     let at = truth.reference_conditions();

@@ -9,7 +9,7 @@ use statrs::function::erf::erfc;
 
 use crate::hypotheses::backgrounds::Background;
 use crate::library::Library;
-use crate::math::mixture::{Evidence, Factored, Mixture};
+use crate::math::mixture::{Evidence, Factored, Mixture, ln_sum};
 use crate::priors::{
     EXPECTED_SIGN, HEATING_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
 };
@@ -34,6 +34,8 @@ pub(crate) struct ScoredHypothesis {
     pub(crate) deviations: Vec<f64>,
     /// The background under which the hypothesis is most probable.
     pub(crate) background: usize,
+    /// Share of its weight in backgrounds in which the drag table is uncertain.
+    pub(crate) table_share: f64,
 }
 
 /// Prior of a column.
@@ -41,7 +43,7 @@ pub(crate) struct ScoredHypothesis {
 pub(crate) struct Prior {
     pub(crate) mean: f64,
     /// Standard deviations and ln probabilities.
-    pub(crate) scales: [(f64, f64); 2],
+    pub(crate) scales: [(f64, f64); PRIOR_SCALES.len()],
     pub(crate) count: usize,
     pub(crate) sign: EffectSign,
 }
@@ -66,6 +68,22 @@ pub(crate) struct Scorer {
     pub(crate) rows: f64,
 }
 
+impl Prior {
+    /// ln of its density at a size, sign included.
+    pub(crate) fn ln_density(&self, size: f64) -> f64 {
+        let own = self.scales[..self.count].iter().map(|&(deviation, ln_share)| {
+            let z = (size - self.mean) / deviation;
+            ln_share - 0.5 * z * z - (deviation * (2.0 * core::f64::consts::PI).sqrt()).ln()
+        });
+        let sign = match self.sign {
+            EffectSign::Positive if size > 0.0 => 2.0 * EXPECTED_SIGN,
+            EffectSign::Positive => 2.0 * (1.0 - EXPECTED_SIGN),
+            _ => 1.0,
+        };
+        ln_sum(own) + sign.ln()
+    }
+}
+
 impl Scorer {
     pub(crate) fn new(library: &Library, rows: usize) -> Self {
         let priors = library
@@ -78,11 +96,11 @@ impl Scorer {
                 Prior {
                     mean: effect.prior_mean,
                     scales: if effect.has_known_size {
-                        [(effect.prior_deviation, 0.0), (effect.prior_deviation, 0.0)]
+                        [(effect.prior_deviation, 0.0); PRIOR_SCALES.len()]
                     } else {
                         free
                     },
-                    count: if effect.has_known_size { 1 } else { 2 },
+                    count: if effect.has_known_size { 1 } else { PRIOR_SCALES.len() },
                     sign: effect.sign,
                 }
             })
@@ -251,7 +269,7 @@ mod tests {
     #[test]
     fn prior_masses_sum_to_one() {
         let prior =
-            Prior { mean: 0.0, scales: [(1.0, 0.0); 2], count: 1, sign: EffectSign::Either };
+            Prior { mean: 0.0, scales: [(1.0, 0.0); 3], count: 1, sign: EffectSign::Either };
         let scorer = Scorer {
             priors: vec![prior; 3],
             effect_of: vec![0, 1, 1],
@@ -289,7 +307,7 @@ mod tests {
         let at = Background::small(&matrix, &[0], 1, 0.0);
         let prior = Prior {
             mean: 0.3,
-            scales: [(0.8, 0.0), (0.8, 0.0)],
+            scales: [(0.8, 0.0); 3],
             count: 1,
             sign: EffectSign::Either,
         };

@@ -5,15 +5,18 @@ use flight::effect::EffectId;
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
-use crate::judge::posterior::{Posterior, class_of, closed_unseen, id_of};
+use crate::judge::posterior::{Posterior, class_of, closed_unseen, id_of, presence};
+use crate::judge::table::TableFinding;
 use crate::library::Library;
 use crate::output::measurement::Separation;
 use crate::output::note::Note;
-use crate::output::verdict::{Found, Rest, RestKind, Unexplained, Verdict};
+use crate::output::verdict::{Beside, Found, Rest, RestKind, Unexplained, Verdict};
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
 use crate::search::system::Problem;
-use crate::thresholds::{CREDIBLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY};
+use crate::thresholds::{
+    CREDIBLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY, SIZE_ALONE,
+};
 
 /// Share of the explainable gap that the leading set closes, with its interval: on unseen flights; on the same ones where the
 /// gap is too small for that; `None` where it is too small for either.
@@ -67,6 +70,8 @@ pub(crate) struct Findings<'a> {
     pub(crate) smooth_term: f64,
     /// Causes, the most probable first; none where there is no gap.
     pub(crate) posteriors: &'a [Posterior],
+    /// What is found of a guide's table, where it is more probably off than not.
+    pub(crate) table: Option<&'a TableFinding>,
     pub(crate) own: &'a Shrinkage,
     pub(crate) unseen: Option<&'a Shrinkage>,
 }
@@ -74,12 +79,15 @@ pub(crate) struct Findings<'a> {
 /// The verdict; what named effects leave goes to `notes` too.
 pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict {
     let &Findings { library, outside, smooth_term, posteriors, own, unseen, .. } = findings;
+    if let Some(table) = findings.table {
+        return Verdict::Effects(found_with_table(findings, table));
+    }
     let Some(top) = posteriors.first() else { return Verdict::NoGap };
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let variable = outside.variable.map(|(variable, _)| variable);
     let closed = closed(unseen, own);
     if outside.probability > OUTSIDE_PROBABILITY
-        || (smooth_term > OUTSIDE_PROBABILITY && named < MORE_PROBABLE_THAN_NOT)
+        || named * (1.0 - outside.probability) <= MORE_PROBABLE_THAN_NOT
     {
         return Verdict::OutsideLibrary(Unexplained {
             probability: outside.probability.max(1.0 - named),
@@ -97,20 +105,86 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
     Verdict::Effects(found(findings, top, rest))
 }
 
-/// The effects that the leading cause is of, and what it could be taken for.
-fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
-    let &Findings { analysis, library, distances, advisor, outside, posteriors, .. } = findings;
+/// A guide's table that is off, and beside it what the flights show that no table can hold.
+fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
+    let &Findings { library, outside, posteriors, .. } = findings;
+    let inside = 1.0 - outside.probability;
+    let held = |id: &EffectId| table.class.contains(id);
+    // What a table can hold as well says nothing beside it.
+    let present = presence(findings.analysis, library);
+    let mut named: Vec<Posterior> = posteriors
+        .iter()
+        .filter(|p| !held(&id_of(library, p.effect)))
+        .map(|p| Posterior { probability: present[p.effect.unwrap_or(library.effects.len())], ..p.clone() })
+        .collect();
+    named.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let named: Vec<&Posterior> = named.iter().collect();
+    let beside = named.first().and_then(|top| {
+        let class = class_with_credible(findings, top, &named);
+        let of_class: f64 = named
+            .iter()
+            .filter(|p| class.contains(&id_of(library, p.effect)))
+            .map(|p| p.probability)
+            .sum();
+        (of_class * inside > MORE_PROBABLE_THAN_NOT).then(|| Beside {
+            effects: vec![id_of(library, top.effect)],
+            class,
+            probability: top.probability * inside,
+        })
+    });
+    let mut effects = vec![EffectId::DragTable];
+    let mut class = table.class.clone();
+    if let Some(beside) = &beside {
+        effects.extend(&beside.effects);
+        for id in &beside.class {
+            if !class.contains(id) {
+                class.push(*id);
+            }
+        }
+    }
+    let separations = beside.as_ref().zip(named.first()).map_or_else(Vec::new, |(beside, top)| {
+        separations(findings.advisor, library, top, &beside.class)
+    });
+    Found {
+        effects,
+        class,
+        probability: table.probability,
+        beside,
+        closure: closed_unseen(findings.unseen),
+        rest: None,
+        separations,
+    }
+}
+
+/// What these flights cannot tell from a cause, and what their evidence leaves open, however far apart sizes typical of it
+/// would be.
+fn class_with_credible(
+    findings: &Findings<'_>,
+    top: &Posterior,
+    posteriors: &[&Posterior],
+) -> Vec<EffectId> {
+    let &Findings { library, distances, .. } = findings;
     let mut class = class_of(distances, library, top);
-    // What the evidence leaves open belongs to the class too, however far apart sizes typical of it would be.
-    for posterior in credible(posteriors) {
+    // What only the prior sizes decide is open as well.
+    let by_size = posteriors.iter().copied().filter(|p| p.flat * SIZE_ALONE >= top.flat);
+    for posterior in credible(posteriors).chain(by_size) {
         let id = id_of(library, posterior.effect);
         if !class.contains(&id) {
             class.push(id);
         }
     }
+    class
+}
+
+/// The effects that the leading cause is of, and what it could be taken for.
+fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
+    let &Findings { analysis, library, advisor, outside, posteriors, .. } = findings;
+    let all: Vec<&Posterior> = posteriors.iter().collect();
+    let class = class_with_credible(findings, top, &all);
     Found {
         effects: set_of(analysis, library, top),
         probability: top.probability * (1.0 - outside.probability),
+        beside: None,
         closure: closed_unseen(findings.unseen),
         rest,
         separations: separations(advisor, library, top, &class),
@@ -119,10 +193,10 @@ fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found 
 }
 
 /// The most probable causes that hold 95 % of the probability together.
-fn credible(posteriors: &[Posterior]) -> impl Iterator<Item = &Posterior> {
+fn credible<'a>(posteriors: &[&'a Posterior]) -> impl Iterator<Item = &'a Posterior> {
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let mut sum = 0.0;
-    posteriors.iter().take_while(move |posterior| {
+    posteriors.iter().copied().take_while(move |posterior| {
         let before = sum;
         sum += posterior.probability;
         before < CREDIBLE * named
@@ -160,7 +234,8 @@ pub(crate) fn advisor<'a>(
         top.and_then(Posterior::column_and_size).map(|(column, _)| column).into_iter().collect();
     let mut likely: Vec<usize> = Vec::new();
     if let Some(class) = top.and_then(|top| top.confused(distances, library)) {
-        likely.extend(credible(posteriors).filter_map(|posterior| posterior.effect));
+        let all: Vec<&Posterior> = posteriors.iter().collect();
+        likely.extend(credible(&all).filter_map(|posterior| posterior.effect));
         likely.extend(class);
     }
     Advisor::new(problem, distances, classes, &found, &likely)
