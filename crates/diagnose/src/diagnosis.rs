@@ -127,6 +127,7 @@ fn conclude(
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
     let worse = makes_worse(stacked, unseen.as_ref());
     let table = TableFinding::of(stacked, &analysis, library)
+        .map(|table| table.borne_out(unseen.as_ref()))
         .filter(|table| table.probability > MORE_PROBABLE_THAN_NOT);
     let large = table.is_some() || is_large(stacked, &gap, posteriors.first());
     let smooth_term = outside.probability;

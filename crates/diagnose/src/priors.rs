@@ -69,15 +69,21 @@ deciding_numbers! {
         PRIOR_BOOK_RIGHT: f64 = 0.10, "",
             "prior probability that the drag of a guide is right as it is",
             OurChoice "Guides are some per cent too optimistic as a rule.";
-        BOOK_SPIKES: [f64; 4] = [0.0, 0.15, 0.5, 1.0], "of typical size",
+        BOOK_SPIKES: [f64; 4] = [0.0, 0.3, 1.0, 3.0], "of typical size",
             "standard deviation, against a guide, of every effect that a hypothesis does not name and a model may lack at all times",
-            OurChoice "A guide's equations lack Reynolds number, offtake, part load and more: all at their usual size, or none; averaged over.";
-        BOOK_OTHER_EFFECTS: f64 = 0.3, "of that",
+            OurChoice "A guide's equations lack Reynolds number, offtake, part load and more: none, or all at up to three times their usual size; averaged over.";
+        BOOK_SCATTERS: [f64; 2] = [0.0, 0.01], "of fuel flow",
+            "scatter between flights against a guide beyond what the sensors make",
+            OurChoice "Law bayes' own 1 % of what is no function of lift coefficient and Mach number, or none; averaged over.";
+        BOOK_AMPLITUDES: [f64; 2] = [0.0, 0.004], "of fuel flow",
+            "amplitudes of the smooth discrepancy against a guide",
+            OurChoice "None, and about law bayes' 0.3 % of a segment: the table itself is free.";
+        BOOK_OTHER_EFFECTS: f64 = 0.05, "of that",
             "the same of effects of one aircraft: sensors, loading, single engines, age, steps",
-            OurChoice "An equation that is lacking says nothing of sensors: at most a third of typical, as against any model.";
-        BOOK_AGNOSTIC_SPIKES: [f64; 2] = [0.15, 1.0], "of typical size",
+            OurChoice "An equation that is lacking says nothing of sensors: at most 0.15 of typical.";
+        BOOK_AGNOSTIC_SPIKES: [f64; 2] = [0.3, 3.0], "of typical size",
             "the same behind a function without a name",
-            OurChoice "The smaller and the larger of those above; averaged over.";
+            OurChoice "The smallest and the largest of those above; averaged over.";
     }
     "Functions without a name" {
         AGNOSTIC_AMPLITUDES: [f64; 3] = [0.002, 0.005, 0.015], "of fuel flow",

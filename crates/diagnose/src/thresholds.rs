@@ -51,6 +51,9 @@ deciding_numbers! {
         UNPROVEN_SHARE: f64 = 0.5, "",
             "share of its probability that a name keeps where the interval of its closure on unseen flights holds zero",
             OurChoice "A name that other flights do not bear out is not more probable than not.";
+        LEAST_OF_A_TABLE: f64 = 0.5, "of the explainable gap",
+            "closure by a table fitted to other flights below which a guide's drag is not what is wrong",
+            OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.98 and more; shuffled fuel flows 0.4.";
         LARGEST_NOISE: f64 = 10.0, "times the stated variance",
             "noise of the best hypothesis beyond which it explains nothing, and no name keeps more than that share",
             OurChoice "Sensors three times worse than stated are noise; beyond, something else is.";

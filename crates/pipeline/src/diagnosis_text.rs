@@ -177,28 +177,26 @@ fn table_off(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
             .to_owned(),
         closes(diagnosis, found),
     ];
-    let of_beside = found.beside.as_ref().map_or(&[][..], |beside| &beside.class);
+    let of_beside = |id: &EffectId| found.beside.iter().any(|beside| beside.class.contains(id));
     let held: Vec<EffectId> = found
         .class
         .iter()
         .copied()
-        .filter(|id| *id != EffectId::DragTable && !of_beside.contains(id))
+        .filter(|id| *id != EffectId::DragTable && !of_beside(id))
         .collect();
     if !held.is_empty() {
-        lines.push(format!("Against a guide nothing tells it from: {}.", joined(&held, ", ")));
+        lines.push(format!("Against a guide nothing distinguishes it from: {}.", joined(&held, ", ")));
     }
-    if let Some(beside) = &found.beside {
-        for id in &beside.effects {
-            lines.push(format!(
-                "In addition, and no table can hold it: {}, probability {:.2}.",
-                effect_told(diagnosis, *id),
-                beside.probability
-            ));
-        }
+    for beside in &found.beside {
+        lines.push(format!(
+            "In addition, and no table can hold it: {}, probability {:.2}.",
+            effect_told(diagnosis, beside.effect),
+            beside.probability
+        ));
         let others: Vec<EffectId> =
-            beside.class.iter().copied().filter(|id| !beside.effects.contains(id)).collect();
+            beside.class.iter().copied().filter(|id| *id != beside.effect).collect();
         if !others.is_empty() {
-            lines.push(format!("These flights cannot tell that from: {}.", joined(&others, ", ")));
+            lines.push(format!("These flights cannot distinguish it from: {}.", joined(&others, ", ")));
         }
     }
     lines.extend(to_be_sure(found));

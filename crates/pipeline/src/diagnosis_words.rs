@@ -75,15 +75,15 @@ fn table_words(found: &Found) -> String {
     let mut words = "The drag of the guide is off, as a table over lift coefficient and Mach number can hold it: adapt \
                      first, then diagnose flights that the adapted model has not learnt."
         .to_owned();
-    if let Some(beside) = &found.beside {
+    for beside in &found.beside {
         let _ = if beside.class.len() > 1 {
             write!(
                 words,
-                " Something that no table can hold acts in addition: one of {}, which these flights cannot tell apart.",
+                " Something that no table can hold acts in addition: one of {}, which these flights cannot distinguish.",
                 joined(&beside.class, ", ")
             )
         } else {
-            write!(words, " No table can hold what acts in addition: {}.", joined(&beside.effects, " and "))
+            write!(words, " No table can hold what acts in addition: {}.", beside.effect)
         };
     }
     if let Some(best) = found.separations.first() {

@@ -65,6 +65,8 @@ pub(crate) struct Scorer {
     pub(crate) effect_of: Vec<usize>,
     pub(crate) ln_columns: Vec<f64>,
     pub(crate) effects: usize,
+    /// Effects that no hypothesis names, because the uncertain table holds them.
+    pub(crate) held: Vec<bool>,
     pub(crate) rows: f64,
 }
 
@@ -85,7 +87,7 @@ impl Prior {
 }
 
 impl Scorer {
-    pub(crate) fn new(library: &Library, rows: usize) -> Self {
+    pub(crate) fn new(library: &Library, rows: usize, held: Vec<bool>) -> Self {
         let priors = library
             .columns
             .iter()
@@ -109,7 +111,9 @@ impl Scorer {
             priors,
             effect_of: library.columns.iter().map(|column| column.effect).collect(),
             ln_columns: library.effects.iter().map(|e| (e.columns as f64).ln()).collect(),
-            effects: library.effects.len() + usize::from(library.heating_value),
+            effects: library.effects.len() + usize::from(library.heating_value)
+                - held.iter().filter(|held| **held).count(),
+            held,
             rows: rows as f64,
         }
     }
@@ -125,6 +129,9 @@ impl Scorer {
     /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters. Over all models the priors
     /// sum to one.
     pub(crate) fn ln_prior(&self, model: &Hypothesis) -> f64 {
+        if model.columns.iter().any(|&column| self.held[self.effect_of[column]]) {
+            return f64::NEG_INFINITY;
+        }
         let size = model.columns.len() + usize::from(model.flight_scatter_percent.is_some());
         let count = self.effects as f64;
         let choices = match size {
@@ -275,6 +282,7 @@ mod tests {
             effect_of: vec![0, 1, 1],
             ln_columns: vec![0.0, 2.0_f64.ln()],
             effects: 3,
+            held: vec![false; 2],
             rows: 10.0,
         };
         let mass = |columns: &[usize], flight_scatter_percent: Option<f64>| {
@@ -316,6 +324,7 @@ mod tests {
             effect_of: vec![0],
             ln_columns: vec![0.0],
             effects: 1,
+            held: vec![false],
             rows,
         };
         // p(y|θ, v) ∝ v^(−n/2) exp(−|y − Xθ|²/2v), θ ~ N(μ, s² v), v ~ inverse gamma(ν0/2, ν0/2).

@@ -2,22 +2,14 @@
 
 use flight::effect::EffectId;
 
-use crate::hypotheses::backgrounds::TableBelief;
+use crate::judge::closure::Shrinkage;
 use crate::library::Library;
 use crate::math::gram::Gram;
 use crate::output::Magnitude;
 use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
-use crate::thresholds::{CONFUSED, FLEXIBLE_EFFECT, NORMAL_95};
-
-/// What only drag over lift coefficient and Mach number can be.
-const DRAG_OF_A_TABLE: [EffectId; 4] = [
-    EffectId::DragFactor,
-    EffectId::ZeroLiftDrag,
-    EffectId::InducedDrag,
-    EffectId::WaveDrag,
-];
+use crate::thresholds::{FLEXIBLE_EFFECT, LEAST_OF_A_TABLE, NORMAL_95, UNPROVEN_SHARE};
 
 /// What is found of a guide's table.
 #[derive(Clone, Debug)]
@@ -46,6 +38,18 @@ impl TableFinding {
         let best = &analysis.models.first()?.0.model.columns;
         let magnitude = magnitude(stacked, library, &beyond(library, &class, best))?;
         Some(Self { probability: probability.min(1.0), magnitude, class })
+    }
+}
+
+impl TableFinding {
+    /// The same with less probability where a table that was fitted to other flights closes less than half of the gap: drag over
+    /// lift coefficient and Mach number is then not what is wrong.
+    pub(crate) fn borne_out(self, unseen: Option<&Shrinkage>) -> Self {
+        let closed = unseen.and_then(Shrinkage::closure);
+        if closed.is_some_and(|(share, _)| share < LEAST_OF_A_TABLE) {
+            return Self { probability: UNPROVEN_SHARE * self.probability, ..self };
+        }
+        self
     }
 }
 
@@ -153,24 +157,9 @@ fn magnitude(
     Some(Magnitude { value, ci95: [low, high] })
 }
 
-/// Effects that can be seen where the table is right, and no longer where it may be off.
+/// The effect itself, then what the table can hold as well.
 fn class(analysis: &Analysis, library: &Library) -> Vec<EffectId> {
-    let space = &analysis.space;
-    let at = |belief: TableBelief| {
-        let level = space.beliefs.iter().position(|found| *found == belief)?;
-        space.reduced.get(level)
-    };
-    let mut class = vec![EffectId::DragTable];
-    for effect in &library.effects {
-        let seen = |belief| {
-            let gram = at(belief)?.matrix[(effect.representative, effect.representative)];
-            Some(effect.typical * effect.typical * gram >= CONFUSED)
-        };
-        let hidden = seen(TableBelief::Right) == Some(true)
-            && seen(TableBelief::Uncertain) == Some(false);
-        if hidden || DRAG_OF_A_TABLE.contains(&effect.id) {
-            class.push(effect.id);
-        }
-    }
-    class
+    let held = library.effects.iter().zip(&analysis.scorer.held);
+    let ids = held.filter(|(_, held)| **held).map(|(effect, _)| effect.id);
+    core::iter::once(EffectId::DragTable).chain(ids).collect()
 }

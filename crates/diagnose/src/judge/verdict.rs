@@ -107,44 +107,40 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
 
 /// A guide's table that is off, and beside it what the flights show that no table can hold.
 fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
-    let &Findings { library, outside, posteriors, .. } = findings;
+    let &Findings { library, distances, outside, posteriors, .. } = findings;
     let inside = 1.0 - outside.probability;
     let held = |id: &EffectId| table.class.contains(id);
     // What a table can hold as well says nothing beside it.
     let present = presence(findings.analysis, library);
-    let mut named: Vec<Posterior> = posteriors
-        .iter()
-        .filter(|p| !held(&id_of(library, p.effect)))
-        .map(|p| Posterior { probability: present[p.effect.unwrap_or(library.effects.len())], ..p.clone() })
-        .collect();
-    named.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let named: Vec<&Posterior> = named.iter().collect();
-    let beside = named.first().and_then(|top| {
-        let class = class_with_credible(findings, top, &named);
-        let of_class: f64 = named
-            .iter()
-            .filter(|p| class.contains(&id_of(library, p.effect)))
-            .map(|p| p.probability)
-            .sum();
-        (of_class * inside > MORE_PROBABLE_THAN_NOT).then(|| Beside {
-            effects: vec![id_of(library, top.effect)],
-            class,
-            probability: top.probability * inside,
-        })
-    });
+    let of = |posterior: &Posterior| present[posterior.effect.unwrap_or(library.effects.len())];
+    let mut named: Vec<&Posterior> =
+        posteriors.iter().filter(|p| !held(&id_of(library, p.effect))).collect();
+    named.sort_by(|a, b| of(b).total_cmp(&of(a)));
+    let mut beside: Vec<Beside> = Vec::new();
+    let mut found = Vec::new();
+    for top in &named {
+        let effect = id_of(library, top.effect);
+        if beside.iter().any(|other| other.class.contains(&effect)) {
+            continue;
+        }
+        let class = class_of(distances, library, top);
+        let in_class = named.iter().filter(|p| class.contains(&id_of(library, p.effect)));
+        let acts: f64 = in_class.map(|p| of(p)).sum();
+        if acts * inside > MORE_PROBABLE_THAN_NOT {
+            found.extend(separations(findings.advisor, library, top, &class));
+            beside.push(Beside { effect, class, probability: of(top) * inside });
+        }
+    }
     let mut effects = vec![EffectId::DragTable];
     let mut class = table.class.clone();
-    if let Some(beside) = &beside {
-        effects.extend(&beside.effects);
+    for beside in &beside {
+        effects.push(beside.effect);
         for id in &beside.class {
             if !class.contains(id) {
                 class.push(*id);
             }
         }
     }
-    let separations = beside.as_ref().zip(named.first()).map_or_else(Vec::new, |(beside, top)| {
-        separations(findings.advisor, library, top, &beside.class)
-    });
     Found {
         effects,
         class,
@@ -152,7 +148,7 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
         beside,
         closure: closed_unseen(findings.unseen),
         rest: None,
-        separations,
+        separations: found,
     }
 }
 
@@ -184,7 +180,7 @@ fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found 
     Found {
         effects: set_of(analysis, library, top),
         probability: top.probability * (1.0 - outside.probability),
-        beside: None,
+        beside: vec![],
         closure: closed_unseen(findings.unseen),
         rest,
         separations: separations(advisor, library, top, &class),

@@ -74,8 +74,8 @@ pub struct Found {
     pub class: Vec<EffectId>,
     /// Probability of the first effect.
     pub probability: f64,
-    /// What acts beside a guide's table that is off, and no table can hold.
-    pub beside: Option<Beside>,
+    /// What acts beside a guide's table that is off, and no table can hold, the most probable first.
+    pub beside: Vec<Beside>,
     /// How much of the gap the effects close on unseen flights; `None` where the gap is too small to measure it.
     pub closure: Option<Closure>,
     /// What the effects leave that depends on one variable.
@@ -87,11 +87,11 @@ pub struct Found {
 /// What acts beside a guide's table that is off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beside {
-    /// Effects, the largest first; never empty.
-    pub effects: Vec<EffectId>,
-    /// Effects that this data cannot tell from the first, itself first.
+    /// The effect.
+    pub effect: EffectId,
+    /// Effects that this data cannot tell from it, itself first.
     pub class: Vec<EffectId>,
-    /// Probability of the first.
+    /// Probability that it acts.
     pub probability: f64,
 }
 

@@ -1,9 +1,12 @@
 //! One search, the leading models refined: the posterior that the verdict reads.
 
+use flight::effect::EffectId;
+
 use crate::hypotheses::backgrounds::{
     Background, Level, Smoothed, TableBelief, backgrounds, diagonals, smoothed,
 };
 use crate::hypotheses::evidence::{ScoredHypothesis, Scorer};
+use crate::library::Testable;
 use crate::math::eliminate::Reduced;
 use crate::math::gram::Gram;
 use crate::math::mixture::ln_sum;
@@ -11,7 +14,7 @@ use crate::priors::HEATING_SIZES_PERCENT;
 use crate::search::refine::{Relinearised, refine};
 use crate::search::singles::{Kinds, search_all, search_flight_scatter};
 use crate::search::system::{EliminatedGrams, Problem, SmoothTerms};
-use crate::thresholds::{REFINED, WORTH_REFINING};
+use crate::thresholds::{CONFUSED, REFINED, WORTH_REFINING};
 
 /// The posterior over models.
 pub(crate) struct Analysis {
@@ -49,7 +52,7 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
         reduced,
     };
     let all = backgrounds(&space.smoothed, library);
-    let scorer = Scorer::new(library, gram.rows);
+    let scorer = Scorer::new(library, gram.rows, held_by_table(problem, &space));
     let kinds = Kinds {
         nothing: all.iter().map(|at| stacked.is_nothing(at)).collect(),
         uncertain_table: all
@@ -97,6 +100,34 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
 fn smooth_out(problem: Problem<'_>, levels: &[(Level, &Reduced)]) -> Vec<Smoothed> {
     let stacked = problem.stacked;
     smoothed(levels, stacked.design, |smooth_amplitude| stacked.admits(smooth_amplitude))
+}
+
+/// What only drag over lift coefficient and Mach number can be.
+const DRAG_OF_A_TABLE: [EffectId; 4] = [
+    EffectId::DragFactor,
+    EffectId::ZeroLiftDrag,
+    EffectId::InducedDrag,
+    EffectId::WaveDrag,
+];
+
+/// Of every effect, whether a guide's table that is off could hold it as well: it can be seen where the table is right, and no
+/// longer where it may be off. Nothing is held where the table is no guide's.
+fn held_by_table(problem: Problem<'_>, space: &EliminatedGrams) -> Vec<bool> {
+    let Problem { stacked, library, .. } = problem;
+    let at = |belief: TableBelief| {
+        let level = space.beliefs.iter().position(|found| *found == belief)?;
+        space.reduced.get(level)
+    };
+    let of_effect = |effect: &Testable| {
+        let seen = |belief| {
+            let gram = at(belief)?.matrix[(effect.representative, effect.representative)];
+            Some(effect.typical * effect.typical * gram >= CONFUSED)
+        };
+        let hidden = seen(TableBelief::Right) == Some(true)
+            && seen(TableBelief::Uncertain) == Some(false);
+        stacked.is_book() && (hidden || DRAG_OF_A_TABLE.contains(&effect.id))
+    };
+    library.effects.iter().map(of_effect).collect()
 }
 
 /// This much scatter between flights; what is uncertain of the table is.

@@ -319,6 +319,7 @@ mod tests {
             effect_of: vec![0, 1, 2, 2],
             ln_columns: vec![0.0, 0.0, 2.0_f64.ln()],
             effects: 3,
+            held: vec![false; 3],
             rows: 60.0,
         };
         let background = |small_effects_scale: f64| {

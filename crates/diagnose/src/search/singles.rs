@@ -157,7 +157,11 @@ impl<const K: usize> Sum<K> {
             sizes: mean.sizes.to_vec(),
             deviations: mean.deviations.to_vec(),
             background: self.best.1,
-            table_share: (self.ln_uncertain_table - mean.ln).exp().min(1.0),
+            table_share: if mean.ln > f64::NEG_INFINITY {
+                (self.ln_uncertain_table - mean.ln).exp().min(1.0)
+            } else {
+                0.0
+            },
         }
     }
 }

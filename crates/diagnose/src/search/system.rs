@@ -12,7 +12,9 @@ use crate::library::Library;
 use crate::math::eliminate::{Changed, Elimination, Reduced};
 use crate::math::gram::{Gram, Sum};
 use crate::math::linear::{gather, subtract_gram, symmetrize};
-use crate::priors::{PRIOR_BOOK_RIGHT, TAUGHT_LARGEST_AMPLITUDE, TAUGHT_SCATTERS};
+use crate::priors::{
+    BOOK_AMPLITUDES, BOOK_SCATTERS, PRIOR_BOOK_RIGHT, TAUGHT_LARGEST_AMPLITUDE, TAUGHT_SCATTERS,
+};
 use crate::residuals::segments::PreparedFlights;
 use crate::search::folds::{Folds, fold_of};
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
@@ -126,8 +128,10 @@ impl<'a> WhitenedSystem<'a> {
 
     /// Whether a smooth discrepancy of this amplitude is among the backgrounds.
     pub(crate) fn admits(&self, smooth_amplitude: f64) -> bool {
-        (self.data.predictor.baseline.is_none() && !self.is_book())
-            || smooth_amplitude <= TAUGHT_LARGEST_AMPLITUDE
+        if self.is_book() {
+            return BOOK_AMPLITUDES.contains(&smooth_amplitude);
+        }
+        self.data.predictor.baseline.is_none() || smooth_amplitude <= TAUGHT_LARGEST_AMPLITUDE
     }
 
     /// Whether a background without a named effect is no finding: nothing at all against a table, a guide's being right;
@@ -258,8 +262,11 @@ fn levels(data: &PreparedFlights<'_>, design: &Design<'_>) -> Vec<Level> {
     }
     let level = |table, prior: f64| Level { scatter: 0.0, table, ln_prior: prior.ln() };
     if is_book(design) {
+        // What is no function of lift coefficient and Mach number scatters between flights.
+        let off = (1.0 - PRIOR_BOOK_RIGHT) / BOOK_SCATTERS.len() as f64;
+        let uncertain = |scatter| Level { scatter, ..level(uncertain, off) };
         let right = level(TableBelief::Right, PRIOR_BOOK_RIGHT);
-        return vec![right, level(uncertain, 1.0 - PRIOR_BOOK_RIGHT)];
+        return core::iter::once(right).chain(BOOK_SCATTERS.map(uncertain)).collect();
     }
     vec![level(uncertain, 1.0)]
 }

@@ -162,9 +162,9 @@ pub struct VerdictRecord {
     pub class: Vec<String>,
     /// Probability of the first effect.
     pub probability: f64,
-    /// What acts beside a guide's table that is off; absent otherwise.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub beside: Option<BesideRecord>,
+    /// What acts beside a guide's table that is off, the most probable first; absent where there is nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<BesideRecord>,
     /// Share of the explainable gap closed on unseen flights; `null` where the gap is too small.
     pub closure: Option<f64>,
     /// Its 95 % interval.
@@ -178,11 +178,11 @@ pub struct VerdictRecord {
 /// What acts beside a guide's table that is off, and no table can hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BesideRecord {
-    /// Effects, the largest first.
-    pub effects: Vec<String>,
-    /// Effects that this data cannot tell from the first.
+    /// The effect.
+    pub effect: String,
+    /// Effects that these data cannot distinguish from it.
     pub class: Vec<String>,
-    /// Probability of the first.
+    /// Probability that it acts.
     pub probability: f64,
 }
 
@@ -359,7 +359,9 @@ impl From<&Verdict> for VerdictRecord {
                 Verdict::OutsideLibrary(unexplained) => unexplained.probability,
                 Verdict::Effects(found) => found.probability,
             },
-            beside: verdict.found().and_then(|found| found.beside.as_ref()).map(BesideRecord::from),
+            beside: verdict.found().map_or_else(Vec::new, |found| {
+                found.beside.iter().map(BesideRecord::from).collect()
+            }),
             closure: closure.map(|closure| closure.share),
             closure_ci95: closure.map(|closure| closure.ci95),
             advice: advice(verdict),
@@ -373,7 +375,7 @@ impl From<&Verdict> for VerdictRecord {
 impl From<&Beside> for BesideRecord {
     fn from(beside: &Beside) -> Self {
         Self {
-            effects: names(&beside.effects),
+            effect: beside.effect.to_string(),
             class: names(&beside.class),
             probability: beside.probability,
         }
