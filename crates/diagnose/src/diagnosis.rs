@@ -30,7 +30,7 @@ use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
 use crate::thresholds::{
-    LARGEST_NOISE, MORE_PROBABLE_THAN_NOT, OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
+    LARGEST_REST, MORE_PROBABLE_THAN_NOT, OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
 };
 
 /// Diagnoses one set of flights.
@@ -137,7 +137,9 @@ fn conclude(
             beside(&outside, &distances, library, posteriors.first()),
             closed(unseen.as_ref(), &own).filter(|_| !is_scatter),
         );
-    if table.is_none() && is_unproven(unseen.as_ref().filter(|_| !is_scatter), scale) {
+    let judged = unseen.as_ref().unwrap_or(&own);
+    let leaves_most = judged.after() > LARGEST_REST * judged.floor() / scale;
+    if table.is_none() && (leaves_most || is_unproven(unseen.as_ref().filter(|_| !is_scatter))) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
     }
     // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
@@ -204,11 +206,9 @@ fn conclude(
     Ok((diagnosis, analysis))
 }
 
-/// Whether a name is not borne out: its closure on flights that it was not fitted to may be none, or what it leaves is far more
-/// than noise.
-fn is_unproven(unseen: Option<&Shrinkage>, noise_scale: f64) -> bool {
-    noise_scale > LARGEST_NOISE
-        || unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
+/// Whether a name is not borne out: its closure on flights that it was not fitted to may be none.
+fn is_unproven(unseen: Option<&Shrinkage>) -> bool {
+    unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
 }
 
 /// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does

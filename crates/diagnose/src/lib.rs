@@ -132,7 +132,9 @@ pub use output::measurement::{
 };
 pub use output::note::{LeftOutReason, Note};
 pub use output::region::{Condition, Edge, Region};
-pub use output::verdict::{Beside, Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict};
+pub use output::verdict::{
+    Beside, Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict,
+};
 pub use output::{
     ActsOn, Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
 };

@@ -7,7 +7,8 @@ use flight::effect::{
 
 use crate::priors::{
     AGNOSTIC_SPIKES, BACKGROUND_SPIKES, BOOK_AGNOSTIC_SPIKES, BOOK_OTHER_EFFECTS, BOOK_SPIKES,
-    DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, STEP_DATES, THROTTLE_PIVOTS,
+    DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, SPIKES_OF_RIGHT_TABLE, STEP_DATES,
+    THROTTLE_PIVOTS,
 };
 use crate::thresholds::RECORDED_SHARE;
 
@@ -57,6 +58,8 @@ pub(crate) struct Library {
     /// Scales of the backgrounds in which every effect acts a little, and of those behind functions without a name.
     pub(crate) spikes: [f64; 4],
     pub(crate) agnostic_spikes: [f64; 2],
+    /// How many of each apply where a table that may be off is right: the smallest.
+    pub(crate) spikes_of_right_table: usize,
 }
 
 impl Library {
@@ -75,6 +78,7 @@ impl Library {
             heating_value: false,
             spikes: BACKGROUND_SPIKES,
             agnostic_spikes: AGNOSTIC_SPIKES,
+            spikes_of_right_table: SPIKES_OF_RIGHT_TABLE,
         };
         for id in EffectId::library(model.aircraft().engines()) {
             // What the model contains and physics knows the size of is no effect any more.

@@ -54,9 +54,9 @@ deciding_numbers! {
         LEAST_OF_A_TABLE: f64 = 0.5, "of the explainable gap",
             "closure by a table fitted to other flights below which a guide's drag is not what is wrong",
             OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.98 and more; shuffled fuel flows 0.4.";
-        LARGEST_NOISE: f64 = 10.0, "times the stated variance",
-            "noise of the best hypothesis beyond which it explains nothing, and no name keeps more than that share",
-            OurChoice "Sensors three times worse than stated are noise; beyond, something else is.";
+        LARGEST_REST: f64 = 25.0, "times the stated variance of noise",
+            "mean square that a name leaves beyond which it keeps no more than that share",
+            OurChoice "Five standard deviations: sensors three times worse than stated leave nine times it.";
         MORE_PROBABLE_THAN_NOT: f64 = 0.5, "",
             "probability of a cause, or of all named ones, above which it carries the verdict",
             OurChoice "More probable than not.";

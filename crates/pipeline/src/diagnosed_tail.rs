@@ -62,7 +62,10 @@ impl RunOptions {
             ));
         }
         if !self.without.is_empty() {
-            told.push(format!("as asked, these effects were left out: {}", self.without.join(", ")));
+            told.push(format!(
+                "as asked, these effects were left out: {}",
+                self.without.join(", ")
+            ));
         }
         told
     }

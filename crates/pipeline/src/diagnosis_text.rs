@@ -185,7 +185,10 @@ fn table_off(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         .filter(|id| *id != EffectId::DragTable && !of_beside(id))
         .collect();
     if !held.is_empty() {
-        lines.push(format!("Against a guide nothing distinguishes it from: {}.", joined(&held, ", ")));
+        lines.push(format!(
+            "Against a guide nothing distinguishes it from: {}.",
+            joined(&held, ", ")
+        ));
     }
     for beside in &found.beside {
         lines.push(format!(
@@ -196,7 +199,10 @@ fn table_off(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         let others: Vec<EffectId> =
             beside.class.iter().copied().filter(|id| *id != beside.effect).collect();
         if !others.is_empty() {
-            lines.push(format!("These flights cannot distinguish it from: {}.", joined(&others, ", ")));
+            lines.push(format!(
+                "These flights cannot distinguish it from: {}.",
+                joined(&others, ", ")
+            ));
         }
     }
     lines.extend(to_be_sure(found));

@@ -42,9 +42,8 @@ impl DiagnosisInputs {
         let truth = drawn.aircraft();
         let stated = stated_sensors(&sensors, &Scatter::default(), truth);
         let flights = fly(drawn.flown(), clean..drawn.flown().len())?;
-        let model = |stated, grid, error| {
-            reference_model(truth, drawn.physics(), stated, grid, error)
-        };
+        let model =
+            |stated, grid, error| reference_model(truth, drawn.physics(), stated, grid, error);
         match drawn.reference_model() {
             ReferenceModel::Exact => Ok(Self::untaught(model(stated, &FINE, None)?, flights)),
             ReferenceModel::Misstated => {

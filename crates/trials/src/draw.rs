@@ -45,14 +45,9 @@ impl DrawnCase {
     /// What the simulator refuses.
     pub fn draw(plan: &TrialPlan, spec: &CaseSpec) -> Result<Self, simulate::PlanError> {
         let (physics, earth, clean) = match spec.part.reference_model {
-            ReferenceModel::Exact | ReferenceModel::Misstated => {
+            ReferenceModel::Exact | ReferenceModel::Misstated | ReferenceModel::Initial => {
                 (TruthPhysics::plain(), Earth::plain(), 0)
             }
-            // A guide's equations lack what every aircraft has, in every other case.
-            ReferenceModel::Initial if spec.draws[14] % 2 == 0 => {
-                (TruthPhysics::plain(), Earth::plain(), 0)
-            }
-            ReferenceModel::Initial => (learnable(), Earth::full(), 0),
             ReferenceModel::Adapted => (learnable(), Earth::full(), plan.clean_flights),
         };
         let all = plan.flights + clean;
@@ -240,8 +235,7 @@ fn planned(
     let unit = |number: usize| (f64::from(byte(number)) + 0.5) / 256.0;
     let between = |number: usize, low: f64, high: f64| low + unit(number) * (high - low);
     let sign = if id.is_one_sided() || is_known(id) || byte(0) % 2 == 0 { 1.0 } else { -1.0 };
-    let mut effect =
-        PlannedEffect::sized(id, sign * times(spec) * id.typical_size(mean_mass_kg));
+    let mut effect = PlannedEffect::sized(id, sign * times(spec) * id.typical_size(mean_mass_kg));
     match id {
         TruthEffect::Library(EffectId::StepChange) => {
             let span_s = (last.as_second() - first.as_second()) as f64;

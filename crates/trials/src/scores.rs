@@ -253,8 +253,7 @@ impl<'a> SortedCases<'a> {
             cases.iter().filter(|case| of(case)).collect()
         };
         let planted = those(&Case::is_single);
-        let reported: Vec<&Case> =
-            planted.iter().copied().filter(|c| !c.is_silent()).collect();
+        let reported: Vec<&Case> = planted.iter().copied().filter(|c| !c.is_silent()).collect();
         let separable = reported
             .iter()
             .copied()
@@ -338,6 +337,7 @@ mod tests {
         Case {
             planted: Planted { effects: vec![(truth.to_owned(), 1.0)], struck: vec![] },
             verdict: VerdictKind::Effects,
+            of_table: false,
             top: Some((top.to_owned(), probability)),
             top_three: vec![top.to_owned()],
             class: vec![top.to_owned()],

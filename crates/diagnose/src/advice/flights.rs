@@ -93,6 +93,7 @@ impl Conditions {
             heating_value: false,
             spikes: library.spikes,
             agnostic_spikes: library.agnostic_spikes,
+            spikes_of_right_table: library.spikes_of_right_table,
         };
         let weight = stacked.mean_weight();
         let mut steady: Vec<FlightInformation> = Vec::new();

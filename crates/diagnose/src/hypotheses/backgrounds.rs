@@ -63,6 +63,7 @@ pub(crate) struct Diagonal {
 pub(crate) struct Smoothed {
     smooth_amplitude: f64,
     level: usize,
+    table: TableBelief,
     ln_prior: f64,
     matrix: Mat<f64>,
     ln_determinant: f64,
@@ -149,6 +150,7 @@ pub(crate) fn smoothed(
             all.push(Smoothed {
                 smooth_amplitude,
                 level,
+                table: at.table,
                 ln_prior,
                 matrix: left.matrix,
                 ln_determinant,
@@ -164,7 +166,7 @@ pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Backg
     let effects = library.columns.len();
     let mut all = Vec::with_capacity(library.spikes.len() * smoothed.len());
     for (under, small_effects_scale) in
-        smoothed.iter().flat_map(|under| library.spikes.map(|scale| (under, scale)))
+        smoothed.iter().flat_map(|under| under.spikes(library).map(move |scale| (under, scale)))
     {
         let (out, deviations) = small_effects(library, small_effects_scale);
         let kept: Vec<usize> = (0..=effects).collect();
@@ -194,7 +196,7 @@ pub(crate) fn diagonals(smoothed: &[Smoothed], library: &Library) -> Vec<Diagona
     let effects = library.columns.len();
     let mut all = Vec::with_capacity(library.spikes.len() * smoothed.len());
     for (under, small_effects_scale) in
-        smoothed.iter().flat_map(|under| library.spikes.map(|scale| (under, scale)))
+        smoothed.iter().flat_map(|under| under.spikes(library).map(move |scale| (under, scale)))
     {
         let (out, deviations) = small_effects(library, small_effects_scale);
         let kept: Vec<usize> = (0..=effects).collect();
@@ -234,7 +236,16 @@ impl Smoothed {
 
     /// ln of the prior of each background over it.
     fn ln_prior_of_each(&self, library: &Library) -> f64 {
-        self.ln_prior - (library.spikes.len() as f64).ln()
+        self.ln_prior - (self.spikes(library).count() as f64).ln()
+    }
+
+    /// Scales of the small effects over it. Large ones of drag would be a table that is off by another name.
+    fn spikes(&self, library: &Library) -> impl Iterator<Item = f64> + use<> {
+        let count = match self.table {
+            TableBelief::Uncertain => library.spikes.len(),
+            TableBelief::Right => library.spikes_of_right_table,
+        };
+        library.spikes.into_iter().take(count)
     }
 
     /// Backgrounds of a few columns that changed, and the residual: `changed` has them in the order of `columns`, then the
@@ -251,7 +262,7 @@ impl Smoothed {
         let mut matrix = self.matrix.clone();
         self.elimination.follow(changed).write(&mut matrix, &places);
         let mut all = Vec::with_capacity(library.spikes.len());
-        for small_effects_scale in library.spikes.into_iter().filter(|&scale| choose(scale)) {
+        for small_effects_scale in self.spikes(library).filter(|&scale| choose(scale)) {
             let (out, deviations) = small_effects(library, small_effects_scale);
             let Some(with_small_effects) = integrate_out(&matrix, &places, &out, &deviations)
             else {

@@ -313,12 +313,8 @@ mod tests {
         let (gram, product, square, rows) = (7.0, 5.0, 12.0, 9.0);
         let matrix = faer::Mat::from_fn(2, 2, |i, j| [[gram, product], [product, square]][i][j]);
         let at = Background::small(&matrix, &[0], 1, 0.0);
-        let prior = Prior {
-            mean: 0.3,
-            scales: [(0.8, 0.0); 3],
-            count: 1,
-            sign: EffectSign::Either,
-        };
+        let prior =
+            Prior { mean: 0.3, scales: [(0.8, 0.0); 3], count: 1, sign: EffectSign::Either };
         let scorer = Scorer {
             priors: vec![prior],
             effect_of: vec![0],

@@ -7,9 +7,7 @@ use crate::search::analyse::{Analysis, analyse};
 use crate::search::folds::fold_of;
 use crate::search::refine::{effects_of, refine};
 use crate::search::system::Problem;
-use crate::thresholds::{
-    CLEAN_PROBABILITY, CLOSURE_FOLDS, MORE_PROBABLE_THAN_NOT, SMALLEST_GAP,
-};
+use crate::thresholds::{CLEAN_PROBABILITY, CLOSURE_FOLDS, MORE_PROBABLE_THAN_NOT, SMALLEST_GAP};
 
 /// Stream of random numbers behind the interval of closure.
 const CLOSURE_STREAM: u64 = 3;

@@ -28,11 +28,7 @@ pub(crate) fn exceeds_uncertainty(gap: &Gap, unknown: f64) -> bool {
 }
 
 /// Whether what is explained, in fuel flow or between engines, or what exceeds the floor is large enough to be a gap at all.
-pub(crate) fn is_large(
-    stacked: &WhitenedSystem<'_>,
-    gap: &Gap,
-    top: Option<&Posterior>,
-) -> bool {
+pub(crate) fn is_large(stacked: &WhitenedSystem<'_>, gap: &Gap, top: Option<&Posterior>) -> bool {
     let excess = gap.rms_ci95[0].powi(2) - gap.noise_floor_rms_percent.powi(2);
     let channels = 1 + stacked.data.channels.contrasts;
     let explained = top.map_or(0.0, |top| {
@@ -46,7 +42,8 @@ pub(crate) fn is_large(
                 .iter()
                 .map(|row| {
                     let columns = scored.model.columns.iter().zip(&scored.sizes);
-                    let of = |(&column, size): (&usize, &f64)| size * row.signatures[column][channel];
+                    let of =
+                        |(&column, size): (&usize, &f64)| size * row.signatures[column][channel];
                     columns.map(of).sum::<f64>().powi(2)
                 })
                 .sum();

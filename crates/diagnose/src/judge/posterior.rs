@@ -108,7 +108,8 @@ fn flat_probabilities(analysis: &Analysis, mean_squares: &[f64]) -> Vec<f64> {
         let columns = scored.model.columns.iter().zip(&scored.sizes);
         columns
             .map(|(&column, &size)| {
-                let ln_flat = 0.5 * mean_squares[column].max(f64::MIN_POSITIVE).ln() - FLAT_RANGE.ln();
+                let ln_flat =
+                    0.5 * mean_squares[column].max(f64::MIN_POSITIVE).ln() - FLAT_RANGE.ln();
                 ln_flat - analysis.scorer.priors[column].ln_density(size)
             })
             .sum()
@@ -155,8 +156,7 @@ pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> 
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let best = &analysis.models[0].0;
     let mut sum = 0.0;
-    let mut causes: Vec<Cause> =
-        table.map(|table| of_table(table, unseen)).into_iter().collect();
+    let mut causes: Vec<Cause> = table.map(|table| of_table(table, unseen)).into_iter().collect();
     for posterior in posteriors {
         if causes.len() >= FEWEST_CAUSES
             && (sum > LISTED_PROBABILITY * named || posterior.probability < LEAST_LISTED)

@@ -114,9 +114,8 @@ fn columns(
     library: &Library,
     named: &[usize],
 ) -> (Vec<usize>, Vec<f64>) {
-    let wide = |column: &usize| {
-        FLEXIBLE_EFFECT * library.effects[library.columns[*column].effect].typical
-    };
+    let wide =
+        |column: &usize| FLEXIBLE_EFFECT * library.effects[library.columns[*column].effect].typical;
     let nuisance = stacked.design.nuisance.clone().map(|column| (column, 1.0));
     named.iter().map(|column| (*column, wide(column))).chain(nuisance).unzip()
 }
@@ -149,7 +148,11 @@ fn magnitude(
     let of_table = stacked.design.table_columns();
     let right: Vec<f64> = all
         .iter()
-        .map(|column| if of_table.contains(column) { slope[column - of_table.start] / rms } else { 0.0 })
+        .map(
+            |column| {
+                if of_table.contains(column) { slope[column - of_table.start] / rms } else { 0.0 }
+            },
+        )
         .collect();
     let variance = gram.variance(&all, &deviations, &right)?;
     let half = NORMAL_95 * variance.sqrt();

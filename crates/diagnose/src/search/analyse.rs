@@ -103,12 +103,8 @@ fn smooth_out(problem: Problem<'_>, levels: &[(Level, &Reduced)]) -> Vec<Smoothe
 }
 
 /// What only drag over lift coefficient and Mach number can be.
-const DRAG_OF_A_TABLE: [EffectId; 4] = [
-    EffectId::DragFactor,
-    EffectId::ZeroLiftDrag,
-    EffectId::InducedDrag,
-    EffectId::WaveDrag,
-];
+const DRAG_OF_A_TABLE: [EffectId; 4] =
+    [EffectId::DragFactor, EffectId::ZeroLiftDrag, EffectId::InducedDrag, EffectId::WaveDrag];
 
 /// Of every effect, whether a guide's table that is off could hold it as well: it can be seen where the table is right, and no
 /// longer where it may be off. Nothing is held where the table is no guide's.
@@ -123,8 +119,8 @@ fn held_by_table(problem: Problem<'_>, space: &EliminatedGrams) -> Vec<bool> {
             let gram = at(belief)?.matrix[(effect.representative, effect.representative)];
             Some(effect.typical * effect.typical * gram >= CONFUSED)
         };
-        let hidden = seen(TableBelief::Right) == Some(true)
-            && seen(TableBelief::Uncertain) == Some(false);
+        let hidden =
+            seen(TableBelief::Right) == Some(true) && seen(TableBelief::Uncertain) == Some(false);
         stacked.is_book() && (hidden || DRAG_OF_A_TABLE.contains(&effect.id))
     };
     library.effects.iter().map(of_effect).collect()

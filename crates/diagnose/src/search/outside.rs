@@ -1,6 +1,6 @@
 //! Outside the library: smooth terms of one variable compete with the named effects.
 
-use crate::hypotheses::backgrounds::{Background, small_effects};
+use crate::hypotheses::backgrounds::{Background, TableBelief, small_effects};
 use crate::hypotheses::design::Acts;
 use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, Single};
 use crate::library::Library;
@@ -70,8 +70,12 @@ pub(crate) fn compete(
         for (level, reduced) in analysis.space.reduced.iter().enumerate() {
             let changed = refined.map(|found| &found.changed[level]);
             let ln_share = stacked.levels[level].ln_prior;
+            let spikes = match stacked.levels[level].table {
+                TableBelief::Uncertain => library.agnostic_spikes.len(),
+                TableBelief::Right => 1,
+            };
             let level = (reduced, changed);
-            let set = NamedSet { model: &set.model, level, shifts: &shifts, ln_share };
+            let set = NamedSet { model: &set.model, level, shifts: &shifts, ln_share, spikes };
             weights.add(stacked, library, scorer, &set);
         }
     }
@@ -81,7 +85,8 @@ pub(crate) fn compete(
     for (percent, reduced) in &analysis.heating {
         let model = Hypothesis { columns: vec![], flight_scatter_percent: Some(*percent) };
         let level = (reduced, None);
-        let set = NamedSet { model: &model, level, shifts: &[], ln_share: 0.0 };
+        let spikes = library.agnostic_spikes.len();
+        let set = NamedSet { model: &model, level, shifts: &[], ln_share: 0.0, spikes };
         weights.add(stacked, library, scorer, &set);
     }
     let Weights { named, smooth_terms } = weights;
@@ -168,6 +173,8 @@ struct NamedSet<'a> {
     shifts: &'a [f64],
     /// ln prior of the level.
     ln_share: f64,
+    /// How many scales of small effects it is held over, from the smallest.
+    spikes: usize,
 }
 
 impl Weights {
@@ -179,9 +186,9 @@ impl Weights {
         scorer: &Scorer,
         set: &NamedSet<'_>,
     ) {
-        let &NamedSet { model, level, shifts, ln_share } = set;
+        let &NamedSet { model, level, shifts, ln_share, .. } = set;
         let prior = scorer.ln_prior(model) + ln_share;
-        for small_effects_scale in library.agnostic_spikes {
+        for small_effects_scale in library.agnostic_spikes.into_iter().take(set.spikes) {
             let Some(under) =
                 with_small_effects(stacked, library, level, &model.columns, small_effects_scale)
             else {

@@ -347,11 +347,8 @@ mod tests {
             at
         };
         let backgrounds = [background(0.0), background(0.3)];
-        let context = Context {
-            uncertain_table: &[false, true],
-            large: &[true; 4],
-            best: f64::NEG_INFINITY,
-        };
+        let context =
+            Context { uncertain_table: &[false, true], large: &[true; 4], best: f64::NEG_INFINITY };
         let found = search(&scorer, &backgrounds, context);
         assert_eq!(found.len(), 5, "the two columns of one effect make no pair");
         for scored in &found {
@@ -374,7 +371,10 @@ mod tests {
         }
         // Only what is negligible against a better model is left out.
         let best = found.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
-        assert!(search(&scorer, &backgrounds, Context { best: best + 2.0 * NEGLIGIBLE, ..context }).is_empty());
+        assert!(
+            search(&scorer, &backgrounds, Context { best: best + 2.0 * NEGLIGIBLE, ..context })
+                .is_empty()
+        );
         assert_eq!(search(&scorer, &backgrounds, Context { best, ..context }).len(), found.len());
     }
 }

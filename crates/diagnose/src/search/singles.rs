@@ -63,9 +63,7 @@ pub(crate) fn search_all(
         let large: Vec<bool> = models[1..=columns]
             .iter()
             .zip(&scorer.priors)
-            .map(|(single, prior)| {
-                (single.sizes[0] - prior.mean).abs() > LARGE * prior.scales[0].0
-            })
+            .map(|(single, prior)| (single.sizes[0] - prior.mean).abs() > LARGE * prior.scales[0].0)
             .collect();
         let context = Context { uncertain_table: &kinds.uncertain_table, large: &large, best };
         models.extend(pairs::search(scorer, backgrounds, context));

@@ -4,9 +4,7 @@ use faer::Mat;
 
 use effects::EffectModel;
 
-use crate::hypotheses::backgrounds::{
-    Background, Level, Smoothed, TableBelief, without_nuisance,
-};
+use crate::hypotheses::backgrounds::{Background, Level, Smoothed, TableBelief, without_nuisance};
 use crate::hypotheses::design::Design;
 use crate::library::Library;
 use crate::math::eliminate::{Changed, Elimination, Reduced};

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use diagnose::{
-    Beside, Cause, Closure, Detectable, Diagnosis, Gap, OutsideLibrary, Region, Separation, Slice, Verdict,
+    Beside, Cause, Closure, Detectable, Diagnosis, Gap, OutsideLibrary, Region, Separation, Slice,
+    Verdict,
 };
 use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
