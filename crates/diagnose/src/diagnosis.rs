@@ -15,7 +15,7 @@ use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{CauseEvidence, causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
 use crate::judge::table::TableFinding;
-use crate::judge::verdict::{Findings, advisor, beside, closed, credit, verdict};
+use crate::judge::verdict::{Findings, advisor, beside, closed, credit, level_like, verdict};
 use crate::library::Library;
 use crate::output::addition::Addition;
 use crate::output::note::Note;
@@ -165,7 +165,9 @@ fn conclude(
     };
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
+    let level_like = level_like(stacked, library);
     let findings = Findings {
+        level_like: &level_like,
         analysis: &analysis,
         library,
         distances: &distances,

@@ -208,6 +208,10 @@ pub fn note_words(note: &Note) -> String {
             100.0 * missing_share
         ),
         Note::HeavyTails => "whitened residuals have heavy tails: segments are weighed".to_owned(),
+        Note::LikeALevel(id) => format!(
+            "these flights differ from the model's reference in what {id} depends on by more than they vary: nothing \
+             distinguishes it from a level"
+        ),
         Note::Rest(Rest { kind: RestKind::OtherForm, variable }) => {
             format!("the form of the effect differs in {}", variable_or_none(variable))
         }

@@ -42,11 +42,11 @@ impl TableFinding {
 }
 
 impl TableFinding {
-    /// The same with less probability where a table that was fitted to other flights closes less than half of the gap: drag over
+    /// The same with less probability where a table that was fitted to other flights may close less than half of the gap: drag over
     /// lift coefficient and Mach number is then not what is wrong.
     pub(crate) fn borne_out(self, unseen: Option<&Shrinkage>) -> Self {
         let closed = unseen.and_then(Shrinkage::closure);
-        if closed.is_some_and(|(share, _)| share < LEAST_OF_A_TABLE) {
+        if closed.is_some_and(|(_, [least, _])| least < LEAST_OF_A_TABLE) {
             return Self { probability: UNPROVEN_SHARE * self.probability, ..self };
         }
         self

@@ -7,15 +7,16 @@ use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
 use crate::judge::posterior::{Posterior, class_of, closed_unseen, id_of, presence};
 use crate::judge::table::TableFinding;
-use crate::library::Library;
+use crate::library::{Library, Testable};
 use crate::output::measurement::Separation;
 use crate::output::note::Note;
 use crate::output::verdict::{Beside, Found, Rest, RestKind, Unexplained, Verdict};
+use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
-use crate::search::system::Problem;
+use crate::search::system::{Problem, WhitenedSystem};
 use crate::thresholds::{
-    CREDIBLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY, SIZE_ALONE,
+    CREDIBLE, LEVEL_LIKE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY, SIZE_ALONE,
 };
 
 /// Share of the explainable gap that the leading set closes, with its interval: on unseen flights; on the same ones where the
@@ -70,6 +71,8 @@ pub(crate) struct Findings<'a> {
     pub(crate) smooth_term: f64,
     /// Causes, the most probable first; none where there is no gap.
     pub(crate) posteriors: &'a [Posterior],
+    /// Effects that are like a level in these flights.
+    pub(crate) level_like: &'a [EffectId],
     /// What is found of a guide's table, where it is more probably off than not.
     pub(crate) table: Option<&'a TableFinding>,
     pub(crate) own: &'a Shrinkage,
@@ -102,7 +105,48 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
     let kind = if is_form { RestKind::OtherForm } else { RestKind::SomethingElse };
     let rest = (smooth_term > OUTSIDE_PROBABILITY).then_some(Rest { kind, variable });
     notes.extend(rest.map(Note::Rest));
-    Verdict::Effects(found(findings, top, rest))
+    let mut found = found(findings, top, rest);
+    if found.effects.first().is_some_and(|id| LEVELS.contains(id)) {
+        for id in findings.level_like {
+            notes.push(Note::LikeALevel(*id));
+            if !found.class.contains(id) {
+                found.class.push(*id);
+            }
+        }
+    }
+    Verdict::Effects(found)
+}
+
+/// What changes drag or fuel flow nearly alike everywhere.
+const LEVELS: [EffectId; 5] = [
+    EffectId::DragFactor,
+    EffectId::ZeroLiftDrag,
+    EffectId::InducedDrag,
+    EffectId::TsfcFactor,
+    EffectId::FuelFlowGain,
+];
+
+/// Effects that are zero at a reference and, in these flights, have nearly the same sign and size everywhere: their mean signature
+/// exceeds its standard deviation.
+pub(crate) fn level_like(stacked: &WhitenedSystem<'_>, library: &Library) -> Vec<EffectId> {
+    const ZERO_AT_REFERENCE: [EffectId; 6] = [
+        EffectId::ReynoldsNumber,
+        EffectId::TrimDragCg,
+        EffectId::AirframeAgeing,
+        EffectId::EngineAgeing,
+        EffectId::TsfcMachExponent,
+        EffectId::TsfcTemperatureExponent,
+    ];
+    let segments = &stacked.data.segments;
+    let count = segments.len() as f64;
+    let is_like = |effect: &&Testable| {
+        let of = |row: &SegmentRow| row.signatures[effect.representative][0];
+        let mean = segments.iter().map(of).sum::<f64>() / count;
+        let variance = segments.iter().map(|row| (of(row) - mean).powi(2)).sum::<f64>() / count;
+        mean * mean > LEVEL_LIKE * LEVEL_LIKE * variance
+    };
+    let moving = library.effects.iter().filter(|effect| ZERO_AT_REFERENCE.contains(&effect.id));
+    moving.filter(is_like).map(|effect| effect.id).collect()
 }
 
 /// A guide's table that is off, and beside it what the flights show that no table can hold.
@@ -124,7 +168,11 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
             continue;
         }
         let class = class_of(distances, library, top);
-        let in_class = named.iter().filter(|p| class.contains(&id_of(library, p.effect)));
+        // What an earlier one could be is not counted again.
+        let is_open = |id: &EffectId| {
+            class.contains(id) && !beside.iter().any(|other| other.class.contains(id))
+        };
+        let in_class = named.iter().filter(|p| is_open(&id_of(library, p.effect)));
         let acts: f64 = in_class.map(|p| of(p)).sum();
         if acts * inside > MORE_PROBABLE_THAN_NOT {
             found.extend(separations(findings.advisor, library, top, &class));
