@@ -7,15 +7,13 @@ use crate::advice::advisor::Advisor;
 use crate::advice::distances::{Distances, leading_columns};
 use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
-use crate::judge::closure::{Shrinkage, in_sample, nested};
-use crate::judge::gap::{
-    exceeds_uncertainty, gap_of, is_large, is_real, is_vague, noise_scale, unknown_square,
-};
+use crate::judge::closure::{in_sample, nested};
+use crate::judge::detection::{Detection, Evidence, detect};
+use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{CauseEvidence, causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
-use crate::judge::table::TableFinding;
-use crate::judge::verdict::{Findings, advisor, beside, closed, credit, level_like, verdict};
+use crate::judge::verdict::{Findings, advisor, level_like, verdict};
 use crate::library::Library;
 use crate::output::addition::Addition;
 use crate::output::note::Note;
@@ -29,9 +27,6 @@ use crate::search::outside::{Outside, compete};
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
-use crate::thresholds::{
-    LARGEST_REST, MORE_PROBABLE_THAN_NOT, OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
-};
 
 /// Diagnoses one set of flights.
 ///
@@ -113,61 +108,43 @@ fn conclude(
     let Problem { stacked, model, library } = problem;
     let analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
     let mut outside = compete(stacked, &analysis, library);
-    let gram = stacked.gram(None);
     let leading = leading_columns(library, &analysis.models);
-    let distances =
-        Distances::of(gram, stacked.design, leading).ok_or(DiagnoseError::Degenerate)?;
+    let distances = Distances::of(stacked.gram(None), stacked.design, leading)
+        .ok_or(DiagnoseError::Degenerate)?;
     let best = &analysis.models[0].0;
-    let scale = noise_scale(&analysis, best, gram.rows);
+    let scale = noise_scale(&analysis, best, stacked.gram(None).rows);
     let posteriors = dominant(stacked, &analysis, library);
     let own = in_sample(problem, &best.model.columns, &best.sizes, scale, options.seed);
     let mut gap = gap_of(stacked, &analysis, &own, scale);
     let exceeds = exceeds_uncertainty(&gap, unknown_square(stacked));
     let real = is_real(&analysis, &outside) || exceeds;
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
-    let worse = makes_worse(stacked, unseen.as_ref());
-    let table = TableFinding::of(stacked, &analysis, library)
-        .map(|table| table.borne_out(unseen.as_ref()))
-        .filter(|table| table.probability > MORE_PROBABLE_THAN_NOT);
-    let large = table.is_some() || is_large(stacked, &gap, posteriors.first());
     let smooth_term = outside.probability;
-    let is_scatter = posteriors.first().is_some_and(|top| top.effect.is_none());
-    outside.probability *= 1.0
-        - credit(
-            beside(&outside, &distances, library, posteriors.first()),
-            closed(unseen.as_ref(), &own).filter(|_| !is_scatter),
-        );
-    let judged = unseen.as_ref().unwrap_or(&own);
-    let leaves_most = judged.after() > LARGEST_REST * judged.floor() / scale;
-    if table.is_none() && (leaves_most || is_unproven(unseen.as_ref().filter(|_| !is_scatter))) {
-        outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
-    }
-    // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
-    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
-    let something = table.is_some()
-        || exceeds
-        || smooth_term > OUTSIDE_PROBABILITY
-        || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
-    gap.detected = real
-        && large
-        && something
-        && (table.is_some() || !is_vague(&gap, &outside, posteriors.first(), worse));
-    let table = table.filter(|_| gap.detected);
+    let evidence = Evidence {
+        analysis: &analysis,
+        distances: &distances,
+        posteriors: &posteriors,
+        gap: &gap,
+        own: &own,
+        unseen: unseen.as_ref(),
+        noise_scale: scale,
+        is_real: real,
+        exceeds_uncertainty: exceeds,
+    };
+    let Detection { detected, table } = detect(problem, &evidence, &mut outside);
+    gap.detected = detected;
     let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {
         gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
         gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
     }
-    let places = if options.skip_where {
-        vec![]
-    } else {
-        find(stacked, &analysis, scale, gap.detected, options.seed)
-    };
+    let places = (!options.skip_where)
+        .then(|| find(stacked, &analysis, scale, detected, options.seed))
+        .unwrap_or_default();
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
-    let level_like = level_like(stacked, library);
     let findings = Findings {
-        level_like: &level_like,
+        level_like: &level_like(stacked, library),
         analysis: &analysis,
         library,
         distances: &distances,
@@ -188,36 +165,22 @@ fn conclude(
         unseen: unseen.as_ref(),
         table: table.as_ref(),
     };
-    let causes = causes(&evidence, &posteriors);
-    let detectable = detectable(library, &distances, &classes, &advisor);
     let diagnosis = Diagnosis {
         flights: stacked.data.flights.len(),
         segments: stacked.data.segments.len(),
         gap,
         r#where: places,
-        causes,
+        causes: causes(&evidence, &posteriors),
         not_testable: vec![],
         addition: Addition::of(&analysis, library, verdict.effects(), *model.references())
             .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
         verdict,
-        detectable,
+        detectable: detectable(library, &distances, &classes, &advisor),
         outside: outside_library(&outside),
         left_out: std::collections::BTreeMap::new(),
         notes: vec![],
     };
     Ok((diagnosis, analysis))
-}
-
-/// Whether a name is not borne out: its closure on flights that it was not fitted to may be none.
-fn is_unproven(unseen: Option<&Shrinkage>) -> bool {
-    unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
-}
-
-/// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does
-/// this is wrong.
-fn makes_worse(stacked: &WhitenedSystem<'_>, unseen: Option<&Shrinkage>) -> bool {
-    stacked.data.predictor.baseline.is_some()
-        && unseen.and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0)
 }
 
 /// Root of a mean square, %.

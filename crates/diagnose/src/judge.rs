@@ -2,6 +2,7 @@
 
 pub(crate) mod addition;
 pub(crate) mod closure;
+pub(crate) mod detection;
 pub(crate) mod gap;
 pub(crate) mod noise_floors;
 pub(crate) mod posterior;

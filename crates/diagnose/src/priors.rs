@@ -71,7 +71,7 @@ deciding_numbers! {
             OurChoice "Guides are some per cent too optimistic as a rule.";
         BOOK_SPIKES: [f64; 4] = [0.0, 0.3, 1.0, 3.0], "of typical size",
             "standard deviation, against a guide, of every effect that a hypothesis does not name and a model may lack at all times",
-            OurChoice "A guide's equations lack Reynolds number, offtake, part load and more: none, or all at up to three times their usual size; averaged over.";
+            OurChoice "A guide's equations lack Reynolds number, offtake, part load: none, or all, up to three times usual; averaged over.";
         SPIKES_OF_RIGHT_TABLE: usize = 2, "",
             "how many of them, from the smallest, apply where the guide's drag is right",
             OurChoice "Larger ones of drag would be a table that is off by another name.";

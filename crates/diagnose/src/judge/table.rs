@@ -2,14 +2,13 @@
 
 use flight::effect::EffectId;
 
-use crate::judge::closure::Shrinkage;
 use crate::library::Library;
 use crate::math::gram::Gram;
 use crate::output::Magnitude;
 use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
-use crate::thresholds::{FLEXIBLE_EFFECT, LEAST_OF_A_TABLE, NORMAL_95, UNPROVEN_SHARE};
+use crate::thresholds::{FLEXIBLE_EFFECT, NORMAL_95};
 
 /// What is found of a guide's table.
 #[derive(Clone, Debug)]
@@ -38,18 +37,6 @@ impl TableFinding {
         let best = &analysis.models.first()?.0.model.columns;
         let magnitude = magnitude(stacked, library, &beyond(library, &class, best))?;
         Some(Self { probability: probability.min(1.0), magnitude, class })
-    }
-}
-
-impl TableFinding {
-    /// The same with less probability where a table that was fitted to other flights may close less than half of the gap: drag over
-    /// lift coefficient and Mach number is then not what is wrong.
-    pub(crate) fn borne_out(self, unseen: Option<&Shrinkage>) -> Self {
-        let closed = unseen.and_then(Shrinkage::closure);
-        if closed.is_some_and(|(_, [least, _])| least < LEAST_OF_A_TABLE) {
-            return Self { probability: UNPROVEN_SHARE * self.probability, ..self };
-        }
-        self
     }
 }
 
