@@ -1,5 +1,7 @@
 //! From flights to a verdict.
 
+use std::collections::BTreeMap;
+
 use effects::{EffectModel, EffectModelError};
 use flight::effect::EffectId;
 
@@ -7,7 +9,7 @@ use crate::advice::advisor::Advisor;
 use crate::advice::distances::{Distances, leading_columns};
 use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
-use crate::judge::closure::{in_sample, nested};
+use crate::judge::closure::{Shrinkage, in_sample, nested};
 use crate::judge::detection::{Detection, Evidence, detect};
 use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
@@ -18,7 +20,7 @@ use crate::library::Library;
 use crate::output::addition::Addition;
 use crate::output::note::Note;
 use crate::output::verdict::Insufficient;
-use crate::output::{ActsOn, Detectable, Diagnosis, NotTestable, OutsideLibrary};
+use crate::output::{ActsOn, Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
 use crate::place::find::find;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
@@ -111,15 +113,14 @@ fn conclude(
     let leading = leading_columns(library, &analysis.models);
     let distances = Distances::of(stacked.gram(None), stacked.design, leading)
         .ok_or(DiagnoseError::Degenerate)?;
+    let posteriors = dominant(stacked, &analysis, library);
     let best = &analysis.models[0].0;
     let scale = noise_scale(&analysis, best, stacked.gram(None).rows);
-    let posteriors = dominant(stacked, &analysis, library);
     let own = in_sample(problem, &best.model.columns, &best.sizes, scale, options.seed);
     let mut gap = gap_of(stacked, &analysis, &own, scale);
     let exceeds = exceeds_uncertainty(&gap, unknown_square(stacked));
-    let real = is_real(&analysis, &outside) || exceeds;
+    let real = exceeds || is_real(&analysis, &outside);
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
-    let smooth_term = outside.probability;
     let evidence = Evidence {
         analysis: &analysis,
         distances: &distances,
@@ -131,12 +132,11 @@ fn conclude(
         is_real: real,
         exceeds_uncertainty: exceeds,
     };
-    let Detection { detected, table } = detect(problem, &evidence, &mut outside);
+    let Detection { detected, table, smooth_term } = detect(problem, &evidence, &mut outside);
     gap.detected = detected;
     let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {
-        gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
-        gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
+        add_floors(&mut gap, problem, &own, scale);
     }
     let places = (!options.skip_where)
         .then(|| find(stacked, &analysis, scale, detected, options.seed))
@@ -157,7 +157,7 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let evidence = CauseEvidence {
+    let of_causes = CauseEvidence {
         analysis: &analysis,
         outside: &outside,
         distances: &distances,
@@ -170,17 +170,24 @@ fn conclude(
         segments: stacked.data.segments.len(),
         gap,
         r#where: places,
-        causes: causes(&evidence, &posteriors),
+        causes: causes(&of_causes, &posteriors),
         not_testable: vec![],
         addition: Addition::of(&analysis, library, verdict.effects(), *model.references())
             .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
         outside: outside_library(&outside),
-        left_out: std::collections::BTreeMap::new(),
+        left_out: BTreeMap::new(),
         notes: vec![],
     };
     Ok((diagnosis, analysis))
+}
+
+/// Adds the two estimates of the noise floor that need no sensor's standard deviation.
+fn add_floors(gap: &mut Gap, problem: Problem<'_>, own: &Shrinkage, noise_scale: f64) {
+    let Problem { stacked, library, .. } = problem;
+    gap.floor_by_replicates_rms_percent = replicate_floor(stacked, own, noise_scale).map(percent);
+    gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
 }
 
 /// Root of a mean square, %.

@@ -36,6 +36,8 @@ pub(crate) struct Detection {
     pub(crate) detected: bool,
     /// A guide's table, where it is more probably off than not.
     pub(crate) table: Option<TableFinding>,
+    /// Probability that a smooth term is needed, before any of it is credited to the leading effect.
+    pub(crate) smooth_term: f64,
 }
 
 /// Decides. The probability of a cause outside takes what names lose.
@@ -72,7 +74,7 @@ pub(crate) fn detect(
         && is_large(stacked, gap, top)
         && !is_vague(gap, outside, top, taught && makes_worse(unseen));
     let detected = evidence.is_real && (table.is_some() || stands_out);
-    Detection { detected, table: table.filter(|_| detected) }
+    Detection { detected, table: table.filter(|_| detected), smooth_term }
 }
 
 /// A guide's table with less probability where a table that was fitted to other flights may close less than half of the gap:
