@@ -10,7 +10,9 @@ use pipeline::columns::Columns;
 use rayon::prelude::*;
 use report::TextLayout;
 use serde_json::Value;
-use simulate::{AircraftTruth, Flown, Plan, Preset, Simulation, TrueState, TruthPhysics, study};
+use simulate::{
+    AircraftTruth, Flown, Plan, Preset, Simulation, Switch, TrueState, TruthPhysics, study,
+};
 use units::FuelFlowTotal;
 
 use crate::failure::Failure;
@@ -65,12 +67,14 @@ pub(crate) fn demonstration() -> Result<Study, Failure> {
     study_with(Plan::from_ron(DEMONSTRATION).map_err(|error| wrong(&error))?)
 }
 
-/// The demonstration's tail a year later, with an effect that its model has not learnt.
+/// The demonstration's tail a year later, with an effect that its model has not learnt. `fuel_quantity`: whether tank gauges
+/// are recorded.
 ///
 /// # Errors
 /// A request that the simulator refuses.
-pub(crate) fn demonstration_later() -> Result<Simulation, Failure> {
-    let plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
+pub(crate) fn demonstration_later(fuel_quantity: Switch) -> Result<Simulation, Failure> {
+    let mut plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
+    plan.columns.fuel_quantity = fuel_quantity;
     Simulation::new(plan).map_err(|error| wrong(&error))
 }
 
