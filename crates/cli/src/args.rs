@@ -226,7 +226,7 @@ pub(crate) struct PredictArgs {
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
-    /// Predict with the drag table alone, without the model's remainder
+    /// Predict with the drag table alone, without what else the model has learnt
     #[arg(long)]
     pub(crate) table_only: bool,
 }
@@ -243,6 +243,9 @@ pub(crate) struct EvaluateArgs {
     /// Also write the summary as JSON
     #[arg(long, value_name = "OUT.json")]
     pub(crate) json: Option<PathBuf>,
+    /// Evaluate the drag table alone, without what else the model has learnt
+    #[arg(long)]
+    pub(crate) table_only: bool,
 }
 
 /// `diagnose`

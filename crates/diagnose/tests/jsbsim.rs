@@ -81,7 +81,7 @@ fn what_was_changed_is_found_and_the_baseline_is_silent() {
     let Some(folder) = outside_data("data/jsbsim-global5000") else { return };
     let model = model(&folder);
     let clean = fleet(&folder, "SIM-01");
-    let taught = Baseline::learn(&model, model.drag_table(), &records(&clean)).unwrap();
+    let taught = Baseline::learn(&model, model.drag_table(), None, &records(&clean)).unwrap();
     println!(
         "taught by {:?}: rms {:.4}, noise {:?}",
         taught.taught_by(),
@@ -95,7 +95,8 @@ fn what_was_changed_is_found_and_the_baseline_is_silent() {
     print("SIM-05", &mach);
 
     let half = clean.len() / 2;
-    let taught = Baseline::learn(&model, model.drag_table(), &records(&clean[..half])).unwrap();
+    let taught =
+        Baseline::learn(&model, model.drag_table(), None, &records(&clean[..half])).unwrap();
     println!("env {:?}", taught.standing_effects());
     println!(
         "half {:?}: rms {:.4}, noise {:?}",

@@ -7,18 +7,27 @@ use diagnose::{FlightRecord, TableUncertainty, TableUncertaintyError, visited_no
 use effects::ExtendedModel;
 
 use crate::model_file::ModelFile;
+use crate::whole_model::Predicts;
 
 /// Most nodes of a table whose full covariance is taken; beyond, that of the nodes which the flights at hand visit.
 const NODES_WITH_COVARIANCE: usize = 700;
 
-/// Uncertainty of a model's table where these flights are; `None` for a law that does not state it.
+/// Uncertainty of a model's table where these flights are; `None` for a law that does not state it, and where the whole model is
+/// asked for, whose baseline has it.
 ///
 /// # Errors
 /// A covariance that is invalid.
 pub fn of_model(
     model: &ModelFile,
+    predicts: Predicts,
     flights: &[FlightRecord<'_>],
 ) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
+    // What was learnt together with the table has its uncertainty too.
+    if model.learnt.as_ref().is_some_and(|l| l.baseline.is_some())
+        && predicts == Predicts::WholeModel
+    {
+        return Ok(None);
+    }
     let table = model.drag_coefficient();
     model
         .posterior()
@@ -53,7 +62,7 @@ pub fn of_posterior(
 }
 
 /// The same over the nodes that flights visit, one solve for each column that is kept.
-fn of_visited(
+pub(crate) fn of_visited(
     posterior: &Posterior,
     grid: &Arc<lut::Grid>,
     visited: &[usize],

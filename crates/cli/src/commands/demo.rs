@@ -205,6 +205,7 @@ fn unseen_errors(
         reports: reports_arguments(reports),
         models: ModelArgs { models: vec![model.to_owned()] },
         json: None,
+        table_only: false,
     };
     let (summary, _) = evaluate::evaluate(&arguments, Progress::Hidden)?;
     Ok(summary.tails.first().map_or((ErrorStatistics::of(&[]), None), |tail| {

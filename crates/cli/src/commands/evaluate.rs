@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::args::EvaluateArgs;
-use crate::commands::{Outcome, check_refused, prepare};
+use crate::commands::{Outcome, check_refused, predicts, prepare};
 use crate::failure::{Failure, RefusedReport};
 use crate::files::write_atomically;
 use crate::models::Models;
@@ -12,6 +12,7 @@ use crate::reading::FlightRead;
 use pipeline::evaluation::{TailCounts, TailData, TailResult};
 use pipeline::model_file::ModelFile;
 use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+use pipeline::whole_model::Predicts;
 
 /// Runs the command.
 ///
@@ -50,10 +51,11 @@ pub(crate) fn evaluate(
     }
     refused.sort_by(|one, other| one.path.cmp(&other.path));
     check_refused(&refused, files, arguments.reports.strict, by_tail.is_empty())?;
+    let predicts = predicts(arguments.table_only);
     let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
     let tails = by_tail
         .into_iter()
-        .map(|(tail, (model, flights))| evaluate_tail(tail, model, flights).summary)
+        .map(|(tail, (model, flights))| evaluate_tail(tail, model, flights, predicts).summary)
         .collect();
     let summary = Summary {
         schema: SCHEMA,
@@ -67,7 +69,12 @@ pub(crate) fn evaluate(
     Ok((summary, refused))
 }
 
-fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -> TailResult {
+fn evaluate_tail(
+    tail: String,
+    model: ModelFile,
+    mut flights: Vec<FlightRead>,
+    predicts: Predicts,
+) -> TailResult {
     flights.sort_by(FlightRead::order);
     let counts = TailCounts {
         flights: flights.len(),
@@ -79,5 +86,5 @@ fn evaluate_tail(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -
         flight.add_notes(&mut notes);
     }
     let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
-    TailResult::as_given(TailData { tail, model, segments, counts, notes })
+    TailResult::as_given(TailData { tail, model, segments, counts, notes }, predicts)
 }
