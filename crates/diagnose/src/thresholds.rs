@@ -40,9 +40,9 @@ deciding_numbers! {
         ORDINARY_SEGMENTS: f64 = 20.0, "segments",
             "ordinary segments that count in addition where unseen ones judge stated intervals",
             OurChoice "One of twenty lies outside a 95 % interval: fewer say nothing of it.";
-        FACTOR_LIMITS: (f64, f64) = (0.5, 4.0), "",
+        FACTOR_LIMITS: (f64, f64) = (1.0, 4.0), "",
             "least and largest factor on stated standard deviations",
-            OurChoice "Beyond these the model of the noise is wrong, not its size.";
+            Measured "JSBSim, flights after those learnt (development data): 91 % inside with factors below 1, 97 % without.";
         FARTHEST_PRODUCT: f64 = 4.0, "lengths",
             "how far from its middle a variable is followed in products of the remainder",
             OurChoice "Hardly anything is flown beyond; a product would grow there like a square.";

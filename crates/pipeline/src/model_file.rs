@@ -25,7 +25,8 @@ use crate::condition_means::ConditionMeans;
 
 /// The format that this program writes.
 ///
-/// 2: a baseline is one posterior over drag table and remainder; the remainder of format 1 is not read.
+/// 2: a baseline is one posterior over drag table and remainder; the remainder of format 1 is not read. Models without a
+/// baseline are written as format 1.
 pub const FORMAT: u32 = 2;
 
 /// A model, and what it has learnt.

@@ -26,6 +26,8 @@ use crate::whole_model::belief_before_flights;
 /// Begins the last line but one; everything before it is what the checksum is of.
 const CHECKSUM: &str = "\n    checksum: \"";
 
+/// The format of models without a baseline.
+const FIRST_FORMAT: u32 = 1;
 /// The format from which on a baseline is one posterior.
 const FIRST_WITH_POSTERIOR: u32 = 2;
 
@@ -212,8 +214,10 @@ fn checksum_of(body: &str) -> String {
 
 fn document_of(model: &ModelFile) -> Document {
     let grid = model.grid();
+    // Format 2 differs in the baseline alone.
+    let baseline = model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     Document {
-        format: FORMAT,
+        format: if baseline.is_some() { FORMAT } else { FIRST_FORMAT },
         aircraft: model.initial.aircraft().file().clone(),
         guide: model.guide,
         polynomial: *model.initial.polynomial(),
