@@ -307,7 +307,7 @@ pub(crate) struct PredictArgs {
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
-    /// Predict with the drag table alone, without the model's remainder
+    /// Predict with the drag table alone, without what else the model has learnt
     #[arg(long)]
     pub(crate) table_only: bool,
 }
@@ -333,6 +333,9 @@ pub(crate) struct EvaluateArgs {
     /// .parquet
     #[arg(long, value_name = "FACTORS")]
     pub(crate) fuel_factors: Option<PathBuf>,
+    /// Evaluate the drag table alone, without what else the model has learnt
+    #[arg(long)]
+    pub(crate) table_only: bool,
 }
 
 /// `diagnose`

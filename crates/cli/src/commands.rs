@@ -20,6 +20,7 @@ pub(crate) mod simulate;
 pub(crate) mod trial;
 pub(crate) mod tune;
 
+use pipeline::whole_model::Predicts;
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
@@ -38,6 +39,11 @@ pub(crate) struct Outcome {
     pub(crate) text: String,
     /// What was refused while the rest continued.
     pub(crate) refused: Vec<RefusedReport>,
+}
+
+/// What `--table-only` asks for.
+pub(crate) const fn predicts(table_only: bool) -> Predicts {
+    if table_only { Predicts::TableOnly } else { Predicts::WholeModel }
 }
 
 impl Outcome {

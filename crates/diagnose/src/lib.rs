@@ -121,7 +121,7 @@ mod diagnosis;
 mod judge;
 mod numbers;
 
-pub use baseline::{Baseline, BaselineLengthError};
+pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;
 pub use input::{Input, Options};
@@ -139,6 +139,7 @@ pub use output::{
     ActsOn, Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
 };
 pub use place::members::region_members;
+pub use residuals::whole::{WholeModel, WholePrediction};
 pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};
 pub use signals::references::{DiagnoseError, references_of};

@@ -126,18 +126,28 @@ deciding_numbers! {
         REMAINDER_LEVEL_DEVIATION: f64 = 0.10, "of fuel flow",
             "prior standard deviation of the remainder's level",
             OurChoice "Wide: any fleet finds its level.";
-        REMAINDER_HAT_DEVIATION: f64 = 0.02, "of fuel flow",
-            "prior standard deviation of a hat function of one variable, before flights scale it",
+        REMAINDER_SLOPE_DEVIATION: f64 = 0.03, "of fuel flow per length",
+            "prior standard deviation of the remainder's slope along a variable",
+            OurChoice "Wide, so that a straight line is hardly shrunk: a length is about the spread of one fleet.";
+        REMAINDER_SMOOTH_DEVIATION: f64 = 0.01, "of fuel flow",
+            "prior standard deviation of the remainder's bends along a variable, before flights scale it",
             OurChoice "What a table over two variables leaves is of the order of a per cent; the data scale it.";
         REMAINDER_PRODUCT_DEVIATION: f64 = 0.005, "of fuel flow",
-            "prior standard deviation of a product of two variables, before flights scale it",
-            OurChoice "A quarter of that of a function of one variable; the data scale it.";
+            "prior standard deviation of a product of two variables a length from their middles, before flights scale it",
+            OurChoice "Half of that of a function of one variable; the data scale it.";
         REMAINDER_SCALE_LN_DEVIATION: f64 = 1.0, "ln",
             "prior spread of the factors by which flights scale these two",
             OurChoice "A factor of e either way: weak.";
-        REMAINDER_QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0], "",
-            "quantiles of a variable at which the remainder has its knots",
-            OurChoice "An eighth of the segments between two knots: finer than the discrepancy it stands in for.";
+        REMAINDER_LENGTHS: [f64; 6] = [0.02, 0.10, 600.0, 0.10, 6.0, 0.08],
+            "Mach, CL, m, of the reference thrust, K, of the mean mass",
+            "lengths over which the remainder bends: Mach number, lift coefficient, pressure altitude, thrust, ISA deviation, mass",
+            OurChoice "About the standard deviation of each over a fleet's cruise; a drag rise bends over 0.02 of Mach number.";
+        SMOOTH_KNOT_DISTANCE: f64 = 0.75, "lengths",
+            "distance between the knots of a smooth function",
+            Source "Arithmetic: a squared exponential kernel is then held to a hundredth between them.";
+        SMOOTH_MOST_KNOTS: usize = 16, "knots",
+            "most knots of a smooth function",
+            OurChoice "Ten lengths; a variable that spreads over more bends over a longer length.";
         TAUGHT_SPLIT_DEVIATION: f64 = 0.03, "",
             "prior standard deviation of the level of ln(Wf1/Wf2)",
             OurChoice "Two engines of one type differ by some per cent: the typical size of one engine's TSFC.";

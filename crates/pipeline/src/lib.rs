@@ -66,3 +66,4 @@ pub mod segments_table;
 pub mod statistics;
 pub mod summary;
 pub mod table_uncertainty;
+pub mod whole_model;

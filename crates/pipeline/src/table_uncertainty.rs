@@ -7,6 +7,7 @@ use diagnose::{FlightRecord, TableUncertainty, TableUncertaintyError, visited_no
 use effects::ExtendedModel;
 
 use crate::model_file::ModelFile;
+use crate::whole_model::Predicts;
 
 /// Most nodes of a table whose full covariance is taken; beyond, that of the nodes which the flights at hand visit.
 const NODES_WITH_COVARIANCE: usize = 700;
@@ -14,13 +15,21 @@ const NODES_WITH_COVARIANCE: usize = 700;
 /// What a model's table does not know where these flights are. Of a model that no flight has taught, or that was taught by a
 /// law that does not say, it is what is believed of a guide: the prior of law `bayes`. `None` where the aircraft file states
 /// that the table is exact (`table_uncertainty_percent: 0`) and nothing was learnt.
+/// `None` too where the whole model is asked for, whose baseline has it.
 ///
 /// # Errors
 /// A covariance that is invalid.
 pub fn of_model(
     model: &ModelFile,
+    predicts: Predicts,
     flights: &[FlightRecord<'_>],
 ) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
+    // What was learnt together with the table has its uncertainty too.
+    if model.learnt.as_ref().is_some_and(|l| l.baseline.is_some())
+        && predicts == Predicts::WholeModel
+    {
+        return Ok(None);
+    }
     let table = model.drag_coefficient();
     match model.posterior() {
         Some(posterior) => of_posterior(posterior, &model.initial, table, flights).map(Some),
@@ -79,7 +88,7 @@ pub fn of_posterior(
 }
 
 /// The same over the nodes that flights visit, one solve for each column that is kept; standard deviations times `scale`.
-fn of_visited(
+pub(crate) fn of_visited(
     posterior: &Posterior,
     grid: &Arc<lut::Grid>,
     visited: &[usize],

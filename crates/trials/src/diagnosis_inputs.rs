@@ -141,16 +141,20 @@ fn adapted(
     }
     learning::settle(&mut learnt)?;
     learning::remember_remainder(&initial, &mut learnt, &all);
+    // A baseline has the table's uncertainty, joint with everything else that it has learnt, against the initial table.
     let uncertainty = match &learnt.law {
-        LawState::Bayes { posterior, .. } => {
+        LawState::Bayes { posterior, .. } if learnt.baseline.is_none() => {
             let table = learnt.law.drag_coefficient();
             let records = records(&flights);
             Some(table_uncertainty::of_posterior(posterior, &initial, table, &records)?)
         }
-        LawState::Paper { .. } => None,
+        _ => None,
     };
     Ok(DiagnosisInputs {
-        drag_table: learnt.law.drag_coefficient().clone(),
+        drag_table: match &learnt.baseline {
+            Some(_) => initial.drag_table().clone(),
+            None => learnt.law.drag_coefficient().clone(),
+        },
         baseline: learnt.baseline,
         uncertainty,
         model: initial,

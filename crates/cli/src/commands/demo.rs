@@ -231,6 +231,7 @@ fn unseen_errors(
         json: None,
         output: None,
         fuel_factors: None,
+        table_only: false,
     };
     let summary = evaluate::evaluate(&arguments, Progress::Hidden)?.summary;
     Ok(summary.tails.first().map_or((ErrorStatistics::of(&[]), None), |tail| {

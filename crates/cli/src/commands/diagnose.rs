@@ -10,7 +10,7 @@ use flight::effect::EffectId;
 use rayon::prelude::*;
 
 use crate::args::DiagnoseArgs;
-use crate::commands::{Outcome, check_refused, prepare};
+use crate::commands::{Outcome, check_refused, predicts, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::Models;
@@ -193,12 +193,13 @@ fn diagnose_group(
             gauges: flight.reduced.gauges,
         })
         .collect();
-    let table =
-        table_uncertainty::of_model(group.model, &records).map_err(|error| wrong(&error))?;
+    let predicts = predicts(table_only);
+    let table = table_uncertainty::of_model(group.model, predicts, &records)
+        .map_err(|error| wrong(&error))?;
     let baseline = group.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     let input = Input {
         model: &group.model.initial,
-        drag_table: group.model.drag_coefficient(),
+        drag_table: group.model.reference_table(predicts),
         flights: &records,
         baseline: if asked.table_only { None } else { baseline },
         table: table.as_ref(),

@@ -333,6 +333,13 @@ impl<'a> Design<'a> {
         for (column, slope) in columns(&layout.standing_effects).zip(&row.standing_effects) {
             rows.put(column, slope);
         }
+        if let Some(baseline) = parts.baseline {
+            let loadings = &mut scratch[..layout.drag.len()];
+            baseline.write_drag(&row.response, loadings);
+            for (column, loading) in columns(&layout.drag).zip(&*loadings) {
+                rows.put_thrust(column, *loading);
+            }
+        }
         for (column, chord) in columns(&layout.chords).zip(row.chords) {
             rows.put_thrust(column, chord);
         }

@@ -122,6 +122,11 @@ impl ModelErrorDraws {
                     add(values, taught.row(column), 1.0);
                 }
             }
+            terms.resize(layout.drag.len(), 0.0);
+            baseline.write_drag(&row.response, terms);
+            for (column, &loading) in layout.drag.zip(&*terms) {
+                add(&mut into[0], taught.row(column), loading * row.drag_over_thrust);
+            }
             for (column, slope) in layout.standing_effects.zip(&row.standing_effects) {
                 for (channel, values) in into.iter_mut().enumerate() {
                     if slope[channel] != 0.0 {
