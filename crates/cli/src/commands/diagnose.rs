@@ -193,7 +193,7 @@ fn diagnose_group(
             gauges: flight.reduced.gauges,
         })
         .collect();
-    let predicts = predicts(table_only);
+    let predicts = predicts(asked.table_only);
     let table = table_uncertainty::of_model(group.model, predicts, &records)
         .map_err(|error| wrong(&error))?;
     let baseline = group.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());

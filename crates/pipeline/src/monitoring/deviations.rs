@@ -1,14 +1,13 @@
 //! What a tail's segments show against its models: the initial one, the learnt one, and the learnt one as it was before each
 //! flight.
 
-use diagnose::Baseline;
-use effects::{EffectModel, EffectPoint, Effects};
 use flight::{MAXIMUM_ENGINES, Segment, Timestamp};
 use monitor::FlightDeviation;
 
 use crate::evaluation::evaluate;
 use crate::learning::{self, FlightToLearn, LawChoice, LearningError};
 use crate::model_file::{LawState, LedgerEntry, ModelFile};
+use crate::whole_model::{Predicts, SegmentHeld};
 
 /// Whether the model is rebuilt flight by flight, which takes a solve per flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,14 +96,12 @@ impl TailDeviations {
     ) -> Result<Self, LearningError> {
         let mut shown = vec![Shown::default(); segments.len()];
         let initial = evaluate(&model.initial, model.initial.drag_table(), segments);
-        let learnt = evaluate(&model.initial, model.drag_coefficient(), segments);
-        let remainder = remainders_percent(model, segments);
+        let learnt = learnt_deviations_percent(model, segments);
         for (index, shown) in shown.iter_mut().enumerate() {
             let recorded = segments[index].means.fuel_flow_total_kg_s;
             let against = |predicted: Option<f64>| deviation_percent(recorded, predicted?);
             shown.initial = against(initial[index].and_then(|of| of.predicted_fuel_flow_kg_s));
-            shown.learnt = against(learnt[index].and_then(|of| of.predicted_fuel_flow_kg_s))
-                .map(|deviation| deviation - remainder[index]);
+            shown.learnt = learnt[index];
         }
         if before_learning == BeforeLearning::Rebuild {
             rebuild(model, segments, &mut shown)?;
@@ -131,29 +128,21 @@ fn deviation_percent(recorded_kg_s: f64, predicted_kg_s: f64) -> Option<f64> {
         .then(|| 100.0 * (recorded_kg_s / predicted_kg_s).ln())
 }
 
-/// What the model has learnt beyond its table, as 100·ln of fuel flow; 0 where it has learnt nothing or has no prediction.
-fn remainders_percent(model: &ModelFile, segments: &[Segment]) -> Vec<f64> {
-    let nothing = || vec![0.0; segments.len()];
-    let Some(baseline) = model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref()) else {
-        return nothing();
-    };
-    let references = *baseline.references();
-    let Ok(effects) = EffectModel::new(&model.initial, model.drag_coefficient(), references) else {
-        return nothing();
-    };
-    segments.iter().map(|segment| remainder(model, baseline, &effects, segment)).collect()
-}
-
-fn remainder(
-    model: &ModelFile,
-    baseline: &Baseline,
-    effects: &EffectModel<'_>,
-    segment: &Segment,
-) -> f64 {
-    let Ok(corrected) = model.initial.corrected(segment) else { return 0.0 };
-    let point = EffectPoint::from_segment(&corrected, model.initial.aircraft().engines());
-    let response = effects.response(&point, &Effects::none());
-    response.map_or(0.0, |response| 100.0 * baseline.remainder(&response).0)
+/// 100·ln(recorded/predicted) by everything that the model has learnt; `None` outside its table.
+fn learnt_deviations_percent(model: &ModelFile, segments: &[Segment]) -> Vec<Option<f64>> {
+    if let Some(whole) = model.whole(Predicts::WholeModel) {
+        let held = |segment| SegmentHeld::new(&whole, &model.initial, segment);
+        return segments.iter().map(|segment| held(segment).map(|held| 100.0 * held.gap)).collect();
+    }
+    let learnt = evaluate(&model.initial, model.drag_coefficient(), segments);
+    let recorded = segments.iter().map(|segment| segment.means.fuel_flow_total_kg_s);
+    learnt
+        .iter()
+        .zip(recorded)
+        .map(|(evaluated, recorded)| {
+            deviation_percent(recorded, evaluated.and_then(|of| of.predicted_fuel_flow_kg_s)?)
+        })
+        .collect()
 }
 
 /// Learns the flights again, one by one, and predicts each before it is learnt. Exact: the same flights in the same order
