@@ -1,5 +1,6 @@
 //! From bytes to text: gzip, byte-order mark, UTF-8, NUL bytes.
 
+use std::borrow::Cow;
 use std::io::{self, BufRead, Read};
 
 use flate2::bufread::MultiGzDecoder;
@@ -39,6 +40,47 @@ pub fn unpack<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a [u8]
 /// The text that `bytes` holds, plain or gzip; `unpacked` receives decompressed text.
 pub(crate) fn text<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a str, Refusal> {
     plain(unpack(bytes, unpacked)?)
+}
+
+/// The text of a recording: as [`text`], and from UTF-16 or Windows-1252 too, which other programs export.
+pub(crate) fn recording<'a>(
+    bytes: &'a [u8],
+    unpacked: &'a mut Vec<u8>,
+) -> Result<Cow<'a, str>, Refusal> {
+    let bytes = unpack(bytes, unpacked)?;
+    let utf_16 = match bytes {
+        [0xff, 0xfe, rest @ ..] => Some((rest, u16::from_le_bytes as fn([u8; 2]) -> u16)),
+        [0xfe, 0xff, rest @ ..] => Some((rest, u16::from_be_bytes as fn([u8; 2]) -> u16)),
+        _ => None,
+    };
+    if let Some((rest, unit)) = utf_16 {
+        let units = rest.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+        return Ok(Cow::Owned(
+            char::decode_utf16(units)
+                .map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER))
+                .collect(),
+        ));
+    }
+    if core::str::from_utf8(bytes).is_ok() || memchr::memchr(0, bytes).is_some() {
+        return plain(bytes).map(Cow::Borrowed);
+    }
+    Ok(Cow::Owned(bytes.iter().map(|byte| windows_1252(*byte)).collect()))
+}
+
+/// The character of a byte of Windows-1252; the five bytes that it leaves undefined stay control characters.
+///
+/// # Source
+/// WHATWG, Encoding Standard, index windows-1252.
+fn windows_1252(byte: u8) -> char {
+    const FROM_0X80: [char; 32] = [
+        '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž',
+        '\u{8f}', '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}',
+        'ž', 'Ÿ',
+    ];
+    match byte {
+        0x80..=0x9f => FROM_0X80[usize::from(byte - 0x80)],
+        _ => char::from(byte),
+    }
 }
 
 /// All bytes of a stream.

@@ -5,6 +5,7 @@
 
 mod derive;
 mod file;
+mod first;
 mod level;
 mod plan;
 mod table;
@@ -16,12 +17,15 @@ use units::OutOfDomain;
 use crate::cruise_text::Parsed;
 use crate::decode;
 use crate::refusal::{Found, Refusal, RefusalKind};
+use file::{BadRows, MappingFile};
+pub use first::first_mapping;
 use plan::Plan;
-use table::{Recording, Table};
+use table::{Form, Recording, Table};
 
 /// A mapping file that was checked.
 #[derive(Clone, Debug)]
 pub struct Mapping {
+    file: MappingFile,
     plan: Plan,
 }
 
@@ -30,7 +34,7 @@ pub struct Mapping {
 #[non_exhaustive]
 pub enum MappingError {
     /// Not RON, or not of the mapping's form.
-    #[error("line {line}, column {column}")]
+    #[error("line {line}, column {column}: {source}")]
     Form {
         /// Line from 1.
         line: usize,
@@ -46,11 +50,22 @@ pub enum MappingError {
         found: u32,
     },
     /// A name that is not a quantity of the report; time and fuel used have entries of their own.
-    #[error("quantity \"{name}\", expected one of {COLUMN_NAMES}, without TIME and FU")]
+    #[error("quantity \"{name}\", expected one of {COLUMN_NAMES}, without TIME and FU{}", Meant(*near))]
     QuantityUnknown {
         /// The name.
         name: String,
+        /// The name that is nearest.
+        near: Option<&'static str>,
     },
+    /// A column without its unit.
+    #[error("no unit for {}, expected one of {}", column.name(), unit_names(*column))]
+    UnitMissing {
+        /// The quantity.
+        column: Column,
+    },
+    /// A value that is both held and interpolated.
+    #[error("hold_s and interpolate_s for one column, expected one of them")]
+    HeldAndInterpolated,
     /// A required quantity of the report without a source.
     #[error("no source for {}", column.name())]
     QuantityNotMapped {
@@ -72,12 +87,14 @@ pub enum MappingError {
     #[error("WF both of all engines and engine by engine")]
     FuelFlowTwice,
     /// A unit in which the quantity is not read.
-    #[error("unit \"{unit}\" for {}, expected one of {}", column.name(), unit_names(*column))]
+    #[error("unit \"{unit}\" for {}, expected one of {}{}", column.name(), unit_names(*column), Meant(*near))]
     UnitUnknown {
         /// The quantity.
         column: Column,
         /// The unit.
         unit: String,
+        /// The unit that is nearest.
+        near: Option<&'static str>,
     },
     /// An instant, or an offset, that is not RFC 3339.
     #[error("\"{text}\" is not an instant or offset of RFC 3339")]
@@ -94,6 +111,15 @@ pub enum MappingError {
     /// A number outside its limits.
     #[error(transparent)]
     OutOfDomain(#[from] OutOfDomain),
+}
+
+/// "; did you mean …?", or nothing.
+struct Meant(Option<&'static str>);
+
+impl core::fmt::Display for Meant {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        self.0.map_or(Ok(()), |name| write!(f, "; did you mean \"{name}\"?"))
+    }
 }
 
 fn unit_names(column: Column) -> String {
@@ -117,7 +143,7 @@ impl Mapping {
             column: error.span.start.col,
             source: Box::new(error.code),
         })?;
-        Ok(Self { plan: Plan::new(file)? })
+        Ok(Self { plan: Plan::new(MappingFile::clone(&file))?, file })
     }
 
     /// A built-in mapping, by its name in [`PRESETS`].
@@ -125,6 +151,20 @@ impl Mapping {
     pub fn preset(name: &str) -> Option<Self> {
         let (_, text) = PRESETS.iter().find(|(known, _)| *known == name)?;
         Self::from_ron(text).ok()
+    }
+
+    /// The same mapping for a table that was written as comma-separated text by this program, whatever the separators of
+    /// the mapping's own files.
+    #[must_use]
+    pub fn comma_separated(&self) -> Self {
+        let mut mapping = self.clone();
+        mapping.file.separator = ',';
+        mapping.file.decimal = '.';
+        mapping.file.comment = None;
+        mapping.file.units_row = false;
+        mapping.plan.separator = b',';
+        mapping.plan.comment = None;
+        mapping
     }
 
     /// Reads a recording, plain or gzip: one report for each level part of each flight in it.
@@ -150,24 +190,44 @@ impl Mapping {
         file_name: Option<&str>,
     ) -> Result<Vec<Parsed>, Refusal> {
         let mut unpacked = Vec::new();
-        let text = decode::text(bytes, &mut unpacked)?;
-        let table = table::read(&self.plan, text, file_name)?;
+        let text = decode::recording(bytes, &mut unpacked)?;
+        let plan = self.plan_of(&text)?;
+        let table = table::read(&plan, &text, file_name)?;
         let mut parsed = Vec::new();
         let mut flights_without = Vec::new();
+        let mut flights_refused = Vec::new();
+        let mut first_refusal = None;
         let mut longest_s = 0.0_f64;
         for recording in &table.recordings {
-            let (parts, longest_part_s) = self.parts(recording);
+            let (parts, longest_part_s) = parts(&plan, recording);
             longest_s = longest_s.max(longest_part_s);
             if parts.is_empty() {
                 flights_without.push(recording.flight.as_str());
+                continue;
             }
-            for part in parts {
-                parsed.push(derive::report(&self.plan, &table, recording, part)?);
+            match derive::report(&plan, &table, recording, &parts) {
+                Ok(report) => parsed.push(report),
+                // One flight that cannot be used costs itself.
+                Err(refusal) if plan.bad_rows == BadRows::LeaveRowOut => {
+                    flights_refused.push(format!("{}: {refusal}", recording.flight));
+                    first_refusal.get_or_insert(refusal);
+                }
+                Err(refusal) => return Err(refusal),
             }
         }
         let Some(first) = parsed.first_mut() else {
-            return Err(self.refuse_without_report(&table, longest_s));
+            return Err(
+                first_refusal.unwrap_or_else(|| self.refuse_without_report(&table, longest_s))
+            );
         };
+        for refused in flights_refused {
+            first.findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-flight-refused",
+                message: format!("flight {refused}"),
+                line: None,
+            });
+        }
         if !flights_without.is_empty() {
             first.findings.push(Finding {
                 severity: Severity::Warning,
@@ -182,23 +242,17 @@ impl Mapping {
         Ok(parsed)
     }
 
-    /// The rows that become reports, and the duration of the longest level part before any was rejected.
-    fn parts(&self, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f64) {
-        let rows = recording.time_s.len();
-        match &self.plan.cruise {
-            None if rows < 3 => (Vec::new(), 0.0),
-            None => (core::iter::once(0..rows).collect(), 0.0),
-            Some(criteria) => {
-                let altitude = |(column, _): &&(Column, _)| *column == Column::PressureAltitude;
-                let conversion = self.plan.recorded.iter().find(altitude);
-                let pressure_altitude_m: Vec<f64> = conversion
-                    .map(|(_, conversion)| {
-                        (0..rows).map(|row| conversion.apply(&recording.numbers, row)).collect()
-                    })
-                    .unwrap_or_default();
-                level::level_parts(&recording.time_s, &pressure_altitude_m, criteria)
-            }
-        }
+    /// The plan for the columns that this text has.
+    fn plan_of(&self, text: &str) -> Result<Plan, Refusal> {
+        let form = Form { separator: self.plan.separator, comment: self.plan.comment };
+        let names = table::names(form, text)?;
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Plan::new(self.file.resolved(&names)).map_err(|error| Refusal {
+            line: 1,
+            column: 1,
+            found: Found::text(&names.join(" ")),
+            kind: RefusalKind::SourceColumnsUnfit { reason: error.to_string() },
+        })
     }
 
     fn refuse_without_report(&self, table: &Table<'_>, longest_s: f64) -> Refusal {
@@ -213,6 +267,26 @@ impl Mapping {
                     needed_s: criteria.minimum_duration_s + 2.0 * criteria.trim_s,
                 },
             ),
+        }
+    }
+}
+
+/// The rows that become the report of a recording, part by part, and the duration of the longest level part before any
+/// was rejected.
+fn parts(plan: &Plan, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f64) {
+    let rows = recording.time_s.len();
+    match &plan.cruise {
+        None if rows < 3 => (Vec::new(), 0.0),
+        None => (core::iter::once(0..rows).collect(), 0.0),
+        Some(criteria) => {
+            let altitude = |(column, _): &&(Column, _)| *column == Column::PressureAltitude;
+            let conversion = plan.recorded.iter().find(altitude);
+            let pressure_altitude_m: Vec<f64> = conversion
+                .map(|(_, conversion)| {
+                    (0..rows).map(|row| conversion.apply(&recording.numbers, row)).collect()
+                })
+                .unwrap_or_default();
+            level::level_parts(&recording.time_s, &pressure_altitude_m, criteria)
         }
     }
 }

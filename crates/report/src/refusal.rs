@@ -219,6 +219,13 @@ pub enum RefusalKind {
     SourceColumnMissing {
         /// Its name.
         name: String,
+        /// What may have been meant: the nearest name, or another separator; empty where nothing is near.
+        hint: String,
+    },
+    /// Columns from which the mapping cannot make a report.
+    SourceColumnsUnfit {
+        /// The reason.
+        reason: String,
     },
     /// A column that the mapping names and the recording has twice.
     SourceColumnDoubled {
@@ -289,6 +296,7 @@ impl RefusalKind {
             Self::Inconsistent(_) => "inconsistent",
             Self::SourceNamesMissing => "source-names-missing",
             Self::SourceColumnMissing { .. } => "source-column-missing",
+            Self::SourceColumnsUnfit { .. } => "source-columns-unfit",
             Self::SourceColumnDoubled { .. } => "source-column-doubled",
             Self::SourceTextMissing { .. } => "source-text-missing",
             Self::SourceNotANumber { .. } => "source-not-a-number",
@@ -364,7 +372,12 @@ impl fmt::Display for RefusalKind {
             Self::Unreadable { error } => write!(f, "readable input: {error}"),
             Self::Inconsistent(error) => write!(f, "columns that make a report: {error}"),
             Self::SourceNamesMissing => f.write_str("a line of column names"),
-            Self::SourceColumnMissing { name } => write!(f, "a column named {name:?}"),
+            Self::SourceColumnsUnfit { reason } => {
+                write!(f, "columns from which the mapping makes a report: {reason}")
+            }
+            Self::SourceColumnMissing { name, hint } => {
+                write!(f, "a column named {name:?}{hint}")
+            }
             Self::SourceColumnDoubled { name } => write!(f, "one column named {name:?}"),
             Self::SourceTextMissing { key } => write!(f, "text for {key}"),
             Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
@@ -403,4 +416,48 @@ fn write_units(f: &mut fmt::Formatter<'_>, column: Column) -> fmt::Result {
         f.write_str(unit.name)?;
     }
     write!(f, " for {}", column.name())
+}
+
+/// The candidate nearest to a name: at most a third of its letters differ, upper and lower case aside.
+pub(crate) fn nearest<'c>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'c str>,
+) -> Option<&'c str> {
+    let lower = name.to_lowercase();
+    candidates
+        .into_iter()
+        .map(|candidate| (distance(&lower, &candidate.to_lowercase()), candidate))
+        .filter(|(distance, candidate)| 3 * distance <= candidate.len().max(name.len()))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Letters to insert, delete or replace (Levenshtein).
+fn distance(one: &str, other: &str) -> usize {
+    let other: Vec<char> = other.chars().collect();
+    let mut row: Vec<usize> = (0..=other.len()).collect();
+    for (index, letter) in one.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = index + 1;
+        for (column, second) in other.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != *second);
+            diagonal = row[column + 1];
+            row[column + 1] = replaced.min(row[column] + 1).min(diagonal + 1);
+        }
+    }
+    row[other.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{distance, nearest};
+
+    #[test]
+    fn distances_and_what_is_near() {
+        // Levenshtein's textbook example.
+        assert_eq!(distance("kitten", "sitting"), 3);
+        assert_eq!(nearest("kts", ["kt", "m/s"]), Some("kt"));
+        assert_eq!(nearest("altitud_ft", ["time", "altitude_ft"]), Some("altitude_ft"));
+        assert_eq!(nearest("x", ["altitude_ft"]), None);
+    }
 }

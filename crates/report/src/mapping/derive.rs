@@ -1,5 +1,7 @@
 //! From rows of a recording to a report: conversion, derivation, ranges.
 
+mod load;
+
 use core::ops::Range;
 
 use atmos::{airspeed, isa, temperature};
@@ -19,20 +21,18 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 
 /// A limit is widened by this share of itself: a number exactly on it must not fail because of a conversion's rounding.
 const LIMIT_ROUNDING: f64 = 1e-12;
-/// A counter of fuel used may fall by this much.
-const FUEL_USED_STEP_KG: f64 = 0.5;
-const DIFFERENCE_ROUNDING_KG: f64 = 1e-9;
 const MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD: f64 = 1.02;
 
-/// The report of some rows of a recording.
+/// The report of the level parts of a recording.
 pub(super) fn report(
     plan: &Plan,
     table: &Table<'_>,
     recording: &Recording,
-    rows: Range<usize>,
+    parts: &[Range<usize>],
 ) -> Result<Parsed, Refusal> {
-    let (first, level_rows) = (rows.start, rows.len());
-    let (rows, surplus) = rows_in_range(plan, recording, rows);
+    let level_rows = parts.iter().map(Range::len).sum();
+    let first = parts.first().map_or(0, |part| part.start);
+    let (rows, surplus) = rows_in_range(plan, recording, parts);
     let refuse_inconsistent = |error| {
         let found = Found::Rows(level_rows - surplus.len());
         table.refuse(recording, first, 0, found, RefusalKind::Inconsistent(error))
@@ -41,7 +41,7 @@ pub(super) fn report(
         let error = ReportDataError::TooFewSamples { found: rows.len() };
         return Err(refuse_inconsistent(error));
     }
-    let part = Part { plan, table, recording, rows, level_rows };
+    let part = Part { plan, table, recording, rows, level_rows, level_parts: parts.len() };
     let air = part.air_data()?;
     let load = part.load()?;
     let columns = part.columns(&air, &load)?;
@@ -103,6 +103,8 @@ struct Part<'p, 't> {
     rows: Vec<usize>,
     /// Number of rows before any was left out for its range.
     level_rows: usize,
+    /// Number of level parts that they come from.
+    level_parts: usize,
 }
 
 /// A row that is left out, and the column that is out of range in it.
@@ -112,8 +114,9 @@ type Surplus = (usize, Column);
 fn rows_in_range(
     plan: &Plan,
     recording: &Recording,
-    rows: Range<usize>,
+    parts: &[Range<usize>],
 ) -> (Vec<usize>, Vec<Surplus>) {
+    let rows = parts.iter().cloned().flatten();
     if plan.out_of_range == OutOfRange::Refuse {
         return (rows.collect(), Vec::new());
     }
@@ -345,83 +348,6 @@ impl Part<'_, '_> {
         self.refuse(row, series.input, found, RefusalKind::OutOfRange { column, limit, unit: "m" })
     }
 
-    fn load(&self) -> Result<Load, Refusal> {
-        match &self.plan.mass {
-            MassPlan::GrossMass { mass, zero_fuel_mass, largest_rise_kg } => {
-                self.load_of_gross_mass(mass, *zero_fuel_mass, *largest_rise_kg)
-            }
-            MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
-                let series = Series { values: self.convert(fuel_used), input: fuel_used.input };
-                let maximum = Some(fuel_on_board.to_kilograms());
-                self.check_range(Column::FuelUsed, &series, maximum)?;
-                self.check_fuel_used_series(&series)?;
-                Ok(Load {
-                    zero_fuel_mass: *zero_fuel_mass,
-                    fuel_on_board: *fuel_on_board,
-                    fuel_used_kg: series.values,
-                    largest_rise_kg: None,
-                })
-            }
-        }
-    }
-
-    /// As in the text format: a counter never falls by more than its step.
-    fn check_fuel_used_series(&self, series: &Series) -> Result<(), Refusal> {
-        let mut largest = f64::NEG_INFINITY;
-        for (row, value) in series.values.iter().enumerate() {
-            if *value < largest - FUEL_USED_STEP_KG - DIFFERENCE_ROUNDING_KG {
-                let unit = "kg";
-                let kind =
-                    RefusalKind::FuelUsedFalls { largest, tolerance: FUEL_USED_STEP_KG, unit };
-                let found = Found::Number { value: *value, unit };
-                return Err(self.refuse(row, series.input, found, kind));
-            }
-            largest = largest.max(*value);
-        }
-        Ok(())
-    }
-
-    /// Fuel used is how far gross mass has fallen below its first value: the running maximum of the fall, because
-    /// recorded masses come in steps and alternate between two of them.
-    fn load_of_gross_mass(
-        &self,
-        conversion: &Conversion,
-        zero_fuel_mass: Option<Mass>,
-        admissible_rise_kg: f64,
-    ) -> Result<Load, Refusal> {
-        let masses_kg = self.convert(conversion);
-        let first_kg = masses_kg[0];
-        let mut smallest_kg = first_kg;
-        let mut largest_rise_kg = 0.0_f64;
-        let mut fuel_used_kg = Vec::with_capacity(masses_kg.len());
-        for (row, mass_kg) in masses_kg.iter().enumerate() {
-            let found = Found::Number { value: *mass_kg, unit: "kg" };
-            if *mass_kg <= 0.0 {
-                let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
-                return Err(self.refuse(row, conversion.input, found, kind));
-            }
-            smallest_kg = smallest_kg.min(*mass_kg);
-            let rise_kg = mass_kg - smallest_kg;
-            if rise_kg > admissible_rise_kg {
-                let kind = RefusalKind::GrossMassRises { smallest_kg, admissible_rise_kg };
-                return Err(self.refuse(row, conversion.input, found, kind));
-            }
-            largest_rise_kg = largest_rise_kg.max(rise_kg);
-            fuel_used_kg.push(first_kg - smallest_kg);
-        }
-        let burnt_kg = first_kg - smallest_kg;
-        let zero_fuel_mass = zero_fuel_mass.unwrap_or(Mass::kilograms(smallest_kg));
-        let fuel_on_board = Mass::kilograms(first_kg) - zero_fuel_mass;
-        let fuel_on_board_kg = fuel_on_board.to_kilograms();
-        if fuel_on_board_kg <= 0.0 || fuel_on_board_kg < burnt_kg {
-            let kind = RefusalKind::MassNotPositive { mass: "fuel on board" };
-            let found = Found::Number { value: fuel_on_board_kg - burnt_kg, unit: "kg" };
-            return Err(self.refuse(0, conversion.input, found, kind));
-        }
-        let largest_rise_kg = Some(largest_rise_kg);
-        Ok(Load { zero_fuel_mass, fuel_on_board, fuel_used_kg, largest_rise_kg })
-    }
-
     fn columns(&self, air: &AirData, load: &Load) -> Result<ReportColumns, Refusal> {
         let is_temperature_assumed = matches!(self.plan.temperature, TemperatureSource::Isa { .. });
         let first_s = self.recording.time_s[self.rows[0]];
@@ -507,7 +433,15 @@ impl Part<'_, '_> {
             derived.push("DRIFT from track and heading");
         }
         if load.largest_rise_kg.is_some() {
-            derived.push("FU from the fall of gross mass");
+            derived.push(match self.plan.mass {
+                MassPlan::ZeroFuelAndTanks { .. } => {
+                    "FU from the fall of zero-fuel weight and tanks"
+                }
+                _ => "FU from the fall of gross mass",
+            });
+        }
+        if matches!(self.plan.mass, MassPlan::StartMass { .. }) {
+            derived.push("FU from the integral of WF");
         }
         derived
     }
@@ -538,11 +472,30 @@ impl Part<'_, '_> {
                 severity: Severity::Warning,
                 code: "mapped-rows-left-out",
                 message: format!(
-                    "{} rows lack a number that the report needs and are left out",
-                    self.recording.left_out
+                    "{} rows lack a number that the report needs{} and are left out",
+                    self.recording.left_out,
+                    self.recording
+                        .lacking
+                        .as_ref()
+                        .map_or_else(String::new, |column| format!(" (most of them {column:?})"))
                 ),
                 line: self.table.first_left_out(self.recording),
             });
+        }
+        if let Some(first) = &self.recording.first_bad {
+            findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-rows-bad",
+                message: format!(
+                    "{} rows cannot be read and are left out, the first: {first}",
+                    self.recording.bad
+                ),
+                line: Some(first.line),
+            });
+        }
+        for (column, filled) in &self.recording.filled {
+            let message = format!("{column:?} is held or interpolated in {filled} rows");
+            findings.push(note(Severity::Note, "mapped-filled", message));
         }
         if let Some((row, column)) = surplus.first() {
             findings.push(Finding {
@@ -560,8 +513,13 @@ impl Part<'_, '_> {
         if let (true, Some(last)) = (self.level_rows < rows, self.rows.last()) {
             let last_line = self.table.line(self.recording, *last);
             let message = format!(
-                "level cruise: {} of {rows} rows, to line {last_line}; the rest is climb, descent or too short",
-                self.level_rows
+                "level cruise: {} of {rows} rows{}, to line {last_line}; the rest is climb, descent or too short",
+                self.level_rows,
+                if self.level_parts > 1 {
+                    format!(" in {} level parts", self.level_parts)
+                } else {
+                    String::new()
+                }
             );
             findings.push(note(Severity::Note, "mapped-cruise-cut", message));
         }

@@ -5,6 +5,108 @@ use core::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
+impl MappingFile {
+    /// The mapping for a recording with these column names: alternatives (`a|b`) and wildcards (`Eng*1*FF`) become the
+    /// name that is there, optional quantities without their column are left away.
+    pub(super) fn resolved(&self, names: &[&str]) -> Self {
+        let mut file = self.clone();
+        file.quantities.0.retain(|(_, source)| match source {
+            QuantitySource::Recorded { column, optional: true, .. } => {
+                present(column, names).is_some()
+            }
+            _ => true,
+        });
+        let mut columns: Vec<&mut String> = Vec::new();
+        for (_, source) in &mut file.quantities.0 {
+            match source {
+                QuantitySource::Recorded { column, .. }
+                | QuantitySource::FromCalibratedAirspeed { column, .. } => columns.push(column),
+                QuantitySource::Difference { column, minus, .. } => columns.extend([column, minus]),
+                _ => {}
+            }
+        }
+        for source in [&mut file.aircraft, &mut file.tail, &mut file.flight] {
+            if let TextSource::Column(column) = source {
+                columns.push(column);
+            }
+        }
+        file.mass.columns(&mut columns);
+        file.time.columns(&mut columns);
+        columns.extend(file.only.iter_mut().map(|(column, _)| column));
+        for column in columns {
+            if let Some(name) = present(column, names) {
+                *column = name;
+            }
+        }
+        file
+    }
+}
+
+impl MassSource {
+    fn columns<'a>(&'a mut self, columns: &mut Vec<&'a mut String>) {
+        let mut amounts: Vec<&'a mut Amount> = Vec::new();
+        match self {
+            Self::GrossMass { column, .. } | Self::FuelUsed { column, .. } => columns.push(column),
+            Self::LoadSheet { fuel_used, zero_fuel_weight, fuel_on_board } => {
+                amounts.extend([fuel_used, zero_fuel_weight, fuel_on_board]);
+            }
+            Self::ZeroFuelAndTanks { zero_fuel_weight, tanks, .. } => {
+                amounts.push(zero_fuel_weight);
+                columns.extend(tanks);
+            }
+            Self::StartMass { gross_weight } => amounts.push(gross_weight),
+        }
+        for amount in amounts {
+            if let Amount::Column(column, _) = amount {
+                columns.push(column);
+            }
+        }
+    }
+}
+
+impl TimeSource {
+    fn columns<'a>(&'a mut self, columns: &mut Vec<&'a mut String>) {
+        match self {
+            Self::Timestamp { column, date, .. } => {
+                columns.push(column);
+                columns.extend(date);
+            }
+            Self::Epoch { column, .. }
+            | Self::TimeOfDay { column, .. }
+            | Self::Seconds { column, .. } => columns.push(column),
+        }
+    }
+}
+
+/// The name in the recording that a column of the mapping stands for: of several alternatives the first that is there; of
+/// a wildcard the only one that fits.
+fn present(column: &str, names: &[&str]) -> Option<String> {
+    if names.contains(&column) {
+        return Some(column.to_owned());
+    }
+    column.split('|').find_map(|alternative| {
+        let mut fitting = names.iter().filter(|name| fits(alternative, name));
+        match (fitting.next(), fitting.next()) {
+            (Some(name), None) => Some((*name).to_owned()),
+            _ => None,
+        }
+    })
+}
+
+/// Whether a name fits a pattern in which `*` stands for any text.
+fn fits(pattern: &str, name: &str) -> bool {
+    let mut pieces = pattern.split('*');
+    let Some(mut rest) = pieces.next().and_then(|first| name.strip_prefix(first)) else {
+        return false;
+    };
+    let Some(last) = pieces.next_back() else { return rest.is_empty() };
+    for piece in pieces {
+        let Some(at) = rest.find(piece) else { return false };
+        rest = &rest[at + piece.len()..];
+    }
+    rest.ends_with(last)
+}
+
 /// The only version of the mapping file.
 pub(super) const FORMAT: u32 = 1;
 
@@ -14,6 +116,12 @@ pub(super) struct MappingFile {
     pub(super) format: u32,
     #[serde(default = "comma")]
     pub(super) separator: char,
+    /// The character before the decimals of a number.
+    #[serde(default = "point")]
+    pub(super) decimal: char,
+    /// Whether a row of units follows the names.
+    #[serde(default)]
+    pub(super) units_row: bool,
     #[serde(default)]
     pub(super) comment: Option<char>,
     #[serde(default)]
@@ -31,12 +139,30 @@ pub(super) struct MappingFile {
     #[serde(default)]
     pub(super) out_of_range: OutOfRange,
     #[serde(default)]
+    pub(super) bad_rows: BadRows,
+    /// Rows that are used: those whose column holds one of the texts.
+    #[serde(default)]
+    pub(super) only: Vec<(String, Vec<String>)>,
+    /// A gap in time after which another flight begins, s.
+    #[serde(default)]
+    pub(super) new_flight_after_s: Option<f64>,
+    #[serde(default)]
     pub(super) cruise: Option<CruiseFile>,
 }
 
 /// What happens to a row with a recorded number outside its column's range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 pub(super) enum OutOfRange {
+    /// The recording is refused, as a report is.
+    #[default]
+    Refuse,
+    /// The row is left out and counted.
+    LeaveRowOut,
+}
+
+/// What happens to a row that cannot be read, or whose time does not follow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub(super) enum BadRows {
     /// The recording is refused, as a report is.
     #[default]
     Refuse,
@@ -58,12 +184,21 @@ pub(super) enum TextSource {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) enum TimeSource {
-    /// ISO text; `utc_offset` where the text has none.
+    /// ISO text, or one of another `format`; `utc_offset` where the text has none; `date` where it stands in a column of
+    /// its own.
     Timestamp {
         column: String,
         #[serde(default)]
+        date: Option<String>,
+        #[serde(default)]
+        format: Option<String>,
+        #[serde(default)]
         utc_offset: Option<String>,
     },
+    /// Time since 1970 in s, ms, us or ns.
+    Epoch { column: String, unit: String },
+    /// Hours, minutes and seconds; the day of the first row is `date`, and midnight begins the next one.
+    TimeOfDay { column: String, date: String, utc_offset: String },
     /// Seconds since `start`.
     Seconds { column: String, start: String },
 }
@@ -82,6 +217,10 @@ pub(super) enum MassSource {
         #[serde(default = "one")]
         scale: f64,
         #[serde(default)]
+        hold_s: Option<f64>,
+        #[serde(default)]
+        interpolate_s: Option<f64>,
+        #[serde(default)]
         zero_fuel_weight: Option<WithUnit>,
         largest_rise_kg: f64,
     },
@@ -94,6 +233,24 @@ pub(super) enum MassSource {
         zero_fuel_weight: WithUnit,
         fuel_on_board: WithUnit,
     },
+    /// The same where the load sheet is in columns: that of a flight's first row is used.
+    LoadSheet { fuel_used: Amount, zero_fuel_weight: Amount, fuel_on_board: Amount },
+    /// Gross mass is zero-fuel weight and what the tanks hold.
+    ZeroFuelAndTanks {
+        zero_fuel_weight: Amount,
+        tanks: Vec<String>,
+        unit: String,
+        largest_rise_kg: f64,
+    },
+    /// Gross mass at the first row less the integral of fuel flow.
+    StartMass { gross_weight: Amount },
+}
+
+/// A mass: the same in every flight, or from a column.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub(super) enum Amount {
+    Value(f64, String),
+    Column(String, String),
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -102,9 +259,24 @@ pub(super) enum QuantitySource {
     /// A column, in a unit of the report's format, times `scale`.
     Recorded {
         column: String,
-        unit: String,
+        #[serde(default)]
+        unit: Option<String>,
         #[serde(default = "one")]
         scale: f64,
+        #[serde(default)]
+        offset: f64,
+        /// The last value holds for this long, s.
+        #[serde(default)]
+        hold_s: Option<f64>,
+        /// Between values no farther apart than this, s, a straight line.
+        #[serde(default)]
+        interpolate_s: Option<f64>,
+        /// Texts that stand for numbers.
+        #[serde(default)]
+        values: Vec<(String, f64)>,
+        /// Whether the quantity is left away where the recording lacks the column.
+        #[serde(default)]
+        optional: bool,
     },
     /// The angle between two columns, −180 … 180°.
     Difference { column: String, minus: String, unit: String },
@@ -181,6 +353,10 @@ impl<'de> Visitor<'de> for QuantitiesVisitor {
 
 const fn comma() -> char {
     ','
+}
+
+const fn point() -> char {
+    '.'
 }
 
 const fn one() -> f64 {

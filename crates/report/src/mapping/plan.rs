@@ -7,16 +7,19 @@ use units::{Mass, OutOfDomain, check_within};
 
 use super::MappingError;
 use super::file::{
-    CruiseFile, FORMAT, MappingFile, MassSource, OutOfRange, QuantitySource, TextSource,
-    TimeSource, WithUnit,
+    Amount, BadRows, CruiseFile, FORMAT, MappingFile, MassSource, OutOfRange, QuantitySource,
+    TextSource, TimeSource, WithUnit,
 };
 use super::level::LevelCriteria;
 use crate::cruise_text::parse_instant;
+use crate::refusal::nearest;
 
 /// The checked content of a mapping file.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) separator: u8,
+    pub(super) decimal: char,
+    pub(super) units_row: bool,
     pub(super) comment: Option<u8>,
     pub(super) not_available: Vec<String>,
     pub(super) aircraft: TextSource,
@@ -34,6 +37,9 @@ pub(super) struct Plan {
     pub(super) true_airspeed: TrueAirspeedSource,
     pub(super) mass: MassPlan,
     pub(super) out_of_range: OutOfRange,
+    pub(super) bad_rows: BadRows,
+    pub(super) only: Vec<(String, Vec<String>)>,
+    pub(super) new_flight_after_s: Option<f64>,
     pub(super) cruise: Option<LevelCriteria>,
 }
 
@@ -43,6 +49,22 @@ pub(super) struct Input {
     pub(super) name: String,
     /// Whether a row without it is left out.
     pub(super) is_required: bool,
+    /// How rows without it are filled.
+    pub(super) fill: Fill,
+    /// Texts that stand for numbers.
+    pub(super) values: Vec<(String, f64)>,
+}
+
+/// What stands in a row that lacks a slow parameter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum Fill {
+    /// Nothing.
+    #[default]
+    Not,
+    /// The last value, where it is no older than this, s.
+    Hold(f64),
+    /// A straight line between values no farther apart than this, s.
+    Line(f64),
 }
 
 /// From a number of the recording to the stored unit of a quantity.
@@ -90,17 +112,39 @@ pub(super) enum TrueAirspeedSource {
     Mach,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum MassPlan {
     GrossMass { mass: Conversion, zero_fuel_mass: Option<Mass>, largest_rise_kg: f64 },
-    FuelUsed { fuel_used: Conversion, zero_fuel_mass: Mass, fuel_on_board: Mass },
+    FuelUsed { fuel_used: Conversion, zero_fuel_mass: Load, fuel_on_board: Load },
+    ZeroFuelAndTanks { zero_fuel_mass: Load, tanks: Vec<Conversion>, largest_rise_kg: f64 },
+    StartMass { gross_mass: Load },
+}
+
+/// A mass of the load sheet.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Load {
+    Known(Mass),
+    /// That of the first row.
+    Column(Conversion),
 }
 
 /// The form of time in the recording.
 #[derive(Clone, Debug)]
 pub(super) enum TimeForm {
-    Timestamp { utc_offset: Option<String> },
-    Seconds { start: Timestamp },
+    Timestamp {
+        date_column: Option<String>,
+        format: Option<String>,
+        utc_offset: Option<String>,
+    },
+    /// Number over `per_second` is seconds since `start`: a division, so that whole seconds stay whole.
+    Seconds {
+        start: Timestamp,
+        per_second: f64,
+    },
+    /// Seconds of the day; `midnight` begins the day of the first row.
+    TimeOfDay {
+        midnight: Timestamp,
+    },
 }
 
 impl Plan {
@@ -119,6 +163,8 @@ impl Plan {
         let (time_column, time) = time_plan(file.time)?;
         Ok(Self {
             separator: ascii(file.separator)?,
+            decimal: decimal(file.decimal, file.separator)?,
+            units_row: file.units_row,
             comment: file.comment.map(ascii).transpose()?,
             not_available: file.not_available,
             aircraft: file.aircraft,
@@ -138,6 +184,12 @@ impl Plan {
             true_airspeed,
             mass,
             out_of_range: file.out_of_range,
+            bad_rows: file.bad_rows,
+            only: file.only,
+            new_flight_after_s: file
+                .new_flight_after_s
+                .map(|gap_s| check_within("gap between flights", "s", gap_s, 1.0, 1e7))
+                .transpose()?,
             cruise: file.cruise.as_ref().map(level_criteria).transpose()?,
         })
     }
@@ -179,13 +231,32 @@ impl Sources {
         let quantity = match Column::from_name(&name) {
             // Time and fuel used have entries of their own.
             None | Some(Column::Time | Column::FuelUsed) => {
-                return Err(MappingError::QuantityUnknown { name });
+                return Err(MappingError::QuantityUnknown { near: near_quantity(&name), name });
             }
             Some(quantity) => quantity,
         };
         match (quantity, source) {
-            (_, QuantitySource::Recorded { column, unit, scale }) => {
-                let conversion = self.inputs.conversion(quantity, column, &unit, scale)?;
+            (
+                _,
+                QuantitySource::Recorded {
+                    column,
+                    unit,
+                    scale,
+                    offset,
+                    hold_s,
+                    interpolate_s,
+                    values,
+                    optional: _,
+                },
+            ) => {
+                let unit = unit.ok_or(MappingError::UnitMissing { column: quantity })?;
+                let mut conversion = self.inputs.conversion(quantity, column, &unit, scale)?;
+                check_within("offset", "-", offset, -1e9, 1e9)?;
+                // The offset is in the mapping's unit, after the scale.
+                conversion.offset += offset * known_unit(quantity, &unit)?.factor;
+                let input = &mut self.inputs.0[conversion.input];
+                input.fill = fill(hold_s, interpolate_s)?;
+                input.values.extend(values);
                 self.recorded.push((quantity, conversion));
             }
             (Column::Drift, QuantitySource::Difference { column, minus, unit }) => {
@@ -285,7 +356,7 @@ impl Inputs {
             self.0[place].is_required |= is_required;
             return place;
         }
-        self.0.push(Input { name, is_required });
+        self.0.push(Input { name, is_required, fill: Fill::Not, values: Vec::new() });
         self.0.len() - 1
     }
 
@@ -305,7 +376,11 @@ impl Inputs {
 
 fn known_unit(column: Column, unit: &str) -> Result<ColumnUnit, MappingError> {
     let known = column.units().iter().find(|known| known.name == unit);
-    known.copied().ok_or_else(|| MappingError::UnitUnknown { column, unit: unit.to_owned() })
+    known.copied().ok_or_else(|| MappingError::UnitUnknown {
+        column,
+        unit: unit.to_owned(),
+        near: nearest(unit, column.units().iter().map(|unit| unit.name)),
+    })
 }
 
 fn mass(WithUnit(value, unit): &WithUnit, what: &'static str) -> Result<Mass, MappingError> {
@@ -316,9 +391,19 @@ fn mass(WithUnit(value, unit): &WithUnit, what: &'static str) -> Result<Mass, Ma
 
 fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassPlan, MappingError> {
     Ok(match source {
-        MassSource::GrossMass { column, unit, scale, zero_fuel_weight, largest_rise_kg } => {
+        MassSource::GrossMass {
+            column,
+            unit,
+            scale,
+            hold_s,
+            interpolate_s,
+            zero_fuel_weight,
+            largest_rise_kg,
+        } => {
+            let mass_column = inputs.conversion(Column::FuelUsed, column, &unit, scale)?;
+            inputs.0[mass_column.input].fill = fill(hold_s, interpolate_s)?;
             MassPlan::GrossMass {
-                mass: inputs.conversion(Column::FuelUsed, column, &unit, scale)?,
+                mass: mass_column,
                 zero_fuel_mass: zero_fuel_weight
                     .map(|value| mass(&value, "zero-fuel mass"))
                     .transpose()?,
@@ -334,28 +419,115 @@ fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassPlan, Mappin
         MassSource::FuelUsed { column, unit, scale, zero_fuel_weight, fuel_on_board } => {
             MassPlan::FuelUsed {
                 fuel_used: inputs.conversion(Column::FuelUsed, column, &unit, scale)?,
-                zero_fuel_mass: mass(&zero_fuel_weight, "zero-fuel mass")?,
-                fuel_on_board: mass(&fuel_on_board, "fuel on board")?,
+                zero_fuel_mass: Load::Known(mass(&zero_fuel_weight, "zero-fuel mass")?),
+                fuel_on_board: Load::Known(mass(&fuel_on_board, "fuel on board")?),
             }
         }
+        MassSource::LoadSheet { fuel_used, zero_fuel_weight, fuel_on_board } => {
+            let Amount::Column(column, unit) = fuel_used else {
+                return Err(MappingError::QuantityNotMapped { column: Column::FuelUsed });
+            };
+            MassPlan::FuelUsed {
+                fuel_used: inputs.conversion(Column::FuelUsed, column, &unit, 1.0)?,
+                zero_fuel_mass: load(zero_fuel_weight, "zero-fuel mass", inputs)?,
+                fuel_on_board: load(fuel_on_board, "fuel on board", inputs)?,
+            }
+        }
+        MassSource::ZeroFuelAndTanks { zero_fuel_weight, tanks, unit, largest_rise_kg } => {
+            MassPlan::ZeroFuelAndTanks {
+                zero_fuel_mass: load(zero_fuel_weight, "zero-fuel mass", inputs)?,
+                tanks: tanks
+                    .into_iter()
+                    .map(|tank| inputs.conversion(Column::FuelUsed, tank, &unit, 1.0))
+                    .collect::<Result<_, _>>()?,
+                largest_rise_kg: check_within(
+                    "largest rise of gross mass",
+                    "kg",
+                    largest_rise_kg,
+                    0.0,
+                    1e5,
+                )?,
+            }
+        }
+        MassSource::StartMass { gross_weight } => {
+            MassPlan::StartMass { gross_mass: load(gross_weight, "gross mass", inputs)? }
+        }
     })
+}
+
+/// A mass of the load sheet. A column holds for the whole flight: the recorder may send it once.
+fn load(amount: Amount, what: &'static str, inputs: &mut Inputs) -> Result<Load, MappingError> {
+    Ok(match amount {
+        Amount::Value(value, unit) => Load::Known(mass(&WithUnit(value, unit), what)?),
+        Amount::Column(column, unit) => {
+            let conversion = inputs.conversion(Column::FuelUsed, column, &unit, 1.0)?;
+            let input = &mut inputs.0[conversion.input];
+            if input.fill == Fill::Not {
+                input.fill = Fill::Hold(f64::INFINITY);
+            }
+            Load::Column(conversion)
+        }
+    })
+}
+
+fn fill(hold_s: Option<f64>, interpolate_s: Option<f64>) -> Result<Fill, MappingError> {
+    let checked = |age_s| check_within("age of a held value", "s", age_s, 0.0, 86_400.0);
+    Ok(match (hold_s, interpolate_s) {
+        (None, None) => Fill::Not,
+        (Some(age_s), None) => Fill::Hold(checked(age_s)?),
+        (None, Some(span_s)) => Fill::Line(checked(span_s)?),
+        (Some(_), Some(_)) => return Err(MappingError::HeldAndInterpolated),
+    })
+}
+
+fn decimal(decimal: char, separator: char) -> Result<char, MappingError> {
+    if matches!(decimal, '.' | ',') && decimal != separator {
+        Ok(decimal)
+    } else {
+        Err(MappingError::SeparatorUnusable { character: decimal })
+    }
+}
+
+fn near_quantity(name: &str) -> Option<&'static str> {
+    nearest(name, flight::column::COLUMN_NAMES.split(' '))
 }
 
 fn time_plan(source: TimeSource) -> Result<(String, TimeForm), MappingError> {
     let any_day = "2000-01-01T00:00:00";
     match source {
-        TimeSource::Timestamp { column, utc_offset } => {
+        TimeSource::Timestamp { column, date, format, utc_offset } => {
             if let Some(offset) = &utc_offset
                 && parse_instant(&format!("{any_day}{offset}")).is_none()
             {
                 return Err(MappingError::InstantMalformed { text: offset.clone() });
             }
-            Ok((column, TimeForm::Timestamp { utc_offset }))
+            Ok((column, TimeForm::Timestamp { date_column: date, format, utc_offset }))
+        }
+        TimeSource::Epoch { column, unit } => {
+            let per_second = match unit.as_str() {
+                "s" => 1.0,
+                "ms" => 1e3,
+                "us" => 1e6,
+                "ns" => 1e9,
+                _ => {
+                    return Err(MappingError::UnitUnknown {
+                        column: Column::Time,
+                        near: None,
+                        unit,
+                    });
+                }
+            };
+            Ok((column, TimeForm::Seconds { start: Timestamp::UNIX_EPOCH, per_second }))
+        }
+        TimeSource::TimeOfDay { column, date, utc_offset } => {
+            let text = format!("{date}T00:00:00{utc_offset}");
+            let midnight = parse_instant(&text).ok_or(MappingError::InstantMalformed { text })?;
+            Ok((column, TimeForm::TimeOfDay { midnight }))
         }
         TimeSource::Seconds { column, start } => {
             let start: Timestamp =
                 parse_instant(&start).ok_or(MappingError::InstantMalformed { text: start })?;
-            Ok((column, TimeForm::Seconds { start }))
+            Ok((column, TimeForm::Seconds { start, per_second: 1.0 }))
         }
     }
 }

@@ -1,0 +1,166 @@
+//! Mass and fuel used of a report, by each of the routes that a mapping can name.
+
+use flight::column::Column;
+use units::Mass;
+
+use super::{Load, Part, Series};
+use crate::mapping::plan::{Conversion, Load as LoadSource, MassPlan};
+use crate::refusal::{Found, Refusal, RefusalKind};
+
+/// A counter of fuel used may fall by this much.
+const FUEL_USED_STEP_KG: f64 = 0.5;
+const DIFFERENCE_ROUNDING_KG: f64 = 1e-9;
+
+impl Part<'_, '_> {
+    pub(super) fn load(&self) -> Result<Load, Refusal> {
+        match &self.plan.mass {
+            MassPlan::GrossMass { mass, zero_fuel_mass, largest_rise_kg } => {
+                let masses_kg = Series { values: self.convert(mass), input: mass.input };
+                let zero_fuel_mass =
+                    zero_fuel_mass.or_else(|| self.zero_fuel_mass_by_gauges(&masses_kg));
+                self.load_of_gross_mass(&masses_kg, zero_fuel_mass, *largest_rise_kg)
+            }
+            MassPlan::ZeroFuelAndTanks { zero_fuel_mass, tanks, largest_rise_kg } => {
+                let zero_fuel_mass = self.mass_of(zero_fuel_mass)?;
+                let mut values = vec![zero_fuel_mass.to_kilograms(); self.rows.len()];
+                for tank in tanks {
+                    for (value, fuel_kg) in values.iter_mut().zip(self.convert(tank)) {
+                        *value += fuel_kg;
+                    }
+                }
+                let input = tanks.first().map_or(0, |tank| tank.input);
+                let masses_kg = Series { values, input };
+                self.load_of_gross_mass(&masses_kg, Some(zero_fuel_mass), *largest_rise_kg)
+            }
+            MassPlan::StartMass { gross_mass } => self.load_of_integrated_flow(gross_mass),
+            MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
+                let zero_fuel_mass = self.mass_of(zero_fuel_mass)?;
+                let fuel_on_board = self.mass_of(fuel_on_board)?;
+                let series = Series { values: self.convert(fuel_used), input: fuel_used.input };
+                let maximum = Some(fuel_on_board.to_kilograms());
+                self.check_range(Column::FuelUsed, &series, maximum)?;
+                self.check_fuel_used_series(&series)?;
+                Ok(Load {
+                    zero_fuel_mass,
+                    fuel_on_board,
+                    fuel_used_kg: series.values,
+                    largest_rise_kg: None,
+                })
+            }
+        }
+    }
+
+    /// A mass of the load sheet, at the report's first row.
+    fn mass_of(&self, load: &LoadSource) -> Result<Mass, Refusal> {
+        let conversion = match load {
+            LoadSource::Known(mass) => return Ok(*mass),
+            LoadSource::Column(conversion) => conversion,
+        };
+        let value = conversion.apply(&self.recording.numbers, self.rows[0]);
+        if value > 0.0 {
+            return Ok(Mass::kilograms(value));
+        }
+        let kind = RefusalKind::MassNotPositive { mass: "mass of the load sheet" };
+        Err(self.refuse(0, conversion.input, Found::Number { value, unit: "kg" }, kind))
+    }
+
+    /// Zero-fuel mass where gross mass and the contents of the tanks are recorded, at the report's first row.
+    fn zero_fuel_mass_by_gauges(&self, masses_kg: &Series) -> Option<Mass> {
+        let quantity_kg = *self.recorded(Column::FuelQuantity)?.values.first()?;
+        let zero_fuel_kg = masses_kg.values.first()? - quantity_kg;
+        (zero_fuel_kg > 0.0).then(|| Mass::kilograms(zero_fuel_kg))
+    }
+
+    /// Gross mass at the recording's first row less the integral of fuel flow (trapezoids) from there, climb included.
+    fn load_of_integrated_flow(&self, gross_mass: &LoadSource) -> Result<Load, Refusal> {
+        let flows: Vec<&Conversion> = self
+            .plan
+            .recorded
+            .iter()
+            .filter(|(column, _)| {
+                matches!(column, Column::FuelFlowTotal | Column::FuelFlowEngine(_))
+            })
+            .map(|(_, conversion)| conversion)
+            .collect();
+        let flow_kg_s = |row: usize| -> f64 {
+            flows.iter().map(|flow| flow.apply(&self.recording.numbers, row)).sum()
+        };
+        let mut burnt_kg = 0.0;
+        let mut burnt_by_row_kg = vec![0.0];
+        for (row, pair) in self.recording.time_s.windows(2).enumerate() {
+            burnt_kg += 0.5 * (flow_kg_s(row) + flow_kg_s(row + 1)) * (pair[1] - pair[0]);
+            burnt_by_row_kg.push(burnt_kg);
+        }
+        let start_kg = self.mass_of(gross_mass)?.to_kilograms();
+        let last_kg = burnt_by_row_kg[self.rows[self.rows.len() - 1]];
+        let zero_fuel_kg = start_kg - last_kg;
+        if zero_fuel_kg <= 0.0 || last_kg <= 0.0 {
+            let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
+            let found = Found::Number { value: zero_fuel_kg, unit: "kg" };
+            return Err(self.refuse(0, 0, found, kind));
+        }
+        Ok(Load {
+            zero_fuel_mass: Mass::kilograms(zero_fuel_kg),
+            fuel_on_board: Mass::kilograms(last_kg),
+            fuel_used_kg: self.rows.iter().map(|row| burnt_by_row_kg[*row]).collect(),
+            largest_rise_kg: None,
+        })
+    }
+
+    /// As in the text format: a counter never falls by more than its step.
+    fn check_fuel_used_series(&self, series: &Series) -> Result<(), Refusal> {
+        let mut largest = f64::NEG_INFINITY;
+        for (row, value) in series.values.iter().enumerate() {
+            if *value < largest - FUEL_USED_STEP_KG - DIFFERENCE_ROUNDING_KG {
+                let unit = "kg";
+                let kind =
+                    RefusalKind::FuelUsedFalls { largest, tolerance: FUEL_USED_STEP_KG, unit };
+                let found = Found::Number { value: *value, unit };
+                return Err(self.refuse(row, series.input, found, kind));
+            }
+            largest = largest.max(*value);
+        }
+        Ok(())
+    }
+
+    /// Fuel used is how far gross mass has fallen below its first value: the running maximum of the fall, because
+    /// recorded masses come in steps and alternate between two of them.
+    fn load_of_gross_mass(
+        &self,
+        masses: &Series,
+        zero_fuel_mass: Option<Mass>,
+        admissible_rise_kg: f64,
+    ) -> Result<Load, Refusal> {
+        let masses_kg = &masses.values;
+        let first_kg = masses_kg[0];
+        let mut smallest_kg = first_kg;
+        let mut largest_rise_kg = 0.0_f64;
+        let mut fuel_used_kg = Vec::with_capacity(masses_kg.len());
+        for (row, mass_kg) in masses_kg.iter().enumerate() {
+            let found = Found::Number { value: *mass_kg, unit: "kg" };
+            if *mass_kg <= 0.0 {
+                let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
+                return Err(self.refuse(row, masses.input, found, kind));
+            }
+            smallest_kg = smallest_kg.min(*mass_kg);
+            let rise_kg = mass_kg - smallest_kg;
+            if rise_kg > admissible_rise_kg {
+                let kind = RefusalKind::GrossMassRises { smallest_kg, admissible_rise_kg };
+                return Err(self.refuse(row, masses.input, found, kind));
+            }
+            largest_rise_kg = largest_rise_kg.max(rise_kg);
+            fuel_used_kg.push(first_kg - smallest_kg);
+        }
+        let burnt_kg = first_kg - smallest_kg;
+        let zero_fuel_mass = zero_fuel_mass.unwrap_or(Mass::kilograms(smallest_kg));
+        let fuel_on_board = Mass::kilograms(first_kg) - zero_fuel_mass;
+        let fuel_on_board_kg = fuel_on_board.to_kilograms();
+        if fuel_on_board_kg <= 0.0 || fuel_on_board_kg < burnt_kg {
+            let kind = RefusalKind::MassNotPositive { mass: "fuel on board" };
+            let found = Found::Number { value: fuel_on_board_kg - burnt_kg, unit: "kg" };
+            return Err(self.refuse(0, masses.input, found, kind));
+        }
+        let largest_rise_kg = Some(largest_rise_kg);
+        Ok(Load { zero_fuel_mass, fuel_on_board, fuel_used_kg, largest_rise_kg })
+    }
+}

@@ -1,0 +1,421 @@
+//! A first mapping for a recording, from the names and values of its columns. What is a guess is marked `// ?`.
+
+mod names;
+
+use core::fmt::Write;
+
+use names::{Name, engine_of};
+
+use super::table::{self, Form};
+use crate::decode;
+use crate::refusal::Refusal;
+
+/// Rows whose values are looked at.
+const ROWS: usize = 5000;
+
+/// The text of a mapping file that reads this recording, as far as names and values tell.
+///
+/// # Errors
+/// [`Refusal`] where the bytes are not text, or hold no line of column names.
+pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
+    let mut unpacked = Vec::new();
+    let text = decode::recording(bytes, &mut unpacked)?;
+    let columns = Columns::of(&text)?;
+    let mut quantities = String::new();
+    let known: Vec<&'static str> =
+        ORDINARY.iter().filter_map(|rule| columns.ordinary(rule, &mut quantities)).collect();
+    columns.engines(&mut quantities);
+    columns.air_data(&known, &mut quantities);
+    Ok(format!(
+        "// Made from the names and values of a recording. Lines with `// ?` are guesses.\n\
+         (\n    format: 1,\n{separator}    bad_rows: LeaveRowOut,\n    out_of_range: LeaveRowOut,\n\
+         {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n    mass: {mass}\n\
+         \x20   // Level cruise; leave it away where the recording holds nothing else.\n\
+         \x20   cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n)\n",
+        separator = match columns.form.separator {
+            b',' => String::new(),
+            other => format!("    separator: {:?},\n", char::from(other)),
+        },
+        texts = columns.texts(),
+        time = columns.time(),
+        mass = columns.mass(),
+    ))
+}
+
+/// A quantity that is one column in one unit.
+struct Rule {
+    quantity: &'static str,
+    names: &'static [&'static str],
+    kind: Kind,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Altitude,
+    Temperature,
+    Mach,
+    Speed,
+    Angle,
+    Mass,
+    Percent,
+    Discrete,
+}
+
+const fn rule(quantity: &'static str, names: &'static [&'static str], kind: Kind) -> Rule {
+    Rule { quantity, names, kind }
+}
+
+const ORDINARY: [Rule; 13] = [
+    rule(
+        "ALT",
+        &[
+            "pressurealtitude",
+            "altitudestd",
+            "altstd",
+            "altistd",
+            "altitudepressure",
+            "baroaltitude",
+            "altitude",
+            "alt",
+        ],
+        Kind::Altitude,
+    ),
+    rule(
+        "SAT",
+        &["staticairtemperature", "sat", "outsideairtemperature", "oat", "airtemperature"],
+        Kind::Temperature,
+    ),
+    rule("TAT", &["totalairtemperature", "tat"], Kind::Temperature),
+    rule("MACH", &["machnumber", "mach", "machno", "m"], Kind::Mach),
+    rule("VTAS", &["trueairspeed", "trueairspd", "tas", "vtas", "airspeedtrue"], Kind::Speed),
+    rule("GSPD", &["groundspeed", "grndspd", "gspd", "gs"], Kind::Speed),
+    rule("ROLL", &["rollangle", "roll", "bank", "bankangle"], Kind::Angle),
+    rule("DRIFT", &["driftangle", "drift"], Kind::Angle),
+    rule("HDG", &["headingtrue", "trueheading", "hdgtrue", "heading", "hdg"], Kind::Angle),
+    rule("LAT", &["latitude", "lat"], Kind::Angle),
+    rule("LON", &["longitude", "lon", "long"], Kind::Angle),
+    rule("CG", &["centreofgravity", "centerofgravity", "cg", "cgpercentmac"], Kind::Percent),
+    rule("A/I", &["antiice", "wingantiice", "engantiice", "ai"], Kind::Discrete),
+];
+const CALIBRATED: Rule =
+    rule("", &["calibratedairspeed", "computedairspeed", "cas", "ias"], Kind::Speed);
+const TRACK: Rule = rule("", &["trackangletrue", "tracktrue", "track", "trk"], Kind::Angle);
+const GROSS: Rule = rule(
+    "",
+    &["grossweight", "grossweightsmoothed", "gw", "weight", "mass", "grossmass", "aircraftmass"],
+    Kind::Mass,
+);
+const ZERO_FUEL: Rule = rule("", &["zerofuelweight", "zfw"], Kind::Mass);
+const TANKS: Rule =
+    rule("", &["fuelquantity", "fuelqty", "fob", "fuelonboard", "fq", "totalfuel"], Kind::Mass);
+const USED: Rule = rule("", &["fuelused", "fu", "fuelburn", "fuelburnt"], Kind::Mass);
+const ENGINE_NAMES: [(&str, &[&str]); 4] = [
+    ("N1", &["n1"]),
+    ("N2", &["n2"]),
+    ("WF", &["fuelflow", "ff", "wf", "ffuel"]),
+    ("EGT", &["egt", "itt", "exhaustgastemperature"]),
+];
+
+/// A recording's columns: names and the first rows.
+struct Columns {
+    form: Form,
+    names: Vec<Name>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Columns {
+    fn of(text: &str) -> Result<Self, Refusal> {
+        let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        let separator = [b',', b';', b'\t', b'|']
+            .into_iter()
+            .max_by_key(|separator| first.matches(char::from(*separator)).count())
+            .unwrap_or(b',');
+        let form = Form { separator, comment: None };
+        let names = table::names(form, text)?.iter().map(|name| Name::new(name)).collect();
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(true)
+            .flexible(true)
+            .delimiter(separator)
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let rows = reader
+            .records()
+            .take(ROWS)
+            .filter_map(Result::ok)
+            .map(|record| record.iter().map(str::to_owned).collect())
+            .collect();
+        Ok(Self { form, names, rows })
+    }
+
+    /// The column of the first of the rule's names that is there.
+    fn find(&self, rule: &Rule) -> Option<usize> {
+        rule.names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)))
+    }
+
+    fn texts_of(&self, column: usize) -> impl Iterator<Item = &str> {
+        self.rows.iter().filter_map(move |row| row.get(column)).map(String::as_str)
+    }
+
+    /// Median of a column's numbers.
+    fn median(&self, column: usize) -> Option<f64> {
+        let mut numbers: Vec<f64> =
+            self.texts_of(column).filter_map(|text| text.parse().ok()).collect();
+        numbers.retain(|number: &f64| number.is_finite());
+        numbers.sort_by(f64::total_cmp);
+        numbers.get(numbers.len() / 2).copied()
+    }
+
+    /// Largest number of a column: what a flight reaches in cruise.
+    fn largest(&self, column: usize) -> Option<f64> {
+        self.texts_of(column).filter_map(|text| text.parse::<f64>().ok()).reduce(f64::max)
+    }
+
+    /// `column: …, unit: …` of a column, and whether the unit is a guess.
+    fn recorded(&self, column: usize, kind: Kind) -> (String, bool) {
+        let name = &self.names[column];
+        let (unit, is_guess) = match name.unit(kind) {
+            Some(unit) => (unit.to_owned(), false),
+            None => self.unit_by_value(column, kind),
+        };
+        let mut fields = format!("column: {:?}, {unit}", name.sent);
+        let is_sparse = self.rows.len() > 20
+            && 2 * self.texts_of(column).filter(|text| text.is_empty()).count() > self.rows.len();
+        if is_sparse {
+            fields += ", hold_s: 120";
+        }
+        (fields, is_guess || is_sparse)
+    }
+
+    fn unit_by_value(&self, column: usize, kind: Kind) -> (String, bool) {
+        let largest = self.largest(column).unwrap_or(0.0);
+        let median = self.median(column).unwrap_or(0.0);
+        let (unit, is_guess) = match kind {
+            Kind::Altitude if largest > 17_000.0 => ("unit: \"ft\"", false),
+            Kind::Altitude if largest < 650.0 => ("unit: \"ft\", scale: 100", true),
+            Kind::Altitude => ("unit: \"m\"", true),
+            Kind::Temperature if median > 150.0 => ("unit: \"K\"", false),
+            Kind::Temperature => ("unit: \"degC\"", true),
+            Kind::Mach if largest > 100.0 => ("unit: \"-\", scale: 0.001", true),
+            Kind::Mach if largest > 1.5 => ("unit: \"-\", scale: 0.01", true),
+            Kind::Mach => ("unit: \"-\"", false),
+            Kind::Speed if largest > 330.0 => ("unit: \"kt\"", true),
+            Kind::Speed => ("unit: \"m/s\"", true),
+            Kind::Angle => ("unit: \"deg\"", false),
+            Kind::Mass => ("unit: \"kg\"", true),
+            Kind::Percent => ("unit: \"%MAC\"", false),
+            Kind::Discrete => {
+                let is_text = self.texts_of(column).any(|text| text == "ON" || text == "OFF");
+                if is_text {
+                    ("unit: \"-\", values: [(\"ON\", 1), (\"OFF\", 0)]", false)
+                } else {
+                    ("unit: \"-\"", true)
+                }
+            }
+        };
+        (unit.to_owned(), is_guess)
+    }
+
+    fn ordinary(&self, rule: &Rule, text: &mut String) -> Option<&'static str> {
+        let column = self.find(rule)?;
+        let (fields, is_guess) = self.recorded(column, rule.kind);
+        line(text, rule.quantity, &format!("Recorded({fields})"), is_guess);
+        Some(rule.quantity)
+    }
+
+    /// Columns of single engines, and the flow of all where there is none.
+    fn engines(&self, text: &mut String) {
+        for (quantity, names) in ENGINE_NAMES {
+            let mut found = false;
+            for engine in 1..=4_u8 {
+                let column =
+                    self.names.iter().position(|name| engine_of(name, names) == Some(engine));
+                let Some(column) = column else { break };
+                found = true;
+                let (unit, is_guess) = self.engine_unit(quantity, column);
+                let source = format!("Recorded(column: {:?}, {unit})", self.names[column].sent);
+                line(text, &format!("{quantity}({engine})"), &source, is_guess);
+            }
+            let total = self.names.iter().position(|name| names.iter().any(|one| name.is(one)));
+            if let (false, "WF", Some(column)) = (found, quantity, total) {
+                let (unit, _) = self.engine_unit(quantity, column);
+                let source = format!("Recorded(column: {:?}, {unit})", self.names[column].sent);
+                // Whether it is of all engines no name tells: `cruisefit check` does.
+                line(text, quantity, &source, true);
+            }
+        }
+    }
+
+    fn engine_unit(&self, quantity: &str, column: usize) -> (String, bool) {
+        match quantity {
+            "WF" => match self.names[column].flow_unit() {
+                Some(unit) => (format!("unit: {unit:?}"), false),
+                None if self.largest(column).is_some_and(|flow| flow < 20.0) => {
+                    ("unit: \"kg/s\"".to_owned(), true)
+                }
+                None => ("unit: \"kg/h\"".to_owned(), true),
+            },
+            "EGT" => ("unit: \"degC\"".to_owned(), true),
+            _ => ("unit: \"%\"".to_owned(), false),
+        }
+    }
+
+    /// What of MACH, SAT, VTAS and DRIFT has to be derived.
+    fn air_data(&self, known: &[&str], text: &mut String) {
+        let has = |quantity: &str| known.contains(&quantity);
+        let mut derived = false;
+        if !has("MACH") {
+            match self.find(&CALIBRATED) {
+                Some(column) => {
+                    let (fields, _) = self.recorded(column, Kind::Speed);
+                    line(text, "MACH", &format!("FromCalibratedAirspeed({fields})"), true);
+                }
+                None => line(text, "MACH", "FromTrueAirspeed", true),
+            }
+            derived = self.find(&CALIBRATED).is_none();
+        }
+        if !has("SAT") {
+            if has("TAT") && !derived {
+                line(text, "SAT", "FromTotalTemperature(recovery_factor: 1.0)", true);
+            } else {
+                line(text, "SAT", "Isa(deviation_k: 0.0)", true);
+            }
+        }
+        if !has("VTAS") && !derived {
+            line(text, "VTAS", "FromMach", true);
+        }
+        if let (false, Some(track)) = (has("DRIFT"), self.find(&TRACK))
+            && let Some(heading) = self.find(&ORDINARY[8])
+        {
+            let source = format!(
+                "Difference(column: {:?}, minus: {:?}, unit: \"deg\")",
+                self.names[track].sent, self.names[heading].sent
+            );
+            line(text, "DRIFT", &source, false);
+        }
+    }
+
+    fn texts(&self) -> String {
+        let mut text = String::new();
+        for (key, names, otherwise) in [
+            (
+                "aircraft",
+                &["aircrafttype", "actype", "type", "typecode", "flplairctype"][..],
+                "Text(\"TYPE\"),   // ?",
+            ),
+            (
+                "tail",
+                &["tail", "registration", "reg", "acident", "tailnumber"][..],
+                "Text(\"TAIL\"),   // ?",
+            ),
+            (
+                "flight",
+                &["flight", "flightnumber", "flightid", "flt", "callsign", "systtrajid"][..],
+                "FileName,",
+            ),
+        ] {
+            let column =
+                names.iter().find_map(|wanted| self.names.iter().find(|name| name.is(wanted)));
+            let source = column
+                .map_or_else(|| otherwise.to_owned(), |name| format!("Column({:?}),", name.sent));
+            let _ = writeln!(text, "    {key}: {source}");
+        }
+        text
+    }
+
+    fn time(&self) -> String {
+        let names = [
+            "timestamp",
+            "datetime",
+            "utcdatetime",
+            "utc",
+            "plotdate",
+            "time",
+            "ts",
+            "t",
+            "seconds",
+            "flighttime",
+        ];
+        let found =
+            names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)));
+        let Some(column) = found else {
+            return "Seconds(column: \"TIME\", start: \"2000-01-01T00:00:00Z\"),   // ?".to_owned();
+        };
+        let name = &self.names[column].sent;
+        let date = self.names.iter().find(|name| name.is("date") || name.is("utcdate"));
+        let sample = self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default();
+        let with_zone = sample.ends_with('Z') || sample.contains('+');
+        match sample.parse::<f64>() {
+            Ok(number) if number > 1e17 => format!("Epoch(column: {name:?}, unit: \"ns\"),"),
+            Ok(number) if number > 1e14 => format!("Epoch(column: {name:?}, unit: \"us\"),"),
+            Ok(number) if number > 1e11 => format!("Epoch(column: {name:?}, unit: \"ms\"),"),
+            Ok(number) if number > 1e8 => format!("Epoch(column: {name:?}, unit: \"s\"),"),
+            Ok(_) => format!("Seconds(column: {name:?}, start: \"2000-01-01T00:00:00Z\"),   // ?"),
+            Err(_) if sample.contains('-') => {
+                let mark = if with_zone { "" } else { "   // ?" };
+                format!("Timestamp(column: {name:?}, utc_offset: \"Z\"),{mark}")
+            }
+            Err(_) if sample.contains('/') => format!(
+                "Timestamp(column: {name:?}, format: \"%d/%m/%Y %H:%M:%S\", utc_offset: \"Z\"),   // ?"
+            ),
+            Err(_) => match date {
+                Some(date) => format!(
+                    "Timestamp(column: {name:?}, date: {:?}, format: {:?}, utc_offset: \"Z\"),   // ?",
+                    date.sent,
+                    self.date_form(date)
+                ),
+                None => format!(
+                    "TimeOfDay(column: {name:?}, date: \"2000-01-01\", utc_offset: \"Z\"),   // ?"
+                ),
+            },
+        }
+    }
+
+    fn date_form(&self, date: &Name) -> &'static str {
+        let column = self.names.iter().position(|name| name.sent == date.sent).unwrap_or(0);
+        match self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default() {
+            text if text.contains('/') => "%d/%m/%Y %H:%M:%S",
+            text if text.contains('.') => "%d.%m.%Y %H:%M:%S",
+            _ => "%Y-%m-%d %H:%M:%S",
+        }
+    }
+
+    fn mass(&self) -> String {
+        let amount = |column: usize| {
+            let (fields, is_guess) = self.recorded(column, Kind::Mass);
+            let unit = if fields.contains("\"lb\"") { "lb" } else { "kg" };
+            (self.names[column].sent.clone(), unit, is_guess)
+        };
+        let mark = |is_guess: bool| if is_guess { "   // ?" } else { "" };
+        let found = [&GROSS, &ZERO_FUEL, &TANKS, &USED].map(|rule| self.find(rule));
+        match found {
+            [Some(gross), ..] => {
+                let (fields, is_guess) = self.recorded(gross, Kind::Mass);
+                format!("GrossMass({fields}, largest_rise_kg: 200),{}", mark(is_guess))
+            }
+            [None, Some(zero), Some(tanks), Some(used)] => {
+                let [zero, tanks, used] = [zero, tanks, used].map(amount);
+                format!(
+                    "LoadSheet(fuel_used: Column({:?}, {:?}), zero_fuel_weight: Column({:?}, {:?}), fuel_on_board: Column({:?}, {:?})),   // ?",
+                    used.0, used.1, zero.0, zero.1, tanks.0, tanks.1
+                )
+            }
+            [None, Some(zero), Some(tanks), None] => {
+                let [zero, tanks] = [zero, tanks].map(amount);
+                format!(
+                    "ZeroFuelAndTanks(zero_fuel_weight: Column({:?}, {:?}), tanks: [{:?}], unit: {:?}, largest_rise_kg: 500),{}",
+                    zero.0,
+                    zero.1,
+                    tanks.0,
+                    tanks.1,
+                    mark(zero.2 || tanks.2)
+                )
+            }
+            _ => "StartMass(gross_weight: Value(60000, \"kg\")),   // ?".to_owned(),
+        }
+    }
+}
+
+fn line(text: &mut String, quantity: &str, source: &str, is_guess: bool) {
+    let mark = if is_guess { "   // ?" } else { "" };
+    let _ = writeln!(text, "        {quantity:?}: {source},{mark}");
+}

@@ -1,0 +1,116 @@
+//! What a column's name tells: quantity, unit, engine.
+
+use super::Kind;
+
+/// A column's name, as sent and taken apart.
+pub(super) struct Name {
+    pub(super) sent: String,
+    /// Letters and digits in lower case, without a unit at the end.
+    plain: String,
+    unit: Option<&'static str>,
+}
+
+/// What units are called at the end of a name, and what we call them; the longer ones first.
+const UNITS: [(&str, &str); 27] = [
+    ("feet", "ft"),
+    ("ft", "ft"),
+    ("meters", "m"),
+    ("metres", "m"),
+    ("kts", "kt"),
+    ("knots", "kt"),
+    ("kt", "kt"),
+    ("mps", "m/s"),
+    ("kgh", "kg/h"),
+    ("kgph", "kg/h"),
+    ("kghr", "kg/h"),
+    ("lbh", "lb/h"),
+    ("lbhr", "lb/h"),
+    ("lbsh", "lb/h"),
+    ("pph", "lb/h"),
+    ("kgs", "kg/s"),
+    ("kg", "kg"),
+    ("lbs", "lb"),
+    ("lb", "lb"),
+    ("degc", "degC"),
+    ("degf", "degF"),
+    ("deg", "deg"),
+    ("celsius", "degC"),
+    ("kelvin", "K"),
+    ("pct", "%"),
+    ("percent", "%"),
+    ("c", "degC"),
+];
+
+impl Name {
+    pub(super) fn new(sent: &str) -> Self {
+        let pieces: Vec<String> = sent
+            .split(|letter: char| !letter.is_alphanumeric())
+            .filter(|piece| !piece.is_empty())
+            .map(str::to_lowercase)
+            .collect();
+        // "kg/h" and "kg_h" come as two pieces.
+        for count in [2, 1] {
+            let Some(split) = pieces.len().checked_sub(count).filter(|split| *split > 0) else {
+                continue;
+            };
+            let last = pieces[split..].concat();
+            if let Some((_, unit)) = UNITS.iter().find(|(word, _)| *word == last) {
+                let plain = pieces[..split].concat();
+                return Self { sent: sent.to_owned(), plain, unit: Some(unit) };
+            }
+        }
+        Self { sent: sent.to_owned(), plain: pieces.concat(), unit: None }
+    }
+
+    pub(super) fn is(&self, wanted: &str) -> bool {
+        self.plain == wanted
+    }
+
+    /// The `unit` field for a quantity of this kind, where the name carries one.
+    pub(super) fn unit(&self, kind: Kind) -> Option<&'static str> {
+        Some(match (kind, self.unit?) {
+            (Kind::Altitude, "ft") => "unit: \"ft\"",
+            (Kind::Altitude, "m") => "unit: \"m\"",
+            (Kind::Temperature, "degC") => "unit: \"degC\"",
+            (Kind::Temperature, "K") => "unit: \"K\"",
+            (Kind::Temperature, "degF") => {
+                "unit: \"degC\", scale: 0.5555555556, offset: -17.77777778"
+            }
+            (Kind::Speed, "kt") => "unit: \"kt\"",
+            (Kind::Speed, "m/s") => "unit: \"m/s\"",
+            (Kind::Mass, "kg") => "unit: \"kg\"",
+            (Kind::Mass, "lb") => "unit: \"lb\"",
+            (Kind::Percent, "%") => "unit: \"%MAC\"",
+            (Kind::Angle, "deg") => "unit: \"deg\"",
+            _ => return None,
+        })
+    }
+
+    pub(super) fn flow_unit(&self) -> Option<&'static str> {
+        self.unit.filter(|unit| ["kg/h", "lb/h", "kg/s"].contains(unit))
+    }
+}
+
+/// The engine of a column named by one of `stems` and a number, a letter or a side; `None` for any other column.
+pub(super) fn engine_of(name: &Name, stems: &[&str]) -> Option<u8> {
+    let marks: [(u8, &[&str]); 4] =
+        [(1, &["1", "l", "a", "left"]), (2, &["2", "r", "b", "right"]), (3, &["3"]), (4, &["4"])];
+    for stem in stems {
+        for (engine, words) in marks {
+            for word in words {
+                let forms = [
+                    format!("{stem}{word}"),
+                    format!("{stem}eng{word}"),
+                    format!("eng{word}{stem}"),
+                    format!("engine{word}{stem}"),
+                    format!("e{word}{stem}"),
+                    format!("{word}{stem}"),
+                ];
+                if forms.contains(&name.plain) {
+                    return Some(engine);
+                }
+            }
+        }
+    }
+    None
+}
