@@ -132,7 +132,9 @@ pub use output::measurement::{
 };
 pub use output::note::{LeftOutReason, Note};
 pub use output::region::{Condition, Edge, Region};
-pub use output::verdict::{Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict};
+pub use output::verdict::{
+    Beside, Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict,
+};
 pub use output::{
     ActsOn, Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
 };
@@ -141,5 +143,7 @@ pub use residuals::whole::{WholeModel, WholePrediction};
 pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};
 pub use signals::references::{DiagnoseError, references_of};
-pub use signals::table_uncertainty::{TableUncertainty, TableUncertaintyError, visited_nodes};
+pub use signals::table_uncertainty::{
+    TableOrigin, TableUncertainty, TableUncertaintyError, visited_nodes,
+};
 pub use signals::variables::Variable;

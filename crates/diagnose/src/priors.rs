@@ -7,6 +7,9 @@ deciding_numbers! {
         PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25], "",
             "prior weights of no effect, of one, of two",
             OurChoice "One is the likeliest, none and two are no surprise; three, which would have the rest, are not searched.";
+        PRIOR_NO_GAP: f64 = 0.5, "",
+            "share of the prior of no effect that is on a model without any fault; the rest is on small faults of all kinds",
+            OurChoice "An even chance: no gap is a belief of its own, and no corner of the backgrounds.";
         PRIOR_OUTSIDE: f64 = 0.20, "",
             "prior probability that something outside the library acts",
             OurChoice "One cause in five: the library is long, but nobody can list every cause.";
@@ -15,9 +18,12 @@ deciding_numbers! {
             OurChoice "A sign is a strong expectation and no law: one model in twenty errs the other way.";
     }
     "How large an effect is" {
-        PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)], "",
+        PRIOR_SCALES: [(f64, f64); 3] = [(1.0, 0.45), (3.0, 0.45), (10.0, 0.10)], "",
             "prior standard deviations of an effect over its typical size, each with its probability",
-            OurChoice "Half of the belief on effects of three times the typical size, so that a large one is not shrunk away.";
+            OurChoice "As much belief on three times the typical size, so that a large effect is not shrunk away; one in ten on ten times.";
+        FLAT_RANGE: f64 = 0.10, "of fuel flow",
+            "range over which the effect of a cause on fuel flow is evenly probable where its prior size is left out",
+            OurChoice "Five per cent either way: what an engineer would not call impossible of any cause.";
         KNOWN_DEVIATION: f64 = 0.15, "",
             "prior standard deviation of a coefficient that physics says is 1",
             OurChoice "Physics says 1; what is recorded of wind, position and turns is not exact, so that some 15 % are left.";
@@ -46,9 +52,9 @@ deciding_numbers! {
         SMOOTH_AMPLITUDES: [f64; 4] = [0.0, 0.0015, 0.004, 0.010], "of fuel flow",
             "amplitudes of the smooth discrepancy",
             OurChoice "From none to 1 %, about what a table over lift coefficient and Mach number cannot hold; averaged over.";
-        TAUGHT_LARGEST_AMPLITUDE: f64 = 0.004, "of fuel flow",
+        TAUGHT_LARGEST_AMPLITUDE: f64 = 0.010, "of fuel flow",
             "largest amplitude of the smooth discrepancy against a baseline",
-            OurChoice "The remainder was fitted to what the fleet flies, so that 1 % cannot be left.";
+            OurChoice "All that are tried: a remainder of few flights may lack as much.";
         TAUGHT_SCATTERS: [f64; 2] = [0.0, 0.003], "of fuel flow",
             "scatter between flights beyond what a baseline learnt",
             OurChoice "A baseline knows the scatter from few flights: it may be more. Both are averaged over.";
@@ -58,6 +64,29 @@ deciding_numbers! {
         PRODUCT_SCALE: f64 = 0.5, "",
             "amplitude of a product of two variables over that of a function of one",
             OurChoice "Discrepancies of one variable are taken for twice as large as those of two together.";
+    }
+    "A guide that no flight has taught" {
+        PRIOR_BOOK_RIGHT: f64 = 0.10, "",
+            "prior probability that the drag of a guide is right as it is",
+            OurChoice "Guides are some per cent too optimistic as a rule.";
+        BOOK_SPIKES: [f64; 4] = [0.0, 0.3, 1.0, 3.0], "of typical size",
+            "standard deviation, against a guide, of every effect that a hypothesis does not name and a model may lack at all times",
+            OurChoice "A guide's equations lack Reynolds number, offtake, part load: none, or all, up to three times usual; averaged over.";
+        SPIKES_OF_RIGHT_TABLE: usize = 2, "",
+            "how many of them, from the smallest, apply where the guide's drag is right",
+            OurChoice "Larger ones of drag would be a table that is off by another name.";
+        BOOK_SCATTERS: [f64; 2] = [0.0, 0.01], "of fuel flow",
+            "scatter between flights against a guide beyond what the sensors make",
+            OurChoice "Law bayes' own 1 % of what is no function of lift coefficient and Mach number, or none; averaged over.";
+        BOOK_AMPLITUDES: [f64; 2] = [0.0, 0.004], "of fuel flow",
+            "amplitudes of the smooth discrepancy against a guide",
+            OurChoice "None, and about law bayes' 0.3 % of a segment: the table itself is free.";
+        BOOK_OTHER_EFFECTS: f64 = 0.05, "of that",
+            "the same of effects of one aircraft: sensors, loading, single engines, age, steps",
+            OurChoice "An equation that is lacking says nothing of sensors: at most 0.15 of typical.";
+        BOOK_AGNOSTIC_SPIKES: [f64; 2] = [0.3, 3.0], "of typical size",
+            "the same behind a function without a name",
+            OurChoice "The smallest and the largest of those above; averaged over.";
     }
     "Functions without a name" {
         AGNOSTIC_AMPLITUDES: [f64; 3] = [0.002, 0.005, 0.015], "of fuel flow",

@@ -11,8 +11,8 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, Summary, TailSummary};
 /// Refused reports that are listed; more would make the page unreadable.
 const MOST_REFUSED: usize = 200;
 
-/// Table of all tails, in the order given. `id_of` is the anchor of a tail's section, if it has one.
-pub(crate) fn table(summary: &Summary, id_of: impl Fn(&str) -> Option<String>) -> Markup {
+/// Table of all tails, in the order given. `link_of` leads to what there is of a tail.
+pub(crate) fn table(summary: &Summary, link_of: impl Fn(&str) -> Option<String>) -> Markup {
     let adapted = summary.tails.iter().any(|tail| tail.fuel_flow_error_percent.after.is_some());
     html! {
         div.scroll {
@@ -43,7 +43,7 @@ pub(crate) fn table(summary: &Summary, id_of: impl Fn(&str) -> Option<String>) -
                     }
                 }
                 tbody {
-                    @for tail in &summary.tails { (row(tail, adapted, id_of(&tail.tail))) }
+                    @for tail in &summary.tails { (row(tail, adapted, link_of(&tail.tail))) }
                 }
                 @if summary.tails.len() > 1 { tfoot { (totals(&summary.tails, adapted)) } }
             }
@@ -51,13 +51,13 @@ pub(crate) fn table(summary: &Summary, id_of: impl Fn(&str) -> Option<String>) -
     }
 }
 
-fn row(tail: &TailSummary, adapted: bool, id: Option<String>) -> Markup {
+fn row(tail: &TailSummary, adapted: bool, link: Option<String>) -> Markup {
     let errors = &tail.fuel_flow_error_percent;
     html! {
         tr {
             th scope="row" {
-                @match id {
-                    Some(id) => { a href=(format!("#{id}")) { (tail.tail) } }
+                @match link {
+                    Some(link) => { a href=(link) { (tail.tail) } }
                     None => { (tail.tail) }
                 }
             }

@@ -1,8 +1,8 @@
 //! The result of a run as one plain page for a performance engineer to read, print and forward.
 //!
 //! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis`]
-//! that of diagnoses (verdicts, causes with sizes, what cannot be tested, what would just be detected). Both are
-//! strings of HTML with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
+//! that of diagnoses (verdicts, causes with sizes, what cannot be tested, what would just be detected),
+//! [`monitoring`] that of months and fleets. All are strings of HTML with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
 //! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures
 //! are taken from the results unchanged.
 //!
@@ -11,7 +11,7 @@
 //!
 //! Limits:
 //! - The page of a large fleet draws a share of the segments, and states so; figures and tables cover all.
-//! - Some 300 tails make a page of 10 MB; more belong in several runs.
+//! - A page holds the charts of at most [`TAILS_ON_ONE_PAGE`] tails; the tails of a larger fleet have a page each.
 //!
 //! ```
 //! use pipeline::summary::{ReportsSummary, SCHEMA, Summary};
@@ -27,6 +27,7 @@ mod envelope;
 mod errors;
 mod fleet;
 mod frame;
+mod monitoring;
 mod place;
 mod polars;
 mod report;
@@ -40,4 +41,8 @@ mod text;
 mod view;
 
 pub use diagnosis::diagnosis;
-pub use report::report;
+pub use report::{
+    Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
+    tail_page,
+};
+pub use monitoring::monitoring;

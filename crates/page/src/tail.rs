@@ -9,19 +9,13 @@ use crate::{envelope, errors, polars};
 use pipeline::evaluation::TailResult;
 use pipeline::statistics::ErrorStatistics;
 
-/// A tail's section, folded unless `open`.
-pub(crate) fn section(result: &TailResult, place: &Place<'_>, open: bool) -> Markup {
+/// What is in a tail's section.
+pub(crate) fn body(result: &TailResult, place: &Place<'_>) -> Markup {
     let view = TailView::of(result);
     html! {
-        details.tail open[open] {
-            summary { h3 { (result.tail) } " " span { (headline(result)) } }
-            // The anchor is inside: following a link to it unfolds the section.
-            div id=(place.id) {
-                p { (about(result)) }
-                (figures(&view, place))
-                (notes(result, &view))
-            }
-        }
+        p { (about(result)) }
+        (figures(&view, place))
+        (notes(result, &view))
     }
 }
 
@@ -41,7 +35,8 @@ pub(crate) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
     }
 }
 
-fn headline(result: &TailResult) -> String {
+/// A tail's figures in a line.
+pub(crate) fn headline(result: &TailResult) -> String {
     let summary = &result.summary;
     let errors = &summary.fuel_flow_error_percent;
     let words = |statistics: &ErrorStatistics| {

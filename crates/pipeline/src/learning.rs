@@ -85,11 +85,12 @@ pub fn learn_flight(
     flight: &FlightToLearn<'_>,
 ) -> Result<FlightLearnt, LearningError> {
     let mut observations = Vec::with_capacity(flight.segments.len());
+    let mut references = learnt.references.clone();
     let mut result = FlightLearnt::default();
     for segment in flight.segments {
         match (initial.observe(segment), initial.corrected(segment)) {
             (Ok(observation), Ok(corrected)) => {
-                learnt.references.add(&corrected, observation.lift_coefficient);
+                references.add(&corrected, observation.lift_coefficient);
                 observations.push(observation);
             }
             _ => result.outside_table += 1,
@@ -98,8 +99,10 @@ pub fn learn_flight(
     match &mut learnt.law {
         LawState::Paper { settings, state, ever_adapted, refits } => {
             let law = PaperLaw::new(settings.threshold_percent)?;
-            learn_by_paper(law, state, ever_adapted, &observations, &mut result);
-            let (drag_coefficient, confidence) = state.tables_mut();
+            // On copies: a flight whose refit fails leaves no trace.
+            let (mut new_state, mut new_adapted) = (state.clone(), ever_adapted.clone());
+            learn_by_paper(law, &mut new_state, &mut new_adapted, &observations, &mut result);
+            let (drag_coefficient, confidence) = new_state.tables_mut();
             let basis = initial.polynomial().basis;
             let report =
                 refit::refit(RefitRule::ghazi_2020(), basis, drag_coefficient, confidence)?;
@@ -107,6 +110,7 @@ pub fn learn_flight(
                 result.refitted = true;
                 *refits += 1;
             }
+            (*state, *ever_adapted) = (new_state, new_adapted);
         }
         LawState::Bayes { state, .. } => {
             let update = state.learn_flight(&observations);
@@ -118,6 +122,7 @@ pub fn learn_flight(
             }
         }
     }
+    learnt.references = references;
     learnt.ledger.push(LedgerEntry {
         segments: flight.segments.len() as u64,
         outside_table: result.outside_table as u64,

@@ -59,6 +59,7 @@ pub mod merging;
 pub mod model_file;
 pub mod model_table;
 pub mod optimum;
+pub mod monitoring;
 pub mod reduction;
 pub mod residuals;
 pub mod segments_table;

@@ -76,6 +76,6 @@ pub fn belief_before_flights(
     let state = adapt::bayes::BayesState::new(initial.drag_table(), settings)
         .map_err(|error| error.to_string())?;
     let prior = state.solve().map_err(|error| error.to_string())?;
-    crate::table_uncertainty::of_visited(&prior, initial.drag_table().grid(), visited)
+    crate::table_uncertainty::of_visited(&prior, initial.drag_table().grid(), visited, 1.0)
         .map_err(|error| error.to_string())
 }

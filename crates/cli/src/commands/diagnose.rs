@@ -17,7 +17,7 @@ use crate::models::Models;
 use crate::plausibility;
 use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
-use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
+use pipeline::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use pipeline::diagnosis_document::DiagnosisDocument;
 use pipeline::model_file::ModelFile;
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
@@ -33,6 +33,13 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         without: effects("--without", &arguments.without)?,
         ..Options::default()
     };
+    let asked = RunOptions {
+        effects: arguments.effects.clone(),
+        without: arguments.without.clone(),
+        pool: arguments.pool,
+        table_only: arguments.table_only,
+        allow_learnt: arguments.allow_learnt,
+    };
     let models = Models::read(&arguments.models.models)?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
@@ -47,7 +54,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let read = groups.iter().map(|group| group.flights.len()).sum();
     let diagnoses = groups
         .par_iter()
-        .map(|group| diagnose_group(group, &options, arguments.table_only))
+        .map(|group| diagnose_group(group, &options, &asked))
         .collect::<Result<Vec<_>, Failure>>()?;
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
     let reports = ReportsSummary {
@@ -56,7 +63,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         refused: reading.refused.iter().map(RefusedSummary::from).collect(),
     };
     let path = arguments.output.join("diagnosis.json");
-    let json = DiagnosisDocument::new(&reports, &diagnoses)
+    let json = DiagnosisDocument::new(&asked, &reports, &diagnoses)
         .to_json()
         .map_err(|error| Failure::unwritable(&path, error))?;
     write_atomically(&path, json.as_bytes())?;
@@ -171,7 +178,7 @@ fn has_learnt(model: &ModelFile, flight: &FlightRead) -> bool {
 fn diagnose_group(
     group: &Group<'_>,
     options: &Options,
-    table_only: bool,
+    asked: &RunOptions,
 ) -> Result<DiagnosedTail, Failure> {
     let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
         argument: "--model",
@@ -186,7 +193,7 @@ fn diagnose_group(
             gauges: flight.reduced.gauges,
         })
         .collect();
-    let predicts = predicts(table_only);
+    let predicts = predicts(asked.table_only);
     let table = table_uncertainty::of_model(group.model, predicts, &records)
         .map_err(|error| wrong(&error))?;
     let baseline = group.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
@@ -194,13 +201,13 @@ fn diagnose_group(
         model: &group.model.initial,
         drag_table: group.model.reference_table(predicts),
         flights: &records,
-        baseline: if table_only { None } else { baseline },
+        baseline: if asked.table_only { None } else { baseline },
         table: table.as_ref(),
         references: baseline.map(|baseline| *baseline.references()),
     };
     let diagnosis = diagnose(&input, options).map_err(|error| wrong(&error))?;
-    let mut run_notes = Vec::new();
-    if baseline.is_none() && !table_only {
+    let mut run_notes = asked.restrictions();
+    if baseline.is_none() && !asked.table_only {
         run_notes.push(
             "the model has learnt no remainder (law bayes learns one from five flights): everything that a table cannot hold \
              counts as gap"
@@ -213,7 +220,20 @@ fn diagnose_group(
             run_notes.push(note.clone());
         }
     }
-    Ok(DiagnosedTail { tail: group.name.clone(), diagnosis, run_notes })
+    let compared = compared(group);
+    Ok(DiagnosedTail { tail: group.name.clone(), diagnosis, compared, run_notes })
+}
+
+fn compared(group: &Group<'_>) -> Compared {
+    let starts = || group.flights.iter().map(|flight| flight.reduced.identity.start);
+    let learnt = group.model.learnt.as_ref();
+    Compared {
+        aircraft: group.model.initial.aircraft().name().to_owned(),
+        law: learnt.map(|learnt| learnt.law.told()),
+        flights_learnt: learnt.map_or(0, |learnt| learnt.ledger.len()),
+        first_flight: starts().min().map(|start| start.to_string()),
+        last_flight: starts().max().map(|start| start.to_string()),
+    }
 }
 
 /// The diagnosis in a dozen lines, and what was assumed.

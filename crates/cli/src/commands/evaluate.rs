@@ -92,7 +92,7 @@ pub(crate) fn evaluate(
         schema: SCHEMA,
         reports: ReportsSummary {
             read,
-            already_known: 0,
+            already_known: reading.copies,
             refused: refused.iter().map(RefusedSummary::from).collect(),
         },
         tails: tails.iter().map(|tail| tail.result.summary.clone()).collect(),

@@ -75,12 +75,14 @@ impl ModelErrorDraws {
         let smooth = (smooth_amplitude > 0.0).then(|| {
             let mut rows = Rows::normal(source, design.smooth_terms(), width);
             for number in &mut rows.numbers {
-                *number *= smooth_amplitude;
+                *number *= design.smooth_deviation(smooth_amplitude);
             }
             rows
         });
         let chords = Rows::normal(source, 2, width);
-        let nodes = design.table().map(|table| {
+        // A guide's errors are the gap whose place is asked for.
+        let learnt = design.table().filter(|_| !stacked.is_book());
+        let nodes = learnt.map(|table| {
             let unit = Rows::normal(source, table.rank(), width);
             let nodes = table.grid().nodes();
             let mut rows = Rows { width, numbers: vec![0.0; nodes * width] };

@@ -17,12 +17,22 @@ const MAXIMUM_NUMBERS: usize = 16_000_000;
 /// Share of a node's variance that may be left out: 3 % of its standard deviation.
 const NEGLIGIBLE_SHARE: f64 = 1e-3;
 
+/// Where the uncertainty of a drag table comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableOrigin {
+    /// A guide, before any flight: what is believed of its drag. It may be right as it is.
+    Book,
+    /// What flights have left open.
+    Learnt,
+}
+
 /// Uncertainty of a drag table: a factor of the covariance of its nodes' relative errors, one row per node.
 ///
 /// The covariance is `factor · factorᵀ`; a diagonal one (node standard deviations alone) has as many columns as nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableUncertainty {
     grid: Arc<Grid>,
+    origin: TableOrigin,
     rank: usize,
     factor: Vec<f64>,
     /// Largest share of a visited node's variance that the factor leaves out; `None` where it has all nodes.
@@ -75,7 +85,15 @@ impl TableUncertainty {
         if let Some(index) = factor.iter().position(|value| !value.is_finite()) {
             return Err(TableUncertaintyError::NotFinite { index });
         }
-        Ok(Self { grid, rank, factor, missing_share: None, pivots: vec![], left: vec![] })
+        Ok(Self {
+            grid,
+            origin: TableOrigin::Learnt,
+            rank,
+            factor,
+            missing_share: None,
+            pivots: vec![],
+            left: vec![],
+        })
     }
 
     /// From the covariance of the nodes' relative errors, row by row.
@@ -170,6 +188,18 @@ impl TableUncertainty {
         }
         let missing_share = Some(missing_share);
         Ok(Self { missing_share, pivots, left, ..Self::new(grid, rank, factor)? })
+    }
+
+    /// The same as what is believed of a guide before any flight.
+    #[must_use]
+    pub fn of_book(self) -> Self {
+        Self { origin: TableOrigin::Book, ..self }
+    }
+
+    /// Where it comes from.
+    #[must_use]
+    pub const fn origin(&self) -> TableOrigin {
+        self.origin
     }
 
     /// Largest share of a visited node's variance that the columns leave out; `None` where the covariance of all nodes is
