@@ -82,8 +82,9 @@ fn noise_is_that_of_the_flights() {
     assert!((found.flight_variance_percent2(1).sqrt() - 1.0).abs() < 0.1, "{found:?}");
 }
 
-/// 1000 short histories of a known step at a known event: its 95 % interval holds it in 95 % of them, give or take three
-/// standard errors of the count, and the interval of a month's mean likewise.
+/// 1000 short histories of a known step at a known event: its 95 % interval holds it in 95 % of them, three standard errors
+/// of the count (21) allowed, and the interval of a month's mean likewise. Upwards as much again: doubt about flights far from
+/// their neighbours takes 6 % of a normal series' weight, which widens its intervals by 3 %.
 #[test]
 fn intervals_hold_what_they_promise() {
     let mut noise = normal(5);
@@ -100,8 +101,8 @@ fn intervals_hold_what_they_promise() {
         let mean = found.mean_percent(&series, 0..30).unwrap();
         means += i32::from((mean.value - 2.0).abs() <= mean.half_width95());
     }
-    assert!((effects - 950).abs() <= 21, "{effects} of 1000");
-    assert!((means - 950).abs() <= 21, "{means} of 1000");
+    assert!((929..=985).contains(&effects), "{effects} of 1000");
+    assert!((929..=985).contains(&means), "{means} of 1000");
 }
 
 /// 300 steps of 1 % at noise 0.5 %, no event known: the interval of the date holds the first flight after the step in about

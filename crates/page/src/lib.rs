@@ -41,8 +41,8 @@ mod text;
 mod view;
 
 pub use diagnosis::diagnosis;
+pub use monitoring::monitoring;
 pub use report::{
     Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
     tail_page,
 };
-pub use monitoring::monitoring;

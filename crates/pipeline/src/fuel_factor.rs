@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use flight::{FlightIdentity, Segment};
+use monitor::airbus::rounded_up_to_a_tenth;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use units::PressureAltitude;
 
@@ -26,10 +27,6 @@ use crate::segments_table::Evaluated;
 const LEVEL_BAND_FT: f64 = 2000.0;
 /// Bands of Mach number.
 const MACH_BAND: f64 = 0.02;
-/// Tenths of a per cent: what is entered into a flight management system.
-const STEPS_A_PERCENT: f64 = 10.0;
-/// A number above a tenth by no more than this is that tenth in binary.
-const TENTH_TOLERANCE: f64 = 1e-9;
 
 /// A fuel factor with its interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,17 +78,6 @@ impl FuelFactor {
     pub fn entered_percent(&self) -> f64 {
         rounded_up_to_a_tenth(self.percent_of_predicted())
     }
-}
-
-/// Upwards, so that no fuel is missing: 2.45 becomes 2.5, −0.45 becomes −0.4.
-///
-/// # Source
-/// Airbus, *Getting to grips with aircraft performance monitoring*, 2002, figure G3: means of 2.45, 2.53 and 2.67 are
-/// retained as 2.5, 2.6 and 2.7.
-#[must_use]
-pub fn rounded_up_to_a_tenth(percent: f64) -> f64 {
-    // Adding 0 makes −0 a 0.
-    (percent * STEPS_A_PERCENT - TENTH_TOLERANCE).ceil() / STEPS_A_PERCENT + 0.0
 }
 
 /// The fuel factors of a tail: all segments, bands of pressure altitude, bands of Mach number. `evaluated` is what the
