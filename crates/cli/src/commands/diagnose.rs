@@ -19,6 +19,7 @@ use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
 use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
 use pipeline::diagnosis_document::DiagnosisDocument;
+use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::model_file::ModelFile;
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 use pipeline::{diagnosis_text, table_uncertainty};
@@ -49,6 +50,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         .par_iter()
         .map(|group| diagnose_group(group, &options, arguments.table_only))
         .collect::<Result<Vec<_>, Failure>>()?;
+    let (diagnoses, figures): (Vec<_>, Vec<_>) = diagnoses.into_iter().unzip();
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
     let reports = ReportsSummary {
         read,
@@ -60,7 +62,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         .to_json()
         .map_err(|error| Failure::unwritable(&path, error))?;
     write_atomically(&path, json.as_bytes())?;
-    let html = page::diagnosis(&reports, &diagnoses);
+    let html = page::diagnosis(&reports, &diagnoses, &figures, &asked(arguments));
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();
     for diagnosed in &diagnoses {
@@ -172,7 +174,7 @@ fn diagnose_group(
     group: &Group<'_>,
     options: &Options,
     table_only: bool,
-) -> Result<DiagnosedTail, Failure> {
+) -> Result<(DiagnosedTail, DiagnosisFigures), Failure> {
     let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
         argument: "--model",
         reason: format!("tail {}: {reason}", group.name),
@@ -212,7 +214,27 @@ fn diagnose_group(
             run_notes.push(note.clone());
         }
     }
-    Ok(DiagnosedTail { tail: group.name.clone(), diagnosis, run_notes })
+    let figures =
+        DiagnosisFigures::of(group.model, &input, &diagnosis).map_err(|error| wrong(&error))?;
+    Ok((DiagnosedTail { tail: group.name.clone(), diagnosis, run_notes }, figures))
+}
+
+/// The options that an answer depends on, for the page.
+fn asked(arguments: &DiagnoseArgs) -> Vec<String> {
+    let mut asked = vec![format!("trim criteria {}", arguments.reports.criteria)];
+    if !arguments.effects.is_empty() {
+        asked.push(format!("only these effects looked for: {}", arguments.effects.join(", ")));
+    }
+    if !arguments.without.is_empty() {
+        asked.push(format!("not looked for: {}", arguments.without.join(", ")));
+    }
+    let modes = [
+        (arguments.pool, "all tails of a type together (--pool)"),
+        (arguments.table_only, "against the table alone (--table-only)"),
+        (arguments.allow_learnt, "flights that the model has learnt included (--allow-learnt)"),
+    ];
+    asked.extend(modes.iter().filter(|(is, _)| *is).map(|(_, words)| (*words).to_owned()));
+    asked
 }
 
 /// The diagnosis in a dozen lines, and what was assumed.
