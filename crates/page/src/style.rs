@@ -150,7 +150,7 @@ svg .diamond { fill: var(--paper); stroke: var(--after); stroke-width: 1.4; }
   .small { font-size: 7.5pt; } .small th, .small td { padding: .1rem .3rem; }
   svg text, svg .label { font-size: 13px; }
   .heat { font-size: 7pt; } .heat td { min-width: 0; height: auto; padding: .12rem .15rem; }
-  details.tail { border: 0; break-before: page; }
+  details.tail { border: 0; } details.tail + details.tail { break-before: page; }
   details::details-content { content-visibility: visible; block-size: auto; }
   input, button.save, #tip { display: none !important; }
   th button::after { content: ""; }
