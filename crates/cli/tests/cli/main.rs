@@ -17,6 +17,7 @@ mod export;
 mod guide;
 mod json_schema;
 mod optimum;
+mod pages;
 mod reference;
 mod remainder;
 mod residuals;
