@@ -47,7 +47,13 @@ fn pages_in_a_browser() {
     let frames = scratch.path().join("frames.html");
     fs::write(&frames, FRAMES).unwrap();
     let shown = Command::new(browser)
-        .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files"])
+        .args([
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--hide-scrollbars",
+            "--allow-file-access-from-files",
+        ])
         .args(["--virtual-time-budget=5000", "--dump-dom"])
         .arg(format!("--user-data-dir={}", scratch.path().join("profile").display()))
         .arg(format!("file://{}", frames.display()))
