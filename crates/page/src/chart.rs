@@ -74,14 +74,14 @@ impl Chart {
         let middle_x = coordinate(f64::midpoint(left, right));
         let middle_y = coordinate(f64::midpoint(top, bottom));
         html! {
-            svg viewBox=(format!("0 0 {width} {height}")) role="img"
+            svg viewBox=(format!("0 0 {width} {height}"))
                 data-frame=(format!(
                     "{} {} {} {}", coordinate(left), coordinate(right), coordinate(top), coordinate(bottom)
                 ))
                 data-x=(format!("{} {}", self.x.first(), self.x.last()))
                 data-y=(format!("{} {}", self.y.first(), self.y.last()))
                 data-dates=[self.x.is_of_dates().then_some("")]
-                aria-labelledby=(format!("{0}-title {0}-desc", self.id)) {
+                role="img" aria-labelledby=(format!("{0}-title {0}-desc", self.id)) {
                 title id=(format!("{}-title", self.id)) { (self.title) }
                 desc id=(format!("{}-desc", self.id)) { (self.description) }
                 path class="grid" d=(self.grid_lines()) {}

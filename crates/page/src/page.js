@@ -100,7 +100,7 @@
   }
 
   // A field that a spreadsheet would take for a formula gets a quote in front; numbers keep their sign.
-  const field = (value) => `"${(/^[=+\-@\t]/.test(value) && Number.isNaN(Number(value.replace(/[ %]+$/, ''))) ? "'" : '') + value.replaceAll('"', '""')}"`;
+  const field = (value) => `"${(/^[=+\-@\t]/.test(value) && !Number.isFinite(Number(value.replace(/[ %]+$/, ''))) ? "'" : '') + value.replaceAll('"', '""')}"`;
   for (const table of all('table.data')) {
     const save = make('button', 'Save as CSV', { type: 'button', class: 'save' });
     save.addEventListener('click', () => {
