@@ -26,6 +26,7 @@ PAGES_OF_EQUATIONS |= {
     "virtual": SOURCE / "theory/virtual_aircraft.md",
     "flow": SOURCE / "theory/geostrophic_flow.md",
     "applying": SOURCE / "guides/applying.md",
+    "monitoring": SOURCE / "guides/monitoring.md",
 }
 
 

@@ -46,6 +46,8 @@ pub(crate) enum Command {
     Adapt(AdaptArgs),
     /// What is wrong with reports, before any modelling: units, signs, stuck channels, dates, flights given twice
     Check(CheckArgs),
+    /// Remove a flight from what a tail has learnt (a wrong load sheet), as if it had never been learnt
+    Forget(ForgetArgs),
     /// Stabilised segments only, no model needed
     Segment(SegmentArgs),
     /// Fit the settings of law `bayes` to past reports, by marginal likelihood
@@ -58,6 +60,8 @@ pub(crate) enum Command {
     Evaluate(EvaluateArgs),
     /// Which effect a model lacks: compares it with reports that it has not learnt
     Diagnose(DiagnoseArgs),
+    /// What changed over months, when, on which tail: deviations, trends, changes, events, fuel factors
+    Monitor(MonitorArgs),
     /// Show what a model file holds
     Show(ShowArgs),
     /// Export a model's drag: CSV, polynomial, OpenAP, JSBSim, JSON
@@ -155,6 +159,9 @@ pub(crate) struct InitArgs {
     /// Write the model although the guide has serious findings
     #[arg(long)]
     pub(crate) accept: bool,
+    /// Replace a file that this command did not make
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// The adaptation laws.
@@ -188,12 +195,39 @@ pub(crate) struct AdaptArgs {
     /// counts it as gap
     #[arg(long)]
     pub(crate) no_remainder: bool,
+    /// Learn a report in place of a known flight that it contradicts: other content under the same name and START, the
+    /// same hours under another name. The tail is learnt anew from its first flight on
+    #[arg(long)]
+    pub(crate) relearn: bool,
     /// Start over: an existing folder is kept under another name
     #[arg(long)]
     pub(crate) restart: bool,
     /// Also learn tails that are more than 15 % off the book on average
     #[arg(long)]
     pub(crate) accept: bool,
+    /// Wait while another process writes the folder, instead of refusing
+    #[arg(long)]
+    pub(crate) wait: bool,
+}
+
+/// `forget`
+#[derive(Debug, Args)]
+pub(crate) struct ForgetArgs {
+    /// Folder that `adapt` wrote
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// Tail
+    #[arg(long, value_name = "TAIL")]
+    pub(crate) tail: String,
+    /// Flight, as its report names it
+    #[arg(long, value_name = "FLIGHT")]
+    pub(crate) flight: String,
+    /// START of the flight, where several have its name
+    #[arg(long, value_name = "START")]
+    pub(crate) start: Option<String>,
+    /// Wait while another process writes the folder, instead of refusing
+    #[arg(long)]
+    pub(crate) wait: bool,
 }
 
 /// `tune`
@@ -213,6 +247,9 @@ pub(crate) struct TuneArgs {
     /// searched
     #[arg(long, value_name = "DAYS|none|search")]
     pub(crate) half_life: Option<HalfLifeChoice>,
+    /// Replace a file that this command did not make
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// What `tune` does about the half-life.
@@ -249,6 +286,9 @@ pub(crate) struct MergeArgs {
     /// Model file to write
     #[arg(long, short, value_name = "MODEL.ron")]
     pub(crate) output: PathBuf,
+    /// Replace a file that this command did not make
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// `segment`
@@ -277,7 +317,7 @@ pub(crate) struct PredictArgs {
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
-    /// Predict with the drag table alone, without the model's remainder
+    /// Predict with the drag table alone, without what else the model has learnt
     #[arg(long)]
     pub(crate) table_only: bool,
 }
@@ -303,6 +343,9 @@ pub(crate) struct EvaluateArgs {
     /// .parquet
     #[arg(long, value_name = "FACTORS")]
     pub(crate) fuel_factors: Option<PathBuf>,
+    /// Evaluate the drag table alone, without what else the model has learnt
+    #[arg(long)]
+    pub(crate) table_only: bool,
 }
 
 /// `diagnose`
@@ -340,6 +383,56 @@ pub(crate) struct DiagnoseArgs {
     /// Also diagnose tails that are more than 15 % off the book on average
     #[arg(long)]
     pub(crate) accept: bool,
+}
+
+/// `monitor`
+#[derive(Debug, Args)]
+pub(crate) struct MonitorArgs {
+    /// Folder that `adapt` wrote
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// Events to measure: date,tail,kind,note (wash, engine_change, …)
+    #[arg(long, value_name = "EVENTS.csv")]
+    pub(crate) events: Option<PathBuf>,
+    /// Print a row for each month instead of one for each tail
+    #[arg(long)]
+    pub(crate) month: bool,
+    /// Folder to write to: monitor.html, monitor.json, and tails, months, flights, changes, events, fleet, alerts as .csv
+    #[arg(long, short, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+    /// Print the JSON document instead of the table
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Exit with status 3 where a rule fires; may be given several times. deviation=PCT: present level; trend=PCT: per
+    /// year; change=PCT or change=PCT/DAYSd: a step (in the last DAYS days). Either sign, and only where the 95 %
+    /// interval does not hold 0
+    #[arg(long, value_name = "RULE")]
+    pub(crate) alert: Vec<monitor::AlertRule>,
+    /// Newest diagnosis.json, or its folder: alerts name the causes that it names
+    #[arg(long, value_name = "DIAGNOSIS")]
+    pub(crate) diagnosis: Option<PathBuf>,
+    /// kg of CO₂ from a kg of fuel, to print CO₂ a year
+    #[arg(long, value_name = "KG", value_parser = positive)]
+    pub(crate) co2_factor: Option<f64>,
+    /// Price of a kg of fuel in any currency, to print the price a year
+    #[arg(long, value_name = "PRICE", value_parser = positive)]
+    pub(crate) fuel_price: Option<f64>,
+    /// Flights a year [default: as many as were recorded]
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub(crate) flights_per_year: Option<f64>,
+    /// Basic factor of the flight management system, %: adds the PERF FACTOR, basic plus monitored
+    #[arg(long, value_name = "PCT", allow_negative_numbers = true)]
+    pub(crate) basic_perf_factor: Option<f64>,
+    /// Leave out the deviation by the model before it learnt each flight, for which the model is rebuilt flight by flight
+    #[arg(long)]
+    pub(crate) quick: bool,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a number above 0".to_owned()),
+    }
 }
 
 /// `show`
@@ -507,6 +600,9 @@ pub(crate) struct SimulateArgs {
     /// Also write the true state of each sample: TAIL/FLIGHT-states.csv
     #[arg(long)]
     pub(crate) states: bool,
+    /// Write into a folder that holds something else; reports of another plan are removed from it
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 /// `trial`

@@ -9,11 +9,13 @@ pub(crate) mod effects;
 pub(crate) mod evaluate;
 pub(crate) mod explain;
 pub(crate) mod export;
+pub(crate) mod forget;
 pub(crate) mod golden;
 pub(crate) mod guide;
 pub(crate) mod init;
 pub(crate) mod man;
 pub(crate) mod merge;
+pub(crate) mod monitor;
 pub(crate) mod optimum;
 pub(crate) mod plot;
 pub(crate) mod predict;
@@ -23,6 +25,7 @@ pub(crate) mod simulate;
 pub(crate) mod trial;
 pub(crate) mod tune;
 
+use pipeline::whole_model::Predicts;
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
@@ -31,7 +34,8 @@ use crate::failure::{Failure, RefusedReport};
 use crate::files::read_text;
 use crate::inputs;
 use crate::progress::Progress;
-use crate::reading::{self, Reading};
+use crate::reading::distinct::distinct;
+use crate::reading::{Reading, Source};
 
 /// The result of a command that did something.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,6 +46,11 @@ pub(crate) struct Outcome {
     pub(crate) refused: Vec<RefusedReport>,
 }
 
+/// What `--table-only` asks for.
+pub(crate) const fn predicts(table_only: bool) -> Predicts {
+    if table_only { Predicts::TableOnly } else { Predicts::WholeModel }
+}
+
 impl Outcome {
     /// Done, with this text for standard output.
     pub(crate) fn text(text: impl Into<String>) -> Self {
@@ -49,17 +58,9 @@ impl Outcome {
     }
 }
 
-/// Collects, reads and segments the reports of a command.
-fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failure> {
+/// How a command reads its reports.
+fn source_of(arguments: &ReportsArgs) -> Result<Source, Failure> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
-    let inputs = inputs::collect(&arguments.reports, mapping.is_some())?;
-    if inputs.skipped > 0 {
-        tracing::info!(
-            skipped = inputs.skipped,
-            "files skipped: their endings are not those of reports"
-        );
-    }
-    let bar = progress.bar(inputs.files.len(), "reading reports");
     let criteria =
         TrimCriteria::preset(&arguments.criteria).ok_or_else(|| Failure::BadArgument {
             argument: "--criteria",
@@ -69,8 +70,22 @@ fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failu
                 TrimCriteria::PRESETS
             ),
         })?;
-    let reading = reading::read_all(&inputs.files, mapping.as_ref(), &criteria, &bar);
+    Ok(Source { mapping, criteria })
+}
+
+/// Collects, reads and segments the reports of a command; each flight once.
+fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failure> {
+    read_reports(arguments, progress).map(distinct)
+}
+
+/// Collects, reads and segments the reports of a command, whatever they are to each other.
+fn read_reports(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failure> {
+    let source = source_of(arguments)?;
+    let inputs = inputs::collect(&arguments.reports, source.mapping.is_some())?;
+    let bar = progress.bar(inputs.files.len(), "reading reports");
+    let mut reading = source.read_all(&inputs.files, &bar);
     bar.finish();
+    reading.refused.extend(inputs.refused);
     Ok(reading)
 }
 

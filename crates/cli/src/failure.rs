@@ -11,6 +11,8 @@ pub(crate) const DONE: u8 = 0;
 pub(crate) const SOME_REFUSED: u8 = 1;
 /// Exit status 2: nothing was done.
 pub(crate) const NOTHING_DONE: u8 = 2;
+/// Exit status 3: done, and a rule of `monitor --alert` fired.
+pub(crate) const ALERTS_RAISED: u8 = 3;
 
 /// A reason for which nothing was done.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -83,6 +85,22 @@ pub(crate) enum Failure {
         what: &'static str,
         /// Both values.
         difference: String,
+    },
+    /// A folder that another process is writing.
+    #[error("{folder} is being written by {holder}")]
+    #[diagnostic(help("--wait waits until it is done"))]
+    Busy {
+        /// The folder.
+        folder: String,
+        /// Process, host and time, as its lock has them.
+        holder: String,
+    },
+    /// A file that would be lost.
+    #[error("{path} exists and was not made by this command")]
+    #[diagnostic(help("choose another name, or --force to replace it"))]
+    WouldReplace {
+        /// The file or folder.
+        path: String,
     },
     /// An argument that is invalid.
     #[error("{argument}: {reason}")]

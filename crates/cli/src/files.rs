@@ -1,42 +1,111 @@
 //! Writing files so that neither a reader nor a crash ever leaves half a file.
 
-use std::fmt::Write as _;
+pub(crate) mod names;
+pub(crate) mod outputs;
+pub(crate) mod steps;
+
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
+pub(crate) use names::file_stem_of_tail;
 
-/// Writes to a temporary file next to `path`, syncs it, and renames it to `path`.
+/// Begins the name of everything that the program puts into a folder for a while.
+pub(crate) const TEMPORARY: &str = ".cruisefit-";
+
+/// Writes bytes where a path leads: standard output for `-`; a device or pipe is written to; behind a link its target
+/// is replaced; a file is replaced whole or not at all, through a temporary file next to it that is synced first.
 ///
 /// # Errors
-/// Any error of the operating system; `path` then is as it was.
+/// Any error of the operating system; a file at `path` then is as it was.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
     let attempt = || -> std::io::Result<()> {
-        let mut file =
-            tempfile::Builder::new().prefix(".cruisefit-").suffix(".tmp").tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        set_ordinary_permissions(file.path())?;
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
+        if path.as_os_str() == "-" {
+            return std::io::stdout().write_all(bytes);
+        }
+        // `/dev/stdout` may be a regular file, which whoever opened it wants to see written, not replaced.
+        let is_device = path.starts_with("/dev") || path.starts_with("/proc");
+        let permissions = match path.metadata() {
+            Ok(known) if is_device || !(known.is_file() || known.is_dir()) => {
+                return std::fs::OpenOptions::new().append(true).open(path)?.write_all(bytes);
+            }
+            known => known.ok().map(|known| known.permissions()),
+        };
+        let target = behind_links(path)?;
+        replace(&target, bytes, permissions, Durability::Synced)
     };
     attempt().map_err(|error| Failure::unwritable(path, error))
 }
 
-/// Temporary files are private to their owner; results must be as readable as any other file.
-#[cfg(unix)]
-fn set_ordinary_permissions(path: &Path) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o644))
+/// Replaces a file whole or not at all, as long as the system runs: for files of which there are thousands and which can
+/// be made again.
+///
+/// # Errors
+/// Any error of the operating system; a file at `path` then is as it was.
+pub(crate) fn write_unsynced(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    replace(path, bytes, None, Durability::Unsynced)
+        .map_err(|error| Failure::unwritable(path, error))
 }
 
-#[cfg(not(unix))]
-fn set_ordinary_permissions(_path: &Path) -> std::io::Result<()> {
-    Ok(())
+/// Whether a file survives a power cut right after it was written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Durability {
+    Synced,
+    Unsynced,
+}
+
+/// Replaces a file by way of a temporary one. A file that was there keeps its mode, a new one has that of the umask.
+fn replace(
+    path: &Path,
+    bytes: &[u8],
+    permissions: Option<std::fs::Permissions>,
+    durability: Durability,
+) -> std::io::Result<()> {
+    let folder = folder_of(path);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(TEMPORARY).suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    if let Some(permissions) = permissions {
+        // Where the file belongs to somebody else its mode cannot be kept: the umask's serves.
+        let _ = file.as_file().set_permissions(permissions);
+    }
+    if durability == Durability::Unsynced {
+        file.persist(path).map_err(|error| error.error)?;
+        return Ok(());
+    }
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
+    steps::sync_folder(folder)
+}
+
+/// The folder in which a file is.
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Where a path leads when links are followed, also if nothing is there yet.
+fn behind_links(path: &Path) -> std::io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match target.symlink_metadata() {
+            Ok(known) if known.is_symlink() => {
+                target = folder_of(&target).join(std::fs::read_link(&target)?);
+            }
+            _ => return Ok(target),
+        }
+    }
+    Err(std::io::Error::other("too many links, one to the other"))
 }
 
 /// Reads a text file.
@@ -61,20 +130,6 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(path).map_err(|error| Failure::unwritable(path, error))
 }
 
-/// A tail as a file name: letters, digits, `-` and `_` stay, any other character becomes `%` and its hexadecimal
-/// bytes, so that two tails never share a file.
-pub(crate) fn file_stem_of_tail(tail: &str) -> String {
-    let mut stem = String::new();
-    for byte in tail.bytes() {
-        if byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_' {
-            stem.push(char::from(byte));
-        } else {
-            let _ = write!(stem, "%{byte:02X}");
-        }
-    }
-    stem
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,9 +146,22 @@ mod tests {
         assert!(write_atomically(&nowhere, b"three").is_err());
     }
 
+    #[cfg(unix)]
     #[test]
-    fn tails_as_file_names() {
-        assert_eq!(file_stem_of_tail("D-ABCD"), "D-ABCD");
-        assert_eq!(file_stem_of_tail("../x y"), "%2E%2E%2Fx%20y");
+    fn links_stay_links_and_modes_stay() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        symlink("file", &link).unwrap();
+        // Nothing is there yet: the link's target is made.
+        write_atomically(&link, b"one").unwrap();
+        assert!(link.symlink_metadata().unwrap().is_symlink());
+        std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o640)).unwrap();
+        write_atomically(&link, b"two").unwrap();
+        assert!(link.symlink_metadata().unwrap().is_symlink());
+        assert_eq!(std::fs::read(&file).unwrap(), b"two");
+        assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o640);
+        symlink("round", folder.path().join("round")).unwrap();
+        assert!(write_atomically(&folder.path().join("round"), b"x").is_err());
     }
 }

@@ -1,15 +1,33 @@
-//! The state of an output folder: what it holds, and whether a run may continue it.
+//! The state of an output folder: what it holds, and how that changes.
+//!
+//! What a reader sees is one generation. A run puts all its files into a waiting folder inside the output folder, makes
+//! them durable, and then replaces `STATE.ron`, which names every file with its SHA-256, in one rename: before it the
+//! old generation holds, after it the new one. Only then does each file move to its place. A run that is interrupted
+//! while files move has committed: readers look for a file in the waiting folder first, and the next run completes the
+//! moves. A waiting folder of another generation was never committed and is removed.
+
+pub(crate) mod flights;
+pub(crate) mod lock;
+mod older;
+mod restart;
+pub(crate) mod state;
+#[cfg(test)]
+mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use flight::Segment;
-
-use crate::failure::Failure;
-use crate::files::{file_stem_of_tail, make_folder, write_atomically};
-use crate::models::{read_model, write_model};
+use pipeline::checksum::sha256;
 use pipeline::model_file::ModelFile;
-use pipeline::segments_table::{self, SegmentRow};
+use pipeline::segments_table;
+
+use crate::failure::{Failure, show};
+use crate::files::{TEMPORARY, steps};
+use flights::KnownFlight;
+use lock::{Busy, Lock};
+pub(crate) use restart::keep_aside;
+use state::{FileState, State, TailState};
 
 /// A tail in the folder.
 #[derive(Clone, Debug)]
@@ -18,140 +36,353 @@ pub(crate) struct StoredTail {
     pub(crate) model: ModelFile,
     /// Segments of the flights in its ledger, in the order in which they were learnt.
     pub(crate) segments: Vec<Segment>,
+    /// The flights in its ledger.
+    pub(crate) flights: Vec<KnownFlight>,
 }
 
-/// An output folder of `adapt`.
-#[derive(Clone, Debug)]
-pub(crate) struct Folder {
-    path: PathBuf,
+/// Whether a folder that exists is continued.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beginning {
+    /// Continue what it holds.
+    Continue,
+    /// Start over, and keep the old folder aside.
+    Restart,
 }
+
+/// An output folder of `adapt`, open for writing: locked against other processes. Dropped without
+/// [`commit`](Self::commit), it is as it was.
+#[derive(Debug)]
+pub(crate) struct Folder {
+    /// Where files are written; the folder itself, or its replacement when it is started over.
+    path: PathBuf,
+    /// The folder that `path` takes the place of in the end.
+    replaces: Option<PathBuf>,
+    /// Whether this run made the folder.
+    made: bool,
+    lock: Option<Lock>,
+    state: State,
+    /// Tails of a folder without `STATE.ron`.
+    older: BTreeMap<String, StoredTail>,
+}
+
+/// Folders of a tail's files, and of its page.
+const FOLDERS: [&str; 4] = ["models", "segments", "flights", "pages"];
 
 impl Folder {
-    /// The folder at a path, created if it does not exist; with `restart`, an existing one is renamed first.
+    /// Opens the folder at a path, created if it does not exist.
     ///
     /// # Errors
-    /// A folder that cannot be written.
-    pub(crate) fn open(path: &Path, restart: bool) -> Result<Self, Failure> {
-        if restart {
-            keep_aside(path)?;
+    /// A folder that cannot be written, that another process is writing, or whose state is damaged.
+    pub(crate) fn open(path: &Path, beginning: Beginning, busy: Busy) -> Result<Self, Failure> {
+        let path = restart::tidy(path)?;
+        let failed = |error: std::io::Error| Failure::unwritable(&path, error);
+        let made = !path.exists();
+        std::fs::create_dir_all(&path).map_err(failed)?;
+        let mut folder = Self {
+            lock: Some(Lock::take(&path, busy)?),
+            path: path.clone(),
+            replaces: None,
+            made,
+            state: State::default(),
+            older: BTreeMap::new(),
+        };
+        // An existing folder may still not be writable: better reported now than after an hour of work.
+        tempfile::tempfile_in(&path).map_err(failed)?;
+        if beginning == Beginning::Restart && !made && restart::holds_anything(&path)? {
+            folder.path = restart::replacement(&path).map_err(failed)?;
+            folder.replaces = Some(path);
+            return Ok(folder);
         }
-        for folder in [path.to_owned(), path.join("models"), path.join("segments")] {
-            make_folder(&folder)?;
-            // An existing folder may still not be writable: better reported now than after an hour of work.
-            tempfile::tempfile_in(&folder).map_err(|error| Failure::unwritable(&folder, error))?;
+        match State::read(&path)? {
+            Some(state) => folder.state = state,
+            None => folder.older = older::read(&path)?,
         }
-        Ok(Self { path: path.to_owned() })
+        folder.clear_up().map_err(failed)?;
+        folder.warn_of_strangers();
+        Ok(folder)
     }
 
-    /// Every tail that the folder holds.
+    /// Whether the folder holds this tail.
+    pub(crate) fn holds(&self, tail: &str) -> bool {
+        self.state.tails.contains_key(tail) || self.older.contains_key(tail)
+    }
+
+    /// Tails that the folder holds.
+    pub(crate) fn tails(&self) -> BTreeSet<String> {
+        self.state.tails.keys().chain(self.older.keys()).cloned().collect()
+    }
+
+    /// Tails that are not in `STATE.ron` yet, because the folder was begun by a program before it.
+    pub(crate) fn is_older(&self, tail: &str) -> bool {
+        self.older.contains_key(tail)
+    }
+
+    /// What `STATE.ron` has of a tail.
+    pub(crate) fn state_of(&self, tail: &str) -> Option<&TailState> {
+        self.state.tails.get(tail)
+    }
+
+    /// The flights that a tail has learnt.
     ///
     /// # Errors
-    /// A model or segment file that cannot be read or was damaged.
-    pub(crate) fn load(&self) -> Result<BTreeMap<String, StoredTail>, Failure> {
-        let folder = self.path.join("models");
-        let entries =
-            std::fs::read_dir(&folder).map_err(|error| Failure::unreadable(&folder, error))?;
-        let mut tails = BTreeMap::new();
-        for entry in entries {
-            let path = entry.map_err(|error| Failure::unreadable(&folder, error))?.path();
-            if path.extension().is_none_or(|ending| ending != "ron") {
-                continue;
-            }
-            let model = read_model(&path)?;
-            let Some(learnt) = &model.learnt else {
-                return Err(Failure::bad_file(&path, "a model that has learnt nothing"));
-            };
-            let tail = learnt.tail.clone();
-            let segments = self.load_segments(&tail, &model)?;
-            tails.insert(tail, StoredTail { model, segments });
+    /// A file that is damaged.
+    pub(crate) fn flights(&self, tail: &str) -> Result<Vec<KnownFlight>, Failure> {
+        if let Some(stored) = self.older.get(tail) {
+            return Ok(stored.flights.clone());
         }
-        Ok(tails)
+        match self.state.tails.get(tail) {
+            Some(entry) => flights_of(&self.path, &self.state, tail, entry),
+            None => Ok(Vec::new()),
+        }
     }
 
-    fn load_segments(&self, tail: &str, model: &ModelFile) -> Result<Vec<Segment>, Failure> {
-        let path = self.segments_path(tail);
-        let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-        let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
-        let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
-        // Segments are written before the model. A run that was interrupted in between leaves segments of flights that
-        // the ledger does not list: they count as not learnt, and are learnt when their report is given again.
-        let known: BTreeSet<(&str, &str)> =
-            ledger.iter().map(|entry| (entry.flight.as_str(), entry.start.as_str())).collect();
-        let mut segments = Vec::with_capacity(all.len());
-        for segment in all {
-            let start = segment.identity.start.to_string();
-            if known.contains(&(segment.identity.flight.as_str(), start.as_str())) {
-                segments.push(segment);
-            }
-        }
-        let expected: u64 = ledger.iter().map(|entry| entry.segments).sum();
-        if segments.len() as u64 != expected {
-            return Err(Failure::bad_file(
-                &path,
-                format!("{} segments, the model's ledger has {expected}", segments.len()),
-            ));
-        }
-        Ok(segments)
-    }
-
-    /// Writes a tail: its segments, then its model, each whole or not at all.
+    /// A tail's model, segments and flights.
     ///
     /// # Errors
-    /// A file or folder that cannot be written.
-    pub(crate) fn store(
-        &self,
-        tail: &str,
-        model: &ModelFile,
-        rows: &[SegmentRow],
-    ) -> Result<(), Failure> {
-        let engines = model.initial.aircraft().engines();
-        let table = segments_table::table(rows, engines);
-        write_atomically(&self.segments_path(tail), &table.to_csv())?;
-        write_model(model, &self.model_path(tail))
+    /// A file that is damaged.
+    pub(crate) fn load(&self, tail: &str) -> Result<StoredTail, Failure> {
+        if let Some(stored) = self.older.get(tail) {
+            return Ok(stored.clone());
+        }
+        let Some(entry) = self.state.tails.get(tail) else {
+            return Err(Failure::bad_file(&self.path, format!("holds no tail {tail:?}")));
+        };
+        let path = self.path.join(&entry.model.file);
+        let bytes = self.state.bytes_of(&self.path, &entry.model)?;
+        let model = crate::models::model_of_bytes(&path, &bytes)?;
+        let path = self.path.join(&entry.segments.file);
+        let bytes = self.state.bytes_of(&self.path, &entry.segments)?;
+        let segments =
+            segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
+        let flights = flights_of(&self.path, &self.state, tail, entry)?;
+        Ok(StoredTail { model, segments, flights })
     }
 
-    /// Writes a file of the folder's top level.
+    /// Whether the folder has a file at this path now.
+    pub(crate) fn has(&self, file: &str) -> bool {
+        self.path.join(file).exists()
+    }
+
+    /// Puts a file of the next generation into the waiting folder.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub(crate) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        write_atomically(&self.path.join(name), bytes)
+    pub(crate) fn stage(&self, file: &str, bytes: &[u8]) -> Result<FileState, Failure> {
+        let path = self.waiting().join(file);
+        let attempt = || {
+            steps::make_folder(&self.waiting())?;
+            if let Some(folder) = path.parent() {
+                steps::make_folder(folder)?;
+            }
+            steps::write(&path, bytes)
+        };
+        attempt().map_err(|error| Failure::unwritable(&self.path, error))?;
+        Ok(FileState { file: file.to_owned(), sha256: sha256(bytes) })
     }
 
-    /// Path of a tail's model.
-    pub(crate) fn model_path(&self, tail: &str) -> PathBuf {
-        self.path.join("models").join(format!("{}.ron", file_stem_of_tail(tail)))
+    /// Makes these tails, with the files that were staged, the state of the folder.
+    ///
+    /// # Errors
+    /// A file that cannot be written; the folder then is as it was.
+    pub(crate) fn commit(mut self, tails: BTreeMap<String, TailState>) -> Result<(), Failure> {
+        if tails == self.state.tails && self.older.is_empty() && self.replaces.is_none() {
+            // Only files that are no state (summary, page) are new.
+            let waiting = self.waiting();
+            return self
+                .move_files(&waiting)
+                .map_err(|error| Failure::unwritable(&self.path, error));
+        }
+        let state = State { generation: self.state.generation + 1, tails };
+        let text =
+            state.to_text().map_err(|error| Failure::unwritable(&self.path, error))?.into_bytes();
+        self.stage(state::NAME, &text)?;
+        let waiting = self.waiting();
+        let publish = || -> std::io::Result<()> {
+            steps::sync_below(&self.path)?;
+            steps::rename(&waiting.join(state::NAME), &self.path.join(state::NAME))
+        };
+        publish().map_err(|error| Failure::unwritable(&self.path, error))?;
+        // From here on the new generation holds, whatever happens.
+        let old = std::mem::replace(&mut self.state, state);
+        self.older.clear();
+        if let Err(error) = self.settle(&old) {
+            tracing::warn!(
+                "{}: {error}; the run is stored, and the next one completes the moves of its files",
+                show(&self.path)
+            );
+        }
+        match self.replaces.take() {
+            Some(old) => self.take_the_place_of(&old),
+            None => Ok(()),
+        }
     }
 
-    /// Path of a tail's segments.
-    pub(crate) fn segments_path(&self, tail: &str) -> PathBuf {
-        self.path.join("segments").join(format!("{}.csv", file_stem_of_tail(tail)))
+    /// Moves the files of a committed generation to their places and removes what it no longer names.
+    fn settle(&self, old: &State) -> std::io::Result<()> {
+        steps::sync_folder(&self.path)?;
+        self.move_files(&self.state.waiting(&self.path))?;
+        let files = |state: &State| -> BTreeSet<String> {
+            let of_tail = |tail: &TailState| {
+                [&tail.model, &tail.segments, &tail.flights].map(|file| file.file.clone())
+            };
+            state.tails.values().flat_map(of_tail).collect()
+        };
+        for file in files(old).difference(&files(&self.state)) {
+            steps::remove_file(&self.path.join(file))?;
+        }
+        Ok(())
+    }
+
+    /// Moves everything in a waiting folder to its place, makes that durable, and removes the folder.
+    fn move_files(&self, waiting: &Path) -> std::io::Result<()> {
+        if !waiting.is_dir() {
+            return Ok(());
+        }
+        for name in FOLDERS {
+            let from = waiting.join(name);
+            if from.is_dir() {
+                let to = self.path.join(name);
+                steps::make_folder(&to)?;
+                move_all(&from, &to)?;
+            }
+        }
+        move_all(waiting, &self.path)?;
+        steps::sync_folder(&self.path)?;
+        steps::remove_folder(waiting)
+    }
+
+    /// Completes or removes what an interrupted run left.
+    fn clear_up(&self) -> std::io::Result<()> {
+        let waiting = self.state.waiting(&self.path);
+        if self.state.generation > 0 && waiting.is_dir() {
+            tracing::info!("{}: completing a run that was interrupted", show(&self.path));
+            self.move_files(&waiting)?;
+        }
+        let folders = FOLDERS.map(|name| self.path.join(name));
+        for folder in std::iter::once(&self.path).chain(&folders) {
+            let Ok(entries) = std::fs::read_dir(folder) else { continue };
+            for path in entries.flatten().map(|entry| entry.path()) {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                if path == lock::lock_file(&self.path) || !name.starts_with(TEMPORARY) {
+                    continue;
+                }
+                if path.is_dir() && name.starts_with(&format!("{TEMPORARY}next-")) {
+                    steps::remove_folder(&path)?;
+                } else if name.ends_with(".tmp") {
+                    steps::remove_file(&path)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Names files that look like state and are none.
+    fn warn_of_strangers(&self) {
+        if self.state.generation == 0 {
+            return;
+        }
+        for stranger in strangers(&self.path, &self.state) {
+            tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
+        }
+    }
+
+    fn waiting(&self) -> PathBuf {
+        state::waiting_of(&self.path, self.state.generation + 1)
     }
 }
 
-/// Renames a folder, if it exists, so that another can take its place.
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let waiting = self.waiting();
+        if waiting.is_dir() {
+            // If it cannot be removed, the next run removes it.
+            let _ = steps::remove_folder(&waiting);
+        }
+        if self.replaces.is_some() {
+            let _ = steps::remove_folder(&self.path);
+        }
+        self.lock = None;
+        if self.made && self.replaces.is_none() {
+            // Succeeds only where nothing was stored.
+            let _ = std::fs::remove_dir(&self.path);
+        }
+    }
+}
+
+/// Models of a folder that has a state, in the order of tails, for commands that only read.
 ///
 /// # Errors
-/// A folder that cannot be renamed.
-pub(crate) fn keep_aside(path: &Path) -> Result<(), Failure> {
-    if path.exists() {
-        let aside = free_name(path);
-        std::fs::rename(path, &aside).map_err(|error| Failure::unwritable(path, error))?;
-        tracing::info!(from = %path.display(), to = %aside.display(), "kept aside");
+/// A file that is damaged.
+pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)>>, Failure> {
+    loop {
+        let Some(state) = State::read(folder)? else { return Ok(None) };
+        for stranger in strangers(folder, &state) {
+            tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
+        }
+        let models = state
+            .tails
+            .values()
+            .map(|tail| {
+                let path = folder.join(&tail.model.file);
+                let bytes = state.bytes_of(folder, &tail.model)?;
+                Ok((path.clone(), crate::models::model_of_bytes(&path, &bytes)?))
+            })
+            .collect::<Result<Vec<_>, Failure>>();
+        match models {
+            Ok(models) => return Ok(Some(models)),
+            // Another process may have stored a newer generation in the meantime.
+            Err(failure) => match State::read(folder)? {
+                Some(newer) if newer.generation != state.generation => {}
+                _ => return Err(failure),
+            },
+        }
     }
-    Ok(())
 }
 
-/// `DIR.1`, or the first number that is free.
-fn free_name(path: &Path) -> PathBuf {
-    let mut number = 1_u32;
-    loop {
-        let mut name = path.as_os_str().to_owned();
-        name.push(format!(".{number}"));
-        let aside = PathBuf::from(name);
-        if !aside.exists() {
-            return aside;
+fn flights_of(
+    folder: &Path,
+    state: &State,
+    tail: &str,
+    entry: &TailState,
+) -> Result<Vec<KnownFlight>, Failure> {
+    let bytes = state.bytes_of(folder, &entry.flights)?;
+    flights::read(tail, &bytes)
+        .map_err(|reason| Failure::bad_file(&folder.join(&entry.flights.file), reason))
+}
+
+/// Files in `models/` and `segments/` that the state does not name.
+fn strangers(folder: &Path, state: &State) -> Vec<PathBuf> {
+    let named: BTreeSet<PathBuf> = state
+        .tails
+        .values()
+        .flat_map(|tail| [&tail.model, &tail.segments].map(|file| folder.join(&file.file)))
+        .collect();
+    let mut strangers = Vec::new();
+    for name in ["models", "segments"] {
+        let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
+        for path in entries.flatten().map(|entry| entry.path()) {
+            let file = path.file_name().unwrap_or_default().to_string_lossy();
+            if !named.contains(&path) && !file.starts_with(TEMPORARY) {
+                strangers.push(path);
+            }
         }
-        number += 1;
     }
+    strangers.sort();
+    strangers
+}
+
+/// Moves the files of one folder into another, and makes that durable.
+fn move_all(from: &Path, to: &Path) -> std::io::Result<()> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(from)? {
+        let entry = entry?;
+        if entry.file_type()?.is_file() {
+            names.push(entry.file_name());
+        }
+    }
+    names.sort();
+    for name in &names {
+        steps::rename(&from.join(name), &to.join(name))?;
+    }
+    if names.is_empty() { Ok(()) } else { steps::sync_folder(to) }
 }

@@ -3,15 +3,27 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::failure::{Failure, show};
+use crate::failure::{Failure, RefusedReport, show};
 
 /// The files to read, sorted and without repetition, and how many others were skipped.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Inputs {
     /// Files, in path order.
     pub(crate) files: Vec<PathBuf>,
     /// Files in folders whose ending is not that of a report.
     pub(crate) skipped: usize,
+    /// Folders that cannot be listed.
+    pub(crate) refused: Vec<RefusedReport>,
+}
+
+/// What was collected so far.
+#[derive(Debug, Default)]
+struct Collected {
+    files: Vec<PathBuf>,
+    skipped: usize,
+    refused: Vec<RefusedReport>,
+    /// Folders that were searched, whatever the links that led there: a link may lead back to a folder above it.
+    searched: BTreeSet<PathBuf>,
 }
 
 /// Endings of a folder's files that are read.
@@ -23,15 +35,20 @@ const RECORDING_ENDINGS: [&str; 2] = ["csv", "gz"];
 /// report's ending, anything else is tried as a glob.
 ///
 /// # Errors
-/// An argument that matches nothing, a folder that cannot be listed, or no file at all.
+/// An argument that matches nothing, or no file at all.
 pub(crate) fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Inputs, Failure> {
     let endings: &[&str] = if with_mapping { &RECORDING_ENDINGS } else { &REPORT_ENDINGS };
-    let mut files = BTreeSet::new();
-    let mut skipped = 0;
+    let mut collected = Collected::default();
     for argument in arguments {
-        collect_one(argument, endings, &mut files, &mut skipped)?;
+        collect_one(argument, endings, &mut collected)?;
     }
+    let Collected { mut files, skipped, refused, .. } = collected;
+    files.sort();
+    files.dedup();
     if files.is_empty() {
+        for one in &refused {
+            eprintln!("refused: {one}");
+        }
         let inputs: Vec<String> = arguments.iter().map(|path| show(path)).collect();
         return Err(Failure::NoReports {
             inputs: inputs.join(", "),
@@ -42,20 +59,25 @@ pub(crate) fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Input
             },
         });
     }
-    Ok(Inputs { files: files.into_iter().collect(), skipped })
+    if skipped > 0 {
+        tracing::info!(skipped, "files skipped: their endings are not those of reports");
+    }
+    Ok(Inputs { files, skipped, refused })
 }
 
 fn collect_one(
     argument: &Path,
     endings: &[&str],
-    files: &mut BTreeSet<PathBuf>,
-    skipped: &mut usize,
+    collected: &mut Collected,
 ) -> Result<(), Failure> {
     if argument.is_dir() {
-        return collect_folder(argument, endings, files, skipped);
+        // A folder that was named has to be there; those below it may be unreadable.
+        std::fs::read_dir(argument).map_err(|error| Failure::unreadable(argument, error))?;
+        collect_folder(argument, endings, collected);
+        return Ok(());
     }
     if argument.exists() {
-        files.insert(argument.to_owned());
+        collected.files.push(argument.to_owned());
         return Ok(());
     }
     let pattern = argument.to_string_lossy();
@@ -68,39 +90,47 @@ fn collect_one(
         let path = entry.map_err(|error| Failure::unreadable(error.path(), error.error()))?;
         any = true;
         if path.is_dir() {
-            collect_folder(&path, endings, files, skipped)?;
+            collect_folder(&path, endings, collected);
         } else {
-            files.insert(path);
+            collected.files.push(path);
         }
     }
     if any { Ok(()) } else { Err(Failure::unreadable(argument, "the pattern matches no file")) }
 }
 
-fn collect_folder(
-    folder: &Path,
-    endings: &[&str],
-    files: &mut BTreeSet<PathBuf>,
-    skipped: &mut usize,
-) -> Result<(), Failure> {
-    let entries = std::fs::read_dir(folder).map_err(|error| Failure::unreadable(folder, error))?;
-    let mut paths = Vec::new();
-    for entry in entries {
-        paths.push(entry.map_err(|error| Failure::unreadable(folder, error))?.path());
-    }
-    paths.sort();
-    for path in paths {
-        if path.is_dir() {
-            collect_folder(&path, endings, files, skipped)?;
+fn collect_folder(folder: &Path, endings: &[&str], collected: &mut Collected) {
+    let listed = folder.canonicalize().and_then(|real| {
+        if !collected.searched.insert(real) {
+            return Ok(Vec::new());
+        }
+        let mut entries = Vec::new();
+        for entry in std::fs::read_dir(folder)? {
+            let entry = entry?;
+            entries.push((entry.path(), entry.file_type()?));
+        }
+        entries.sort_by(|one, other| one.0.cmp(&other.0));
+        Ok(entries)
+    });
+    let entries = match listed {
+        Ok(entries) => entries,
+        Err(error) => {
+            collected.refused.push(RefusedReport::whole(folder.to_owned(), error));
+            return;
+        }
+    };
+    for (path, kind) in entries {
+        let is_folder = kind.is_dir() || (kind.is_symlink() && path.is_dir());
+        if is_folder {
+            collect_folder(&path, endings, collected);
         } else if path
             .extension()
             .is_some_and(|ending| endings.iter().any(|known| ending.eq_ignore_ascii_case(known)))
         {
-            files.insert(path);
+            collected.files.push(path);
         } else {
-            *skipped += 1;
+            collected.skipped += 1;
         }
     }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -123,6 +153,18 @@ mod tests {
         // The same file given twice, under two names of the same path, is read once.
         let twice = collect(&[deep.join("2.txt"), deep.clone()], false).unwrap();
         assert_eq!(twice.files.len(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_a_folder_above_is_not_followed_for_ever() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("1.txt"), "x").unwrap();
+        for name in ["a", "b"] {
+            std::os::unix::fs::symlink(".", folder.path().join(name)).unwrap();
+        }
+        let inputs = collect(&[folder.path().to_owned()], false).unwrap();
+        assert_eq!(inputs.files, [folder.path().join("1.txt")]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! in the crates below it; only [`run`] is public.
 //!
 //! Exit status: 0 done; 1 done, but some input was refused (each refusal on stderr and in the summary); 2 nothing was
-//! done, with the reason on stderr.
+//! done, with the reason on stderr; 3 done, and a rule of `monitor --alert` fired.
 
 #![expect(
     clippy::print_stdout,
@@ -23,6 +23,7 @@ mod plausibility;
 mod progress;
 mod reading;
 mod simulated_reports;
+mod threads;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -30,9 +31,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use tracing_subscriber::EnvFilter;
 
-use args::{Cli, Command, Common};
+use args::{Cli, Command};
 use commands::Outcome;
-use failure::{DONE, Failure, NOTHING_DONE, SOME_REFUSED};
+use failure::{ALERTS_RAISED, DONE, Failure, NOTHING_DONE, SOME_REFUSED};
 use progress::Progress;
 
 /// Reads the command line, runs the command, and reports the result.
@@ -44,22 +45,25 @@ pub fn run() -> ExitCode {
         Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
     }));
     let progress = if cli.common.no_progress { Progress::Hidden } else { Progress::Shown };
-    let result = in_pool(&cli.common, || run_command(&cli.command, progress));
+    let result = threads::in_pool(cli.common.threads, || run_command(&cli.command, progress));
     ExitCode::from(print_result(result))
 }
 
-fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure> {
-    match command {
+/// The outcome of a command, and how many alerts it raised.
+fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize), Failure> {
+    let outcome = match command {
         Command::Init(arguments) => commands::init::run(arguments),
         Command::Guide(arguments) => commands::guide::run(arguments),
         Command::Adapt(arguments) => commands::adapt::run(arguments, progress),
         Command::Check(arguments) => commands::check::run(arguments, progress),
+        Command::Forget(arguments) => commands::forget::run(arguments),
         Command::Segment(arguments) => commands::segment::run(arguments, progress),
         Command::Tune(arguments) => commands::tune::run(arguments, progress),
         Command::Merge(arguments) => commands::merge::run(arguments),
         Command::Predict(arguments) => commands::predict::run(arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(arguments, progress),
         Command::Diagnose(arguments) => commands::diagnose::run(arguments, progress),
+        Command::Monitor(arguments) => return commands::monitor::run(arguments, progress),
         Command::Show(arguments) => commands::show::run(arguments),
         Command::Export(arguments) => commands::export::run(arguments),
         Command::Optimum(arguments) => commands::optimum::run(arguments),
@@ -72,23 +76,8 @@ fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure
         Command::Simulate(arguments) => commands::simulate::run(arguments, progress),
         Command::Trial(arguments) => commands::trial::run(arguments, progress),
         Command::Demo(arguments) => commands::demo::run(arguments, progress),
-    }
-}
-
-/// Runs in a pool of as many threads as were asked for.
-fn in_pool<T: Send>(
-    common: &Common,
-    work: impl FnOnce() -> Result<T, Failure> + Send,
-) -> Result<T, Failure> {
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = common.threads {
-        builder = builder.num_threads(usize::from(threads));
-    }
-    let pool = builder.build().map_err(|error| Failure::BadArgument {
-        argument: "--threads",
-        reason: error.to_string(),
-    })?;
-    pool.install(work)
+    };
+    outcome.map(|outcome| (outcome, 0))
 }
 
 fn start_logging(verbose: u8) {
@@ -109,15 +98,19 @@ fn start_logging(verbose: u8) {
 }
 
 /// Results to standard output, refusals and reasons to standard error; returns the exit status.
-fn print_result(result: Result<Outcome, Failure>) -> u8 {
+fn print_result(result: Result<(Outcome, usize), Failure>) -> u8 {
     match result {
-        Ok(Outcome { text, refused }) => {
+        Ok((Outcome { text, refused }, alerts)) => {
             // A reader that closes the pipe early (`| head`) is not an error.
             let _ = std::io::stdout().write_all(text.as_bytes());
             for one in &refused {
                 eprintln!("refused: {one}");
             }
-            if refused.is_empty() { DONE } else { SOME_REFUSED }
+            match (refused.is_empty(), alerts) {
+                (true, 0) => DONE,
+                (false, 0) => SOME_REFUSED,
+                _ => ALERTS_RAISED,
+            }
         }
         Err(failure) => {
             eprintln!("{:?}", miette::Report::new(failure));

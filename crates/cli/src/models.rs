@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, show};
+use crate::files::outputs::check_replaceable;
 use crate::files::{read_text, write_atomically};
 use crate::reading::FlightRead;
 use pipeline::model_file::ModelFile;
@@ -12,7 +13,21 @@ use pipeline::model_file::ModelFile;
 /// # Errors
 /// A file that cannot be read, is not a model, is of a newer format, or whose checksum does not match.
 pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
-    ModelFile::from_text(&read_text(path)?).map_err(|error| Failure::BadFile {
+    model_of_text(path, &read_text(path)?)
+}
+
+/// A model from the bytes of its file.
+///
+/// # Errors
+/// Bytes that are not a model.
+pub(crate) fn model_of_bytes(path: &Path, bytes: &[u8]) -> Result<ModelFile, Failure> {
+    let text = std::str::from_utf8(bytes)
+        .map_err(|_| Failure::bad_file(path, "not a text file (invalid UTF-8)"))?;
+    model_of_text(path, text)
+}
+
+fn model_of_text(path: &Path, text: &str) -> Result<ModelFile, Failure> {
+    ModelFile::from_text(text).map_err(|error| Failure::BadFile {
         path: show(path),
         help: error.help(),
         reason: error.to_string(),
@@ -26,6 +41,25 @@ pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
 pub(crate) fn write_model(model: &ModelFile, path: &Path) -> Result<(), Failure> {
     let text = model.to_text().map_err(|error| Failure::unwritable(path, error))?;
     write_atomically(path, text.as_bytes())
+}
+
+/// Refuses to replace a file that is neither the model to be `written` nor one of the command's own making, which `own`
+/// decides.
+///
+/// # Errors
+/// A file that would be lost.
+pub(crate) fn check_model_replaceable(
+    path: &Path,
+    force: bool,
+    written: Option<&ModelFile>,
+    own: impl FnOnce(&ModelFile) -> bool,
+) -> Result<(), Failure> {
+    let text = written
+        .map_or_else(|| Ok(String::new()), ModelFile::to_text)
+        .map_err(|error| Failure::unwritable(path, error))?;
+    check_replaceable(path, force, text.as_bytes(), |known| {
+        ModelFile::from_text(known).is_ok_and(|known| own(&known))
+    })
 }
 
 /// Why a report has no model.
@@ -84,8 +118,7 @@ impl Models {
     pub(crate) fn read(arguments: &[PathBuf]) -> Result<Self, Failure> {
         let mut models: Vec<(PathBuf, ModelFile)> = Vec::new();
         for argument in arguments {
-            for path in files_of(argument)? {
-                let model = read_model(&path)?;
+            for (path, model) in models_of(argument)? {
                 if let Some((other, _)) = models.iter().find(|(_, known)| same_claim(known, &model))
                 {
                     return Err(Failure::bad_file(
@@ -106,18 +139,19 @@ impl Models {
     pub(crate) fn for_flight(&self, flight: &FlightRead) -> Result<&ModelFile, NoModel> {
         let model =
             self.for_report(&flight.reduced.identity.tail, &flight.reduced.aircraft_type)?;
-        let engines = model.initial.aircraft().engines();
-        match flight.reduced.engines {
-            Some(found) if found != engines => Err(NoModel::Engines { found, expected: engines }),
-            _ => Ok(model),
-        }
+        check_engines(model, flight)?;
+        Ok(model)
     }
 
     /// The model for a report of this tail and type.
     ///
     /// # Errors
     /// Why there is none.
-    fn for_report(&self, tail: &str, aircraft_type: &str) -> Result<&ModelFile, NoModel> {
+    pub(crate) fn for_report(
+        &self,
+        tail: &str,
+        aircraft_type: &str,
+    ) -> Result<&ModelFile, NoModel> {
         let of_type = |model: &&ModelFile| model.initial.aircraft().type_code() == aircraft_type;
         let all = || self.0.iter().map(|(_, model)| model);
         if let Some(model) = all().find(|model| tail_of(model) == Some(tail)) {
@@ -156,10 +190,39 @@ impl Models {
     }
 }
 
-fn files_of(argument: &Path) -> Result<Vec<PathBuf>, Failure> {
-    if !argument.is_dir() {
-        return Ok(vec![argument.to_owned()]);
+/// A flight has as many engines as its model's aircraft.
+///
+/// # Errors
+/// Another number.
+pub(crate) fn check_engines(model: &ModelFile, flight: &FlightRead) -> Result<(), NoModel> {
+    let expected = model.initial.aircraft().engines();
+    match flight.reduced.engines {
+        Some(found) if found != expected => Err(NoModel::Engines { found, expected }),
+        _ => Ok(()),
     }
+}
+
+/// The models behind an argument: a file, a folder that `adapt` wrote (or its folder of models), any other folder.
+fn models_of(argument: &Path) -> Result<Vec<(PathBuf, ModelFile)>, Failure> {
+    if !argument.is_dir() {
+        return Ok(vec![(argument.to_owned(), read_model(argument)?)]);
+    }
+    let above = argument.file_name().filter(|name| *name == "models").and(argument.parent());
+    for folder in std::iter::once(argument).chain(above) {
+        // `models` alone has an empty parent, which is the folder that we are in.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        if let Some(models) = crate::folder::models_of(folder)? {
+            return Ok(models);
+        }
+    }
+    let models = files_of(argument)?.into_iter().map(|path| {
+        let model = read_model(&path)?;
+        Ok((path, model))
+    });
+    models.collect()
+}
+
+fn files_of(argument: &Path) -> Result<Vec<PathBuf>, Failure> {
     let entries =
         std::fs::read_dir(argument).map_err(|error| Failure::unreadable(argument, error))?;
     let mut paths = Vec::new();

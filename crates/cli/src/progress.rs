@@ -39,6 +39,11 @@ impl Bar {
         self.0.inc(1);
     }
 
+    /// So many more are done.
+    pub(crate) fn advance(&self, count: usize) {
+        self.0.inc(count as u64);
+    }
+
     /// All are done: the bar is removed.
     pub(crate) fn finish(&self) {
         self.0.finish_and_clear();

@@ -1,22 +1,29 @@
 //! Reports of virtual aircraft on disk: any simulation, and the data built into the program (the paper's study, the
 //! fleet of the demonstration).
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::path::Path;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 use pipeline::columns::Columns;
 use rayon::prelude::*;
 use report::TextLayout;
 use serde_json::Value;
-use simulate::{AircraftTruth, Flown, Plan, Preset, Simulation, TrueState, TruthPhysics, study};
+use simulate::{
+    AircraftTruth, Flown, Plan, Preset, Simulation, Switch, TrueState, TruthPhysics, study,
+};
 use units::FuelFlowTotal;
 
 use crate::failure::Failure;
-use crate::files::{file_stem_of_tail, make_folder, write_atomically};
+use crate::files::{file_stem_of_tail, make_folder, write_atomically, write_unsynced};
 use crate::progress::Progress;
 
 /// First comment of every report: nobody must mistake it for a recording.
 const COMMENT: &str = "simulated with cruisefit, not a real aircraft";
+
+/// The truth, written last: a folder without it was not completed.
+const TRUTH: &str = "TRUTH.json";
 
 /// The aircraft file of the study: what a performance engineer knows of the Cessna Citation X. The TSFC constants are
 /// those that reproduce its published fuel burn (static TSFC of the AE 3007C1 from its emission certification).
@@ -60,13 +67,78 @@ pub(crate) fn demonstration() -> Result<Study, Failure> {
     study_with(Plan::from_ron(DEMONSTRATION).map_err(|error| wrong(&error))?)
 }
 
-/// The demonstration's tail a year later, with an effect that its model has not learnt.
+/// The demonstration's tail a year later, with an effect that its model has not learnt. `fuel_quantity`: whether tank gauges
+/// are recorded.
 ///
 /// # Errors
 /// A request that the simulator refuses.
-pub(crate) fn demonstration_later() -> Result<Simulation, Failure> {
-    let plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
+pub(crate) fn demonstration_later(fuel_quantity: Switch) -> Result<Simulation, Failure> {
+    let mut plan = Plan::from_ron(DEMONSTRATION_LATER).map_err(|error| wrong(&error))?;
+    plan.columns.fuel_quantity = fuel_quantity;
     Simulation::new(plan).map_err(|error| wrong(&error))
+}
+
+/// Refuses a folder that holds something else than reports of this simulation; with `force` only removes the reports
+/// that another simulation wrote there.
+///
+/// # Errors
+/// A folder that holds something else.
+pub(crate) fn check_folder(
+    simulation: &Simulation,
+    folder: &Path,
+    force: bool,
+) -> Result<(), Failure> {
+    let own: BTreeSet<PathBuf> = (0..simulation.len())
+        .filter_map(|index| simulation.flight(index))
+        .flat_map(|(tail, plan)| {
+            let base = folder.join(file_stem_of_tail(tail));
+            let stem = file_stem_of_tail(&plan.flight);
+            [base.join(format!("{stem}.txt")), base.join(format!("{stem}-states.csv"))]
+        })
+        .chain([folder.join(TRUTH)])
+        .collect();
+    let strangers: Vec<PathBuf> =
+        files_below(folder)?.into_iter().filter(|path| !own.contains(path)).collect();
+    if strangers.is_empty() {
+        return Ok(());
+    }
+    if !force {
+        return Err(Failure::WouldReplace { path: crate::failure::show(folder) });
+    }
+    let begins_as_ours = |path: &Path| {
+        let mut beginning = [0; 200];
+        let read = std::fs::File::open(path).and_then(|mut file| file.read(&mut beginning));
+        read.is_ok_and(|read| String::from_utf8_lossy(&beginning[..read]).contains(COMMENT))
+    };
+    for path in strangers.iter().filter(|path| begins_as_ours(path)) {
+        std::fs::remove_file(path).map_err(|error| Failure::unwritable(path, error))?;
+    }
+    Ok(())
+}
+
+/// Files of a folder and of those directly in it.
+fn files_below(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let mut files = Vec::new();
+    let list = |folder: &Path| -> Result<Vec<PathBuf>, Failure> {
+        let entries =
+            std::fs::read_dir(folder).map_err(|error| Failure::unreadable(folder, error))?;
+        Ok(entries.flatten().map(|entry| entry.path()).collect())
+    };
+    if folder.is_dir() {
+        for path in list(folder)? {
+            if path.is_dir() { files.extend(list(&path)?) } else { files.push(path) }
+        }
+    }
+    Ok(files)
+}
+
+/// What a simulation came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Written {
+    /// Flights.
+    pub(crate) flights: usize,
+    /// Flights that were drawn again, because the aircraft could not fly what was drawn first.
+    pub(crate) drawn_again: usize,
 }
 
 /// Flies every flight of a simulation and writes reports, true states where the plan asks for them, and the truth.
@@ -77,7 +149,7 @@ pub(crate) fn write(
     simulation: &Simulation,
     folder: &Path,
     progress: Progress,
-) -> Result<usize, Failure> {
+) -> Result<Written, Failure> {
     make_folder(folder)?;
     for index in 0..simulation.len() {
         if let Some((tail, _)) = simulation.flight(index) {
@@ -92,31 +164,39 @@ pub(crate) fn write(
                 argument: "PLAN.ron",
                 reason: error.to_string(),
             };
-            let Flown { report, truth, states } =
+            let Flown { report, truth, states, drawn_again } =
                 simulation.fly(index).map_err(|error| failed(&error))?;
+            if drawn_again > 0 {
+                tracing::warn!(
+                    "tail {} flight {} was drawn again: the aircraft lacked thrust or lift for what was drawn first",
+                    truth.tail,
+                    truth.flight
+                );
+            }
             let text = report::write(&report, &TextLayout::industry(), &[COMMENT])
                 .map_err(|error| failed(&error))?;
             let identity = &report.header().identity;
             let base = folder.join(file_stem_of_tail(&identity.tail));
             let stem = file_stem_of_tail(&identity.flight);
-            write_atomically(&base.join(format!("{stem}.txt")), text.as_bytes())?;
+            write_unsynced(&base.join(format!("{stem}.txt")), text.as_bytes())?;
             if !states.is_empty() {
                 let table = states_table(&states).map_err(|error| failed(&error))?;
-                write_atomically(&base.join(format!("{stem}-states.csv")), &table.to_csv())?;
+                write_unsynced(&base.join(format!("{stem}-states.csv")), &table.to_csv())?;
             }
             bar.step();
-            Ok(truth)
+            Ok((truth, drawn_again > 0))
         })
         .collect::<Result<Vec<_>, Failure>>()?;
     bar.finish();
-    let flights = truths.len();
-    let truth = simulation.truth(truths);
-    let path = folder.join("TRUTH.json");
+    let drawn_again = truths.iter().filter(|(_, again)| *again).count();
+    let written = Written { flights: truths.len(), drawn_again };
+    let truth = simulation.truth(truths.into_iter().map(|(truth, _)| truth).collect());
+    let path = folder.join(TRUTH);
     let mut text =
         serde_json::to_string_pretty(&truth).map_err(|error| Failure::unwritable(&path, error))?;
     text.push('\n');
     write_atomically(&path, text.as_bytes())?;
-    Ok(flights)
+    Ok(written)
 }
 
 fn study_with(plan: Plan) -> Result<Study, Failure> {
@@ -142,7 +222,7 @@ impl Study {
     ///
     /// # Errors
     /// A file that cannot be written, or a flight that cannot be flown.
-    pub(crate) fn write(self, folder: &Path, progress: Progress) -> Result<usize, Failure> {
+    pub(crate) fn write(self, folder: &Path, progress: Progress) -> Result<Written, Failure> {
         make_folder(folder)?;
         write_atomically(&folder.join("AIRCRAFT.ron"), self.aircraft.as_bytes())?;
         write_atomically(&folder.join("guide.csv"), self.guide.as_bytes())?;

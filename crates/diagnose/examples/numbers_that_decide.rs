@@ -442,7 +442,7 @@ fn page() -> String {
     page.push_str("\n## Typical sizes of effects\n\n");
     page.push_str("Our choice: sizes at which an engineer would ask for the cause; [Assumptions](../assumptions.md) has sizes from sources.\n");
     page.push_str(
-        "They decide through `PRIOR_SCALES`: three times as large is as probable a scale.\n\n",
+        "They decide through `PRIOR_SCALES`: three times as large is as probable a scale, ten times a fifth of that.\n\n",
     );
     page.push_str("| effect | typical size | unit |\n|---|---|---|\n");
     for id in EffectId::ALL {

@@ -1,62 +1,78 @@
-//! What a model remembers of clean flights in addition to its table: a smooth remainder, the N2 deck, the split between engines,
-//! and how large the noise is. Each with its covariance.
+//! What a model remembers of clean flights: how far its initial drag table is off, a smooth remainder, the N2 deck, the split
+//! between engines, effects that the fleet shows at all times, and how large the noise is. One posterior over all of it.
 
 use effects::{EffectReferences, Response};
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
 use crate::baseline::layout::NuisanceLayout;
+use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::priors::{
-    DECK_DEVIATION, REMAINDER_HAT_DEVIATION, REMAINDER_LEVEL_DEVIATION,
-    REMAINDER_PRODUCT_DEVIATION, TAUGHT_SPLIT_DEVIATION,
+    DECK_DEVIATION, REMAINDER_LEVEL_DEVIATION, REMAINDER_PRODUCT_DEVIATION,
+    REMAINDER_SLOPE_DEVIATION, REMAINDER_SMOOTH_DEVIATION, TAUGHT_SPLIT_DEVIATION,
 };
 use crate::signals::n2_deck::{DECK_TERMS, Deck};
 use crate::signals::noise::NoiseFactors;
-use crate::signals::variables::{Hats, Scaled, Variable};
-use crate::thresholds::INFORMED_SHARE;
+use crate::signals::table_uncertainty::TableUncertainty;
+use crate::thresholds::FARTHEST_PRODUCT;
 
 pub(crate) mod layout;
+pub(crate) mod smooth;
 pub(crate) mod standing_effects;
 
-/// Effects that the first model files with a baseline carried.
-const FIRST_CARRIED: usize = 3;
-
-/// A learnt baseline. Reads and writes with serde, to the same bits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Parts", into = "Parts")]
+/// A learnt baseline.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Baseline {
-    pub(crate) parts: Parts,
+    pub(crate) parts: BaselineRecord,
+    /// What was believed of the drag table before the flights; `None` where the table was taken as exact.
+    pub(crate) table: Option<TableUncertainty>,
     pub(crate) factor: Mat<f64>,
 }
 
-/// A baseline as it is written.
+/// A baseline as it is written, to the same bits. With the prior of the drag table ([`Baseline::new`]) it is a baseline.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Baseline")]
-pub(crate) struct Parts {
+pub struct BaselineRecord {
     pub(crate) flights: usize,
     pub(crate) segments: usize,
     pub(crate) references: EffectReferences,
     pub(crate) noise: NoiseFactors,
-    /// Factors on the prior standard deviations of hat functions and products.
+    /// Factors on the prior standard deviations of smooth functions and products.
     pub(crate) scales: [f64; 2],
-    pub(crate) hats: Vec<(Variable, Hats)>,
-    pub(crate) products: Vec<(Variable, Scaled, Variable, Scaled)>,
-    /// Variables that the remainder may bend along differently at each Mach number.
-    pub(crate) local: Vec<(Variable, Scaled)>,
+    pub(crate) smooth: Vec<Smooth>,
     pub(crate) contrasts: usize,
     pub(crate) deck_known: bool,
     pub(crate) deck_centers: [f64; 4],
     pub(crate) deck_coefficients: Vec<f64>,
     /// Means of remainder terms and splits.
     pub(crate) mean: Vec<f64>,
-    /// Lower triangle, row by row, of the Cholesky factor of the covariance of remainder terms, splits and deck.
+    /// Nodes of the drag table from whose covariances its loadings are made.
+    pub(crate) drag_nodes: Vec<usize>,
+    /// Means of the loadings.
+    pub(crate) drag: Vec<f64>,
+    /// Lower triangle, row by row, of the Cholesky factor of the covariance of remainder terms, splits, deck, effects and
+    /// loadings.
     pub(crate) factor: Vec<f64>,
     /// Sizes of the effects that the fleet shows at all times.
-    #[serde(rename = "environment")]
     pub(crate) standing_effects: Vec<f64>,
+    /// What each of them was worth in ln fuel flow, on average over the flights that it was learnt from.
+    pub(crate) standing_means: Vec<f64>,
+    /// Segments that counted less than half.
+    pub(crate) outliers: usize,
+    /// Factor on stated standard deviations, by flights that were left out.
+    pub(crate) interval_factor: f64,
     /// Remaining rms of ln fuel flow over the flights that it was learnt from.
     pub(crate) rms: f64,
+}
+
+impl BaselineRecord {
+    /// Nodes of the drag table whose covariances its loadings need ([`TableUncertainty::pivots`]); none where the table was
+    /// taken as exact.
+    #[must_use]
+    pub fn drag_nodes(&self) -> &[usize] {
+        &self.drag_nodes
+    }
 }
 
 /// Numbers that are not a baseline.
@@ -69,6 +85,51 @@ pub struct BaselineLengthError {
 }
 
 impl Baseline {
+    /// A baseline that was written, with what was believed of the drag table before its flights.
+    ///
+    /// # Errors
+    /// [`BaselineLengthError`] where numbers are missing or left over.
+    pub fn new(
+        parts: BaselineRecord,
+        table: Option<TableUncertainty>,
+    ) -> Result<Self, BaselineLengthError> {
+        let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0) };
+        let check = |quantity, found, expected| {
+            if found == expected {
+                Ok(())
+            } else {
+                Err(BaselineLengthError { quantity, found, expected })
+            }
+        };
+        let layout = baseline.layout();
+        let parts = &baseline.parts;
+        check("means", parts.mean.len(), layout.contrasts.end)?;
+        check("deck coefficients", parts.deck_coefficients.len(), DECK_TERMS)?;
+        check("carried effects", parts.standing_effects.len(), STANDING_EFFECTS.len())?;
+        check("means of carried effects", parts.standing_means.len(), STANDING_EFFECTS.len())?;
+        check("nodes of the drag table", parts.drag_nodes.len(), layout.drag.len())?;
+        check("loadings of the drag table", parts.drag.len(), layout.drag.len())?;
+        let width = layout.len();
+        let factor = parts.interval_factor;
+        check("interval factor above 0", usize::from(factor.is_finite() && factor > 0.0), 1)?;
+        check("covariance factor", parts.factor.len(), width * (width + 1) / 2)?;
+        let mut factor = Mat::zeros(width, width);
+        let mut values = parts.factor.iter();
+        for i in 0..width {
+            for j in 0..=i {
+                factor[(i, j)] = values.next().copied().unwrap_or(0.0);
+            }
+        }
+        baseline.factor = factor;
+        Ok(baseline)
+    }
+
+    /// As it is written.
+    #[must_use]
+    pub const fn record(&self) -> &BaselineRecord {
+        &self.parts
+    }
+
     /// Factors on the sensors' standard deviations.
     #[must_use]
     pub const fn noise(&self) -> &NoiseFactors {
@@ -87,51 +148,22 @@ impl Baseline {
         (self.parts.flights, self.parts.segments)
     }
 
+    /// Factor on the standard deviations of predictions, by flights that did not teach them.
+    #[must_use]
+    pub const fn interval_factor(&self) -> f64 {
+        self.parts.interval_factor
+    }
+
+    /// Segments that lie so far from the rest that they counted less than half.
+    #[must_use]
+    pub const fn outliers(&self) -> usize {
+        self.parts.outliers
+    }
+
     /// Root mean square of ln fuel flow that it leaves over the flights that it was learnt from.
     #[must_use]
     pub const fn remaining_rms(&self) -> f64 {
         self.parts.rms
-    }
-
-    /// Mean and standard deviation of the remainder of ln fuel flow at a point: what `predict` adds to ln Wf.
-    #[must_use]
-    pub fn remainder(&self, response: &Response) -> (f64, f64) {
-        let mut terms = vec![0.0; self.remainder_terms()];
-        self.write_remainder(response, &mut terms);
-        let variance: f64 = (0..self.factor.ncols())
-            .map(|column| {
-                let loading: f64 = terms
-                    .iter()
-                    .enumerate()
-                    .map(|(row, term)| term * self.factor[(row, column)])
-                    .sum();
-                loading * loading
-            })
-            .sum();
-        (self.remainder_mean(&terms), variance.sqrt())
-    }
-
-    /// The same where flown data informed it; `None` elsewhere, where the mean is hardly more than the prior's.
-    ///
-    /// Informed is a point that lies inside the range flown of each variable, and at which the remainder's variance is at
-    /// most a quarter of what it was before anything was flown. The level, which any flight informs, does not count in the
-    /// latter.
-    #[must_use]
-    pub fn known_remainder(&self, response: &Response) -> Option<(f64, f64)> {
-        let inside = self.parts.hats.iter().all(|(variable, hats)| {
-            let value = variable.flown(response, &self.parts.references);
-            hats.beyond(value).iter().all(|distance| *distance <= 0.0)
-        });
-        let mut terms = vec![0.0; self.remainder_terms()];
-        self.write_remainder(response, &mut terms);
-        let prior: f64 = terms
-            .iter()
-            .enumerate()
-            .skip(1)
-            .map(|(index, term)| (term * self.prior_deviation(index)).powi(2))
-            .sum();
-        let (mean, deviation) = self.remainder(response);
-        (inside && deviation * deviation <= INFORMED_SHARE * prior).then_some((mean, deviation))
     }
 
     /// Mean of the remainder at a point.
@@ -139,6 +171,14 @@ impl Baseline {
         let mut terms = vec![0.0; self.remainder_terms()];
         self.write_remainder(response, &mut terms);
         self.remainder_mean(&terms)
+    }
+
+    /// Mean change of ln net thrust by what it has learnt of the drag table.
+    pub(crate) fn drag_at(&self, response: &Response) -> f64 {
+        let mut loadings = vec![0.0; self.parts.drag.len()];
+        self.write_drag(response, &mut loadings);
+        let drag: f64 = loadings.iter().zip(&self.parts.drag).map(|(l, mean)| l * mean).sum();
+        response.drag_over_thrust * drag
     }
 
     /// Sizes of effects that its fleet shows at all times, each in its unit: local gravity, rotating Earth and
@@ -169,73 +209,91 @@ impl Baseline {
 
     /// Which of its coefficients is what.
     pub(crate) fn layout(&self) -> NuisanceLayout {
-        NuisanceLayout::of_baseline(self.remainder_terms(), self.parts.contrasts)
+        let drag = self.table.as_ref().map_or(0, TableUncertainty::rank);
+        NuisanceLayout::of_baseline(self.remainder_terms(), self.parts.contrasts, drag)
     }
 
+    /// A level, each variable's slope and smooth function, and a product of every pair.
     pub(crate) fn remainder_terms(&self) -> usize {
-        1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>()
-            + self.parts.products.len()
-            + self.local_hats().map(|(hats, local)| hats.len() * local.len()).sum::<usize>()
+        let smooth = &self.parts.smooth;
+        1 + smooth.iter().map(Smooth::len).sum::<usize>() + pairs(smooth.len())
     }
 
     pub(crate) fn remainder_mean(&self, terms: &[f64]) -> f64 {
         terms.iter().zip(&self.parts.mean).map(|(term, mean)| term * mean).sum()
     }
 
-    /// Writes the remainder's terms at the state that was flown. The baseline's own references hold.
-    pub(crate) fn write_remainder(&self, response: &Response, into: &mut [f64]) {
-        let value = |variable: Variable| variable.flown(response, &self.parts.references);
-        into[0] = 1.0;
+    /// Writes the remainder's terms at the state that was flown. The baseline's own references hold. Returns the variance of
+    /// the smooth functions that the terms do not hold: where nothing was flown.
+    pub(crate) fn write_remainder(&self, response: &Response, into: &mut [f64]) -> f64 {
+        let smooth = &self.parts.smooth;
+        let mut left = 0.0;
         let mut at = 1;
-        for (variable, hats) in &self.parts.hats {
-            let value = value(*variable);
-            hats.write(value, &mut into[at..at + hats.len()]);
-            at += hats.len();
-            into[at..at + 2].copy_from_slice(&hats.beyond(value));
-            at += 2;
+        let mut scaled = Vec::with_capacity(smooth.len());
+        into[0] = 1.0;
+        for one in smooth {
+            let value = one.variable().flown(response, &self.parts.references);
+            left += one.write(value, &mut into[at..at + one.len()]);
+            scaled.push(one.at(value).clamp(-FARTHEST_PRODUCT, FARTHEST_PRODUCT));
+            at += one.len();
         }
-        for (a, scaled_a, b, scaled_b) in &self.parts.products {
-            into[at] = scaled_a.at(value(*a)) * scaled_b.at(value(*b));
-            at += 1;
-        }
-        for (hats, local) in self.local_hats() {
-            let mach = value(Variable::Mach);
-            for (variable, scaled) in local {
-                let by = scaled.at(value(*variable));
-                hats.write(mach, &mut into[at..at + hats.len()]);
-                for slot in &mut into[at..at + hats.len()] {
-                    *slot *= by;
-                }
-                at += hats.len();
+        for (k, a) in scaled.iter().enumerate() {
+            for b in &scaled[k + 1..] {
+                into[at] = a * b;
+                at += 1;
             }
         }
+        left * self.smooth_variance()
     }
 
-    /// Mach number's hat functions and the variables that each of them may bend along.
-    fn local_hats(&self) -> impl Iterator<Item = (&Hats, &Vec<(Variable, Scaled)>)> {
-        self.parts
-            .hats
-            .iter()
-            .filter(|(variable, _)| *variable == Variable::Mach)
-            .map(|(_, hats)| (hats, &self.parts.local))
+    /// Prior variance of one smooth function.
+    pub(crate) fn smooth_variance(&self) -> f64 {
+        (REMAINDER_SMOOTH_DEVIATION * self.parts.scales[0]).powi(2)
+    }
+
+    /// Share of that variance that the terms do not hold, over all functions.
+    pub(crate) fn unflown_share(&self, response: &Response) -> f64 {
+        let mut terms = vec![0.0; self.remainder_terms()];
+        self.write_remainder(response, &mut terms) / self.smooth_variance()
+    }
+
+    /// Writes the loadings of the drag table at the state that was flown.
+    pub(crate) fn write_drag(&self, response: &Response, into: &mut [f64]) {
+        if let Some(table) = &self.table {
+            table.write(response, into);
+        }
     }
 
     pub(crate) fn prior_deviation(&self, index: usize) -> f64 {
         let layout = self.layout();
-        let products = 1 + self.parts.hats.iter().map(|(_, hats)| hats.len() + 2).sum::<usize>();
         if index == 0 {
             REMAINDER_LEVEL_DEVIATION
-        } else if index < products {
-            REMAINDER_HAT_DEVIATION * self.parts.scales[0]
         } else if layout.remainder.contains(&index) {
-            REMAINDER_PRODUCT_DEVIATION * self.parts.scales[1]
+            self.remainder_deviation(index)
         } else if layout.contrasts.contains(&index) {
             TAUGHT_SPLIT_DEVIATION
         } else if layout.deck.contains(&index) {
             DECK_DEVIATION
+        } else if layout.drag.contains(&index) {
+            1.0
         } else {
             self.standing_effect_deviation(index - layout.standing_effects.start)
         }
+    }
+
+    /// Prior standard deviation of a term of the remainder but the level.
+    fn remainder_deviation(&self, index: usize) -> f64 {
+        let mut start = 1;
+        for one in &self.parts.smooth {
+            if index == start {
+                return REMAINDER_SLOPE_DEVIATION;
+            }
+            start += one.len();
+            if index < start {
+                return REMAINDER_SMOOTH_DEVIATION * self.parts.scales[0];
+            }
+        }
+        REMAINDER_PRODUCT_DEVIATION * self.parts.scales[1]
     }
 
     /// Prior standard deviation of a carried effect, in its unit.
@@ -245,55 +303,11 @@ impl Baseline {
     }
 }
 
+const fn pairs(of: usize) -> usize {
+    of * of.saturating_sub(1) / 2
+}
+
 /// Lower triangle, row by row.
 pub(crate) fn lower_triangle(matrix: &Mat<f64>) -> Vec<f64> {
     (0..matrix.nrows()).flat_map(|i| (0..=i).map(move |j| matrix[(i, j)])).collect()
-}
-
-impl From<Baseline> for Parts {
-    fn from(baseline: Baseline) -> Self {
-        baseline.parts
-    }
-}
-
-impl TryFrom<Parts> for Baseline {
-    type Error = BaselineLengthError;
-    fn try_from(parts: Parts) -> Result<Self, BaselineLengthError> {
-        let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
-        let check = |quantity, found, expected| {
-            if found == expected {
-                Ok(())
-            } else {
-                Err(BaselineLengthError { quantity, found, expected })
-            }
-        };
-        let layout = baseline.layout();
-        check("means", baseline.parts.mean.len(), layout.contrasts.end)?;
-        check("deck coefficients", baseline.parts.deck_coefficients.len(), DECK_TERMS)?;
-        let carried = baseline.parts.standing_effects.len();
-        if carried != FIRST_CARRIED {
-            check("carried effects", carried, STANDING_EFFECTS.len())?;
-        }
-        let known = layout.standing_effects.start + carried;
-        check("covariance factor", baseline.parts.factor.len(), known * (known + 1) / 2)?;
-        let mut factor = Mat::zeros(layout.len(), layout.len());
-        let mut values = baseline.parts.factor.iter();
-        for i in 0..known {
-            for j in 0..=i {
-                factor[(i, j)] = values.next().copied().unwrap_or(0.0);
-            }
-        }
-        // An older file holds no effect that was added since: the prior of those remains.
-        for k in carried..STANDING_EFFECTS.len() {
-            let deviation = baseline.standing_effect_deviation(k);
-            let column = layout.standing_effects.start + k;
-            factor[(column, column)] = deviation;
-            baseline.parts.standing_effects.push(0.0);
-        }
-        if known < layout.len() {
-            baseline.parts.factor = lower_triangle(&factor);
-        }
-        baseline.factor = factor;
-        Ok(baseline)
-    }
 }

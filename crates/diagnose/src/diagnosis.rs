@@ -1,5 +1,7 @@
 //! From flights to a verdict.
 
+use std::collections::BTreeMap;
+
 use effects::{EffectModel, EffectModelError};
 use flight::effect::EffectId;
 
@@ -8,18 +10,17 @@ use crate::advice::distances::{Distances, leading_columns};
 use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
 use crate::judge::closure::{Shrinkage, in_sample, nested};
-use crate::judge::gap::{
-    exceeds_uncertainty, gap_of, is_real, is_vague, noise_scale, unknown_square,
-};
+use crate::judge::detection::{Detection, Evidence, detect};
+use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{CauseEvidence, causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
-use crate::judge::verdict::{Findings, advisor, beside, closed, credit, verdict};
+use crate::judge::verdict::{Findings, advisor, level_like, verdict};
 use crate::library::Library;
 use crate::output::addition::Addition;
 use crate::output::note::Note;
 use crate::output::verdict::Insufficient;
-use crate::output::{ActsOn, Detectable, Diagnosis, NotTestable, OutsideLibrary};
+use crate::output::{ActsOn, Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
 use crate::place::find::find;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
@@ -27,7 +28,7 @@ use crate::search::analyse::{Analysis, analyse};
 use crate::search::outside::{Outside, compete};
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
-use crate::signals::table_uncertainty::TableUncertainty;
+use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
 
 /// Diagnoses one set of flights.
 ///
@@ -52,10 +53,13 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
             && !options.without.contains(&id)
     };
     let reference = Reference::from_baseline(input.baseline);
-    let (data, library) =
+    let (data, mut library) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
             Library::new(&model, points, engines, starts, chosen)
         });
+    if input.table.map(TableUncertainty::origin) == Some(TableOrigin::Book) {
+        library.believe_book();
+    }
     let not_testable = library
         .not_testable
         .iter()
@@ -106,83 +110,84 @@ fn conclude(
     let Problem { stacked, model, library } = problem;
     let analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
     let mut outside = compete(stacked, &analysis, library);
-    let gram = stacked.gram(None);
     let leading = leading_columns(library, &analysis.models);
-    let distances =
-        Distances::of(gram, stacked.design, leading).ok_or(DiagnoseError::Degenerate)?;
-    let best = &analysis.models[0].0;
-    let scale = noise_scale(&analysis, best, gram.rows);
+    let distances = Distances::of(stacked.gram(None), stacked.design, leading)
+        .ok_or(DiagnoseError::Degenerate)?;
     let posteriors = dominant(stacked, &analysis, library);
+    let best = &analysis.models[0].0;
+    let scale = noise_scale(&analysis, best, stacked.gram(None).rows);
     let own = in_sample(problem, &best.model.columns, &best.sizes, scale, options.seed);
     let mut gap = gap_of(stacked, &analysis, &own, scale);
-    let real = is_real(&analysis, &outside) || exceeds_uncertainty(&gap, unknown_square(stacked));
+    let exceeds = exceeds_uncertainty(&gap, unknown_square(stacked));
+    let real = exceeds || is_real(&analysis, &outside);
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
-    let worse = makes_worse(stacked, unseen.as_ref());
-    gap.detected = real && !is_vague(&gap, &outside, posteriors.first(), worse);
+    let evidence = Evidence {
+        analysis: &analysis,
+        distances: &distances,
+        posteriors: &posteriors,
+        gap: &gap,
+        own: &own,
+        unseen: unseen.as_ref(),
+        noise_scale: scale,
+        is_real: real,
+        exceeds_uncertainty: exceeds,
+    };
+    let Detection { detected, table, smooth_term } = detect(problem, &evidence, &mut outside);
+    gap.detected = detected;
     let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {
-        gap.floor_by_replicates_rms_percent = replicate_floor(stacked, &own, scale).map(percent);
-        gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
+        add_floors(&mut gap, problem, &own, scale);
     }
-    let places = if options.skip_where {
-        vec![]
-    } else {
-        find(stacked, &analysis, scale, gap.detected, options.seed)
-    };
-    let found_outside = outside.probability;
-    let top = posteriors.first();
-    let is_scatter = top.is_some_and(|top| top.effect.is_none());
-    outside.probability *= 1.0
-        - credit(
-            beside(&outside, &distances, library, top),
-            closed(unseen.as_ref(), &own).filter(|_| !is_scatter),
-        );
+    let places = (!options.skip_where)
+        .then(|| find(stacked, &analysis, scale, detected, options.seed))
+        .unwrap_or_default();
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {
+        level_like: &level_like(stacked, library),
         analysis: &analysis,
         library,
         distances: &distances,
         advisor: &advisor,
         outside: &outside,
-        smooth_term: found_outside,
+        smooth_term,
         posteriors: if gap.detected { &posteriors } else { &[] },
+        table: table.as_ref(),
         own: &own,
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let evidence = CauseEvidence {
+    let of_causes = CauseEvidence {
         analysis: &analysis,
         outside: &outside,
         distances: &distances,
         library,
         unseen: unseen.as_ref(),
+        table: table.as_ref(),
     };
-    let causes = causes(&evidence, &posteriors);
-    let detectable = detectable(library, &distances, &classes, &advisor);
     let diagnosis = Diagnosis {
         flights: stacked.data.flights.len(),
         segments: stacked.data.segments.len(),
         gap,
         r#where: places,
-        causes,
+        causes: causes(&of_causes, &posteriors),
         not_testable: vec![],
         addition: Addition::of(&analysis, library, verdict.effects(), *model.references())
-            .filter(|_| !verdict.effects().is_empty()),
+            .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
         verdict,
-        detectable,
+        detectable: detectable(library, &distances, &classes, &advisor),
         outside: outside_library(&outside),
-        left_out: std::collections::BTreeMap::new(),
+        left_out: BTreeMap::new(),
         notes: vec![],
     };
     Ok((diagnosis, analysis))
 }
 
-/// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does
-/// this is wrong.
-fn makes_worse(stacked: &WhitenedSystem<'_>, unseen: Option<&Shrinkage>) -> bool {
-    stacked.data.predictor.baseline.is_some()
-        && unseen.and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0)
+/// Adds the two estimates of the noise floor that need no sensor's standard deviation.
+fn add_floors(gap: &mut Gap, problem: Problem<'_>, own: &Shrinkage, noise_scale: f64) {
+    let Problem { stacked, library, .. } = problem;
+    gap.floor_by_replicates_rms_percent = replicate_floor(stacked, own, noise_scale).map(percent);
+    gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
 }
 
 /// Root of a mean square, %.

@@ -19,7 +19,7 @@ pub struct Input<'a> {
     pub flights: &'a [FlightRecord<'a>],
     /// What the model remembers of clean flights; `None` against a table alone.
     pub baseline: Option<&'a Baseline>,
-    /// What the table does not know; `None` where every node counts as known.
+    /// What the table does not know, or what is believed of a guide's; `None` where every node counts as known.
     pub table: Option<&'a TableUncertainty>,
     /// Conditions that effects are zero at; else the baseline's, else the means of the data at hand.
     pub references: Option<EffectReferences>,

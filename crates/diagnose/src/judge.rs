@@ -2,8 +2,10 @@
 
 pub(crate) mod addition;
 pub(crate) mod closure;
+pub(crate) mod detection;
 pub(crate) mod gap;
 pub(crate) mod noise_floors;
 pub(crate) mod posterior;
 pub(crate) mod sufficiency;
+pub(crate) mod table;
 pub(crate) mod verdict;

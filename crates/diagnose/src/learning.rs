@@ -3,3 +3,5 @@
 mod fit;
 mod learn;
 mod moments;
+mod outliers;
+mod unseen;

@@ -121,7 +121,7 @@ mod diagnosis;
 mod judge;
 mod numbers;
 
-pub use baseline::{Baseline, BaselineLengthError};
+pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;
 pub use input::{Input, Options};
@@ -132,14 +132,19 @@ pub use output::measurement::{
 };
 pub use output::note::{LeftOutReason, Note};
 pub use output::region::{Condition, Edge, Region};
-pub use output::verdict::{Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict};
+pub use output::verdict::{
+    Beside, Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict,
+};
 pub use output::{
     ActsOn, Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
 };
 pub use place::members::region_members;
 pub use place::segment_gaps::{SegmentGap, Shown, segment_gaps};
+pub use residuals::whole::{WholeModel, WholePrediction};
 pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};
 pub use signals::references::{DiagnoseError, references_of};
-pub use signals::table_uncertainty::{TableUncertainty, TableUncertaintyError, visited_nodes};
+pub use signals::table_uncertainty::{
+    TableOrigin, TableUncertainty, TableUncertaintyError, visited_nodes,
+};
 pub use signals::variables::Variable;

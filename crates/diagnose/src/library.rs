@@ -2,10 +2,14 @@
 
 use effects::{EffectModel, EffectPoint};
 use flight::effect::{
-    EffectId, EffectSign, HiddenParameter, NeededInput, StepTarget, ThrottleArgument,
+    EffectGroup, EffectId, EffectSign, HiddenParameter, NeededInput, StepTarget, ThrottleArgument,
 };
 
-use crate::priors::{DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, STEP_DATES, THROTTLE_PIVOTS};
+use crate::priors::{
+    AGNOSTIC_SPIKES, BACKGROUND_SPIKES, BOOK_AGNOSTIC_SPIKES, BOOK_OTHER_EFFECTS, BOOK_SPIKES,
+    DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, SPIKES_OF_RIGHT_TABLE, STEP_DATES,
+    THROTTLE_PIVOTS,
+};
 use crate::thresholds::RECORDED_SHARE;
 
 /// One column: an effect at one value of its hidden parameter.
@@ -21,6 +25,8 @@ pub(crate) struct Testable {
     pub(crate) id: EffectId,
     /// Typical size in the effect's unit.
     pub(crate) typical: f64,
+    /// Standard deviation, per unit of a background's scale, where no hypothesis names it.
+    pub(crate) small: f64,
     /// Prior mean and standard deviation of θ; the standard deviation is mixed at once and three times where free.
     pub(crate) prior_mean: f64,
     pub(crate) prior_deviation: f64,
@@ -49,6 +55,11 @@ pub(crate) struct Library {
     pub(crate) not_testable: Vec<(EffectId, Vec<NeededInput>)>,
     /// `fuel_heating_value`, a variance: not among the columns.
     pub(crate) heating_value: bool,
+    /// Scales of the backgrounds in which every effect acts a little, and of those behind functions without a name.
+    pub(crate) spikes: [f64; 4],
+    pub(crate) agnostic_spikes: [f64; 2],
+    /// How many of each apply where a table that may be off is right: the smallest.
+    pub(crate) spikes_of_right_table: usize,
 }
 
 impl Library {
@@ -65,6 +76,9 @@ impl Library {
             columns: Vec::new(),
             not_testable: Vec::new(),
             heating_value: false,
+            spikes: BACKGROUND_SPIKES,
+            agnostic_spikes: AGNOSTIC_SPIKES,
+            spikes_of_right_table: SPIKES_OF_RIGHT_TABLE,
         };
         for id in EffectId::library(model.aircraft().engines()) {
             // What the model contains and physics knows the size of is no effect any more.
@@ -82,6 +96,17 @@ impl Library {
         library
     }
 
+    /// Believes of the backgrounds what is believed of a guide: its equations lack what a model may lack at all times.
+    pub(crate) fn believe_book(&mut self) {
+        self.spikes = BOOK_SPIKES;
+        self.agnostic_spikes = BOOK_AGNOSTIC_SPIKES;
+        for effect in &mut self.effects {
+            if !acts_at_all_times(effect.id) {
+                effect.small = BOOK_OTHER_EFFECTS * effect.typical;
+            }
+        }
+    }
+
     fn add(&mut self, id: EffectId, grid: Vec<HiddenParameter>, model: &EffectModel<'_>) {
         if grid.is_empty() {
             return; // a step needs flights on both sides of a date
@@ -96,6 +121,7 @@ impl Library {
         self.effects.push(Testable {
             id,
             typical,
+            small: typical,
             prior_mean: if known { 1.0 } else { 0.0 },
             prior_deviation: if known { KNOWN_DEVIATION } else { typical },
             has_known_size: known,
@@ -105,6 +131,19 @@ impl Library {
             representative: first_column + middle,
         });
         self.columns.extend(grid.into_iter().map(|hidden| Column { effect, hidden }));
+    }
+}
+
+/// Whether an effect is one that the equations of a model may lack for every aircraft at all times, and not one of a single
+/// aircraft: its sensors, its loading, one of its engines, its age, an event.
+const fn acts_at_all_times(id: EffectId) -> bool {
+    match id.entry().group {
+        EffectGroup::Airframe => !matches!(id, EffectId::AirframeAgeing),
+        EffectGroup::Engine => {
+            !matches!(id, EffectId::TsfcEngine(_) | EffectId::EngineAgeing | EffectId::AntiIceBleed)
+        }
+        EffectGroup::Environment => true,
+        EffectGroup::Mass | EffectGroup::Sensor | EffectGroup::Event => false,
     }
 }
 

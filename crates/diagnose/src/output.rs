@@ -109,6 +109,8 @@ pub struct Cause {
     pub effect: EffectId,
     /// Probability that it is the larger one of what acts.
     pub probability: f64,
+    /// The same without the prior sizes of effects: any effect may change fuel flow by any amount within ±5 %.
+    pub probability_flat: f64,
     /// Effects that this data cannot tell from it, itself first.
     pub class: Vec<EffectId>,
     /// Its size.

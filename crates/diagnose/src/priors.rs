@@ -7,6 +7,9 @@ deciding_numbers! {
         PRIOR_BY_SIZE: [f64; 3] = [0.25, 0.45, 0.25], "",
             "prior weights of no effect, of one, of two",
             OurChoice "One is the likeliest, none and two are no surprise; three, which would have the rest, are not searched.";
+        PRIOR_NO_GAP: f64 = 0.5, "",
+            "share of the prior of no effect that is on a model without any fault; the rest is on small faults of all kinds",
+            OurChoice "An even chance: no gap is a belief of its own, and no corner of the backgrounds.";
         PRIOR_OUTSIDE: f64 = 0.20, "",
             "prior probability that something outside the library acts",
             OurChoice "One cause in five: the library is long, but nobody can list every cause.";
@@ -15,9 +18,12 @@ deciding_numbers! {
             OurChoice "A sign is a strong expectation and no law: one model in twenty errs the other way.";
     }
     "How large an effect is" {
-        PRIOR_SCALES: [(f64, f64); 2] = [(1.0, 0.5), (3.0, 0.5)], "",
+        PRIOR_SCALES: [(f64, f64); 3] = [(1.0, 0.45), (3.0, 0.45), (10.0, 0.10)], "",
             "prior standard deviations of an effect over its typical size, each with its probability",
-            OurChoice "Half of the belief on effects of three times the typical size, so that a large one is not shrunk away.";
+            OurChoice "As much belief on three times the typical size, so that a large effect is not shrunk away; one in ten on ten times.";
+        FLAT_RANGE: f64 = 0.10, "of fuel flow",
+            "range over which the effect of a cause on fuel flow is evenly probable where its prior size is left out",
+            OurChoice "Five per cent either way: what an engineer would not call impossible of any cause.";
         KNOWN_DEVIATION: f64 = 0.15, "",
             "prior standard deviation of a coefficient that physics says is 1",
             OurChoice "Physics says 1; what is recorded of wind, position and turns is not exact, so that some 15 % are left.";
@@ -46,9 +52,9 @@ deciding_numbers! {
         SMOOTH_AMPLITUDES: [f64; 4] = [0.0, 0.0015, 0.004, 0.010], "of fuel flow",
             "amplitudes of the smooth discrepancy",
             OurChoice "From none to 1 %, about what a table over lift coefficient and Mach number cannot hold; averaged over.";
-        TAUGHT_LARGEST_AMPLITUDE: f64 = 0.004, "of fuel flow",
+        TAUGHT_LARGEST_AMPLITUDE: f64 = 0.010, "of fuel flow",
             "largest amplitude of the smooth discrepancy against a baseline",
-            OurChoice "The remainder was fitted to what the fleet flies, so that 1 % cannot be left.";
+            OurChoice "All that are tried: a remainder of few flights may lack as much.";
         TAUGHT_SCATTERS: [f64; 2] = [0.0, 0.003], "of fuel flow",
             "scatter between flights beyond what a baseline learnt",
             OurChoice "A baseline knows the scatter from few flights: it may be more. Both are averaged over.";
@@ -58,6 +64,29 @@ deciding_numbers! {
         PRODUCT_SCALE: f64 = 0.5, "",
             "amplitude of a product of two variables over that of a function of one",
             OurChoice "Discrepancies of one variable are taken for twice as large as those of two together.";
+    }
+    "A guide that no flight has taught" {
+        PRIOR_BOOK_RIGHT: f64 = 0.10, "",
+            "prior probability that the drag of a guide is right as it is",
+            OurChoice "Guides are some per cent too optimistic as a rule.";
+        BOOK_SPIKES: [f64; 4] = [0.0, 0.3, 1.0, 3.0], "of typical size",
+            "standard deviation, against a guide, of every effect that a hypothesis does not name and a model may lack at all times",
+            OurChoice "A guide's equations lack Reynolds number, offtake, part load: none, or all, up to three times usual; averaged over.";
+        SPIKES_OF_RIGHT_TABLE: usize = 2, "",
+            "how many of them, from the smallest, apply where the guide's drag is right",
+            OurChoice "Larger ones of drag would be a table that is off by another name.";
+        BOOK_SCATTERS: [f64; 2] = [0.0, 0.01], "of fuel flow",
+            "scatter between flights against a guide beyond what the sensors make",
+            OurChoice "Law bayes' own 1 % of what is no function of lift coefficient and Mach number, or none; averaged over.";
+        BOOK_AMPLITUDES: [f64; 2] = [0.0, 0.004], "of fuel flow",
+            "amplitudes of the smooth discrepancy against a guide",
+            OurChoice "None, and about law bayes' 0.3 % of a segment: the table itself is free.";
+        BOOK_OTHER_EFFECTS: f64 = 0.05, "of that",
+            "the same of effects of one aircraft: sensors, loading, single engines, age, steps",
+            OurChoice "An equation that is lacking says nothing of sensors: at most 0.15 of typical.";
+        BOOK_AGNOSTIC_SPIKES: [f64; 2] = [0.3, 3.0], "of typical size",
+            "the same behind a function without a name",
+            OurChoice "The smallest and the largest of those above; averaged over.";
     }
     "Functions without a name" {
         AGNOSTIC_AMPLITUDES: [f64; 3] = [0.002, 0.005, 0.015], "of fuel flow",
@@ -97,18 +126,28 @@ deciding_numbers! {
         REMAINDER_LEVEL_DEVIATION: f64 = 0.10, "of fuel flow",
             "prior standard deviation of the remainder's level",
             OurChoice "Wide: any fleet finds its level.";
-        REMAINDER_HAT_DEVIATION: f64 = 0.02, "of fuel flow",
-            "prior standard deviation of a hat function of one variable, before flights scale it",
+        REMAINDER_SLOPE_DEVIATION: f64 = 0.03, "of fuel flow per length",
+            "prior standard deviation of the remainder's slope along a variable",
+            OurChoice "Wide, so that a straight line is hardly shrunk: a length is about the spread of one fleet.";
+        REMAINDER_SMOOTH_DEVIATION: f64 = 0.01, "of fuel flow",
+            "prior standard deviation of the remainder's bends along a variable, before flights scale it",
             OurChoice "What a table over two variables leaves is of the order of a per cent; the data scale it.";
         REMAINDER_PRODUCT_DEVIATION: f64 = 0.005, "of fuel flow",
-            "prior standard deviation of a product of two variables, before flights scale it",
-            OurChoice "A quarter of that of a function of one variable; the data scale it.";
+            "prior standard deviation of a product of two variables a length from their middles, before flights scale it",
+            OurChoice "Half of that of a function of one variable; the data scale it.";
         REMAINDER_SCALE_LN_DEVIATION: f64 = 1.0, "ln",
             "prior spread of the factors by which flights scale these two",
             OurChoice "A factor of e either way: weak.";
-        REMAINDER_QUANTILES: [f64; 9] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0], "",
-            "quantiles of a variable at which the remainder has its knots",
-            OurChoice "An eighth of the segments between two knots: finer than the discrepancy it stands in for.";
+        REMAINDER_LENGTHS: [f64; 6] = [0.02, 0.10, 600.0, 0.10, 6.0, 0.08],
+            "Mach, CL, m, of the reference thrust, K, of the mean mass",
+            "lengths over which the remainder bends: Mach number, lift coefficient, pressure altitude, thrust, ISA deviation, mass",
+            OurChoice "About the standard deviation of each over a fleet's cruise; a drag rise bends over 0.02 of Mach number.";
+        SMOOTH_KNOT_DISTANCE: f64 = 0.75, "lengths",
+            "distance between the knots of a smooth function",
+            Source "Arithmetic: a squared exponential kernel is then held to a hundredth between them.";
+        SMOOTH_MOST_KNOTS: usize = 16, "knots",
+            "most knots of a smooth function",
+            OurChoice "Ten lengths; a variable that spreads over more bends over a longer length.";
         TAUGHT_SPLIT_DEVIATION: f64 = 0.03, "",
             "prior standard deviation of the level of ln(Wf1/Wf2)",
             OurChoice "Two engines of one type differ by some per cent: the typical size of one engine's TSFC.";

@@ -9,3 +9,4 @@ pub(crate) mod rows;
 pub(crate) mod segments;
 pub(crate) mod signatures;
 pub(crate) mod whiten;
+pub(crate) mod whole;

@@ -28,9 +28,24 @@ deciding_numbers! {
         FARTHEST_LN_THRUST: f64 = 0.2, "ln F/δ",
             "how far from the prediction the N2 deck is followed",
             OurChoice "Beyond it N2 and the model disagree about more than thrust.";
-        INFORMED_SHARE: f64 = 0.25, "of the prior variance",
-            "most variance of the remainder at a point where it is added to a prediction",
-            OurChoice "Half of the prior's standard deviation: flights say as much as the prior, and more.";
+        FARTHEST_FROM_MEDIAN: f64 = 5.0, "standard deviations",
+            "distance from the median of all residuals up to which a segment counts whole before anything is learnt",
+            OurChoice "Far enough for an initial table that is off by several per cent in places.";
+        LEAST_MEDIAN_DISTANCE: f64 = 0.01, "of fuel flow",
+            "least standard deviation that this distance is over",
+            OurChoice "Residuals of a table that is nearly right must not make ordinary segments outliers.";
+        USUAL_DISTANCE: f64 = 2.5, "standard deviations",
+            "distance from what is learnt up to which a segment or flight counts whole",
+            OurChoice "Of normal errors 1.2 % lie beyond: clean flights are learnt as if nothing were weighed.";
+        ORDINARY_SEGMENTS: f64 = 20.0, "segments",
+            "ordinary segments that count in addition where unseen ones judge stated intervals",
+            OurChoice "One of twenty lies outside a 95 % interval: fewer say nothing of it.";
+        FACTOR_LIMITS: (f64, f64) = (1.0, 4.0), "",
+            "least and largest factor on stated standard deviations",
+            Measured "JSBSim, flights after those learnt (development data): 91 % inside with factors below 1, 97 % without.";
+        FARTHEST_PRODUCT: f64 = 4.0, "lengths",
+            "how far from its middle a variable is followed in products of the remainder",
+            OurChoice "Hardly anything is flown beyond; a product would grow there like a square.";
     }
     "Gap or no gap" {
         CLEAN_PROBABILITY: f64 = 0.05, "",
@@ -39,12 +54,24 @@ deciding_numbers! {
         TAUGHT_CLEAN_SPIKE: f64 = 0.05, "of typical size",
             "amount of every effect that is no finding against a baseline",
             Measured "10 pairs of periods, seeds of development: silent in 10 without an effect, TSFC +2 % found in 10.";
-        TAUGHT_CLEAN_AMPLITUDE: f64 = 0.0015, "of fuel flow",
+        TAUGHT_CLEAN_AMPLITUDE: f64 = 0.007, "of fuel flow",
             "smooth discrepancy against a baseline that is left to neither agnostic functions nor regions",
-            OurChoice "A remainder is not exact: the smallest amplitude of the smooth discrepancy.";
+            Source "Arithmetic: 0.15 % for each of some twenty independent functions, its value before amplitudes were totals.";
         SMALLEST_GAP: f64 = 0.15, "of the floor's square",
             "excess over the noise floor below which closure is not measured and size alone shows no gap",
             OurChoice "Below it the ratio that closure is has noise above and below the line.";
+        SMALLEST_GAP_PERCENT: f64 = 0.15, "% rms",
+            "root mean square of what is explained, or of the excess over the floor, below which there is no gap",
+            OurChoice "No operator acts on less, however many flights show it.";
+        UNPROVEN_SHARE: f64 = 0.5, "",
+            "share of its probability that a name keeps where the interval of its closure on unseen flights holds zero",
+            OurChoice "A name that other flights do not bear out is not more probable than not.";
+        LEAST_OF_A_TABLE: f64 = 0.5, "of the explainable gap",
+            "lower end of the closure by a table fitted to other flights below which a guide's drag is not what is wrong",
+            OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.95 and more; shuffled fuel flows 0 to 0.3.";
+        LARGEST_REST: f64 = 25.0, "times the stated variance of noise",
+            "mean square that a name leaves beyond which it keeps no more than that share",
+            OurChoice "Five standard deviations: sensors three times worse than stated leave nine times it.";
         MORE_PROBABLE_THAN_NOT: f64 = 0.5, "",
             "probability of a cause, or of all named ones, above which it carries the verdict",
             OurChoice "More probable than not.";
@@ -59,6 +86,12 @@ deciding_numbers! {
         CREDIBLE: f64 = 0.95, "",
             "probability of the causes that the class of a verdict holds at least",
             OurChoice "The usual 95 %.";
+        SIZE_ALONE: f64 = 20.0, "",
+            "factor within which a cause must be of the leading one, prior sizes left out, to be in its class",
+            OurChoice "One in twenty, as for a gap: what only the prior sizes decide is open.";
+        LEVEL_LIKE: f64 = 1.0, "standard deviations among the flights",
+            "mean of an effect's signature beyond which it is like a level",
+            OurChoice "Flights that differ from the reference by more than they differ from each other.";
         NORMAL_95: f64 = 1.96, "standard deviations",
             "half width of a 95 % interval",
             Source "The normal distribution's 97.5 % quantile, to two decimals as tables have it.";

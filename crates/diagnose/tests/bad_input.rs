@@ -2,8 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{
-    Baseline, DiagnoseError, Diagnosis, FlightRecord, Input, LeftOutReason, Options, Verdict,
-    diagnose,
+    Baseline, BaselineRecord, DiagnoseError, Diagnosis, FlightRecord, Input, LeftOutReason,
+    Options, Verdict, diagnose,
 };
 use effects::ExtendedModel;
 use flight::effect::EffectId;
@@ -124,12 +124,16 @@ fn a_baseline_wants_flights_and_reads_back_to_the_same_bits() {
     let model = exact_model();
     let fleet = fly(12, &Setup { flights: 20, ..Setup::default() }, &[], &Background::default());
     let records = records(&fleet);
-    let error = Baseline::learn(&model, model.drag_table(), &records[..4]).unwrap_err();
+    let error = Baseline::learn(&model, model.drag_table(), None, &records[..4]).unwrap_err();
     assert_eq!(error, DiagnoseError::TooFewFlights { found: 4, needed: 5 });
-    let taught = Baseline::learn(&model, model.drag_table(), &records).unwrap();
-    let text = ron::to_string(&taught).unwrap();
-    assert_eq!(ron::from_str::<Baseline>(&text).unwrap(), taught);
-    assert!(ron::from_str::<Baseline>(&text.replacen("mean:[", "mean:[1.0,", 1)).is_err());
+    let taught = Baseline::learn(&model, model.drag_table(), None, &records).unwrap();
+    let text = ron::to_string(taught.record()).unwrap();
+    let read = |text: &str| {
+        ron::from_str::<BaselineRecord>(text).map(|record| Baseline::new(record, None))
+    };
+    assert_eq!(read(&text).unwrap().unwrap(), taught);
+    assert!(read(&text.replacen("mean:[", "mean:[1.0,", 1)).unwrap().is_err());
+    assert!(read(&text.replacen("length:", "length:-", 1)).is_err());
 }
 
 #[test]

@@ -135,16 +135,18 @@ effects! {
     IsobaricSlope = surroundings::ISOBARIC_SLOPE,
     /// A step on an estimated date.
     StepChange = surroundings::STEP_CHANGE,
+    /// The whole drag table off, smoothly over lift coefficient and Mach number.
+    DragTable = airframe::DRAG_TABLE,
 }
 
 impl EffectId {
-    /// Every effect for an aircraft with this many engines, in the library's order. Effects of single engines exist for
-    /// two engines and more.
+    /// Every effect with a size of its own for an aircraft with this many engines, in the library's order. Effects of single
+    /// engines exist for two engines and more. [`Self::DragTable`], which is a function and not a size, is not among them.
     #[must_use]
     pub fn library(engines: usize) -> Vec<Self> {
         let single = if engines < 2 { 0 } else { engines.min(MAXIMUM_ENGINES) };
         let mut library = Vec::new();
-        for id in Self::ALL {
+        for id in Self::ALL.iter().filter(|id| **id != Self::DragTable) {
             match id.engine() {
                 Some(_) => library.extend((1_u8..).take(single).map(|k| id.of_engine(k))),
                 None => library.push(*id),
@@ -156,7 +158,14 @@ impl EffectId {
     /// The effect of this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::library(MAXIMUM_ENGINES).into_iter().find(|id| id.to_string() == name)
+        let library = Self::library(MAXIMUM_ENGINES).into_iter();
+        library.chain([Self::DragTable]).find(|id| id.to_string() == name)
+    }
+
+    /// Whether it moves the mean of what is recorded by a size: a scatter does not, and a whole table has no single size.
+    #[must_use]
+    pub const fn has_signature(self) -> bool {
+        !matches!(self, Self::FuelHeatingValue | Self::DragTable)
     }
 
     /// Whether it concerns the recording (sensors, load sheet, fuel quantity) and not the flight itself: it then

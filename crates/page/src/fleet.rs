@@ -17,8 +17,8 @@ const FEWEST_IN_A_CHART: usize = 3;
 /// A tail in the fleet's table and chart.
 pub(crate) struct FleetRow<'a> {
     pub(crate) summary: &'a TailSummary,
-    /// Anchor of its section, if it has one.
-    pub(crate) id: Option<String>,
+    /// Where its section or page is, if it has one.
+    pub(crate) link: Option<String>,
     /// Half width of the 95 % interval of its mean error before, %.
     pub(crate) half_width95: Option<f64>,
 }
@@ -144,8 +144,8 @@ fn table_row(row: &FleetRow<'_>, adapted: bool, refits: bool, scale: (f64, f64))
     html! {
         tr {
             th scope="row" {
-                @match &row.id {
-                    Some(id) => { a href=(format!("#{id}")) { (summary.tail) } }
+                @match &row.link {
+                    Some(link) => { a href=(link) { (summary.tail) } }
                     None => { (summary.tail) }
                 }
             }

@@ -1,8 +1,8 @@
 //! The result of a run as one self-contained page for a performance engineer to read, print and forward.
 //!
 //! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis()`]
-//! that of diagnoses (what, where, how sure, what to do, and the charts behind it), [`plot()`] the charts of one tail as SVG. All
-//! are strings with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
+//! that of diagnoses (what, where, how sure, what to do, and the charts behind it), [`plot()`] the charts of one tail as SVG,
+//! [`monitoring()`] the page of months and fleets. All are strings with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
 //! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures
 //! are taken from the results unchanged.
 //!
@@ -12,7 +12,7 @@
 //!
 //! Limits:
 //! - The page of a large fleet draws a share of the segments, and states so; figures and tables cover all.
-//! - Some 200 tails make a page of 6 MB; more belong in several runs.
+//! - A page holds the charts of at most [`TAILS_ON_ONE_PAGE`] tails; the tails of a larger fleet have a page each.
 //!
 //! ```
 //! use pipeline::summary::{ReportsSummary, SCHEMA, Summary};
@@ -28,6 +28,7 @@ mod envelope;
 mod errors;
 mod fleet;
 mod frame;
+mod monitoring;
 mod place;
 mod plot;
 mod polars;
@@ -42,5 +43,9 @@ mod text;
 mod view;
 
 pub use diagnosis::diagnosis;
+pub use monitoring::monitoring;
 pub use plot::plot;
-pub use report::report;
+pub use report::{
+    Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
+    tail_page,
+};

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 use pipeline::evaluation::TailResult;
 use pipeline::model_file::Learnt;
-use pipeline::summary::Summary;
+use pipeline::summary::{Summary, TailSummary};
 
 use crate::chart::dates;
 use crate::fleet::FleetRow;
@@ -17,60 +17,140 @@ use crate::{fleet, tail};
 
 /// Largest number of points of a chart.
 const MOST_POINTS: usize = 2000;
-/// Smallest number of points of a chart, however many tails there are.
-const FEWEST_POINTS: usize = 200;
-/// Points of one kind on the whole page: about 0.7 MB.
-const POINTS_OF_PAGE: usize = 40_000;
+/// Up to this many tails one page holds the charts of all; of more, each has its own page. At [`MOST_POINTS`] points in
+/// each chart this is a page of about 2 MB.
+pub const TAILS_ON_ONE_PAGE: usize = 30;
+
+/// A tail's part of a page: made tail by tail, so that a run need not hold all of them.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// Tail.
+    pub tail: String,
+    id: String,
+    headline: String,
+    law: String,
+    type_code: String,
+    /// START of the first and of the last flight, s since 1970.
+    period_s: Option<(f64, f64)>,
+    /// Half width of the 95 % interval of its mean error before, %.
+    half_width95: Option<f64>,
+    adapted: bool,
+    body: String,
+}
+
+/// The section of a tail.
+#[must_use]
+pub fn section(result: &TailResult, anchors: &Anchors) -> Section {
+    let id = anchors.0.get(&result.tail).cloned().unwrap_or_default();
+    let place = Place { tail: &result.tail, id: id.clone(), most_points: MOST_POINTS };
+    let view = TailView::of(result);
+    let starts = || view.flights.iter().map(|flight| flight.start_s);
+    Section {
+        tail: result.tail.clone(),
+        headline: tail::headline(result),
+        law: law_of(result),
+        type_code: result.model.initial.aircraft().type_code().to_owned(),
+        period_s: starts().min_by(f64::total_cmp).zip(starts().max_by(f64::total_cmp)),
+        half_width95: view.half_width95_before(),
+        adapted: result.summary.fuel_flow_error_percent.after.is_some(),
+        body: tail::body(result, &view, &place).into_string(),
+        id,
+    }
+}
 
 /// The page: `summary` and the details of each tail under a title.
+#[must_use]
 pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
-    let ids = ids(tails);
-    let views: Vec<TailView> = tails.iter().map(TailView::of).collect();
-    let most_points = (POINTS_OF_PAGE / tails.len().max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
-    let adapted = tails.iter().any(|tail| tail.summary.fuel_flow_error_percent.after.is_some());
-    let rows = fleet_rows(summary, tails, &views, &ids);
-    let body = html! {
-        p.run { (what_was_run(summary, tails, &views)) }
-        section {
-            h2 { "Fleet" }
-            p { (in_short(&rows)) }
-            (fleet::overview(&rows))
+    let anchors = Anchors::of(tails.iter().map(|tail| tail.tail.as_str()));
+    let sections: Vec<Section> = tails.iter().map(|tail| section(tail, &anchors)).collect();
+    report_of_sections(summary, &sections.iter().collect::<Vec<_>>(), title)
+}
+
+/// The page of sections that were made before.
+#[must_use]
+pub fn report_of_sections(summary: &Summary, sections: &[&Section], title: &str) -> String {
+    let by_tail: BTreeMap<&str, &Section> =
+        sections.iter().map(|section| (section.tail.as_str(), *section)).collect();
+    let rows = fleet_rows(summary, |summary| {
+        let section = by_tail.get(summary.tail.as_str());
+        FleetRow {
+            summary,
+            link: section.map(|section| format!("#{}", section.id)),
+            half_width95: section.and_then(|section| section.half_width95),
         }
-        (how_to_read(adapted))
+    });
+    let body = html! {
+        p.run { (what_was_run(summary, sections)) }
+        (fleet_section(&rows))
+        (how_to_read(sections.iter().any(|section| section.adapted)))
         (fleet::refused(&summary.reports))
         section {
             h2 { "Tails" }
-            @if tails.len() > 1 {
+            @if sections.len() > 1 {
                 p.note { "Each tail unfolds at a click on its line, or on its name in the table above. All are printed." }
             }
-            @for (k, (result, view)) in tails.iter().zip(&views).enumerate() {
-                @let id = ids.get(result.tail.as_str()).cloned().unwrap_or_default();
-                (tail::section(result, view, &Place { tail: &result.tail, id, most_points }, k == 0))
-            }
+            @for (k, section) in sections.iter().enumerate() { (folded(section, k == 0)) }
         }
     };
     framed(title, &body)
 }
 
+/// The page of a fleet whose tails have pages of their own: `links` lead to them.
+#[must_use]
+pub fn fleet_report(summary: &Summary, links: &BTreeMap<&str, String>, title: &str) -> String {
+    let adapted = summary.tails.iter().any(|tail| tail.fuel_flow_error_percent.after.is_some());
+    let rows = fleet_rows(summary, |summary| FleetRow {
+        summary,
+        link: links.get(summary.tail.as_str()).cloned(),
+        half_width95: None,
+    });
+    let body = html! {
+        p.run { (what_was_run(summary, &[])) }
+        (fleet_section(&rows))
+        p.note { "The name of a tail leads to its own page, which has the interval of its deviation." }
+        (how_to_read(adapted))
+        (fleet::refused(&summary.reports))
+    };
+    framed(title, &body)
+}
+
+/// A tail's own page.
+#[must_use]
+pub fn tail_page(section: &Section) -> String {
+    let body = html! {
+        p.run { "cruisefit " (env!("CARGO_PKG_VERSION")) "; " (section.law) "." }
+        (folded(section, true))
+        (how_to_read(section.adapted))
+    };
+    framed(&format!("Tail {}", section.tail), &body)
+}
+
+fn fleet_section(rows: &[FleetRow<'_>]) -> Markup {
+    html! {
+        section {
+            h2 { "Fleet" }
+            p { (in_short(rows)) }
+            (fleet::overview(rows))
+        }
+    }
+}
+
+fn folded(section: &Section, open: bool) -> Markup {
+    html! {
+        details.tail open[open] {
+            summary { h3 { (section.tail) } " " span { (section.headline) } }
+            // The anchor is inside: following a link to it unfolds the section.
+            div id=(section.id) { (PreEscaped(&section.body)) }
+        }
+    }
+}
+
 /// Rows of the fleet's table: what burns most beyond its prediction first, tails without an error last.
 fn fleet_rows<'a>(
     summary: &'a Summary,
-    tails: &[TailResult],
-    views: &[TailView],
-    ids: &BTreeMap<&str, String>,
+    row_of: impl Fn(&'a TailSummary) -> FleetRow<'a>,
 ) -> Vec<FleetRow<'a>> {
-    let mut rows: Vec<FleetRow<'a>> = summary
-        .tails
-        .iter()
-        .map(|summary| {
-            let view = tails.iter().position(|tail| tail.tail == summary.tail).map(|k| &views[k]);
-            FleetRow {
-                summary,
-                id: ids.get(summary.tail.as_str()).cloned(),
-                half_width95: view.and_then(TailView::half_width95_before),
-            }
-        })
-        .collect();
+    let mut rows: Vec<FleetRow<'a>> = summary.tails.iter().map(row_of).collect();
     // A stable sort: of equal ones the order of the summary.
     let mean = |row: &FleetRow<'_>| {
         row.summary.fuel_flow_error_percent.before.mean.unwrap_or(f64::NEG_INFINITY)
@@ -102,59 +182,77 @@ fn in_short(rows: &[FleetRow<'_>]) -> String {
     }
 }
 
-/// Anchors by tail: its name as far as an anchor can hold it, and a number where that is not unique.
-fn ids(tails: &[TailResult]) -> BTreeMap<&str, String> {
-    let plain = |tail: &str| -> String {
-        tail.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect()
-    };
-    let mut taken: BTreeMap<String, usize> = BTreeMap::new();
-    let mut ids = BTreeMap::new();
-    for tail in tails {
-        let plain = format!("tail-{}", plain(&tail.tail));
-        let times = taken.entry(plain.clone()).or_insert(0);
-        *times += 1;
-        // An underscore, which no plain name has: a numbered anchor is never another tail's plain one.
-        let id = if *times == 1 { plain } else { format!("{plain}_{times}") };
-        ids.insert(tail.tail.as_str(), id);
+/// Anchors of tails on a page: each name as far as an anchor can hold it, and a number where that is not unique.
+#[derive(Clone, Debug)]
+pub struct Anchors(BTreeMap<String, String>);
+
+impl Anchors {
+    /// Anchors of these tails.
+    #[must_use]
+    pub fn of<'a>(tails: impl Iterator<Item = &'a str>) -> Self {
+        let plain = |tail: &str| -> String {
+            tail.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect()
+        };
+        let mut taken: BTreeMap<String, usize> = BTreeMap::new();
+        let mut ids = BTreeMap::new();
+        for tail in tails {
+            let plain = format!("tail-{}", plain(tail));
+            let times = taken.entry(plain.clone()).or_insert(0);
+            *times += 1;
+            // An underscore, which no plain name has: a numbered anchor is never another tail's plain one.
+            let id = if *times == 1 { plain } else { format!("{plain}_{times}") };
+            ids.insert(tail.to_owned(), id);
+        }
+        Self(ids)
     }
-    ids
+}
+
+fn law_of(result: &TailResult) -> String {
+    match &result.model.learnt {
+        Some(Learnt { criteria, law, .. }) => {
+            format!("{}, trim criteria {criteria}", law.told())
+        }
+        None => "initial model, nothing learnt".to_owned(),
+    }
 }
 
 /// Version, period, types, law, settings and counts, in a line.
-fn what_was_run(summary: &Summary, tails: &[TailResult], views: &[TailView]) -> String {
-    let mut laws: Vec<String> = Vec::new();
-    for tail in tails {
-        let law = match &tail.model.learnt {
-            Some(Learnt { criteria, law, .. }) => {
-                format!("{}, trim criteria {criteria}", law.told())
-            }
-            None => "initial model, nothing learnt".to_owned(),
-        };
-        if !laws.contains(&law) {
-            laws.push(law);
+fn what_was_run(summary: &Summary, sections: &[&Section]) -> String {
+    let mut laws: Vec<&str> = Vec::new();
+    for section in sections {
+        if !laws.contains(&section.law.as_str()) {
+            laws.push(&section.law);
         }
     }
     let reports = &summary.reports;
-    let starts = || views.iter().flat_map(|view| &view.flights).map(|flight| flight.start_s);
-    let period = match (starts().min_by(f64::total_cmp), starts().max_by(f64::total_cmp)) {
-        (Some(first), Some(last)) => format!("flown {}", dates::period(first, last)),
-        _ => "nothing flown".to_owned(),
-    };
-    let types: BTreeSet<&str> =
-        tails.iter().map(|tail| tail.model.initial.aircraft().type_code()).collect();
-    let types: Vec<&str> = types.into_iter().collect();
-    format!(
-        "cruisefit {}; {period}; type {}; {}; {} read, {} already known, {} refused; {}, {}, {}.",
-        env!("CARGO_PKG_VERSION"),
-        if types.is_empty() { "unknown".to_owned() } else { types.join(", ") },
-        if laws.is_empty() { "no tail".to_owned() } else { laws.join("; ") },
+    let periods = || sections.iter().filter_map(|section| section.period_s);
+    let first = periods().map(|(first, _)| first).min_by(f64::total_cmp);
+    let last = periods().map(|(_, last)| last).max_by(f64::total_cmp);
+    let mut words = vec![format!("cruisefit {}", env!("CARGO_PKG_VERSION"))];
+    if let (Some(first), Some(last)) = (first, last) {
+        words.push(format!("flown {}", dates::period(first, last)));
+    }
+    let types: BTreeSet<&str> = sections.iter().map(|section| section.type_code.as_str()).collect();
+    if !types.is_empty() {
+        words.push(format!("type {}", types.into_iter().collect::<Vec<_>>().join(", ")));
+    }
+    if summary.tails.is_empty() {
+        words.push("no tail".to_owned());
+    }
+    words.extend(laws.into_iter().map(str::to_owned));
+    words.push(format!(
+        "{} read, {} already known, {} refused",
         counted(reports.read, "report"),
         reports.already_known,
-        reports.refused.len(),
+        reports.refused.len()
+    ));
+    words.push(format!(
+        "{}, {}, {}.",
         counted(summary.tails.len(), "tail"),
         counted(summary.tails.iter().map(|tail| tail.flights).sum(), "flight"),
         counted(summary.tails.iter().map(|tail| tail.segments).sum(), "segment"),
-    )
+    ));
+    words.join("; ")
 }
 
 /// Signs, units and words of the page.

@@ -12,24 +12,13 @@ use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
 /// Deviation beyond which units or the guide are more probable causes than the aircraft, %: `add_an_aircraft` in the book.
 const RARELY_THE_AIRCRAFT_PERCENT: f64 = 15.0;
 
-/// A tail's section, folded unless `open`.
-pub(crate) fn section(
-    result: &TailResult,
-    view: &TailView,
-    place: &Place<'_>,
-    open: bool,
-) -> Markup {
+/// What is in a tail's section.
+pub(crate) fn body(result: &TailResult, view: &TailView, place: &Place<'_>) -> Markup {
     html! {
-        details.tail open[open] {
-            summary { h3 { (result.tail) } " " span { (headline(result)) } }
-            // The anchor is inside: following a link to it unfolds the section.
-            div id=(place.id) {
-                (verdict(result, view))
-                p.run { (about(result)) }
-                (figures(view, place))
-                (notes(result, view))
-            }
-        }
+        (verdict(result, view))
+        p.run { (about(result)) }
+        (figures(view, place))
+        (notes(result, view))
     }
 }
 
@@ -49,7 +38,8 @@ pub(crate) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
     }
 }
 
-fn headline(result: &TailResult) -> String {
+/// A tail's figures in a line.
+pub(crate) fn headline(result: &TailResult) -> String {
     let summary = &result.summary;
     let errors = &summary.fuel_flow_error_percent;
     let words = |statistics: &ErrorStatistics| {

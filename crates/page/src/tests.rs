@@ -20,7 +20,11 @@ fn tail(name: &str, adapted: bool) -> TailResult {
     let counts = TailCounts { flights: 12, flights_new: 12, samples: 900 };
     let notes = vec!["roll <not> recorded".to_owned()];
     let data = TailData { tail: name.to_owned(), model, segments, counts, notes };
-    if adapted { TailResult::adapted(data) } else { TailResult::as_given(data) }
+    if adapted {
+        TailResult::adapted(data)
+    } else {
+        TailResult::as_given(data, pipeline::whole_model::Predicts::WholeModel)
+    }
 }
 
 fn page(tails: &[TailResult], refused: Vec<RefusedSummary>) -> String {

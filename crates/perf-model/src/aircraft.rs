@@ -92,6 +92,7 @@ impl Aircraft {
         file.mean_aerodynamic_chord_m.map(limits::mean_aerodynamic_chord_m::check).transpose()?;
         file.drag_divergence_mach.map(limits::drag_divergence_mach::check).transpose()?;
         file.reference_lhv_mj_kg.map(limits::reference_lhv_mj_kg::check).transpose()?;
+        file.table_uncertainty_percent.map(limits::table_uncertainty_percent::check).transpose()?;
         file.sensors.check()?;
         let grid = Grid::new(file.table.lift_coefficient_axis()?, file.table.mach_axis()?);
         Ok(Self { file, grid: Arc::new(grid) })
@@ -204,6 +205,13 @@ impl Aircraft {
     #[must_use]
     pub const fn reference_lower_heating_value_mj_kg(&self) -> Option<f64> {
         self.file.reference_lhv_mj_kg
+    }
+
+    /// How far the drag of the guide may be off before anything is learnt, % of drag, where the file states it; 0 states that
+    /// the table is exact.
+    #[must_use]
+    pub const fn table_uncertainty_percent(&self) -> Option<f64> {
+        self.file.table_uncertainty_percent
     }
 
     /// Standard deviations of what is recorded.

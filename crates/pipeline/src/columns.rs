@@ -2,6 +2,8 @@
 //!
 //! Numbers in CSV are the shortest decimals that read back to the same bits; an absent value is an empty field.
 
+use std::fmt::Write as _;
+
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cells {
@@ -22,13 +24,34 @@ impl Cells {
         }
     }
 
-    fn field(&self, row: usize) -> String {
+    fn push_field(&self, row: usize, field: &mut String) {
         match self {
-            Self::Text(values) => values[row].clone(),
-            Self::Count(values) => values[row].to_string(),
-            Self::Number(values) => values[row].map_or_else(String::new, |value| value.to_string()),
+            Self::Text(values) => field.push_str(&values[row]),
+            Self::Count(values) => {
+                // Writing to a string cannot fail.
+                let _ = write!(field, "{}", values[row]);
+            }
+            Self::Number(values) => {
+                if let Some(value) = values[row] {
+                    push_shortest(value, field);
+                }
+            }
         }
     }
+}
+
+/// Appends a number as `Display` writes it: the shortest decimal that reads back to the same bits, without exponent.
+/// A table holds millions of them, and `Display` is slow at this.
+pub fn push_shortest(value: f64, text: &mut String) {
+    if value.is_finite() {
+        let mut buffer = zmij::Buffer::new();
+        let printed = buffer.format_finite(value);
+        if !printed.contains('e') {
+            text.push_str(printed.strip_suffix(".0").unwrap_or(printed));
+            return;
+        }
+    }
+    let _ = write!(text, "{value}");
 }
 
 /// Columns of one length, with names, in order.
@@ -68,8 +91,14 @@ impl Columns {
         let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
         // Writing to memory cannot fail.
         let _ = writer.write_record(self.columns.iter().map(|(name, _)| name.as_str()));
+        let mut field = String::new();
         for row in 0..self.rows() {
-            let _ = writer.write_record(self.columns.iter().map(|(_, cells)| cells.field(row)));
+            for (_, cells) in &self.columns {
+                field.clear();
+                cells.push_field(row, &mut field);
+                let _ = writer.write_field(&field);
+            }
+            let _ = writer.write_record(None::<&[u8]>);
         }
         writer.into_inner().unwrap_or_default()
     }
@@ -91,5 +120,17 @@ mod tests {
     fn csv_quotes_and_keeps_the_bits() {
         let text = String::from_utf8(table().to_csv()).unwrap();
         assert_eq!(text, "tail,samples,mach\nT-001,9,0.30000000000000004\n\"T, \"\"2\"\"\",10,\n");
+    }
+
+    proptest::proptest! {
+        /// Oracle: `Display` of the standard library.
+        #[test]
+        fn numbers_are_those_of_display(value in proptest::num::f64::ANY, power in -30..30_i32) {
+            for value in [value, value.signum() * (value.abs() % 1e6), 10_f64.powi(power), -0.0] {
+                let mut text = String::new();
+                push_shortest(value, &mut text);
+                proptest::prop_assert_eq!(text, value.to_string());
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! A diagnosis with the tail that it is of: what the page, the terminal and `diagnosis.json` are made from.
 
 use diagnose::Diagnosis;
+use serde::{Deserialize, Serialize};
 
 use crate::diagnosis_words::note_words;
 
@@ -14,8 +15,60 @@ pub struct DiagnosedTail {
     pub tail: String,
     /// What was found.
     pub diagnosis: Diagnosis,
+    /// The flights and the model.
+    pub compared: Compared,
     /// What the run adds to the diagnosis' own notes: of the model, then of the reports.
     pub run_notes: Vec<String>,
+}
+
+/// Which flights were held against which model.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Compared {
+    /// The aircraft of the model, as its file names it.
+    pub aircraft: String,
+    /// The law by which it learnt; `null` where it learnt nothing.
+    pub law: Option<String>,
+    /// Flights that it learnt.
+    pub flights_learnt: usize,
+    /// START of the first flight that was diagnosed.
+    pub first_flight: Option<String>,
+    /// START of the last one.
+    pub last_flight: Option<String>,
+}
+
+/// What a run was asked for, beside reports and models.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RunOptions {
+    /// Only these effects were looked for; empty for all.
+    pub effects: Vec<String>,
+    /// These were not.
+    pub without: Vec<String>,
+    /// All tails of a type together.
+    pub pool: bool,
+    /// Against the table alone, whatever else the model has learnt.
+    pub table_only: bool,
+    /// Flights that the model has learnt were diagnosed too.
+    pub allow_learnt: bool,
+}
+
+impl RunOptions {
+    /// What an answer depends on, in words; empty where everything was looked for.
+    pub fn restrictions(&self) -> Vec<String> {
+        let mut told = Vec::new();
+        if !self.effects.is_empty() {
+            told.push(format!(
+                "as asked, only these effects were looked for: {}; a probability is that among them",
+                self.effects.join(", ")
+            ));
+        }
+        if !self.without.is_empty() {
+            told.push(format!(
+                "as asked, these effects were left out: {}",
+                self.without.join(", ")
+            ));
+        }
+        told
+    }
 }
 
 impl DiagnosedTail {

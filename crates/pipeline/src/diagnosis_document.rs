@@ -2,23 +2,28 @@
 
 use serde::Serialize;
 
-use crate::diagnosed_tail::DiagnosedTail;
+use crate::diagnosed_tail::{DiagnosedTail, RunOptions};
 use crate::summary::{RefusedSummary, ReportsSummary};
 
 mod tail;
 
 pub use tail::{
-    CauseRecord, DetectableRecord, GapRecord, MagnitudeRecord, NotTestableRecord,
+    BesideRecord, CauseRecord, DetectableRecord, GapRecord, MagnitudeRecord, NotTestableRecord,
     OutsideLibraryRecord, SeparationRecord, SliceRecord, TailDiagnosis, VerdictKind, VerdictRecord,
 };
 
 /// Schema of [`DiagnosisDocument`].
 pub const SCHEMA: &str = "cruisefit.diagnosis/1";
 
+/// Name and version of the program.
+const PROGRAM: &str = concat!("cruisefit ", env!("CARGO_PKG_VERSION"));
+
 /// What a run of diagnoses came to.
 #[derive(Debug, Serialize)]
 pub struct DiagnosisDocument<'a> {
     schema: &'static str,
+    program: &'static str,
+    options: &'a RunOptions,
     reports: DiagnosedReports<'a>,
     diagnoses: Vec<TailDiagnosis>,
 }
@@ -31,10 +36,16 @@ struct DiagnosedReports<'a> {
 
 impl<'a> DiagnosisDocument<'a> {
     /// The document of these diagnoses, and of what became of the reports.
-    pub fn new(reports: &'a ReportsSummary, diagnoses: &[DiagnosedTail]) -> Self {
+    pub fn new(
+        options: &'a RunOptions,
+        reports: &'a ReportsSummary,
+        diagnoses: &[DiagnosedTail],
+    ) -> Self {
         let reports = DiagnosedReports { read: reports.read, refused: &reports.refused };
         Self {
             schema: SCHEMA,
+            program: PROGRAM,
+            options,
             reports,
             diagnoses: diagnoses.iter().map(TailDiagnosis::from).collect(),
         }

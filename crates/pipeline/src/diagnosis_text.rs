@@ -6,7 +6,7 @@
 use diagnose::{Closure, Diagnosis, Found, Verdict};
 use flight::effect::{EffectGroup, EffectId};
 
-use crate::diagnosed_tail::DiagnosedTail;
+use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_words::{
     acts_on_words, advice, joined, measurement_words, region_words, variable_words,
 };
@@ -54,10 +54,12 @@ const fn consequence(group: EffectGroup) -> &'static str {
 pub fn lines(diagnosed: &DiagnosedTail) -> Vec<String> {
     let diagnosis = &diagnosed.diagnosis;
     let mut lines = vec![format!(
-        "{}: {}, {}.",
+        "{}: {}{}, {}; {}.",
         diagnosed.name(),
         counted(diagnosis.flights, "flight"),
+        period(&diagnosed.compared),
         counted(diagnosis.segments, "segment"),
+        against(&diagnosed.compared),
     )];
     let found = match &diagnosis.verdict {
         Verdict::InsufficientData(_) => {
@@ -84,6 +86,29 @@ pub fn lines(diagnosed: &DiagnosedTail) -> Vec<String> {
         lines.push(format!("Not testable with this data: {}.", names.join("; ")));
     }
     lines
+}
+
+/// ", 2019-09-01 to 2020-08-30", the days of the first and the last flight.
+fn period(compared: &Compared) -> String {
+    let day = |start: &Option<String>| start.as_ref().map(|start| start.chars().take(10).collect());
+    let days: (Option<String>, Option<String>) =
+        (day(&compared.first_flight), day(&compared.last_flight));
+    match days {
+        (Some(first), Some(last)) if first != last => format!(" from {first} to {last}"),
+        (Some(first), _) => format!(" of {first}"),
+        _ => String::new(),
+    }
+}
+
+fn against(compared: &Compared) -> String {
+    match &compared.law {
+        Some(law) => format!(
+            "model {}, {law}, {} learnt",
+            compared.aircraft,
+            counted(compared.flights_learnt, "flight")
+        ),
+        None => format!("model {}, which has learnt nothing", compared.aircraft),
+    }
 }
 
 fn gap(diagnosis: &Diagnosis) -> String {
@@ -140,7 +165,54 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
     lines
 }
 
+/// A guide whose drag is off, and what acts in addition.
+fn table_off(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
+    let mut lines = vec![
+        format!(
+            "Cause: {}, probability {:.2}.",
+            effect_told(diagnosis, EffectId::DragTable),
+            found.probability
+        ),
+        "Adapt first (cruisefit adapt): a table learns this from flights. Then diagnose flights that it has not learnt."
+            .to_owned(),
+        closes(diagnosis, found),
+    ];
+    let of_beside = |id: &EffectId| found.beside.iter().any(|beside| beside.class.contains(id));
+    let held: Vec<EffectId> = found
+        .class
+        .iter()
+        .copied()
+        .filter(|id| *id != EffectId::DragTable && !of_beside(id))
+        .collect();
+    if !held.is_empty() {
+        lines.push(format!(
+            "Against a guide nothing distinguishes it from: {}.",
+            joined(&held, ", ")
+        ));
+    }
+    for beside in &found.beside {
+        lines.push(format!(
+            "In addition, and no table can hold it: {}, probability {:.2}.",
+            effect_told(diagnosis, beside.effect),
+            beside.probability
+        ));
+        let others: Vec<EffectId> =
+            beside.class.iter().copied().filter(|id| *id != beside.effect).collect();
+        if !others.is_empty() {
+            lines.push(format!(
+                "These flights cannot distinguish it from: {}.",
+                joined(&others, ", ")
+            ));
+        }
+    }
+    lines.extend(to_be_sure(found));
+    lines
+}
+
 fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
+    if diagnosis.verdict.is_of_table() {
+        return table_off(diagnosis, found);
+    }
     let open = found.probability < PROBABLE;
     let mut lines = Vec::new();
     for (place, id) in found.effects.iter().enumerate() {

@@ -44,6 +44,9 @@ fn unexplained_words(unexplained: &Unexplained) -> String {
 }
 
 fn found_words(found: &Found) -> String {
+    if found.effects.first() == Some(&EffectId::DragTable) {
+        return table_words(found);
+    }
     let mut words = if found.class.len() > 1 {
         format!("One of {}: these flights cannot tell them apart.", joined(&found.class, ", "))
     } else {
@@ -63,6 +66,29 @@ fn found_words(found: &Found) -> String {
     if let Some(best) = found.separations.first() {
         let measurement = measurement_words(&best.measurement);
         let _ = write!(words, " To be sure: {measurement} ({}).", distances_words(best));
+    }
+    words
+}
+
+/// A guide whose drag is off: adapting comes first.
+fn table_words(found: &Found) -> String {
+    let mut words = "The drag of the guide is off, as a table over lift coefficient and Mach number can hold it: adapt \
+                     first, then diagnose flights that the adapted model has not learnt."
+        .to_owned();
+    for beside in &found.beside {
+        let _ = if beside.class.len() > 1 {
+            write!(
+                words,
+                " Something that no table can hold acts in addition: one of {}, which these flights cannot distinguish.",
+                joined(&beside.class, ", ")
+            )
+        } else {
+            write!(words, " No table can hold what acts in addition: {}.", beside.effect)
+        };
+    }
+    if let Some(best) = found.separations.first() {
+        let measurement = measurement_words(&best.measurement);
+        let _ = write!(words, " To be sure of it: {measurement} ({}).", distances_words(best));
     }
     words
 }
@@ -182,6 +208,10 @@ pub fn note_words(note: &Note) -> String {
             100.0 * missing_share
         ),
         Note::HeavyTails => "whitened residuals have heavy tails: segments are weighed".to_owned(),
+        Note::LikeALevel(id) => format!(
+            "these flights differ from the model's reference in what {id} depends on by more than they vary: nothing \
+             distinguishes it from a level"
+        ),
         Note::Rest(Rest { kind: RestKind::OtherForm, variable }) => {
             format!("the form of the effect differs in {}", variable_or_none(variable))
         }

@@ -1,6 +1,7 @@
 //! What a table predicts for segments, and the results of each tail at the end of a run: the material of summary, tables, pages.
 
 use adapt::paper;
+use diagnose::WholeModel;
 use effects::ExtendedModel;
 use flight::{Observation, Segment};
 use lut::{Outside, Table};
@@ -9,6 +10,7 @@ use crate::model_file::ModelFile;
 use crate::segments_table::{Evaluated, SegmentRow};
 use crate::statistics::{ErrorStatistics, NORMAL_95};
 use crate::summary::{ErrorsSummary, TailSummary};
+use crate::whole_model::{Predicts, SegmentHeld};
 
 /// One tail at the end of a run.
 #[derive(Clone, Debug)]
@@ -54,10 +56,10 @@ pub struct TailData {
 }
 
 impl TailResult {
-    /// The result of an adaptation: errors of the initial table before, of the learnt one after.
+    /// The result of an adaptation: errors of the initial table before, of the whole learnt model after.
     pub fn adapted(data: TailData) -> Self {
         let before = evaluate(&data.model.initial, data.model.initial.drag_table(), &data.segments);
-        let after = evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments);
+        let after = evaluate_model(&data.model, Predicts::WholeModel, &data.segments);
         let mut summary = summary_of(&data, &before);
         summary.informed_nodes = Some(data.model.informed_nodes());
         summary.refits = data.model.refits();
@@ -65,11 +67,14 @@ impl TailResult {
         Self::put_together(data, before, after, summary)
     }
 
-    /// The result of a model as it was given: errors of its current table, nothing adapted.
-    pub fn as_given(data: TailData) -> Self {
-        let before = evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments);
+    /// The result of a model as it was given: errors of what it predicts now, nothing adapted.
+    pub fn as_given(data: TailData, predicts: Predicts) -> Self {
+        let before = evaluate_model(&data.model, predicts, &data.segments);
         let mut summary = summary_of(&data, &before);
-        summary.interval95_coverage = coverage(&data.model, &data.segments);
+        summary.interval95_coverage = match data.model.whole(predicts) {
+            Some(whole) => coverage_of_whole(&whole, &data),
+            None => coverage(&data.model, &data.segments),
+        };
         Self::put_together(data, before, Vec::new(), summary)
     }
 
@@ -92,6 +97,35 @@ impl TailResult {
     pub fn errors_after(&self) -> Vec<Option<f64>> {
         errors(&self.after)
     }
+}
+
+/// What a model predicts for each segment, with everything that it has learnt or with its table alone; otherwise as
+/// [`evaluate`].
+pub fn evaluate_model(
+    model: &ModelFile,
+    predicts: Predicts,
+    segments: &[Segment],
+) -> Vec<Option<Evaluated>> {
+    let by_table = evaluate(&model.initial, model.drag_coefficient(), segments);
+    let Some(whole) = model.whole(predicts) else { return by_table };
+    segments
+        .iter()
+        .zip(by_table)
+        .map(|(segment, by_table)| {
+            let by_table = by_table?;
+            let error = by_table
+                .error_percent
+                .and_then(|_| SegmentHeld::new(&whole, &model.initial, segment))
+                .map(|held| held.error_percent());
+            let share = |error: f64| 1.0 - error / 100.0;
+            Some(Evaluated {
+                predicted_fuel_flow_kg_s: error
+                    .map(|error| segment.means.fuel_flow_total_kg_s * share(error)),
+                error_percent: error,
+                ..by_table
+            })
+        })
+        .collect()
 }
 
 /// What a table on the model's grid predicts for each segment; `None` for a state that the model is not defined for. A
@@ -158,6 +192,19 @@ fn state_without_errors(
     segment: &Segment,
 ) -> Option<perf_model::SegmentState> {
     model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
+}
+
+/// Share of segments whose error lies within the interval that the whole model states for them.
+fn coverage_of_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<f64> {
+    let held = |segment| SegmentHeld::new(whole, &data.model.initial, segment);
+    let inside: Vec<bool> = data
+        .segments
+        .iter()
+        .filter_map(held)
+        .map(|held| held.gap.abs() <= NORMAL_95 * held.prediction.variance().sqrt())
+        .collect();
+    let count = inside.iter().filter(|inside| **inside).count();
+    (!inside.is_empty()).then(|| count as f64 / inside.len() as f64)
 }
 
 /// Share of segments whose error lies within the interval that law `bayes` states for them; `None` by another law, or

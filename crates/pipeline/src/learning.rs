@@ -2,13 +2,14 @@
 
 use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
 use adapt::paper::{self, PaperLaw, State as PaperState, Update};
-use diagnose::{Baseline, FlightRecord};
+use diagnose::{Baseline, FlightRecord, visited_nodes};
 use effects::ExtendedModel;
 use flight::{Observation, Segment};
 use refit::RefitRule;
 
 use crate::condition_means::ConditionMeans;
 use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
+use crate::whole_model::belief_before_flights;
 
 /// A flight to learn.
 #[derive(Clone, Debug)]
@@ -84,11 +85,12 @@ pub fn learn_flight(
     flight: &FlightToLearn<'_>,
 ) -> Result<FlightLearnt, LearningError> {
     let mut observations = Vec::with_capacity(flight.segments.len());
+    let mut references = learnt.references.clone();
     let mut result = FlightLearnt::default();
     for segment in flight.segments {
         match (initial.observe(segment), initial.corrected(segment)) {
             (Ok(observation), Ok(corrected)) => {
-                learnt.references.add(&corrected, observation.lift_coefficient);
+                references.add(&corrected, observation.lift_coefficient);
                 observations.push(observation);
             }
             _ => result.outside_table += 1,
@@ -97,8 +99,10 @@ pub fn learn_flight(
     match &mut learnt.law {
         LawState::Paper { settings, state, ever_adapted, refits } => {
             let law = PaperLaw::new(settings.threshold_percent)?;
-            learn_by_paper(law, state, ever_adapted, &observations, &mut result);
-            let (drag_coefficient, confidence) = state.tables_mut();
+            // On copies: a flight whose refit fails leaves no trace.
+            let (mut new_state, mut new_adapted) = (state.clone(), ever_adapted.clone());
+            learn_by_paper(law, &mut new_state, &mut new_adapted, &observations, &mut result);
+            let (drag_coefficient, confidence) = new_state.tables_mut();
             let basis = initial.polynomial().basis;
             let report =
                 refit::refit(RefitRule::ghazi_2020(), basis, drag_coefficient, confidence)?;
@@ -106,6 +110,7 @@ pub fn learn_flight(
                 result.refitted = true;
                 *refits += 1;
             }
+            (*state, *ever_adapted) = (new_state, new_adapted);
         }
         LawState::Bayes { state, .. } => {
             let update = state.learn_flight(&observations);
@@ -117,6 +122,7 @@ pub fn learn_flight(
             }
         }
     }
+    learnt.references = references;
     learnt.ledger.push(LedgerEntry {
         segments: flight.segments.len() as u64,
         outside_table: result.outside_table as u64,
@@ -143,20 +149,33 @@ pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
     Ok(())
 }
 
-/// Learns, from every segment of a tail, what no table can hold (law `bayes`). From fewer than five flights nothing is learnt.
+/// Learns, from every segment of a tail, everything that flights show of it, the table included, in one posterior (law
+/// `bayes`). From fewer than five flights nothing is learnt.
 pub fn remember_remainder(initial: &ExtendedModel, learnt: &mut Learnt, segments: &[Segment]) {
-    let LawState::Bayes { posterior, .. } = &learnt.law else { return };
+    let LawState::Bayes { state, .. } = &learnt.law else { return };
     let flights: Vec<FlightRecord<'_>> = segments
         .chunk_by(|one, other| one.identity == other.identity)
         .map(|segments| FlightRecord { segments, gauges: None })
         .collect();
-    learnt.baseline = match Baseline::learn(initial, posterior.drag(), &flights) {
+    learnt.baseline = match baseline_of(initial, *state.settings(), &flights) {
         Ok(baseline) => Some(baseline),
         Err(reason) => {
             tracing::info!(tail = learnt.tail, "no remainder is remembered: {reason}");
             None
         }
     };
+}
+
+/// Everything that flights say of a model, against its initial table.
+fn baseline_of(
+    initial: &ExtendedModel,
+    settings: BayesSettings,
+    flights: &[FlightRecord<'_>],
+) -> Result<Baseline, String> {
+    let table = initial.drag_table();
+    let visited = visited_nodes(initial, table, flights).map_err(|error| error.to_string())?;
+    let belief = belief_before_flights(initial, settings, &visited)?;
+    Baseline::learn(initial, table, Some(belief), flights).map_err(|error| error.to_string())
 }
 
 fn learn_by_paper(

@@ -24,7 +24,10 @@ use serde::{Deserialize, Serialize};
 use crate::condition_means::ConditionMeans;
 
 /// The format that this program writes.
-pub const FORMAT: u32 = 1;
+///
+/// 2: a baseline is one posterior over drag table and remainder; the remainder of format 1 is not read. Models without a
+/// baseline are written as format 1.
+pub const FORMAT: u32 = 2;
 
 /// A model, and what it has learnt.
 #[derive(Clone, Debug)]
@@ -99,7 +102,7 @@ pub struct Learnt {
     pub law: LawState,
     /// Mean conditions.
     pub references: ConditionMeans,
-    /// What no table over lift coefficient and Mach number can hold: smooth remainder, rotor-speed deck, noise levels
+    /// One posterior over everything that the flights say: drag table, smooth remainder, rotor-speed deck, noise levels
     /// (law `bayes`, five flights or more).
     pub baseline: Option<Baseline>,
     /// Flights, in the order in which they were learnt.

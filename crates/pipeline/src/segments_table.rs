@@ -107,6 +107,25 @@ const OPTIONAL: [(&str, Getter, Setter); 12] = [
     ("anti_ice", |m| m.anti_ice, |m, v| m.anti_ice = v),
 ];
 
+/// The first column of a segment that holds no finite number; such a segment could not be read back.
+pub fn not_finite(segment: &Segment) -> Option<&'static str> {
+    let means = &segment.means;
+    let bad = |value: f64| !value.is_finite();
+    REQUIRED
+        .iter()
+        .find(|(_, get, _)| bad(get(means)))
+        .map(|(name, _, _)| *name)
+        .or_else(|| {
+            let found = OPTIONAL.iter().find(|(_, get, _)| get(means).is_some_and(bad));
+            found.map(|(name, _, _)| *name)
+        })
+        .or_else(|| {
+            let engines = means.fuel_flow_engine_kg_s.iter().chain(&means.n2_percent).copied();
+            let optional = means.n1_percent.iter().chain(&means.exhaust_gas_temperature_k);
+            engines.chain(optional.flatten().copied()).any(bad).then_some("a column of an engine")
+        })
+}
+
 /// The table of segments with columns for this many engines.
 pub fn table(rows: &[SegmentRow], engines: usize) -> Columns {
     let engines = engines.min(MAXIMUM_ENGINES);

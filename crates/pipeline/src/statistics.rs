@@ -1,6 +1,6 @@
 //! The four figures by which errors are reported, and the order in which they are summed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Half width of a two-sided 95 % interval of a normal distribution, in standard deviations; two decimals, as tables and
@@ -10,7 +10,7 @@ pub const NORMAL_95: f64 = 1.96;
 /// Mean, standard deviation (n − 1), largest absolute value and number of errors, all in per cent.
 ///
 /// An empty set has no mean, a single error no standard deviation: `None`, `null` in JSON.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorStatistics {
     /// Arithmetic mean.
     pub mean: Option<f64>,

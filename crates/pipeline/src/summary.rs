@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::statistics::ErrorStatistics;
 
@@ -45,7 +45,7 @@ pub struct RefusedSummary {
 }
 
 /// One tail.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TailSummary {
     /// Tail.
     pub tail: String,
@@ -60,25 +60,25 @@ pub struct TailSummary {
     /// Segments that the grid refused.
     pub outside_table: usize,
     /// Share of nodes ever adapted; absent where nothing is adapted.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub informed_nodes: Option<f64>,
     /// Global refits; absent where nothing is adapted.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refits: Option<u32>,
     /// The error, in per cent.
     pub fuel_flow_error_percent: ErrorsSummary,
     /// Share of errors within the stated 95 % interval of a segment; absent where the law states none.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval95_coverage: Option<f64>,
 }
 
 /// The error of the initial table, and of the final one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorsSummary {
     /// Of the initial model, or of the model as it was given (`evaluate`).
     pub before: ErrorStatistics,
     /// Of the final table; absent where nothing is adapted.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<ErrorStatistics>,
 }
 

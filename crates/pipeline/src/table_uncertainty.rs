@@ -2,28 +2,63 @@
 
 use std::sync::Arc;
 
-use adapt::bayes::Posterior;
+use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use diagnose::{FlightRecord, TableUncertainty, TableUncertaintyError, visited_nodes};
 use effects::ExtendedModel;
 
 use crate::model_file::ModelFile;
+use crate::whole_model::Predicts;
 
 /// Most nodes of a table whose full covariance is taken; beyond, that of the nodes which the flights at hand visit.
 const NODES_WITH_COVARIANCE: usize = 700;
 
-/// Uncertainty of a model's table where these flights are; `None` for a law that does not state it.
+/// What a model's table does not know where these flights are. Of a model that no flight has taught, or that was taught by a
+/// law that does not say, it is what is believed of a guide: the prior of law `bayes`. `None` where the aircraft file states
+/// that the table is exact (`table_uncertainty_percent: 0`) and nothing was learnt.
+/// `None` too where the whole model is asked for, whose baseline has it.
 ///
 /// # Errors
 /// A covariance that is invalid.
 pub fn of_model(
     model: &ModelFile,
+    predicts: Predicts,
     flights: &[FlightRecord<'_>],
 ) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
+    // What was learnt together with the table has its uncertainty too.
+    if model.learnt.as_ref().is_some_and(|l| l.baseline.is_some())
+        && predicts == Predicts::WholeModel
+    {
+        return Ok(None);
+    }
     let table = model.drag_coefficient();
-    model
-        .posterior()
-        .map(|posterior| of_posterior(posterior, &model.initial, table, flights))
-        .transpose()
+    match model.posterior() {
+        Some(posterior) => of_posterior(posterior, &model.initial, table, flights).map(Some),
+        None => of_book(&model.initial, table, model.settings.bayes, flights),
+    }
+}
+
+/// What is believed of a guide's drag before any flight: the prior of law `bayes`, its size scaled to what the aircraft file
+/// states; `None` where that is 0.
+///
+/// # Errors
+/// A covariance that is invalid: a table whose drag is not positive, or settings that make none.
+pub fn of_book(
+    model: &ExtendedModel,
+    drag_table: &lut::Table,
+    settings: BayesSettings,
+    flights: &[FlightRecord<'_>],
+) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
+    let stated = model.aircraft().table_uncertainty_percent();
+    if stated == Some(0.0) {
+        return Ok(None);
+    }
+    let invalid = TableUncertaintyError::NotPositiveDefinite;
+    let nothing_learnt = BayesState::new(drag_table, settings).map_err(|_| invalid)?;
+    let prior = nothing_learnt.solve().map_err(|_| invalid)?;
+    let visited = visited_nodes(model, drag_table, flights).unwrap_or_default();
+    let usual_percent = 100.0 * settings.values().correction_std;
+    let scale = stated.map_or(1.0, |percent| percent / usual_percent);
+    Ok(Some(of_visited(&prior, drag_table.grid(), &visited, scale)?.of_book()))
 }
 
 /// What a table learnt by law `bayes` does not know: `drag_table` is what the flights are held against.
@@ -41,7 +76,7 @@ pub fn of_posterior(
     if nodes > NODES_WITH_COVARIANCE {
         // Flights of which none is inside the table visit no node; the diagnosis states why it has no result.
         let visited = visited_nodes(model, drag_table, flights).unwrap_or_default();
-        return of_visited(posterior, grid, &visited);
+        return of_visited(posterior, grid, &visited, 1.0);
     }
     let cells: Vec<lut::Cell> = (0..nodes)
         .filter_map(|node| {
@@ -52,15 +87,20 @@ pub fn of_posterior(
     TableUncertainty::from_covariance(Arc::clone(grid), &posterior.relative_covariances(&cells))
 }
 
-/// The same over the nodes that flights visit, one solve for each column that is kept.
-fn of_visited(
+/// The same over the nodes that flights visit, one solve for each column that is kept; standard deviations times `scale`.
+pub(crate) fn of_visited(
     posterior: &Posterior,
     grid: &Arc<lut::Grid>,
     visited: &[usize],
+    scale: f64,
 ) -> Result<TableUncertainty, TableUncertaintyError> {
-    let variances: Vec<f64> =
-        posterior.standard_deviation().iter().map(|deviation| deviation.powi(2)).collect();
-    let column = |node: usize| posterior.covariances_with(node);
+    let square = |deviation: &f64| (scale * deviation).powi(2);
+    let variances: Vec<f64> = posterior.standard_deviation().iter().map(square).collect();
+    let column = |node: usize| {
+        let mut covariances = posterior.covariances_with(node);
+        covariances.iter_mut().for_each(|value| *value *= scale * scale);
+        covariances
+    };
     TableUncertainty::from_columns(Arc::clone(grid), visited, &variances, column)
 }
 
@@ -98,7 +138,7 @@ mod tests {
         let mut visited: Vec<usize> = cells.iter().flat_map(lut::Cell::nodes).collect();
         visited.sort_unstable();
         visited.dedup();
-        let found = of_visited(&posterior, &grid, &visited).unwrap();
+        let found = of_visited(&posterior, &grid, &visited, 1.0).unwrap();
         for &a in &visited {
             let known = posterior.covariances_with(a);
             for &b in &visited {

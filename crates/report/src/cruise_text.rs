@@ -7,7 +7,7 @@ mod rows;
 
 use std::io::BufRead;
 
-use flight::{Finding, Report};
+use flight::{Finding, FlightIdentity, Report};
 
 use crate::decode;
 use crate::line::Lines;
@@ -27,6 +27,27 @@ pub struct Parsed {
     pub report: Report,
     /// The findings, in the order of the text.
     pub findings: Vec<Finding>,
+}
+
+/// Who flew and when.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Head {
+    /// Type code of the aircraft.
+    pub aircraft_type: String,
+    /// Tail, START, flight.
+    pub identity: FlightIdentity,
+}
+
+/// The head of a report from its first bytes, plain or gzip; `None` where they do not hold a whole and correct header,
+/// so that only the whole report can decide.
+#[must_use]
+pub fn head(beginning: &[u8]) -> Option<Head> {
+    let mut unpacked = Vec::new();
+    let text = decode::beginning(beginning, &mut unpacked)?;
+    let mut lines = Lines::new(text);
+    read_first_line(&mut lines).ok()?;
+    let (header, _) = header::read(&mut lines, &mut Vec::new()).ok()?;
+    Some(Head { aircraft_type: header.aircraft_type, identity: header.identity })
 }
 
 /// Reads cruise reports, one after the other, with the same buffers: nothing is allocated for a row.

@@ -95,6 +95,22 @@ pub(crate) fn bytes_of(stream: impl BufRead, bytes: &mut Vec<u8>) -> Result<(), 
     })
 }
 
+/// The whole lines in the first bytes of a report, plain or gzip.
+pub(crate) fn beginning<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Option<&'a str> {
+    /// A header is a fraction of this; the first bytes of a small file can claim to hold terabytes.
+    const MOST_BYTES: u64 = 64 << 10;
+    let bytes = if bytes.starts_with(&GZIP_MAGIC) {
+        unpacked.clear();
+        // The packed text is cut off: what was unpacked before its end is what is asked for.
+        let _ = MultiGzDecoder::new(bytes).take(MOST_BYTES).read_to_end(unpacked);
+        unpacked
+    } else {
+        bytes
+    };
+    let end = memchr::memrchr(b'\n', bytes)? + 1;
+    plain(&bytes[..end]).ok()
+}
+
 enum LimitedReadError {
     TooLarge,
     Io(io::ErrorKind),

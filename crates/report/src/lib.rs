@@ -58,7 +58,7 @@ mod refusal;
 mod text_layout;
 mod write;
 
-pub use cruise_text::{Parsed, Reader};
+pub use cruise_text::{Head, Parsed, Reader, head};
 pub use decode::{MAXIMUM_TEXT_BYTES, unpack};
 pub use mapping::{Mapping, MappingError};
 pub use refusal::{Found, Refusal, RefusalKind};

@@ -124,6 +124,8 @@ impl FromStr for TruthEffect {
 
     fn from_str(name: &str) -> Result<Self, UnknownEffect> {
         EffectId::from_name(name)
+            // A table that is off belongs to a model; the truth has smooth errors for it.
+            .filter(|id| *id != EffectId::DragTable)
             .map(Self::Library)
             .or_else(|| {
                 OutsideEffect::ALL

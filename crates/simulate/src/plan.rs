@@ -13,6 +13,9 @@ use crate::terms::References;
 use crate::weather::Weather;
 
 pub use design::FleetDesign;
+
+/// Most flights of a tail: a fleet's life, and what fits into memory.
+pub(crate) const MOST_FLIGHTS: usize = 1_000_000;
 pub(crate) use design::legs;
 
 /// A plan: aircraft, weather, sensors, effects, tails and flights. Only `seed` and `tails` are required.
@@ -243,6 +246,14 @@ pub enum PlanError {
         tail: String,
         /// The effect's name.
         effect: String,
+    },
+    /// Two flights of a tail with one name: the second report would replace the first.
+    #[error("plan: tail {tail} has the flight {flight} twice")]
+    DoubledFlight {
+        /// The tail.
+        tail: String,
+        /// The flight.
+        flight: String,
     },
     /// A tail without flights.
     #[error("plan: tail {tail} has no flight")]

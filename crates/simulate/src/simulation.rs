@@ -12,7 +12,7 @@ use units::{OutOfDomain, check_within};
 use crate::aircraft::AircraftTruth;
 use crate::effect::{PlannedEffect, TruthEffect};
 use crate::fly::{FlightError, fly};
-use crate::plan::{AircraftChoice, Flights, Plan, PlanError};
+use crate::plan::{AircraftChoice, FleetDesign, Flights, Plan, PlanError};
 use crate::random::{Purpose, Streams};
 use crate::references::references_of;
 use crate::route::FlightPlan;
@@ -22,9 +22,12 @@ use crate::state::TrueState;
 use crate::terms::References;
 use crate::truth::{EffectTruth, FlightTruth, TRUTH_SCHEMA, TailTruth, Truth};
 
-use check::{check_flights, check_plan};
+use check::{MOST_FLIGHTS, check_flights, check_plan};
 use draw::Drawn;
 use ranges::check_ranges;
+
+/// A flight that lacks thrust is drawn again as often as this before it counts as one that cannot be flown.
+const MOST_DRAWN_AGAIN: u32 = 20;
 
 /// A plan, checked and drawn: every flight can now be flown, in any order and on any thread.
 #[derive(Clone, Debug)]
@@ -45,6 +48,8 @@ struct Tail {
     deterioration_percent: Vec<f64>,
     references: References,
     flights: Vec<FlightPlan>,
+    /// From which a flight that cannot be flown is drawn again; `None` where the flights are listed.
+    design: Option<FleetDesign>,
     smooth_errors: Option<SmoothErrors>,
 }
 
@@ -55,6 +60,8 @@ pub struct Flown {
     pub report: Report,
     /// The truth of the flight as a whole.
     pub truth: FlightTruth,
+    /// How often the flight was drawn again because the aircraft could not fly what was drawn.
+    pub drawn_again: u32,
     /// The true state of each sample, before faults of the recording; empty unless the plan asks for it.
     pub states: Vec<TrueState>,
 }
@@ -129,9 +136,11 @@ impl Simulation {
             if tails.iter().any(|tail| tail.name == tail_plan.tail) {
                 return Err(PlanError::DoubledTail { tail: tail_plan.tail.clone() });
             }
-            let flights = match &tail_plan.flights {
-                Flights::Listed(flights) => flights.clone(),
-                Flights::Designed(design) => design.draw(&aircraft, plan.seed, &tail_plan.tail)?,
+            let (flights, design) = match &tail_plan.flights {
+                Flights::Listed(flights) => (flights.clone(), None),
+                Flights::Designed(design) => {
+                    (design.draw(&aircraft, plan.seed, &tail_plan.tail)?, Some((**design).clone()))
+                }
             };
             check_flights(&tail_plan.tail, &flights)?;
             let references = match tail_plan.references {
@@ -164,6 +173,7 @@ impl Simulation {
                 deterioration_percent: tail_plan.engine_deterioration_percent.clone(),
                 references,
                 flights,
+                design,
                 smooth_errors,
             });
         }
@@ -208,7 +218,8 @@ impl Simulation {
         Some((&tail.name, &tail.flights[flight]))
     }
 
-    /// Flies one flight. The result depends on the plan and the index alone.
+    /// Flies one flight. The result depends on the plan and the index alone. A designed flight for which the aircraft lacks
+    /// thrust or lift on its day is drawn again, with its weather; its name and START stay.
     ///
     /// # Errors
     /// [`SimulationError`] where the flight cannot be flown or its recording does not make a report.
@@ -218,6 +229,33 @@ impl Simulation {
         };
         let tail = &self.tails[tail_index];
         let plan = &tail.flights[flight_index];
+        let mut result = self.fly_plan(tail, plan, flight_index);
+        for again in 1..=MOST_DRAWN_AGAIN {
+            let (Err(SimulationError::Flight { source, .. }), Some(design)) =
+                (&result, &tail.design)
+            else {
+                break;
+            };
+            if !matches!(source, FlightError::Thrust { .. } | FlightError::LiftCoefficient { .. }) {
+                break;
+            }
+            let key = flight_index + again as usize * MOST_FLIGHTS;
+            let drawn = design.draw_again(&self.aircraft, self.plan.seed, &tail.name, key);
+            let Ok(Some(drawn)) = drawn else { continue };
+            let other = FlightPlan { flight: plan.flight.clone(), start: plan.start, ..drawn };
+            result =
+                self.fly_plan(tail, &other, key).map(|flown| Flown { drawn_again: again, ..flown });
+        }
+        result
+    }
+
+    /// Flies one plan with the weather, sensors and scatter of a number.
+    fn fly_plan(
+        &self,
+        tail: &Tail,
+        plan: &FlightPlan,
+        flight_index: usize,
+    ) -> Result<Flown, SimulationError> {
         let name = || (tail.name.clone(), plan.flight.clone());
         let of_flight = |source: FlightError| {
             let (tail, flight) = name();
@@ -271,7 +309,7 @@ impl Simulation {
                 range: found.words,
             }
         })?;
-        Ok(Flown { report, truth, states })
+        Ok(Flown { report, truth, drawn_again: 0, states })
     }
 
     /// The document of the truth, from the flights flown, in any order.

@@ -10,12 +10,15 @@ use pipeline::model_file::{LawState, LedgerEntry};
 use pipeline::reduction::ReducedFlight;
 use pipeline::table_uncertainty;
 use segmenter::TrimCriteria;
+use simulate::Scatter;
 use simulate::study::DragError;
 
 use crate::draw::{DrawnCase, TAIL};
 use crate::failure::CaseFailure;
 use crate::flown_case::{fly, records};
+use crate::plan::ReferenceModel;
 use crate::reference_model::{COARSE, FINE, reference_model};
+use crate::stated_sensors::{misstated, stated_sensors};
 
 /// What the diagnosis is given.
 #[derive(Clone, Debug)]
@@ -36,17 +39,38 @@ impl DiagnosisInputs {
     pub fn gather(drawn: &DrawnCase) -> Result<Self, CaseFailure> {
         let clean = drawn.clean_flights();
         let sensors = drawn.flown().plan().sensors.sensors();
+        let truth = drawn.aircraft();
+        let stated = stated_sensors(&sensors, &Scatter::default(), truth);
         let flights = fly(drawn.flown(), clean..drawn.flown().len())?;
-        if clean == 0 {
-            let model = reference_model(drawn.aircraft(), drawn.physics(), &sensors, &FINE, None)?;
-            let drag_table = model.drag_table().clone();
-            return Ok(Self { model, drag_table, baseline: None, uncertainty: None, flights });
+        let model =
+            |stated, grid, error| reference_model(truth, drawn.physics(), stated, grid, error);
+        match drawn.reference_model() {
+            ReferenceModel::Exact => Ok(Self::untaught(model(stated, &FINE, None)?, flights)),
+            ReferenceModel::Misstated => {
+                let stated = misstated(&stated, drawn.stated_over_true());
+                Ok(Self::untaught(model(stated, &FINE, None)?, flights))
+            }
+            ReferenceModel::Initial => {
+                let book = model(stated, &COARSE, Some(drawn.book_error()))?;
+                let settings = adapt::bayes::BayesSettings::physical_2026();
+                let table = book.drag_table();
+                let records = records(&flights);
+                let uncertainty = table_uncertainty::of_book(&book, table, settings, &records)?;
+                drop(records);
+                Ok(Self { uncertainty, ..Self::untaught(book, flights) })
+            }
+            ReferenceModel::Adapted => {
+                let training_flights = fly(drawn.training_flights(), 0..clean)?;
+                let initial = model(stated, &COARSE, Some(&DragError::study()))?;
+                adapted(initial, &training_flights, flights)
+            }
         }
-        let training_flights = fly(drawn.training_flights(), 0..clean)?;
-        let error = DragError::study();
-        let initial =
-            reference_model(drawn.aircraft(), drawn.physics(), &sensors, &COARSE, Some(&error))?;
-        adapted(initial, &training_flights, flights)
+    }
+
+    /// A model that no flight has taught, every node of its table taken as known.
+    fn untaught(model: ExtendedModel, flights: Vec<ReducedFlight>) -> Self {
+        let drag_table = model.drag_table().clone();
+        Self { model, drag_table, baseline: None, uncertainty: None, flights }
     }
 
     /// The diagnosis, with these effects struck from the library.
@@ -117,16 +141,20 @@ fn adapted(
     }
     learning::settle(&mut learnt)?;
     learning::remember_remainder(&initial, &mut learnt, &all);
+    // A baseline has the table's uncertainty, joint with everything else that it has learnt, against the initial table.
     let uncertainty = match &learnt.law {
-        LawState::Bayes { posterior, .. } => {
+        LawState::Bayes { posterior, .. } if learnt.baseline.is_none() => {
             let table = learnt.law.drag_coefficient();
             let records = records(&flights);
             Some(table_uncertainty::of_posterior(posterior, &initial, table, &records)?)
         }
-        LawState::Paper { .. } => None,
+        _ => None,
     };
     Ok(DiagnosisInputs {
-        drag_table: learnt.law.drag_coefficient().clone(),
+        drag_table: match &learnt.baseline {
+            Some(_) => initial.drag_table().clone(),
+            None => learnt.law.drag_coefficient().clone(),
+        },
         baseline: learnt.baseline,
         uncertainty,
         model: initial,

@@ -2,6 +2,7 @@
 
 use flight::Timestamp;
 use flight::effect::{EffectId, TypicalSize};
+use simulate::study::DragError;
 use simulate::{
     AircraftTruth, Earth, FleetDesign, FlightPlan, Flights, OutsideEffect, Plan, PlannedEffect,
     References, Simulation, SmoothErrorSizes, StepTarget, Switch, TailPlan, TailTruth, TruthEffect,
@@ -31,6 +32,10 @@ pub struct DrawnCase {
     aircraft: AircraftTruth,
     physics: TruthPhysics,
     truth: CaseTruth,
+    /// How the model errs, where it is a guide's.
+    book_error: DragError,
+    /// Stated over true standard deviations of the sensors, where they are misstated.
+    stated_over_true: f64,
 }
 
 impl DrawnCase {
@@ -40,7 +45,9 @@ impl DrawnCase {
     /// What the simulator refuses.
     pub fn draw(plan: &TrialPlan, spec: &CaseSpec) -> Result<Self, simulate::PlanError> {
         let (physics, earth, clean) = match spec.part.reference_model {
-            ReferenceModel::Exact => (TruthPhysics::plain(), Earth::plain(), 0),
+            ReferenceModel::Exact | ReferenceModel::Misstated | ReferenceModel::Initial => {
+                (TruthPhysics::plain(), Earth::plain(), 0)
+            }
             ReferenceModel::Adapted => (learnable(), Earth::full(), plan.clean_flights),
         };
         let all = plan.flights + clean;
@@ -109,6 +116,8 @@ impl DrawnCase {
             clean,
             physics,
             truth,
+            book_error: book_error(spec),
+            stated_over_true: if spec.draws[15] % 2 == 0 { 3.0 } else { 1.0 / 3.0 },
         })
     }
 
@@ -123,6 +132,18 @@ impl DrawnCase {
 
     pub(crate) const fn physics(&self) -> TruthPhysics {
         self.physics
+    }
+
+    pub(crate) const fn reference_model(&self) -> ReferenceModel {
+        self.truth.reference_model
+    }
+
+    pub(crate) const fn book_error(&self) -> &DragError {
+        &self.book_error
+    }
+
+    pub(crate) const fn stated_over_true(&self) -> f64 {
+        self.stated_over_true
     }
 
     /// Flights that the model may learn, and those that are diagnosed.
@@ -141,6 +162,27 @@ impl DrawnCase {
     pub(crate) const fn training_flights(&self) -> &Simulation {
         &self.training_flights
     }
+}
+
+/// A smooth error of a guide's drag: 3 to 8 % in the middle of what is flown, either way, with slopes of up to 3 % across it.
+fn book_error(spec: &CaseSpec) -> DragError {
+    let unit = |byte: usize| (f64::from(spec.draws[byte]) + 0.5) / 256.0;
+    let sign = if spec.draws[22] % 2 == 0 { -1.0 } else { 1.0 };
+    DragError {
+        constant: sign * (0.03 + 0.05 * unit(23)),
+        per_mach: 0.6 * (unit(30) - 0.5),
+        mach: 0.78,
+        per_lift_coefficient: 0.6 * (unit(31) - 0.5),
+        lift_coefficient: 0.33,
+    }
+}
+
+/// Size over the typical size: the part's, or drawn evenly in its logarithm up to `times_to`.
+fn times(spec: &CaseSpec) -> f64 {
+    let from = spec.part.times;
+    // Bytes that no other draw of a case without pairs uses.
+    let unit = (f64::from(u16::from_le_bytes([spec.draws[26], spec.draws[27]])) + 0.5) / 65_536.0;
+    spec.part.times_to.map_or(from, |to| from * (to / from).powf(unit))
 }
 
 /// Everything beyond the model's equations that an adapted model can learn. Trim drag with the center of gravity and drag of
@@ -193,8 +235,7 @@ fn planned(
     let unit = |number: usize| (f64::from(byte(number)) + 0.5) / 256.0;
     let between = |number: usize, low: f64, high: f64| low + unit(number) * (high - low);
     let sign = if id.is_one_sided() || is_known(id) || byte(0) % 2 == 0 { 1.0 } else { -1.0 };
-    let mut effect =
-        PlannedEffect::sized(id, sign * spec.part.times * id.typical_size(mean_mass_kg));
+    let mut effect = PlannedEffect::sized(id, sign * times(spec) * id.typical_size(mean_mass_kg));
     match id {
         TruthEffect::Library(EffectId::StepChange) => {
             let span_s = (last.as_second() - first.as_second()) as f64;

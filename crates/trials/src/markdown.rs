@@ -147,6 +147,8 @@ const fn denied(denied: ReferenceModel) -> &'static str {
     match denied {
         ReferenceModel::Exact => "exact",
         ReferenceModel::Adapted => "adapted",
+        ReferenceModel::Initial => "initial",
+        ReferenceModel::Misstated => "misstated",
     }
 }
 

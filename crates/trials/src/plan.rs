@@ -84,6 +84,11 @@ pub enum ReferenceModel {
     Exact,
     /// A wrong initial model, adapted by law `bayes` to clean flights.
     Adapted,
+    /// A guide whose drag is off smoothly, that no flight has taught. What is planted is what no table can hold.
+    Initial,
+    /// As `Exact`, with an aircraft file that states sensors three times better or worse than they are, and nothing of what they
+    /// keep through a flight or drift by.
+    Misstated,
 }
 
 /// What acts in addition to the planted effect.
@@ -126,6 +131,9 @@ pub struct Part {
     /// Size over the typical size. Effects whose coefficient is known are only flown at 1.
     #[serde(default = "once")]
     pub times: f64,
+    /// Where given, sizes are drawn from `times` to this, evenly in their logarithm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub times_to: Option<f64>,
     /// How often.
     pub repeats: usize,
 }
@@ -151,6 +159,9 @@ pub struct Floor {
     #[serde(default)]
     pub most: Option<f64>,
 }
+
+/// Most repeats of a part: each is a simulation and a diagnosis of a minute.
+const MOST_REPEATS: usize = 10_000;
 
 /// Why a text is not a plan of trials.
 #[derive(Debug, thiserror::Error)]
@@ -249,8 +260,14 @@ impl TrialPlan {
             return wrong("smooth_error_percent", &self.smooth_error_percent, "0 to 5");
         }
         for (index, part) in self.parts.iter().enumerate() {
+            if !(1..=MOST_REPEATS).contains(&part.repeats) {
+                return wrong("repeats", &part.repeats, "1 to 10000");
+            }
             if !(0.01..=10.0).contains(&part.times) {
                 return wrong("times", &part.times, "0.01 to 10");
+            }
+            if let Some(to) = part.times_to.filter(|to| !(part.times..=10.0).contains(to)) {
+                return wrong("times_to", &to, "times to 10");
             }
             if self.parts[..index].iter().any(|other| other.label() == part.label()) {
                 return Err(TrialPlanError::PartTwice { label: part.label() });
@@ -302,7 +319,7 @@ impl TrialPlan {
     /// Effects of the library that a part plants.
     fn plantable(&self, part: &Part, engines: usize) -> Vec<TruthEffect> {
         #[expect(clippy::float_cmp, reason = "the number 1 as a plan writes it")]
-        let typical = part.times == 1.0;
+        let typical = part.times == 1.0 && part.times_to.is_none();
         EffectId::library(engines)
             .into_iter()
             .filter(|id| {
@@ -313,6 +330,7 @@ impl TrialPlan {
                         && part.reference_model == ReferenceModel::Exact
                         && part.kind != Kind::Pair)
             })
+            .filter(|id| part.reference_model != ReferenceModel::Initial || !a_table_holds(*id))
             .map(TruthEffect::Library)
             .filter(|id| self.effects.is_empty() || self.effects.contains(id))
             .collect()
@@ -327,8 +345,26 @@ impl TrialPlan {
 impl Part {
     /// What distinguishes it from every other part of a plan.
     pub fn label(&self) -> String {
-        format!("{:?}/{:?}/{:?}/{}", self.reference_model, self.background, self.kind, self.times)
+        let Self { reference_model, background, kind, times, .. } = self;
+        let to = self.times_to.map_or_else(String::new, |to| format!("-{to}"));
+        format!("{reference_model:?}/{background:?}/{kind:?}/{times}{to}")
     }
+}
+
+/// Effects that a table over lift coefficient and Mach number can hold, or that nothing tells from one in a fleet's usual flights.
+const fn a_table_holds(id: EffectId) -> bool {
+    !matches!(
+        id,
+        EffectId::TsfcEngine(_)
+            | EffectId::FuelFlowGainEngine(_)
+            | EffectId::AntiIceBleed
+            | EffectId::TrimDragCg
+            | EffectId::AirframeAgeing
+            | EffectId::EngineAgeing
+            | EffectId::ReynoldsNumber
+            | EffectId::TsfcTemperatureExponent
+            | EffectId::StepChange
+    )
 }
 
 /// Two different effects, drawn.

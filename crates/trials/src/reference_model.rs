@@ -5,15 +5,14 @@ use std::sync::Arc;
 use effects::ExtendedModel;
 use lut::Table;
 use lut::surface::{Basis, Surface};
-use perf_model::aircraft::{AircraftFile, AxisFile, TableFile, TsfcFile};
+use perf_model::aircraft::{AircraftFile, AxisFile, SensorDeviations, TableFile, TsfcFile};
 use perf_model::{Aircraft, PerformanceModel};
 use simulate::study::DragError;
-use simulate::{AircraftTruth, Scatter, Sensors, TruthPhysics};
+use simulate::{AircraftTruth, TruthPhysics};
 use units::Mach;
 use units::convert::TSFC_SI_PER_POUND_PER_POUND_FORCE_HOUR;
 
 use crate::failure::CaseFailure;
-use crate::stated_sensors::stated_sensors;
 
 /// Grid of an exact model: chords of it err by less than 0.005 % of drag below the drag rise.
 pub(crate) const FINE: [(f64, f64, f64); 2] = [(0.08, 0.75, 0.005), (0.50, 0.95, 0.005)];
@@ -24,7 +23,7 @@ pub(crate) const COARSE: [(f64, f64, f64); 2] = [(0.10, 0.75, 0.05), (0.50, 0.95
 pub(crate) fn reference_model(
     truth: &AircraftTruth,
     physics: TruthPhysics,
-    sensors: &Sensors,
+    sensors: SensorDeviations,
     grid: &[(f64, f64, f64); 2],
     error: Option<&DragError>,
 ) -> Result<ExtendedModel, CaseFailure> {
@@ -44,7 +43,8 @@ pub(crate) fn reference_model(
         mean_aerodynamic_chord_m: Some(truth.airframe.mean_aerodynamic_chord_m),
         drag_divergence_mach: None,
         reference_lhv_mj_kg: None,
-        sensors: stated_sensors(sensors, &Scatter::default(), truth),
+        table_uncertainty_percent: None,
+        sensors,
     })?;
     let at = truth.reference_conditions();
     let grid = Arc::clone(aircraft.grid());
@@ -65,18 +65,20 @@ pub(crate) fn reference_model(
 mod tests {
     use effects::{EffectModel, EffectPoint, Effects};
     use flight::Segment;
-    use simulate::{Earth, FleetDesign, Plan, SensorChoice, Simulation, Weather};
+    use simulate::{Earth, FleetDesign, Plan, Scatter, SensorChoice, Sensors, Simulation, Weather};
 
     use super::*;
     use crate::draw::TAIL;
     use crate::flown_case::fly;
+    use crate::stated_sensors::stated_sensors;
 
     fn residuals(plan: Plan) -> Vec<f64> {
         let simulation = Simulation::new(plan).unwrap();
+        let truth = simulation.aircraft();
         let model = reference_model(
-            simulation.aircraft(),
+            truth,
             TruthPhysics::plain(),
-            &Sensors::transport(),
+            stated_sensors(&Sensors::transport(), &Scatter::default(), truth),
             &FINE,
             None,
         )

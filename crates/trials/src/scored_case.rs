@@ -24,11 +24,14 @@ pub struct Case {
     pub planted: Planted,
     /// The verdict.
     pub verdict: VerdictKind,
+    /// Whether it is that a guide's drag is off. Everything below is then of what acts beside it.
+    #[serde(default)]
+    pub of_table: bool,
     /// The most probable effect, and how probable it is.
     pub top: Option<(String, f64)>,
     /// The three most probable effects.
     pub top_three: Vec<String>,
-    /// The verdict's class, and the class of the top effect at typical sizes.
+    /// The verdict's class, as printed.
     pub class: Vec<String>,
     /// The 90 % credible set.
     pub credible: Vec<String>,
@@ -70,14 +73,20 @@ impl Case {
     /// Takes from a diagnosis what counts.
     #[must_use]
     pub fn from_diagnosis(planted: Planted, found: &Diagnosis) -> Self {
-        let top = found.causes.first().map(|cause| (cause.effect.to_string(), cause.probability));
+        let of_table = found.verdict.is_of_table();
+        let beside = found.verdict.found().map_or(&[][..], |found| &found.beside);
+        let top = if of_table {
+            beside.first().map(|beside| (beside.effect.to_string(), beside.probability))
+        } else {
+            found.causes.first().map(|cause| (cause.effect.to_string(), cause.probability))
+        };
         let own = planted.effects.first();
         let detectable = own.and_then(|(name, _)| detectable_of(found, name));
-        let mut class = names(found.verdict.class());
-        if let Some((name, _)) = &top {
-            let typical = detectable_of(found, name);
-            class.extend(typical.into_iter().flat_map(|d| names(&d.class)));
-        }
+        let class = if of_table {
+            beside.iter().flat_map(|beside| names(&beside.class)).collect()
+        } else {
+            names(found.verdict.class())
+        };
         let total: f64 = found.causes.iter().map(|cause| cause.probability).sum();
         let mut sum = 0.0;
         let mut credible = Vec::new();
@@ -89,16 +98,23 @@ impl Case {
             credible.push(cause.effect.to_string());
         }
         let magnitude = own
-            .zip(found.causes.first())
+            .zip(found.causes.iter().find(|cause| cause.effect != EffectId::DragTable))
             .filter(|((name, _), cause)| *name == cause.effect.to_string())
             .map(|((_, size), cause)| (*size, &cause.magnitude));
         Self {
             verdict: VerdictKind::from(&found.verdict),
+            of_table,
             top,
             top_three: found.causes.iter().take(3).map(|cause| cause.effect.to_string()).collect(),
             class,
             credible,
-            named: names(found.verdict.effects()),
+            named: found
+                .verdict
+                .effects()
+                .iter()
+                .filter(|id| **id != EffectId::DragTable)
+                .map(ToString::to_string)
+                .collect(),
             planted_closure: None,
             located: None,
             size_error: magnitude.map(|(size, found)| found.value / size - 1.0),
@@ -165,7 +181,17 @@ impl Case {
     }
 
     pub(crate) fn names_effects(&self) -> bool {
-        self.verdict == VerdictKind::Effects
+        self.verdict == VerdictKind::Effects && !self.is_table_alone()
+    }
+
+    /// A guide's drag is off, and nothing else is named.
+    pub(crate) fn is_table_alone(&self) -> bool {
+        self.of_table && self.top.is_none()
+    }
+
+    /// Nothing is said of what was asked for: no gap, or a guide's drag alone.
+    pub(crate) fn is_silent(&self) -> bool {
+        self.verdict == VerdictKind::NoGap || self.is_table_alone()
     }
 
     /// The verdict in one name, for the table of confusions.
@@ -174,6 +200,7 @@ impl Case {
             VerdictKind::NoGap => "no_gap".to_owned(),
             VerdictKind::OutsideLibrary => "outside_library".to_owned(),
             VerdictKind::InsufficientData => "insufficient_data".to_owned(),
+            VerdictKind::Effects if self.is_table_alone() => "drag_table".to_owned(),
             VerdictKind::Effects => self.top.as_ref().map_or_else(String::new, |t| t.0.clone()),
         }
     }

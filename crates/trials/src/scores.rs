@@ -52,7 +52,7 @@ macro_rules! scores {
 
 scores! {
     Reported, Some(1), "A gap is reported where an effect is planted",
-        |s| share(&s.planted, |c| c.verdict != VerdictKind::NoGap);
+        |s| share(&s.planted, |c| !c.is_silent());
     TopOne, Some(2), "The planted effect is on top, of all reported",
         |s| share(&s.reported, Case::names_first);
     TopOneSeparable, Some(3),
@@ -73,7 +73,7 @@ scores! {
     Credible, Some(7), "90 % credible sets that hold the planted effect",
         |s| share(&s.reported, |c| c.credible.iter().any(|name| name == c.truth()));
     Silent, Some(13), "No effect planted: no gap reported",
-        |s| share(&s.nulls, |c| c.verdict == VerdictKind::NoGap);
+        |s| share(&s.nulls, Case::is_silent);
     Abstained, Some(15),
         "Effect struck from the library, no pair within 5 standard deviations: outside the library",
         |s| share(&s.struck, |c| c.verdict == VerdictKind::OutsideLibrary);
@@ -253,8 +253,7 @@ impl<'a> SortedCases<'a> {
             cases.iter().filter(|case| of(case)).collect()
         };
         let planted = those(&Case::is_single);
-        let reported: Vec<&Case> =
-            planted.iter().copied().filter(|c| c.verdict != VerdictKind::NoGap).collect();
+        let reported: Vec<&Case> = planted.iter().copied().filter(|c| !c.is_silent()).collect();
         let separable = reported
             .iter()
             .copied()
@@ -338,6 +337,7 @@ mod tests {
         Case {
             planted: Planted { effects: vec![(truth.to_owned(), 1.0)], struck: vec![] },
             verdict: VerdictKind::Effects,
+            of_table: false,
             top: Some((top.to_owned(), probability)),
             top_three: vec![top.to_owned()],
             class: vec![top.to_owned()],

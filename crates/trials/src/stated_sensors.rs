@@ -89,6 +89,32 @@ pub(crate) fn stated_sensors(
     }
 }
 
+/// The same as an operator who does not know them may state them: every standard deviation times a factor, and nothing of
+/// what is kept through a flight or drifts within it.
+pub(crate) fn misstated(stated: &SensorDeviations, factor: f64) -> SensorDeviations {
+    let mass = match stated.mass {
+        MassDeviation::Percent(percent) => MassDeviation::Percent(factor * percent),
+        MassDeviation::Kilograms(kilograms) => MassDeviation::Kilograms(factor * kilograms),
+    };
+    SensorDeviations {
+        fuel_flow_percent: factor * stated.fuel_flow_percent,
+        mach: factor * stated.mach,
+        static_air_temperature_k: factor * stated.static_air_temperature_k,
+        acceleration_m_s2: factor * stated.acceleration_m_s2,
+        mass,
+        lower_heating_value_percent: factor * stated.lower_heating_value_percent,
+        n2_percent: factor * stated.n2_percent,
+        pressure_altitude_m: factor * stated.pressure_altitude_m,
+        fuel_flow_drift: FuelFlowDrift { percent: 0.0, ..stated.fuel_flow_drift },
+        flight_bias: FlightBias {
+            mach: 0.0,
+            static_air_temperature_k: 0.0,
+            n2_percent: 0.0,
+            pressure_altitude_m: 0.0,
+        },
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -100,6 +100,26 @@ const CLEAN: [(ScoreName, bool, f64); 13] = [
     (ScoreName::PlaceOverlapMedian, true, 0.80),
     (ScoreName::PlaceAlarm, false, 0.07),
 ];
+/// Against a model that law `bayes` has taught.
+const ADAPTED: [(ScoreName, bool, f64); 8] = [
+    (ScoreName::Class, true, 0.95),
+    (ScoreName::TopOneSeparable, true, 0.93),
+    (ScoreName::SureAndWrong, false, 0.01),
+    (ScoreName::Silent, true, 0.97),
+    (ScoreName::ClosureMedian, true, 0.93),
+    (ScoreName::CalibrationError, false, 0.06),
+    (ScoreName::PlaceSignificant, true, 0.80),
+    (ScoreName::PlaceDriver, true, 0.75),
+];
+/// Against a guide whose drag is off.
+const INITIAL: [(ScoreName, bool, f64); 3] = [
+    (ScoreName::Class, true, 0.95),
+    (ScoreName::SureAndWrong, false, 0.01),
+    (ScoreName::Silent, true, 0.95),
+];
+/// With sensors that the aircraft file misstates.
+const MISSTATED: [(ScoreName, bool, f64); 2] =
+    [(ScoreName::Class, true, 0.93), (ScoreName::Silent, true, 0.95)];
 /// The same on a background of small other effects and smooth errors of the table.
 const CLUTTER: [(ScoreName, bool, f64); 2] =
     [(ScoreName::TopOne, true, 0.65), (ScoreName::Credible, true, 0.92)];
@@ -177,10 +197,13 @@ fn group(
 fn goals_of(group: &Group) -> Vec<Goal> {
     #[expect(clippy::float_cmp, reason = "the number 1 as a plan writes it")]
     let typical = group.times == 1.0;
-    let goals: &[(ScoreName, bool, f64)] = match group.background {
+    let goals: &[(ScoreName, bool, f64)] = match (group.background, group.reference_model) {
         _ if !typical => &[],
-        Background::Clean => &CLEAN,
-        Background::Clutter => &CLUTTER,
+        (Background::Clutter, _) => &CLUTTER,
+        (Background::Clean, ReferenceModel::Exact) => &CLEAN,
+        (Background::Clean, ReferenceModel::Adapted) => &ADAPTED,
+        (Background::Clean, ReferenceModel::Initial) => &INITIAL,
+        (Background::Clean, ReferenceModel::Misstated) => &MISSTATED,
     };
     goals
         .iter()
@@ -230,6 +253,7 @@ mod tests {
             scored: Case {
                 planted: Planted { effects, struck: vec![] },
                 verdict,
+                of_table: false,
                 top: Some(("drag_factor".to_owned(), 0.8)),
                 top_three: vec![],
                 class: vec![],

@@ -1,23 +1,42 @@
 //! `cruisefit adapt`: one adapted model per tail, continuing from what the folder holds.
+//!
+//! A first pass reads who flew and when from the beginning of each report; then tails are learnt side by side, each
+//! tail's flights in the order of flying. What a tail comes to is written to the folder's waiting room at once, so that
+//! memory holds the tails in work and nothing of those that are done.
 
-use std::collections::BTreeMap;
+mod begun;
+pub(super) mod dates;
+mod results;
+mod sorting;
+mod tail;
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
 use crate::args::{AdaptArgs, LawName};
-use crate::commands::{Outcome, check_refused, prepare};
+use crate::commands::{Outcome, check_refused, source_of};
 use crate::failure::{Failure, RefusedReport, show};
-use crate::folder::{Folder, StoredTail};
+use crate::folder::lock::Busy;
+use crate::folder::{Beginning, Folder};
+use crate::inputs;
 use crate::models::Models;
-use crate::plausibility;
 use crate::progress::Progress;
-use crate::reading::{FlightRead, Reading};
-use pipeline::evaluation::{TailCounts, TailData, TailResult};
-use pipeline::learning::{self, FlightToLearn, LawChoice};
-use pipeline::model_file::{Learnt, LedgerEntry, ModelFile, PaperSettings};
-use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+use crate::reading::distinct::warn_of_copies;
+use crate::reading::heads::{Head, Heads};
+use crate::reading::{Buffers, Source};
+use begun::{Start, Starts};
+pub(crate) use tail::{materials, rebuild, result_of, settled, stage};
 
-pub(super) mod dates;
+/// What all tails of a run have in common.
+struct Run<'a> {
+    arguments: &'a AdaptArgs,
+    folder: &'a Folder,
+    source: &'a Source,
+    /// Whether the page of the run holds the tails' charts; otherwise each tail has its own page.
+    on_one_page: bool,
+    anchors: page::Anchors,
+}
 
 /// Runs the command.
 ///
@@ -26,98 +45,112 @@ pub(super) mod dates;
 pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models = Models::read(&arguments.models.models)?;
     check_threshold(arguments)?;
-    let mut reading = prepare(&arguments.reports, progress)?;
-    let files = reading.files();
-    dates::refuse_impossible(&mut reading, flight::Timestamp::now());
-    let chosen = choose_models(&models, &mut reading, arguments)?;
-    let book_of = |flight: &FlightRead| {
-        let model = models.for_flight(flight).ok()?;
-        Some((&model.initial, model.initial.drag_table()))
+    let source = source_of(&arguments.reports)?;
+    let inputs = inputs::collect(&arguments.reports.reports, source.mapping.is_some())?;
+    let files = inputs.files.len() + inputs.refused.len();
+    let bar = progress.bar(inputs.files.len(), "reading headers");
+    let Heads { tails, mut refused } = source.heads(inputs.files, &bar);
+    bar.finish();
+    refused.extend(inputs.refused);
+    let mut starts = Starts::new(&models, arguments);
+    let tails = choose(tails, &mut starts, &mut refused);
+    check_refused(&refused, files, arguments.reports.strict, tails.is_empty())?;
+    let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };
+    let folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
+    for (tail, (start, _)) in &tails {
+        starts.check_begun_alike(&folder, tail, start)?;
+    }
+    let mut all: BTreeSet<String> = folder.tails();
+    all.extend(tails.keys().cloned());
+    let run = Run {
+        arguments,
+        folder: &folder,
+        source: &source,
+        on_one_page: all.len() <= page::TAILS_ON_ONE_PAGE,
+        anchors: page::Anchors::of(all.iter().map(String::as_str)),
     };
-    plausibility::set_aside_absurd(&mut reading, book_of, arguments.accept);
-    let nothing_left = reading.flights.is_empty();
-    check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
-    let folder = Folder::open(&arguments.output, arguments.restart)?;
-    let mut stored = folder.load()?;
-    for (tail, start) in &chosen {
-        if let Some(known) = stored.get(tail) {
-            check_begun_alike(&arguments.output, known, start)?;
-        }
-    }
-    let mut by_tail: BTreeMap<String, Vec<FlightRead>> = BTreeMap::new();
-    for flight in reading.flights {
-        by_tail.entry(flight.reduced.identity.tail.clone()).or_default().push(flight);
-    }
-    let mut refused = reading.refused;
-    let mut already_known = 0;
-    let mut jobs = Vec::new();
-    for (tail, flights) in by_tail {
-        let Some(start) = chosen.get(&tail) else { continue };
-        let begun = stored.remove(&tail);
-        let sorted = sort_out(&tail, flights, begun.as_ref(), arguments.reports.strict);
-        refused.extend(sorted.refused);
-        already_known += sorted.already_known;
-        jobs.push(Job {
-            tail,
-            begun,
-            start: start.clone(),
-            flights: sorted.new,
-            warnings: sorted.warnings,
-        });
-    }
-    check_refused(&refused, files, arguments.reports.strict, false)?;
-    // A tail's flights are learnt in order; tails are independent of each other.
-    let learnt: Vec<(TailResult, Vec<RefusedReport>)> =
-        jobs.into_par_iter().map(|job| job.learn(!arguments.no_remainder)).collect();
-    let mut read = 0;
-    let mut results = Vec::new();
-    for (result, not_learnt) in learnt {
-        read += result.summary.flights_new;
-        refused.extend(not_learnt);
-        if result.summary.flights_new > 0 || result.summary.flights > 0 {
-            results.push(result);
-        }
-    }
-    for result in &results {
-        if result.summary.flights_new > 0 || !folder.model_path(&result.tail).exists() {
-            folder.store(&result.tail, &result.model, &result.rows)?;
-        }
-    }
+    let mut outcomes = learn_all(&run, tails, progress)?;
     // The summary covers every tail that the folder holds, also those without a report in this run.
-    for (tail, StoredTail { model, segments }) in stored {
-        results.push(at_rest(tail, model, segments));
+    let done: BTreeSet<String> = outcomes.iter().map(|one| one.tail.clone()).collect();
+    let others: Vec<&String> = all.difference(&done).collect();
+    let at_rest = others
+        .into_par_iter()
+        .map(|tail| run.at_rest(tail))
+        .collect::<Result<Vec<_>, Failure>>()?;
+    outcomes.extend(at_rest);
+    outcomes.sort_by(|one, other| one.tail.cmp(&other.tail));
+    for outcome in &mut outcomes {
+        refused.append(&mut outcome.refused);
     }
-    results.sort_by(|one, other| one.tail.cmp(&other.tail));
     refused.sort_by(|one, other| one.path.cmp(&other.path));
-    let reports = ReportsSummary {
-        read,
-        already_known,
-        refused: refused.iter().map(RefusedSummary::from).collect(),
-    };
-    let summary = write_results(&folder, reports, &results)?;
+    let usable: usize = outcomes.iter().map(|outcome| outcome.usable).sum();
+    check_refused(&refused, files, arguments.reports.strict, usable == 0)?;
+    let copies = outcomes.iter().map(|outcome| outcome.copies).sum();
+    warn_of_copies(copies, outcomes.iter_mut().find_map(|outcome| outcome.first_copy.take()));
+    let summary = results::write(&run, &refused, &outcomes)?;
+    let states = outcomes.into_iter().filter_map(|one| Some((one.tail, one.state?))).collect();
+    drop(run);
+    folder.commit(states)?;
     let text = format!(
-        "{}Written to {}: models/, segments/, summary.json, report.html\n",
+        "{}Written to {}: models/, segments/, flights/, summary.json, report.html\n",
         summary.to_text(),
         show(&arguments.output)
     );
     Ok(Outcome { text, refused })
 }
 
-/// Writes `summary.json` and `report.html`.
-fn write_results(
-    folder: &Folder,
-    reports: ReportsSummary,
-    results: &[TailResult],
-) -> Result<Summary, Failure> {
-    let summary = Summary {
-        schema: SCHEMA,
-        reports,
-        tails: results.iter().map(|result| result.summary.clone()).collect(),
-    };
-    folder.write("summary.json", &summary.to_json())?;
-    let title = "Adaptation of performance models to cruise reports";
-    folder.write("report.html", page::report(&summary, results, title).as_bytes())?;
-    Ok(summary)
+type Chosen<'a> = BTreeMap<String, (Start<'a>, Vec<Head>)>;
+
+/// The state that each tail starts from; a report without a model is refused.
+fn choose<'a>(
+    tails: BTreeMap<String, Vec<Head>>,
+    starts: &mut Starts<'a>,
+    refused: &mut Vec<RefusedReport>,
+) -> Chosen<'a> {
+    let mut chosen = Chosen::new();
+    for (tail, heads) in tails {
+        let mut start = None;
+        let mut kept = Vec::with_capacity(heads.len());
+        for head in heads {
+            match starts.of(&tail, &head.aircraft_type) {
+                Ok(found) => {
+                    start.get_or_insert(found);
+                    kept.push(head);
+                }
+                Err(reason) => refused.push(RefusedReport::whole(head.path.into(), reason)),
+            }
+        }
+        if let Some(start) = start {
+            chosen.insert(tail, (start, kept));
+        }
+    }
+    chosen
+}
+
+/// Learns every tail. Many tails are learnt side by side, each by one thread; a tail with a large share of all reports
+/// is read by several.
+fn learn_all(
+    run: &Run<'_>,
+    tails: Chosen<'_>,
+    progress: Progress,
+) -> Result<Vec<tail::TailOutcome>, Failure> {
+    let reports: usize = tails.values().map(|(_, heads)| heads.len()).sum();
+    let large = reports / (2 * rayon::current_num_threads()).max(1);
+    let bar = progress.bar(reports, "learning flights");
+    let jobs: Vec<_> = tails.into_iter().collect();
+    let outcomes = jobs
+        .into_par_iter()
+        .map_init(Buffers::default, |buffers, (tail, (start, heads))| {
+            // Few tails can be as large as that, so few jobs can wait inside each other.
+            let side_by_side = heads.len() > large.max(tail::READ_AT_A_TIME);
+            let count = heads.len();
+            let outcome = run.learn(tail, &start, heads, buffers, side_by_side);
+            bar.advance(count);
+            outcome
+        })
+        .collect();
+    bar.finish();
+    outcomes
 }
 
 fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {
@@ -131,223 +164,4 @@ fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {
             .map_err(|error| wrong(error.to_string())),
         (None, _) => Ok(()),
     }
-}
-
-/// The state that each tail starts from; a report without a model moves to the refused ones.
-fn choose_models(
-    models: &Models,
-    reading: &mut Reading,
-    arguments: &AdaptArgs,
-) -> Result<BTreeMap<String, ModelFile>, Failure> {
-    let mut chosen = BTreeMap::new();
-    let flights = std::mem::take(&mut reading.flights);
-    for flight in flights {
-        match models.for_flight(&flight) {
-            Ok(model) => {
-                let tail = &flight.reduced.identity.tail;
-                if !chosen.contains_key(tail) {
-                    chosen.insert(tail.clone(), beginning(model, tail, arguments)?);
-                }
-                reading.flights.push(flight);
-            }
-            Err(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
-        }
-    }
-    Ok(chosen)
-}
-
-/// A model's initial part, before anything is learnt.
-fn beginning(model: &ModelFile, tail: &str, arguments: &AdaptArgs) -> Result<ModelFile, Failure> {
-    if let Some(learnt) = &model.learnt {
-        tracing::warn!(
-            tail,
-            "the model given has learnt {} flights of tail {}; adaptation starts from its initial part{}",
-            learnt.ledger.len(),
-            learnt.tail,
-            if model.applied.is_empty() { "" } else { " and the effects applied to it" }
-        );
-    }
-    let law = match arguments.law {
-        LawName::Bayes => LawChoice::Bayes(model.settings.bayes),
-        LawName::Paper => LawChoice::Paper(PaperSettings {
-            threshold_percent: arguments
-                .threshold
-                .unwrap_or(model.settings.paper.threshold_percent),
-        }),
-    };
-    let learnt = learning::begin(&model.initial, tail, &arguments.reports.criteria, law)
-        .map_err(|error| Failure::BadArgument { argument: "--model", reason: error.to_string() })?;
-    Ok(ModelFile { learnt: Some(learnt), ..model.clone() })
-}
-
-fn check_begun_alike(
-    folder: &std::path::Path,
-    known: &StoredTail,
-    start: &ModelFile,
-) -> Result<(), Failure> {
-    let otherwise =
-        |what, difference| Failure::BegunOtherwise { folder: show(folder), what, difference };
-    if let Some((what, difference)) = start.difference_of_initial(&known.model) {
-        return Err(otherwise(what, difference));
-    }
-    if let Some(difference) = start.difference_of_law(&known.model) {
-        return Err(otherwise("law or setting", difference));
-    }
-    Ok(())
-}
-
-/// A tail for which this run has nothing new.
-fn at_rest(tail: String, model: ModelFile, segments: Vec<flight::Segment>) -> TailResult {
-    let counts = counts_of(&model, 0);
-    TailResult::adapted(TailData { tail, model, segments, counts, notes: Vec::new() })
-}
-
-fn counts_of(model: &ModelFile, flights_new: usize) -> TailCounts {
-    let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
-    TailCounts {
-        flights: ledger.len(),
-        flights_new,
-        samples: ledger.iter().map(|entry| entry.samples).sum(),
-    }
-}
-
-struct Sorted {
-    new: Vec<FlightRead>,
-    refused: Vec<RefusedReport>,
-    already_known: usize,
-    warnings: Vec<String>,
-}
-
-/// Puts a tail's flights in the order of flying and sets aside those already in the ledger, or given twice.
-fn sort_out(
-    tail: &str,
-    mut flights: Vec<FlightRead>,
-    begun: Option<&StoredTail>,
-    strict: bool,
-) -> Sorted {
-    flights.sort_by(FlightRead::order);
-    let ledger = begun
-        .and_then(|begun| begun.model.learnt.as_ref())
-        .map_or(&[][..], |learnt| learnt.ledger.as_slice());
-    let mut known: BTreeMap<(String, String), String> = ledger
-        .iter()
-        .map(|entry| ((entry.start.clone(), entry.flight.clone()), entry.content.clone()))
-        .collect();
-    let newest =
-        ledger.iter().filter_map(|entry| entry.start.parse::<flight::Timestamp>().ok()).max();
-    let mut sorted =
-        Sorted { new: Vec::new(), refused: Vec::new(), already_known: 0, warnings: Vec::new() };
-    for flight in flights {
-        let key =
-            (flight.reduced.identity.start.to_string(), flight.reduced.identity.flight.clone());
-        let refuse = |reason: String| RefusedReport::whole(flight.path.clone(), reason);
-        match known.get(&key) {
-            Some(content) if *content == flight.content => {
-                sorted.already_known += 1;
-                continue;
-            }
-            Some(_) => {
-                sorted.refused.push(refuse(format!(
-                    "tail {tail} flight {} of {} is already known with different content",
-                    key.1, key.0
-                )));
-                continue;
-            }
-            None => {}
-        }
-        if newest.is_some_and(|newest| flight.reduced.identity.start < newest) {
-            let finding = format!(
-                "flight {} of {} is older than the newest one that tail {tail} has learnt",
-                key.1, key.0
-            );
-            if strict {
-                sorted.refused.push(refuse(finding));
-                continue;
-            }
-            tracing::warn!("{finding}; it is learnt now, after newer ones");
-            sorted.warnings.push(format!("{finding}; it was learnt after newer ones"));
-        }
-        known.insert(key, flight.content.clone());
-        sorted.new.push(flight);
-    }
-    sorted
-}
-
-struct Job {
-    tail: String,
-    begun: Option<StoredTail>,
-    start: ModelFile,
-    flights: Vec<FlightRead>,
-    warnings: Vec<String>,
-}
-
-impl Job {
-    fn learn(self, remember_remainder: bool) -> (TailResult, Vec<RefusedReport>) {
-        let (mut model, mut segments) = match self.begun {
-            Some(StoredTail { model, segments }) => (model, segments),
-            None => (self.start, Vec::new()),
-        };
-        let mut refused = Vec::new();
-        let mut notes = self.warnings;
-        notes.extend(model.note_of_effects());
-        let dated = dates::Dates::of(&model, &self.flights);
-        let mut flights_new = 0;
-        for flight in self.flights {
-            let Some(learnt) = &mut model.learnt else { break };
-            let segments_as_dated = dated.as_dated(&flight);
-            match learn_one(&model.initial, learnt, &flight, &segments_as_dated) {
-                Ok(()) => {
-                    flights_new += 1;
-                    flight.add_notes(&mut notes);
-                    segments.extend(flight.reduced.segments);
-                }
-                Err(error) => refused.push(RefusedReport::whole(flight.path, error)),
-            }
-        }
-        if let Some(learnt) = &mut model.learnt
-            && flights_new > 0
-            && let Err(error) = learning::settle(learnt)
-        {
-            // Cannot happen to a state that was read whole: if it did, what was learnt would not be written.
-            tracing::error!(tail = self.tail, "{error}");
-            flights_new = 0;
-        }
-        if let Some(learnt) = &mut model.learnt
-            && flights_new > 0
-            && remember_remainder
-        {
-            learning::remember_remainder(&model.initial, learnt, &segments);
-        }
-        let counts = counts_of(&model, flights_new);
-        let data = TailData { tail: self.tail, model, segments, counts, notes };
-        (TailResult::adapted(data), refused)
-    }
-}
-
-fn learn_one(
-    initial: &effects::ExtendedModel,
-    learnt: &mut Learnt,
-    flight: &FlightRead,
-    segments: &[flight::Segment],
-) -> Result<(), learning::LearningError> {
-    let entry = LedgerEntry {
-        tail: flight.reduced.identity.tail.clone(),
-        flight: flight.reduced.identity.flight.clone(),
-        start: flight.reduced.identity.start.to_string(),
-        content: flight.content.clone(),
-        samples: flight.reduced.samples as u64,
-        segments: 0,
-        outside_table: 0,
-    };
-    let result = learning::learn_flight(initial, learnt, &FlightToLearn { entry, segments })?;
-    tracing::debug!(
-        tail = flight.reduced.identity.tail,
-        flight = flight.reduced.identity.flight,
-        segments = flight.reduced.segments.len(),
-        adapted = result.adapted,
-        outside = result.outside_table,
-        refitted = result.refitted,
-        "learnt"
-    );
-    Ok(())
 }

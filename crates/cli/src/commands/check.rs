@@ -6,7 +6,7 @@ use pipeline::check::CheckDocument;
 use pipeline::summary::{RefusedSummary, ReportsSummary};
 
 use crate::args::CheckArgs;
-use crate::commands::{Outcome, check_refused, prepare};
+use crate::commands::{Outcome, check_refused, read_reports};
 use crate::failure::Failure;
 use crate::files::write_atomically;
 use crate::models::Models;
@@ -21,7 +21,7 @@ use crate::reading::FlightRead;
 pub(crate) fn run(arguments: &CheckArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models =
         if arguments.models.is_empty() { None } else { Some(Models::read(&arguments.models)?) };
-    let reading = prepare(&arguments.reports, progress)?;
+    let reading = read_reports(&arguments.reports, progress)?;
     let files = reading.files();
     let nothing_left = reading.flights.is_empty();
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;

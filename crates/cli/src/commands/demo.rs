@@ -12,6 +12,7 @@ use crate::failure::{Failure, show};
 use crate::files::read_text;
 use crate::progress::Progress;
 use crate::simulated_reports;
+use ::simulate::Switch;
 use pipeline::checksum::sha256;
 use pipeline::statistics::ErrorStatistics;
 
@@ -25,7 +26,7 @@ const TEACHING_FLIGHTS: usize = 30;
 pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, Failure> {
     let folder = &arguments.output;
     let mut text = String::new();
-    let flights = simulated_reports::demonstration()?.write(folder, progress)?;
+    let flights = simulated_reports::demonstration()?.write(folder, progress)?.flights;
     let _ = writeln!(
         text,
         "A virtual Citation X, tail N750CF: {flights} cruise reports, a flight-planning guide whose drag is wrong, and \
@@ -38,6 +39,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
         aircraft: folder.join("AIRCRAFT.ron"),
         guide: folder.join("guide.csv"),
         output: model.clone(),
+        force: true,
     })?;
     let _ = writeln!(
         text,
@@ -84,7 +86,9 @@ fn adapt_by_both_laws(
                 law,
                 threshold,
                 no_remainder: false,
+                relearn: false,
                 restart: adapted.exists(),
+                wait: false,
             },
             progress,
         )?;
@@ -136,12 +140,12 @@ fn judge(
     Ok(())
 }
 
-/// Flies the tail a year later with an effect that its model does not have, diagnoses it against the adapted model, and
-/// only then opens the truth.
+/// Flies the tail a year later with an effect that its model does not have, diagnoses it against the adapted model, does what
+/// the diagnosis advises (the tank gauges are recorded too), and only then opens the truth.
 fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<(), Failure> {
     let later = folder.join("later");
-    let flights =
-        simulated_reports::write(&simulated_reports::demonstration_later()?, &later, progress)?;
+    let without = simulated_reports::demonstration_later(Switch::Off)?;
+    let flights = simulated_reports::write(&without, &later, progress)?.flights;
     let sealed = later.join("TRUTH.json");
     let hash = hash_of(&sealed)?;
     let _ = writeln!(
@@ -149,26 +153,12 @@ fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<
         "\nA year later, {flights} more flights: something about the aircraft has changed, and the model does not know \
          it.\nThe change is sealed in later/TRUTH.json, SHA-256 {hash}.\n"
     );
-    let found = diagnose::run(
-        &DiagnoseArgs {
-            accept: false,
-            reports: reports_arguments(&[later.join("N750CF")]),
-            models: ModelArgs { models: vec![folder.join("adapted-bayes/models/N750CF.ron")] },
-            output: folder.join("diagnosis"),
-            effects: vec![],
-            without: vec![],
-            apply: None,
-            pool: false,
-            table_only: false,
-            allow_learnt: false,
-        },
-        progress,
-    )?;
-    let _ = writeln!(
-        text,
-        "$ cruisefit diagnose later/N750CF --model adapted-bayes/models/N750CF.ron -o diagnosis\n{}",
-        found.text
-    );
+    diagnose_later(folder, "later", "diagnosis", progress, text)?;
+    let with = simulated_reports::demonstration_later(Switch::On)?;
+    simulated_reports::write(&with, &folder.join("later-gauges"), progress)?;
+    let _ =
+        writeln!(text, "As advised: the same flights with the tank gauges recorded (column FQ).\n");
+    diagnose_later(folder, "later-gauges", "diagnosis-gauges", progress, text)?;
     let opened = read_text(&sealed)?;
     let truth: ::simulate::Truth =
         serde_json::from_str(&opened).map_err(|error| Failure::bad_file(&sealed, error))?;
@@ -180,6 +170,37 @@ fn later_period(folder: &Path, progress: Progress, text: &mut String) -> Result<
         .map(|effect| format!("{} {:+}", effect.id, effect.size))
         .collect();
     let _ = writeln!(text, "The seal is opened ({unchanged}). The truth: {}.", planted.join(", "));
+    Ok(())
+}
+
+/// Diagnoses a folder of later flights against the model that law `bayes` has adapted.
+fn diagnose_later(
+    folder: &Path,
+    flights: &str,
+    output: &str,
+    progress: Progress,
+    text: &mut String,
+) -> Result<(), Failure> {
+    let found = diagnose::run(
+        &DiagnoseArgs {
+            accept: false,
+            reports: reports_arguments(&[folder.join(flights).join("N750CF")]),
+            models: ModelArgs { models: vec![folder.join("adapted-bayes/models/N750CF.ron")] },
+            output: folder.join(output),
+            effects: vec![],
+            without: vec![],
+            apply: None,
+            pool: false,
+            table_only: false,
+            allow_learnt: false,
+        },
+        progress,
+    )?;
+    let _ = writeln!(
+        text,
+        "$ cruisefit diagnose {flights}/N750CF --model adapted-bayes/models/N750CF.ron -o {output}\n{}",
+        found.text
+    );
     Ok(())
 }
 
@@ -210,6 +231,7 @@ fn unseen_errors(
         json: None,
         output: None,
         fuel_factors: None,
+        table_only: false,
     };
     let summary = evaluate::evaluate(&arguments, Progress::Hidden)?.summary;
     Ok(summary.tails.first().map_or((ErrorStatistics::of(&[]), None), |tail| {

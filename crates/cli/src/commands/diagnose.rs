@@ -10,14 +10,14 @@ use flight::effect::EffectId;
 use rayon::prelude::*;
 
 use crate::args::DiagnoseArgs;
-use crate::commands::{Outcome, check_refused, prepare};
+use crate::commands::{Outcome, check_refused, predicts, prepare};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::Models;
 use crate::plausibility;
 use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
-use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
+use pipeline::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use pipeline::diagnosis_document::DiagnosisDocument;
 use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::model_file::ModelFile;
@@ -34,6 +34,13 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         without: effects("--without", &arguments.without)?,
         ..Options::default()
     };
+    let asked = RunOptions {
+        effects: arguments.effects.clone(),
+        without: arguments.without.clone(),
+        pool: arguments.pool,
+        table_only: arguments.table_only,
+        allow_learnt: arguments.allow_learnt,
+    };
     let models = Models::read(&arguments.models.models)?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
@@ -48,7 +55,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let read = groups.iter().map(|group| group.flights.len()).sum();
     let diagnoses = groups
         .par_iter()
-        .map(|group| diagnose_group(group, &options, arguments.table_only))
+        .map(|group| diagnose_group(group, &options, &asked))
         .collect::<Result<Vec<_>, Failure>>()?;
     let (diagnoses, figures): (Vec<_>, Vec<_>) = diagnoses.into_iter().unzip();
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
@@ -58,11 +65,11 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         refused: reading.refused.iter().map(RefusedSummary::from).collect(),
     };
     let path = arguments.output.join("diagnosis.json");
-    let json = DiagnosisDocument::new(&reports, &diagnoses)
+    let json = DiagnosisDocument::new(&asked, &reports, &diagnoses)
         .to_json()
         .map_err(|error| Failure::unwritable(&path, error))?;
     write_atomically(&path, json.as_bytes())?;
-    let html = page::diagnosis(&reports, &diagnoses, &figures, &asked(arguments));
+    let html = page::diagnosis(&reports, &diagnoses, &figures, &in_words(arguments));
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();
     for diagnosed in &diagnoses {
@@ -173,7 +180,7 @@ fn has_learnt(model: &ModelFile, flight: &FlightRead) -> bool {
 fn diagnose_group(
     group: &Group<'_>,
     options: &Options,
-    table_only: bool,
+    asked: &RunOptions,
 ) -> Result<(DiagnosedTail, DiagnosisFigures), Failure> {
     let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
         argument: "--model",
@@ -188,20 +195,21 @@ fn diagnose_group(
             gauges: flight.reduced.gauges,
         })
         .collect();
-    let table =
-        table_uncertainty::of_model(group.model, &records).map_err(|error| wrong(&error))?;
+    let predicts = predicts(asked.table_only);
+    let table = table_uncertainty::of_model(group.model, predicts, &records)
+        .map_err(|error| wrong(&error))?;
     let baseline = group.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     let input = Input {
         model: &group.model.initial,
-        drag_table: group.model.drag_coefficient(),
+        drag_table: group.model.reference_table(predicts),
         flights: &records,
-        baseline: if table_only { None } else { baseline },
+        baseline: if asked.table_only { None } else { baseline },
         table: table.as_ref(),
         references: baseline.map(|baseline| *baseline.references()),
     };
     let diagnosis = diagnose(&input, options).map_err(|error| wrong(&error))?;
-    let mut run_notes = Vec::new();
-    if baseline.is_none() && !table_only {
+    let mut run_notes = asked.restrictions();
+    if baseline.is_none() && !asked.table_only {
         run_notes.push(
             "the model has learnt no remainder (law bayes learns one from five flights): everything that a table cannot hold \
              counts as gap"
@@ -216,25 +224,38 @@ fn diagnose_group(
     }
     let figures =
         DiagnosisFigures::of(group.model, &input, &diagnosis).map_err(|error| wrong(&error))?;
-    Ok((DiagnosedTail { tail: group.name.clone(), diagnosis, run_notes }, figures))
+    let compared = compared(group);
+    Ok((DiagnosedTail { tail: group.name.clone(), diagnosis, compared, run_notes }, figures))
 }
 
 /// The options that an answer depends on, for the page.
-fn asked(arguments: &DiagnoseArgs) -> Vec<String> {
-    let mut asked = vec![format!("trim criteria {}", arguments.reports.criteria)];
+fn in_words(arguments: &DiagnoseArgs) -> Vec<String> {
+    let mut words = vec![format!("trim criteria {}", arguments.reports.criteria)];
     if !arguments.effects.is_empty() {
-        asked.push(format!("only these effects looked for: {}", arguments.effects.join(", ")));
+        words.push(format!("only these effects looked for: {}", arguments.effects.join(", ")));
     }
     if !arguments.without.is_empty() {
-        asked.push(format!("not looked for: {}", arguments.without.join(", ")));
+        words.push(format!("not looked for: {}", arguments.without.join(", ")));
     }
     let modes = [
         (arguments.pool, "all tails of a type together (--pool)"),
         (arguments.table_only, "against the table alone (--table-only)"),
         (arguments.allow_learnt, "flights that the model has learnt included (--allow-learnt)"),
     ];
-    asked.extend(modes.iter().filter(|(is, _)| *is).map(|(_, words)| (*words).to_owned()));
-    asked
+    words.extend(modes.iter().filter(|(is, _)| *is).map(|(_, words)| (*words).to_owned()));
+    words
+}
+
+fn compared(group: &Group<'_>) -> Compared {
+    let starts = || group.flights.iter().map(|flight| flight.reduced.identity.start);
+    let learnt = group.model.learnt.as_ref();
+    Compared {
+        aircraft: group.model.initial.aircraft().name().to_owned(),
+        law: learnt.map(|learnt| learnt.law.told()),
+        flights_learnt: learnt.map_or(0, |learnt| learnt.ledger.len()),
+        first_flight: starts().min().map(|start| start.to_string()),
+        last_flight: starts().max().map(|start| start.to_string()),
+    }
 }
 
 /// The diagnosis in a dozen lines, and what was assumed.

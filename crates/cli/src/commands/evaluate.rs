@@ -8,7 +8,7 @@ use flight::{FlightIdentity, Segment};
 
 use crate::args::EvaluateArgs;
 use crate::columns;
-use crate::commands::{Outcome, check_refused, prepare};
+use crate::commands::{Outcome, check_refused, predicts, prepare};
 use crate::failure::{Failure, RefusedReport};
 use crate::files::write_atomically;
 use crate::models::Models;
@@ -20,6 +20,7 @@ use pipeline::model_file::ModelFile;
 use pipeline::residuals::{self, FlightResiduals, GivenFlight};
 use pipeline::segments_table::Evaluated;
 use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+use pipeline::whole_model::Predicts;
 
 /// Runs the command.
 ///
@@ -81,16 +82,17 @@ pub(crate) fn evaluate(
     }
     refused.sort_by(|one, other| one.path.cmp(&other.path));
     check_refused(&refused, files, arguments.reports.strict, by_tail.is_empty())?;
+    let predicts = predicts(arguments.table_only);
     let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
     let tails: Vec<EvaluatedTail> = by_tail
         .into_iter()
-        .map(|(tail, (model, flights))| EvaluatedTail::of(tail, model, flights))
+        .map(|(tail, (model, flights))| EvaluatedTail::of(tail, model, flights, predicts))
         .collect();
     let summary = Summary {
         schema: SCHEMA,
         reports: ReportsSummary {
             read,
-            already_known: 0,
+            already_known: reading.copies,
             refused: refused.iter().map(RefusedSummary::from).collect(),
         },
         tails: tails.iter().map(|tail| tail.result.summary.clone()).collect(),
@@ -107,7 +109,12 @@ struct EvaluatedTail {
 }
 
 impl EvaluatedTail {
-    fn of(tail: String, model: ModelFile, mut flights: Vec<FlightRead>) -> Self {
+    fn of(
+        tail: String,
+        model: ModelFile,
+        mut flights: Vec<FlightRead>,
+        predicts: Predicts,
+    ) -> Self {
         flights.sort_by(FlightRead::order);
         let counts = TailCounts {
             flights: flights.len(),
@@ -127,7 +134,7 @@ impl EvaluatedTail {
             .collect();
         let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
         let data = TailData { tail, model, segments, counts, notes };
-        Self { result: TailResult::as_given(data), flights: given }
+        Self { result: TailResult::as_given(data, predicts), flights: given }
     }
 
     /// All segments, flight by flight.

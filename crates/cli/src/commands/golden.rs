@@ -127,6 +127,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
         aircraft: folder.join(&golden.aircraft),
         guide: folder.join(&golden.guide),
         output: model_path.clone(),
+        force: true,
     })?;
     let output = scratch.path().join("adapted");
     let outcome = adapt::run(
@@ -144,7 +145,9 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             threshold,
             // What no table can hold concerns the diagnosis; a model with it is six times as large.
             no_remainder: true,
+            relearn: false,
             restart: false,
+            wait: false,
         },
         Progress::Hidden,
     )?;

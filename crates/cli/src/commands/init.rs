@@ -9,7 +9,7 @@ use crate::args::InitArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::read_text;
-use crate::models::write_model;
+use crate::models::{check_model_replaceable, write_model};
 use pipeline::model_file::ModelFile;
 
 /// Runs the command.
@@ -29,6 +29,10 @@ pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
         .map_err(|error| Failure::bad_file(&arguments.guide, chain(&error)))?;
     refuse_serious(arguments, &initial.findings)?;
     let model = ModelFile::from_initial(&initial, &guide);
+    // What `init` made before was an initial model too.
+    check_model_replaceable(&arguments.output, arguments.force, Some(&model), |known| {
+        known.learnt.is_none() && known.applied.is_empty()
+    })?;
     write_model(&model, &arguments.output)?;
     let mut text = String::new();
     let grid = model.grid();

@@ -3,7 +3,8 @@
 use crate::args::MergeArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
-use crate::models::{read_model, write_model};
+use crate::models::{check_model_replaceable, read_model, write_model};
+use pipeline::model_file::ModelFile;
 use pipeline::{learning, merging};
 
 /// Runs the command.
@@ -34,6 +35,13 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         .sort_by(|one, other| (&one.start, &one.flight).cmp(&(&other.start, &other.flight)));
     learning::settle(learnt).map_err(|error| Failure::bad_file(&arguments.models[0], error))?;
     let flights = learnt.ledger.len();
+    // A sum may be made again; anything else would be lost.
+    check_model_replaceable(&arguments.output, arguments.force, Some(&merged), |known| {
+        let sum = |model: &ModelFile| {
+            model.learnt.as_ref().map(|learnt| (learnt.tail.clone(), learnt.ledger.clone()))
+        };
+        sum(known) == sum(&merged) && known.difference_of_initial(&merged).is_none()
+    })?;
     write_model(&merged, &arguments.output)?;
     Ok(Outcome::text(format!(
         "{flights} flights of {} models merged, written to {}\n",

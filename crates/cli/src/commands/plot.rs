@@ -11,6 +11,7 @@ use crate::models::read_model;
 use pipeline::evaluation::{TailCounts, TailData, TailResult};
 use pipeline::model_file::ModelFile;
 use pipeline::segments_table;
+use pipeline::whole_model::Predicts;
 
 /// Runs the command.
 ///
@@ -41,13 +42,16 @@ fn of_model(model: ModelFile) -> TailResult {
         Some(learnt) => learnt.tail.clone(),
         None => model.initial.aircraft().name().to_owned(),
     };
-    TailResult::as_given(TailData {
-        tail,
-        model,
-        segments: Vec::new(),
-        counts: TailCounts::default(),
-        notes: Vec::new(),
-    })
+    TailResult::as_given(
+        TailData {
+            tail,
+            model,
+            segments: Vec::new(),
+            counts: TailCounts::default(),
+            notes: Vec::new(),
+        },
+        Predicts::WholeModel,
+    )
 }
 
 /// A tail of what `adapt` wrote, with its segments.

@@ -3,23 +3,20 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use effects::AppliedEffects;
+use diagnose::{WholeModel, WholePrediction};
+use effects::{AppliedEffects, ExtendedModel};
 use flight::{Cruise, FlightIdentity, Segment, SegmentMeans, Timestamp};
 use parquet::file::reader::{FileReader, SerializedFileReader};
-use perf_model::{FlightPointRow, FlightPoints};
+use perf_model::{FlightPoint, FlightPointRow, FlightPoints, Prediction};
 use units::{FuelFlowTotal, Temperature};
 
 use crate::args::PredictArgs;
 use crate::columns;
-use crate::commands::Outcome;
+use crate::commands::{Outcome, predicts};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::models::read_model;
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
-
-mod remainder;
-
-use remainder::Remainder;
 
 /// Runs the command.
 ///
@@ -31,60 +28,75 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let text = points_text(&arguments.points)?;
     let points = FlightPoints::from_csv(&text)
         .map_err(|error| Failure::bad_file(&arguments.points, error))?;
-    let remembered = Remainder::of(&model, arguments.table_only);
+    let whole = model.whole(predicts(arguments.table_only));
     let mut refused = Vec::new();
     let mut predicted = Vec::with_capacity(points.rows().len());
-    let mut remainders = Vec::with_capacity(points.rows().len());
     for row in points.rows() {
-        let found = current.predict(&row.point);
-        let known = found.as_ref().ok().and_then(|_| remembered.as_ref()?.at(&current, &row.point));
-        remainders.push(known);
-        match found {
-            Ok(prediction) => predicted.push(Some(match known {
-                Some((mean, _)) => {
-                    let total = prediction.fuel_flow_total.to_kilograms_per_second() * mean.exp();
-                    prediction
-                        .with_fuel_flow(FuelFlowTotal::kilograms_per_second(total), &row.point)
-                }
-                None => prediction,
-            })),
+        match predict_row(&current, whole.as_ref(), &row.point) {
+            Ok(found) => predicted.push(Some(found)),
             // The row stays, without values: a planner's table keeps its lines.
-            Err(error) => {
+            Err(reason) => {
                 predicted.push(None);
                 refused.push(RefusedReport {
                     path: arguments.points.clone(),
                     line: usize::try_from(row.line).ok(),
                     column: None,
-                    reason: error.to_string(),
+                    reason,
                 });
             }
         }
     }
-    let deviations = deviations(&model, points.rows(), &predicted, remembered, &remainders);
+    let deviations = deviations(&model, points.rows(), &predicted);
     let mut columns = table(points.header(), points.rows(), &predicted, &deviations);
-    if remembered.is_some() {
+    if whole.is_some() {
         columns.number(
             "remainder_percent",
-            remainders.iter().map(|known| known.map(|(mean, _)| 100.0 * mean.exp_m1())),
+            predicted.iter().map(|found| Some(100.0 * found.as_ref()?.beyond_table()?.exp_m1())),
         );
     }
     columns::write(&columns, arguments.output.as_deref())?;
     tell_references(&model, points.rows());
     let text = arguments.output.as_ref().map_or_else(String::new, |path| {
-        let known = remainders.iter().flatten().count();
-        let remainder_note = if remembered.is_some() {
-            format!("; {known} of them with a remainder informed by flown data")
-        } else {
-            String::new()
-        };
+        let by = if whole.is_some() { " by all that the model has learnt" } else { "" };
         format!(
-            "{} of {} points predicted{remainder_note}, written to {}\n",
+            "{} of {} points predicted{by}, written to {}\n",
             points.rows().len() - refused.len(),
             points.rows().len(),
             show(path)
         )
     });
     Ok(Outcome { text, refused })
+}
+
+/// A prediction at a flight point.
+struct Predicted {
+    /// The one that is written.
+    prediction: Prediction,
+    /// By the whole model, and ln of its fuel flow over that of the learnt table; `None` where the table predicts.
+    whole: Option<(WholePrediction, f64)>,
+}
+
+impl Predicted {
+    /// ln of the fuel flow over that of the learnt table.
+    fn beyond_table(&self) -> Option<f64> {
+        self.whole.as_ref().map(|(_, beyond)| *beyond)
+    }
+}
+
+fn predict_row(
+    current: &ExtendedModel,
+    whole: Option<&WholeModel<'_>>,
+    point: &FlightPoint,
+) -> Result<Predicted, String> {
+    let by_table = current.predict(point).map_err(|error| error.to_string())?;
+    let Some(whole) = whole else {
+        return Ok(Predicted { prediction: by_table, whole: None });
+    };
+    let found = whole.of_point(point).map_err(|error| error.to_string())?;
+    let beyond = found.ln_fuel_flow - by_table.fuel_flow_total.to_kilograms_per_second().ln();
+    let total = FuelFlowTotal::kilograms_per_second(found.ln_fuel_flow.exp());
+    let prediction = by_table.with_fuel_flow(total, point);
+    Ok(Predicted { prediction, whole: Some((found, beyond)) })
 }
 
 /// Warns once about each applied effect that is held at its reference because an input is missing.
@@ -103,15 +115,15 @@ fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
 fn table(
     header: &[String],
     rows: &[FlightPointRow],
-    predicted: &[Option<perf_model::Prediction>],
+    predicted: &[Option<Predicted>],
     deviations: &[Option<f64>],
 ) -> Columns {
     let mut columns = Columns::default();
     for (column, name) in header.iter().enumerate() {
         columns.text(name.as_str(), rows.iter().map(move |row| row.fields[column].clone()));
     }
-    let figure = |of: fn(&perf_model::Prediction) -> f64| {
-        predicted.iter().map(move |prediction| prediction.as_ref().map(of))
+    let figure = |of: fn(&Prediction) -> f64| {
+        predicted.iter().map(move |found| found.as_ref().map(|found| of(&found.prediction)))
     };
     columns.number("fuel_flow_kg_s", figure(|p| p.fuel_flow_total.to_kilograms_per_second()));
     // Law `paper` has no standard deviation: the column exists and is empty.
@@ -125,66 +137,52 @@ fn table(
             "error_percent",
             rows.iter().zip(predicted).map(|(row, prediction)| {
                 let measured = row.point.measured_fuel_flow_total?;
-                let prediction = prediction.as_ref()?;
-                Some(perf_model::fuel_flow::fuel_flow_error_percent(
-                    measured,
-                    prediction.fuel_flow_total,
-                ))
+                let predicted = prediction.as_ref()?.prediction.fuel_flow_total;
+                Some(perf_model::fuel_flow::fuel_flow_error_percent(measured, predicted))
             }),
         );
     }
     columns
 }
 
-/// Standard deviation, in kg/s, of what a segment recorded there would show: the uncertainty of the table, the part
-/// common to a flight, the segment's own noise by the aircraft's sensors, and any applied scatter between flights.
-/// Where the remainder is known, its uncertainty is added, and the noise is as large as flights showed it to be.
+/// Standard deviation, in kg/s, of what a segment recorded there would show: the uncertainty of what was learnt, the part
+/// common to a flight, the segment's own noise, and any applied scatter between flights. By the whole model the noise is as
+/// large as flights showed it to be, by the table alone as the aircraft's sensors and the law's settings have it.
 fn deviations(
     model: &ModelFile,
     rows: &[FlightPointRow],
-    predicted: &[Option<perf_model::Prediction>],
-    remembered: Option<Remainder<'_>>,
-    remainders: &[Option<(f64, f64)>],
+    predicted: &[Option<Predicted>],
 ) -> Vec<Option<f64>> {
     // The imagined segment is recorded by the aircraft's sensors without any error of theirs.
     let Ok(plain) = model.initial.with_effects(AppliedEffects::default()) else {
         return vec![None; rows.len()];
     };
     let scatter = model.initial.effects().map_or(0.0, AppliedEffects::fuel_heating_value_deviation);
-    let of = |row: &FlightPointRow,
-              prediction: &perf_model::Prediction,
-              remainder: Option<(f64, f64)>| {
-        let posterior = model.posterior()?;
-        let segment = imagined_segment(&row.point, prediction, &plain);
-        let sensors = plain.observe(&segment).ok()?.variance;
+    let of = |row: &FlightPointRow, predicted: &Predicted| {
+        let prediction = &predicted.prediction;
         let total_kg_s = prediction.fuel_flow_total.to_kilograms_per_second();
-        let per_relative_drag_kg_s = posterior.initial().interpolate(&prediction.cell)
-            * prediction.fuel_flow_per_drag_coefficient_kg_s;
-        let kg_s = if let Some((remembered, (_, deviation))) = remembered.zip(remainder) {
-            let [within, between] = remembered.variance_factors();
-            let variance = posterior.relative_variance(&prediction.cell)
-                + within * sensors.segment
-                + between * sensors.flight;
-            (variance.sqrt() * per_relative_drag_kg_s).hypot(deviation * total_kg_s)
+        let kg_s = if let Some((whole, _)) = &predicted.whole {
+            whole.variance().sqrt() * total_kg_s
         } else {
-            let variance = posterior.segment_variance(&prediction.cell, &sensors);
-            variance.sqrt() * per_relative_drag_kg_s
+            let posterior = model.posterior()?;
+            let segment = imagined_segment(&row.point, prediction, &plain);
+            let sensors = plain.observe(&segment).ok()?.variance;
+            let per_relative_drag_kg_s = posterior.initial().interpolate(&prediction.cell)
+                * prediction.fuel_flow_per_drag_coefficient_kg_s;
+            posterior.segment_variance(&prediction.cell, &sensors).sqrt() * per_relative_drag_kg_s
         };
         Some(if scatter > 0.0 { kg_s.hypot(scatter * total_kg_s) } else { kg_s })
     };
     rows.iter()
         .zip(predicted)
-        .zip(remainders)
-        .map(|((row, prediction), remainder)| {
-            prediction.as_ref().and_then(|prediction| of(row, prediction, *remainder))
-        })
+        .map(|(row, predicted)| predicted.as_ref().and_then(|predicted| of(row, predicted)))
         .collect()
 }
 
 /// The segment of ten samples that the aircraft would record at a flight point if it burnt what is predicted.
 fn imagined_segment(
-    point: &perf_model::FlightPoint,
-    prediction: &perf_model::Prediction,
+    point: &FlightPoint,
+    prediction: &Prediction,
     model: &effects::ExtendedModel,
 ) -> Segment {
     let engines = model.aircraft().engines();

@@ -7,7 +7,7 @@ use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::read_text;
 use crate::progress::Progress;
-use crate::simulated_reports;
+use crate::simulated_reports::{self, Written};
 
 /// Runs the command.
 ///
@@ -15,10 +15,11 @@ use crate::simulated_reports;
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcome, Failure> {
     if arguments.plan.as_os_str() == "ghazi-2020" {
-        let flights = simulated_reports::ghazi_2020()?.write(&arguments.output, progress)?;
+        let written = simulated_reports::ghazi_2020()?.write(&arguments.output, progress)?;
         return Ok(Outcome::text(format!(
-            "the study of Ghazi et al. 2020 written to {}: {flights} flights, AIRCRAFT.ron, guide.csv, static.csv\n",
-            show(&arguments.output)
+            "the study of Ghazi et al. 2020 written to {}: {} flights, AIRCRAFT.ron, guide.csv, static.csv\n",
+            show(&arguments.output),
+            written.flights
         )));
     }
     let mut plan = Plan::from_ron(&read_text(&arguments.plan)?)
@@ -28,9 +29,16 @@ pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcom
     }
     let simulation =
         Simulation::new(plan).map_err(|error| Failure::bad_file(&arguments.plan, error))?;
-    let flights = simulated_reports::write(&simulation, &arguments.output, progress)?;
+    simulated_reports::check_folder(&simulation, &arguments.output, arguments.force)?;
+    let Written { flights, drawn_again } =
+        simulated_reports::write(&simulation, &arguments.output, progress)?;
+    let again = match drawn_again {
+        0 => String::new(),
+        1 => " (1 was drawn again)".to_owned(),
+        n => format!(" ({n} were drawn again)"),
+    };
     Ok(Outcome::text(format!(
-        "{flights} flights written to {}: one folder per tail, TRUTH.json\n",
+        "{flights} flights{again} written to {}: one folder per tail, TRUTH.json\n",
         show(&arguments.output)
     )))
 }

@@ -10,9 +10,10 @@ use crate::args::{HalfLifeChoice, TuneArgs};
 use crate::commands::adapt::dates::refuse_impossible;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
-use crate::models::{read_model, write_model};
+use crate::models::{check_model_replaceable, read_model, write_model};
 use crate::progress::Progress;
 use crate::reading::FlightRead;
+use pipeline::model_file::LawSettings;
 
 /// Runs the command.
 ///
@@ -26,6 +27,12 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
             "has learnt already; settings are fixed in an initial model",
         ));
     }
+    // What `tune` made before was an initial model, of other settings than those of a fresh one.
+    check_model_replaceable(&arguments.output, arguments.force, None, |known| {
+        known.learnt.is_none()
+            && known.applied.is_empty()
+            && known.settings != LawSettings::published()
+    })?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     refuse_impossible(&mut reading, flight::Timestamp::now());

@@ -69,17 +69,15 @@ fn flights_that_no_model_has_seen_are_predicted_better_with_the_remainder() {
 
     let (with, table) = (at("with.csv"), at("table.csv"));
     let ran = run(&[&"predict", &"--model", &model, &points, &"-o", &with]);
-    assert!(ran.stdout.contains("with a remainder informed by flown data"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("by all that the model has learnt"), "{}", ran.stdout);
     let ran = run(&[&"predict", &"--model", &model, &points, &"-o", &table, &"--table-only"]);
-    assert!(!ran.stdout.contains("remainder"), "{}", ran.stdout);
+    assert!(!ran.stdout.contains("all that the model has learnt"), "{}", ran.stdout);
     let (with, table) = (csv_columns(&with), csv_columns(&table));
     assert!(!table.contains_key("remainder_percent"));
     let rows = with["remainder_percent"].len();
     let predicted = |row: &usize| !table["error_percent"][*row].is_empty();
-    let known: Vec<usize> = (0..rows)
-        .filter(predicted)
-        .filter(|&row| !with["remainder_percent"][row].is_empty())
-        .collect();
+    let known: Vec<usize> = (0..rows).filter(predicted).collect();
+    assert!(known.iter().all(|&row| !with["remainder_percent"][row].is_empty()));
     let number = |text: &str| text.parse::<f64>().unwrap();
     let errors = |of: &std::collections::BTreeMap<String, Vec<String>>| {
         rms(known.iter().map(|&row| number(&of["error_percent"][row])))
@@ -94,20 +92,16 @@ fn flights_that_no_model_has_seen_are_predicted_better_with_the_remainder() {
         .count() as f64
         / known.len() as f64;
     eprintln!(
-        "{} of {rows} points known: rms {:.3} % by the table, {:.3} % with the remainder; {:.0} % within 95 %",
+        "{} of {rows} points: rms {:.3} % by the table, {:.3} % by the whole model; {:.0} % within 95 %",
         known.len(),
         errors(&table),
         errors(&with),
         100.0 * covered
     );
-    assert!(known.len() > rows / 3, "{}", known.len());
     assert!(errors(&with) < 0.93 * errors(&table));
-    assert!(covered > 0.93, "{covered}");
-    // Where it is not known the row is the table's.
-    for row in (0..rows).filter(|row| with["remainder_percent"][*row].is_empty()) {
-        assert_eq!(with["fuel_flow_kg_s"][row], table["fuel_flow_kg_s"][row]);
-        assert_eq!(with["fuel_flow_std_kg_s"][row], table["fuel_flow_std_kg_s"][row]);
-    }
+    // Before, intervals were so wide that all points lay inside. Of thirty flights with errors of their own the share inside a
+    // 95 % interval scatters by some 2.6 points from fleet to fleet: twice that is allowed on this one.
+    assert!(covered > 0.898, "{covered}");
 }
 
 #[test]

@@ -123,3 +123,42 @@ pub(crate) fn csv_columns(path: &Path) -> BTreeMap<String, Vec<String>> {
 pub(crate) fn numbers(columns: &BTreeMap<String, Vec<String>>, name: &str) -> Vec<f64> {
     columns[name].iter().map(|field| field.parse().unwrap()).collect()
 }
+
+/// The first report as a recording of another layout, and the mapping that reads it.
+pub(crate) fn recording(folder: &Path) -> (PathBuf, PathBuf) {
+    const MAPPING: &str = r#"(
+    format: 1,
+    separator: ',',
+    aircraft: Text("global5000"),
+    tail: Text("SIM-01"),
+    flight: Text("0001"),
+    time: Seconds(column: "TIME", start: "2019-03-14T10:45:00Z"),
+    quantities: {
+        "ALT": Recorded(column: "ALT", unit: "ft"),
+        "SAT": Recorded(column: "SAT", unit: "degC"),
+        "MACH": Recorded(column: "MACH", unit: "-"),
+        "VTAS": Recorded(column: "VTAS", unit: "kt"),
+        "GSPD": Recorded(column: "GSPD", unit: "kt"),
+        "ROLL": Recorded(column: "ROLL", unit: "deg"),
+        "DRIFT": Recorded(column: "DRIFT", unit: "deg"),
+        "N2(1)": Recorded(column: "N2(1)", unit: "%"),
+        "N2(2)": Recorded(column: "N2(2)", unit: "%"),
+        "WF(1)": Recorded(column: "WF(1)", unit: "lb/h"),
+        "WF(2)": Recorded(column: "WF(2)", unit: "lb/h"),
+    },
+    mass: FuelUsed(column: "FU", unit: "lb", zero_fuel_weight: (52960, "lb"), fuel_on_board: (15670, "lb")),
+    out_of_range: LeaveRowOut,
+)
+"#;
+    let text = std::fs::read_to_string(fixture("reports/0001.txt")).unwrap();
+    let rows = text.lines().filter(|line| {
+        line.starts_with("TIME") || line.trim_start().starts_with(|c: char| c.is_ascii_digit())
+    });
+    let csv: String = rows
+        .flat_map(|row| [row.split_whitespace().collect::<Vec<_>>().join(","), "\n".to_owned()])
+        .collect();
+    let (recording, mapping) = (folder.join("recording.csv"), folder.join("mapping.ron"));
+    std::fs::write(&recording, csv).unwrap();
+    std::fs::write(&mapping, MAPPING).unwrap();
+    (recording, mapping)
+}

@@ -91,6 +91,9 @@ impl Conditions {
             columns: columns.iter().map(|&column| library.columns[column]).collect::<Vec<Column>>(),
             not_testable: vec![],
             heating_value: false,
+            spikes: library.spikes,
+            agnostic_spikes: library.agnostic_spikes,
+            spikes_of_right_table: library.spikes_of_right_table,
         };
         let weight = stacked.mean_weight();
         let mut steady: Vec<FlightInformation> = Vec::new();

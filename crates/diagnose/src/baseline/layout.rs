@@ -23,6 +23,8 @@ pub(crate) struct NuisanceLayout {
     pub(crate) deck: Range<usize>,
     /// Sizes of the effects that a fleet shows at all times.
     pub(crate) standing_effects: Range<usize>,
+    /// Loadings of the drag table's nodes as a baseline believed them before its flights, on thrust.
+    pub(crate) drag: Range<usize>,
     /// Chord errors of the drag table.
     pub(crate) chords: Range<usize>,
     /// Error of the recorded acceleration.
@@ -40,8 +42,8 @@ pub(crate) enum DeckColumns {
 
 impl NuisanceLayout {
     /// Of a baseline alone: what its covariance is over.
-    pub(crate) fn of_baseline(remainder: usize, contrasts: usize) -> Self {
-        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), 0, 0, 0])
+    pub(crate) fn of_baseline(remainder: usize, contrasts: usize, drag: usize) -> Self {
+        Self::tiled([remainder, contrasts, DECK_TERMS, STANDING_EFFECTS.len(), drag, 0, 0, 0])
     }
 
     /// The same with what is uncertain at any time: chords, acceleration and `table_rank` loadings of the table.
@@ -51,6 +53,7 @@ impl NuisanceLayout {
             baseline.contrasts.len(),
             baseline.deck.len(),
             baseline.standing_effects.len(),
+            baseline.drag.len(),
             CHORD_COLUMNS,
             1,
             table_rank,
@@ -60,19 +63,19 @@ impl NuisanceLayout {
     /// Without a baseline.
     pub(crate) fn of_design(deck: DeckColumns, table_rank: usize) -> Self {
         let deck = if deck == DeckColumns::Present { DECK_TERMS } else { 0 };
-        Self::tiled([0, 0, deck, 0, CHORD_COLUMNS, 1, table_rank])
+        Self::tiled([0, 0, deck, 0, 0, CHORD_COLUMNS, 1, table_rank])
     }
 
     /// Widths in the order of the fields.
-    fn tiled(widths: [usize; 7]) -> Self {
+    fn tiled(widths: [usize; 8]) -> Self {
         let mut end = 0;
-        let [remainder, contrasts, deck, standing_effects, chords, acceleration, table] = widths
-            .map(|width| {
+        let [remainder, contrasts, deck, standing_effects, drag, chords, acceleration, table] =
+            widths.map(|width| {
                 let range = end..end + width;
                 end = range.end;
                 range
             });
-        Self { remainder, contrasts, deck, standing_effects, chords, acceleration, table }
+        Self { remainder, contrasts, deck, standing_effects, drag, chords, acceleration, table }
     }
 
     /// Number of columns.
@@ -82,7 +85,7 @@ impl NuisanceLayout {
 
     /// Columns of a baseline's coefficients: those that its covariance is over.
     pub(crate) const fn of_baseline_range(&self) -> Range<usize> {
-        self.remainder.start..self.standing_effects.end
+        self.remainder.start..self.drag.end
     }
 }
 
@@ -98,6 +101,7 @@ mod tests {
             &layout.contrasts,
             &layout.deck,
             &layout.standing_effects,
+            &layout.drag,
             &layout.chords,
             &layout.acceleration,
             &layout.table,
@@ -112,7 +116,7 @@ mod tests {
     #[test]
     fn ranges_tile_the_nuisance_without_holes() {
         for contrasts in [0, 1, 3] {
-            let baseline = NuisanceLayout::of_baseline(40, contrasts);
+            let baseline = NuisanceLayout::of_baseline(40, contrasts, 7 * contrasts);
             assert_tiled(&baseline);
             assert_eq!(baseline.of_baseline_range(), 0..baseline.len());
             for rank in [0, 285] {

@@ -9,15 +9,36 @@ use faer::Mat;
 use crate::hypotheses::design::Design;
 use crate::library::Library;
 use crate::math::eliminate::{Changed, Elimination, Reduced, integrate_out};
-use crate::priors::{BACKGROUND_SPIKES, SMOOTH_AMPLITUDES};
+use crate::priors::SMOOTH_AMPLITUDES;
+
+/// What is assumed of all flights at once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Level {
+    /// Scatter between flights beyond what the noise has, relative.
+    pub(crate) scatter: f64,
+    pub(crate) table: TableBelief,
+    /// ln of its prior probability.
+    pub(crate) ln_prior: f64,
+}
+
+/// What is believed of the drag table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TableBelief {
+    /// Uncertain as stated.
+    Uncertain,
+    /// Right, whatever was stated.
+    Right,
+}
 
 /// A background: Gram of the effects' columns, product with the residual, square of the residual.
 #[derive(Clone, Debug)]
 pub(crate) struct Background {
     pub(crate) small_effects_scale: f64,
     pub(crate) smooth_amplitude: f64,
-    /// Which level of scatter between flights.
-    pub(crate) scatter: usize,
+    /// Which [`Level`].
+    pub(crate) level: usize,
+    /// ln of its prior probability, whatever the hypothesis.
+    pub(crate) ln_prior: f64,
     /// Where each column of the library lies in `gram`.
     places: Vec<usize>,
     width: usize,
@@ -34,13 +55,16 @@ pub(crate) struct Diagonal {
     pub(crate) product: Vec<f64>,
     pub(crate) square: f64,
     pub(crate) ln_determinant: f64,
+    pub(crate) ln_prior: f64,
 }
 
 /// A Gram over the library's columns and the residual, smooth discrepancy of one amplitude integrated out.
 #[derive(Debug)]
 pub(crate) struct Smoothed {
     smooth_amplitude: f64,
-    scatter: usize,
+    level: usize,
+    table: TableBelief,
+    ln_prior: f64,
     matrix: Mat<f64>,
     ln_determinant: f64,
     elimination: Elimination,
@@ -58,7 +82,8 @@ impl Background {
         let mut at = Self {
             small_effects_scale: 0.0,
             smooth_amplitude: 0.0,
-            scatter: 0,
+            level: 0,
+            ln_prior: 0.0,
             places: vec![usize::MAX; columns],
             width: last,
             gram: Vec::with_capacity(last * last),
@@ -90,37 +115,43 @@ impl Background {
 pub(crate) fn without_nuisance(
     gram: &Mat<f64>,
     design: &Design<'_>,
+    table: TableBelief,
 ) -> Option<(Elimination, Reduced)> {
     let kept = (0..design.effects).chain(design.smooth.start..gram.ncols()).collect();
-    let out: Vec<usize> = design.nuisance.clone().collect();
+    let of_table = design.table_columns();
+    let is_out = |column: &usize| table == TableBelief::Uncertain || !of_table.contains(column);
+    let out: Vec<usize> = design.nuisance.clone().filter(is_out).collect();
     let deviations = vec![1.0; out.len()];
     Elimination::new(gram, kept, out, deviations)
 }
 
-/// Every smooth discrepancy that is admitted at every level of scatter between flights, from Grams without nuisance whose
-/// columns are effects, smooth background, …, residual.
+/// Every smooth discrepancy that is admitted at every level, from Grams without nuisance whose columns are effects, smooth
+/// background, …, residual.
 pub(crate) fn smoothed(
-    levels: &[Reduced],
-    effects: usize,
-    smooth: usize,
+    levels: &[(Level, &Reduced)],
+    design: &Design<'_>,
     admits: impl Fn(f64) -> bool,
 ) -> Vec<Smoothed> {
+    let (effects, smooth) = (design.effects, design.smooth.len());
+    let amplitudes: Vec<f64> =
+        SMOOTH_AMPLITUDES.into_iter().filter(|&amplitude| admits(amplitude)).collect();
     let mut all = Vec::new();
-    for (scatter, reduced) in levels.iter().enumerate() {
+    for (level, (at, reduced)) in levels.iter().enumerate() {
         let residual = reduced.matrix.ncols() - 1;
-        for smooth_amplitude in
-            SMOOTH_AMPLITUDES.into_iter().filter(|&smooth_amplitude| admits(smooth_amplitude))
-        {
+        let ln_prior = at.ln_prior - (amplitudes.len() as f64).ln();
+        for &smooth_amplitude in &amplitudes {
             let kept: Vec<usize> = (0..effects).chain([residual]).collect();
             let out: Vec<usize> =
                 if smooth_amplitude > 0.0 { (effects..effects + smooth).collect() } else { vec![] };
-            let deviations = vec![smooth_amplitude; out.len()];
+            let deviations = vec![design.smooth_deviation(smooth_amplitude); out.len()];
             let found = Elimination::new(&reduced.matrix, kept, out, deviations);
             let Some((elimination, left)) = found else { continue };
             let ln_determinant = reduced.ln_determinant + left.ln_determinant;
             all.push(Smoothed {
                 smooth_amplitude,
-                scatter,
+                level,
+                table: at.table,
+                ln_prior,
                 matrix: left.matrix,
                 ln_determinant,
                 elimination,
@@ -133,10 +164,9 @@ pub(crate) fn smoothed(
 /// Every background: every scale of small effects over every smooth discrepancy.
 pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Background> {
     let effects = library.columns.len();
-    let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len() * smoothed.len());
-    for (under, small_effects_scale) in smoothed
-        .iter()
-        .flat_map(|under| BACKGROUND_SPIKES.map(|small_effects_scale| (under, small_effects_scale)))
+    let mut all = Vec::with_capacity(library.spikes.len() * smoothed.len());
+    for (under, small_effects_scale) in
+        smoothed.iter().flat_map(|under| under.spikes(library).map(move |scale| (under, scale)))
     {
         let (out, deviations) = small_effects(library, small_effects_scale);
         let kept: Vec<usize> = (0..=effects).collect();
@@ -148,7 +178,8 @@ pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Backg
         all.push(Background {
             small_effects_scale,
             smooth_amplitude: under.smooth_amplitude,
-            scatter: under.scatter,
+            level: under.level,
+            ln_prior: under.ln_prior_of_each(library),
             places: (0..effects).collect(),
             width: effects,
             gram: (0..effects).flat_map(|a| m.col_as_slice(a)[..effects].iter().copied()).collect(),
@@ -163,10 +194,9 @@ pub(crate) fn backgrounds(smoothed: &[Smoothed], library: &Library) -> Vec<Backg
 /// The same for single columns.
 pub(crate) fn diagonals(smoothed: &[Smoothed], library: &Library) -> Vec<Diagonal> {
     let effects = library.columns.len();
-    let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len() * smoothed.len());
-    for (under, small_effects_scale) in smoothed
-        .iter()
-        .flat_map(|under| BACKGROUND_SPIKES.map(|small_effects_scale| (under, small_effects_scale)))
+    let mut all = Vec::with_capacity(library.spikes.len() * smoothed.len());
+    for (under, small_effects_scale) in
+        smoothed.iter().flat_map(|under| under.spikes(library).map(move |scale| (under, scale)))
     {
         let (out, deviations) = small_effects(library, small_effects_scale);
         let kept: Vec<usize> = (0..=effects).collect();
@@ -181,6 +211,7 @@ pub(crate) fn diagonals(smoothed: &[Smoothed], library: &Library) -> Vec<Diagona
             product: (0..effects).map(|column| left(column, effects)).collect(),
             square: left(effects, effects),
             ln_determinant: under.ln_determinant + elimination.ln_determinant(),
+            ln_prior: under.ln_prior_of_each(library),
         });
     }
     all
@@ -191,20 +222,34 @@ pub(crate) fn small_effects(library: &Library, small_effects_scale: f64) -> (Vec
     if small_effects_scale == 0.0 {
         return (vec![], vec![]);
     }
-    library.effects.iter().map(|e| (e.representative, small_effects_scale * e.typical)).unzip()
+    library.effects.iter().map(|e| (e.representative, small_effects_scale * e.small)).unzip()
 }
 
 impl Smoothed {
     pub(crate) fn is_of(&self, at: &Background) -> bool {
-        self.smooth_amplitude.total_cmp(&at.smooth_amplitude).is_eq() && self.scatter == at.scatter
+        self.smooth_amplitude.total_cmp(&at.smooth_amplitude).is_eq() && self.level == at.level
     }
 
-    pub(crate) const fn scatter(&self) -> usize {
-        self.scatter
+    pub(crate) const fn level(&self) -> usize {
+        self.level
+    }
+
+    /// ln of the prior of each background over it.
+    fn ln_prior_of_each(&self, library: &Library) -> f64 {
+        self.ln_prior - (self.spikes(library).count() as f64).ln()
+    }
+
+    /// Scales of the small effects over it. Large ones of drag would be a table that is off by another name.
+    fn spikes(&self, library: &Library) -> impl Iterator<Item = f64> + use<> {
+        let count = match self.table {
+            TableBelief::Uncertain => library.spikes.len(),
+            TableBelief::Right => library.spikes_of_right_table,
+        };
+        library.spikes.into_iter().take(count)
     }
 
     /// Backgrounds of a few columns that changed, and the residual: `changed` has them in the order of `columns`, then the
-    /// residual, in the Gram without nuisance at this level of scatter.
+    /// residual, in the Gram without nuisance at this level.
     pub(crate) fn changed(
         &self,
         library: &Library,
@@ -216,10 +261,8 @@ impl Smoothed {
         let places: Vec<usize> = columns.iter().copied().chain([effects]).collect();
         let mut matrix = self.matrix.clone();
         self.elimination.follow(changed).write(&mut matrix, &places);
-        let mut all = Vec::with_capacity(BACKGROUND_SPIKES.len());
-        for small_effects_scale in
-            BACKGROUND_SPIKES.into_iter().filter(|&small_effects_scale| choose(small_effects_scale))
-        {
+        let mut all = Vec::with_capacity(library.spikes.len());
+        for small_effects_scale in self.spikes(library).filter(|&scale| choose(scale)) {
             let (out, deviations) = small_effects(library, small_effects_scale);
             let Some(with_small_effects) = integrate_out(&matrix, &places, &out, &deviations)
             else {
@@ -231,7 +274,8 @@ impl Smoothed {
             all.push(Background {
                 small_effects_scale,
                 smooth_amplitude: self.smooth_amplitude,
-                scatter: self.scatter,
+                level: self.level,
+                ln_prior: self.ln_prior_of_each(library),
                 ..at
             });
         }

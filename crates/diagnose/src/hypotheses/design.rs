@@ -98,6 +98,8 @@ pub(crate) struct Design<'a> {
     references: EffectReferences,
     smooth_hats: Vec<(Variable, Hats)>,
     smooth_products: Vec<(Variable, Scaled, Variable, Scaled)>,
+    /// Root mean square of all smooth terms together, so that an amplitude is that of their sum.
+    smooth_rms: f64,
     nuisance_parts: Nuisance<'a>,
 }
 
@@ -180,7 +182,7 @@ impl<'a> Design<'a> {
                 hats: None,
             });
         }
-        Self {
+        let mut design = Self {
             effects,
             nuisance,
             smooth,
@@ -189,8 +191,22 @@ impl<'a> Design<'a> {
             references: *references,
             smooth_hats,
             smooth_products,
+            smooth_rms: 1.0,
             nuisance_parts: parts,
+        };
+        design.smooth_rms = design.rms_of_smooth(data, kinds);
+        design
+    }
+
+    /// Root mean square over the segments of the sum of all smooth terms of unit amplitude, all kinds of them together.
+    fn rms_of_smooth(&self, data: &PreparedFlights<'_>, kinds: usize) -> f64 {
+        let mut terms = vec![0.0; self.smooth_terms()];
+        let mut square = 0.0;
+        for row in &data.segments {
+            self.write_smooth(row, &mut terms);
+            square += terms.iter().map(|term| term * term).sum::<f64>();
         }
+        (kinds as f64 * square / data.segments.len().max(1) as f64).sqrt()
     }
 
     pub(crate) const fn residual(&self) -> usize {
@@ -207,6 +223,7 @@ impl<'a> Design<'a> {
             columns: nuisance.end + 1,
             smooth_hats: vec![],
             smooth_products: vec![],
+            smooth_rms: self.smooth_rms,
             nuisance,
             references: self.references,
             nuisance_parts: self.nuisance_parts.clone(),
@@ -316,6 +333,13 @@ impl<'a> Design<'a> {
         for (column, slope) in columns(&layout.standing_effects).zip(&row.standing_effects) {
             rows.put(column, slope);
         }
+        if let Some(baseline) = parts.baseline {
+            let loadings = &mut scratch[..layout.drag.len()];
+            baseline.write_drag(&row.response, loadings);
+            for (column, loading) in columns(&layout.drag).zip(&*loadings) {
+                rows.put_thrust(column, *loading);
+            }
+        }
         for (column, chord) in columns(&layout.chords).zip(row.chords) {
             rows.put_thrust(column, chord);
         }
@@ -380,6 +404,11 @@ impl<'a> Design<'a> {
         self.nuisance_columns(&self.nuisance_parts.layout.deck)
     }
 
+    /// Columns of what the drag table does not know; empty where that is not given.
+    pub(crate) fn table_columns(&self) -> Range<usize> {
+        self.nuisance_columns(&self.nuisance_parts.layout.table)
+    }
+
     /// The baseline, where there is one.
     pub(crate) const fn baseline(&self) -> Option<&Baseline> {
         self.nuisance_parts.baseline
@@ -398,6 +427,11 @@ impl<'a> Design<'a> {
     pub(crate) fn smooth_terms(&self) -> usize {
         1 + self.smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
             + self.smooth_products.len()
+    }
+
+    /// Prior standard deviation of each smooth term that makes their sum this large, root mean square over the segments.
+    pub(crate) fn smooth_deviation(&self, amplitude: f64) -> f64 {
+        amplitude / self.smooth_rms
     }
 
     pub(crate) fn write_smooth(&self, row: &SegmentRow, into: &mut [f64]) {

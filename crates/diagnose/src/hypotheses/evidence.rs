@@ -9,7 +9,7 @@ use statrs::function::erf::erfc;
 
 use crate::hypotheses::backgrounds::Background;
 use crate::library::Library;
-use crate::math::mixture::{Evidence, Factored, Mixture};
+use crate::math::mixture::{Evidence, Factored, Mixture, ln_sum};
 use crate::priors::{
     EXPECTED_SIGN, HEATING_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
 };
@@ -34,6 +34,8 @@ pub(crate) struct ScoredHypothesis {
     pub(crate) deviations: Vec<f64>,
     /// The background under which the hypothesis is most probable.
     pub(crate) background: usize,
+    /// Share of its weight in backgrounds in which the drag table is uncertain.
+    pub(crate) table_share: f64,
 }
 
 /// Prior of a column.
@@ -41,7 +43,7 @@ pub(crate) struct ScoredHypothesis {
 pub(crate) struct Prior {
     pub(crate) mean: f64,
     /// Standard deviations and ln probabilities.
-    pub(crate) scales: [(f64, f64); 2],
+    pub(crate) scales: [(f64, f64); PRIOR_SCALES.len()],
     pub(crate) count: usize,
     pub(crate) sign: EffectSign,
 }
@@ -63,11 +65,29 @@ pub(crate) struct Scorer {
     pub(crate) effect_of: Vec<usize>,
     pub(crate) ln_columns: Vec<f64>,
     pub(crate) effects: usize,
+    /// Effects that no hypothesis names, because the uncertain table holds them.
+    pub(crate) held: Vec<bool>,
     pub(crate) rows: f64,
 }
 
+impl Prior {
+    /// ln of its density at a size, sign included.
+    pub(crate) fn ln_density(&self, size: f64) -> f64 {
+        let own = self.scales[..self.count].iter().map(|&(deviation, ln_share)| {
+            let z = (size - self.mean) / deviation;
+            ln_share - 0.5 * z * z - (deviation * (2.0 * core::f64::consts::PI).sqrt()).ln()
+        });
+        let sign = match self.sign {
+            EffectSign::Positive if size > 0.0 => 2.0 * EXPECTED_SIGN,
+            EffectSign::Positive => 2.0 * (1.0 - EXPECTED_SIGN),
+            _ => 1.0,
+        };
+        ln_sum(own) + sign.ln()
+    }
+}
+
 impl Scorer {
-    pub(crate) fn new(library: &Library, rows: usize) -> Self {
+    pub(crate) fn new(library: &Library, rows: usize, held: Vec<bool>) -> Self {
         let priors = library
             .columns
             .iter()
@@ -78,11 +98,11 @@ impl Scorer {
                 Prior {
                     mean: effect.prior_mean,
                     scales: if effect.has_known_size {
-                        [(effect.prior_deviation, 0.0), (effect.prior_deviation, 0.0)]
+                        [(effect.prior_deviation, 0.0); PRIOR_SCALES.len()]
                     } else {
                         free
                     },
-                    count: if effect.has_known_size { 1 } else { 2 },
+                    count: if effect.has_known_size { 1 } else { PRIOR_SCALES.len() },
                     sign: effect.sign,
                 }
             })
@@ -91,7 +111,9 @@ impl Scorer {
             priors,
             effect_of: library.columns.iter().map(|column| column.effect).collect(),
             ln_columns: library.effects.iter().map(|e| (e.columns as f64).ln()).collect(),
-            effects: library.effects.len() + usize::from(library.heating_value),
+            effects: library.effects.len() + usize::from(library.heating_value)
+                - held.iter().filter(|held| **held).count(),
+            held,
             rows: rows as f64,
         }
     }
@@ -107,6 +129,9 @@ impl Scorer {
     /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters. Over all models the priors
     /// sum to one.
     pub(crate) fn ln_prior(&self, model: &Hypothesis) -> f64 {
+        if model.columns.iter().any(|&column| self.held[self.effect_of[column]]) {
+            return f64::NEG_INFINITY;
+        }
         let size = model.columns.len() + usize::from(model.flight_scatter_percent.is_some());
         let count = self.effects as f64;
         let choices = match size {
@@ -251,12 +276,13 @@ mod tests {
     #[test]
     fn prior_masses_sum_to_one() {
         let prior =
-            Prior { mean: 0.0, scales: [(1.0, 0.0); 2], count: 1, sign: EffectSign::Either };
+            Prior { mean: 0.0, scales: [(1.0, 0.0); 3], count: 1, sign: EffectSign::Either };
         let scorer = Scorer {
             priors: vec![prior; 3],
             effect_of: vec![0, 1, 1],
             ln_columns: vec![0.0, 2.0_f64.ln()],
             effects: 3,
+            held: vec![false; 2],
             rows: 10.0,
         };
         let mass = |columns: &[usize], flight_scatter_percent: Option<f64>| {
@@ -287,17 +313,14 @@ mod tests {
         let (gram, product, square, rows) = (7.0, 5.0, 12.0, 9.0);
         let matrix = faer::Mat::from_fn(2, 2, |i, j| [[gram, product], [product, square]][i][j]);
         let at = Background::small(&matrix, &[0], 1, 0.0);
-        let prior = Prior {
-            mean: 0.3,
-            scales: [(0.8, 0.0), (0.8, 0.0)],
-            count: 1,
-            sign: EffectSign::Either,
-        };
+        let prior =
+            Prior { mean: 0.3, scales: [(0.8, 0.0); 3], count: 1, sign: EffectSign::Either };
         let scorer = Scorer {
             priors: vec![prior],
             effect_of: vec![0],
             ln_columns: vec![0.0],
             effects: 1,
+            held: vec![false],
             rows,
         };
         // p(y|θ, v) ∝ v^(−n/2) exp(−|y − Xθ|²/2v), θ ~ N(μ, s² v), v ~ inverse gamma(ν0/2, ν0/2).

@@ -1,12 +1,13 @@
 //! How far the gap shrinks: choice and fit on four fifths of the flights, judged on the rest.
 
+use crate::judge::table::FittedTable;
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::folds::fold_of;
 use crate::search::refine::{effects_of, refine};
 use crate::search::system::Problem;
-use crate::thresholds::{CLEAN_PROBABILITY, CLOSURE_FOLDS, SMALLEST_GAP};
+use crate::thresholds::{CLEAN_PROBABILITY, CLOSURE_FOLDS, MORE_PROBABLE_THAN_NOT, SMALLEST_GAP};
 
 /// Stream of random numbers behind the interval of closure.
 const CLOSURE_STREAM: u64 = 3;
@@ -75,35 +76,58 @@ pub(crate) fn in_sample(
     noise_scale: f64,
     seed: u64,
 ) -> Shrinkage {
-    shrinkage(problem, noise_scale, seed, |_| (columns.to_vec(), sizes.to_vec()))
+    let choice = Choice { columns: columns.to_vec(), sizes: sizes.to_vec(), table: None };
+    shrinkage(problem, noise_scale, seed, |_| &choice)
 }
 
 /// Before and after on flights that neither choice nor fit has seen.
 pub(crate) fn nested(problem: Problem<'_>, noise_scale: f64, seed: u64) -> Shrinkage {
-    let choices: Vec<(Vec<usize>, Vec<f64>)> =
+    let choices: Vec<Choice> =
         (0..CLOSURE_FOLDS).map(|fold| chosen(problem, fold).unwrap_or_default()).collect();
-    shrinkage(problem, noise_scale, seed, |fold| choices[fold].clone())
+    shrinkage(problem, noise_scale, seed, |fold| &choices[fold])
 }
 
-fn chosen(problem: Problem<'_>, fold: usize) -> Option<(Vec<usize>, Vec<f64>)> {
-    let Analysis { scorer, backgrounds, space, models, clean, .. } = analyse(problem, Some(fold))?;
+/// What is added to the model for the flights of a fold.
+#[derive(Clone, Debug, Default)]
+struct Choice {
+    columns: Vec<usize>,
+    sizes: Vec<f64>,
+    /// A guide's table as the other flights have it.
+    table: Option<FittedTable>,
+}
+
+fn chosen(problem: Problem<'_>, fold: usize) -> Option<Choice> {
+    let analysis = analyse(problem, Some(fold))?;
+    let Problem { stacked, library, .. } = problem;
+    let off: f64 = analysis.models.iter().map(|(scored, p)| p * scored.table_share).sum();
+    if stacked.is_book() && off > MORE_PROBABLE_THAN_NOT {
+        // The table is off for sure; what acts beside it is what the leading hypothesis names, be it nothing.
+        let leading = analysis.models.iter().map(|(scored, _)| scored);
+        let best = leading.into_iter().find(|scored| scored.model.flight_scatter_percent.is_none());
+        let named = best.map_or(&[][..], |best| &best.model.columns);
+        let gram = stacked.gram(Some(fold));
+        let table = FittedTable::new(stacked, library, gram, (&analysis, named))?;
+        let (columns, sizes) = (table.columns.clone(), table.sizes.clone());
+        return Some(Choice { columns, sizes, table: Some(table) });
+    }
+    let Analysis { scorer, backgrounds, space, models, clean, .. } = analysis;
     // The verdict's own rule: where nothing at all is improbable, the best named set, be it no more probable than none.
     let named = models.iter().map(|(scored, _)| scored).find(|s| !s.model.columns.is_empty());
     let Some(best) = named.filter(|_| clean <= CLEAN_PROBABILITY) else {
-        return Some((vec![], vec![]));
+        return Some(Choice::default());
     };
     let at = &backgrounds[best.background];
     let mut found = refine(problem, &scorer, &space, &[(best, at)], Some(fold));
     let found = found.pop().flatten();
     let sizes = found.map_or_else(|| best.sizes.clone(), |found| found.scored.sizes);
-    Some((best.model.columns.clone(), sizes))
+    Some(Choice { columns: best.model.columns.clone(), sizes, table: None })
 }
 
-fn shrinkage(
+fn shrinkage<'c>(
     problem: Problem<'_>,
     noise_scale: f64,
     seed: u64,
-    choice: impl Fn(usize) -> (Vec<usize>, Vec<f64>),
+    choice: impl Fn(usize) -> &'c Choice,
 ) -> Shrinkage {
     let Problem { stacked, model, library } = problem;
     let data = stacked.data;
@@ -116,14 +140,16 @@ fn shrinkage(
         seed,
     };
     for (index, flight) in data.flights.iter().enumerate() {
-        let (columns, sizes) = choice(fold_of(index));
-        let trial = model.trial(&effects_of(library, &columns, &sizes));
+        let Choice { columns, sizes, table } = choice(fold_of(index));
+        let trial = model.trial(&effects_of(library, columns, sizes));
         let (mut before, mut after, mut floor) = (0.0, 0.0, 0.0);
         for row in &data.segments[flight.segments.clone()] {
             let gap = row.residual[0];
             let closed = model.response_at(&row.known, &trial).map_or(0.0, |with| {
                 data.predictor.predict(&with)[0] - data.predictor.predict(&row.response)[0]
             });
+            let of_table = table.as_ref().map_or(0.0, |table| table.drag_at(stacked, row));
+            let closed = closed + of_table * row.drag_over_thrust;
             before += gap * gap;
             after += (gap - closed) * (gap - closed);
             found.left.push(gap - closed);

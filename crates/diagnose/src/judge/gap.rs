@@ -12,6 +12,7 @@ use crate::search::outside::Outside;
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
     CLEAN_PROBABILITY, MORE_PROBABLE_THAN_NOT, NORMAL_95, OUTSIDE_PROBABILITY, SMALLEST_GAP,
+    SMALLEST_GAP_PERCENT,
 };
 
 /// Whether there is more than noise: either nothing at all is improbable beside the library, or nothing outside it is.
@@ -24,6 +25,33 @@ pub(crate) fn is_real(analysis: &Analysis, outside: &Outside) -> bool {
 pub(crate) fn exceeds_uncertainty(gap: &Gap, unknown: f64) -> bool {
     let expected = gap.noise_floor_rms_percent.powi(2) + 1e4 * unknown;
     gap.rms_ci95[0].powi(2) > (1.0 + SMALLEST_GAP) * expected
+}
+
+/// Whether what is explained, in fuel flow or between engines, or what exceeds the floor is large enough to be a gap at all.
+pub(crate) fn is_large(stacked: &WhitenedSystem<'_>, gap: &Gap, top: Option<&Posterior>) -> bool {
+    let excess = gap.rms_ci95[0].powi(2) - gap.noise_floor_rms_percent.powi(2);
+    let channels = 1 + stacked.data.channels.contrasts;
+    let explained = top.map_or(0.0, |top| {
+        let scored = &top.model;
+        let scatter = scored.model.flight_scatter_percent.unwrap_or(0.0);
+        let mut largest = scatter * scatter;
+        for channel in 0..channels {
+            let square: f64 = stacked
+                .data
+                .segments
+                .iter()
+                .map(|row| {
+                    let columns = scored.model.columns.iter().zip(&scored.sizes);
+                    let of =
+                        |(&column, size): (&usize, &f64)| size * row.signatures[column][channel];
+                    columns.map(of).sum::<f64>().powi(2)
+                })
+                .sum();
+            largest = largest.max(1e4 * square / stacked.data.segments.len() as f64);
+        }
+        largest
+    });
+    excess.max(explained) >= SMALLEST_GAP_PERCENT * SMALLEST_GAP_PERCENT
 }
 
 /// Mean square of ln fuel flow that the table, the chords of its cells and a taught remainder leave open.

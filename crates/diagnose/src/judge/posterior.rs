@@ -5,9 +5,12 @@ use flight::effect::{EffectId, HiddenParameter};
 use crate::advice::distances::Distances;
 use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::judge::closure::Shrinkage;
+use crate::judge::table::TableFinding;
 use crate::library::Library;
+use crate::math::mixture::ln_sum;
 use crate::output::verdict::Closure;
 use crate::output::{Cause, Magnitude};
+use crate::priors::FLAT_RANGE;
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
 use crate::search::system::WhitenedSystem;
@@ -21,6 +24,8 @@ pub(crate) struct Posterior {
     /// Index in the library; `None` for flight-to-flight scatter.
     pub(crate) effect: Option<usize>,
     pub(crate) probability: f64,
+    /// The same without the prior sizes of effects.
+    pub(crate) flat: f64,
     /// The most probable model in which it is the larger effect.
     pub(crate) model: ScoredHypothesis,
     /// Its place in that model.
@@ -56,7 +61,8 @@ pub(crate) fn dominant(
         .collect();
     // One entry per effect, flight-to-flight scatter last.
     let mut found: Vec<Option<Posterior>> = vec![None; library.effects.len() + 1];
-    for (scored, probability) in &analysis.models {
+    let flats = flat_probabilities(analysis, &mean_squares);
+    for ((scored, probability), flat) in analysis.models.iter().zip(flats) {
         let mut shares: Vec<(f64, Option<usize>, usize)> = scored
             .model
             .columns
@@ -75,11 +81,15 @@ pub(crate) fn dominant(
         };
         let slot = &mut found[effect.unwrap_or(library.effects.len())];
         match slot {
-            Some(posterior) => posterior.probability += probability,
+            Some(posterior) => {
+                posterior.probability += probability;
+                posterior.flat += flat;
+            }
             None => {
                 *slot = Some(Posterior {
                     effect,
                     probability: *probability,
+                    flat,
                     model: scored.clone(),
                     place,
                 });
@@ -91,6 +101,42 @@ pub(crate) fn dominant(
     all
 }
 
+/// Probabilities of the models if every effect could change fuel flow by any amount within a range, in place of its prior
+/// sizes: each weight times the ratio of the two densities at the estimate (Laplace's approximation).
+fn flat_probabilities(analysis: &Analysis, mean_squares: &[f64]) -> Vec<f64> {
+    let ln_ratio = |scored: &ScoredHypothesis| -> f64 {
+        let columns = scored.model.columns.iter().zip(&scored.sizes);
+        columns
+            .map(|(&column, &size)| {
+                let ln_flat =
+                    0.5 * mean_squares[column].max(f64::MIN_POSITIVE).ln() - FLAT_RANGE.ln();
+                ln_flat - analysis.scorer.priors[column].ln_density(size)
+            })
+            .sum()
+    };
+    let ln: Vec<f64> = analysis
+        .models
+        .iter()
+        .map(|(scored, probability)| probability.max(f64::MIN_POSITIVE).ln() + ln_ratio(scored))
+        .collect();
+    let total = ln_sum(ln.iter().copied());
+    ln.into_iter().map(|ln| (ln - total).exp()).collect()
+}
+
+/// Probability that each effect acts at all, be it the larger one or not; scatter between flights is the last.
+pub(crate) fn presence(analysis: &Analysis, library: &Library) -> Vec<f64> {
+    let mut present = vec![0.0; library.effects.len() + 1];
+    for (scored, probability) in &analysis.models {
+        for &column in &scored.model.columns {
+            present[library.columns[column].effect] += probability;
+        }
+        if scored.model.flight_scatter_percent.is_some() {
+            present[library.effects.len()] += probability;
+        }
+    }
+    present
+}
+
 /// What the list of causes is made from, besides the posteriors.
 pub(crate) struct CauseEvidence<'a> {
     pub(crate) analysis: &'a Analysis,
@@ -99,16 +145,18 @@ pub(crate) struct CauseEvidence<'a> {
     pub(crate) library: &'a Library,
     /// How far the gap shrinks on unseen flights, where that was measured.
     pub(crate) unseen: Option<&'a Shrinkage>,
+    /// What is found of a guide's table, where it is more probably off than not.
+    pub(crate) table: Option<&'a TableFinding>,
 }
 
 /// Causes worth listing, the most probable first.
 pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> Vec<Cause> {
-    let CauseEvidence { analysis, outside, distances, library, unseen } = *evidence;
+    let CauseEvidence { analysis, outside, distances, library, unseen, table } = *evidence;
     let inside = 1.0 - outside.probability;
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let best = &analysis.models[0].0;
     let mut sum = 0.0;
-    let mut causes = Vec::new();
+    let mut causes: Vec<Cause> = table.map(|table| of_table(table, unseen)).into_iter().collect();
     for posterior in posteriors {
         if causes.len() >= FEWEST_CAUSES
             && (sum > LISTED_PROBABILITY * named || posterior.probability < LEAST_LISTED)
@@ -116,10 +164,11 @@ pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> 
             break;
         }
         sum += posterior.probability;
-        let is_best = posterior.model.model == best.model;
+        let is_best = table.is_none() && posterior.model.model == best.model;
         causes.push(Cause {
             effect: id_of(library, posterior.effect),
             probability: posterior.probability * inside,
+            probability_flat: posterior.flat * inside,
             class: class_of(distances, library, posterior),
             magnitude: magnitude(posterior),
             rms_after_percent: unseen.filter(|_| is_best).map(|s| 100.0 * s.after().sqrt()),
@@ -128,6 +177,20 @@ pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> 
         });
     }
     causes
+}
+
+/// A guide's table that is off, as the first cause.
+fn of_table(table: &TableFinding, unseen: Option<&Shrinkage>) -> Cause {
+    Cause {
+        effect: EffectId::DragTable,
+        probability: table.probability,
+        probability_flat: table.probability,
+        class: table.class.clone(),
+        magnitude: table.magnitude,
+        rms_after_percent: unseen.map(|s| 100.0 * s.after().sqrt()),
+        closure: closed_unseen(unseen),
+        hidden: HiddenParameter::None,
+    }
 }
 
 /// The id of an effect of the library; `None` for scatter between flights.

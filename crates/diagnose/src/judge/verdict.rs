@@ -5,15 +5,19 @@ use flight::effect::EffectId;
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
-use crate::judge::posterior::{Posterior, class_of, closed_unseen, id_of};
-use crate::library::Library;
+use crate::judge::posterior::{Posterior, class_of, closed_unseen, id_of, presence};
+use crate::judge::table::TableFinding;
+use crate::library::{Library, Testable};
 use crate::output::measurement::Separation;
 use crate::output::note::Note;
-use crate::output::verdict::{Found, Rest, RestKind, Unexplained, Verdict};
+use crate::output::verdict::{Beside, Found, Rest, RestKind, Unexplained, Verdict};
+use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
-use crate::search::system::Problem;
-use crate::thresholds::{CREDIBLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY};
+use crate::search::system::{Problem, WhitenedSystem};
+use crate::thresholds::{
+    CREDIBLE, LEVEL_LIKE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY, SIZE_ALONE,
+};
 
 /// Share of the explainable gap that the leading set closes, with its interval: on unseen flights; on the same ones where the
 /// gap is too small for that; `None` where it is too small for either.
@@ -67,6 +71,10 @@ pub(crate) struct Findings<'a> {
     pub(crate) smooth_term: f64,
     /// Causes, the most probable first; none where there is no gap.
     pub(crate) posteriors: &'a [Posterior],
+    /// Effects that are like a level in these flights.
+    pub(crate) level_like: &'a [EffectId],
+    /// What is found of a guide's table, where it is more probably off than not.
+    pub(crate) table: Option<&'a TableFinding>,
     pub(crate) own: &'a Shrinkage,
     pub(crate) unseen: Option<&'a Shrinkage>,
 }
@@ -74,12 +82,15 @@ pub(crate) struct Findings<'a> {
 /// The verdict; what named effects leave goes to `notes` too.
 pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict {
     let &Findings { library, outside, smooth_term, posteriors, own, unseen, .. } = findings;
+    if let Some(table) = findings.table {
+        return Verdict::Effects(found_with_table(findings, table));
+    }
     let Some(top) = posteriors.first() else { return Verdict::NoGap };
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let variable = outside.variable.map(|(variable, _)| variable);
     let closed = closed(unseen, own);
     if outside.probability > OUTSIDE_PROBABILITY
-        || (smooth_term > OUTSIDE_PROBABILITY && named < MORE_PROBABLE_THAN_NOT)
+        || named * (1.0 - outside.probability) <= MORE_PROBABLE_THAN_NOT
     {
         return Verdict::OutsideLibrary(Unexplained {
             probability: outside.probability.max(1.0 - named),
@@ -94,23 +105,130 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
     let kind = if is_form { RestKind::OtherForm } else { RestKind::SomethingElse };
     let rest = (smooth_term > OUTSIDE_PROBABILITY).then_some(Rest { kind, variable });
     notes.extend(rest.map(Note::Rest));
-    Verdict::Effects(found(findings, top, rest))
+    let mut found = found(findings, top, rest);
+    if found.effects.first().is_some_and(|id| LEVELS.contains(id)) {
+        for id in findings.level_like {
+            notes.push(Note::LikeALevel(*id));
+            if !found.class.contains(id) {
+                found.class.push(*id);
+            }
+        }
+    }
+    Verdict::Effects(found)
 }
 
-/// The effects that the leading cause is of, and what it could be taken for.
-fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
-    let &Findings { analysis, library, distances, advisor, outside, posteriors, .. } = findings;
+/// What changes drag or fuel flow nearly alike everywhere.
+const LEVELS: [EffectId; 5] = [
+    EffectId::DragFactor,
+    EffectId::ZeroLiftDrag,
+    EffectId::InducedDrag,
+    EffectId::TsfcFactor,
+    EffectId::FuelFlowGain,
+];
+
+/// Effects that are zero at a reference and, in these flights, have nearly the same sign and size everywhere: their mean signature
+/// exceeds its standard deviation.
+pub(crate) fn level_like(stacked: &WhitenedSystem<'_>, library: &Library) -> Vec<EffectId> {
+    const ZERO_AT_REFERENCE: [EffectId; 6] = [
+        EffectId::ReynoldsNumber,
+        EffectId::TrimDragCg,
+        EffectId::AirframeAgeing,
+        EffectId::EngineAgeing,
+        EffectId::TsfcMachExponent,
+        EffectId::TsfcTemperatureExponent,
+    ];
+    let segments = &stacked.data.segments;
+    let count = segments.len() as f64;
+    let is_like = |effect: &&Testable| {
+        let of = |row: &SegmentRow| row.signatures[effect.representative][0];
+        let mean = segments.iter().map(of).sum::<f64>() / count;
+        let variance = segments.iter().map(|row| (of(row) - mean).powi(2)).sum::<f64>() / count;
+        mean * mean > LEVEL_LIKE * LEVEL_LIKE * variance
+    };
+    let moving = library.effects.iter().filter(|effect| ZERO_AT_REFERENCE.contains(&effect.id));
+    moving.filter(is_like).map(|effect| effect.id).collect()
+}
+
+/// A guide's table that is off, and beside it what the flights show that no table can hold.
+fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
+    let &Findings { library, distances, outside, posteriors, .. } = findings;
+    let inside = 1.0 - outside.probability;
+    let held = |id: &EffectId| table.class.contains(id);
+    // What a table can hold as well says nothing beside it.
+    let present = presence(findings.analysis, library);
+    let of = |posterior: &Posterior| present[posterior.effect.unwrap_or(library.effects.len())];
+    let mut named: Vec<&Posterior> =
+        posteriors.iter().filter(|p| !held(&id_of(library, p.effect))).collect();
+    named.sort_by(|a, b| of(b).total_cmp(&of(a)));
+    let mut beside: Vec<Beside> = Vec::new();
+    let mut found = Vec::new();
+    for top in &named {
+        let effect = id_of(library, top.effect);
+        if beside.iter().any(|other| other.class.contains(&effect)) {
+            continue;
+        }
+        let class = class_of(distances, library, top);
+        // What an earlier one could be is not counted again.
+        let is_open = |id: &EffectId| {
+            class.contains(id) && !beside.iter().any(|other| other.class.contains(id))
+        };
+        let in_class = named.iter().filter(|p| is_open(&id_of(library, p.effect)));
+        let acts: f64 = in_class.map(|p| of(p)).sum();
+        if acts * inside > MORE_PROBABLE_THAN_NOT {
+            found.extend(separations(findings.advisor, library, top, &class));
+            beside.push(Beside { effect, class, probability: of(top) * inside });
+        }
+    }
+    let mut effects = vec![EffectId::DragTable];
+    let mut class = table.class.clone();
+    for beside in &beside {
+        effects.push(beside.effect);
+        for id in &beside.class {
+            if !class.contains(id) {
+                class.push(*id);
+            }
+        }
+    }
+    Found {
+        effects,
+        class,
+        probability: table.probability,
+        beside,
+        closure: closed_unseen(findings.unseen),
+        rest: None,
+        separations: found,
+    }
+}
+
+/// What these flights cannot tell from a cause, and what their evidence leaves open, however far apart sizes typical of it
+/// would be.
+fn class_with_credible(
+    findings: &Findings<'_>,
+    top: &Posterior,
+    posteriors: &[&Posterior],
+) -> Vec<EffectId> {
+    let &Findings { library, distances, .. } = findings;
     let mut class = class_of(distances, library, top);
-    // What the evidence leaves open belongs to the class too, however far apart sizes typical of it would be.
-    for posterior in credible(posteriors) {
+    // What only the prior sizes decide is open as well.
+    let by_size = posteriors.iter().copied().filter(|p| p.flat * SIZE_ALONE >= top.flat);
+    for posterior in credible(posteriors).chain(by_size) {
         let id = id_of(library, posterior.effect);
         if !class.contains(&id) {
             class.push(id);
         }
     }
+    class
+}
+
+/// The effects that the leading cause is of, and what it could be taken for.
+fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
+    let &Findings { analysis, library, advisor, outside, posteriors, .. } = findings;
+    let all: Vec<&Posterior> = posteriors.iter().collect();
+    let class = class_with_credible(findings, top, &all);
     Found {
         effects: set_of(analysis, library, top),
         probability: top.probability * (1.0 - outside.probability),
+        beside: vec![],
         closure: closed_unseen(findings.unseen),
         rest,
         separations: separations(advisor, library, top, &class),
@@ -119,10 +237,10 @@ fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found 
 }
 
 /// The most probable causes that hold 95 % of the probability together.
-fn credible(posteriors: &[Posterior]) -> impl Iterator<Item = &Posterior> {
+fn credible<'a>(posteriors: &[&'a Posterior]) -> impl Iterator<Item = &'a Posterior> {
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let mut sum = 0.0;
-    posteriors.iter().take_while(move |posterior| {
+    posteriors.iter().copied().take_while(move |posterior| {
         let before = sum;
         sum += posterior.probability;
         before < CREDIBLE * named
@@ -160,7 +278,8 @@ pub(crate) fn advisor<'a>(
         top.and_then(Posterior::column_and_size).map(|(column, _)| column).into_iter().collect();
     let mut likely: Vec<usize> = Vec::new();
     if let Some(class) = top.and_then(|top| top.confused(distances, library)) {
-        likely.extend(credible(posteriors).filter_map(|posterior| posterior.effect));
+        let all: Vec<&Posterior> = posteriors.iter().collect();
+        likely.extend(credible(&all).filter_map(|posterior| posterior.effect));
         likely.extend(class);
     }
     Advisor::new(problem, distances, classes, &found, &likely)

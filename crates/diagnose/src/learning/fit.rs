@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use faer::Mat;
 
+use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::moments::{CoupledChannels, GramSums, KINDS, LeftOut};
 use crate::math::cholesky::Cholesky;
@@ -168,7 +169,7 @@ impl Baseline {
     }
 
     /// Coefficients and precision factor from a Gram matrix and the prior.
-    fn posterior(&self, gram: &Mat<f64>) -> Option<(Mat<f64>, Cholesky)> {
+    pub(super) fn posterior(&self, gram: &Mat<f64>) -> Option<(Mat<f64>, Cholesky)> {
         let width = self.factor.nrows();
         let mut precision = gram.submatrix(0, 0, width, width).to_owned();
         for k in 0..width {
@@ -200,6 +201,7 @@ impl Baseline {
         self.parts.deck_coefficients =
             deck.map(|(column, coefficient)| coefficient + found(column)).collect();
         self.parts.standing_effects = layout.standing_effects.map(found).collect();
+        self.parts.drag = layout.drag.map(found).collect();
         // A covariance inverted in floating point may miss definiteness by rounding; a hair on the diagonal mends it.
         for k in 0..width {
             covariance[(k, k)] *= 1.0 + 1e-12;
@@ -207,21 +209,25 @@ impl Baseline {
         let lower = Cholesky::new(&covariance).ok_or(DiagnoseError::Degenerate)?;
         self.factor = lower.lower().to_owned();
         self.parts.factor = lower_triangle(&self.factor);
-        let squares: f64 = data
-            .segments
-            .iter()
-            .map(|row| {
-                let carried: f64 = row
-                    .standing_effects
-                    .iter()
-                    .zip(&self.parts.standing_effects)
-                    .map(|(slope, size)| slope[0] * size)
-                    .sum();
-                (row.residual[0] - self.mean_at(&row.response) - carried).powi(2)
-            })
-            .sum();
-        self.parts.rms = (squares / data.segments.len().max(1) as f64).sqrt();
+        self.summarize(data);
         Ok(())
+    }
+
+    /// What is left of the flights that it was learnt from, and what carried effects were worth in them.
+    fn summarize(&mut self, data: &PreparedFlights<'_>) {
+        let count = data.segments.len().max(1) as f64;
+        let mut means = vec![0.0; STANDING_EFFECTS.len()];
+        let mut squares = 0.0;
+        for row in &data.segments {
+            let left = self.left_of_fuel_flow(row);
+            let carried = row.standing_effects.iter().zip(&self.parts.standing_effects);
+            for (mean, (slope, size)) in means.iter_mut().zip(carried) {
+                *mean += slope[0] * size / count;
+            }
+            squares += left * left;
+        }
+        self.parts.standing_means = means;
+        self.parts.rms = (squares / count).sqrt();
     }
 
     /// ln of the marginal likelihood, up to a constant.

@@ -4,20 +4,23 @@ use effects::ExtendedModel;
 use effects::{EffectModel, EffectReferences};
 use faer::Mat;
 
+use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
-use crate::baseline::{Baseline, Parts};
+use crate::baseline::{Baseline, BaselineRecord};
 use crate::learning::moments::GramSums;
+use crate::learning::outliers::Weights;
 use crate::library::Library;
-use crate::priors::REMAINDER_QUANTILES;
+use crate::priors::REMAINDER_LENGTHS;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::{DiagnoseError, references_of};
-use crate::signals::variables::{Hats, Scaled, Variable};
+use crate::signals::table_uncertainty::TableUncertainty;
+use crate::signals::variables::Variable;
 use crate::thresholds::FEWEST_FLIGHTS_OF_A_BASELINE;
 
-/// Variables of the remainder.
+/// Variables of the remainder, in the order of their lengths.
 const VARIABLES: [Variable; 6] = [
     Variable::Mach,
     Variable::LiftCoefficient,
@@ -26,21 +29,22 @@ const VARIABLES: [Variable; 6] = [
     Variable::IsaDeviation,
     Variable::Mass,
 ];
-/// Variables that the remainder may bend along differently at each Mach number: drag rises locally, and so does thrust.
-const LOCAL_VARIABLES: [Variable; 3] =
-    [Variable::LiftCoefficient, Variable::CorrectedThrust, Variable::PressureAltitude];
 /// How often the scatter between flights is raised. Our choice: raising it changes the fit that it is judged by, so that once is
 /// not enough.
 const INFLATIONS: usize = 3;
+/// How often outliers are weighed. Our choice: a bound on time; clean flights need one.
+const MOST_WEIGHINGS: usize = 5;
 
 impl Baseline {
-    /// Learns from clean flights against a model and a drag table (its own, or the adapted one).
+    /// Learns from clean flights against a model and a drag table. `table` is what is believed of that table before the
+    /// flights; without it the table is taken as exact.
     ///
     /// # Errors
     /// [`DiagnoseError`] where the model takes no effects, or fewer than five flights are inside the table.
     pub fn learn(
         model: &ExtendedModel,
         drag_table: &lut::Table,
+        table: Option<TableUncertainty>,
         flights: &[FlightRecord<'_>],
     ) -> Result<Self, DiagnoseError> {
         let references = references_of(model, drag_table, flights)?;
@@ -60,63 +64,71 @@ impl Baseline {
                 needed: FEWEST_FLIGHTS_OF_A_BASELINE,
             });
         }
-        let mut baseline = Self::prior(&data, &references);
-        let moments = GramSums::new(&baseline, &data);
-        baseline.tune(&moments);
-        for _ in 0..INFLATIONS {
-            baseline.inflate(&moments);
+        let mut baseline = Self::prior(&data, &references, table);
+        let mut weights = Weights::before(&data);
+        for _ in 0..MOST_WEIGHINGS {
+            let moments = GramSums::new(&baseline, &data, &weights);
+            baseline.tune(&moments);
+            for _ in 0..INFLATIONS {
+                baseline.inflate(&moments);
+            }
+            baseline.fit(&data, &moments)?;
+            baseline.parts.outliers = weights.outliers();
+            baseline.parts.interval_factor = baseline.factor_by_unseen(&moments);
+            let next = weights.after(&data, &baseline);
+            let settled = next.settled(&weights);
+            weights = next;
+            if settled {
+                break;
+            }
         }
-        baseline.fit(&data, &moments)?;
         Ok(baseline)
     }
 
     /// The baseline before it has learnt.
-    fn prior(data: &PreparedFlights<'_>, references: &EffectReferences) -> Self {
-        let values = |variable: Variable| -> Option<Vec<f64>> {
-            data.segments
-                .iter()
-                .map(|row| variable.flown(&row.response, references))
-                .map(Some)
-                .collect()
-        };
-        let hats: Vec<_> = VARIABLES
-            .into_iter()
-            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &REMAINDER_QUANTILES)?)))
-            .collect();
-        let mut products = Vec::new();
-        for (k, a) in VARIABLES.into_iter().enumerate() {
-            for b in VARIABLES.into_iter().skip(k + 1) {
-                if let (Some(of_a), Some(of_b)) = (values(a), values(b)) {
-                    products.push((a, Scaled::from_values(&of_a), b, Scaled::from_values(&of_b)));
-                }
-            }
-        }
-        let local: Vec<(Variable, Scaled)> = LOCAL_VARIABLES
-            .into_iter()
-            .filter_map(|v| Some((v, Scaled::from_values(&values(v)?))))
-            .collect();
-        let parts = Parts {
+    fn prior(
+        data: &PreparedFlights<'_>,
+        references: &EffectReferences,
+        table: Option<TableUncertainty>,
+    ) -> Self {
+        let rank = table.as_ref().map_or(0, TableUncertainty::rank);
+        let parts = BaselineRecord {
             flights: data.flights.len(),
             segments: data.segments.len(),
             references: *references,
             noise: NoiseFactors::default(),
             scales: [1.0; 2],
-            hats,
-            products,
-            local,
+            smooth: smooth_functions(data, references),
             contrasts: data.channels.contrasts,
             deck_known: data.channels.n2,
             deck_centers: data.predictor.deck.centers,
             deck_coefficients: data.predictor.deck.coefficients.to_vec(),
             mean: Vec::new(),
+            drag_nodes: table.as_ref().map_or_else(Vec::new, |table| table.pivots().to_vec()),
+            drag: vec![0.0; rank],
             factor: Vec::new(),
             standing_effects: vec![0.0; STANDING_EFFECTS.len()],
+            standing_means: vec![0.0; STANDING_EFFECTS.len()],
+            outliers: 0,
+            interval_factor: 1.0,
             rms: f64::NAN,
         };
-        let mut baseline = Self { parts, factor: Mat::zeros(0, 0) };
+        let mut baseline = Self { parts, table, factor: Mat::zeros(0, 0) };
         let layout = baseline.layout();
         baseline.parts.mean = vec![0.0; layout.contrasts.end];
         baseline.factor = Mat::zeros(layout.len(), layout.len());
         baseline
     }
+}
+
+/// One for every variable that differs among the segments.
+fn smooth_functions(data: &PreparedFlights<'_>, references: &EffectReferences) -> Vec<Smooth> {
+    let of = |(variable, length): (Variable, f64)| {
+        let values: Vec<f64> =
+            data.segments.iter().map(|row| variable.flown(&row.response, references)).collect();
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let length = if variable == Variable::Mass { length * mean } else { length };
+        Smooth::over(variable, length, &values)
+    };
+    VARIABLES.into_iter().zip(REMAINDER_LENGTHS).filter_map(of).collect()
 }

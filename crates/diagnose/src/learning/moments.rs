@@ -15,6 +15,7 @@
 use faer::Mat;
 
 use crate::baseline::Baseline;
+use crate::learning::outliers::Weights;
 use crate::math::cholesky::factor_and_project;
 use crate::math::linear::{subtract_gram, symmetrize};
 use crate::residuals::rows::SegmentRow;
@@ -35,6 +36,8 @@ pub(super) struct GramSums {
     pub(super) parts: Vec<CoupledChannels>,
     /// What flights that are left out are judged on.
     pub(super) left_out: Vec<LeftOut>,
+    /// Segments by which stated intervals are judged.
+    pub(super) segments: Vec<LeftOutSegment>,
     /// Columns, the residual last.
     columns: usize,
 }
@@ -62,6 +65,20 @@ pub(super) struct LeftOut {
     pub(super) loading: Vec<f64>,
     pub(super) within: f64,
     pub(super) between: f64,
+}
+
+/// A segment's fuel flow, the columns there, and variances at factors of 1.
+pub(super) struct LeftOutSegment {
+    pub(super) fold: usize,
+    pub(super) residual: f64,
+    pub(super) loading: Vec<f64>,
+    pub(super) within: f64,
+    pub(super) between: f64,
+    /// Share of the smooth functions' variance that their terms do not hold, over all functions.
+    pub(super) unflown_share: f64,
+    /// Variance of the drag table that its loadings leave out.
+    pub(super) drag_left_out: f64,
+    pub(super) drag_over_thrust: f64,
 }
 
 /// What the own noise of segments contributes: one matrix per pair of kinds.
@@ -117,12 +134,14 @@ struct Row {
 
 impl GramSums {
     /// Sums over data whose noise has factors of 1.
-    pub(super) fn new(baseline: &Baseline, data: &PreparedFlights<'_>) -> Self {
+    pub(super) fn new(baseline: &Baseline, data: &PreparedFlights<'_>, weights: &Weights) -> Self {
         let count = data.channels.count();
         let kind_of: Vec<usize> = (0..count).map(|channel| data.channels.kind(channel)).collect();
         let mut rows = Vec::with_capacity(data.segments.len());
         for (flight, range) in data.flights.iter().enumerate() {
-            for row in &data.segments[range.segments.clone()] {
+            let of_flight = weights.flights[flight].sqrt();
+            for at in range.segments.clone() {
+                let (row, weight) = (&data.segments[at], weights.segments[at]);
                 let white: [ByChannel; MAXIMUM_CHANNELS] = core::array::from_fn(|channel| {
                     let mut unit = [0.0; MAXIMUM_CHANNELS];
                     unit[channel] = 1.0;
@@ -133,13 +152,13 @@ impl GramSums {
                     raw: baseline.raw_row(data, row),
                     inverse: core::array::from_fn(|a| {
                         core::array::from_fn(|b| {
-                            (0..count).map(|k| white[a][k] * white[b][k]).sum()
+                            weight * (0..count).map(|k| white[a][k] * white[b][k]).sum::<f64>()
                         })
                     }),
-                    common: row.noise.common.clone(),
+                    common: row.noise.common.iter().map(|u| u.map(|u| u / of_flight)).collect(),
                     ln_noise: core::array::from_fn(|channel| {
                         if channel < count {
-                            2.0 * row.noise.factor[channel][channel].ln()
+                            2.0 * row.noise.factor[channel][channel].ln() - weight.ln()
                         } else {
                             0.0
                         }
@@ -153,7 +172,8 @@ impl GramSums {
             .into_iter()
             .map(|kinds| CoupledChannels::new(kinds, &rows, &kind_of, data.flights.len(), columns))
             .collect();
-        Self { parts, left_out: left_out(data, &rows), columns }
+        let segments = left_out_segments(baseline, data, &rows);
+        Self { parts, left_out: left_out(data, &rows), segments, columns }
     }
 
     /// Gram matrix of all columns over all flights, or over a fold; both triangles.
@@ -417,6 +437,32 @@ fn parts_of(rows: &[Row], kind_of: &[usize]) -> Vec<[bool; KINDS]> {
         .collect()
 }
 
+fn left_out_segments(
+    baseline: &Baseline,
+    data: &PreparedFlights<'_>,
+    rows: &[Row],
+) -> Vec<LeftOutSegment> {
+    let pairs = data.segments.iter().zip(rows);
+    pairs
+        .map(|(segment, row)| {
+            let width = row.raw.len() - 1;
+            LeftOutSegment {
+                fold: row.flight % LEARNING_FOLDS,
+                residual: segment.residual[0],
+                loading: row.raw[..width].iter().map(|values| values[0]).collect(),
+                within: segment.noise.factor[0][0] * segment.noise.factor[0][0],
+                between: segment.noise.common.iter().map(|u| u[0] * u[0]).sum(),
+                unflown_share: baseline.unflown_share(&segment.response),
+                drag_left_out: baseline
+                    .table
+                    .as_ref()
+                    .map_or(0.0, |table| table.left_out(&segment.response)),
+                drag_over_thrust: segment.drag_over_thrust,
+            }
+        })
+        .collect()
+}
+
 fn left_out(data: &PreparedFlights<'_>, rows: &[Row]) -> Vec<LeftOut> {
     let mut found = Vec::new();
     for (flight, range) in data.flights.iter().enumerate() {
@@ -482,6 +528,15 @@ impl Baseline {
             }
         }
         raw[layout.standing_effects].copy_from_slice(&row.standing_effects);
+        let mut loadings = vec![0.0; layout.drag.len()];
+        self.write_drag(&row.response, &mut loadings);
+        for (slot, loading) in raw[layout.drag].iter_mut().zip(&loadings) {
+            let by = row.drag_over_thrust * loading;
+            slot[0] = by;
+            if data.channels.n2 && row.is_recorded[data.channels.n2_row()] {
+                slot[data.channels.n2_row()] = row.n2_slope * by;
+            }
+        }
         if let Some(last) = raw.last_mut() {
             *last = row.residual;
         }

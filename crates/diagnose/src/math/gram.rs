@@ -73,14 +73,31 @@ impl Gram {
         deviations: &[f64],
         residual: usize,
     ) -> Option<Mat<f64>> {
+        let mut sizes = Mat::from_fn(columns.len(), 1, |i, _| self.matrix[(columns[i], residual)]);
+        self.normal(columns, deviations)?.solve(&mut sizes);
+        Some(sizes)
+    }
+
+    /// Posterior variance of a combination `weights` of the same sizes, whatever the residual; `None` as for
+    /// [`fit`](Self::fit).
+    pub(crate) fn variance(
+        &self,
+        columns: &[usize],
+        deviations: &[f64],
+        weights: &[f64],
+    ) -> Option<f64> {
+        let mut solved = Mat::from_fn(columns.len(), 1, |i, _| weights[i]);
+        self.normal(columns, deviations)?.solve(&mut solved);
+        Some(weights.iter().enumerate().map(|(i, weight)| weight * solved[(i, 0)]).sum())
+    }
+
+    fn normal(&self, columns: &[usize], deviations: &[f64]) -> Option<Cholesky> {
         let gram = &self.matrix;
         let mut normal =
             Mat::from_fn(columns.len(), columns.len(), |i, j| gram[(columns[i], columns[j])]);
         for (k, deviation) in deviations.iter().enumerate() {
             normal[(k, k)] += 1.0 / (deviation * deviation);
         }
-        let mut sizes = Mat::from_fn(columns.len(), 1, |i, _| gram[(columns[i], residual)]);
-        Cholesky::new(&normal)?.solve(&mut sizes);
-        Some(sizes)
+        Cholesky::new(&normal)
     }
 }

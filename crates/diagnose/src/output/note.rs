@@ -1,5 +1,7 @@
 //! What was assumed, and why segments were left out.
 
+use flight::effect::EffectId;
+
 use crate::output::verdict::Rest;
 
 /// Something that was assumed, or that a reader of the diagnosis should know.
@@ -26,6 +28,9 @@ pub enum Note {
         /// Largest share of a visited node's variance that the columns leave out.
         missing_share: f64,
     },
+    /// These flights differ from the reference in the mean of what an effect depends on by more than they vary in it, so that it
+    /// cannot be distinguished from a level of drag or fuel flow.
+    LikeALevel(EffectId),
     /// Named effects leave something that depends on one variable.
     Rest(Rest),
 }

@@ -67,18 +67,32 @@ pub struct Unexplained {
 /// Effects that explain the gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// Effects that act, the largest first; never empty.
+    /// Effects that act; never empty. A guide's table that is off comes first, then the largest.
     pub effects: Vec<EffectId>,
-    /// Effects that this data cannot tell from the first, itself first.
+    /// Effects that this data cannot tell from the first, itself first; where a table is off, then those that it cannot tell
+    /// from what acts beside it.
     pub class: Vec<EffectId>,
     /// Probability of the first effect.
     pub probability: f64,
+    /// What acts beside a guide's table that is off, and no table can hold, the most probable first.
+    pub beside: Vec<Beside>,
     /// How much of the gap the effects close on unseen flights; `None` where the gap is too small to measure it.
     pub closure: Option<Closure>,
     /// What the effects leave that depends on one variable.
     pub rest: Option<Rest>,
     /// Measurements and flights on purpose that would separate the class, the best first.
     pub separations: Vec<Separation>,
+}
+
+/// What acts beside a guide's table that is off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beside {
+    /// The effect.
+    pub effect: EffectId,
+    /// Effects that this data cannot tell from it, itself first.
+    pub class: Vec<EffectId>,
+    /// Probability that it acts.
+    pub probability: f64,
 }
 
 /// What named effects leave of the gap.
@@ -116,6 +130,12 @@ impl Verdict {
             Self::Effects(found) => Some(found),
             _ => None,
         }
+    }
+
+    /// Whether the drag of a guide is off, which adapting cures.
+    #[must_use]
+    pub fn is_of_table(&self) -> bool {
+        self.effects().first() == Some(&EffectId::DragTable)
     }
 
     /// The named effects, the largest first; empty where none is named.

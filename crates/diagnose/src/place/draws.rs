@@ -75,12 +75,14 @@ impl ModelErrorDraws {
         let smooth = (smooth_amplitude > 0.0).then(|| {
             let mut rows = Rows::normal(source, design.smooth_terms(), width);
             for number in &mut rows.numbers {
-                *number *= smooth_amplitude;
+                *number *= design.smooth_deviation(smooth_amplitude);
             }
             rows
         });
         let chords = Rows::normal(source, 2, width);
-        let nodes = design.table().map(|table| {
+        // A guide's errors are the gap whose place is asked for.
+        let learnt = design.table().filter(|_| !stacked.is_book());
+        let nodes = learnt.map(|table| {
             let unit = Rows::normal(source, table.rank(), width);
             let nodes = table.grid().nodes();
             let mut rows = Rows { width, numbers: vec![0.0; nodes * width] };
@@ -119,6 +121,11 @@ impl ModelErrorDraws {
                 if row.is_recorded[contrast] {
                     add(values, taught.row(column), 1.0);
                 }
+            }
+            terms.resize(layout.drag.len(), 0.0);
+            baseline.write_drag(&row.response, terms);
+            for (column, &loading) in layout.drag.zip(&*terms) {
+                add(&mut into[0], taught.row(column), loading * row.drag_over_thrust);
             }
             for (column, slope) in layout.standing_effects.zip(&row.standing_effects) {
                 for (channel, values) in into.iter_mut().enumerate() {

@@ -99,7 +99,7 @@ pub(crate) fn find(
 fn level(stacked: &WhitenedSystem<'_>, analysis: &Analysis, noise_scale: f64) -> NoiseLevel {
     let best = analysis.models.first().map(|(scored, _)| scored);
     let background = best.and_then(|scored| analysis.backgrounds.get(scored.background));
-    let integrated = background.map_or(0.0, |at| stacked.scatter(at.scatter));
+    let integrated = background.map_or(0.0, |at| stacked.scatter(at.level));
     let heating =
         best.and_then(|scored| scored.model.flight_scatter_percent).map_or(0.0, |p| p / 100.0);
     NoiseLevel { factor: noise_scale.max(1.0).sqrt(), scatter: integrated.max(heating) }

@@ -15,16 +15,25 @@ pub(crate) struct Predictor<'a> {
 }
 
 impl Predictor<'_> {
+    /// Without what a baseline has learnt. Effects that it carries are learnt by their slopes before it has learnt anything; a
+    /// remainder over thrust would answer to them once more.
+    pub(crate) fn untaught(&self) -> Self {
+        Self { baseline: None, ..self.clone() }
+    }
+
     pub(crate) fn predict(&self, response: &Response) -> ByChannel {
         let channels = self.channels;
         let mut predicted = [0.0; MAXIMUM_CHANNELS];
         predicted[0] = response.ln_fuel_flow_total;
         contrasts(&response.ln_fuel_flow_engine, &mut predicted[1..=channels.contrasts]);
+        let drag = self.baseline.map_or(0.0, |baseline| baseline.drag_at(response));
         if channels.n2 {
-            predicted[channels.n2_row()] = self.deck.value(response);
+            let ln_thrust = response.ln_corrected_thrust + drag;
+            predicted[channels.n2_row()] =
+                self.deck.value(&Response { ln_corrected_thrust: ln_thrust, ..*response });
         }
         if let Some(baseline) = self.baseline {
-            predicted[0] += baseline.mean_at(response);
+            predicted[0] += drag + baseline.mean_at(response);
             #[expect(
                 clippy::needless_range_loop,
                 reason = "a contrast is a channel and a number of the baseline"

@@ -202,9 +202,10 @@ impl<'a> PreparedFlights<'a> {
             samples: kept.rows.len(),
             chords: chord_errors(model, &kept.response),
         };
+        let untaught = self.predictor.untaught();
         for (slot, carried) in row.standing_effects.iter_mut().zip(&differences.standing_effects) {
             *slot = carried
-                .signature(model, &row.known, row.is_recorded, &self.predictor)
+                .signature(model, &row.known, row.is_recorded, &untaught)
                 .unwrap_or([0.0; MAXIMUM_CHANNELS]);
         }
         if let Some(baseline) = self.predictor.baseline {

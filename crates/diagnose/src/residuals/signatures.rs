@@ -10,6 +10,7 @@ use crate::residuals::predictor::Predictor;
 use crate::signals::channels::{ByChannel, MAXIMUM_CHANNELS};
 
 /// Central difference of every channel with an effect, made ready for many segments.
+#[derive(Debug)]
 pub(crate) struct Difference {
     up: Trial,
     down: Trial,

@@ -1,15 +1,20 @@
 //! One search, the leading models refined: the posterior that the verdict reads.
 
-use crate::hypotheses::backgrounds::{Background, Smoothed, backgrounds, diagonals, smoothed};
+use flight::effect::EffectId;
+
+use crate::hypotheses::backgrounds::{
+    Background, Level, Smoothed, TableBelief, backgrounds, diagonals, smoothed,
+};
 use crate::hypotheses::evidence::{ScoredHypothesis, Scorer};
+use crate::library::Testable;
 use crate::math::eliminate::Reduced;
 use crate::math::gram::Gram;
 use crate::math::mixture::ln_sum;
 use crate::priors::HEATING_SIZES_PERCENT;
 use crate::search::refine::{Relinearised, refine};
-use crate::search::singles::{search_all, search_flight_scatter};
+use crate::search::singles::{Kinds, search_all, search_flight_scatter};
 use crate::search::system::{EliminatedGrams, Problem, SmoothTerms};
-use crate::thresholds::{REFINED, WORTH_REFINING};
+use crate::thresholds::{CONFUSED, REFINED, WORTH_REFINING};
 
 /// The posterior over models.
 pub(crate) struct Analysis {
@@ -32,17 +37,30 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
     let Problem { stacked, library, .. } = problem;
     let gram = stacked.gram(without);
     let smooth_terms = if without.is_none() { SmoothTerms::Kept } else { SmoothTerms::LeftOut };
-    let mut levels = Vec::with_capacity(stacked.scatters.len());
-    let mut reduced = Vec::with_capacity(stacked.scatters.len());
-    for &relative in &stacked.scatters {
-        let (level, left) = stacked.level(gram, relative, without, smooth_terms)?;
+    let mut levels = Vec::with_capacity(stacked.levels.len());
+    let mut reduced = Vec::with_capacity(stacked.levels.len());
+    for &at in &stacked.levels {
+        let (level, left) = stacked.level(gram, at, without, smooth_terms)?;
         levels.push(level);
         reduced.push(left);
     }
-    let space = EliminatedGrams { smoothed: smooth_out(problem, &reduced), levels, reduced };
+    let at_levels: Vec<(Level, &Reduced)> = stacked.levels.iter().copied().zip(&reduced).collect();
+    let space = EliminatedGrams {
+        beliefs: stacked.levels.iter().map(|level| level.table).collect(),
+        smoothed: smooth_out(problem, &at_levels),
+        levels,
+        reduced,
+    };
     let all = backgrounds(&space.smoothed, library);
-    let scorer = Scorer::new(library, gram.rows);
-    let search = search_all(&scorer, &all, 2, |at| stacked.is_nothing(at));
+    let scorer = Scorer::new(library, gram.rows, held_by_table(problem, &space));
+    let kinds = Kinds {
+        nothing: all.iter().map(|at| stacked.is_nothing(at)).collect(),
+        uncertain_table: all
+            .iter()
+            .map(|at| stacked.belief(at) == TableBelief::Uncertain)
+            .collect(),
+    };
+    let search = search_all(&scorer, &all, 2, &kinds);
     let mut models = search.models;
     if without.is_none() {
         models.extend(with_flight_scatter(problem, gram, &scorer)?);
@@ -62,8 +80,8 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
                 && (m.ln_weight - total).exp() > WORTH_REFINING
         });
         if scatter_alone {
-            let relative = percent / 100.0;
-            let (_, reduced) = stacked.level(gram, relative, without, SmoothTerms::Kept)?;
+            let (_, reduced) =
+                stacked.level(gram, scattered(percent), without, SmoothTerms::Kept)?;
             heating.push((percent, reduced));
         }
     }
@@ -79,11 +97,38 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
 }
 
 /// Every smooth discrepancy that is admitted, over Grams without nuisance.
-fn smooth_out(problem: Problem<'_>, reduced: &[Reduced]) -> Vec<Smoothed> {
+fn smooth_out(problem: Problem<'_>, levels: &[(Level, &Reduced)]) -> Vec<Smoothed> {
+    let stacked = problem.stacked;
+    smoothed(levels, stacked.design, |smooth_amplitude| stacked.admits(smooth_amplitude))
+}
+
+/// What only drag over lift coefficient and Mach number can be.
+const DRAG_OF_A_TABLE: [EffectId; 4] =
+    [EffectId::DragFactor, EffectId::ZeroLiftDrag, EffectId::InducedDrag, EffectId::WaveDrag];
+
+/// Of every effect, whether a guide's table that is off could hold it as well: it can be seen where the table is right, and no
+/// longer where it may be off. Nothing is held where the table is no guide's.
+fn held_by_table(problem: Problem<'_>, space: &EliminatedGrams) -> Vec<bool> {
     let Problem { stacked, library, .. } = problem;
-    smoothed(reduced, library.columns.len(), stacked.design.smooth.len(), |smooth_amplitude| {
-        stacked.admits(smooth_amplitude)
-    })
+    let at = |belief: TableBelief| {
+        let level = space.beliefs.iter().position(|found| *found == belief)?;
+        space.reduced.get(level)
+    };
+    let of_effect = |effect: &Testable| {
+        let seen = |belief| {
+            let gram = at(belief)?.matrix[(effect.representative, effect.representative)];
+            Some(effect.typical * effect.typical * gram >= CONFUSED)
+        };
+        let hidden =
+            seen(TableBelief::Right) == Some(true) && seen(TableBelief::Uncertain) == Some(false);
+        stacked.is_book() && (hidden || DRAG_OF_A_TABLE.contains(&effect.id))
+    };
+    library.effects.iter().map(of_effect).collect()
+}
+
+/// This much scatter between flights; what is uncertain of the table is.
+fn scattered(percent: f64) -> Level {
+    Level { scatter: percent / 100.0, table: TableBelief::Uncertain, ln_prior: 0.0 }
 }
 
 /// Models with scatter between flights, alone and with one effect, where the library has it and it is no part of the noise
@@ -96,12 +141,12 @@ fn with_flight_scatter(
     let Problem { stacked, library, .. } = problem;
     let mut models = Vec::new();
     for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| library.heating_value) {
-        if stacked.scatters.iter().any(|&scatter| scatter >= percent / 100.0) {
+        let at = scattered(percent);
+        if stacked.levels.iter().any(|level| level.scatter >= at.scatter) {
             continue; // part of the noise already
         }
-        let relative = percent / 100.0;
-        let (_, left) = stacked.level(gram, relative, None, SmoothTerms::LeftOut)?;
-        let under = diagonals(&smooth_out(problem, core::slice::from_ref(&left)), library);
+        let (_, left) = stacked.level(gram, at, None, SmoothTerms::LeftOut)?;
+        let under = diagonals(&smooth_out(problem, &[(at, &left)]), library);
         models.extend(search_flight_scatter(scorer, &under, percent));
     }
     Some(models)

@@ -1,13 +1,13 @@
 //! Outside the library: smooth terms of one variable compete with the named effects.
 
-use crate::hypotheses::backgrounds::{Background, small_effects};
+use crate::hypotheses::backgrounds::{Background, TableBelief, small_effects};
 use crate::hypotheses::design::Acts;
 use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, Single};
 use crate::library::Library;
 use crate::math::eliminate::{Changed, Reduced, integrate_few_out, integrate_out};
 use crate::math::linear::gather;
 use crate::math::mixture::ln_sum;
-use crate::priors::{AGNOSTIC_AMPLITUDES, AGNOSTIC_SPIKES, PRIOR_OUTSIDE};
+use crate::priors::{AGNOSTIC_AMPLITUDES, PRIOR_OUTSIDE};
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
 use crate::signals::variables::Variable;
@@ -54,6 +54,7 @@ pub(crate) fn compete(
         sizes: vec![],
         deviations: vec![],
         background: 0,
+        table_share: 0.0,
     };
     let mut sets: Vec<&ScoredHypothesis> =
         core::iter::once(&none).chain(named_models(analysis).take(AGNOSTIC_SETS)).collect();
@@ -68,19 +69,24 @@ pub(crate) fn compete(
             refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
         for (level, reduced) in analysis.space.reduced.iter().enumerate() {
             let changed = refined.map(|found| &found.changed[level]);
+            let ln_share = stacked.levels[level].ln_prior;
+            let spikes = match stacked.levels[level].table {
+                TableBelief::Uncertain => library.agnostic_spikes.len(),
+                TableBelief::Right => 1,
+            };
             let level = (reduced, changed);
-            let set = NamedSet { model: &set.model, level, shifts: &shifts, ln_share: 0.0 };
+            let set = NamedSet { model: &set.model, level, shifts: &shifts, ln_share, spikes };
             weights.add(stacked, library, scorer, &set);
         }
     }
     // Flight-to-flight scatter is a named cause as well: an effect that depends on a flight's conditions looks like scatter
     // until a function of those conditions competes. The sets above are summed over all amounts of scatter; here each size
     // replaces them.
-    let levels_ln = (analysis.space.reduced.len() as f64).ln();
     for (percent, reduced) in &analysis.heating {
         let model = Hypothesis { columns: vec![], flight_scatter_percent: Some(*percent) };
         let level = (reduced, None);
-        let set = NamedSet { model: &model, level, shifts: &[], ln_share: levels_ln };
+        let spikes = library.agnostic_spikes.len();
+        let set = NamedSet { model: &model, level, shifts: &[], ln_share: 0.0, spikes };
         weights.add(stacked, library, scorer, &set);
     }
     let Weights { named, smooth_terms } = weights;
@@ -165,8 +171,10 @@ struct NamedSet<'a> {
     level: (&'a Reduced, Option<&'a Changed>),
     /// Where the set was linearised.
     shifts: &'a [f64],
-    /// ln of its share of the level.
+    /// ln prior of the level.
     ln_share: f64,
+    /// How many scales of small effects it is held over, from the smallest.
+    spikes: usize,
 }
 
 impl Weights {
@@ -178,9 +186,9 @@ impl Weights {
         scorer: &Scorer,
         set: &NamedSet<'_>,
     ) {
-        let &NamedSet { model, level, shifts, ln_share } = set;
+        let &NamedSet { model, level, shifts, ln_share, .. } = set;
         let prior = scorer.ln_prior(model) + ln_share;
-        for small_effects_scale in AGNOSTIC_SPIKES {
+        for small_effects_scale in library.agnostic_spikes.into_iter().take(set.spikes) {
             let Some(under) =
                 with_small_effects(stacked, library, level, &model.columns, small_effects_scale)
             else {
@@ -245,7 +253,8 @@ fn with_small_effects<'a>(
     let smooth_amplitude = stacked.clean_smooth_amplitude();
     if smooth_amplitude > 0.0 {
         out.extend(design.effects..first_block);
-        deviations.extend(vec![smooth_amplitude; design.smooth.len()]);
+        let deviation = design.smooth_deviation(smooth_amplitude);
+        deviations.extend(vec![deviation; design.smooth.len()]);
     }
     let own: Vec<usize> = columns.iter().copied().chain([residual]).collect();
     let mut with_small_effects = match changed {

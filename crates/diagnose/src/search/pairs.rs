@@ -15,6 +15,8 @@ use crate::priors::NOISE_FREEDOM;
 const NEGLIGIBLE: f64 = 40.0;
 /// Largest gain of two signs, ln 2 each.
 const SIGNS: f64 = 2.0 * core::f64::consts::LN_2;
+/// Prior scales that count for every column of a pair: all but the thin tail.
+const USUAL_SCALES: usize = 2;
 /// Backgrounds to a step.
 const WIDTH: usize = 8;
 
@@ -45,14 +47,26 @@ struct Terms {
     step: usize,
 }
 
-/// Every pair of columns of different effects that is not negligible against `best`, the ln weight of the best smaller model.
+/// What the search over smaller models leaves to that over pairs.
+#[derive(Clone, Copy)]
+pub(crate) struct Context<'a> {
+    /// Backgrounds in which the drag table is uncertain.
+    pub(crate) uncertain_table: &'a [bool],
+    /// Columns whose size is far beyond the usual: of these alone the thin tail of the prior counts in a pair.
+    pub(crate) large: &'a [bool],
+    /// The ln weight of the best smaller model.
+    pub(crate) best: f64,
+}
+
+/// Every pair of columns of different effects that is not negligible against the best smaller model.
 pub(crate) fn search(
     scorer: &Scorer,
     backgrounds: &[Background],
-    best: f64,
+    Context { uncertain_table, large, best }: Context<'_>,
 ) -> Vec<ScoredHypothesis> {
-    let columns: Vec<Vec<Column>> =
-        (0..scorer.columns()).map(|column| scales(scorer, backgrounds, column)).collect();
+    let columns: Vec<Vec<Column>> = (0..scorer.columns())
+        .map(|column| scales(scorer, backgrounds, column, large[column]))
+        .collect();
     let mut best = best;
     let mut models = Vec::new();
     let mut scratch = Scratch::new(scorer, backgrounds);
@@ -63,7 +77,7 @@ pub(crate) fn search(
                 continue;
             }
             let model = Hypothesis { columns: vec![a, b], flight_scatter_percent: None };
-            let prior = scorer.ln_prior(&model) - (backgrounds.len() as f64).ln();
+            let prior = scorer.ln_prior(&model);
             let by_prior = (prior / scorer.power()).exp();
             for (place, at) in backgrounds.iter().enumerate() {
                 scratch.cross[place / WIDTH][place % WIDTH] = at.gram(a, b);
@@ -77,7 +91,7 @@ pub(crate) fn search(
                 }
             }
             let signs = [scorer.priors[a].sign, scorer.priors[b].sign];
-            if let Some(scored) = scratch.scored(model, signs) {
+            if let Some(scored) = scratch.scored(model, signs, uncertain_table) {
                 if scored.ln_weight > best {
                     best = scored.ln_weight;
                     scratch.limit(best - NEGLIGIBLE);
@@ -98,9 +112,15 @@ fn lanes(backgrounds: &[Background], rest: f64, of: impl Fn(&Background) -> f64)
     all
 }
 
-fn scales(scorer: &Scorer, backgrounds: &[Background], column: usize) -> Vec<Column> {
+fn scales(
+    scorer: &Scorer,
+    backgrounds: &[Background],
+    column: usize,
+    is_large: bool,
+) -> Vec<Column> {
     let prior = &scorer.priors[column];
-    prior.scales[..prior.count]
+    let count = if is_large { prior.count } else { prior.count.min(USUAL_SCALES) };
+    prior.scales[..count]
         .iter()
         .map(|&(deviation, ln_share)| {
             let precision = 1.0 / (deviation * deviation);
@@ -123,7 +143,7 @@ struct Scratch {
     cross: Vec<Lanes>,
     /// ν0 + q without any effect; infinite where there is no background.
     squares: Vec<Lanes>,
-    /// −½ ln of each background's determinant.
+    /// −½ ln of each background's determinant, and ln of its prior.
     ln_determinants: Vec<Lanes>,
     /// ν0 + q beyond which a term with prior 1 is negligible.
     limits: Vec<Lanes>,
@@ -137,7 +157,7 @@ impl Scratch {
             power: scorer.power(),
             freedom: NOISE_FREEDOM + scorer.rows,
             cross: vec![[0.0; WIDTH]; squares.len()],
-            ln_determinants: lanes(backgrounds, 0.0, |at| -0.5 * at.ln_determinant),
+            ln_determinants: lanes(backgrounds, 0.0, |at| at.ln_prior - 0.5 * at.ln_determinant),
             limits: vec![[0.0; WIDTH]; squares.len()],
             terms: Vec::with_capacity(4 * squares.len()),
             squares,
@@ -201,7 +221,12 @@ impl Scratch {
     }
 
     /// The mixture of all terms; `None` where none was kept.
-    fn scored(&mut self, model: Hypothesis, signs: [EffectSign; 2]) -> Option<ScoredHypothesis> {
+    fn scored(
+        &mut self,
+        model: Hypothesis,
+        signs: [EffectSign; 2],
+        uncertain_table: &[bool],
+    ) -> Option<ScoredHypothesis> {
         let largest =
             self.terms.iter().flat_map(|terms| terms.ln).fold(f64::NEG_INFINITY, f64::max);
         if largest == f64::NEG_INFINITY {
@@ -251,7 +276,10 @@ impl Scratch {
         });
         let background =
             (0..flat.len()).reduce(|best, k| if flat[k] > flat[best] { k } else { best });
+        let with_table: f64 =
+            flat.iter().zip(uncertain_table).filter(|(_, is)| **is).map(|(weight, _)| weight).sum();
         Some(ScoredHypothesis {
+            table_share: with_table / total,
             model,
             ln_weight: largest + total.ln(),
             sizes: sizes.to_vec(),
@@ -273,8 +301,12 @@ mod tests {
         let columns = 4;
         let prior = |mean: f64, deviation: f64, sign: EffectSign| Prior {
             mean,
-            scales: [(deviation, 0.5_f64.ln()), (3.0 * deviation, 0.5_f64.ln())],
-            count: 2,
+            scales: [
+                (deviation, 0.45_f64.ln()),
+                (3.0 * deviation, 0.45_f64.ln()),
+                (10.0 * deviation, 0.1_f64.ln()),
+            ],
+            count: 3,
             sign,
         };
         let scorer = Scorer {
@@ -287,6 +319,7 @@ mod tests {
             effect_of: vec![0, 1, 2, 2],
             ln_columns: vec![0.0, 0.0, 2.0_f64.ln()],
             effects: 3,
+            held: vec![false; 3],
             rows: 60.0,
         };
         let background = |small_effects_scale: f64| {
@@ -310,19 +343,25 @@ mod tests {
             let mut at =
                 Background::small(&matrix, &[0, 1, 2, 3], columns, 3.0 * small_effects_scale);
             at.small_effects_scale = small_effects_scale;
+            at.ln_prior = if small_effects_scale > 0.0 { 0.4_f64.ln() } else { 0.6_f64.ln() };
             at
         };
         let backgrounds = [background(0.0), background(0.3)];
-        let found = search(&scorer, &backgrounds, f64::NEG_INFINITY);
+        let context =
+            Context { uncertain_table: &[false, true], large: &[true; 4], best: f64::NEG_INFINITY };
+        let found = search(&scorer, &backgrounds, context);
         assert_eq!(found.len(), 5, "the two columns of one effect make no pair");
         for scored in &found {
             let (a, b) = (scored.model.columns[0], scored.model.columns[1]);
-            let prior = scorer.ln_prior(&scored.model) - 2.0_f64.ln();
+            let prior = scorer.ln_prior(&scored.model);
             let mut sum = Mixture::<2>::new();
             for at in &backgrounds {
                 let one = scorer.two(at, [a, b], [0.0; 2]);
-                sum.add(one.ln + prior, one.sizes, one.deviations);
+                sum.add(one.ln + prior + at.ln_prior, one.sizes, one.deviations);
             }
+            let last = scorer.two(&backgrounds[1], [a, b], [0.0; 2]).ln + prior;
+            let share = (last + backgrounds[1].ln_prior - sum.mean().ln).exp();
+            assert!((scored.table_share - share).abs() < 1e-10, "{a} {b}");
             let mean = sum.mean();
             assert!((scored.ln_weight - mean.ln).abs() < 1e-10, "{a} {b}");
             for k in 0..2 {
@@ -332,7 +371,10 @@ mod tests {
         }
         // Only what is negligible against a better model is left out.
         let best = found.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
-        assert!(search(&scorer, &backgrounds, best + 2.0 * NEGLIGIBLE).is_empty());
-        assert_eq!(search(&scorer, &backgrounds, best).len(), found.len());
+        assert!(
+            search(&scorer, &backgrounds, Context { best: best + 2.0 * NEGLIGIBLE, ..context })
+                .is_empty()
+        );
+        assert_eq!(search(&scorer, &backgrounds, Context { best, ..context }).len(), found.len());
     }
 }

@@ -6,15 +6,15 @@
 use effects::{EffectModel, Effects, Trial};
 use faer::{Mat, MatMut, MatRef};
 
-use crate::hypotheses::backgrounds::Background;
+use crate::hypotheses::backgrounds::{Background, TableBelief};
 use crate::hypotheses::evidence::{ScoredHypothesis, Scorer};
 use crate::library::Library;
 use crate::math::eliminate::Changed;
-use crate::math::mixture::Mixture;
 use crate::residuals::rows::FlightRows;
 use crate::residuals::signatures::Difference;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::search::folds::fold_of;
+use crate::search::singles::Sum;
 use crate::search::system::{EliminatedGrams, Problem, SmoothTerms, WhitenedSystem};
 use crate::signals::channels::MAXIMUM_CHANNELS;
 
@@ -144,40 +144,26 @@ fn score_everywhere(
     let all: Vec<Background> = space
         .smoothed
         .iter()
-        .flat_map(|under| under.changed(library, columns, &followed[under.scatter()], |_| true))
+        .flat_map(|under| under.changed(library, columns, &followed[under.level()], |_| true))
         .collect();
-    let prior = scorer.ln_prior(&start.model) - (all.len() as f64).ln();
-    let mut best = (f64::NEG_INFINITY, 0);
-    let mut note = |k: usize, ln: f64| {
-        if ln > best.0 {
-            best = (ln, k);
-        }
-    };
-    let (ln_weight, sizes, deviations) = if let [a, b] = columns[..] {
-        let mut sum = Mixture::<2>::new();
+    let prior = scorer.ln_prior(&start.model);
+    let uncertain = |at: &Background| space.beliefs[at.level] == TableBelief::Uncertain;
+    let scored = if let [a, b] = columns[..] {
+        let mut sum = Sum::<2>::new();
         for (k, at) in all.iter().enumerate() {
-            let one = scorer.two(at, [a, b], [shifts[0], shifts[1]]);
-            note(k, one.ln);
-            sum.add(one.ln + prior, one.sizes, one.deviations);
+            let mut one = scorer.two(at, [a, b], [shifts[0], shifts[1]]);
+            one.ln += prior + at.ln_prior;
+            sum.add(k, one, uncertain(at));
         }
-        let mean = sum.mean();
-        (mean.ln, mean.sizes.to_vec(), mean.deviations.to_vec())
+        sum.scored(start.model.clone())
     } else {
-        let mut sum = Mixture::<1>::new();
+        let mut sum = Sum::<1>::new();
         for (k, at) in all.iter().enumerate() {
-            let one = scorer.one(at, columns[0], shifts[0]);
-            note(k, one.ln);
-            sum.add(one.ln + prior, one.sizes, one.deviations);
+            let mut one = scorer.one(at, columns[0], shifts[0]);
+            one.ln += prior + at.ln_prior;
+            sum.add(k, one, uncertain(at));
         }
-        let mean = sum.mean();
-        (mean.ln, mean.sizes.to_vec(), mean.deviations.to_vec())
-    };
-    let scored = ScoredHypothesis {
-        model: start.model.clone(),
-        ln_weight,
-        sizes,
-        deviations,
-        background: best.1,
+        sum.scored(start.model.clone())
     };
     Relinearised { scored, changed: followed, shifts }
 }
@@ -191,7 +177,7 @@ fn estimate(
 ) -> Option<Vec<f64>> {
     let Rescoring { library, scorer, space } = rescoring;
     let under = space.smoothed.iter().find(|under| under.is_of(run.at))?;
-    let followed = space.levels[under.scatter()].follow(changed.clone(), levels);
+    let followed = space.levels[under.level()].follow(changed.clone(), levels);
     let columns = &run.start.model.columns;
     let small_effects_scale = |small_effects_scale: f64| {
         small_effects_scale.total_cmp(&run.at.small_effects_scale).is_eq()

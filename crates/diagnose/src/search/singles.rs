@@ -3,6 +3,11 @@
 use crate::hypotheses::backgrounds::{Background, Diagonal};
 use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, Single};
 use crate::math::mixture::{Evidence, Mixture, ln_sum};
+use crate::priors::PRIOR_NO_GAP;
+use crate::search::pairs::{self, Context};
+
+/// Size over the least prior scale beyond which the thin tail of the prior counts in pairs: there it holds a tenth of the density.
+const LARGE: f64 = 4.0;
 
 /// All models with their scores.
 #[derive(Clone, Debug)]
@@ -12,46 +17,75 @@ pub(crate) struct Search {
     pub(crate) ln_clean: f64,
 }
 
-/// Every model of at most `largest` effects. `is_nothing` is true for backgrounds that do not count as a finding.
+/// Backgrounds that do not count as a finding, and those in which the drag table is uncertain.
+pub(crate) struct Kinds {
+    pub(crate) nothing: Vec<bool>,
+    pub(crate) uncertain_table: Vec<bool>,
+}
+
+/// Every model of at most `largest` effects.
 pub(crate) fn search_all(
     scorer: &Scorer,
     backgrounds: &[Background],
     largest: usize,
-    is_nothing: impl Fn(&Background) -> bool,
+    kinds: &Kinds,
 ) -> Search {
-    let ln_background = -(backgrounds.len() as f64).ln();
     let columns = scorer.priors.len();
     let mut models = Vec::new();
     let mut ln_clean = f64::NEG_INFINITY;
 
     let none = Hypothesis { columns: vec![], flight_scatter_percent: None };
-    let prior = scorer.ln_prior(&none) + ln_background;
-    let mut sum = Mixture::<0>::new();
-    let mut best = (f64::NEG_INFINITY, 0);
+    let prior = scorer.ln_prior(&none);
+    let beliefs = no_effect_beliefs(backgrounds, kinds);
+    let mut sum = Sum::<0>::new();
     for (k, at) in backgrounds.iter().enumerate() {
-        let ln = scorer.none(at) + prior;
-        if is_nothing(at) {
+        let ln = scorer.none(at) + prior + beliefs[k];
+        if kinds.nothing[k] {
             ln_clean = ln_sum([ln_clean, ln]);
         }
-        best = if ln > best.0 { (ln, k) } else { best };
-        sum.add(ln, [], []);
+        sum.add(k, Evidence { ln, sizes: [], deviations: [] }, kinds.uncertain_table[k]);
     }
-    models.push(scored(none, &sum, best.1));
+    models.push(sum.scored(none));
 
     for column in 0..columns {
         let model = Hypothesis { columns: vec![column], flight_scatter_percent: None };
-        let prior = scorer.ln_prior(&model) + ln_background;
-        models.push(over(backgrounds, model, |at| {
+        let prior = scorer.ln_prior(&model);
+        let mut sum = Sum::<1>::new();
+        for (k, at) in backgrounds.iter().enumerate() {
             let mut evidence = scorer.one(at, column, 0.0);
-            evidence.ln += prior;
-            evidence
-        }));
+            evidence.ln += prior + at.ln_prior;
+            sum.add(k, evidence, kinds.uncertain_table[k]);
+        }
+        models.push(sum.scored(model));
     }
     if largest >= 2 {
         let best = models.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
-        models.extend(crate::search::pairs::search(scorer, backgrounds, best));
+        let large: Vec<bool> = models[1..=columns]
+            .iter()
+            .zip(&scorer.priors)
+            .map(|(single, prior)| (single.sizes[0] - prior.mean).abs() > LARGE * prior.scales[0].0)
+            .collect();
+        let context = Context { uncertain_table: &kinds.uncertain_table, large: &large, best };
+        models.extend(pairs::search(scorer, backgrounds, context));
     }
     Search { models, ln_clean }
+}
+
+/// ln prior of every background for no effect: that there is no gap is a belief of its own, and shares nothing with the
+/// backgrounds in which small faults act.
+fn no_effect_beliefs(backgrounds: &[Background], kinds: &Kinds) -> Vec<f64> {
+    let total = |nothing: bool| {
+        let own = backgrounds.iter().zip(&kinds.nothing).filter(|(_, is)| **is == nothing);
+        ln_sum(own.map(|(at, _)| at.ln_prior))
+    };
+    let (of_nothing, of_rest) = (total(true), total(false));
+    if of_nothing == f64::NEG_INFINITY || of_rest == f64::NEG_INFINITY {
+        return backgrounds.iter().map(|at| at.ln_prior).collect();
+    }
+    let nothing = PRIOR_NO_GAP.ln() - of_nothing;
+    let rest = (1.0 - PRIOR_NO_GAP).ln() - of_rest;
+    let all = backgrounds.iter().zip(&kinds.nothing);
+    all.map(|(at, is)| at.ln_prior + if *is { nothing } else { rest }).collect()
 }
 
 /// Models with flight-to-flight scatter: alone and with one effect.
@@ -60,64 +94,72 @@ pub(crate) fn search_flight_scatter(
     backgrounds: &[Diagonal],
     percent: f64,
 ) -> Vec<ScoredHypothesis> {
-    let ln_background = -(backgrounds.len() as f64).ln();
     let mut models = Vec::new();
     let alone = Hypothesis { columns: vec![], flight_scatter_percent: Some(percent) };
-    let prior = scorer.ln_prior(&alone) + ln_background;
-    models.push(over(backgrounds, alone, |at| Evidence {
-        ln: scorer.nothing(at.square, at.ln_determinant) + prior,
-        sizes: [],
-        deviations: [],
-    }));
+    let prior = scorer.ln_prior(&alone);
+    let mut sum = Sum::<0>::new();
+    for (k, at) in backgrounds.iter().enumerate() {
+        let ln = scorer.nothing(at.square, at.ln_determinant) + prior + at.ln_prior;
+        sum.add(k, Evidence { ln, sizes: [], deviations: [] }, true);
+    }
+    models.push(sum.scored(alone));
     for column in 0..scorer.priors.len() {
         let model = Hypothesis { columns: vec![column], flight_scatter_percent: Some(percent) };
-        let prior = scorer.ln_prior(&model) + ln_background;
-        models.push(over(backgrounds, model, |at| {
-            let mut evidence = scorer.single(
-                Single {
-                    gram: at.gram[column],
-                    product: at.product[column],
-                    square: at.square,
-                    ln_determinant: at.ln_determinant,
-                },
-                column,
-                0.0,
-            );
-            evidence.ln += prior;
-            evidence
-        }));
+        let prior = scorer.ln_prior(&model);
+        let mut sum = Sum::<1>::new();
+        for (k, at) in backgrounds.iter().enumerate() {
+            let single = Single {
+                gram: at.gram[column],
+                product: at.product[column],
+                square: at.square,
+                ln_determinant: at.ln_determinant,
+            };
+            let mut evidence = scorer.single(single, column, 0.0);
+            evidence.ln += prior + at.ln_prior;
+            sum.add(k, evidence, true);
+        }
+        models.push(sum.scored(model));
     }
     models
 }
 
-fn over<B, const K: usize>(
-    backgrounds: &[B],
-    model: Hypothesis,
-    evidence: impl Fn(&B) -> Evidence<K>,
-) -> ScoredHypothesis {
-    let mut sum = Mixture::<K>::new();
-    let mut best = (f64::NEG_INFINITY, 0);
-    for (k, at) in backgrounds.iter().enumerate() {
-        let one = evidence(at);
-        if one.ln > best.0 {
-            best = (one.ln, k);
-        }
-        sum.add(one.ln, one.sizes, one.deviations);
-    }
-    scored(model, &sum, best.1)
+/// One model over all backgrounds.
+pub(crate) struct Sum<const K: usize> {
+    mixture: Mixture<K>,
+    best: (f64, usize),
+    ln_uncertain_table: f64,
 }
 
-fn scored<const K: usize>(
-    model: Hypothesis,
-    sum: &Mixture<K>,
-    background: usize,
-) -> ScoredHypothesis {
-    let mean = sum.mean();
-    ScoredHypothesis {
-        model,
-        ln_weight: mean.ln,
-        sizes: mean.sizes.to_vec(),
-        deviations: mean.deviations.to_vec(),
-        background,
+impl<const K: usize> Sum<K> {
+    pub(crate) const fn new() -> Self {
+        let nothing = f64::NEG_INFINITY;
+        Self { mixture: Mixture::new(), best: (nothing, 0), ln_uncertain_table: nothing }
+    }
+
+    /// Adds the evidence in a background, prior included.
+    pub(crate) fn add(&mut self, background: usize, one: Evidence<K>, uncertain_table: bool) {
+        if one.ln > self.best.0 {
+            self.best = (one.ln, background);
+        }
+        if uncertain_table {
+            self.ln_uncertain_table = ln_sum([self.ln_uncertain_table, one.ln]);
+        }
+        self.mixture.add(one.ln, one.sizes, one.deviations);
+    }
+
+    pub(crate) fn scored(&self, model: Hypothesis) -> ScoredHypothesis {
+        let mean = self.mixture.mean();
+        ScoredHypothesis {
+            model,
+            ln_weight: mean.ln,
+            sizes: mean.sizes.to_vec(),
+            deviations: mean.deviations.to_vec(),
+            background: self.best.1,
+            table_share: if mean.ln > f64::NEG_INFINITY {
+                (self.ln_uncertain_table - mean.ln).exp().min(1.0)
+            } else {
+                0.0
+            },
+        }
     }
 }

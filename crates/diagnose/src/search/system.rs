@@ -4,15 +4,18 @@ use faer::Mat;
 
 use effects::EffectModel;
 
-use crate::hypotheses::backgrounds::{Background, Smoothed, without_nuisance};
+use crate::hypotheses::backgrounds::{Background, Level, Smoothed, TableBelief, without_nuisance};
 use crate::hypotheses::design::Design;
 use crate::library::Library;
 use crate::math::eliminate::{Changed, Elimination, Reduced};
 use crate::math::gram::{Gram, Sum};
 use crate::math::linear::{gather, subtract_gram, symmetrize};
-use crate::priors::{TAUGHT_LARGEST_AMPLITUDE, TAUGHT_SCATTERS};
+use crate::priors::{
+    BOOK_AMPLITUDES, BOOK_SCATTERS, PRIOR_BOOK_RIGHT, TAUGHT_LARGEST_AMPLITUDE, TAUGHT_SCATTERS,
+};
 use crate::residuals::segments::PreparedFlights;
 use crate::search::folds::{Folds, fold_of};
+use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
 use crate::thresholds::{CLOSURE_FOLDS, TAUGHT_CLEAN_AMPLITUDE, TAUGHT_CLEAN_SPIKE};
 
 /// Whitened rows are kept in memory up to this many numbers (64 MB); beyond they are made again.
@@ -26,10 +29,10 @@ pub(crate) struct WhitenedSystem<'a> {
     folds: Folds,
     pub(crate) weights: Option<Vec<f64>>,
     kept: Option<Vec<Mat<f64>>>,
-    /// Levels of scatter between flights that are integrated over, relative.
-    pub(crate) scatters: Vec<f64>,
+    /// What is assumed of all flights at once, integrated over.
+    pub(crate) levels: Vec<Level>,
     /// Of each flight: products of all columns with its own fuel-flow level, for flight-to-flight scatter.
-    levels: Vec<Vec<f64>>,
+    flight_levels: Vec<Vec<f64>>,
 }
 
 /// What every step of the search works on: the linear system, the model behind it, the effects that are looked for.
@@ -53,9 +56,6 @@ impl<'a> WhitenedSystem<'a> {
         design: &'a Design<'a>,
         weights: Option<Vec<f64>>,
     ) -> Self {
-        // What a baseline says of the scatter between flights comes from few flights: it may be more.
-        let scatters =
-            if data.predictor.baseline.is_some() { TAUGHT_SCATTERS.to_vec() } else { vec![0.0] };
         let rows = data.segments.len() * data.channels.count() + data.flights.len();
         let keep = rows * design.columns <= KEPT_NUMBERS;
         let kept = keep.then(|| {
@@ -71,8 +71,8 @@ impl<'a> WhitenedSystem<'a> {
             folds: Folds::default(),
             weights,
             kept,
-            scatters,
-            levels: Vec::with_capacity(data.flights.len()),
+            levels: levels(data, design),
+            flight_levels: Vec::with_capacity(data.flights.len()),
         };
         let mut sum = Sum::new(design.columns);
         for index in 0..data.flights.len() {
@@ -81,7 +81,7 @@ impl<'a> WhitenedSystem<'a> {
             let products = rows.transpose() * rows.col(design.smooth.start);
             let level = products.iter().copied().collect();
             drop(rows);
-            stacked.levels.push(level);
+            stacked.flight_levels.push(level);
         }
         stacked.gram = sum.finish();
         stacked
@@ -109,23 +109,39 @@ impl<'a> WhitenedSystem<'a> {
         if self.data.predictor.baseline.is_some() { TAUGHT_CLEAN_AMPLITUDE } else { 0.0 }
     }
 
-    /// A level of scatter between flights, relative.
+    /// Whether the table is a guide's that may be off or right.
+    pub(crate) fn is_book(&self) -> bool {
+        is_book(self.design)
+    }
+
+    /// Scatter between flights at a level, relative.
     pub(crate) fn scatter(&self, level: usize) -> f64 {
-        self.scatters.get(level).copied().unwrap_or(0.0)
+        self.levels.get(level).map_or(0.0, |level| level.scatter)
+    }
+
+    /// What a background believes of the table.
+    pub(crate) fn belief(&self, at: &Background) -> TableBelief {
+        self.levels.get(at.level).map_or(TableBelief::Uncertain, |level| level.table)
     }
 
     /// Whether a smooth discrepancy of this amplitude is among the backgrounds.
     pub(crate) fn admits(&self, smooth_amplitude: f64) -> bool {
+        if self.is_book() {
+            return BOOK_AMPLITUDES.contains(&smooth_amplitude);
+        }
         self.data.predictor.baseline.is_none() || smooth_amplitude <= TAUGHT_LARGEST_AMPLITUDE
     }
 
-    /// Whether a background without a named effect is no finding: nothing at all against a table; against a taught
+    /// Whether a background without a named effect is no finding: nothing at all against a table, a guide's being right;
+    /// against a taught
     /// remainder, small amounts of every other effect too. A smooth discrepancy is one: it has an amplitude for each of
     /// some thirty functions, and together they hide most of a per cent.
     pub(crate) fn is_nothing(&self, at: &Background) -> bool {
         let small_effects_scale =
             if self.data.predictor.baseline.is_some() { TAUGHT_CLEAN_SPIKE } else { 0.0 };
-        at.smooth_amplitude == 0.0 && at.small_effects_scale <= small_effects_scale
+        at.smooth_amplitude == 0.0
+            && at.small_effects_scale <= small_effects_scale
+            && (!self.is_book() || self.belief(at) == TableBelief::Right)
     }
 
     /// Whitened rows of a flight.
@@ -174,10 +190,10 @@ impl<'a> WhitenedSystem<'a> {
         relative: f64,
         without: Option<usize>,
     ) -> (Scatter, f64) {
-        let mut scaled = Mat::<f64>::zeros(columns.len(), self.levels.len());
-        let mut roots = vec![0.0; self.levels.len()];
+        let mut scaled = Mat::<f64>::zeros(columns.len(), self.flight_levels.len());
+        let mut roots = vec![0.0; self.flight_levels.len()];
         let mut ln_determinant = 0.0;
-        for (flight, level) in self.levels.iter().enumerate() {
+        for (flight, level) in self.flight_levels.iter().enumerate() {
             if Some(fold_of(flight)) == without {
                 continue;
             }
@@ -202,31 +218,55 @@ impl<'a> WhitenedSystem<'a> {
         (0..end).chain([self.design.residual()]).collect()
     }
 
-    /// The Gram without nuisance, with this much scatter between flights, relative.
+    /// The Gram without nuisance at a level.
     pub(crate) fn level(
         &self,
         gram: &Gram,
-        relative: f64,
+        at: Level,
         without: Option<usize>,
         smooth_terms: SmoothTerms,
     ) -> Option<(ScatterElimination, Reduced)> {
         let columns = self.columns_of(smooth_terms);
-        if relative == 0.0 && smooth_terms == SmoothTerms::Kept {
-            let (elimination, reduced) = without_nuisance(&gram.matrix, self.design)?;
+        if at.scatter == 0.0 && smooth_terms == SmoothTerms::Kept {
+            let (elimination, reduced) = without_nuisance(&gram.matrix, self.design, at.table)?;
             return Some((ScatterElimination { scatter: None, elimination }, reduced));
         }
         let mut matrix = gather(&gram.matrix, &columns, &columns);
-        if relative == 0.0 {
-            let (elimination, reduced) = without_nuisance(&matrix, self.design)?;
+        if at.scatter == 0.0 {
+            let (elimination, reduced) = without_nuisance(&matrix, self.design, at.table)?;
             return Some((ScatterElimination { scatter: None, elimination }, reduced));
         }
-        let (scatter, ln_determinant) = self.scatter_of(&columns, relative, without);
+        let (scatter, ln_determinant) = self.scatter_of(&columns, at.scatter, without);
         subtract_gram(&mut matrix, &scatter.scaled);
         symmetrize(&mut matrix);
-        let (elimination, mut reduced) = without_nuisance(&matrix, self.design)?;
+        let (elimination, mut reduced) = without_nuisance(&matrix, self.design, at.table)?;
         reduced.ln_determinant += ln_determinant;
         Some((ScatterElimination { scatter: Some(scatter), elimination }, reduced))
     }
+}
+
+fn is_book(design: &Design<'_>) -> bool {
+    design.table().map(TableUncertainty::origin) == Some(TableOrigin::Book)
+}
+
+/// What is assumed of all flights at once: a guide's table is right or uncertain; what a baseline says of the scatter between
+/// flights comes from few flights, so that it may be more.
+fn levels(data: &PreparedFlights<'_>, design: &Design<'_>) -> Vec<Level> {
+    let uncertain = TableBelief::Uncertain;
+    if data.predictor.baseline.is_some() {
+        let ln_prior = -(TAUGHT_SCATTERS.len() as f64).ln();
+        let level = |scatter| Level { scatter, table: uncertain, ln_prior };
+        return TAUGHT_SCATTERS.map(level).to_vec();
+    }
+    let level = |table, prior: f64| Level { scatter: 0.0, table, ln_prior: prior.ln() };
+    if is_book(design) {
+        // What is no function of lift coefficient and Mach number scatters between flights.
+        let off = (1.0 - PRIOR_BOOK_RIGHT) / BOOK_SCATTERS.len() as f64;
+        let uncertain = |scatter| Level { scatter, ..level(uncertain, off) };
+        let right = level(TableBelief::Right, PRIOR_BOOK_RIGHT);
+        return core::iter::once(right).chain(BOOK_SCATTERS.map(uncertain)).collect();
+    }
+    vec![level(uncertain, 1.0)]
 }
 
 /// What scatter between flights takes off a Gram: `[diagnosis.20]`.
@@ -256,8 +296,10 @@ impl ScatterElimination {
     }
 }
 
-/// Grams without nuisance at every level of scatter, and every smooth discrepancy over them: where columns that change follow.
+/// Grams without nuisance at every level, and every smooth discrepancy over them: where columns that change follow.
 pub(crate) struct EliminatedGrams {
+    /// What each level believes of the table.
+    pub(crate) beliefs: Vec<TableBelief>,
     pub(crate) levels: Vec<ScatterElimination>,
     pub(crate) reduced: Vec<Reduced>,
     pub(crate) smoothed: Vec<Smoothed>,

@@ -17,16 +17,30 @@ const MAXIMUM_NUMBERS: usize = 16_000_000;
 /// Share of a node's variance that may be left out: 3 % of its standard deviation.
 const NEGLIGIBLE_SHARE: f64 = 1e-3;
 
+/// Where the uncertainty of a drag table comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableOrigin {
+    /// A guide, before any flight: what is believed of its drag. It may be right as it is.
+    Book,
+    /// What flights have left open.
+    Learnt,
+}
+
 /// Uncertainty of a drag table: a factor of the covariance of its nodes' relative errors, one row per node.
 ///
 /// The covariance is `factor · factorᵀ`; a diagonal one (node standard deviations alone) has as many columns as nodes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TableUncertainty {
     grid: Arc<Grid>,
+    origin: TableOrigin,
     rank: usize,
     factor: Vec<f64>,
     /// Largest share of a visited node's variance that the factor leaves out; `None` where it has all nodes.
     missing_share: Option<f64>,
+    /// Nodes whose columns of the covariance the factor is made of, in order; none where it has all nodes.
+    pivots: Vec<usize>,
+    /// Variance of each node that the factor leaves out; none where it has all nodes.
+    left: Vec<f64>,
 }
 
 /// Why numbers are not the uncertainty of a table.
@@ -71,7 +85,15 @@ impl TableUncertainty {
         if let Some(index) = factor.iter().position(|value| !value.is_finite()) {
             return Err(TableUncertaintyError::NotFinite { index });
         }
-        Ok(Self { grid, rank, factor, missing_share: None })
+        Ok(Self {
+            grid,
+            origin: TableOrigin::Learnt,
+            rank,
+            factor,
+            missing_share: None,
+            pivots: vec![],
+            left: vec![],
+        })
     }
 
     /// From the covariance of the nodes' relative errors, row by row.
@@ -127,6 +149,7 @@ impl TableUncertainty {
         let largest_rank = MAXIMUM_RANK.min(MAXIMUM_NUMBERS / nodes.max(1)).max(1);
         let mut left = variances.to_vec();
         let mut columns: Vec<Vec<f64>> = Vec::new();
+        let mut pivots = Vec::new();
         let share_left = |left: &[f64], node: usize| left[node] / variances[node];
         loop {
             let open =
@@ -153,6 +176,7 @@ impl TableUncertainty {
             }
             left[pivot] = 0.0;
             columns.push(next);
+            pivots.push(pivot);
         }
         let missing_share = visited.iter().map(|&node| share_left(&left, node)).fold(0.0, f64::max);
         let rank = columns.len();
@@ -162,7 +186,20 @@ impl TableUncertainty {
                 factor[node * rank + k] = value;
             }
         }
-        Ok(Self { missing_share: Some(missing_share), ..Self::new(grid, rank, factor)? })
+        let missing_share = Some(missing_share);
+        Ok(Self { missing_share, pivots, left, ..Self::new(grid, rank, factor)? })
+    }
+
+    /// The same as what is believed of a guide before any flight.
+    #[must_use]
+    pub fn of_book(self) -> Self {
+        Self { origin: TableOrigin::Book, ..self }
+    }
+
+    /// Where it comes from.
+    #[must_use]
+    pub const fn origin(&self) -> TableOrigin {
+        self.origin
     }
 
     /// Largest share of a visited node's variance that the columns leave out; `None` where the covariance of all nodes is
@@ -170,6 +207,22 @@ impl TableUncertainty {
     #[must_use]
     pub const fn missing_share(&self) -> Option<f64> {
         self.missing_share
+    }
+
+    /// The nodes that [`from_columns`](Self::from_columns) chose, in the order in which it chose them; of these alone it
+    /// makes the same factor again.
+    #[must_use]
+    pub fn pivots(&self) -> &[usize] {
+        &self.pivots
+    }
+
+    /// Variance of the relative error at a point that the factor leaves out: the nodes that nobody visits.
+    pub(crate) fn left_out(&self, response: &Response) -> f64 {
+        let (lift, mach) = (response.lift_coefficient, response.mach);
+        let Ok(cell) = self.grid.locate(lift, mach, Outside::Hold) else { return 0.0 };
+        let corners = cell.nodes().into_iter().zip(cell.weights());
+        let deviation = |node: usize| self.left.get(node).copied().unwrap_or(0.0).sqrt();
+        corners.map(|(node, weight)| weight * deviation(node)).sum::<f64>().powi(2)
     }
 
     /// Covariance of two nodes' relative errors.

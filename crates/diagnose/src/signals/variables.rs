@@ -222,13 +222,6 @@ impl Hats {
         into[index + 1] += upper;
     }
 
-    /// How far a value lies below the first and above the last knot, in mean knot distances: where nothing was learnt.
-    pub(crate) fn beyond(&self, value: f64) -> [f64; 2] {
-        let (first, last) = (self.knots[0], self.knots[self.knots.len() - 1]);
-        let distance = (last - first) / (self.knots.len() - 1) as f64;
-        [((first - value) / distance).max(0.0), ((value - last) / distance).max(0.0)]
-    }
-
     /// Interval that holds a value, and how far up in it the value lies; held at the ends.
     fn place(&self, value: f64) -> (usize, f64) {
         let last = self.knots.len() - 1;
@@ -283,9 +276,6 @@ mod tests {
         assert!(sums.iter().all(|sum| sum.abs() < 1e-14));
         hats.write(6.0, &mut row);
         assert!((row[1] + hats.means[1] - 0.8).abs() < 1e-15);
-        let mut beyond = [0.0; 3];
-        hats.write(1e9, &mut beyond);
-        assert!((beyond[2] + hats.means[2] - 1.0).abs() < 1e-15);
     }
 
     #[test]

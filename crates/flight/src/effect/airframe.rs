@@ -167,3 +167,20 @@ pub(super) const AIRFRAME_AGEING: EffectEntry = EffectEntry {
         negative: "zero-lift drag that falls with age",
     },
 };
+
+/// The whole drag table off: a smooth function of lift coefficient and Mach number. A table over these two variables can hold it.
+pub(super) const DRAG_TABLE: EffectEntry = EffectEntry {
+    name: "drag_table",
+    group: EffectGroup::Airframe,
+    unit: "% rms",
+    typical: TypicalSize::Absolute(4.0),
+    sign: EffectSign::Spread,
+    needs: &[],
+    hidden: HiddenParameter::None,
+    driven_by: &[DrivingVariable::LiftCoefficient, DrivingVariable::Mach],
+    perturbation: "CD·(1 + f(CL, M)), f smooth as law bayes has it",
+    phrase: Phrase {
+        positive: "the drag table is off by a smooth function of lift coefficient and Mach number",
+        negative: "the drag table is off by a smooth function of lift coefficient and Mach number",
+    },
+};

@@ -57,6 +57,15 @@ pub struct AircraftFile {
         serialize_with = "limits::serialize_optional"
     )]
     pub reference_lhv_mj_kg: Option<f64>,
+    /// How far the drag of the guide may be off before anything is learnt, % of drag; 0 states that the table is exact. Law
+    /// `bayes`' own prior where the file states none.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "limits::table_uncertainty_percent::deserialize_optional",
+        serialize_with = "limits::serialize_optional"
+    )]
+    pub table_uncertainty_percent: Option<f64>,
     /// Standard deviations of what is recorded.
     #[serde(default)]
     pub sensors: SensorDeviations,

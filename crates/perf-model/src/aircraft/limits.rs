@@ -45,6 +45,7 @@ bounded!(mean_aerodynamic_chord_m, "mean aerodynamic chord", "m", 0.1, 30.0);
 bounded!(drag_divergence_mach, "drag-divergence Mach number", "Mach", 0.4, 1.0);
 // Kerosene is 42.8 to 43.5.
 bounded!(reference_lhv_mj_kg, "reference lower heating value", "MJ/kg", 35.0, 50.0);
+bounded!(table_uncertainty_percent, "uncertainty of the drag table", "%", 0.0, 50.0);
 
 // Standard deviations. Two are divided by and may not be zero: fuel flow and N2.
 bounded!(fuel_flow_percent, "standard deviation of fuel flow", "%", 0.001, 20.0);

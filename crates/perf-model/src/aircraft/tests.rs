@@ -45,6 +45,7 @@ fn optional_fields_plainly_or_in_some() {
         "engines: 2,",
         "engines: 2, mean_aerodynamic_chord_m: 2.62, drag_divergence_mach: Some(0.86),
          reference_lhv_mj_kg: None, polynomial: FullQuadratic,
+         table_uncertainty_percent: None,
          sensors: (mach: 0.002, mass: Kilograms(80)),",
     );
     let aircraft = Aircraft::from_ron(&text).unwrap();

@@ -72,6 +72,7 @@ pub fn guide(type_code: &str, parameters: &Parameters) -> Result<PublicGuide, Ou
         mean_aerodynamic_chord_m: None,
         drag_divergence_mach: None,
         reference_lhv_mj_kg: Some(LOWER_HEATING_VALUE_MJ_KG),
+        table_uncertainty_percent: None,
         sensors: SensorDeviations::default(),
     };
     Ok(PublicGuide { aircraft, points, tsfc_residual_percent })

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use diagnose::{
-    Cause, Closure, Detectable, Diagnosis, Gap, OutsideLibrary, Region, Separation, Slice, Verdict,
+    Beside, Cause, Closure, Detectable, Diagnosis, Gap, OutsideLibrary, Region, Separation, Slice,
+    Verdict,
 };
 use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
 
 use crate::addition_record::AdditionRecord;
-use crate::diagnosed_tail::DiagnosedTail;
+use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_words::{
     ENGINE_BOUNDS, acts_on_words, advice, bounds_name, left_out_words, measurement_words,
     region_words, variable_words,
@@ -20,6 +21,9 @@ use crate::diagnosis_words::{
 pub struct TailDiagnosis {
     /// Whose; `*` for a pool.
     pub tail: String,
+    /// The flights and the model.
+    #[serde(default)]
+    pub compared: Compared,
     /// Flights that were used.
     pub flights: usize,
     /// Segments that were used.
@@ -97,6 +101,9 @@ pub struct CauseRecord {
     pub effect: String,
     /// Probability that it is the larger one of what acts.
     pub probability: f64,
+    /// The same without the prior sizes of effects: any effect may change fuel flow by any amount within ±5 %.
+    #[serde(default)]
+    pub probability_flat: f64,
     /// Effects that these data cannot distinguish from it, itself first.
     pub class: Vec<String>,
     /// Its size.
@@ -156,6 +163,9 @@ pub struct VerdictRecord {
     pub class: Vec<String>,
     /// Probability of the first effect.
     pub probability: f64,
+    /// What acts beside a guide's table that is off, the most probable first; absent where there is nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<BesideRecord>,
     /// Share of the explainable gap closed on unseen flights; `null` where the gap is too small.
     pub closure: Option<f64>,
     /// Its 95 % interval.
@@ -164,6 +174,17 @@ pub struct VerdictRecord {
     pub advice: String,
     /// Measurements and flights on purpose that would separate the class, the best first.
     pub separations: Vec<SeparationRecord>,
+}
+
+/// What acts beside a guide's table that is off, and no table can hold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BesideRecord {
+    /// The effect.
+    pub effect: String,
+    /// Effects that these data cannot distinguish from it.
+    pub class: Vec<String>,
+    /// Probability that it acts.
+    pub probability: f64,
 }
 
 /// A measurement, or flights on purpose, that separate two effects.
@@ -233,6 +254,7 @@ impl From<&DiagnosedTail> for TailDiagnosis {
         let left_out = left_out.iter().map(|(reason, count)| (left_out_words(*reason), *count));
         Self {
             tail: diagnosed.tail.clone(),
+            compared: diagnosed.compared.clone(),
             flights: *flights,
             segments: *segments,
             gap: GapRecord::from(gap),
@@ -300,6 +322,7 @@ impl From<&Cause> for CauseRecord {
         Self {
             effect: cause.effect.to_string(),
             probability: cause.probability,
+            probability_flat: cause.probability_flat,
             class: names(&cause.class),
             magnitude: MagnitudeRecord {
                 value: cause.magnitude.value,
@@ -337,12 +360,25 @@ impl From<&Verdict> for VerdictRecord {
                 Verdict::OutsideLibrary(unexplained) => unexplained.probability,
                 Verdict::Effects(found) => found.probability,
             },
+            beside: verdict.found().map_or_else(Vec::new, |found| {
+                found.beside.iter().map(BesideRecord::from).collect()
+            }),
             closure: closure.map(|closure| closure.share),
             closure_ci95: closure.map(|closure| closure.ci95),
             advice: advice(verdict),
             separations: verdict.found().map_or_else(Vec::new, |found| {
                 found.separations.iter().map(SeparationRecord::from).collect()
             }),
+        }
+    }
+}
+
+impl From<&Beside> for BesideRecord {
+    fn from(beside: &Beside) -> Self {
+        Self {
+            effect: beside.effect.to_string(),
+            class: names(&beside.class),
+            probability: beside.probability,
         }
     }
 }

@@ -59,7 +59,9 @@ fn condition_words(condition: &Condition) -> String {
         return date_words(from, to);
     }
     let (_, name, unit) = names(variable);
-    match (from.map(|edge| edge.value), to.map(|edge| edge.value)) {
+    // A number of few digits in another unit (42,000 ft) has a tail of them in this one.
+    let written = |edge: Edge| (edge.value * 1e6).round() / 1e6;
+    match (from.map(written), to.map(written)) {
         (Some(from), Some(to)) => format!("{name} {from} to {to}{unit}"),
         (Some(from), None) => format!("{name} >= {from}{unit}"),
         (None, Some(to)) => format!("{name} < {to}{unit}"),

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
-use diagnose::Baseline;
+use diagnose::{Baseline, BaselineRecord};
 use effects::ExtendedModel;
 use lut::Table;
 use lut::surface::Surface;
@@ -21,9 +21,15 @@ use super::{
 };
 use crate::checksum::hexadecimal;
 use crate::condition_means::ConditionMeans;
+use crate::whole_model::belief_before_flights;
 
 /// Begins the last line but one; everything before it is what the checksum is of.
 const CHECKSUM: &str = "\n    checksum: \"";
+
+/// The format of models without a baseline.
+const FIRST_FORMAT: u32 = 1;
+/// The format from which on a baseline is one posterior.
+const FIRST_WITH_POSTERIOR: u32 = 2;
 
 /// Why a text is not a model.
 #[derive(Debug, thiserror::Error)]
@@ -118,7 +124,7 @@ struct LearntText {
     law: LawText,
     references: ConditionMeans,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    baseline: Option<Baseline>,
+    baseline: Option<BaselineRecord>,
     ledger: Vec<LedgerEntry>,
 }
 
@@ -164,7 +170,29 @@ pub(super) fn parse(text: &str) -> Result<ModelFile, ModelTextError> {
     if found != computed {
         return Err(ModelTextError::Damaged { found: found.to_owned(), computed });
     }
+    if format < FIRST_WITH_POSTERIOR {
+        return without_old_remainder(text);
+    }
     model_of(ron::from_str(text)?)
+}
+
+/// A model of format 1: its remainder, which was learnt against the adapted table and added to it, is left out; `adapt` learns
+/// it anew from the segments that its folder keeps.
+fn without_old_remainder(text: &str) -> Result<ModelFile, ModelTextError> {
+    // Fields of that remainder are not looked at: it is cut out before the text is read.
+    const BEGINS: &str = "\n        baseline: Some((";
+    const ENDS: &str = "\n        )),";
+    let cut = text.find(BEGINS).and_then(|from| {
+        let length = text[from..].find(ENDS)? + ENDS.len();
+        Some(format!("{}{}", &text[..from], &text[from + length..]))
+    });
+    if cut.is_some() {
+        tracing::warn!(
+            "the model's remainder is of format 1 and is left out: predictions are of its drag table until `adapt` has learnt \
+             it anew"
+        );
+    }
+    model_of(ron::from_str(cut.as_deref().unwrap_or(text))?)
 }
 
 /// The number behind the first `format:`.
@@ -186,8 +214,10 @@ fn checksum_of(body: &str) -> String {
 
 fn document_of(model: &ModelFile) -> Document {
     let grid = model.grid();
+    // Format 2 differs in the baseline alone.
+    let baseline = model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
     Document {
-        format: FORMAT,
+        format: if baseline.is_some() { FORMAT } else { FIRST_FORMAT },
         aircraft: model.initial.aircraft().file().clone(),
         guide: model.guide,
         polynomial: *model.initial.polynomial(),
@@ -227,7 +257,7 @@ fn learnt_to_text(learnt: &Learnt) -> LearntText {
         criteria: learnt.criteria.clone(),
         law,
         references: learnt.references.clone(),
-        baseline: learnt.baseline.clone(),
+        baseline: learnt.baseline.as_ref().map(|baseline| baseline.record().clone()),
         ledger: learnt.ledger.clone(),
     }
 }
@@ -263,10 +293,31 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
         None => None,
         Some(LearntText { tail, criteria, law, references, baseline, ledger }) => {
             let law = law_of(law, &initial, settings.bayes)?;
+            let baseline =
+                baseline.map(|record| baseline_of(record, &initial, settings.bayes)).transpose()?;
             Some(Learnt { tail, criteria, law, references, baseline, ledger })
         }
     };
     Ok(ModelFile { initial, guide: document.guide, settings, learnt, applied })
+}
+
+/// A baseline of its record, with what was believed of the initial table.
+fn baseline_of(
+    record: BaselineRecord,
+    initial: &ExtendedModel,
+    settings: BayesSettings,
+) -> Result<Baseline, ModelTextError> {
+    let wrong = |reason: String| value("learnt.baseline", reason);
+    let nodes = initial.drag_table().grid().nodes();
+    if let Some(node) = record.drag_nodes().iter().find(|&&node| node >= nodes) {
+        return Err(wrong(format!("node {node} of a table of {nodes} nodes")));
+    }
+    let belief = if record.drag_nodes().is_empty() {
+        None
+    } else {
+        Some(belief_before_flights(initial, settings, record.drag_nodes()).map_err(wrong)?)
+    };
+    Baseline::new(record, belief).map_err(|error| wrong(error.to_string()))
 }
 
 fn law_of(

@@ -14,12 +14,15 @@ pub(crate) const KEYS: [&str; 9] =
     ["AIRCRAFT", "TAIL", "FLIGHT", "START", "ZFW", "FOB", "LHV", "MISSING", "ASSUMED"];
 const NAMES_KEY: &str = "TIME";
 
+/// Largest mass, kg: the heaviest aircraft that flew weighed 640 t. A sum of two such masses is finite too.
+const MAXIMUM_MASS_KG: f64 = 1e6;
+
 /// Largest deviation from the ISA that may be assumed, K. Beyond it no temperature of the format's range is left.
 const MAXIMUM_ISA_DEVIATION_K: f64 = 120.0;
 
 const TEXT_FORM: &str = "text";
 const START_FORM: &str = "an instant like 2018-05-20T14:14:21Z (RFC 3339, with Z or an offset)";
-const MASS_FORM: &str = "a number and lb or kg";
+const MASS_FORM: &str = "a number and lb or kg, at most 1000000 kg";
 const LHV_FORM: &str = "a number above zero and MJ/kg";
 const MISSING_FORM: &str = "one or more of SAT N2 ROLL DRIFT, each once";
 const ASSUMED_FORM: &str = "assumptions like SAT=ISA+3, each once";
@@ -205,6 +208,9 @@ fn mass(entry: &Entry<'_>) -> Result<Mass, Refusal> {
         "kg" => Mass::kilograms(value),
         _ => return Err(entry.malformed_at(unit, MASS_FORM)),
     };
+    if mass.to_kilograms() > MAXIMUM_MASS_KG {
+        return Err(entry.malformed(MASS_FORM));
+    }
     if mass.to_kilograms() <= 0.0 {
         return Err(entry
             .line

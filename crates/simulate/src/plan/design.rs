@@ -5,9 +5,12 @@
 
 use flight::Timestamp;
 use serde::{Deserialize, Serialize};
-use units::{CalibratedAirspeed, Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
+use units::{
+    CalibratedAirspeed, Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference,
+    check_within,
+};
 
-use super::PlanError;
+use super::{MOST_FLIGHTS, PlanError};
 use crate::aircraft::{AircraftTruth, TruthPhysics};
 use crate::random::{Purpose, Stream, Streams};
 use crate::route::{Change, FlightPlan, Loading};
@@ -88,6 +91,8 @@ const LIFT_MARGIN: f64 = 0.85;
 const THRUST_MARGIN: f64 = 0.90;
 /// Warmest air in which the margin must hold, above the ISA, K.
 const WARM_DAY_K: f64 = 10.0;
+/// Between the end of a recording and the START of the next one, s: descent, turnaround and climb at the least.
+const TURNAROUND_S: i64 = 3600;
 /// Anti-ice is used in air warmer than this at the start, K: −45 °C of the standard day.
 const ICE_K: f64 = 228.15;
 
@@ -104,6 +109,7 @@ impl FleetDesign {
         seed: u64,
         tail: &str,
     ) -> Result<Vec<FlightPlan>, PlanError> {
+        self.check(aircraft)?;
         let first_s = self.dates.0.as_second();
         let last_s = self.dates.1.as_second().max(first_s);
         let mut starts: Vec<i64> = {
@@ -113,21 +119,41 @@ impl FleetDesign {
             (0..self.flights).map(|_| first_s + (random.unit() * span) as i64 / 60 * 60).collect()
         };
         starts.sort_unstable();
+        let mut free_s = i64::MIN;
         starts
             .into_iter()
             .enumerate()
             .map(|(index, start_s)| {
-                let mut random = Streams::of_flight(seed, tail, index).stream(Purpose::Design);
-                for _ in 0..TRIES {
-                    if let Some(mut plan) = self.draw_flight(aircraft, &mut random)? {
-                        plan.flight = format!("{:04}", index + 1);
-                        plan.start = Timestamp::from_second(start_s).unwrap_or(self.dates.0);
-                        return Ok(plan);
-                    }
-                }
-                Err(PlanError::Infeasible { tail: tail.to_owned(), tries: TRIES })
+                let Some(mut plan) = self.draw_again(aircraft, seed, tail, index)? else {
+                    return Err(PlanError::Infeasible { tail: tail.to_owned(), tries: TRIES });
+                };
+                // One aircraft does not fly twice at a time.
+                let start_s = start_s.max(free_s);
+                #[expect(clippy::cast_possible_truncation, reason = "seconds of a day at most")]
+                let flown_s = plan.duration_s as i64;
+                free_s = start_s + flown_s + TURNAROUND_S;
+                plan.flight = format!("{:04}", index + 1);
+                plan.start = Timestamp::from_second(start_s).unwrap_or(self.dates.0);
+                Ok(plan)
             })
             .collect()
+    }
+
+    /// Another draw of a flight, without name and START; `None` where none within the ranges can be flown.
+    pub(crate) fn draw_again(
+        &self,
+        aircraft: &AircraftTruth,
+        seed: u64,
+        tail: &str,
+        key: usize,
+    ) -> Result<Option<FlightPlan>, PlanError> {
+        let mut random = Streams::of_flight(seed, tail, key).stream(Purpose::Design);
+        for _ in 0..TRIES {
+            if let Some(plan) = self.draw_flight(aircraft, &mut random)? {
+                return Ok(Some(plan));
+            }
+        }
+        Ok(None)
     }
 
     fn draw_flight(
@@ -168,6 +194,40 @@ impl FleetDesign {
         plan.changes = self.draw_changes(aircraft, &plan, &ranges, random);
         plan.anti_ice = self.draw_anti_ice(&plan, random)?;
         Ok(can_be_flown(aircraft, &plan)?.then_some(plan))
+    }
+
+    /// Every number of a design that has limits.
+    fn check(&self, aircraft: &AircraftTruth) -> Result<(), OutOfDomain> {
+        let fastest = aircraft.envelope.maximum_operating_mach;
+        let ceiling_ft = aircraft.envelope.ceiling_ft;
+        let mach = |range: Option<(f64, f64)>| range.unwrap_or((fastest, fastest));
+        let feet = |range: Option<(f64, f64)>| range.unwrap_or((ceiling_ft, ceiling_ft));
+        let checks = [
+            (
+                "number of flights",
+                "-",
+                (self.flights as f64, self.flights as f64),
+                0.0,
+                MOST_FLIGHTS as f64,
+            ),
+            ("high_mach", "-", mach(self.high_mach), 0.2, fastest),
+            ("low_mach", "-", mach(self.low_mach), 0.2, fastest),
+            ("high_ft", "ft", feet(self.high_ft), 1_000.0, ceiling_ft),
+            ("low_ft", "ft", feet(self.low_ft), 1_000.0, ceiling_ft),
+            ("duration_h", "h", self.duration_h, 0.01, 24.0),
+            ("fuel_share", "-", self.fuel_share, 0.001, 1.0),
+            ("latitude_deg", "deg", self.latitude_deg, -70.0, 70.0),
+            ("level_changes_per_h", "1/h", (0.0, self.level_changes_per_h), 0.0, 60.0),
+            ("level_change_ft", "ft", (0.0, self.level_change_ft), 0.0, 20_000.0),
+            ("speed_changes_per_h", "1/h", (0.0, self.speed_changes_per_h), 0.0, 60.0),
+            ("speed_change_mach", "-", (0.0, self.speed_change_mach), 0.0, 0.3),
+            ("turns_per_h", "1/h", (0.0, self.turns_per_h), 0.0, 60.0),
+        ];
+        for (quantity, unit, (least, most), minimum, maximum) in checks {
+            check_within(quantity, unit, least, minimum, maximum)?;
+            check_within(quantity, unit, most, least, maximum)?;
+        }
+        Ok(())
     }
 
     fn ranges(&self, aircraft: &AircraftTruth, low: bool) -> Ranges {
@@ -251,7 +311,8 @@ impl FleetDesign {
         for _ in 0..count(self.speed_changes_per_h * hours, random) {
             let at_s = random.uniform(0.1, 0.9) * plan.duration_s;
             let mach = (plan.mach + self.speed_change_mach * random.normal())
-                .clamp(ranges.mach.0 - 0.03, aircraft.envelope.maximum_operating_mach - 0.015);
+                .max(ranges.mach.0 - 0.03)
+                .min(aircraft.envelope.maximum_operating_mach - 0.015);
             all.push(Change::Mach { at_s: at_s.round(), mach: (mach * 1000.0).round() / 1000.0 });
         }
         all.sort_by(|a, b| a.at_s().total_cmp(&b.at_s()));

@@ -1,7 +1,10 @@
 //! Conditions on a plan before anything is drawn.
 
+use std::collections::BTreeSet;
+
 use units::check_within;
 
+pub(super) use crate::plan::MOST_FLIGHTS;
 use crate::plan::{Plan, PlanError};
 use crate::route::FlightPlan;
 
@@ -13,6 +16,12 @@ pub(super) fn check_plan(plan: &Plan) -> Result<(), PlanError> {
         ("recording interval", "s", recording.interval_s, 0.1, 3600.0),
         ("simulation step", "s", recording.longest_step_s, 0.01, 1.0),
         ("time after top of climb", "min", recording.after_top_of_climb_min, 0.0, 600.0),
+        ("mean eastward wind", "m/s", weather.wind_east_m_s.mean, -100.0, 100.0),
+        ("standard deviation of eastward wind", "m/s", weather.wind_east_m_s.sd, 0.0, 50.0),
+        ("mean northward wind", "m/s", weather.wind_north_m_s.mean, -100.0, 100.0),
+        ("standard deviation of northward wind", "m/s", weather.wind_north_m_s.sd, 0.0, 50.0),
+        ("mean ISA deviation", "K", weather.isa_deviation_k.mean, -60.0, 60.0),
+        ("standard deviation of ISA deviation", "K", weather.isa_deviation_k.sd, 0.0, 30.0),
         ("wind field", "m/s", weather.wind_field_m_s, 0.0, 40.0),
         ("ISA deviation field", "K", weather.isa_deviation_field_k, 0.0, 15.0),
         ("ageostrophic share", "-", weather.ageostrophic_share, 0.0, 1.0),
@@ -49,7 +58,14 @@ pub(super) fn check_flights(tail: &str, flights: &[FlightPlan]) -> Result<(), Pl
     if flights.is_empty() {
         return Err(PlanError::NoFlights { tail: tail.to_owned() });
     }
+    let mut names = BTreeSet::new();
     for flight in flights {
+        if !names.insert(flight.flight.as_str()) {
+            return Err(PlanError::DoubledFlight {
+                tail: tail.to_owned(),
+                flight: flight.flight.clone(),
+            });
+        }
         if flight.waypoints.len() < 2 {
             return Err(PlanError::Waypoints {
                 tail: tail.to_owned(),

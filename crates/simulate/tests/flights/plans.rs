@@ -428,3 +428,71 @@ proptest::proptest! {
         }
     }
 }
+
+/// Hot days on which the engines cannot hold what was drawn for the standard day: each such flight is drawn again, under
+/// its name and START, and the same whenever it is flown.
+#[test]
+fn a_flight_that_lacks_thrust_is_drawn_again() {
+    let design = FleetDesign { flights: 30, low_share: 0.0, ..small_design() };
+    let mut plan = Plan::of_one_tail(11, "T-001", design);
+    plan.weather.isa_deviation_k = simulate::Spread { mean: 25.0, sd: 5.0 };
+    let simulation = Simulation::new(plan.clone()).unwrap();
+    let flown = fly_all(&plan);
+    let again = flown.iter().filter(|flown| flown.drawn_again > 0).count();
+    assert!(again > 0, "no flight of this plan lacks thrust: it shows nothing");
+    for (index, flown) in flown.iter().enumerate() {
+        let (_, drawn) = simulation.flight(index).unwrap();
+        assert_eq!(flown.truth.flight, drawn.flight);
+        assert_eq!(flown.truth.start, drawn.start);
+        assert_eq!(simulation.fly(index).unwrap().report, flown.report);
+    }
+}
+
+#[test]
+fn one_aircraft_does_not_fly_twice_at_a_time() {
+    let start = "2024-03-01T00:00:00Z".parse().unwrap();
+    let end = "2024-03-02T00:00:00Z".parse().unwrap();
+    let design = FleetDesign { flights: 30, dates: (start, end), ..small_design() };
+    let simulation = Simulation::new(Plan::of_one_tail(5, "T-001", design)).unwrap();
+    let flights: Vec<_> = (0..30).map(|index| simulation.flight(index).unwrap().1).collect();
+    for pair in flights.windows(2) {
+        let apart_s = pair[1].start.as_second() - pair[0].start.as_second();
+        assert!(apart_s as f64 >= pair[0].duration_s, "{apart_s} s");
+    }
+}
+
+/// Plans that made the program panic, hang or run out of memory.
+#[test]
+fn absurd_plans_are_refused_with_the_reason() {
+    let designed = |design: &str| {
+        format!("(seed: 1, tails: [(tail: \"P\", flights: Designed((flights: 1, {design})))])")
+    };
+    let weather = |weather: &str| {
+        format!(
+            "(seed: 1, weather: ({weather}), tails: [(tail: \"P\", flights: Designed((flights: 1)))])"
+        )
+    };
+    for (plan, words) in [
+        (designed("high_mach: (0.94, 0.95)"), "high_mach"),
+        (designed("turns_per_h: 1e300"), "turns_per_h"),
+        (weather("wind_east_m_s: (mean: 86400, sd: 9.0)"), "mean eastward wind"),
+        (
+            weather("wind_north_m_s: (mean: 0.0, sd: -1e308)"),
+            "standard deviation of northward wind",
+        ),
+        (
+            "(seed: 7, tails: [(tail: \"P\", flights: Designed((flights: 18446744073709551615)))])"
+                .to_owned(),
+            "number of flights",
+        ),
+    ] {
+        let refused = Simulation::new(Plan::from_ron(&plan).unwrap()).unwrap_err().to_string();
+        assert!(refused.contains(words), "{refused}");
+    }
+    let mut doubled = quiet_plan(vec![northbound(), northbound()]);
+    let Flights::Listed(flights) = &mut doubled.tails[0].flights else { panic!("listed") };
+    let name = flights[0].flight.clone();
+    flights[1].flight = name;
+    let refused = Simulation::new(doubled).unwrap_err().to_string();
+    assert!(refused.contains("twice"), "{refused}");
+}

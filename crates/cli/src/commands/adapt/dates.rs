@@ -40,25 +40,38 @@ impl Dates {
         Self { starts }
     }
 
+    /// The dates of flights that a model is to learn anew.
+    pub(super) fn of_starts(model: &ModelFile, starts: Vec<Timestamp>) -> Self {
+        Self { starts: if ages(model) { starts } else { Vec::new() } }
+    }
+
     /// A flight's segments, on the date that the flight is taken to have been flown on.
     pub(super) fn as_dated<'f>(&self, flight: &'f FlightRead) -> Cow<'f, [Segment]> {
-        let FlightIdentity { tail, start, flight: name } = &*flight.reduced.identity;
+        self.segments_as_dated(&flight.reduced.identity, &flight.reduced.segments)
+    }
+
+    /// The same of the segments of a flight.
+    pub(super) fn segments_as_dated<'f>(
+        &self,
+        identity: &FlightIdentity,
+        segments: &'f [Segment],
+    ) -> Cow<'f, [Segment]> {
+        let FlightIdentity { tail, start, flight: name } = identity;
         let mut others = self.starts.clone();
         if let Some(own) = others.iter().position(|date| date == start) {
             others.swap_remove(own);
         }
         let Some(instead) = dates::instead_of(*start, &others) else {
-            return Cow::Borrowed(&flight.reduced.segments);
+            return Cow::Borrowed(segments);
         };
         tracing::warn!(
             "flight {name} of {start}: no other flight of tail {tail} within {} days; its date is taken for an error, and it is learnt as if flown on {instead}, without ageing what is known",
             dates::DAYS_THAT_CONFIRM
         );
-        let identity =
-            Arc::new(FlightIdentity { start: instead, ..(*flight.reduced.identity).clone() });
+        let identity = Arc::new(FlightIdentity { start: instead, ..identity.clone() });
         let moved =
             |segment: &Segment| Segment { identity: Arc::clone(&identity), ..segment.clone() };
-        Cow::Owned(flight.reduced.segments.iter().map(moved).collect())
+        Cow::Owned(segments.iter().map(moved).collect())
     }
 }
 

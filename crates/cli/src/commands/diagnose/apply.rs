@@ -75,6 +75,12 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
         }
         Verdict::InsufficientData(_) => return Choice::Nothing("insufficient data"),
     };
+    if diagnosis.verdict.is_of_table() {
+        return Choice::Nothing(
+            "the drag of the guide is off, and what else acts is not known before it is adapted: adapt first, then diagnose \
+             flights that the adapted model has not learnt",
+        );
+    }
     if found.class.iter().any(|member| !found.effects.contains(member)) {
         return Choice::Refused(format!(
             "tail {}: nothing applied, these flights cannot distinguish {}; name the right one with --effects",

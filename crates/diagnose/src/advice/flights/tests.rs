@@ -105,6 +105,9 @@ fn a_planned_flight_has_the_rows_of_a_flown_one() {
             columns: columns.iter().map(|&at| library.columns[at]).collect(),
             not_testable: vec![],
             heating_value: false,
+            spikes: library.spikes,
+            agnostic_spikes: library.agnostic_spikes,
+            spikes_of_right_table: library.spikes_of_right_table,
         };
         let flown = &data.flights[3];
         let points: Vec<_> =

@@ -113,7 +113,8 @@ fn gram_is_that_of_the_inverse_covariance_at_any_noise() {
         let (expected, ln_noise) = by_inverse(&rows, &covariances, &noise);
         let found: f64 = parts.iter().map(|part| part.gram(&noise, None).1).sum();
         assert!((found - ln_noise).abs() < 1e-10, "{found} {ln_noise}");
-        let moments = GramSums { parts, left_out: Vec::new(), columns: COLUMNS };
+        let moments =
+            GramSums { parts, left_out: Vec::new(), segments: Vec::new(), columns: COLUMNS };
         let all = moments.gram(&noise, None);
         let mut by_folds = Mat::<f64>::zeros(COLUMNS, COLUMNS);
         for fold in 0..LEARNING_FOLDS {

@@ -1,0 +1,55 @@
+//! What a run writes besides the tails' files: `summary.json` and `report.html`.
+
+use std::collections::BTreeMap;
+
+use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+
+use super::Run;
+use super::tail::{TailOutcome, page_file};
+use crate::failure::{Failure, RefusedReport};
+
+/// Writes both to the folder's waiting room.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(super) fn write(
+    run: &Run<'_>,
+    refused: &[RefusedReport],
+    outcomes: &[TailOutcome],
+) -> Result<Summary, Failure> {
+    let tails = outcomes.iter().filter_map(|outcome| {
+        let mut summary = outcome.state.as_ref()?.summary.clone();
+        summary.flights_new = outcome.flights_new;
+        Some(summary)
+    });
+    let summary = Summary {
+        schema: SCHEMA,
+        reports: ReportsSummary {
+            read: outcomes.iter().map(|outcome| outcome.flights_new).sum(),
+            already_known: outcomes.iter().map(|outcome| outcome.already_known).sum(),
+            refused: refused.iter().map(RefusedSummary::from).collect(),
+        },
+        tails: tails.collect(),
+    };
+    run.folder.stage("summary.json", &summary.to_json())?;
+    let title = "Adaptation of performance models to cruise reports";
+    let page = if run.on_one_page {
+        let sections: Vec<&page::Section> =
+            outcomes.iter().filter_map(|outcome| outcome.section.as_ref()).collect();
+        page::report_of_sections(&summary, &sections, title)
+    } else {
+        let links: BTreeMap<&str, String> = outcomes
+            .iter()
+            .filter(|outcome| outcome.state.is_some())
+            .map(|outcome| (outcome.tail.as_str(), link_to(&outcome.tail)))
+            .collect();
+        page::fleet_report(&summary, &links, title)
+    };
+    run.folder.stage("report.html", page.as_bytes())?;
+    Ok(summary)
+}
+
+/// A tail's page as a link: `%` of the file's name is a character of the name, not of the link.
+fn link_to(tail: &str) -> String {
+    page_file(tail).replace('%', "%25")
+}

@@ -1,0 +1,123 @@
+//! `cruisefit forget`: a tail without one of its flights.
+
+use std::collections::BTreeMap;
+
+use flight::Timestamp;
+use pipeline::learning::{self, LawChoice};
+use pipeline::model_file::{LawState, ModelFile};
+
+use crate::args::ForgetArgs;
+use crate::commands::Outcome;
+use crate::commands::adapt::{materials, rebuild, result_of, settled, stage};
+use crate::failure::{Failure, show};
+use crate::folder::flights::KnownFlight;
+use crate::folder::lock::Busy;
+use crate::folder::state::TailState;
+use crate::folder::{Beginning, Folder, flights, state};
+
+/// Runs the command.
+///
+/// # Errors
+/// A reason for which nothing was done.
+pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
+    if !arguments.folder.join(state::NAME).exists() {
+        return Err(Failure::bad_file(
+            &arguments.folder,
+            "no folder of `adapt`: it has no STATE.ron (a run of `adapt` gives one to an older folder)",
+        ));
+    }
+    let busy = Busy::from_option(arguments.wait);
+    let folder = Folder::open(&arguments.folder, Beginning::Continue, busy)?;
+    let tail = &arguments.tail;
+    let Some(begun) = folder.state_of(tail).map(|state| state.begun.clone()) else {
+        let known: Vec<String> = folder.tails().into_iter().collect();
+        return Err(Failure::BadArgument {
+            argument: "--tail",
+            reason: format!("no tail {tail:?} in the folder; it holds {}", known.join(", ")),
+        });
+    };
+    let stored = folder.load(tail)?;
+    let place = find(&stored.flights, arguments)?;
+    let had_remainder =
+        stored.model.learnt.as_ref().is_some_and(|learnt| learnt.baseline.is_some());
+    let mut flights = materials(stored.flights, stored.segments);
+    let forgotten = flights.remove(place).known;
+    let mut states: BTreeMap<String, TailState> = folder
+        .tails()
+        .into_iter()
+        .filter_map(|tail| Some((tail.clone(), folder.state_of(&tail)?.clone())))
+        .collect();
+    let left = flights.len();
+    if flights.is_empty() {
+        states.remove(tail);
+    } else {
+        let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
+            argument: "--flight",
+            reason: format!("the tail cannot be learnt without it: {reason}"),
+        };
+        let rebuilt = rebuild(as_begun(&stored.model).map_err(|error| wrong(&error))?, flights)
+            .map_err(|error| wrong(&error))?;
+        let rebuilt = settled(rebuilt, had_remainder, &mut Vec::new());
+        let csv = flights::to_csv(&rebuilt.flights);
+        let result = result_of(rebuilt, 0, Vec::new());
+        states.insert(tail.clone(), stage(&folder, &begun, &result, &csv)?);
+    }
+    folder.commit(states)?;
+    Ok(Outcome::text(format!(
+        "Flight {} of {} forgotten; tail {tail} in {} has learnt {left} others. summary.json and report.html are those of \
+         the last run of `adapt`.\n",
+        forgotten.entry.flight,
+        forgotten.entry.start,
+        show(&arguments.folder)
+    )))
+}
+
+/// The place of the flight among those that the tail has learnt.
+fn find(flights: &[KnownFlight], arguments: &ForgetArgs) -> Result<usize, Failure> {
+    let start = match &arguments.start {
+        None => None,
+        Some(text) => Some(text.parse::<Timestamp>().map_err(|_| Failure::BadArgument {
+            argument: "--start",
+            reason: format!("found {text:?}, expected an instant like 2018-05-20T14:14:21Z"),
+        })?),
+    };
+    let found: Vec<usize> = flights
+        .iter()
+        .enumerate()
+        .filter(|(_, known)| known.entry.flight == arguments.flight)
+        .filter(|(_, known)| start.is_none_or(|start| start == known.start))
+        .map(|(place, _)| place)
+        .collect();
+    match found.as_slice() {
+        [place] => Ok(*place),
+        [] => Err(Failure::BadArgument {
+            argument: "--flight",
+            reason: format!(
+                "tail {} has not learnt a flight {:?}; flights/ lists those that it has",
+                arguments.tail, arguments.flight
+            ),
+        }),
+        several => {
+            let starts: Vec<&str> =
+                several.iter().map(|place| flights[*place].entry.start.as_str()).collect();
+            Err(Failure::BadArgument {
+                argument: "--start",
+                reason: format!(
+                    "several flights have this name, choose one by its START: {}",
+                    starts.join(", ")
+                ),
+            })
+        }
+    }
+}
+
+/// The model as it was before it learnt anything.
+fn as_begun(model: &ModelFile) -> Result<ModelFile, learning::LearningError> {
+    let Some(learnt) = &model.learnt else { return Ok(model.clone()) };
+    let law = match &learnt.law {
+        LawState::Paper { settings, .. } => LawChoice::Paper(*settings),
+        LawState::Bayes { .. } => LawChoice::Bayes(model.settings.bayes),
+    };
+    let begun = learning::begin(&model.initial, &learnt.tail, &learnt.criteria, law)?;
+    Ok(ModelFile { learnt: Some(begun), ..model.clone() })
+}

@@ -1,0 +1,142 @@
+//! `cruisefit monitor`: what changed, when and by how much, on the tails that a folder of `adapt` holds.
+
+mod causes;
+mod stored;
+
+use std::path::Path;
+
+use monitor::cost::CostFactors;
+use pipeline::monitoring::{
+    AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail, Rows,
+    TailDeviations, TailDocument, read_events, tables, text,
+};
+use rayon::prelude::*;
+
+use crate::args::MonitorArgs;
+use crate::columns;
+use crate::commands::Outcome;
+use crate::failure::{Failure, show};
+use crate::files::{make_folder, write_atomically};
+use crate::progress::Progress;
+
+use causes::Causes;
+
+/// Runs the command; also returns how many rules fired.
+///
+/// # Errors
+/// A reason for which nothing was done.
+pub(crate) fn run(
+    arguments: &MonitorArgs,
+    progress: Progress,
+) -> Result<(Outcome, usize), Failure> {
+    let options = MonitorOptions {
+        cost: CostFactors {
+            co2_kg_per_kg: arguments.co2_factor,
+            price_per_kg: arguments.fuel_price,
+            flights_per_year: arguments.flights_per_year,
+        },
+        basic_performance_factor_percent: arguments.basic_perf_factor,
+        rules: arguments.alert.clone(),
+    };
+    let events = match &arguments.events {
+        Some(path) => events_of(path)?,
+        None => Vec::new(),
+    };
+    let causes = arguments.diagnosis.as_deref().map(Causes::read).transpose()?;
+    let before_learning =
+        if arguments.quick { BeforeLearning::LeaveOut } else { BeforeLearning::Rebuild };
+    let tails = stored::tails(&arguments.folder)?;
+    let bar = progress.bar(tails.len(), "reading tails");
+    // One tail at a time on each thread: memory does not grow with the fleet's segments.
+    let read = tails
+        .par_iter()
+        .map(|path| {
+            let found = monitor_tail(&arguments.folder, path, before_learning, &events, &options);
+            bar.step();
+            found
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bar.finish();
+    let mut documents = Vec::new();
+    let mut alerts = Vec::new();
+    for (tail, fired) in read.into_iter().flatten() {
+        documents.push(tail);
+        alerts.extend(fired);
+    }
+    documents.sort_by(|one, other| one.tail.cmp(&other.tail));
+    alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
+    warn_of_events(&events, &documents);
+    if let Some(causes) = &causes {
+        for alert in &mut alerts {
+            alert.likely_causes = causes.of(&alert.tail);
+        }
+    }
+    let document = MonitorDocument::new(documents, alerts);
+    let mut printed = print(arguments, &document)?;
+    if let Some(folder) = &arguments.output {
+        write(folder, &document)?;
+        if !arguments.json {
+            printed.push_str(&format!(
+                "Written to {}: monitor.html, monitor.json, tables (.csv)\n",
+                show(folder)
+            ));
+        }
+    }
+    Ok((Outcome::text(printed), document.alerts.len()))
+}
+
+fn print(arguments: &MonitorArgs, document: &MonitorDocument) -> Result<String, Failure> {
+    if arguments.json {
+        return String::from_utf8(document.to_json())
+            .map_err(|error| Failure::unwritable(Path::new("standard output"), error));
+    }
+    Ok(text(document, if arguments.month { Rows::Months } else { Rows::Tails }))
+}
+
+fn write(folder: &Path, document: &MonitorDocument) -> Result<(), Failure> {
+    make_folder(folder)?;
+    write_atomically(&folder.join("monitor.json"), &document.to_json())?;
+    write_atomically(&folder.join("monitor.html"), page::monitoring(document).as_bytes())?;
+    for table in tables(document) {
+        columns::write(&table.columns, Some(&folder.join(format!("{}.csv", table.name))))?;
+    }
+    Ok(())
+}
+
+fn events_of(path: &Path) -> Result<Vec<Event>, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
+    read_events(&bytes).map_err(|error| Failure::bad_file(path, error))
+}
+
+fn monitor_tail(
+    folder: &Path,
+    path: &Path,
+    before_learning: BeforeLearning,
+    events: &[Event],
+    options: &MonitorOptions,
+) -> Result<Option<(TailDocument, Vec<AlertDocument>)>, Failure> {
+    let stored::StoredTail { tail, model, segments } = stored::read(folder, path)?;
+    let deviations = TailDeviations::of(&model, &segments, before_learning)
+        .map_err(|error| Failure::bad_file(path, error))?;
+    drop(segments);
+    let aircraft_type = model.initial.aircraft().type_code();
+    let found = MonitoredTail::new((&tail, aircraft_type), &deviations, events)
+        .map_err(|error| Failure::bad_file(path, error))?;
+    let Some(found) = found else {
+        tracing::warn!(tail, "no segment is inside the table: there is nothing to monitor");
+        return Ok(None);
+    };
+    Ok(Some((found.document(options), found.alerts(options))))
+}
+
+/// Names tails that have events and are not in the folder.
+fn warn_of_events(events: &[Event], tails: &[TailDocument]) {
+    let mut warned: Vec<&str> = Vec::new();
+    for event in events {
+        let known = tails.iter().any(|tail| tail.tail == event.tail);
+        if !known && !warned.contains(&event.tail.as_str()) {
+            warned.push(&event.tail);
+            tracing::warn!(tail = event.tail, "has events, but no flight in the folder");
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! `flights/TAIL.csv`: the flights that a tail has learnt, in the order in which it learnt them. The model's ledger
+//! with the end of each flight, in a file that is read in no time.
+
+use flight::{Segment, Timestamp};
+use pipeline::columns::Columns;
+use pipeline::model_file::LedgerEntry;
+
+/// A flight that was learnt.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct KnownFlight {
+    /// Its entry in the model's ledger.
+    pub(crate) entry: LedgerEntry,
+    /// The instant of TIME 0.
+    pub(crate) start: Timestamp,
+    /// The instant of its last sample.
+    pub(crate) end: Timestamp,
+}
+
+impl KnownFlight {
+    /// Whether this flight and another interval of time have more than an instant in common.
+    pub(crate) fn overlaps(&self, start: Timestamp, end: Timestamp) -> bool {
+        self.start < end && start < self.end
+    }
+}
+
+/// The table.
+pub(crate) fn to_csv(flights: &[KnownFlight]) -> Vec<u8> {
+    let mut columns = Columns::default();
+    let entries = || flights.iter().map(|known| &known.entry);
+    columns.text("flight", entries().map(|entry| entry.flight.clone()));
+    columns.text("start", entries().map(|entry| entry.start.clone()));
+    columns.text("end", flights.iter().map(|known| known.end.to_string()));
+    columns.text("content", entries().map(|entry| entry.content.clone()));
+    columns.count("samples", entries().map(|entry| entry.samples));
+    columns.count("segments", entries().map(|entry| entry.segments));
+    columns.count("outside_table", entries().map(|entry| entry.outside_table));
+    columns.to_csv()
+}
+
+/// The flights of a table.
+///
+/// # Errors
+/// What a field holds that it cannot.
+pub(crate) fn read(tail: &str, bytes: &[u8]) -> Result<Vec<KnownFlight>, String> {
+    let mut reader = csv::ReaderBuilder::new().from_reader(bytes);
+    let mut flights = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| error.to_string())?;
+        let text = |field: usize| record.get(field).unwrap_or_default();
+        let wrong = |field: usize| {
+            let line = record.position().map_or(0, csv::Position::line);
+            format!("line {line}, field {}: found {:?}", field + 1, text(field))
+        };
+        let instant = |field: usize| text(field).parse::<Timestamp>().map_err(|_| wrong(field));
+        let count = |field: usize| text(field).parse::<u64>().map_err(|_| wrong(field));
+        flights.push(KnownFlight {
+            start: instant(1)?,
+            end: instant(2)?,
+            entry: LedgerEntry {
+                tail: tail.to_owned(),
+                flight: text(0).to_owned(),
+                start: text(1).to_owned(),
+                content: text(3).to_owned(),
+                samples: count(4)?,
+                segments: count(5)?,
+                outside_table: count(6)?,
+            },
+        });
+    }
+    Ok(flights)
+}
+
+/// The flights of a ledger of an older folder: where each ends is known from its last segment only.
+///
+/// # Errors
+/// A START that is no instant.
+pub(crate) fn of_ledger(
+    ledger: &[LedgerEntry],
+    segments: &[Segment],
+) -> Result<Vec<KnownFlight>, String> {
+    ledger
+        .iter()
+        .map(|entry| {
+            let start: Timestamp = entry
+                .start
+                .parse()
+                .map_err(|_| format!("START {:?} of the ledger is no instant", entry.start))?;
+            let last_s = segments
+                .iter()
+                .filter(|segment| {
+                    segment.identity.start == start && segment.identity.flight == entry.flight
+                })
+                .map(|segment| segment.means.time_s)
+                .fold(0.0, f64::max);
+            let end = instant_after(start, last_s).unwrap_or(start);
+            Ok(KnownFlight { entry: entry.clone(), start, end })
+        })
+        .collect()
+}
+
+/// The instant some seconds after another; `None` beyond the calendar.
+pub(crate) fn instant_after(start: Timestamp, seconds: f64) -> Option<Timestamp> {
+    let after = std::time::Duration::try_from_secs_f64(seconds.abs()).ok()?;
+    if seconds < 0.0 { start.checked_sub(after).ok() } else { start.checked_add(after).ok() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flights_read_back() {
+        let known = KnownFlight {
+            entry: LedgerEntry {
+                tail: "T".to_owned(),
+                flight: "a, \"b\"".to_owned(),
+                start: "2024-03-01T10:00:00Z".to_owned(),
+                content: "read:0123".to_owned(),
+                samples: 12,
+                segments: 3,
+                outside_table: 1,
+            },
+            start: "2024-03-01T10:00:00Z".parse().unwrap(),
+            end: "2024-03-01T12:00:00.5Z".parse().unwrap(),
+        };
+        let csv = to_csv(std::slice::from_ref(&known));
+        assert_eq!(read("T", &csv).unwrap(), std::slice::from_ref(&known));
+        let changed = String::from_utf8(csv).unwrap().replace(",12,", ",x,");
+        assert!(read("T", changed.as_bytes()).unwrap_err().contains("line 2, field 5"));
+        let at = |text: &str| text.parse::<Timestamp>().unwrap();
+        assert!(known.overlaps(at("2024-03-01T11:00:00Z"), at("2024-03-01T13:00:00Z")));
+        // One flight may begin at the instant at which another ends.
+        assert!(!known.overlaps(at("2024-03-01T12:00:00.5Z"), at("2024-03-01T13:00:00Z")));
+    }
+
+    #[test]
+    fn instants_beyond_the_calendar_are_none() {
+        let start: Timestamp = "2024-03-01T10:00:00Z".parse().unwrap();
+        assert_eq!(instant_after(start, 60.0).unwrap().to_string(), "2024-03-01T10:01:00Z");
+        assert_eq!(instant_after(start, -60.0).unwrap().to_string(), "2024-03-01T09:59:00Z");
+        assert_eq!(instant_after(start, 1e19), None);
+        assert_eq!(instant_after(start, f64::NAN), None);
+    }
+}

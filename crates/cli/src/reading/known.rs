@@ -1,0 +1,177 @@
+//! What a flight is to flights that are known: new, the same, another version of one, or the same hours again.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use flight::{Segment, Timestamp};
+use pipeline::checksum::sha256;
+use pipeline::model_file::LedgerEntry;
+
+use super::FlightRead;
+use crate::folder::flights::KnownFlight;
+
+/// The flights of one tail, in the order in which they became known.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct KnownFlights {
+    flights: Vec<KnownFlight>,
+    by_identity: BTreeMap<(Timestamp, String), usize>,
+    by_segments: BTreeMap<String, usize>,
+    longest: Duration,
+}
+
+/// What a flight is to those that are known. The number is that of the known flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Relation {
+    /// None of them.
+    New,
+    /// The same flight with the same content.
+    Same(usize),
+    /// The same flight with other content.
+    OtherContent(usize),
+    /// Another flight in the same hours.
+    SameHours(usize),
+    /// The same samples at another time.
+    SameSamples(usize),
+}
+
+impl KnownFlights {
+    /// Known are these flights.
+    pub(crate) fn of(flights: Vec<KnownFlight>) -> Self {
+        let mut known = Self::default();
+        for flight in flights {
+            known.push(flight);
+        }
+        known
+    }
+
+    /// The segments of the known flights, by which the same samples are found at another time.
+    pub(crate) fn add_segments(&mut self, segments: &[Segment]) {
+        for of_flight in segments.chunk_by(|one, other| one.identity == other.identity) {
+            let identity = &of_flight[0].identity;
+            let key = (identity.start, identity.flight.clone());
+            if let (Some(index), Some(mark)) = (self.by_identity.get(&key), mark(of_flight)) {
+                self.by_segments.insert(mark, *index);
+            }
+        }
+    }
+
+    /// One more.
+    pub(crate) fn add(&mut self, flight: &FlightRead) {
+        let index = self.flights.len();
+        if let Some(mark) = mark(&flight.reduced.segments) {
+            self.by_segments.entry(mark).or_insert(index);
+        }
+        self.push(KnownFlight {
+            entry: entry_of(flight),
+            start: flight.reduced.identity.start,
+            end: flight.end,
+        });
+    }
+
+    fn push(&mut self, flight: KnownFlight) {
+        self.longest = self.longest.max(length(flight.start, flight.end));
+        self.by_identity.insert((flight.start, flight.entry.flight.clone()), self.flights.len());
+        self.flights.push(flight);
+    }
+
+    /// The flights.
+    pub(crate) fn flights(&self) -> &[KnownFlight] {
+        &self.flights
+    }
+
+    /// The flight of this name and START.
+    pub(crate) fn find(&self, start: Timestamp, flight: &str) -> Option<&KnownFlight> {
+        self.by_identity.get(&(start, flight.to_owned())).map(|index| &self.flights[*index])
+    }
+
+    /// What a flight is to them.
+    pub(crate) fn relation(&self, flight: &FlightRead) -> Relation {
+        let identity = &flight.reduced.identity;
+        let start = identity.start;
+        if let Some(index) = self.by_identity.get(&(start, identity.flight.clone())) {
+            return if flight.has_content(&self.flights[*index].entry.content) {
+                Relation::Same(*index)
+            } else {
+                Relation::OtherContent(*index)
+            };
+        }
+        // Whoever overlaps it began before its end, and not longer before it than the longest flight lasts.
+        let earliest = start.checked_sub(self.longest).unwrap_or(Timestamp::MIN);
+        let from = (earliest, String::new());
+        for ((begun, _), index) in self.by_identity.range(from..) {
+            if *begun >= flight.end {
+                break;
+            }
+            if self.flights[*index].overlaps(start, flight.end) {
+                return Relation::SameHours(*index);
+            }
+        }
+        match mark(&flight.reduced.segments).and_then(|mark| self.by_segments.get(&mark)) {
+            Some(index) => Relation::SameSamples(*index),
+            None => Relation::New,
+        }
+    }
+
+    /// Why a flight of this relation is not used; `None` where it is new, or a copy that nobody needs to hear of.
+    pub(crate) fn objection(&self, relation: Relation, flight: &FlightRead) -> Option<String> {
+        let identity = &flight.reduced.identity;
+        let told = |index: usize| {
+            let known = &self.flights[index];
+            format!("flight {} of {}", known.entry.flight, known.entry.start)
+        };
+        let this =
+            format!("tail {} flight {} of {}", identity.tail, identity.flight, identity.start);
+        match relation {
+            Relation::New | Relation::Same(_) => None,
+            Relation::OtherContent(_) => {
+                Some(format!("{this} is already known with different content"))
+            }
+            Relation::SameHours(index) => Some(format!(
+                "{this} overlaps {}, which lasts until {}: one aircraft does not fly twice at a time",
+                told(index),
+                self.flights[index].end
+            )),
+            Relation::SameSamples(index) => {
+                Some(format!("{this} has the same samples as {}", told(index)))
+            }
+        }
+    }
+}
+
+/// A flight's entry in a ledger, but for what learning counts.
+pub(crate) fn entry_of(flight: &FlightRead) -> LedgerEntry {
+    LedgerEntry {
+        tail: flight.reduced.identity.tail.clone(),
+        flight: flight.reduced.identity.flight.clone(),
+        start: flight.reduced.identity.start.to_string(),
+        content: flight.content.clone(),
+        samples: flight.reduced.samples as u64,
+        segments: 0,
+        outside_table: 0,
+    }
+}
+
+fn length(start: Timestamp, end: Timestamp) -> Duration {
+    end.duration_since(start).try_into().unwrap_or(Duration::ZERO)
+}
+
+/// What the same samples have in common whatever name and START they are given: the bits of the segments' means.
+fn mark(segments: &[Segment]) -> Option<String> {
+    if segments.is_empty() {
+        return None;
+    }
+    let mut bits = Vec::with_capacity(segments.len() * 40);
+    for segment in segments {
+        let means = &segment.means;
+        for value in [
+            means.pressure_altitude_m,
+            means.static_air_temperature_k,
+            means.mach,
+            means.mass_kg,
+            means.fuel_flow_total_kg_s,
+        ] {
+            bits.extend_from_slice(&value.to_bits().to_le_bytes());
+        }
+    }
+    Some(sha256(&bits))
+}

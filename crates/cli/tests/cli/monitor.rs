@@ -1,0 +1,139 @@
+//! `monitor`: from a folder of `adapt` to tables, JSON, text, alerts.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::json_schema::violations;
+use crate::support::{
+    Ran, adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, root,
+};
+
+/// The fixture's twelve flights, adapted.
+fn adapted(folder: &Path) -> PathBuf {
+    let model = initial_model(folder);
+    let output = folder.join("adapted");
+    adapt(&model, &output, &[fixture("reports")], &[]).expect(0);
+    output
+}
+
+fn monitor(folder: &Path, more: &[&str]) -> Ran {
+    let mut arguments: Vec<std::ffi::OsString> = vec!["monitor".into(), folder.into()];
+    arguments.extend(more.iter().map(Into::into));
+    cruisefit(&arguments)
+}
+
+fn numbers(column: &[String]) -> Vec<f64> {
+    column.iter().map(|field| field.parse().unwrap()).collect()
+}
+
+#[test]
+fn tables_json_and_text_agree_and_hold_their_schema() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let before = bytes_below(&adapted);
+    let output = folder.path().join("out");
+    let printed = monitor(&adapted, &["-o", output.to_str().unwrap()]).expect(0).stdout;
+    assert_eq!(bytes_below(&adapted), before, "monitor only reads");
+    for line in printed.lines().filter(|line| !line.starts_with("Written to")) {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+    let json = monitor(&adapted, &["--json"]).expect(0).stdout;
+    assert_eq!(json.as_bytes(), std::fs::read(output.join("monitor.json")).unwrap());
+    let document: Value = serde_json::from_str(&json).unwrap();
+    let schema = std::fs::read(root().join("docs/schemas/monitor-1.json")).unwrap();
+    let found = violations(&serde_json::from_slice(&schema).unwrap(), &document);
+    assert!(found.is_empty(), "{found:#?}");
+    let tail = &document["tails"][0];
+    let flights = csv_columns(&output.join("flights.csv"));
+    assert_eq!(flights["flight"].len(), tail["flights"].as_array().unwrap().len());
+    let deviation = tail["flights"][0]["deviation_percent"]["value"].as_f64().unwrap();
+    assert_eq!(numbers(&flights["deviation_percent"])[0].to_bits(), deviation.to_bits());
+}
+
+/// Against the error that `adapt` wrote: 100 ln(recorded/predicted) of the initial model, and of the initial model again
+/// before the first flight, because nothing had been learnt then.
+#[test]
+fn deviations_are_those_of_the_segments() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let output = folder.path().join("out");
+    monitor(&adapted, &["-o", output.to_str().unwrap()]).expect(0);
+    let flights = csv_columns(&output.join("flights.csv"));
+    let segments_file = std::fs::read_dir(adapted.join("segments")).unwrap().next().unwrap();
+    let segments = csv_columns(&segments_file.unwrap().path());
+    let shown = numbers(&flights["initial_deviation_percent"]);
+    for (place, flight) in flights["flight"].iter().enumerate() {
+        let rows = segments["flight"].iter().enumerate().filter(|(_, name)| *name == flight);
+        let errors: Vec<f64> = rows
+            .filter(|(row, _)| !segments["error_percent"][*row].is_empty())
+            .map(|(row, _)| segments["error_percent"][row].parse().unwrap())
+            .collect();
+        // error = 100 (recorded − predicted)/recorded, so that predicted/recorded = 1 − error/100.
+        let deviations = errors.iter().map(|error| -100.0 * (1.0 - error / 100.0).ln());
+        let mean = deviations.sum::<f64>() / errors.len() as f64;
+        assert!((shown[place] - mean).abs() < 1e-9, "{flight}: {} against {mean}", shown[place]);
+    }
+    let first: f64 = flights["before_learning_percent"][0].parse().unwrap();
+    assert!((first - shown[0]).abs() < 1e-9);
+    // The book is several per cent too optimistic; what the model knew after the first flights is not.
+    let last: f64 = flights["before_learning_percent"].last().unwrap().parse().unwrap();
+    assert!(shown.last().unwrap().abs() > 2.0 && last.abs() < 1.5, "{shown:?} {last}");
+}
+
+#[test]
+fn alerts_set_the_exit_status_and_name_likely_causes() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let diagnosis = folder.path().join("diagnosis.json");
+    let text = r#"{"diagnoses": [{"tail": "SIM-01", "verdict": {"kind": "effects", "effects": ["drag_factor"],
+        "class": ["drag_factor", "tsfc_factor"], "closure": 0.9}}]}"#;
+    std::fs::write(&diagnosis, text).unwrap();
+    let more = ["--alert", "deviation=1", "--diagnosis", diagnosis.to_str().unwrap()];
+    let printed = monitor(&adapted, &more).expect(3).stdout;
+    assert!(printed.contains("ALERT SIM-01"), "{printed}");
+    assert!(printed.contains("likely: drag_factor, tsfc_factor"), "{printed}");
+    monitor(&adapted, &["--alert", "deviation=50"]).expect(0);
+    monitor(&adapted, &["--alert", "speed=1"]).expect(2).says("expected deviation=PCT");
+}
+
+#[test]
+fn events_are_measured_or_refused_with_their_position() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let events = folder.path().join("EVENTS.csv");
+    let flights = {
+        let output = folder.path().join("out");
+        monitor(&adapted, &["-o", output.to_str().unwrap(), "--quick"]).expect(0);
+        csv_columns(&output.join("flights.csv"))
+    };
+    assert!(flights["before_learning_percent"].iter().all(String::is_empty));
+    let middle = &flights["start"][6];
+    std::fs::write(&events, format!("date,tail,kind,note\n{middle},SIM-01,wash,\n")).unwrap();
+    let arguments = ["--events", events.to_str().unwrap(), "--json"];
+    let json = monitor(&adapted, &arguments).expect(0).stdout;
+    let document: Value = serde_json::from_str(&json).unwrap();
+    let event = &document["tails"][0]["events"][0];
+    assert_eq!(event["kind"], "wash");
+    assert!(event["effect_percent"]["value"].is_number(), "{event}");
+    std::fs::write(&events, "date,tail,kind,note\n2026-13-01,SIM-01,wash,\n").unwrap();
+    monitor(&adapted, &arguments).expect(2).says("line 2, column date: found \"2026-13-01\"");
+    monitor(folder.path(), &[]).expect(2).says("models");
+}
+
+#[test]
+fn months_and_costs_are_printed_as_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let printed = monitor(&adapted, &["--month", "--quick"]).expect(0).stdout;
+    assert!(printed.contains("before learning"), "{printed}");
+    let plain = monitor(&adapted, &["--quick"]).expect(0).stdout;
+    assert!(!plain.contains("CO₂"), "{plain}");
+    let more = ["--quick", "--co2-factor", "3.16", "--flights-per-year", "100", "--json"];
+    let document: Value = serde_json::from_str(&monitor(&adapted, &more).expect(0).stdout).unwrap();
+    let cost = &document["tails"][0]["cost"];
+    let number = |name: &str| cost[name].as_f64().unwrap();
+    assert!((number("fuel_kg_per_year") - 100.0 * number("fuel_kg_per_flight")).abs() < 1e-6);
+    assert!((number("co2_kg_per_year") - 3.16 * number("fuel_kg_per_year")).abs() < 1e-6);
+    assert!(cost["price_per_year"].is_null());
+}

@@ -1,0 +1,183 @@
+//! Smooth functions of one variable: a Gaussian process on a few knots.
+
+use serde::{Deserialize, Serialize};
+
+use crate::math::cholesky::Cholesky;
+use crate::priors::{SMOOTH_KNOT_DISTANCE, SMOOTH_MOST_KNOTS};
+use crate::signals::variables::Variable;
+use faer::Mat;
+
+/// Share of a knot's variance that keeps the kernel's matrix positive definite in doubles.
+const JITTER: f64 = 1e-6;
+
+/// A smooth function of one variable: a slope, and a Gaussian process with a squared exponential kernel on equally distant
+/// knots over what was flown. Beyond the knots the process fades to 0, and what it does not know there grows to its prior.
+///
+/// ```text
+/// f(v) = s·z + φ(z)ᵀc,  φ = L⁻¹k(Z, z),  LLᵀ = k(Z, Z),  k(a, b) = exp(−(a − b)²/2),  z = (v − middle)/length   [baseline.1]
+/// ```
+///
+/// # Source
+/// Rasmussen and Williams 2006, sections 4.2 and 8.3 (subset of regressors).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SmoothText", into = "SmoothText")]
+pub(crate) struct Smooth {
+    text: SmoothText,
+    /// Lower Cholesky factor of the kernel at the knots.
+    root: Mat<f64>,
+}
+
+/// A smooth function as it is written.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Smooth")]
+struct SmoothText {
+    variable: Variable,
+    middle: f64,
+    /// Over which the function bends, in the variable's unit.
+    length: f64,
+    /// First and last knot, in lengths from the middle.
+    knots: (f64, f64),
+    count: usize,
+}
+
+/// Numbers that are not a smooth function.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a smooth function of {count} knots from {} to {} at a length of {length}", .knots.0, .knots.1)]
+pub(crate) struct SmoothError {
+    count: usize,
+    knots: (f64, f64),
+    length: f64,
+}
+
+impl Smooth {
+    /// Over the values that were flown; `None` where they do not differ.
+    pub(crate) fn over(variable: Variable, length: f64, values: &[f64]) -> Option<Self> {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if !(high - low > 1e-3 * length) {
+            return None;
+        }
+        let middle = values.iter().sum::<f64>() / values.len() as f64;
+        // One knot more on each side: a process of few knots sags between the last one and the end.
+        let (first, last) = ((low - middle) / length, (high - middle) / length);
+        let intervals = ((last - first) / SMOOTH_KNOT_DISTANCE).ceil().max(1.0);
+        let most = (SMOOTH_MOST_KNOTS - 3) as f64;
+        // A range of very many lengths bends over a longer one.
+        let stretch = (intervals / most).max(1.0);
+        let intervals = intervals.min(most);
+        let distance = ((last - first) / stretch / intervals).max(SMOOTH_KNOT_DISTANCE / 2.0);
+        let center = f64::midpoint(first, last) / stretch;
+        let half = distance * (intervals / 2.0 + 1.0);
+        let text = SmoothText {
+            variable,
+            middle,
+            length: length * stretch,
+            knots: (center - half, center + half),
+            count: intervals as usize + 3,
+        };
+        Self::try_from(text).ok()
+    }
+
+    pub(crate) const fn variable(&self) -> Variable {
+        self.text.variable
+    }
+
+    /// Terms: the slope, then the process.
+    pub(crate) const fn len(&self) -> usize {
+        1 + self.text.count
+    }
+
+    /// Lengths from the middle.
+    pub(crate) fn at(&self, value: f64) -> f64 {
+        (value - self.text.middle) / self.text.length
+    }
+
+    /// Writes the terms at a value; returns the share of the process' variance that they do not hold.
+    #[expect(clippy::needless_range_loop, reason = "rows and columns of a triangle")]
+    pub(crate) fn write(&self, value: f64, into: &mut [f64]) -> f64 {
+        let z = self.at(value);
+        into[0] = z;
+        let mut held = 0.0;
+        for k in 0..self.text.count {
+            let mut sum = kernel(z, self.knot(k));
+            for j in 0..k {
+                sum -= self.root[(k, j)] * into[1 + j];
+            }
+            into[1 + k] = sum / self.root[(k, k)];
+            held += into[1 + k] * into[1 + k];
+        }
+        (1.0 - held).max(0.0)
+    }
+
+    fn knot(&self, k: usize) -> f64 {
+        let (first, last) = self.text.knots;
+        first + (last - first) * k as f64 / (self.text.count - 1) as f64
+    }
+}
+
+impl TryFrom<SmoothText> for Smooth {
+    type Error = SmoothError;
+    fn try_from(text: SmoothText) -> Result<Self, SmoothError> {
+        let SmoothText { count, knots, length, middle, .. } = text;
+        let wrong = SmoothError { count, knots, length };
+        let finite = knots.0.is_finite() && knots.1.is_finite() && middle.is_finite();
+        let spread = knots.1 > knots.0 && length > 0.0 && length.is_finite();
+        if !finite || !spread || !(2..=SMOOTH_MOST_KNOTS).contains(&count) {
+            return Err(wrong);
+        }
+        let mut smooth = Self { text, root: Mat::zeros(0, 0) };
+        let kernel = Mat::from_fn(count, count, |a, b| {
+            let own = if a == b { JITTER } else { 0.0 };
+            kernel(smooth.knot(a), smooth.knot(b)) + own
+        });
+        smooth.root = Cholesky::new(&kernel).ok_or(wrong)?.lower().to_owned();
+        Ok(smooth)
+    }
+}
+
+impl From<Smooth> for SmoothText {
+    fn from(smooth: Smooth) -> Self {
+        smooth.text
+    }
+}
+
+fn kernel(a: f64, b: f64) -> f64 {
+    (-0.5 * (a - b) * (a - b)).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The covariance of two values is the kernel's where there are knots, and the prior's variance is never exceeded.
+    #[test]
+    fn between_knots_the_terms_have_the_kernels_covariance() {
+        let values: Vec<f64> = (0..50).map(|k| 0.70 + 0.003 * f64::from(k)).collect();
+        let smooth = Smooth::over(Variable::Mach, 0.02, &values).unwrap();
+        let mut one = vec![0.0; smooth.len()];
+        let mut other = vec![0.0; smooth.len()];
+        for a in [0.70, 0.7333, 0.78, 0.83] {
+            let left = smooth.write(a, &mut one);
+            assert!(left < 0.01, "{a}: {left}");
+            for b in [0.71, 0.7450, 0.81] {
+                smooth.write(b, &mut other);
+                let found: f64 = one[1..].iter().zip(&other[1..]).map(|(p, q)| p * q).sum();
+                let expected = (-0.5 * ((a - b) / 0.02_f64).powi(2)).exp();
+                assert!((found - expected).abs() < 0.01, "{a} {b}: {found} {expected}");
+            }
+        }
+        // Far away nothing is held, and the slope goes on.
+        assert!(smooth.write(0.95, &mut one) > 0.99);
+        assert!((one[0] - (0.95 - 0.7735) / 0.02).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_does_not_vary_has_no_function_and_a_wide_range_few_knots() {
+        assert!(Smooth::over(Variable::Mach, 0.02, &[0.8; 30]).is_none());
+        assert!(Smooth::over(Variable::Mach, 0.02, &[]).is_none());
+        let wide = Smooth::over(Variable::PressureAltitude, 600.0, &[0.0, 60_000.0]).unwrap();
+        assert!(wide.len() <= 1 + SMOOTH_MOST_KNOTS);
+        let mut terms = vec![0.0; wide.len()];
+        assert!(wide.write(33_333.0, &mut terms) < 0.05);
+    }
+}

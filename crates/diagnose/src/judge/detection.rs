@@ -1,0 +1,99 @@
+//! Whether a gap is reported, and how much of each probability other flights bear out.
+
+use crate::advice::distances::Distances;
+use crate::judge::closure::Shrinkage;
+use crate::judge::gap::{is_large, is_vague};
+use crate::judge::posterior::Posterior;
+use crate::judge::table::TableFinding;
+use crate::judge::verdict::{beside, closed, credit};
+use crate::output::Gap;
+use crate::search::analyse::Analysis;
+use crate::search::outside::Outside;
+use crate::search::system::Problem;
+use crate::thresholds::{
+    LARGEST_REST, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
+};
+
+/// What a decision is made from.
+pub(crate) struct Evidence<'a> {
+    pub(crate) analysis: &'a Analysis,
+    pub(crate) distances: &'a Distances,
+    /// Causes, the most probable first.
+    pub(crate) posteriors: &'a [Posterior],
+    pub(crate) gap: &'a Gap,
+    pub(crate) own: &'a Shrinkage,
+    /// How far the gap shrinks on unseen flights, where that was measured.
+    pub(crate) unseen: Option<&'a Shrinkage>,
+    /// Noise variance over what the sensors announce.
+    pub(crate) noise_scale: f64,
+    /// Whether no effect at all is improbable, or the size exceeds noise and uncertainty; the latter alone.
+    pub(crate) is_real: bool,
+    pub(crate) exceeds_uncertainty: bool,
+}
+
+/// What was decided.
+pub(crate) struct Detection {
+    pub(crate) detected: bool,
+    /// A guide's table, where it is more probably off than not.
+    pub(crate) table: Option<TableFinding>,
+    /// Probability that a smooth term is needed, before any of it is credited to the leading effect.
+    pub(crate) smooth_term: f64,
+}
+
+/// Decides. The probability of a cause outside takes what names lose.
+pub(crate) fn detect(
+    problem: Problem<'_>,
+    evidence: &Evidence<'_>,
+    outside: &mut Outside,
+) -> Detection {
+    let Problem { stacked, library, .. } = problem;
+    let Evidence { distances, posteriors, gap, own, unseen, .. } = *evidence;
+    let table = TableFinding::of(stacked, evidence.analysis, library)
+        .map(|table| borne_out(table, unseen))
+        .filter(|table| table.probability > MORE_PROBABLE_THAN_NOT);
+    let smooth_term = outside.probability;
+    let top = posteriors.first();
+    let is_scatter = top.is_some_and(|top| top.effect.is_none());
+    outside.probability *= 1.0
+        - credit(
+            beside(outside, distances, library, top),
+            closed(unseen, own).filter(|_| !is_scatter),
+        );
+    let judged = unseen.unwrap_or(own);
+    let leaves_most = judged.after() > LARGEST_REST * judged.floor() / evidence.noise_scale;
+    if table.is_none() && (leaves_most || may_close_nothing(unseen.filter(|_| !is_scatter))) {
+        outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
+    }
+    // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
+    let named: f64 = posteriors.iter().map(|p| p.probability).sum();
+    let something = evidence.exceeds_uncertainty
+        || smooth_term > OUTSIDE_PROBABILITY
+        || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
+    let taught = stacked.data.predictor.baseline.is_some();
+    let stands_out = something
+        && is_large(stacked, gap, top)
+        && !is_vague(gap, outside, top, taught && makes_worse(unseen));
+    let detected = evidence.is_real && (table.is_some() || stands_out);
+    Detection { detected, table: table.filter(|_| detected), smooth_term }
+}
+
+/// A guide's table with less probability where a table that was fitted to other flights may close less than half of the gap:
+/// drag over lift coefficient and Mach number is then not what is wrong.
+fn borne_out(table: TableFinding, unseen: Option<&Shrinkage>) -> TableFinding {
+    let closed = unseen.and_then(Shrinkage::closure);
+    if closed.is_some_and(|(_, [least, _])| least < LEAST_OF_A_TABLE) {
+        return TableFinding { probability: UNPROVEN_SHARE * table.probability, ..table };
+    }
+    table
+}
+
+/// Whether the closure of a name on flights that it was not fitted to may be none.
+fn may_close_nothing(unseen: Option<&Shrinkage>) -> bool {
+    unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
+}
+
+/// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does
+/// this is wrong.
+fn makes_worse(unseen: Option<&Shrinkage>) -> bool {
+    unseen.and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0)
+}

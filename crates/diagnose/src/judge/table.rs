@@ -1,0 +1,155 @@
+//! A guide's drag table that is off: how probable that is, by how much, and what these flights cannot tell from it.
+
+use flight::effect::EffectId;
+
+use crate::library::Library;
+use crate::math::gram::Gram;
+use crate::output::Magnitude;
+use crate::residuals::rows::SegmentRow;
+use crate::search::analyse::Analysis;
+use crate::search::system::WhitenedSystem;
+use crate::thresholds::{FLEXIBLE_EFFECT, NORMAL_95};
+
+/// What is found of a guide's table.
+#[derive(Clone, Debug)]
+pub(crate) struct TableFinding {
+    /// Probability that the table is off.
+    pub(crate) probability: f64,
+    /// By how much, % rms over what was flown.
+    pub(crate) magnitude: Magnitude,
+    /// The effect itself first, then effects that a table can hold as well.
+    pub(crate) class: Vec<EffectId>,
+}
+
+impl TableFinding {
+    /// `None` where the table is no guide's, or cannot be fitted.
+    pub(crate) fn of(
+        stacked: &WhitenedSystem<'_>,
+        analysis: &Analysis,
+        library: &Library,
+    ) -> Option<Self> {
+        if !stacked.is_book() {
+            return None;
+        }
+        let probability: f64 =
+            analysis.models.iter().map(|(scored, p)| p * scored.table_share).sum();
+        let class = class(analysis, library);
+        let best = &analysis.models.first()?.0.model.columns;
+        let magnitude = magnitude(stacked, library, &beyond(library, &class, best))?;
+        Some(Self { probability: probability.min(1.0), magnitude, class })
+    }
+}
+
+/// Named effects and the table fitted together.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FittedTable {
+    /// Columns of the library that were fitted with it: what no table can hold, and its sizes.
+    pub(crate) columns: Vec<usize>,
+    pub(crate) sizes: Vec<f64>,
+    /// Coefficients of the table's columns.
+    coefficients: Vec<f64>,
+}
+
+impl FittedTable {
+    /// Fits a guide's table, and of these columns of the library those that no table can hold, to a Gram; `None` where the
+    /// matrix is not positive definite.
+    pub(crate) fn new(
+        stacked: &WhitenedSystem<'_>,
+        library: &Library,
+        gram: &Gram,
+        (analysis, named): (&Analysis, &[usize]),
+    ) -> Option<Self> {
+        let named = beyond(library, &class(analysis, library), named);
+        Self::of_columns(stacked, library, gram, &named)
+    }
+
+    fn of_columns(
+        stacked: &WhitenedSystem<'_>,
+        library: &Library,
+        gram: &Gram,
+        named: &[usize],
+    ) -> Option<Self> {
+        let (columns, deviations) = columns(stacked, library, named);
+        let solution = gram.fit(&columns, &deviations, stacked.design.residual())?;
+        let of_table = stacked.design.table_columns();
+        let in_table = columns.iter().enumerate().filter(|(_, column)| of_table.contains(column));
+        Some(Self {
+            columns: named.to_vec(),
+            sizes: (0..named.len()).map(|k| solution[(k, 0)]).collect(),
+            coefficients: in_table.map(|(k, _)| solution[(k, 0)]).collect(),
+        })
+    }
+
+    /// By how much the table's drag is off at a segment, ln.
+    pub(crate) fn drag_at(&self, stacked: &WhitenedSystem<'_>, row: &SegmentRow) -> f64 {
+        let Some(table) = stacked.design.table() else { return 0.0 };
+        let mut loadings = vec![0.0; table.rank()];
+        table.write(&row.response, &mut loadings);
+        loadings.iter().zip(&self.coefficients).map(|(loading, size)| loading * size).sum()
+    }
+}
+
+/// Columns of effects that no table can hold.
+fn beyond(library: &Library, class: &[EffectId], columns: &[usize]) -> Vec<usize> {
+    let id = |column: &usize| library.effects[library.columns[*column].effect].id;
+    columns.iter().copied().filter(|column| !class.contains(&id(column))).collect()
+}
+
+/// Columns of named effects, then of the nuisance, with their prior standard deviations.
+fn columns(
+    stacked: &WhitenedSystem<'_>,
+    library: &Library,
+    named: &[usize],
+) -> (Vec<usize>, Vec<f64>) {
+    let wide =
+        |column: &usize| FLEXIBLE_EFFECT * library.effects[library.columns[*column].effect].typical;
+    let nuisance = stacked.design.nuisance.clone().map(|column| (column, 1.0));
+    named.iter().map(|column| (*column, wide(column))).chain(nuisance).unzip()
+}
+
+/// Root mean square of the table's error over what was flown, with its interval by linear propagation.
+fn magnitude(
+    stacked: &WhitenedSystem<'_>,
+    library: &Library,
+    named: &[usize],
+) -> Option<Magnitude> {
+    let table = stacked.design.table()?;
+    let gram = stacked.gram(None);
+    let fitted = FittedTable::of_columns(stacked, library, gram, named)?;
+    let segments = &stacked.data.segments;
+    let count = segments.len() as f64;
+    let mut square = 0.0;
+    let mut slope = vec![0.0; table.rank()];
+    let mut loadings = vec![0.0; table.rank()];
+    for row in segments {
+        table.write(&row.response, &mut loadings);
+        let error = fitted.drag_at(stacked, row);
+        square += error * error / count;
+        for (slope, loading) in slope.iter_mut().zip(&loadings) {
+            *slope += error * loading / count;
+        }
+    }
+    let rms = square.sqrt();
+    // d rms/d coefficient = Σ error·loading/(n·rms); its variance by the posterior covariance of all that was fitted.
+    let (all, deviations) = columns(stacked, library, named);
+    let of_table = stacked.design.table_columns();
+    let right: Vec<f64> = all
+        .iter()
+        .map(
+            |column| {
+                if of_table.contains(column) { slope[column - of_table.start] / rms } else { 0.0 }
+            },
+        )
+        .collect();
+    let variance = gram.variance(&all, &deviations, &right)?;
+    let half = NORMAL_95 * variance.sqrt();
+    let [value, low, high] = [rms, (rms - half).max(0.0), rms + half].map(|share| 100.0 * share);
+    Some(Magnitude { value, ci95: [low, high] })
+}
+
+/// The effect itself, then what the table can hold as well.
+fn class(analysis: &Analysis, library: &Library) -> Vec<EffectId> {
+    let held = library.effects.iter().zip(&analysis.scorer.held);
+    let ids = held.filter(|(_, held)| **held).map(|(effect, _)| effect.id);
+    core::iter::once(EffectId::DragTable).chain(ids).collect()
+}

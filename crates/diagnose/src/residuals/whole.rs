@@ -1,0 +1,203 @@
+//! Predictions of a model with everything that it has learnt: drag table, remainder, effects that its fleet shows at all times.
+
+use effects::{EffectError, EffectModel, EffectPoint, Effects, ExtendedModel};
+use flight::Segment;
+use flight::effect::EffectId;
+use perf_model::FlightPoint;
+
+use crate::baseline::Baseline;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
+use crate::residuals::predictor::Predictor;
+use crate::residuals::reference::Reference;
+use crate::residuals::signatures::Difference;
+use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
+use crate::signals::n2_deck::Deck;
+use crate::signals::noise::{NoiseModel, Statistics};
+use crate::signals::references::DiagnoseError;
+
+/// Samples of the segment that an interval at a flight point is of.
+const SAMPLES_OF_A_SEGMENT: usize = 10;
+
+/// A model with everything that it has learnt. Predictions are ln fuel flow.
+#[derive(Debug)]
+pub struct WholeModel<'a> {
+    extended: &'a ExtendedModel,
+    model: EffectModel<'a>,
+    baseline: &'a Baseline,
+    predictor: Predictor<'a>,
+    statistics: Statistics,
+    standing: Vec<Difference>,
+}
+
+/// A prediction of the whole model at a segment or flight point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WholePrediction {
+    /// ln of the fuel flow of all engines, kg/s.
+    pub ln_fuel_flow: f64,
+    /// The same less what the model's initial table predicts.
+    pub ln_correction: f64,
+    /// How it leans on what was learnt, in standard deviations: predictions of one model err together.
+    pub loadings: Vec<f64>,
+    /// Variance of the model there that is not in the loadings: where nothing was flown.
+    pub unflown: f64,
+    /// Variance of what all segments of a flight have in common.
+    pub of_flight: f64,
+    /// Variance of what a segment has of its own.
+    pub of_segment: f64,
+}
+
+impl WholePrediction {
+    /// Variance of the model there.
+    #[must_use]
+    pub fn of_model(&self) -> f64 {
+        self.unflown + self.loadings.iter().map(|loading| loading * loading).sum::<f64>()
+    }
+
+    /// Variance of the mean error over these segments of one new flight.
+    #[must_use]
+    pub fn variance_of_flight<'p>(segments: impl Iterator<Item = &'p Self> + Clone) -> f64 {
+        let count = segments.clone().count().max(1) as f64;
+        let mean = |of: fn(&Self) -> f64| segments.clone().map(of).sum::<f64>() / count;
+        Self::variance_of_mean(segments.clone())
+            + mean(|one| one.of_flight)
+            + mean(|one| one.of_segment) / count
+    }
+
+    /// Variance of the model's mean error over these segments, however many flights there are: that of a fleet's mean.
+    #[must_use]
+    pub fn variance_of_mean<'p>(segments: impl Iterator<Item = &'p Self> + Clone) -> f64 {
+        let count = segments.clone().count().max(1) as f64;
+        let mut sums = Vec::new();
+        let mut unflown = 0.0;
+        for one in segments {
+            sums.resize(one.loadings.len(), 0.0);
+            for (sum, loading) in sums.iter_mut().zip(&one.loadings) {
+                *sum += loading / count;
+            }
+            // Unflown regions of one model err together.
+            unflown += one.unflown.sqrt() / count;
+        }
+        unflown * unflown + sums.iter().map(|sum| sum * sum).sum::<f64>()
+    }
+
+    /// Variance of ln fuel flow that a new segment of a new flight would show.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        self.of_model() + self.of_flight + self.of_segment
+    }
+}
+
+impl<'a> WholeModel<'a> {
+    /// The model from which a baseline was learnt, with it.
+    ///
+    /// # Errors
+    /// [`DiagnoseError`] where the model takes no effects.
+    pub fn new(extended: &'a ExtendedModel, baseline: &'a Baseline) -> Result<Self, DiagnoseError> {
+        let references = *baseline.references();
+        let model = EffectModel::new(extended, extended.drag_table(), references)?;
+        let channels = Channels { contrasts: 0, n2: false };
+        let deck = baseline.deck().unwrap_or_else(|| Deck::fitted(&[]));
+        let reference = Reference::from_baseline(Some(baseline));
+        let statistics = reference.statistics(&model);
+        let standing = STANDING_EFFECTS
+            .iter()
+            .map(|effect| {
+                let step = 0.5 * references.typical_size(effect.id);
+                Difference::new(&model, &Effects::none(), effect.id, effect.hidden, step)
+            })
+            .collect();
+        let predictor = Predictor { channels, deck, baseline: Some(baseline) };
+        Ok(Self { extended, model, baseline, predictor, statistics, standing })
+    }
+
+    /// The prediction for a recorded segment, acceleration and all; recordings are corrected by what the model contains.
+    ///
+    /// # Errors
+    /// [`EffectError`] for a segment outside the table or a domain.
+    pub fn of_segment(&self, segment: &Segment) -> Result<WholePrediction, EffectError> {
+        let means = self.model.corrected_means(&segment.means)?;
+        let engines = self.model.aircraft().engines();
+        let point = EffectPoint::from_means(&means, segment.identity.start_s(), engines);
+        self.at(&point, segment.rows.len())
+    }
+
+    /// The prediction for a flight point: level, without acceleration. Carried effects whose input the point lacks are as on
+    /// average over the flights that taught the model.
+    ///
+    /// # Errors
+    /// [`EffectError`] for a point outside the table or a domain.
+    pub fn of_point(&self, point: &FlightPoint) -> Result<WholePrediction, EffectError> {
+        let of_table = self.extended.response(point)?;
+        let mut at = EffectPoint::from_flight_point(point, self.model.aircraft().engines())?;
+        if point.date.is_none() {
+            at.date_s = self.baseline.references().date_s;
+        }
+        let mut found = self.at(&at, SAMPLES_OF_A_SEGMENT)?;
+        // Effects that the model contains may depend on the date.
+        found.ln_fuel_flow = of_table.ln_fuel_flow_total + found.ln_correction;
+        Ok(found)
+    }
+
+    fn at(&self, point: &EffectPoint, samples: usize) -> Result<WholePrediction, EffectError> {
+        let (known, response) = self.model.known_point(point)?;
+        let baseline = self.baseline;
+        let layout = baseline.layout();
+        let predict = |response: &effects::Response| self.predictor.predict(response);
+        let without = predict(&response)[0];
+        let mut raw = vec![0.0; layout.len()];
+        let mut unflown = baseline.write_remainder(&response, &mut raw[layout.remainder.clone()]);
+        baseline.write_drag(&response, &mut raw[layout.drag.clone()]);
+        for loading in &mut raw[layout.drag.clone()] {
+            *loading *= response.drag_over_thrust;
+        }
+        let thrust_square = response.drag_over_thrust * response.drag_over_thrust;
+        unflown += baseline.table.as_ref().map_or(0.0, |t| thrust_square * t.left_out(&response));
+        let mut recorded = [false; MAXIMUM_CHANNELS];
+        recorded[0] = true;
+        let mut carried = 0.0;
+        let untaught = self.predictor.untaught();
+        for (k, effect) in STANDING_EFFECTS.iter().enumerate() {
+            let size = baseline.standing_effects()[k];
+            // As they were learnt: by their slopes.
+            let slope = if lacks(point, effect.id) {
+                None
+            } else {
+                let found = self.standing[k].signature(&self.model, &known, recorded, &untaught);
+                found.ok().map(|slope| slope[0])
+            };
+            carried += slope.map_or(baseline.parts.standing_means[k], |slope| slope * size);
+            // Without the input the mean is known as well as the level is.
+            raw[layout.standing_effects.start + k] = slope.unwrap_or(0.0);
+        }
+        let factor = baseline.factor();
+        let stated = baseline.interval_factor();
+        let loadings = (0..factor.ncols())
+            .map(|column| {
+                (column..raw.len()).map(|row| stated * raw[row] * factor[(row, column)]).sum()
+            })
+            .collect();
+        let noise = NoiseModel {
+            model: &self.model,
+            channels: self.predictor.channels,
+            statistics: &self.statistics,
+            predict: &predict,
+        }
+        .segment_noise(point, samples, recorded)?;
+        let square = |values: &ByChannel| values[0] * values[0];
+        Ok(WholePrediction {
+            ln_fuel_flow: without + carried,
+            ln_correction: without + carried - response.ln_fuel_flow_total,
+            loadings,
+            unflown: stated * stated * unflown,
+            of_flight: stated * stated * noise.common.iter().map(square).sum::<f64>(),
+            of_segment: stated * stated * square(&noise.factor[0]),
+        })
+    }
+}
+
+/// Whether a point lacks what an effect needs: not even a substitute counts.
+fn lacks(point: &EffectPoint, effect: EffectId) -> bool {
+    use flight::effect::NeededInput;
+    point.lacks(effect).is_some()
+        || (effect.entry().needs.contains(&NeededInput::Roll) && point.roll_squared_deg2.is_none())
+}

@@ -1,0 +1,195 @@
+//! The probability of every start of the current piece, flight by flight: exact, but for starts too improbable to matter.
+//!
+//! Flights between two changes lie on a straight line; lines of different pieces are independent, so that the density of all
+//! flights is a sum over all divisions into pieces, and the sum is done by a recursion over the last start (Fearnhead 2006,
+//! Statistics and Computing 16, 203–213; online as Adams and MacKay 2007 have it). What a flight costs does not depend on
+//! how many there were: [`MOST_STARTS`] starts are remembered.
+
+use crate::piece::RunningSums;
+use crate::settings::{ChangeBeliefs, FORGOTTEN_SHARE, MOST_STARTS};
+
+/// A flight as the filter needs it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilteredFlight {
+    /// Years since an instant that is the same for all flights.
+    pub years: f64,
+    /// Deviation less the middle of the series, %.
+    pub deviation_percent: f64,
+    /// One over its variance, %⁻².
+    pub weight: f64,
+    /// Whether an event was recorded between the flight before and this one.
+    pub event_before: EventBefore,
+}
+
+/// Whether an event was recorded just before a flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EventBefore {
+    /// None.
+    #[default]
+    None,
+    /// One or more.
+    Recorded,
+}
+
+/// What is known after each flight about the start of the piece that it belongs to.
+#[derive(Clone, Debug)]
+pub struct ChangeFilter {
+    beliefs: ChangeBeliefs,
+    sums: RunningSums,
+    /// By number of flights: ln density of the flights before, over all divisions.
+    density: Vec<f64>,
+    /// By number of flights: the same of the best division, and where its last piece begins.
+    best: Vec<(f64, usize)>,
+    /// ln probability of a change before each flight, and the sum of ln probability of no change up to it.
+    change: Vec<(f64, f64)>,
+    /// Starts of the current piece that are remembered.
+    starts: Vec<usize>,
+    /// By flight: probability of each remembered start, given the flights up to then.
+    shares: Vec<Vec<(u32, f64)>>,
+}
+
+impl ChangeFilter {
+    /// A filter that has seen no flight.
+    #[must_use]
+    pub fn new(beliefs: ChangeBeliefs) -> Self {
+        Self {
+            beliefs,
+            sums: RunningSums::new(),
+            density: vec![0.0],
+            best: vec![(0.0, 0)],
+            change: Vec::new(),
+            starts: Vec::new(),
+            shares: Vec::new(),
+        }
+    }
+
+    /// Takes the next flight.
+    ///
+    /// ```text
+    /// F(t) = Σ_s F(s)·p(change at s)·Π(1 − p)·evidence(s…t),   share(s) = summand/F(t)         [monitoring.7]
+    /// ```
+    pub fn push(&mut self, flight: &FilteredFlight) {
+        let index = self.change.len();
+        let probability = match flight.event_before {
+            EventBefore::None => self.beliefs.change_between_flights,
+            EventBefore::Recorded => self.beliefs.change_at_event,
+        };
+        let stayed = self.change.last().map_or(0.0, |(_, stayed)| *stayed);
+        // Nothing can change before the first flight: it begins a piece.
+        self.change.push(if index == 0 {
+            (0.0, 0.0)
+        } else {
+            (probability.ln(), stayed + (-probability).ln_1p())
+        });
+        self.sums.push(flight.years, flight.deviation_percent, flight.weight);
+        self.starts.push(index);
+        let to = index + 1;
+        let no_change_until = self.change[index].1;
+        let mut best = (f64::NEG_INFINITY, 0);
+        let mut summands = Vec::with_capacity(self.starts.len());
+        for &start in &self.starts {
+            let (log_change, stayed) = self.change[start];
+            let piece = self.sums.piece(start, to).log_evidence(&self.beliefs)
+                + log_change
+                + (no_change_until - stayed);
+            summands.push(self.density[start] + piece);
+            let all = self.best[start].0 + piece;
+            if all > best.0 {
+                best = (all, start);
+            }
+        }
+        let largest = summands.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = summands.iter().map(|summand| (summand - largest).exp()).sum();
+        let density = largest + sum.ln();
+        self.density.push(density);
+        self.best.push(best);
+        let starts = self.starts.iter().zip(&summands);
+        let shares: Vec<(u32, f64)> = starts
+            .map(|(&start, summand)| (start as u32, (summand - density).exp()))
+            .filter(|(start, share)| *share >= FORGOTTEN_SHARE || *start as usize == index)
+            .collect();
+        let shares = most_probable(shares);
+        self.starts.clear();
+        self.starts.extend(shares.iter().map(|(start, _)| *start as usize));
+        self.shares.push(shares);
+    }
+
+    /// Number of flights seen.
+    #[must_use]
+    pub fn flights(&self) -> usize {
+        self.change.len()
+    }
+
+    /// Natural logarithm of the density of all flights so far, up to a factor that no belief about changes alters.
+    #[must_use]
+    pub fn log_density(&self) -> f64 {
+        self.density[self.density.len() - 1]
+    }
+
+    /// Probability, given the flights so far, that the last change is at this flight or a later one: what can be said
+    /// tonight.
+    #[must_use]
+    pub fn changed_since(&self, flight: usize) -> f64 {
+        self.shares.last().map_or(0.0, |shares| {
+            let later = shares.iter().filter(|(start, _)| *start as usize >= flight.max(1));
+            later.map(|(_, share)| share).sum()
+        })
+    }
+
+    /// First flights of the pieces of the most probable division, from the second piece on, in order.
+    #[must_use]
+    pub fn best_division(&self) -> Vec<usize> {
+        let mut starts = Vec::new();
+        let mut end = self.flights();
+        while end > 0 {
+            end = self.best[end].1;
+            if end > 0 {
+                starts.push(end);
+            }
+        }
+        starts.reverse();
+        starts
+    }
+
+    /// Probability, given all flights, that a piece begins at each flight; 1 for the first.
+    ///
+    /// ```text
+    /// R(n) = 1,   R(s) = Σ_t R(t)·share_t(s)                                                  [monitoring.8]
+    /// ```
+    #[must_use]
+    pub fn probabilities(&self) -> Vec<f64> {
+        let mut ends = vec![0.0; self.flights() + 1];
+        if let Some(last) = ends.last_mut() {
+            *last = 1.0;
+        }
+        for (index, shares) in self.shares.iter().enumerate().rev() {
+            let end = ends[index + 1];
+            if end > 0.0 {
+                for (start, share) in shares {
+                    ends[*start as usize] += end * share;
+                }
+            }
+        }
+        ends.truncate(self.flights());
+        ends
+    }
+}
+
+/// At most [`MOST_STARTS`], in order of start, and their shares of 1.
+fn most_probable(mut shares: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+    if shares.len() > MOST_STARTS {
+        shares.select_nth_unstable_by(MOST_STARTS - 1, |one, other| {
+            other.1.total_cmp(&one.1).then(one.0.cmp(&other.0))
+        });
+        shares.truncate(MOST_STARTS);
+        shares.sort_unstable_by_key(|(start, _)| *start);
+    }
+    let sum: f64 = shares.iter().map(|(_, share)| share).sum();
+    for (_, share) in &mut shares {
+        *share /= sum;
+    }
+    shares
+}
+
+#[cfg(test)]
+mod tests;

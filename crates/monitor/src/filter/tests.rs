@@ -1,0 +1,118 @@
+use super::*;
+
+fn filtered(beliefs: ChangeBeliefs, y: &[f64], event: Option<usize>) -> ChangeFilter {
+    let mut filter = ChangeFilter::new(beliefs);
+    for (index, &deviation_percent) in y.iter().enumerate() {
+        let event_before =
+            if event == Some(index) { EventBefore::Recorded } else { EventBefore::None };
+        let years = 0.01 * index as f64;
+        filter.push(&FilteredFlight { years, deviation_percent, weight: 4.0, event_before });
+    }
+    filter
+}
+
+/// Every division of the flights into pieces, with its ln prior times evidence.
+fn all_divisions(
+    beliefs: &ChangeBeliefs,
+    y: &[f64],
+    event: Option<usize>,
+) -> Vec<(Vec<usize>, f64)> {
+    let mut sums = RunningSums::new();
+    for (index, value) in y.iter().enumerate() {
+        sums.push(0.01 * index as f64, *value, 4.0);
+    }
+    (0..1_usize << (y.len() - 1))
+        .map(|bits| {
+            let mut log = 0.0;
+            let mut starts = vec![0];
+            for flight in 1..y.len() {
+                let change = if event == Some(flight) {
+                    beliefs.change_at_event
+                } else {
+                    beliefs.change_between_flights
+                };
+                if bits >> (flight - 1) & 1 == 1 {
+                    log += change.ln();
+                    starts.push(flight);
+                } else {
+                    log += (1.0 - change).ln();
+                }
+            }
+            for (piece, start) in starts.iter().enumerate() {
+                let end = starts.get(piece + 1).copied().unwrap_or(y.len());
+                log += sums.piece(*start, end).log_evidence(beliefs);
+            }
+            (starts, log)
+        })
+        .collect()
+}
+
+/// Oracle: the sum over all 2¹¹ divisions of a dozen flights, one by one.
+#[test]
+fn density_probabilities_and_best_division_by_brute_force() {
+    let beliefs = ChangeBeliefs { change_between_flights: 0.1, ..ChangeBeliefs::of_2026() };
+    let y = [0.1, -0.4, 0.3, 0.0, 1.6, 1.1, 1.9, 1.4, 0.2, -0.3, 0.4, 0.1];
+    for event in [None, Some(8)] {
+        let filter = filtered(beliefs, &y, event);
+        let divisions = all_divisions(&beliefs, &y, event);
+        let total: f64 = divisions.iter().map(|(_, log)| log.exp()).sum();
+        assert!((filter.log_density() - total.ln()).abs() < 1e-9);
+        let probabilities = filter.probabilities();
+        for flight in 0..y.len() {
+            let with = divisions.iter().filter(|(starts, _)| starts.contains(&flight));
+            let expected = with.map(|(_, log)| log.exp()).sum::<f64>() / total;
+            assert!((probabilities[flight] - expected).abs() < 1e-8, "flight {flight}");
+        }
+        let best = divisions.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+        assert_eq!(filter.best_division(), best.0[1..]);
+        assert_eq!(best.0, [0, 4, 8]);
+        let last = divisions.iter().filter(|(starts, _)| *starts.last().unwrap() >= 8);
+        let expected = last.map(|(_, log)| log.exp()).sum::<f64>() / total;
+        assert!((filter.changed_since(8) - expected).abs() < 1e-8);
+    }
+}
+
+/// What is forgotten of a long history is too little to matter. Oracle: the same sums over all starts, none forgotten.
+#[test]
+fn forgetting_does_not_matter() {
+    let beliefs = ChangeBeliefs::of_2026();
+    let mut random = 7_u64;
+    let mut noise = || {
+        random =
+            random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 40) as f64 / f64::from(1_u32 << 23) - 1.0
+    };
+    let y: Vec<f64> = (0..600).map(|k| if k < 350 { noise() } else { 0.8 + noise() }).collect();
+    let filter = filtered(beliefs, &y, None);
+    let mut sums = RunningSums::new();
+    let stay = (1.0 - beliefs.change_between_flights).ln();
+    let mut density = vec![0.0_f64];
+    let mut shares: Vec<Vec<f64>> = Vec::new();
+    for (index, value) in y.iter().enumerate() {
+        sums.push(0.01 * index as f64, *value, 4.0);
+        let summand = |start: usize| {
+            let change = if start > 0 { beliefs.change_between_flights.ln() } else { 0.0 };
+            density[start]
+                + change
+                + stay * (index - start) as f64
+                + sums.piece(start, index + 1).log_evidence(&beliefs)
+        };
+        let summands: Vec<f64> = (0..=index).map(summand).collect();
+        let largest = summands.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = summands.iter().map(|summand| (summand - largest).exp()).sum();
+        density.push(largest + sum.ln());
+        shares.push(summands.iter().map(|s| (s - density[index + 1]).exp()).collect());
+    }
+    let mut exact = vec![0.0; y.len() + 1];
+    exact[y.len()] = 1.0;
+    for end in (1..=y.len()).rev() {
+        for start in 0..end {
+            exact[start] += exact[end] * shares[end - 1][start];
+        }
+    }
+    for (flight, probability) in filter.probabilities().iter().enumerate() {
+        assert!((probability - exact[flight]).abs() < 1e-3, "flight {flight}");
+    }
+    assert_eq!(filter.best_division(), [350]);
+    assert!(filter.starts.len() <= MOST_STARTS);
+}

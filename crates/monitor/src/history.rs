@@ -1,0 +1,217 @@
+//! One series read as a history: noise, changes with the interval of their dates, trend, levels, effects of events.
+
+use core::ops::Range;
+
+use flight::Timestamp;
+
+use crate::filter::{ChangeFilter, EventBefore, FilteredFlight};
+use crate::levels::{Estimate, Levels};
+use crate::noise::{Noise, median};
+use crate::series::Series;
+use crate::settings::{ChangeBeliefs, DATE_INTERVAL, REPORTED_PROBABILITY};
+
+/// A change that the flights show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// First flight after it.
+    pub first_flight: usize,
+    /// The 95 % interval of that flight: earliest.
+    pub earliest: usize,
+    /// The 95 % interval of that flight: latest.
+    pub latest: usize,
+    /// Probability that there is a change about here.
+    pub probability: f64,
+    /// Size of the step, %: positive, the aircraft burns more afterwards.
+    pub step_percent: Estimate,
+    /// The event that it belongs to, by its place among the events given.
+    pub event: Option<usize>,
+}
+
+/// What an event did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EventEffect {
+    /// Its place among the events given.
+    pub event: usize,
+    /// First flight at or after it.
+    pub first_flight: usize,
+    /// Size of the step there, %; `None` where there is no flight before or none after.
+    pub effect_percent: Option<Estimate>,
+    /// Other events between the same two flights: the step is that of all together.
+    pub together_with: Vec<usize>,
+}
+
+/// A series with what it shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History {
+    /// Scatter of flights when nothing changes.
+    pub noise: Noise,
+    /// Weight of each flight, %⁻².
+    pub weights: Vec<f64>,
+    /// Changes that are more probable than not, in order.
+    pub changes: Vec<Change>,
+    /// Trend, and levels between the changes.
+    pub levels: Levels,
+    /// Of every event, in the order given.
+    pub events: Vec<EventEffect>,
+}
+
+impl History {
+    /// Reads a series; `None` for a series without a flight.
+    ///
+    /// An event belongs to the first flight that began at or after it. Its effect is measured whether or not it is a change
+    /// that the flights would show by themselves.
+    #[must_use]
+    pub fn of(series: &Series, events: &[Timestamp], beliefs: &ChangeBeliefs) -> Option<Self> {
+        let noise = Noise::estimate(series);
+        let weights = noise.weights(series);
+        let at_flight: Vec<usize> = events.iter().map(|time| series.first_from(*time)).collect();
+        let filter = filter(series, &weights, &at_flight, beliefs);
+        let mut changes = changes(&filter);
+        for change in &mut changes {
+            belong(change, &at_flight);
+        }
+        changes.dedup_by_key(|change| change.first_flight);
+        let boundaries: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
+        let levels = Levels::fit(series, &weights, &boundaries, beliefs)?;
+        for (place, change) in changes.iter_mut().enumerate() {
+            if let Some(step) = levels.step_percent(place) {
+                change.step_percent = step;
+            }
+        }
+        let mut all = boundaries;
+        all.extend(at_flight.iter().copied().filter(|flight| (1..series.len()).contains(flight)));
+        all.sort_unstable();
+        all.dedup();
+        let measured = Levels::fit(series, &weights, &all, beliefs)?;
+        let events = (0..events.len()).map(|event| effect(event, &at_flight, &measured)).collect();
+        Some(Self { noise, weights, changes, levels, events })
+    }
+
+    /// Weighted mean of flights, %.
+    ///
+    /// ```text
+    /// Σ w·y/Σ w,  variance 1/Σ w                                                             [monitoring.11]
+    /// ```
+    ///
+    /// `None` without a flight.
+    #[must_use]
+    pub fn mean_percent(&self, series: &Series, flights: Range<usize>) -> Option<Estimate> {
+        let of = series.flights().get(flights.clone())?;
+        let weights = self.weights.get(flights)?;
+        let weight: f64 = weights.iter().sum();
+        let sum: f64 = of.iter().zip(weights).map(|(f, w)| f.deviation_percent() * w).sum();
+        (weight > 0.0).then(|| Estimate { value: sum / weight, deviation: weight.powf(-0.5) })
+    }
+}
+
+fn filter(
+    series: &Series,
+    weights: &[f64],
+    events: &[usize],
+    beliefs: &ChangeBeliefs,
+) -> ChangeFilter {
+    let mut all: Vec<f64> = series.flights().iter().map(|f| f.deviation_percent()).collect();
+    let middle = median(&mut all);
+    let mut filter = ChangeFilter::new(*beliefs);
+    for (index, (flight, weight)) in series.flights().iter().zip(weights).enumerate() {
+        filter.push(&FilteredFlight {
+            years: series.years(flight.time()),
+            deviation_percent: flight.deviation_percent() - middle,
+            weight: *weight,
+            event_before: if events.contains(&index) {
+                EventBefore::Recorded
+            } else {
+                EventBefore::None
+            },
+        });
+    }
+    filter
+}
+
+/// The changes of the most probable division that are more probable than not: each with the probability of all starts nearer
+/// to it than to another.
+fn changes(filter: &ChangeFilter) -> Vec<Change> {
+    let division = filter.best_division();
+    let probabilities = filter.probabilities();
+    let mut found = Vec::new();
+    for (place, &first_flight) in division.iter().enumerate() {
+        let from =
+            place.checked_sub(1).map_or(1, |before| division[before].midpoint(first_flight) + 1);
+        let to = division
+            .get(place + 1)
+            .map_or(probabilities.len(), |after| first_flight.midpoint(*after) + 1);
+        let sum: f64 = probabilities[from..to].iter().sum();
+        if sum < REPORTED_PROBABILITY {
+            continue;
+        }
+        let (earliest, latest) = date_interval(&probabilities, from..to, first_flight);
+        found.push(Change {
+            first_flight,
+            earliest,
+            latest,
+            probability: sum.min(1.0),
+            step_percent: Estimate { value: 0.0, deviation: 0.0 },
+            event: None,
+        });
+    }
+    found
+}
+
+/// First and last flight of the interval that is grown from the most probable flight, always to the side that is more
+/// probable, until a change lies in it with 95 % of the probability of one. What is left over is the small probability of
+/// further changes, which is spread over all flights and says nothing about the date of this one.
+fn date_interval(
+    probabilities: &[f64],
+    within: Range<usize>,
+    first_flight: usize,
+) -> (usize, usize) {
+    let sum: f64 = probabilities[within.clone()].iter().sum();
+    let needed = DATE_INTERVAL * sum.min(1.0);
+    let (mut earliest, mut latest) = (first_flight, first_flight);
+    let mut held = probabilities[first_flight];
+    while held < needed {
+        let before = (earliest > within.start).then(|| probabilities[earliest - 1]);
+        let after = (latest + 1 < within.end).then(|| probabilities[latest + 1]);
+        match (before, after) {
+            (None, None) => break,
+            (Some(before), after) if after.is_none_or(|after| before > after) => {
+                earliest -= 1;
+                held += before;
+            }
+            (_, after) => {
+                latest += 1;
+                held += after.unwrap_or(0.0);
+            }
+        }
+    }
+    (earliest, latest)
+}
+
+/// A change within whose interval an event lies is that event's: the nearest one.
+fn belong(change: &mut Change, events: &[usize]) {
+    let near = events
+        .iter()
+        .enumerate()
+        .filter(|(_, flight)| (change.earliest..=change.latest).contains(flight))
+        .min_by_key(|(event, flight)| (flight.abs_diff(change.first_flight), *event));
+    if let Some((event, flight)) = near {
+        change.event = Some(event);
+        change.first_flight = *flight;
+    }
+}
+
+fn effect(event: usize, at_flight: &[usize], measured: &Levels) -> EventEffect {
+    let first_flight = at_flight[event];
+    let others = at_flight.iter().enumerate();
+    let together_with = others
+        .filter(|(other, flight)| *other != event && **flight == first_flight)
+        .map(|(other, _)| other)
+        .collect();
+    let place = measured.boundaries().iter().position(|boundary| *boundary == first_flight);
+    EventEffect {
+        event,
+        first_flight,
+        effect_percent: place.and_then(|place| measured.step_percent(place)),
+        together_with,
+    }
+}

@@ -1,0 +1,103 @@
+//! Flights between two changes: sums that grow by one flight at a time, and how well a straight line explains a piece.
+
+use crate::settings::ChangeBeliefs;
+
+/// Running sums of weight, x (years), y (%) and their products; the sums of any piece are differences of two.
+#[derive(Clone, Debug)]
+pub(crate) struct RunningSums {
+    rows: Vec<[f64; 6]>,
+}
+
+/// A piece: weight, means, and sums of squares and products about the means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Piece {
+    pub(crate) weight: f64,
+    pub(crate) mean_x: f64,
+    pub(crate) mean_y: f64,
+    pub(crate) sxx: f64,
+    pub(crate) sxy: f64,
+    pub(crate) syy: f64,
+}
+
+impl RunningSums {
+    pub(crate) fn new() -> Self {
+        Self { rows: vec![[0.0; 6]] }
+    }
+
+    pub(crate) fn push(&mut self, x: f64, y: f64, weight: f64) {
+        let last = self.rows[self.rows.len() - 1];
+        let step = [1.0, x, x * x, y, x * y, y * y];
+        self.rows.push(core::array::from_fn(|k| last[k] + weight * step[k]));
+    }
+
+    /// The flights `from..to`; at least one.
+    pub(crate) fn piece(&self, from: usize, to: usize) -> Piece {
+        let (a, b) = (&self.rows[from], &self.rows[to]);
+        let [weight, x, xx, y, xy, yy] = core::array::from_fn(|k| b[k] - a[k]);
+        let (mean_x, mean_y) = (x / weight, y / weight);
+        Piece {
+            weight,
+            mean_x,
+            mean_y,
+            // Rounding may leave a piece of one flight slightly below zero.
+            sxx: (xx - x * mean_x).max(0.0),
+            sxy: xy - x * mean_y,
+            syy: (yy - y * mean_y).max(0.0),
+        }
+    }
+}
+
+impl Piece {
+    /// Natural logarithm of the density of a piece's deviations, less Σ ½ ln(w/2π), which no division into pieces changes.
+    ///
+    /// ```text
+    /// −½ [Syy + ln(1 + s²W) + ȳ²W/(1 + s²W) + ln(1 + o²Sxx) − o²Sxy²/(1 + o²Sxx)]             [monitoring.6]
+    /// ```
+    ///
+    /// The line's level at the piece's mean date is normal about 0 with deviation s, its slope about 0 with deviation o; both
+    /// are integrated out, which charges each piece for its two parameters.
+    pub(crate) fn log_evidence(&self, beliefs: &ChangeBeliefs) -> f64 {
+        let level = beliefs.level_deviation_percent.powi(2);
+        let slope = beliefs.slope_deviation_percent_per_year.powi(2);
+        let of_level = 1.0 + level * self.weight;
+        let of_slope = 1.0 + slope * self.sxx;
+        let square = self.syy + self.mean_y * self.mean_y * self.weight / of_level
+            - slope * self.sxy * self.sxy / of_slope;
+        -0.5 * (square + (of_level * of_slope).ln())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+
+    /// Oracle: the density of a multivariate normal with covariance D + s²·11ᵀ + o²·xxᵀ, by dense Cholesky.
+    #[test]
+    fn evidence_is_the_dense_normal_density() {
+        let beliefs = ChangeBeliefs::of_2026();
+        let x = [0.1, 0.25, 0.3, 0.9, 1.4];
+        let y = [0.4, -0.3, 1.1, 0.2, 0.9];
+        let w = [4.0, 1.0, 2.5, 0.7, 3.0];
+        let mut sums = RunningSums::new();
+        sums.push(-3.0, 7.0, 2.0); // not of the piece
+        for k in 0..5 {
+            sums.push(x[k], y[k], w[k]);
+        }
+        let piece = sums.piece(1, 6);
+        let mean = piece.mean_x;
+        let covariance = DMatrix::from_fn(5, 5, |i, j| {
+            beliefs.level_deviation_percent.powi(2)
+                + beliefs.slope_deviation_percent_per_year.powi(2) * (x[i] - mean) * (x[j] - mean)
+                + if i == j { 1.0 / w[i] } else { 0.0 }
+        });
+        let cholesky = covariance.cholesky().unwrap();
+        let y = DVector::from_row_slice(&y);
+        let square = y.dot(&cholesky.solve(&y));
+        let log_determinant = 2.0 * cholesky.l().diagonal().map(f64::ln).sum();
+        let left_out: f64 = w.iter().map(|w| w.ln()).sum();
+        let dense = -0.5 * (square + log_determinant + left_out);
+        assert!((piece.log_evidence(&beliefs) - dense).abs() < 1e-10);
+    }
+}

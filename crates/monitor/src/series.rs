@@ -1,0 +1,160 @@
+//! One tail's flights in the order of flying, each with its deviation.
+
+use core::num::NonZeroU32;
+
+use flight::Timestamp;
+
+/// Days of a Julian year, by which trends are per year.
+pub const DAYS_A_YEAR: f64 = 365.25;
+const SECONDS_A_YEAR: f64 = DAYS_A_YEAR * 86_400.0;
+
+/// What one flight shows: the mean of its segments' deviations, and how much they scatter.
+///
+/// A deviation is 100·ln(recorded/predicted) fuel flow, %: positive, the aircraft burns more than predicted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlightDeviation {
+    time: Timestamp,
+    deviation_percent: f64,
+    segments: NonZeroU32,
+    scatter_percent2: f64,
+}
+
+/// Why flights are not a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SeriesError {
+    /// A flight is older than the one before it.
+    #[error("flight {index} of {time} is older than the flight before it")]
+    Order {
+        /// Its place, from 0.
+        index: usize,
+        /// When it began.
+        time: Timestamp,
+    },
+}
+
+impl FlightDeviation {
+    /// A flight from the deviations of its segments; `None` without a segment, or where a deviation is not finite.
+    #[must_use]
+    pub fn of_segments(time: Timestamp, deviations_percent: &[f64]) -> Option<Self> {
+        let segments = NonZeroU32::new(u32::try_from(deviations_percent.len()).ok()?)?;
+        let mean = deviations_percent.iter().sum::<f64>() / f64::from(segments.get());
+        let scatter = deviations_percent.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
+        (mean.is_finite() && scatter.is_finite()).then_some(Self {
+            time,
+            deviation_percent: mean,
+            segments,
+            scatter_percent2: scatter,
+        })
+    }
+
+    /// When the flight began.
+    #[must_use]
+    pub const fn time(&self) -> Timestamp {
+        self.time
+    }
+
+    /// Mean deviation of its segments, %.
+    #[must_use]
+    pub const fn deviation_percent(&self) -> f64 {
+        self.deviation_percent
+    }
+
+    /// Number of segments.
+    #[must_use]
+    pub const fn segments(&self) -> u32 {
+        self.segments.get()
+    }
+
+    /// Sum of the squared differences of its segments from their mean, %².
+    #[must_use]
+    pub const fn scatter_percent2(&self) -> f64 {
+        self.scatter_percent2
+    }
+}
+
+/// Flights in the order of flying.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    flights: Vec<FlightDeviation>,
+}
+
+impl Series {
+    /// A series of flights.
+    ///
+    /// # Errors
+    /// [`SeriesError`] for a flight that is older than the one before it.
+    pub fn new(flights: Vec<FlightDeviation>) -> Result<Self, SeriesError> {
+        let wrong = flights.windows(2).position(|pair| pair[1].time < pair[0].time);
+        match wrong {
+            Some(before) => {
+                Err(SeriesError::Order { index: before + 1, time: flights[before + 1].time })
+            }
+            None => Ok(Self { flights }),
+        }
+    }
+
+    /// The flights.
+    #[must_use]
+    pub fn flights(&self) -> &[FlightDeviation] {
+        &self.flights
+    }
+
+    /// Number of flights.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.flights.len()
+    }
+
+    /// Whether there is no flight.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.flights.is_empty()
+    }
+
+    /// Years from the first flight to an instant; 0 without a flight.
+    #[must_use]
+    pub fn years(&self, time: Timestamp) -> f64 {
+        self.flights.first().map_or(0.0, |first| years_between(first.time, time))
+    }
+
+    /// The first flight that began at or after an instant: its index, or the number of flights.
+    #[must_use]
+    pub fn first_from(&self, time: Timestamp) -> usize {
+        self.flights.partition_point(|flight| flight.time < time)
+    }
+}
+
+/// Years from one instant to another.
+#[must_use]
+pub fn years_between(from: Timestamp, to: Timestamp) -> f64 {
+    to.duration_since(from).as_secs_f64() / SECONDS_A_YEAR
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_and_scatter_by_hand() {
+        // 1, 2, 6: mean 3, squares 4 + 1 + 9.
+        let flight = FlightDeviation::of_segments(Timestamp::UNIX_EPOCH, &[1.0, 2.0, 6.0]).unwrap();
+        assert_eq!((flight.deviation_percent(), flight.segments()), (3.0, 3));
+        assert!((flight.scatter_percent2() - 14.0).abs() < 1e-12);
+        assert!(FlightDeviation::of_segments(Timestamp::UNIX_EPOCH, &[]).is_none());
+        assert!(FlightDeviation::of_segments(Timestamp::UNIX_EPOCH, &[1.0, f64::NAN]).is_none());
+    }
+
+    #[test]
+    fn flights_are_in_order() {
+        let at = |second| {
+            FlightDeviation::of_segments(Timestamp::from_second(second).unwrap(), &[0.0]).unwrap()
+        };
+        assert!(Series::new(vec![at(0), at(10), at(10)]).is_ok());
+        let error = Series::new(vec![at(0), at(10), at(9)]).unwrap_err();
+        assert!(matches!(error, SeriesError::Order { index: 2, .. }), "{error}");
+        let series = Series::new(vec![at(0), at(10), at(20)]).unwrap();
+        let from = |second| series.first_from(Timestamp::from_second(second).unwrap());
+        assert_eq!([from(-1), from(10), from(11), from(21)], [0, 1, 2, 3]);
+    }
+}

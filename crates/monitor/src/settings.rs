@@ -1,0 +1,75 @@
+//! Every number that decides in this crate, once, with its reason. All of them are beliefs of before the flights were seen;
+//! none was fitted to a fleet.
+
+/// What is believed of a tail's changes before its flights are seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChangeBeliefs {
+    /// Standard deviation of the level between two changes, about the series' middle, %. A typical step (wash, engine
+    /// change, recalibration) is 1.5 %.
+    pub level_deviation_percent: f64,
+    /// Standard deviation of the slope, % a year: airframe ageing of 1.2 and engine ageing of 0.8 % a year, added in square.
+    pub slope_deviation_percent_per_year: f64,
+    /// Probability that something changes between two flights: about one change a year of an aircraft that flies one
+    /// recorded leg a day.
+    pub change_between_flights: f64,
+    /// The same where an event (wash, engine change) is recorded: most are meant to change something, not all do.
+    pub change_at_event: f64,
+}
+
+impl ChangeBeliefs {
+    /// The defaults.
+    #[must_use]
+    pub const fn of_2026() -> Self {
+        Self {
+            level_deviation_percent: 1.5,
+            slope_deviation_percent_per_year: 1.5,
+            change_between_flights: 1.0 / 300.0,
+            change_at_event: 0.5,
+        }
+    }
+}
+
+/// A change is reported where it is more probable than not.
+pub const REPORTED_PROBABILITY: f64 = 0.5;
+
+/// Share of the probability that the interval of a change's date holds.
+pub const DATE_INTERVAL: f64 = 0.95;
+
+/// Starts of the current piece that are remembered from flight to flight, the most probable ones: the cost of a flight is
+/// this many evidences, however long the history.
+pub const MOST_STARTS: usize = 200;
+
+/// A start of the current piece that is less probable than this is forgotten. A change of one standard deviation of a flight
+/// gains a factor of e^0.5 with each flight: what is forgotten would have needed 40 flights to become likely.
+pub const FORGOTTEN_SHARE: f64 = 1e-9;
+
+/// Prior standard deviation of a segment within its flight, %, and its weight in segments: stands in where there are only
+/// one or two segments a flight. Flow meters of 0.5 %, two of them averaged, and turbulence.
+pub const WITHIN_PRIOR_PERCENT: f64 = 0.5;
+/// See [`WITHIN_PRIOR_PERCENT`].
+pub const WITHIN_PRIOR_COUNT: f64 = 5.0;
+
+/// Prior standard deviation of what a flight keeps, %, and its weight in flights: stands in until a dozen flights show
+/// their own. Heating value 0.3 to 0.6 %, load sheet 0.5 % of mass.
+pub const BETWEEN_PRIOR_PERCENT: f64 = 0.6;
+/// See [`BETWEEN_PRIOR_PERCENT`].
+pub const BETWEEN_PRIOR_COUNT: f64 = 5.0;
+
+/// Flights from which correlation between successive flights is looked for; below, it cannot be seen.
+pub const FEWEST_FLIGHTS_OF_A_CORRELATION: usize = 30;
+/// Largest correlation that is believed: beyond, a wandering level and a noise that is correlated are the same thing.
+pub const LARGEST_CORRELATION: f64 = 0.8;
+/// The correlation used is the estimate less one standard error, which is about this over √n: a white series must not be
+/// taken for a correlated one half of the time.
+pub const CORRELATION_ERROR: f64 = 1.2;
+
+/// Standard deviations beyond which a difference counts as no larger in the robust scale (Huber 1964, proposal 2, with
+/// 2.5).
+pub const HUBER_LIMIT: f64 = 2.5;
+/// E min(z², 2.5²) of a standard normal z: 2Φ(c) − 1 − 2cφ(c) + 2c²(1 − Φ(c)) at c = 2.5.
+pub const HUBER_CONSISTENCY: f64 = 0.977_559_983;
+
+/// Flights on either side of a flight whose median it is compared with when outliers are weighed.
+pub const MEDIAN_REACH: usize = 5;
+/// Degrees of freedom of the Student distribution by which a flight that is off loses weight, as law `bayes` has it.
+pub const STUDENT_DEGREES_OF_FREEDOM: f64 = 4.0;

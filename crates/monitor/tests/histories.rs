@@ -1,0 +1,176 @@
+//! Series of which the answer is published, or known because it was planted.
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
+
+use flight::Timestamp;
+use monitor::{ChangeBeliefs, FlightDeviation, History, Noise, Series};
+use proptest::prelude::*;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+fn day(day: i64) -> Timestamp {
+    Timestamp::from_second(86_400 * day).unwrap()
+}
+
+/// One flight a day, of one segment each.
+fn daily(deviations: impl IntoIterator<Item = f64>) -> Series {
+    let flights = deviations.into_iter().zip(0..);
+    let flights =
+        flights.map(|(deviation, at)| FlightDeviation::of_segments(day(at), &[deviation]).unwrap());
+    Series::new(flights.collect()).unwrap()
+}
+
+fn normal(seed: u64) -> impl Iterator<Item = f64> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    std::iter::repeat_with(move || StandardNormal.sample(&mut random))
+}
+
+fn history(series: &Series, events: &[Timestamp]) -> History {
+    History::of(series, events, &ChangeBeliefs::of_2026()).unwrap()
+}
+
+/// Annual volume of the Nile at Aswan, 1871 to 1970, 10⁸ m³. Oracle: Cobb (1978, Biometrika 65, 243–251) finds one change,
+/// most likely after 1898, of about −2.5 of these units; so do all who have taken this series since.
+#[test]
+fn the_nile_changed_after_1898() {
+    const NILE: [f64; 100] = [
+        1120.0, 1160.0, 963.0, 1210.0, 1160.0, 1160.0, 813.0, 1230.0, 1370.0, 1140.0, 995.0, 935.0,
+        1110.0, 994.0, 1020.0, 960.0, 1180.0, 799.0, 958.0, 1140.0, 1100.0, 1210.0, 1150.0, 1250.0,
+        1260.0, 1220.0, 1030.0, 1100.0, 774.0, 840.0, 874.0, 694.0, 940.0, 833.0, 701.0, 916.0,
+        692.0, 1020.0, 1050.0, 969.0, 831.0, 726.0, 456.0, 824.0, 702.0, 1120.0, 1100.0, 832.0,
+        764.0, 821.0, 768.0, 845.0, 864.0, 862.0, 698.0, 845.0, 744.0, 796.0, 1040.0, 759.0, 781.0,
+        865.0, 845.0, 944.0, 984.0, 897.0, 822.0, 1010.0, 771.0, 676.0, 649.0, 846.0, 812.0, 742.0,
+        801.0, 1040.0, 860.0, 874.0, 848.0, 890.0, 744.0, 749.0, 838.0, 1050.0, 918.0, 986.0,
+        797.0, 923.0, 975.0, 815.0, 1020.0, 906.0, 901.0, 1170.0, 912.0, 746.0, 919.0, 718.0,
+        714.0, 740.0,
+    ];
+    assert!((NILE.iter().sum::<f64>() / 100.0 - 919.35).abs() < 1e-9, "the published mean");
+    let series = daily(NILE.map(|volume| volume / 100.0));
+    let found = history(&series, &[]);
+    assert_eq!(found.changes.len(), 1);
+    assert_eq!(1871 + found.changes[0].first_flight, 1899);
+    assert!(found.changes[0].probability > 0.9);
+    assert!(found.changes[0].earliest >= 24 && found.changes[0].latest <= 31);
+    let step = found.changes[0].step_percent;
+    assert!((step.value + 2.5).abs() < step.half_width95(), "{step:?}");
+}
+
+/// What the noise is does not depend on steps, trends or a few odd flights: against the planted values.
+#[test]
+fn noise_is_that_of_the_flights() {
+    let mut noise = normal(3);
+    let flights = (0..2000).map(|flight| {
+        let step = if flight > 900 { 3.0 } else { 0.0 };
+        let odd = if flight % 200 == 77 { 8.0 } else { 0.0 };
+        let level = 0.001 * f64::from(flight) + step + odd + 0.6 * noise.next().unwrap();
+        let segments: Vec<f64> = noise.by_ref().take(4).map(|z| level + 0.4 * z).collect();
+        FlightDeviation::of_segments(day(i64::from(flight)), &segments).unwrap()
+    });
+    let series = Series::new(flights.collect()).unwrap();
+    let found = Noise::estimate(&series);
+    // Standard errors: 0.4/√(2·6000) and about 0.6·1.3/√(2·2000); odd flights add a few per cent to the latter.
+    assert!((found.within_flight_percent - 0.4).abs() < 0.012, "{found:?}");
+    assert!((found.between_flights_percent - 0.6).abs() < 0.05, "{found:?}");
+    assert!(found.correlation < 0.05, "{found:?}");
+    let mut before = 0.0;
+    let correlated = normal(4).take(2000).map(|z| {
+        before = 0.5 * before + 0.75_f64.sqrt() * z;
+        before
+    });
+    let found = Noise::estimate(&daily(correlated.collect::<Vec<_>>()));
+    assert!((found.correlation - 0.5).abs() < 0.1, "{found:?}");
+    assert!((found.flight_variance_percent2(1).sqrt() - 1.0).abs() < 0.1, "{found:?}");
+}
+
+/// 1000 short histories of a known step at a known event: its 95 % interval holds it in 95 % of them, give or take three
+/// standard errors of the count, and the interval of a month's mean likewise.
+#[test]
+fn intervals_hold_what_they_promise() {
+    let mut noise = normal(5);
+    let (mut effects, mut means) = (0, 0);
+    for _ in 0..1000 {
+        let deviations = (0..120).map(|flight| {
+            let step = if flight < 60 { 0.0 } else { -0.9 };
+            2.0 + step + 0.5 * noise.next().unwrap()
+        });
+        let series = daily(deviations.collect::<Vec<_>>());
+        let found = history(&series, &[day(60)]);
+        let effect = found.events[0].effect_percent.unwrap();
+        effects += i32::from((effect.value + 0.9).abs() <= effect.half_width95());
+        let mean = found.mean_percent(&series, 0..30).unwrap();
+        means += i32::from((mean.value - 2.0).abs() <= mean.half_width95());
+    }
+    assert!((effects - 950).abs() <= 21, "{effects} of 1000");
+    assert!((means - 950).abs() <= 21, "{means} of 1000");
+}
+
+/// 300 steps of 1 % at noise 0.5 %, no event known: the interval of the date holds the first flight after the step in about
+/// 95 % of those reported, three standard errors allowed below; intervals of whole flights hold it more often.
+#[test]
+fn intervals_of_dates_hold_them() {
+    let mut noise = normal(9);
+    let (mut reported, mut held, mut width) = (0, 0, 0);
+    for case in 0..300 {
+        let at = 50 + case % 100;
+        let deviations =
+            (0..200).map(|flight| f64::from(u8::from(flight >= at)) + 0.5 * noise.next().unwrap());
+        let series = daily(deviations.collect::<Vec<_>>());
+        for change in history(&series, &[]).changes {
+            reported += 1;
+            held += i32::from((change.earliest..=change.latest).contains(&at));
+            width += change.latest - change.earliest + 1;
+        }
+    }
+    assert!(reported > 290, "{reported}");
+    assert!(
+        f64::from(held) > f64::from(reported) * (0.95 - 3.0 * (0.95_f64 * 0.05 / 300.0).sqrt()),
+        "{held} of {reported}"
+    );
+    assert!(width < 8 * 300, "{width} flights in {reported} intervals");
+}
+
+#[test]
+fn an_event_takes_the_change_that_it_explains() {
+    let noise: Vec<f64> = normal(6).take(100).collect();
+    let series =
+        daily(noise.iter().enumerate().map(|(at, z)| 0.4 * z + if at < 50 { 0.0 } else { 1.5 }));
+    let events = [day(20), day(50), day(50), day(300), day(-5)];
+    let found = history(&series, &events);
+    assert_eq!(found.changes.len(), 1);
+    assert_eq!((found.changes[0].first_flight, found.changes[0].event), (50, Some(1)));
+    assert_eq!(found.events[1].together_with, [2]);
+    let no_effect = found.events[0].effect_percent.unwrap();
+    assert!(no_effect.value.abs() < 3.0 * no_effect.deviation, "{no_effect:?}");
+    assert!(found.events[3].effect_percent.is_none() && found.events[4].effect_percent.is_none());
+}
+
+#[test]
+fn a_single_odd_flight_is_no_change() {
+    let noise: Vec<f64> = normal(8).take(80).collect();
+    for odd in [0, 1, 40, 78, 79] {
+        let series = daily(
+            noise.iter().enumerate().map(|(at, z)| 0.4 * z + if at == odd { 9.0 } else { 0.0 }),
+        );
+        assert_eq!(history(&series, &[]).changes, [], "flight {odd}");
+    }
+}
+
+proptest! {
+    /// A level that all flights share, and the order of events in the list, change nothing but the level.
+    #[test]
+    fn a_shift_shifts_the_level_alone(
+        shift in -20.0_f64..20.0,
+        deviations in prop::collection::vec(-3.0_f64..3.0, 1..60),
+    ) {
+        let one = daily(deviations.clone());
+        let other = daily(deviations.iter().map(|deviation| deviation + shift));
+        let (a, b) = (history(&one, &[]), history(&other, &[]));
+        prop_assert_eq!(a.levels.boundaries(), b.levels.boundaries());
+        let difference = b.levels.last_level_percent(&other).value - a.levels.last_level_percent(&one).value;
+        prop_assert!((difference - shift).abs() < 1e-6);
+        for change in &a.changes {
+            prop_assert!(change.earliest <= change.first_flight && change.first_flight <= change.latest);
+            prop_assert!(change.probability > 0.5 && change.probability <= 1.0);
+        }
+    }
+}

@@ -1,0 +1,279 @@
+//! `monitor.html`: months and fleets.
+
+use flight::Timestamp;
+use maud::{Markup, html};
+use pipeline::monitoring::{Figure, MonitorDocument, TailDocument};
+
+use crate::chart::{Axis, Chart, Key, Mark, dates, legend, thinned};
+use crate::frame::framed;
+use crate::text::{counted, signed, signed_tenths};
+
+const WIDTH: f64 = 1000.0;
+const HEIGHT: f64 = 320.0;
+/// Points of one tail's chart, and of the whole page: about 1 MB.
+const MOST_POINTS: usize = 2000;
+const FEWEST_POINTS: usize = 200;
+const POINTS_OF_PAGE: usize = 60_000;
+/// Up to this many tails all are printed, folded or not.
+
+/// The page of what `monitor` found.
+pub fn monitoring(document: &MonitorDocument) -> String {
+    let mut tails: Vec<(usize, &TailDocument)> = document.tails.iter().enumerate().collect();
+    // What burns most comes first; the sort is stable.
+    tails.sort_by(|(_, one), (_, other)| {
+        other.deviation_percent.value.total_cmp(&one.deviation_percent.value)
+    });
+    let most = (POINTS_OF_PAGE / tails.len().max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
+    let body = html! {
+        p.run {
+            "cruisefit " (env!("CARGO_PKG_VERSION")) "; " (counted(tails.len(), "tail")) ", "
+            (counted(document.tails.iter().map(|tail| tail.flights.len()).sum(), "flight"))
+            @if let Some((from, to)) = period(document) { ", " (from) " to " (to) } "."
+        }
+        p.note {
+            "Deviation: 100 ln(recorded/predicted) fuel flow by the initial model, at each tail's mean conditions; positive, \
+             the aircraft burns more. ± is half a 95 % interval. DSR: deviation of specific range, negative is worse. \
+             Factor: mean of three months' fuel factors, rounded up to 0.1 %."
+        }
+        @if !document.alerts.is_empty() { (alerts(document)) }
+        section {
+            h2 { "Fleet" }
+            (fleet(document))
+            div.scroll { (table(&tails)) }
+        }
+        section {
+            h2 { "Tails" }
+            @for (place, (id, tail)) in tails.iter().enumerate() {
+                details.tail id=(format!("tail-{id}")) open[place == 0] {
+                    summary { h3 { (tail.tail) } span { (figure(&tail.deviation_percent)) " %" } }
+                    div { (chart(tail, *id, most)) (changes(tail)) (months(tail)) }
+                }
+            }
+        }
+    };
+    framed("Months and fleets", &body)
+}
+
+fn period(document: &MonitorDocument) -> Option<(&str, &str)> {
+    let from = document.tails.iter().map(|tail| tail.from.as_str()).min()?;
+    let to = document.tails.iter().map(|tail| tail.to.as_str()).max()?;
+    Some((day(from), day(to)))
+}
+
+fn figure(figure: &Figure) -> String {
+    format!("{} ± {:.2}", signed(Some(figure.value)), figure.half_width())
+}
+
+/// The day of an instant as a document has it.
+fn day(time: &str) -> &str {
+    time.get(..10).unwrap_or(time)
+}
+
+fn alerts(document: &MonitorDocument) -> Markup {
+    html! {
+        section {
+            h2 { "Alerts" }
+            ul {
+                @for alert in &document.alerts {
+                    li {
+                        b { (alert.tail) } ": " (figure(&alert.size)) " " (alert.unit) " since " (day(&alert.since))
+                        " (" code { (alert.rule) } ")"
+                        @if !alert.likely_causes.is_empty() { "; likely " (alert.likely_causes.join(", ")) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn fleet(document: &MonitorDocument) -> Markup {
+    html! {
+        @for fleet in document.fleet.iter().filter(|fleet| fleet.tails > 1) {
+            p {
+                (fleet.aircraft_type) ": mean of " (counted(fleet.tails, "tail")) " "
+                (figure(&fleet.deviation_percent)) " %, standard deviation between tails "
+                (format!("{:.2}", fleet.between_tails_percent)) " %, trend "
+                (figure(&fleet.trend_percent_per_year)) " % a year."
+            }
+        }
+    }
+}
+
+fn table(tails: &[(usize, &TailDocument)]) -> Markup {
+    html! {
+        table.fleet {
+            thead {
+                tr {
+                    th scope="col" { "tail" } th scope="col" { "flights" } th scope="col" { "level, %" }
+                    th scope="col" { "trend, %/year" } th scope="col" { "DSR, %" } th scope="col" { "factor, %" }
+                    th scope="col" { "kg/flight" } th scope="col" { "last change" }
+                }
+            }
+            tbody {
+                @for (id, tail) in tails {
+                    tr {
+                        th scope="row" { a href=(format!("#tail-{id}")) { (tail.tail) } }
+                        td { (tail.flights.len()) }
+                        td { (figure(&tail.deviation_percent)) }
+                        td { (figure(&tail.trend_percent_per_year)) }
+                        td { (signed(Some(tail.airbus.specific_range_deviation_percent))) }
+                        td { (signed_tenths(tail.airbus.retained_fuel_factor_percent)) }
+                        td { (signed_tenths(tail.cost.fuel_kg_per_flight)) }
+                        td {
+                            @match tail.changes.iter().rfind(|change| change.engine.is_none()) {
+                                Some(change) => { (day(&change.since)) ": " (signed(Some(change.step_percent.value))) " %" }
+                                None => "–",
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Deviations over time, the level through them, changes and events.
+fn chart(tail: &TailDocument, id: usize, most: usize) -> Markup {
+    let seconds = |time: &str| time.parse::<Timestamp>().ok().map(|time| time.as_second() as f64);
+    let flights = &tail.flights;
+    let points: Vec<(f64, f64)> = thinned(flights.len(), most)
+        .into_iter()
+        .filter_map(|k| Some((seconds(&flights[k].start)?, flights[k].deviation_percent.value)))
+        .collect();
+    let course: Vec<(f64, f64)> = flights
+        .iter()
+        .filter_map(|flight| Some((seconds(&flight.start)?, flight.level_percent.value)))
+        .collect();
+    let range = |of: fn(&(f64, f64)) -> f64, all: &[(f64, f64)]| {
+        let low = all.iter().map(of).fold(f64::INFINITY, f64::min);
+        (low, all.iter().map(of).fold(f64::NEG_INFINITY, f64::max))
+    };
+    let (first_s, last_s) = range(|point| point.0, &course);
+    let (low, high) = range(|point| point.1, &points);
+    let changes = tail.changes.iter().filter(|change| change.engine.is_none());
+    let changes: Vec<f64> = changes.filter_map(|change| seconds(&change.since)).collect();
+    let events: Vec<f64> = tail.events.iter().filter_map(|event| seconds(&event.time)).collect();
+    let chart = Chart {
+        id: format!("monitor-{id}"),
+        title: format!("{}: deviation of fuel flow over time", tail.tail),
+        description: format!(
+            "{}, level {} % at the end, {}, {}.",
+            counted(flights.len(), "flight"),
+            figure(&tail.deviation_percent),
+            counted(changes.len(), "change"),
+            counted(events.len(), "event")
+        ),
+        width: WIDTH,
+        height: HEIGHT,
+        x: dates::axis(first_s, last_s, 10),
+        y: Axis::around(low, high, 6),
+        x_label: "date of the flight".to_owned(),
+        y_label: "deviation, %".to_owned(),
+    };
+    let marks = html! {
+        (chart.marks(&points, Mark::Dot, "observed"))
+        @for at in &changes { (chart.vertical(*at, "initial")) }
+        @for at in &events { (chart.vertical(*at, "mean")) }
+        // A level ends where the next piece begins.
+        @for piece in pieces(&course, &changes) { (chart.polyline(piece, "final")) }
+    };
+    html! {
+        figure {
+            (legend(&[
+                (Key::Mark(Mark::Dot), "observed", "flight"),
+                (Key::Line, "final", "level and trend"),
+                (Key::Line, "initial", "change"),
+                (Key::Line, "mean", "event"),
+            ]))
+            (chart.draw(&marks))
+        }
+    }
+}
+
+fn pieces<'a>(course: &'a [(f64, f64)], changes: &[f64]) -> Vec<&'a [(f64, f64)]> {
+    let mut pieces = Vec::new();
+    let mut rest = course;
+    for change in changes {
+        let (piece, later) = rest.split_at(rest.partition_point(|point| point.0 < *change));
+        pieces.push(piece);
+        rest = later;
+    }
+    pieces.push(rest);
+    pieces
+}
+
+fn changes(tail: &TailDocument) -> Markup {
+    html! {
+        @if !tail.changes.is_empty() || !tail.events.is_empty() {
+            ul {
+                @for change in &tail.changes {
+                    li {
+                        @if let Some(engine) = change.engine { "Engine " (engine) ": " }
+                        (figure(&change.step_percent)) " % since " (day(&change.since)) " (95 % interval "
+                        (day(&change.since_ci95[0])) " to " (day(&change.since_ci95[1])) "), probability "
+                        (format!("{:.2}", change.probability))
+                        @if let Some(event) = &change.event { ", " (event) }
+                    }
+                }
+                @for event in &tail.events {
+                    li {
+                        (event.kind) " " (day(&event.time)) ": "
+                        @match &event.effect_percent {
+                            Some(effect) => { (figure(effect)) " %" }
+                            None => "no flight before, or none after",
+                        }
+                        @if !event.together_with.is_empty() { ", together with " (event.together_with.join(", ")) }
+                        @if !event.note.is_empty() { " (" (event.note) ")" }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn months(tail: &TailDocument) -> Markup {
+    html! {
+        div.scroll {
+            table.small {
+                thead {
+                    tr {
+                        th scope="col" { "month" } th scope="col" { "flights" } th scope="col" { "deviation, %" }
+                        th scope="col" { "before learning, %" } th scope="col" { "DSR, %" } th scope="col" { "fuel factor, %" }
+                        th scope="col" { "retained, %" }
+                    }
+                }
+                tbody {
+                    @for month in &tail.months {
+                        tr {
+                            th scope="row" { (month.month) }
+                            td { (month.flights) }
+                            td { (figure(&month.deviation_percent)) }
+                            td { (month.before_learning_percent.as_ref().map_or_else(|| "–".to_owned(), figure)) }
+                            td { (figure(&month.specific_range_deviation_percent)) }
+                            td { (figure(&month.monitored_fuel_factor_percent)) }
+                            td { (signed_tenths(month.retained_fuel_factor_percent)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_ends_at_a_change() {
+        let course = [(0.0, 1.0), (1.0, 1.0), (2.0, 3.0), (3.0, 3.0)];
+        assert_eq!(pieces(&course, &[2.0]), [&course[..2], &course[2..]]);
+        assert_eq!(pieces(&course, &[]), [&course[..]]);
+    }
+
+    #[test]
+    fn a_page_without_tails_is_a_page() {
+        let page = monitoring(&MonitorDocument::new(Vec::new(), Vec::new()));
+        assert!(page.contains("<h1>Months and fleets</h1>") && !page.contains("NaN"), "{page}");
+    }
+}

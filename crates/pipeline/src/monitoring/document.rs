@@ -1,0 +1,331 @@
+//! What `monitor` found, as types that become JSON, tables and text.
+
+use monitor::{Estimate, FleetMean, fleet_mean};
+use serde::Serialize;
+
+/// Name and version of the JSON.
+pub const SCHEMA: &str = "cruisefit.monitor/1";
+
+/// A value with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// The value.
+    pub value: f64,
+    /// Lower and upper end of its 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+impl From<Estimate> for Figure {
+    fn from(estimate: Estimate) -> Self {
+        let half = estimate.half_width95();
+        Self { value: estimate.value, ci95: [estimate.value - half, estimate.value + half] }
+    }
+}
+
+impl Figure {
+    /// Half width of the interval, in the direction in which it is wider.
+    #[must_use]
+    pub fn half_width(&self) -> f64 {
+        (self.ci95[1] - self.value).max(self.value - self.ci95[0])
+    }
+
+    /// The same of a function that rises or falls throughout.
+    #[must_use]
+    pub fn map(&self, of: impl Fn(f64) -> f64) -> Self {
+        let ends = self.ci95.map(&of);
+        Self { value: of(self.value), ci95: [ends[0].min(ends[1]), ends[0].max(ends[1])] }
+    }
+}
+
+/// Everything.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MonitorDocument {
+    /// Name and version of this layout.
+    pub schema: &'static str,
+    /// Tail by tail, in order.
+    pub tails: Vec<TailDocument>,
+    /// Type by type, in order.
+    pub fleet: Vec<FleetDocument>,
+    /// Rules that fired, in the order of tails and rules.
+    pub alerts: Vec<AlertDocument>,
+}
+
+/// A tail.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TailDocument {
+    /// Tail.
+    pub tail: String,
+    /// Type code of its aircraft.
+    pub aircraft_type: String,
+    /// First flight.
+    pub from: String,
+    /// Last flight.
+    pub to: String,
+    /// Conditions that deviations are normalised to.
+    pub reference: ReferenceDocument,
+    /// Level at the last flight.
+    pub deviation_percent: Figure,
+    /// Mean of deviations by the model before it learnt each flight; absent where it was not rebuilt.
+    pub before_learning_percent: Option<Figure>,
+    /// Trend between changes.
+    pub trend_percent_per_year: Figure,
+    /// Standard deviation of a segment about its flight.
+    pub within_flight_percent: f64,
+    /// Standard deviation of what a flight keeps.
+    pub between_flights_percent: f64,
+    /// Correlation of successive flights that was allowed for.
+    pub correlation: f64,
+    /// In Airbus' terms.
+    pub airbus: AirbusTerms,
+    /// What the present level costs.
+    pub cost: CostDocument,
+    /// Changes, of all engines together and engine by engine.
+    pub changes: Vec<ChangeDocument>,
+    /// Recorded events.
+    pub events: Vec<EventDocument>,
+    /// Months.
+    pub months: Vec<MonthDocument>,
+    /// Flights.
+    pub flights: Vec<FlightDocument>,
+}
+
+/// Conditions that deviations are normalised to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "quantities with their units")]
+pub struct ReferenceDocument {
+    pub pressure_altitude_m: f64,
+    pub mach: f64,
+    pub static_air_temperature_k: f64,
+    pub mass_kg: f64,
+    pub true_airspeed_m_s: f64,
+    pub initial_fuel_flow_kg_s: f64,
+    pub segments: usize,
+}
+
+/// Airbus' terms.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AirbusTerms {
+    /// DSR, mean over all flights: negative, worse than the book.
+    pub specific_range_deviation_percent: f64,
+    /// Its standard deviation over flights, as Airbus prints it beside the mean; absent with one flight.
+    pub specific_range_deviation_std_percent: Option<f64>,
+    /// Number of readings: flights.
+    pub readings: usize,
+    /// Monitored fuel factor of the last month.
+    pub monitored_fuel_factor_percent: Figure,
+    /// Mean of the last three months, rounded up to a tenth.
+    pub retained_fuel_factor_percent: f64,
+    /// Basic factor plus the retained one, where the basic factor is given.
+    pub performance_factor_percent: Option<f64>,
+}
+
+/// What a deviation costs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CostDocument {
+    /// Flights a year that are counted with.
+    pub flights_per_year: Option<f64>,
+    /// Fuel a flight, between its first and its last segment, kg.
+    pub fuel_kg_per_flight: f64,
+    /// Fuel a year, kg.
+    pub fuel_kg_per_year: Option<f64>,
+    /// CO₂ a year, kg.
+    pub co2_kg_per_year: Option<f64>,
+    /// Price a year.
+    pub price_per_year: Option<f64>,
+}
+
+/// A change.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChangeDocument {
+    /// Engine, from 1; absent for all together.
+    pub engine: Option<usize>,
+    /// Start of the first flight after it.
+    pub since: String,
+    /// The 95 % interval of that flight.
+    pub since_ci95: [String; 2],
+    /// Probability that there is a change about here.
+    pub probability: f64,
+    /// Size.
+    pub step_percent: Figure,
+    /// Kind of the event that it belongs to.
+    pub event: Option<String>,
+}
+
+/// An event.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct EventDocument {
+    /// When.
+    pub time: String,
+    /// What.
+    pub kind: String,
+    /// In the operator's words.
+    pub note: String,
+    /// What it did; absent without a flight before or after.
+    pub effect_percent: Option<Figure>,
+    /// Kinds of other events between the same two flights, whose effect is in it too.
+    pub together_with: Vec<String>,
+}
+
+/// A month.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MonthDocument {
+    /// Year and month.
+    pub month: String,
+    /// Flights.
+    pub flights: usize,
+    /// Segments.
+    pub segments: u64,
+    /// Mean deviation.
+    pub deviation_percent: Figure,
+    /// By the model before it learnt the flights; absent where it was not rebuilt.
+    pub before_learning_percent: Option<Figure>,
+    /// Fuel flow at reference conditions.
+    pub fuel_flow_kg_s: Figure,
+    /// Specific range at reference conditions.
+    pub specific_range_m_kg: Figure,
+    /// DSR.
+    pub specific_range_deviation_percent: Figure,
+    /// Monitored fuel factor.
+    pub monitored_fuel_factor_percent: Figure,
+    /// Mean of three months, rounded up to a tenth.
+    pub retained_fuel_factor_percent: f64,
+    /// Of each engine that is recorded.
+    pub engines_percent: Vec<Figure>,
+}
+
+/// A flight.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FlightDocument {
+    /// Its name.
+    pub flight: String,
+    /// START.
+    pub start: String,
+    /// Segments inside the table.
+    pub segments: usize,
+    /// Segments outside.
+    pub outside_table: usize,
+    /// Deviation at reference conditions.
+    pub deviation_percent: Figure,
+    /// At the conditions flown, against the initial model.
+    pub initial_deviation_percent: f64,
+    /// By the model before it learnt the flight; absent where it was not rebuilt.
+    pub before_learning_percent: Option<f64>,
+    /// Level at its date.
+    pub level_percent: Figure,
+    /// Fuel flow at reference conditions.
+    pub fuel_flow_kg_s: f64,
+    /// Specific range at reference conditions.
+    pub specific_range_m_kg: f64,
+    /// DSR.
+    pub specific_range_deviation_percent: f64,
+    /// Of each engine that is recorded.
+    pub engines_percent: Vec<f64>,
+    /// Fuel beyond the initial model's prediction, first to last segment, kg.
+    pub excess_fuel_kg: f64,
+}
+
+/// A fleet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FleetDocument {
+    /// Type code.
+    pub aircraft_type: String,
+    /// Tails.
+    pub tails: usize,
+    /// Mean of the tails' present levels.
+    pub deviation_percent: Figure,
+    /// Standard deviation between tails beyond the uncertainty of each.
+    pub between_tails_percent: f64,
+    /// Mean of the tails' trends.
+    pub trend_percent_per_year: Figure,
+    /// Months: means over the tails that flew in them.
+    pub months: Vec<FleetMonthDocument>,
+}
+
+/// A month of a fleet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FleetMonthDocument {
+    /// Year and month.
+    pub month: String,
+    /// Tails that flew.
+    pub tails: usize,
+    /// Mean deviation.
+    pub deviation_percent: Figure,
+}
+
+/// A rule that fired.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AlertDocument {
+    /// Tail.
+    pub tail: String,
+    /// The rule as it was given.
+    pub rule: String,
+    /// What it looked at.
+    pub size: Figure,
+    /// Unit of the size.
+    pub unit: &'static str,
+    /// Since when.
+    pub since: String,
+    /// Effects that the newest diagnosis of the tail names, where one is given.
+    pub likely_causes: Vec<String>,
+}
+
+impl MonitorDocument {
+    /// The document of these tails, in their order, with the fleets that they make up.
+    #[must_use]
+    pub fn new(tails: Vec<TailDocument>, alerts: Vec<AlertDocument>) -> Self {
+        let mut types: Vec<&str> = tails.iter().map(|tail| tail.aircraft_type.as_str()).collect();
+        types.sort_unstable();
+        types.dedup();
+        let fleet = types.into_iter().filter_map(|of_type| fleet(of_type, &tails)).collect();
+        Self { schema: SCHEMA, tails, fleet, alerts }
+    }
+
+    /// As JSON, with a final line end.
+    #[must_use]
+    pub fn to_json(&self) -> Vec<u8> {
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
+        text.push('\n');
+        text.into_bytes()
+    }
+}
+
+fn fleet(aircraft_type: &str, tails: &[TailDocument]) -> Option<FleetDocument> {
+    let of_type: Vec<&TailDocument> =
+        tails.iter().filter(|tail| tail.aircraft_type == aircraft_type).collect();
+    let mean = |of: &dyn Fn(&TailDocument) -> Option<Figure>| -> Option<FleetMean> {
+        let figures: Vec<Estimate> =
+            of_type.iter().filter_map(|tail| of(tail)).map(|figure| estimate(&figure)).collect();
+        fleet_mean(&figures)
+    };
+    let deviation = mean(&|tail| Some(tail.deviation_percent))?;
+    let trend = mean(&|tail| Some(tail.trend_percent_per_year))?;
+    let mut names: Vec<&str> =
+        of_type.iter().flat_map(|tail| tail.months.iter().map(|m| m.month.as_str())).collect();
+    names.sort_unstable();
+    names.dedup();
+    let months = names
+        .into_iter()
+        .filter_map(|name| {
+            let found = mean(&|tail| {
+                tail.months.iter().find(|m| m.month == name).map(|m| m.deviation_percent)
+            })?;
+            Some(FleetMonthDocument {
+                month: name.to_owned(),
+                tails: found.tails,
+                deviation_percent: found.mean.into(),
+            })
+        })
+        .collect();
+    Some(FleetDocument {
+        aircraft_type: aircraft_type.to_owned(),
+        tails: deviation.tails,
+        deviation_percent: deviation.mean.into(),
+        between_tails_percent: deviation.between_tails,
+        trend_percent_per_year: trend.mean.into(),
+        months,
+    })
+}
+
+fn estimate(figure: &Figure) -> Estimate {
+    Estimate { value: figure.value, deviation: figure.half_width() / monitor::NORMAL_95 }
+}

@@ -1,0 +1,127 @@
+//! `EVENTS.csv`: what was done to which tail, and when.
+
+use flight::Timestamp;
+use jiff::civil::Date;
+use jiff::tz::TimeZone;
+
+/// An event.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// When: the instant given, or the beginning of the day (UTC). Flights that begin at or after it are after the event.
+    pub time: Timestamp,
+    /// The tail.
+    pub tail: String,
+    /// What: wash, engine_change, weighing, …
+    pub kind: String,
+    /// In the operator's words; may be empty.
+    pub note: String,
+}
+
+/// Why a text is not a table of events.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EventsError {
+    /// Not comma-separated values.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+    /// A column is missing.
+    #[error("line 1: found columns {found}, expected date,tail,kind,note")]
+    Columns {
+        /// The header.
+        found: String,
+    },
+    /// A field that is not what its column holds.
+    #[error("line {line}, column {column}: found {found:?}, expected {expected}")]
+    Field {
+        /// Physical line from 1.
+        line: u64,
+        /// Name of the column.
+        column: &'static str,
+        /// The field.
+        found: String,
+        /// What such a field holds.
+        expected: &'static str,
+    },
+}
+
+const COLUMNS: [&str; 4] = ["date", "tail", "kind", "note"];
+
+/// Reads `date,tail,kind,note`, in any order of columns; other columns are left alone, `note` may be missing.
+///
+/// # Errors
+/// [`EventsError`] with line, column, what was found and what is expected.
+pub fn read_events(bytes: &[u8]) -> Result<Vec<Event>, EventsError> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
+    let header = reader.headers()?.clone();
+    let place = |name: &str| header.iter().position(|known| known == name);
+    let places = COLUMNS.map(place);
+    if places[..3].iter().any(Option::is_none) {
+        let found = header.iter().collect::<Vec<_>>().join(",");
+        return Err(EventsError::Columns { found });
+    }
+    let mut events = Vec::new();
+    for record in reader.records() {
+        let record = record?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let text = |column: usize| {
+            places[column].and_then(|place| record.get(place)).unwrap_or_default().to_owned()
+        };
+        let wrong = |column: usize, expected| EventsError::Field {
+            line,
+            column: COLUMNS[column],
+            found: text(column),
+            expected,
+        };
+        let time = instant(&text(0)).ok_or_else(|| {
+            wrong(0, "a date such as 2026-03-02, or an instant such as 2026-03-02T21:30Z")
+        })?;
+        for (column, expected) in [(1, "a tail"), (2, "a kind of event such as wash")] {
+            if text(column).is_empty() {
+                return Err(wrong(column, expected));
+            }
+        }
+        events.push(Event { time, tail: text(1), kind: text(2), note: text(3) });
+    }
+    events.sort_by(|one, other| {
+        (one.time, &one.tail, &one.kind).cmp(&(other.time, &other.tail, &other.kind))
+    });
+    Ok(events)
+}
+
+fn instant(text: &str) -> Option<Timestamp> {
+    if let Ok(time) = text.parse() {
+        return Some(time);
+    }
+    // A civil date with a time but without an offset would be read as a date alone: refused.
+    let date: Date = if text.len() == 10 { text.parse().ok()? } else { return None };
+    Some(date.to_zoned(TimeZone::UTC).ok()?.timestamp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_are_read_in_order() {
+        let text = "tail,date,kind,note,shop\nT-2,2026-03-02,wash,\"hangar 3, night\",X\n\
+                    T-1,2026-01-31T21:30:00+01:00,engine_change,,\n";
+        let events = read_events(text.as_bytes()).unwrap();
+        assert_eq!(events[0].time.to_string(), "2026-01-31T20:30:00Z");
+        assert_eq!((events[0].kind.as_str(), events[0].note.as_str()), ("engine_change", ""));
+        assert_eq!(events[1].time.to_string(), "2026-03-02T00:00:00Z");
+        assert_eq!(events[1].note, "hangar 3, night");
+        assert!(read_events(b"date,tail,kind\n2026-03-02,T,wash\n").is_ok());
+    }
+
+    #[test]
+    fn wrong_events_are_refused_with_their_position() {
+        let error = |text: &str| read_events(text.as_bytes()).unwrap_err().to_string();
+        assert_eq!(
+            error("date,tail,kind,note\n2026-03-02,T,wash,\n02.03.2026,T,wash,\n"),
+            "line 3, column date: found \"02.03.2026\", expected a date such as 2026-03-02, or an instant such as \
+             2026-03-02T21:30Z"
+        );
+        assert!(error("date,tail,kind,note\n2026-03-02,,wash,\n").contains("line 2, column tail"));
+        assert!(error("date,tail\n").contains("found columns date,tail"));
+    }
+}

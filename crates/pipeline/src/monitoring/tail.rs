@@ -1,0 +1,316 @@
+//! One tail: its series read, and written down.
+
+use core::ops::Range;
+
+use flight::Timestamp;
+use monitor::airbus;
+use monitor::cost::{Cost, CostFactors, excess_fuel_kg};
+use monitor::{
+    AlertRule, ChangeBeliefs, Estimate, FlightDeviation, History, Month, Series, SeriesError,
+    months, years_between,
+};
+
+use super::deviations::{MonitoredFlight, ReferenceConditions, TailDeviations};
+use super::document::{
+    AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure,
+    FlightDocument, MonthDocument, ReferenceDocument, TailDocument,
+};
+use super::events::Event;
+use crate::statistics::ErrorStatistics;
+
+/// What a caller may choose.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MonitorOptions {
+    /// Factors by which fuel becomes CO₂ and price.
+    pub cost: CostFactors,
+    /// Basic factor of the flight management system (its model against the book), %.
+    pub basic_performance_factor_percent: Option<f64>,
+    /// Rules.
+    pub rules: Vec<AlertRule>,
+}
+
+/// A tail with its series read.
+#[derive(Clone, Debug)]
+pub struct MonitoredTail<'a> {
+    tail: &'a str,
+    aircraft_type: &'a str,
+    flights: Vec<&'a MonitoredFlight>,
+    reference: ReferenceConditions,
+    events: Vec<&'a Event>,
+    series: Series,
+    history: History,
+    before_learning: Option<(Series, History)>,
+    engines: Vec<(Series, History)>,
+}
+
+impl<'a> MonitoredTail<'a> {
+    /// Reads a tail's series; `None` where no segment is inside the table.
+    ///
+    /// # Errors
+    /// Flights that are not in order.
+    pub fn new(
+        (tail, aircraft_type): (&'a str, &'a str),
+        deviations: &'a TailDeviations,
+        events: &'a [Event],
+    ) -> Result<Option<Self>, SeriesError> {
+        let beliefs = ChangeBeliefs::of_2026();
+        let events: Vec<&Event> = events.iter().filter(|event| event.tail == tail).collect();
+        let times: Vec<Timestamp> = events.iter().map(|event| event.time).collect();
+        let flights: Vec<&MonitoredFlight> =
+            deviations.flights.iter().filter(|flight| flight.normalised.is_some()).collect();
+        let read = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>| {
+            let shown: Option<Vec<FlightDeviation>> =
+                flights.iter().map(|flight| of(flight)).collect();
+            let Some(shown) = shown else { return Ok(None) };
+            let series = Series::new(shown)?;
+            Ok(History::of(&series, &times, &beliefs).map(|history| (series, history)))
+        };
+        let Some((series, history)) = read(&|flight| flight.normalised)? else { return Ok(None) };
+        let before_learning = read(&|flight| flight.before_learning)?;
+        let count = flights.iter().map(|flight| flight.engines.len()).min().unwrap_or(0);
+        let mut engines = Vec::with_capacity(count);
+        for engine in 0..count {
+            engines.extend(read(&|flight| flight.engines.get(engine).copied())?);
+        }
+        let reference = deviations.reference;
+        Ok(Some(Self {
+            tail,
+            aircraft_type,
+            flights,
+            reference,
+            events,
+            series,
+            history,
+            before_learning,
+            engines,
+        }))
+    }
+
+    /// Everything found of the tail.
+    #[must_use]
+    pub fn document(&self, options: &MonitorOptions) -> TailDocument {
+        let months = self.months();
+        let level = self.history.levels.last_level_percent(&self.series);
+        let noise = &self.history.noise;
+        let mut changes = self.changes(None, &self.series, &self.history);
+        for (engine, (series, history)) in self.engines.iter().enumerate() {
+            changes.extend(self.changes(Some(engine + 1), series, history));
+        }
+        let date = |flight: Option<&&MonitoredFlight>| {
+            flight.map_or_else(String::new, |flight| flight.start.to_string())
+        };
+        TailDocument {
+            tail: self.tail.to_owned(),
+            aircraft_type: self.aircraft_type.to_owned(),
+            from: date(self.flights.first()),
+            to: date(self.flights.last()),
+            reference: reference_document(&self.reference),
+            deviation_percent: level.into(),
+            before_learning_percent: self.before_learning_mean(0..self.series.len()),
+            trend_percent_per_year: self.history.levels.trend_percent_per_year().into(),
+            within_flight_percent: noise.within_flight_percent,
+            between_flights_percent: noise.between_flights_percent,
+            correlation: noise.correlation,
+            airbus: self.airbus(&months, options),
+            cost: self.cost(level, options),
+            changes,
+            events: self.event_documents(),
+            flights: (0..self.flights.len()).map(|index| self.flight(index)).collect(),
+            months,
+        }
+    }
+
+    /// The rules that fire, in the order of the rules.
+    #[must_use]
+    pub fn alerts(&self, options: &MonitorOptions) -> Vec<AlertDocument> {
+        let alerts = options.rules.iter().flat_map(|rule| rule.apply(&self.series, &self.history));
+        alerts
+            .map(|alert| AlertDocument {
+                tail: self.tail.to_owned(),
+                rule: alert.rule.to_string(),
+                size: alert.size.into(),
+                unit: match alert.rule {
+                    AlertRule::Trend { .. } => "%/year",
+                    AlertRule::Deviation { .. } | AlertRule::Change { .. } => "%",
+                },
+                since: alert.since.to_string(),
+                likely_causes: Vec::new(),
+            })
+            .collect()
+    }
+
+    fn before_learning_mean(&self, flights: Range<usize>) -> Option<Figure> {
+        let (series, history) = self.before_learning.as_ref()?;
+        history.mean_percent(series, flights).map(Figure::from)
+    }
+
+    fn fuel_flow_kg_s(&self, deviation_percent: f64) -> f64 {
+        self.reference.initial_fuel_flow_kg_s * (deviation_percent / 100.0).exp()
+    }
+
+    fn specific_range_m_kg(&self, deviation_percent: f64) -> f64 {
+        self.reference.true_airspeed_m_s / self.fuel_flow_kg_s(deviation_percent)
+    }
+
+    fn months(&self) -> Vec<MonthDocument> {
+        let mut factors: Vec<(Month, f64)> = Vec::new();
+        let mut documents = Vec::new();
+        for (month, flights) in months(&self.series) {
+            let Some(mean) = self.history.mean_percent(&self.series, flights.clone()) else {
+                continue;
+            };
+            let deviation_percent = Figure::from(mean);
+            let monitored = deviation_percent.map(airbus::monitored_fuel_factor_percent);
+            factors.push((month, monitored.value));
+            let engines = self.engines.iter().filter_map(|(series, history)| {
+                history.mean_percent(series, flights.clone()).map(Figure::from)
+            });
+            let segments = self.series.flights()[flights.clone()].iter();
+            documents.push(MonthDocument {
+                month: month.to_string(),
+                flights: flights.len(),
+                segments: segments.map(|flight| u64::from(flight.segments())).sum(),
+                deviation_percent,
+                before_learning_percent: self.before_learning_mean(flights.clone()),
+                fuel_flow_kg_s: deviation_percent.map(|percent| self.fuel_flow_kg_s(percent)),
+                specific_range_m_kg: deviation_percent
+                    .map(|percent| self.specific_range_m_kg(percent)),
+                specific_range_deviation_percent: deviation_percent
+                    .map(airbus::specific_range_deviation_percent),
+                monitored_fuel_factor_percent: monitored,
+                retained_fuel_factor_percent: airbus::retained_fuel_factor_percent(month, &factors)
+                    .unwrap_or_else(|| airbus::rounded_up_to_a_tenth(monitored.value)),
+                engines_percent: engines.collect(),
+            });
+        }
+        documents
+    }
+
+    fn airbus(&self, months: &[MonthDocument], options: &MonitorOptions) -> AirbusTerms {
+        let each: Vec<f64> = self
+            .series
+            .flights()
+            .iter()
+            .map(|flight| airbus::specific_range_deviation_percent(flight.deviation_percent()))
+            .collect();
+        let statistics = ErrorStatistics::of(&each);
+        let last = months.last();
+        let retained = last.map_or(0.0, |month| month.retained_fuel_factor_percent);
+        AirbusTerms {
+            specific_range_deviation_percent: statistics.mean.unwrap_or(0.0),
+            specific_range_deviation_std_percent: statistics.std,
+            readings: statistics.n,
+            monitored_fuel_factor_percent: last
+                .map_or(Figure { value: 0.0, ci95: [0.0; 2] }, |month| {
+                    month.monitored_fuel_factor_percent
+                }),
+            retained_fuel_factor_percent: retained,
+            performance_factor_percent: options
+                .basic_performance_factor_percent
+                .map(|basic| airbus::performance_factor_percent(basic, retained)),
+        }
+    }
+
+    fn cost(&self, level: Estimate, options: &MonitorOptions) -> CostDocument {
+        let fuel: f64 = self.flights.iter().map(|flight| flight.cruise_fuel_kg).sum();
+        let flights = self.flights.len() as f64;
+        let span = match (self.flights.first(), self.flights.last()) {
+            (Some(first), Some(last)) => years_between(first.start, last.start),
+            _ => 0.0,
+        };
+        // One flight more than intervals; over less than a month it is no rate.
+        let recorded = (span > 1.0 / 12.0).then(|| (flights - 1.0) / span);
+        let flights_per_year = options.cost.flights_per_year.or(recorded);
+        let cost = Cost::of(
+            level.value,
+            fuel / flights.max(1.0),
+            flights_per_year.unwrap_or(0.0),
+            &options.cost,
+        );
+        CostDocument {
+            flights_per_year,
+            fuel_kg_per_flight: cost.fuel_kg_per_flight,
+            fuel_kg_per_year: flights_per_year.map(|_| cost.fuel_kg_per_year),
+            co2_kg_per_year: flights_per_year.and(cost.co2_kg_per_year),
+            price_per_year: flights_per_year.and(cost.price_per_year),
+        }
+    }
+
+    fn changes(
+        &self,
+        engine: Option<usize>,
+        series: &Series,
+        history: &History,
+    ) -> Vec<ChangeDocument> {
+        let start = |flight: usize| series.flights()[flight].time().to_string();
+        history
+            .changes
+            .iter()
+            .map(|change| ChangeDocument {
+                engine,
+                since: start(change.first_flight),
+                since_ci95: [start(change.earliest), start(change.latest)],
+                probability: change.probability,
+                step_percent: change.step_percent.into(),
+                event: change.event.map(|event| self.events[event].kind.clone()),
+            })
+            .collect()
+    }
+
+    fn event_documents(&self) -> Vec<EventDocument> {
+        let found = self.events.iter().zip(&self.history.events);
+        found
+            .map(|(event, effect)| EventDocument {
+                time: event.time.to_string(),
+                kind: event.kind.clone(),
+                note: event.note.clone(),
+                effect_percent: effect.effect_percent.map(Figure::from),
+                together_with: effect
+                    .together_with
+                    .iter()
+                    .map(|other| self.events[*other].kind.clone())
+                    .collect(),
+            })
+            .collect()
+    }
+
+    fn flight(&self, index: usize) -> FlightDocument {
+        let flight = self.flights[index];
+        let shown = &self.series.flights()[index];
+        let percent = shown.deviation_percent();
+        let variance = self.history.noise.flight_variance_percent2(shown.segments());
+        let years = self.series.years(flight.start);
+        let of = |deviation: Option<FlightDeviation>| deviation.map(|d| d.deviation_percent());
+        FlightDocument {
+            flight: flight.flight.clone(),
+            start: flight.start.to_string(),
+            segments: flight.segments,
+            outside_table: flight.outside_table,
+            deviation_percent: Estimate { value: percent, deviation: variance.sqrt() }.into(),
+            initial_deviation_percent: of(flight.initial).unwrap_or(percent),
+            before_learning_percent: of(flight.before_learning),
+            level_percent: self.history.levels.level_percent(index, years).into(),
+            fuel_flow_kg_s: self.fuel_flow_kg_s(percent),
+            specific_range_m_kg: self.specific_range_m_kg(percent),
+            specific_range_deviation_percent: airbus::specific_range_deviation_percent(percent),
+            engines_percent: self
+                .engines
+                .iter()
+                .map(|(series, _)| series.flights()[index].deviation_percent())
+                .collect(),
+            excess_fuel_kg: excess_fuel_kg(flight.cruise_fuel_kg, percent),
+        }
+    }
+}
+
+fn reference_document(reference: &ReferenceConditions) -> ReferenceDocument {
+    ReferenceDocument {
+        pressure_altitude_m: reference.pressure_altitude_m,
+        mach: reference.mach,
+        static_air_temperature_k: reference.static_air_temperature_k,
+        mass_kg: reference.mass_kg,
+        true_airspeed_m_s: reference.true_airspeed_m_s,
+        initial_fuel_flow_kg_s: reference.initial_fuel_flow_kg_s,
+        segments: reference.segments,
+    }
+}

@@ -1,0 +1,81 @@
+//! What a model predicts with everything that it has learnt, or with its drag table alone.
+
+use diagnose::{TableUncertainty, WholeModel, WholePrediction};
+use effects::ExtendedModel;
+use flight::Segment;
+use lut::Table;
+
+use crate::model_file::ModelFile;
+
+/// Which part of a model predicts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Predicts {
+    /// Everything that was learnt; the drag table where nothing else was.
+    #[default]
+    WholeModel,
+    /// The drag table as the law left it.
+    TableOnly,
+}
+
+impl ModelFile {
+    /// The model with everything that it has learnt; `None` where it has learnt no more than a table, or where only the table
+    /// is asked for.
+    pub fn whole(&self, predicts: Predicts) -> Option<WholeModel<'_>> {
+        if predicts == Predicts::TableOnly {
+            return None;
+        }
+        let baseline = self.learnt.as_ref()?.baseline.as_ref()?;
+        // A baseline was learnt against this very model: it took its effects then.
+        WholeModel::new(&self.initial, baseline).ok()
+    }
+
+    /// The table that flights are held against together with what the model has learnt: the initial one, which everything
+    /// learnt refers to; the learnt table where there is nothing else.
+    pub fn reference_table(&self, predicts: Predicts) -> &Table {
+        let baseline = self.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
+        match baseline.filter(|_| predicts == Predicts::WholeModel) {
+            Some(_) => self.initial.drag_table(),
+            None => self.drag_coefficient(),
+        }
+    }
+}
+
+/// A segment held against the whole model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SegmentHeld {
+    /// ln of recorded over predicted fuel flow.
+    pub gap: f64,
+    /// The prediction.
+    pub prediction: WholePrediction,
+}
+
+impl SegmentHeld {
+    /// A segment held against a model; `None` outside its table or a domain.
+    pub fn new(whole: &WholeModel<'_>, model: &ExtendedModel, segment: &Segment) -> Option<Self> {
+        let prediction = whole.of_segment(segment).ok()?;
+        let corrected = model.corrected_means(&segment.means).ok()?;
+        let gap = corrected.fuel_flow_total_kg_s.ln() - prediction.ln_fuel_flow;
+        gap.is_finite().then_some(Self { gap, prediction })
+    }
+
+    /// 100 (recorded − predicted)/recorded fuel flow.
+    pub fn error_percent(&self) -> f64 {
+        -100.0 * (-self.gap).exp_m1()
+    }
+}
+
+/// What law `bayes` believes of an initial drag table before it has learnt anything, over the nodes that flights visit.
+///
+/// # Errors
+/// A table that the law cannot correct, or a covariance that is invalid, in words.
+pub fn belief_before_flights(
+    initial: &ExtendedModel,
+    settings: adapt::bayes::BayesSettings,
+    visited: &[usize],
+) -> Result<TableUncertainty, String> {
+    let state = adapt::bayes::BayesState::new(initial.drag_table(), settings)
+        .map_err(|error| error.to_string())?;
+    let prior = state.solve().map_err(|error| error.to_string())?;
+    crate::table_uncertainty::of_visited(&prior, initial.drag_table().grid(), visited, 1.0)
+        .map_err(|error| error.to_string())
+}
