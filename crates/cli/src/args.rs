@@ -68,6 +68,12 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Maximum-range, long-range and cost-index Mach numbers and best levels by a model, compared with the book's
     Optimum(OptimumArgs),
+    /// Draw a model, or a tail of an adapted folder, as SVG
+    Plot(PlotArgs),
+    /// The library of effects: name, unit, usual size, what has to be recorded
+    Effects(EffectsArgs),
+    /// What an effect, a column, a set of trim criteria or a verdict is
+    Explain(ExplainArgs),
     /// Compare a whole run with expected files, or accept it as expected
     #[command(subcommand)]
     Golden(GoldenCommand),
@@ -75,6 +81,10 @@ pub(crate) enum Command {
     Simulate(SimulateArgs),
     /// Blind trials: simulate flights with an effect that the model does not have, diagnose, score
     Trial(TrialArgs),
+    /// What a shell completes, for standard output: `cruisefit completions bash > FILE`
+    Completions(CompletionsArgs),
+    /// Manual pages of the program and of each command
+    Man(ManArgs),
     /// The whole chain on embedded data; needs no input
     Demo(DemoArgs),
 }
@@ -512,6 +522,52 @@ fn cost_index(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
         _ => Err("expected a number of kilograms per minute, 0 or more".to_owned()),
     }
+}
+
+/// `plot`
+#[derive(Debug, Args)]
+pub(crate) struct PlotArgs {
+    /// Model file, or folder that `adapt` wrote
+    #[arg(value_name = "MODEL.ron|DIR")]
+    pub(crate) source: PathBuf,
+    /// Tail of the folder [default: the only one]
+    #[arg(long, value_name = "TAIL")]
+    pub(crate) tail: Option<String>,
+    /// SVG file to write
+    #[arg(long, short, value_name = "FIG.svg")]
+    pub(crate) output: PathBuf,
+}
+
+/// `effects`
+#[derive(Debug, Args)]
+pub(crate) struct EffectsArgs {
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// `explain`
+#[derive(Debug, Args)]
+pub(crate) struct ExplainArgs {
+    /// Effect, column, trim criteria or verdict [default: list them]
+    #[arg(value_name = "TOPIC")]
+    pub(crate) topic: Option<String>,
+}
+
+/// `completions`
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsArgs {
+    /// Shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// `man`
+#[derive(Debug, Args)]
+pub(crate) struct ManArgs {
+    /// Folder to write to
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
 }
 
 /// `golden`

@@ -2,17 +2,22 @@
 
 pub(crate) mod adapt;
 pub(crate) mod check;
+pub(crate) mod completions;
 pub(crate) mod demo;
 pub(crate) mod diagnose;
+pub(crate) mod effects;
 pub(crate) mod evaluate;
+pub(crate) mod explain;
 pub(crate) mod export;
 pub(crate) mod forget;
 pub(crate) mod golden;
 pub(crate) mod guide;
 pub(crate) mod init;
+pub(crate) mod man;
 pub(crate) mod merge;
 pub(crate) mod monitor;
 pub(crate) mod optimum;
+pub(crate) mod plot;
 pub(crate) mod predict;
 pub(crate) mod segment;
 pub(crate) mod show;

@@ -139,6 +139,7 @@ pub use output::{
     ActsOn, Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
 };
 pub use place::members::region_members;
+pub use place::segment_gaps::{SegmentGap, Shown, segment_gaps};
 pub use residuals::whole::{WholeModel, WholePrediction};
 pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};

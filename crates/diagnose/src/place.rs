@@ -7,3 +7,4 @@ mod likelihood;
 pub(crate) mod members;
 mod null;
 mod regions;
+pub(crate) mod segment_gaps;

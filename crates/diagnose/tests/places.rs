@@ -2,7 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test")]
 
 use diagnose::{
-    Diagnosis, FlightRecord, Input, Options, Region, Variable, diagnose, region_members,
+    Diagnosis, FlightRecord, Input, Options, Region, Shown, Variable, diagnose, region_members,
+    segment_gaps,
 };
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Fleet, Planted, Setup, exact_model, fly};
@@ -74,4 +75,38 @@ fn without_gap_no_place() {
         .filter(|fleet| !place(fleet, &options()).r#where.is_empty())
         .count();
     assert!(alarms <= 1, "{alarms}");
+}
+
+/// What a chart shows is what the diagnosis counted: its mean, its root mean square, its place.
+#[test]
+fn gaps_of_segments_are_those_of_the_diagnosis() {
+    let fleet = with(404, EffectId::WaveDrag, 0.008);
+    let model = exact_model();
+    let records = records(&fleet);
+    let input = Input::against(&model, &records);
+    let found = diagnose(&input, &options()).unwrap();
+    let addition = found.addition.as_ref().unwrap();
+    let shown = Shown {
+        addition: Some(addition),
+        region: Some(&found.r#where[0].region),
+        driver: Some(Variable::Mach),
+    };
+    let gaps = segment_gaps(&input, shown).unwrap();
+    assert_eq!(gaps.len(), found.segments);
+    assert_eq!(gaps.last().unwrap().flight + 1, found.flights);
+    let count = gaps.len() as f64;
+    let mean = gaps.iter().map(|one| one.before_percent).sum::<f64>() / count;
+    assert!((mean - found.gap.mean_percent).abs() < 1e-9, "{mean}");
+    let square =
+        |of: &dyn Fn(usize) -> f64| (0..gaps.len()).map(|k| of(k).powi(2)).sum::<f64>() / count;
+    let before = square(&|k| gaps[k].before_percent).sqrt();
+    assert!((before - found.gap.rms_percent).abs() < 1e-9, "{before}");
+    let inside = gaps.iter().filter(|one| one.in_region).count();
+    assert_eq!(inside, found.r#where[0].segments);
+    for gap in &gaps {
+        assert_eq!((gap.driver, gap.after_percent.len()), (Some(gap.mach), addition.effects.len()));
+    }
+    // The planted drag rise is most of the gap: with it in the model less is left.
+    let after = square(&|k| gaps[k].after_percent[addition.effects.len() - 1]).sqrt();
+    assert!(after < before, "{after} of {before}");
 }

@@ -74,8 +74,14 @@ impl Chart {
         let middle_x = coordinate(f64::midpoint(left, right));
         let middle_y = coordinate(f64::midpoint(top, bottom));
         html! {
-            svg viewBox=(format!("0 0 {width} {height}")) role="img"
-                aria-labelledby=(format!("{0}-title {0}-desc", self.id)) {
+            svg viewBox=(format!("0 0 {width} {height}"))
+                data-frame=(format!(
+                    "{} {} {} {}", coordinate(left), coordinate(right), coordinate(top), coordinate(bottom)
+                ))
+                data-x=(format!("{} {}", self.x.first(), self.x.last()))
+                data-y=(format!("{} {}", self.y.first(), self.y.last()))
+                data-dates=[self.x.is_of_dates().then_some("")]
+                role="img" aria-labelledby=(format!("{0}-title {0}-desc", self.id)) {
                 title id=(format!("{}-title", self.id)) { (self.title) }
                 desc id=(format!("{}-desc", self.id)) { (self.description) }
                 path class="grid" d=(self.grid_lines()) {}
@@ -149,6 +155,26 @@ impl Chart {
     /// A line across at one y.
     pub(crate) fn horizontal(&self, y: f64, class: &str) -> Markup {
         self.polyline(&[(self.x.first(), y), (self.x.last(), y)], class)
+    }
+
+    /// A rectangle between two values of each scale, with words for the pointer; cut off at the frame.
+    pub(crate) fn cell(&self, x: (f64, f64), y: (f64, f64), class: &str, tip: &str) -> Markup {
+        let (left, right) = (self.x_at(x.0.max(self.x.first())), self.x_at(x.1.min(self.x.last())));
+        let (bottom, top) = (self.y_at(y.0.max(self.y.first())), self.y_at(y.1.min(self.y.last())));
+        html! {
+            rect class=(format!("cell {class}")) x=(coordinate(left)) y=(coordinate(top))
+                width=(coordinate((right - left).max(0.0))) height=(coordinate((bottom - top).max(0.0)))
+                data-tip=(tip) {}
+        }
+    }
+
+    /// An upright line with words for the pointer; cut off at the frame.
+    pub(crate) fn interval(&self, x: f64, y: (f64, f64), class: &str, tip: &str) -> Markup {
+        let clamped = |value: f64| self.y_at(value.clamp(self.y.first(), self.y.last()));
+        html! {
+            path class=(class) data-tip=[(!tip.is_empty()).then_some(tip)]
+                d=(format!("M{} {}V{}", coordinate(self.x_at(x)), coordinate(clamped(y.0)), coordinate(clamped(y.1)))) {}
+        }
     }
 
     fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {

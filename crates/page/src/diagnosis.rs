@@ -1,196 +1,125 @@
-//! `diagnosis.html`: verdicts, causes with sizes, what cannot be tested, what would just be detected.
+//! `diagnosis.html`: for each tail what is wrong, where, how sure that is and what to do; figures under it; tables last.
 
-use diagnose::{Cause, Diagnosis, Separation, Verdict};
-use flight::effect::{EffectId, HiddenParameter};
+use std::collections::BTreeMap;
+
+use diagnose::Verdict;
 use maud::{Markup, html};
-
-use crate::fleet;
-use crate::frame::framed;
 use pipeline::diagnosed_tail::DiagnosedTail;
-use pipeline::diagnosis_text;
-use pipeline::diagnosis_words::{joined, measurement_words, region_words};
+use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::summary::{ReportsSummary, counted};
 
-/// Causes shown for each tail.
-const CAUSES_SHOWN: usize = 8;
-/// Measurements or flights shown for each effect, whatever is found.
-const SEPARATIONS_SHOWN: usize = 2;
+use crate::chart::dates;
+use crate::fleet;
+use crate::frame::framed;
 
-/// The page of diagnoses, with the counts of the reports behind them.
+mod causes;
+mod figures;
+mod map;
+mod tables;
+mod verdict;
+
+/// The page of diagnoses: the counts of the reports behind them, each diagnosis with what its charts are drawn from (in the
+/// same order), and the options of the run in words.
 #[must_use]
-pub fn diagnosis(reports: &ReportsSummary, diagnoses: &[DiagnosedTail]) -> String {
-    let title = "Diagnosis of performance models";
-    let body = html! {
-        p.run {
-            (counted(reports.read, "report")) " read, " (reports.refused.len()) " refused. Gap: ln recorded − ln predicted "
-            "total fuel flow, in %; positive: the aircraft burns more than the model predicts."
-        }
-        (fleet::refused(reports))
-        @for one in diagnoses { (section(one)) }
-    };
-    framed(title, true, &body)
-}
-
-fn section(diagnosed: &DiagnosedTail) -> Markup {
-    let diagnosis = &diagnosed.diagnosis;
-    let separating = diagnosis.verdict.found().map_or(&[][..], |found| &found.separations);
-    let notes = diagnosed.notes();
-    html! {
-        section {
-            h2 { (diagnosed.name()) }
-            @for (place, line) in diagnosis_text::lines(diagnosed).iter().skip(1).enumerate() {
-                p { @if place == 0 {
-                    (counted(diagnosis.flights, "flight")) ", " (counted(diagnosis.segments, "segment")) ". "
-                } (line) }
-            }
-            (places(diagnosis))
-            @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) {
-                (causes(&diagnosis.causes))
-                p {
-                    "A cause outside the library of effects: probability "
-                    (format!("{:.3}", diagnosis.outside.probability))
-                    ". The causes' probabilities and this one are parts of the same total."
-                }
-                (floors(diagnosis))
-            }
-            @if !separating.is_empty() {
-                h3 { "What would distinguish them" }
-                (separations(separating.iter().map(|one| (None, one))))
-            }
-            (detectable(diagnosis))
-            (beforehand(diagnosis))
-            @if !notes.is_empty() {
-                h3 { "Notes" }
-                ul { @for note in &notes { li { (note) } } }
-            }
-        }
-    }
-}
-
-fn places(diagnosis: &Diagnosis) -> Markup {
-    html! {
-        @if !diagnosis.r#where.is_empty() {
-            h3 { "Where the gap lies" }
-            table {
-                thead { tr {
-                    th scope="col" { "region" } th scope="col" { "segments" } th scope="col" { "mean gap, %" }
-                    th scope="col" { "95 % interval by flight, %" } th scope="col" { "share of the explainable gap" }
-                    th scope="col" { "p, search accounted for" }
-                } }
-                tbody { @for place in &diagnosis.r#where { tr {
-                    th scope="row" { (region_words(&place.region)) }
-                    td { (place.segments) }
-                    td { (format!("{:+.2}", place.mean_gap_percent)) }
-                    td { (format!("{:+.2} to {:+.2}", place.ci95[0], place.ci95[1])) }
-                    td { (format!("{:.0} %", 100.0 * place.share_of_gap)) }
-                    td { (format!("{:.3}", place.p_value)) }
-                } } }
-            }
-        }
-    }
-}
-
-fn floors(diagnosis: &Diagnosis) -> Markup {
-    let gap = &diagnosis.gap;
-    html! {
-        @if gap.floor_by_replicates_rms_percent.is_some() || gap.floor_by_held_out_fit_rms_percent.is_some() {
-            p {
-                "Noise floor " (format!("{:.2} %", gap.noise_floor_rms_percent)) " by the sensors' standard deviations"
-                @if let Some(floor) = gap.floor_by_replicates_rms_percent {
-                    "; " (format!("{floor:.2} %")) " by like segments of one flight"
-                }
-                @if let Some(floor) = gap.floor_by_held_out_fit_rms_percent {
-                    "; at most " (format!("{floor:.2} %")) " by a flexible model on flights it was not fitted to"
-                }
-                "."
-            }
-        }
-    }
-}
-
-fn causes(causes: &[Cause]) -> Markup {
-    html! {
-        h3 { "Causes by probability" }
-        table {
-            thead { tr {
-                th scope="col" { "effect" } th scope="col" { "probability" } th scope="col" { "size" }
-                th scope="col" { "95 % interval" } th scope="col" { "unit" } th scope="col" { "closes, unseen flights" }
-                th scope="col" { "cannot be distinguished from" }
-            } }
-            tbody { @for cause in causes.iter().take(CAUSES_SHOWN) { tr {
-                th scope="row" { (cause.effect) }
-                td { (format!("{:.3}", cause.probability)) }
-                td { (format!("{:+.4}", cause.magnitude.value)) }
-                td { (format!("{:+.4} to {:+.4}", cause.magnitude.ci95[0], cause.magnitude.ci95[1])) }
-                td { (cause.effect.entry().unit) @if cause.hidden != HiddenParameter::None { "; " (cause.hidden) } }
-                td { @if let Some(closure) = cause.closure { (format!("{:.0} %", 100.0 * closure.share)) } @else { "–" } }
-                td { (others(cause)) }
-            } } }
-        }
-    }
-}
-
-fn others(cause: &Cause) -> String {
-    let others: Vec<EffectId> =
-        cause.class.iter().copied().filter(|id| *id != cause.effect).collect();
-    if others.is_empty() { "–".to_owned() } else { joined(&others, ", ") }
-}
-
-fn detectable(diagnosis: &Diagnosis) -> Markup {
-    html! {
-        @if !diagnosis.detectable.is_empty() {
-            h3 { "Smallest sizes that this data would show" }
-            table {
-                thead { tr {
-                    th scope="col" { "effect" } th scope="col" { "smallest size" } th scope="col" { "unit" }
-                } }
-                tbody { @for one in &diagnosis.detectable { tr {
-                    th scope="row" { (one.effect) }
-                    td { @if let Some(size) = one.smallest { (format!("{size:.4}")) } @else { "–" } }
-                    td { (one.effect.entry().unit) }
-                } } }
-            }
-        }
-    }
-}
-
-/// Effects that share a class at their typical sizes, whatever was found, and what would distinguish each from the
-/// nearest.
-fn beforehand(diagnosis: &Diagnosis) -> Markup {
-    let shared: Vec<_> = diagnosis
-        .detectable
+pub fn diagnosis(
+    reports: &ReportsSummary,
+    diagnoses: &[DiagnosedTail],
+    figures: &[DiagnosisFigures],
+    options: &[String],
+) -> String {
+    let tails: Vec<Tail<'_>> = diagnoses
         .iter()
-        .flat_map(|one| {
-            let shown = one.separations.iter().take(SEPARATIONS_SHOWN);
-            shown.map(|separation| (Some(one.effect), separation))
+        .zip(figures)
+        .enumerate()
+        .map(|(number, (diagnosed, figures))| Tail {
+            id: format!("tail-{}", number + 1),
+            diagnosed,
+            figures,
         })
         .collect();
-    html! {
-        @if !shared.is_empty() {
-            h3 { "Effects of typical size that these flights cannot distinguish, and what would" }
-            (separations(shared.into_iter()))
+    let body = html! {
+        p.run { (head(reports, &tails, options)) }
+        p.note {
+            "Gap: ln recorded − ln predicted total fuel flow, in %; positive: the aircraft burns more than its model predicts. \
+             Intervals are of 95 %."
         }
+        @if tails.len() > 1 { (verdict::index(&tails)) }
+        (fleet::refused(reports))
+        @for tail in &tails { (section(tail)) }
+    };
+    framed("Diagnosis of performance models", &body)
+}
+
+/// A diagnosis, its figures and its place on the page.
+struct Tail<'a> {
+    /// Unique on the page.
+    id: String,
+    diagnosed: &'a DiagnosedTail,
+    figures: &'a DiagnosisFigures,
+}
+
+impl Tail<'_> {
+    /// Gaps before and, where effects are added, with all of them.
+    fn before_and_after(&self) -> (Vec<f64>, Vec<f64>) {
+        let segments = &self.figures.segments;
+        (
+            segments.iter().map(|segment| segment.before_percent).collect(),
+            segments.iter().filter_map(|segment| segment.after_percent.last().copied()).collect(),
+        )
+    }
+
+    /// Days of the first and the last segment.
+    fn period(&self) -> Option<String> {
+        let dates = self.figures.segments.iter().map(|segment| segment.date_s);
+        let first = dates.clone().min_by(f64::total_cmp)?;
+        let last = dates.max_by(f64::total_cmp)?;
+        Some(dates::period(first, last))
     }
 }
 
-fn separations<'a>(
-    all: impl Iterator<Item = (Option<EffectId>, &'a Separation)> + Clone,
-) -> Markup {
-    let named = all.clone().any(|(effect, _)| effect.is_some());
+/// Version, period, counts and options, in a line.
+fn head(reports: &ReportsSummary, tails: &[Tail<'_>], options: &[String]) -> String {
+    let dates = || tails.iter().flat_map(|tail| &tail.figures.segments).map(|one| one.date_s);
+    let mut told = vec![format!("cruisefit {}", env!("CARGO_PKG_VERSION"))];
+    if let (Some(first), Some(last)) =
+        (dates().min_by(f64::total_cmp), dates().max_by(f64::total_cmp))
+    {
+        told.push(format!("flown {}", dates::period(first, last)));
+    }
+    let mut types: BTreeMap<&str, usize> = BTreeMap::new();
+    for tail in tails {
+        *types.entry(tail.figures.type_code.as_str()).or_default() += 1;
+    }
+    let types: Vec<&str> = types.into_keys().filter(|code| !code.is_empty()).collect();
+    told.push(format!("{} ({})", counted(tails.len(), "tail"), types.join(", ")));
+    told.push(format!(
+        "{} read, {} refused",
+        counted(reports.read, "report"),
+        reports.refused.len()
+    ));
+    told.extend(options.iter().cloned());
+    format!("{}.", told.join("; "))
+}
+
+fn section(tail: &Tail<'_>) -> Markup {
+    let Tail { id, diagnosed, figures } = tail;
+    let diagnosis = &diagnosed.diagnosis;
     html! {
-        table {
-            thead { tr {
-                @if named { th scope="col" { "effect" } }
-                th scope="col" { "measurement or flights" } th scope="col" { "distinguishes it from" }
-                th scope="col" { "distance now, σ" } th scope="col" { "distance with it, σ" }
-                th scope="col" { "with six ordinary flights, σ" }
-            } }
-            tbody { @for (effect, one) in all { tr {
-                @if let Some(effect) = effect { th scope="row" { (effect) } }
-                td { (measurement_words(&one.measurement)) } td { (one.from) }
-                td { (format!("{:.1}", one.distance_now)) } td { (format!("{:.1}", one.distance_then)) }
-                td { @if let Some(distance) = one.distance_ordinary_flights { (format!("{distance:.1}")) } @else { "–" } }
-            } } }
+        section id=(id) {
+            h2 { (diagnosed.name()) }
+            p.run {
+                (counted(diagnosis.flights, "flight")) " with " (counted(diagnosis.segments, "segment"))
+                @if let Some(period) = tail.period() { ", " (period) }
+                ". " (figures.aircraft) " (" (figures.type_code) "); model: " (figures.model) "."
+            }
+            (verdict::card(diagnosis))
+            @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) && !figures.segments.is_empty() {
+                (figures::figures(tail))
+                (causes::causes(diagnosis))
+                (causes::left(diagnosis, &figures.segments))
+            }
+            (causes::apart(diagnosis))
+            (tables::tables(diagnosed))
         }
     }
 }

@@ -172,6 +172,7 @@ pub(crate) fn flights_apart(view: &TailView) -> Markup {
                         " Not “after”: the final table has also learnt from a flight that was recorded wrongly."
                     }
                 }
+                div.scroll {
                 table.small {
                     thead { tr {
                         th scope="col" { "flight" }
@@ -191,6 +192,7 @@ pub(crate) fn flights_apart(view: &TailView) -> Markup {
                             }
                         }
                     }
+                }
                 }
             }
         }

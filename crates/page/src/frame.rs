@@ -4,24 +4,30 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style;
 
-/// A whole page: `body` under a title, without scripts or network. `prints_all` also unfolds the folded parts for
-/// printing.
-pub(crate) fn framed(title: &str, prints_all: bool, body: &Markup) -> String {
+/// What a page does beyond being read.
+const SCRIPT: &str = include_str!("page.js");
+/// The page may run what it holds and load nothing, whatever a name in it says.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
+/// A whole page: `body` under a title, without network.
+pub(crate) fn framed(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="generator" content=(concat!("cruisefit ", env!("CARGO_PKG_VERSION")));
                 title { (title) }
                 style { (PreEscaped(style::STYLE)) }
             }
-            body.print-all[prints_all] {
+            body {
                 main {
                     h1 { (title) }
                     (body)
                 }
+                script { (PreEscaped(SCRIPT)) }
             }
         }
     };

@@ -1,13 +1,14 @@
-//! The result of a run as one plain page for a performance engineer to read, print and forward.
+//! The result of a run as one self-contained page for a performance engineer to read, print and forward.
 //!
-//! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis`]
-//! that of diagnoses (verdicts, causes with sizes, what cannot be tested, what would just be detected),
-//! [`monitoring`] that of months and fleets. All are strings of HTML with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
+//! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis()`]
+//! that of diagnoses (what, where, how sure, what to do, and the charts behind it), [`plot()`] the charts of one tail as SVG,
+//! [`monitoring()`] the page of months and fleets. All are strings with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
 //! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures
 //! are taken from the results unchanged.
 //!
-//! The one design decision: one string without network, script or clock, so that the same results give the same bytes and a
-//! page that was mailed is read in ten years as it is today. That costs interaction: a chart cannot be zoomed.
+//! The one design decision: one string that loads nothing and does not know the time, so that the same results give the same
+//! bytes and a page that was mailed is read in ten years as it is today. All is drawn before the small script of the page
+//! runs; it adds values under the pointer, sorting, filtering and CSV. That costs zoom: a chart cannot be enlarged.
 //!
 //! Limits:
 //! - The page of a large fleet draws a share of the segments, and states so; figures and tables cover all.
@@ -29,6 +30,7 @@ mod fleet;
 mod frame;
 mod monitoring;
 mod place;
+mod plot;
 mod polars;
 mod report;
 #[cfg(test)]
@@ -42,6 +44,7 @@ mod view;
 
 pub use diagnosis::diagnosis;
 pub use monitoring::monitoring;
+pub use plot::plot;
 pub use report::{
     Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
     tail_page,

@@ -15,7 +15,6 @@ const MOST_POINTS: usize = 2000;
 const FEWEST_POINTS: usize = 200;
 const POINTS_OF_PAGE: usize = 60_000;
 /// Up to this many tails all are printed, folded or not.
-const TAILS_PRINTED: usize = 8;
 
 /// The page of what `monitor` found.
 pub fn monitoring(document: &MonitorDocument) -> String {
@@ -52,7 +51,7 @@ pub fn monitoring(document: &MonitorDocument) -> String {
             }
         }
     };
-    framed("Months and fleets", tails.len() <= TAILS_PRINTED, &body)
+    framed("Months and fleets", &body)
 }
 
 fn period(document: &MonitorDocument) -> Option<(&str, &str)> {

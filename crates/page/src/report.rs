@@ -1,15 +1,18 @@
 //! `report.html`: the result of a run.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, PreEscaped, html};
 use pipeline::evaluation::TailResult;
 use pipeline::model_file::Learnt;
-use pipeline::summary::Summary;
+use pipeline::summary::{Summary, TailSummary};
 
+use crate::chart::dates;
+use crate::fleet::FleetRow;
 use crate::frame::framed;
 use crate::place::Place;
-use crate::text::counted;
+use crate::text::{counted, signed};
+use crate::view::TailView;
 use crate::{fleet, tail};
 
 /// Largest number of points of a chart.
@@ -17,8 +20,6 @@ const MOST_POINTS: usize = 2000;
 /// Up to this many tails one page holds the charts of all; of more, each has its own page. At [`MOST_POINTS`] points in
 /// each chart this is a page of about 2 MB.
 pub const TAILS_ON_ONE_PAGE: usize = 30;
-/// Up to this many tails all are printed, folded or not.
-const TAILS_PRINTED: usize = 8;
 
 /// A tail's part of a page: made tail by tail, so that a run need not hold all of them.
 #[derive(Clone, Debug)]
@@ -28,6 +29,11 @@ pub struct Section {
     id: String,
     headline: String,
     law: String,
+    type_code: String,
+    /// START of the first and of the last flight, s since 1970.
+    period_s: Option<(f64, f64)>,
+    /// Half width of the 95 % interval of its mean error before, %.
+    half_width95: Option<f64>,
     adapted: bool,
     body: String,
 }
@@ -37,12 +43,17 @@ pub struct Section {
 pub fn section(result: &TailResult, anchors: &Anchors) -> Section {
     let id = anchors.0.get(&result.tail).cloned().unwrap_or_default();
     let place = Place { tail: &result.tail, id: id.clone(), most_points: MOST_POINTS };
+    let view = TailView::of(result);
+    let starts = || view.flights.iter().map(|flight| flight.start_s);
     Section {
         tail: result.tail.clone(),
         headline: tail::headline(result),
         law: law_of(result),
+        type_code: result.model.initial.aircraft().type_code().to_owned(),
+        period_s: starts().min_by(f64::total_cmp).zip(starts().max_by(f64::total_cmp)),
+        half_width95: view.half_width95_before(),
         adapted: result.summary.fuel_flow_error_percent.after.is_some(),
-        body: tail::body(result, &place).into_string(),
+        body: tail::body(result, &view, &place).into_string(),
         id,
     }
 }
@@ -58,46 +69,49 @@ pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
 /// The page of sections that were made before.
 #[must_use]
 pub fn report_of_sections(summary: &Summary, sections: &[&Section], title: &str) -> String {
-    let ids: BTreeMap<&str, &str> =
-        sections.iter().map(|section| (section.tail.as_str(), section.id.as_str())).collect();
-    let link = |tail: &str| ids.get(tail).map(|id| format!("#{id}"));
+    let by_tail: BTreeMap<&str, &Section> =
+        sections.iter().map(|section| (section.tail.as_str(), *section)).collect();
+    let rows = fleet_rows(summary, |summary| {
+        let section = by_tail.get(summary.tail.as_str());
+        FleetRow {
+            summary,
+            link: section.map(|section| format!("#{}", section.id)),
+            half_width95: section.and_then(|section| section.half_width95),
+        }
+    });
     let body = html! {
         p.run { (what_was_run(summary, sections)) }
+        (fleet_section(&rows))
         (how_to_read(sections.iter().any(|section| section.adapted)))
-        section {
-            h2 { "Fleet" }
-            (fleet::table(summary, link))
-        }
         (fleet::refused(&summary.reports))
         section {
             h2 { "Tails" }
             @if sections.len() > 1 {
-                p.note {
-                    "Each tail unfolds at a click on its line, or on its name in the table above."
-                    @if sections.len() > TAILS_PRINTED { " Only unfolded tails are printed." }
-                }
+                p.note { "Each tail unfolds at a click on its line, or on its name in the table above. All are printed." }
             }
             @for (k, section) in sections.iter().enumerate() { (folded(section, k == 0)) }
         }
     };
-    framed(title, sections.len() <= TAILS_PRINTED, &body)
+    framed(title, &body)
 }
 
 /// The page of a fleet whose tails have pages of their own: `links` lead to them.
 #[must_use]
 pub fn fleet_report(summary: &Summary, links: &BTreeMap<&str, String>, title: &str) -> String {
     let adapted = summary.tails.iter().any(|tail| tail.fuel_flow_error_percent.after.is_some());
+    let rows = fleet_rows(summary, |summary| FleetRow {
+        summary,
+        link: links.get(summary.tail.as_str()).cloned(),
+        half_width95: None,
+    });
     let body = html! {
         p.run { (what_was_run(summary, &[])) }
+        (fleet_section(&rows))
+        p.note { "The name of a tail leads to its own page, which has the interval of its deviation." }
         (how_to_read(adapted))
-        section {
-            h2 { "Fleet" }
-            p.note { "The name of a tail leads to its own page." }
-            (fleet::table(summary, |tail| links.get(tail).cloned()))
-        }
         (fleet::refused(&summary.reports))
     };
-    framed(title, false, &body)
+    framed(title, &body)
 }
 
 /// A tail's own page.
@@ -105,10 +119,20 @@ pub fn fleet_report(summary: &Summary, links: &BTreeMap<&str, String>, title: &s
 pub fn tail_page(section: &Section) -> String {
     let body = html! {
         p.run { "cruisefit " (env!("CARGO_PKG_VERSION")) "; " (section.law) "." }
-        (how_to_read(section.adapted))
         (folded(section, true))
+        (how_to_read(section.adapted))
     };
-    framed(&format!("Tail {}", section.tail), true, &body)
+    framed(&format!("Tail {}", section.tail), &body)
+}
+
+fn fleet_section(rows: &[FleetRow<'_>]) -> Markup {
+    html! {
+        section {
+            h2 { "Fleet" }
+            p { (in_short(rows)) }
+            (fleet::overview(rows))
+        }
+    }
 }
 
 fn folded(section: &Section, open: bool) -> Markup {
@@ -118,6 +142,43 @@ fn folded(section: &Section, open: bool) -> Markup {
             // The anchor is inside: following a link to it unfolds the section.
             div id=(section.id) { (PreEscaped(&section.body)) }
         }
+    }
+}
+
+/// Rows of the fleet's table: what burns most beyond its prediction first, tails without an error last.
+fn fleet_rows<'a>(
+    summary: &'a Summary,
+    row_of: impl Fn(&'a TailSummary) -> FleetRow<'a>,
+) -> Vec<FleetRow<'a>> {
+    let mut rows: Vec<FleetRow<'a>> = summary.tails.iter().map(row_of).collect();
+    // A stable sort: of equal ones the order of the summary.
+    let mean = |row: &FleetRow<'_>| {
+        row.summary.fuel_flow_error_percent.before.mean.unwrap_or(f64::NEG_INFINITY)
+    };
+    rows.sort_by(|one, other| mean(other).total_cmp(&mean(one)));
+    rows
+}
+
+/// The fleet in a sentence.
+fn in_short(rows: &[FleetRow<'_>]) -> String {
+    let means: Vec<(f64, &str)> = rows
+        .iter()
+        .filter_map(|row| {
+            Some((row.summary.fuel_flow_error_percent.before.mean?, row.summary.tail.as_str()))
+        })
+        .collect();
+    match (means.first(), means.last()) {
+        (Some((most, first)), Some((least, last))) if means.len() > 1 => format!(
+            "Against the models that they began with, tails lie between {} % ({last}) and {} % ({first}); positive: more is burnt \
+             than predicted.",
+            signed(Some(*least)),
+            signed(Some(*most))
+        ),
+        (Some((mean, tail)), _) => format!(
+            "{tail}: {} % against the model that it began with; positive: more is burnt than predicted.",
+            signed(Some(*mean))
+        ),
+        _ => "No segment lies inside a table: no tail has an error.".to_owned(),
     }
 }
 
@@ -155,7 +216,7 @@ fn law_of(result: &TailResult) -> String {
     }
 }
 
-/// Version, law, settings and counts, in a line.
+/// Version, period, types, law, settings and counts, in a line.
 fn what_was_run(summary: &Summary, sections: &[&Section]) -> String {
     let mut laws: Vec<&str> = Vec::new();
     for section in sections {
@@ -163,33 +224,55 @@ fn what_was_run(summary: &Summary, sections: &[&Section]) -> String {
             laws.push(&section.law);
         }
     }
-    let laws = match (laws.is_empty(), summary.tails.is_empty()) {
-        (false, _) => format!("{}; ", laws.join("; ")),
-        (true, true) => "no tail; ".to_owned(),
-        (true, false) => String::new(),
-    };
     let reports = &summary.reports;
-    format!(
-        "cruisefit {}; {laws}{} read, {} already known, {} refused; {}, {}, {}.",
-        env!("CARGO_PKG_VERSION"),
+    let periods = || sections.iter().filter_map(|section| section.period_s);
+    let first = periods().map(|(first, _)| first).min_by(f64::total_cmp);
+    let last = periods().map(|(_, last)| last).max_by(f64::total_cmp);
+    let mut words = vec![format!("cruisefit {}", env!("CARGO_PKG_VERSION"))];
+    if let (Some(first), Some(last)) = (first, last) {
+        words.push(format!("flown {}", dates::period(first, last)));
+    }
+    let types: BTreeSet<&str> = sections.iter().map(|section| section.type_code.as_str()).collect();
+    if !types.is_empty() {
+        words.push(format!("type {}", types.into_iter().collect::<Vec<_>>().join(", ")));
+    }
+    if summary.tails.is_empty() {
+        words.push("no tail".to_owned());
+    }
+    words.extend(laws.into_iter().map(str::to_owned));
+    words.push(format!(
+        "{} read, {} already known, {} refused",
         counted(reports.read, "report"),
         reports.already_known,
-        reports.refused.len(),
+        reports.refused.len()
+    ));
+    words.push(format!(
+        "{}, {}, {}.",
         counted(summary.tails.len(), "tail"),
         counted(summary.tails.iter().map(|tail| tail.flights).sum(), "flight"),
         counted(summary.tails.iter().map(|tail| tail.segments).sum(), "segment"),
-    )
+    ));
+    words.join("; ")
 }
 
 /// Signs, units and words of the page.
 fn how_to_read(adapted: bool) -> Markup {
     html! {
+        details.more {
+        summary { "How to read this page" }
         dl {
             dt { "error" }
             dd {
                 "100 (recorded − predicted)/recorded, in % of total fuel flow (all engines), one for each segment. \
                  Positive: the aircraft burns more than the model predicts."
             }
+            dt { "deviation, ±" }
+            dd {
+                "Mean error of the model that the tail began with (“before”), and half its 95 % interval. What a flight has in common \
+                 (load sheet, heating value, sensors) does not average out within it: the interval counts flights, not segments."
+            }
+            dt { "fuel factor" }
+            dd { "By how many per cent predicted fuel flow has to be raised to be the recorded one: 1/(1 − deviation) − 1." }
             dt { "segment" }
             dd { "A stabilised piece of cruise, and the mean state over it." }
             @if adapted {
@@ -200,12 +283,13 @@ fn how_to_read(adapted: bool) -> Markup {
                      forecast."
                 }
                 dt { "nodes informed" }
-                dd { "Share of the table's nodes that a segment has ever adapted. Elsewhere the model has learnt nothing from flights." }
+                dd { "Share of the table's nodes that a segment has adapted (law paper), or that have learnt as much as one segment at the node would teach (law bayes)." }
                 dt { "refits" }
                 dd { "How often the polynomial was fitted again to the whole table." }
             }
             dt { "outside table" }
             dd { "Segments beyond the table's lift coefficients or Mach numbers. They have no error and are in no error figure." }
+        }
         }
     }
 }

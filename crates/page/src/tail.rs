@@ -7,15 +7,18 @@ use crate::text::{counted, plain, signed};
 use crate::view::TailView;
 use crate::{envelope, errors, polars};
 use pipeline::evaluation::TailResult;
-use pipeline::statistics::ErrorStatistics;
+use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
+
+/// Deviation beyond which units or the guide are more probable causes than the aircraft, %: `add_an_aircraft` in the book.
+const RARELY_THE_AIRCRAFT_PERCENT: f64 = 15.0;
 
 /// What is in a tail's section.
-pub(crate) fn body(result: &TailResult, place: &Place<'_>) -> Markup {
-    let view = TailView::of(result);
+pub(crate) fn body(result: &TailResult, view: &TailView, place: &Place<'_>) -> Markup {
     html! {
-        p { (about(result)) }
-        (figures(&view, place))
-        (notes(result, &view))
+        (verdict(result, view))
+        p.run { (about(result)) }
+        (figures(view, place))
+        (notes(result, view))
     }
 }
 
@@ -54,6 +57,49 @@ pub(crate) fn headline(result: &TailResult) -> String {
     match &errors.after {
         Some(after) => format!("{counts}before {}; after {}", words(&errors.before), words(after)),
         None => format!("{counts}{}", words(&errors.before)),
+    }
+}
+
+/// What was found, in plain words.
+fn verdict(result: &TailResult, view: &TailView) -> Markup {
+    let errors = &result.summary.fuel_flow_error_percent;
+    let Some(mean) = errors.before.mean else {
+        return html! { p.verdict { "No segment lies inside the table: nothing can be said about this tail." } };
+    };
+    let half = view.half_width95_before();
+    let within = half.is_some_and(|half| mean.abs() <= half);
+    let model = if view.adapted { "the model that it began with" } else { "its model" };
+    html! {
+        div.verdict.gap[!within] {
+            p {
+                b {
+                    @if within { "It burns what " (model) " predicts, as far as these flights tell" }
+                    @else {
+                        "It burns " (format!("{:.2}", mean.abs())) " % " @if mean > 0.0 { "more" } @else { "less" }
+                        " than " (model) " predicts"
+                    }
+                }
+                @if let Some(half) = half {
+                    " (" (signed(Some(mean - half))) " to " (signed(Some(mean + half))) " %, 95 %)"
+                }
+                ": fuel factor " (signed(Some(fuel_factor_percent(mean)))) " %"
+                @if let Some(half) = half {
+                    " (" (signed(Some(fuel_factor_percent(mean - half)))) " to "
+                    (signed(Some(fuel_factor_percent(mean + half)))) " %)"
+                }
+                "."
+                @if let Some(period) = view.period() { " Flown " (period) "." }
+            }
+            @if let Some(after) = &errors.after {
+                p {
+                    "With what was learnt the model leaves " (signed(after.mean)) " % in the mean and " (plain(after.std))
+                    " % of scatter on the same flights."
+                }
+            }
+            @if mean.abs() > RARELY_THE_AIRCRAFT_PERCENT {
+                p { "A deviation beyond ±" (RARELY_THE_AIRCRAFT_PERCENT) " % is rarely the aircraft: check units, masses and the guide first." }
+            }
+        }
     }
 }
 

@@ -40,6 +40,29 @@ pub(crate) fn breakpoint(value: f64) -> String {
     text.to_owned()
 }
 
+/// With sign and three significant digits, as a person writes them.
+pub(crate) fn three_digits(value: f64) -> String {
+    let size = value.abs();
+    let decimals = if size >= 100.0 {
+        0
+    } else if size >= 10.0 {
+        1
+    } else if size >= 1.0 {
+        2
+    } else if size >= 0.1 {
+        3
+    } else {
+        4
+    };
+    format!("{:+.decimals$}", not_minus_zero(value, i32::try_from(decimals).unwrap_or(0)))
+}
+
+/// With its first letter as at the beginning of a sentence.
+pub(crate) fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// What rounds to zero has no sign of its own.
 fn not_minus_zero(value: f64, decimals: i32) -> f64 {
     if value.abs() < 0.5 * 10_f64.powi(-decimals) { 0.0 } else { value }
@@ -60,6 +83,16 @@ mod tests {
         assert_eq!(percent(Some(0.41)), "41 %");
         assert_eq!(counted(1, "segment"), "1 segment");
         assert_eq!(counted(0, "flight"), "0 flights");
+    }
+
+    #[test]
+    fn three_digits_with_sign() {
+        assert_eq!(three_digits(123.8340), "+124");
+        assert_eq!(three_digits(-12.34), "-12.3");
+        assert_eq!(three_digits(0.0061), "+0.0061");
+        assert_eq!(three_digits(-0.000_01), "+0.0000");
+        assert_eq!(capitalised("engine 2"), "Engine 2");
+        assert_eq!(capitalised(""), "");
     }
 
     #[test]

@@ -7,7 +7,9 @@ use flight::Timestamp;
 
 use pipeline::evaluation::TailResult;
 use pipeline::model_file::ModelFile;
-use pipeline::statistics::ErrorStatistics;
+use pipeline::statistics::{ErrorStatistics, mean_half_width95_by_flight};
+
+use crate::chart::dates;
 
 /// A tail as plain numbers.
 #[derive(Clone, Debug)]
@@ -123,6 +125,19 @@ impl TailView {
     /// The label of "before": there is one only where there is an "after".
     pub(crate) fn before_label(&self) -> &'static str {
         if self.adapted { "before" } else { "model as given" }
+    }
+
+    /// Half width of the 95 % interval of the mean error before, %; flights count, not segments.
+    pub(crate) fn half_width95_before(&self) -> Option<f64> {
+        let flights: Vec<ErrorStatistics> =
+            self.flights.iter().map(|flight| flight.before).collect();
+        mean_half_width95_by_flight(&flights)
+    }
+
+    /// Days of the first and the last flight.
+    pub(crate) fn period(&self) -> Option<String> {
+        let (first, last) = (self.flights.first()?, self.flights.last()?);
+        Some(dates::period(first.start_s, last.start_s))
     }
 
     /// Errors of the initial (or given) table.

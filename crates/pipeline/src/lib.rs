@@ -48,6 +48,7 @@ pub mod condition_means;
 pub mod dates;
 pub mod diagnosed_tail;
 pub mod diagnosis_document;
+pub mod diagnosis_figures;
 pub mod diagnosis_text;
 pub mod diagnosis_words;
 pub mod difference;

@@ -1,6 +1,7 @@
 //! The four figures by which errors are reported, and the order in which they are summed.
 
 use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Half width of a two-sided 95 % interval of a normal distribution, in standard deviations; two decimals, as tables and
 /// text books have it, so that intervals can be checked by hand.
@@ -40,6 +41,38 @@ impl ErrorStatistics {
     }
 }
 
+/// Half width of the 95 % interval of the mean of all errors, for errors that a flight has in common (load sheet, heating
+/// value, sensors); `None` for fewer than two flights with errors.
+///
+/// ```text
+/// s² = K/(K − 1) · Σ_k [Σ_i (e_ki − ē)]² / N²,   half width = t(0.975, K − 1) · s
+/// ```
+///
+/// The cluster-robust variance of a mean over K flights with N errors in all (Liang and Zeger 1986, with their correction for
+/// few clusters), with Student's quantile because K is often small.
+pub fn mean_half_width95_by_flight(flights: &[ErrorStatistics]) -> Option<f64> {
+    let sums: Vec<(f64, f64)> = flights
+        .iter()
+        .filter_map(|flight| Some((flight.mean? * flight.n as f64, flight.n as f64)))
+        .collect();
+    let count = sums.len() as f64;
+    let errors: f64 = sums.iter().map(|(_, n)| n).sum();
+    let mean = sums.iter().map(|(sum, _)| sum).sum::<f64>() / errors;
+    let squares: f64 = sums.iter().map(|(sum, n)| (sum - n * mean).powi(2)).sum();
+    let student = StudentsT::new(0.0, 1.0, count - 1.0).ok().filter(|_| sums.len() > 1)?;
+    Some(student.inverse_cdf(0.975) * (count / (count - 1.0) * squares).sqrt() / errors)
+}
+
+/// Fuel factor − 1 in per cent, of a mean error in per cent *of recorded* fuel flow: what predicted fuel flow must be
+/// multiplied by to be the recorded one.
+///
+/// ```text
+/// e = 100 (recorded − predicted)/recorded   →   factor = recorded/predicted = 1/(1 − e/100)
+/// ```
+pub fn fuel_factor_percent(error_percent: f64) -> f64 {
+    100.0 * (1.0 / (1.0 - error_percent / 100.0) - 1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -58,5 +91,23 @@ mod tests {
         assert_eq!(ErrorStatistics::of(&[]).mean, None);
         let one = ErrorStatistics::of(&[-2.0]);
         assert_eq!((one.mean, one.std, one.max_abs), (Some(-2.0), None, Some(2.0)));
+    }
+
+    #[test]
+    fn an_interval_by_flight() {
+        // Flights of equal length: the t interval of their means. Means 1, 2, 6: s = √7, t(0.975, 2) = 4.302653 (table).
+        let flights =
+            [[0.5, 1.5], [2.0, 2.0], [5.0, 7.0]].map(|errors| ErrorStatistics::of(&errors));
+        let half = mean_half_width95_by_flight(&flights).unwrap();
+        assert!((half - 4.302_653 * (7.0_f64 / 3.0).sqrt()).abs() < 1e-5, "{half}");
+        assert_eq!(mean_half_width95_by_flight(&flights[..1]), None);
+        assert_eq!(mean_half_width95_by_flight(&[]), None);
+    }
+
+    #[test]
+    fn a_fuel_factor_is_of_predicted_fuel() {
+        // Recorded 109, predicted 100: 8.2569 % of the recorded flow, 9 % of the predicted one.
+        assert!((fuel_factor_percent(100.0 * 9.0 / 109.0) - 9.0).abs() < 1e-12);
+        assert_eq!(fuel_factor_percent(0.0), 0.0);
     }
 }

@@ -19,6 +19,7 @@ use crate::progress::Progress;
 use crate::reading::{FlightRead, Reading};
 use pipeline::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use pipeline::diagnosis_document::DiagnosisDocument;
+use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::model_file::ModelFile;
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 use pipeline::{diagnosis_text, table_uncertainty};
@@ -56,6 +57,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         .par_iter()
         .map(|group| diagnose_group(group, &options, &asked))
         .collect::<Result<Vec<_>, Failure>>()?;
+    let (diagnoses, figures): (Vec<_>, Vec<_>) = diagnoses.into_iter().unzip();
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
     let reports = ReportsSummary {
         read,
@@ -67,7 +69,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         .to_json()
         .map_err(|error| Failure::unwritable(&path, error))?;
     write_atomically(&path, json.as_bytes())?;
-    let html = page::diagnosis(&reports, &diagnoses);
+    let html = page::diagnosis(&reports, &diagnoses, &figures, &in_words(arguments));
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();
     for diagnosed in &diagnoses {
@@ -179,7 +181,7 @@ fn diagnose_group(
     group: &Group<'_>,
     options: &Options,
     asked: &RunOptions,
-) -> Result<DiagnosedTail, Failure> {
+) -> Result<(DiagnosedTail, DiagnosisFigures), Failure> {
     let wrong = |reason: &dyn std::fmt::Display| Failure::BadArgument {
         argument: "--model",
         reason: format!("tail {}: {reason}", group.name),
@@ -220,8 +222,28 @@ fn diagnose_group(
             run_notes.push(note.clone());
         }
     }
+    let figures =
+        DiagnosisFigures::of(group.model, &input, &diagnosis).map_err(|error| wrong(&error))?;
     let compared = compared(group);
-    Ok(DiagnosedTail { tail: group.name.clone(), diagnosis, compared, run_notes })
+    Ok((DiagnosedTail { tail: group.name.clone(), diagnosis, compared, run_notes }, figures))
+}
+
+/// The options that an answer depends on, for the page.
+fn in_words(arguments: &DiagnoseArgs) -> Vec<String> {
+    let mut words = vec![format!("trim criteria {}", arguments.reports.criteria)];
+    if !arguments.effects.is_empty() {
+        words.push(format!("only these effects looked for: {}", arguments.effects.join(", ")));
+    }
+    if !arguments.without.is_empty() {
+        words.push(format!("not looked for: {}", arguments.without.join(", ")));
+    }
+    let modes = [
+        (arguments.pool, "all tails of a type together (--pool)"),
+        (arguments.table_only, "against the table alone (--table-only)"),
+        (arguments.allow_learnt, "flights that the model has learnt included (--allow-learnt)"),
+    ];
+    words.extend(modes.iter().filter(|(is, _)| *is).map(|(_, words)| (*words).to_owned()));
+    words
 }
 
 fn compared(group: &Group<'_>) -> Compared {

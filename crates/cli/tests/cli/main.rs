@@ -19,6 +19,7 @@ mod guide;
 mod json_schema;
 mod monitor;
 mod optimum;
+mod pages;
 mod reference;
 mod remainder;
 mod residuals;

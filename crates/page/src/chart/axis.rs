@@ -6,6 +6,15 @@ pub(crate) struct Axis {
     first: f64,
     last: f64,
     ticks: Vec<Tick>,
+    values: Values,
+}
+
+/// What the values of a scale are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Values {
+    Numbers,
+    /// s since 1970.
+    Dates,
 }
 
 /// A labelled position on a scale.
@@ -29,7 +38,12 @@ impl Axis {
         let step = Step::of((high - low) / ticks.max(1) as f64);
         let first = (low / step.size() + 1e-9).floor();
         let last = (high / step.size() - 1e-9).ceil();
-        Self { first: step.times(first), last: step.times(last), ticks: step.ticks(first, last) }
+        Self {
+            first: step.times(first),
+            last: step.times(last),
+            ticks: step.ticks(first, last),
+            values: Values::Numbers,
+        }
     }
 
     /// Exactly from `low` to `high`, with the ticks that lie on it.
@@ -38,7 +52,7 @@ impl Axis {
         let step = Step::of((high - low) / ticks.max(1) as f64);
         let first = (low / step.size() - 1e-9).ceil();
         let last = (high / step.size() + 1e-9).floor();
-        Self { first: low, last: high, ticks: step.ticks(first, last) }
+        Self { first: low, last: high, ticks: step.ticks(first, last), values: Values::Numbers }
     }
 
     /// From 0, for counts: ticks are whole numbers.
@@ -46,11 +60,16 @@ impl Axis {
         Self::around(0.0, largest.max(ticks) as f64, ticks)
     }
 
-    /// A scale with given ticks; those beyond the ends are left out.
-    pub(crate) fn with_ticks(low: f64, high: f64, ticks: Vec<Tick>) -> Self {
+    /// A scale of instants with given ticks; those beyond the ends are left out.
+    pub(crate) fn of_dates(low: f64, high: f64, ticks: Vec<Tick>) -> Self {
         let (first, last) = of_some_length(low, high);
         let ticks = ticks.into_iter().filter(|tick| first <= tick.at && tick.at <= last).collect();
-        Self { first, last, ticks }
+        Self { first, last, ticks, values: Values::Dates }
+    }
+
+    /// Whether its values are instants, s since 1970.
+    pub(crate) const fn is_of_dates(&self) -> bool {
+        matches!(self.values, Values::Dates)
     }
 
     pub(crate) fn first(&self) -> f64 {

@@ -37,7 +37,7 @@ const SECONDS_PER_DAY: f64 = units::convert::SECONDS_PER_DAY;
 /// A scale in seconds since 1970-01-01 UTC with some room at both ends and at most `ticks` ticks.
 pub(crate) fn axis(low_s: f64, high_s: f64, ticks: usize) -> Axis {
     if !(low_s.is_finite() && high_s.is_finite() && low_s <= high_s) {
-        return Axis::with_ticks(0.0, SECONDS_PER_DAY, Vec::new());
+        return Axis::of_dates(0.0, SECONDS_PER_DAY, Vec::new());
     }
     // At least half a day, so that a single flight has a midnight near it.
     let room = (0.03 * (high_s - low_s)).max(0.6 * SECONDS_PER_DAY);
@@ -50,12 +50,19 @@ pub(crate) fn axis(low_s: f64, high_s: f64, ticks: usize) -> Axis {
         }
     }
     let labelled = dates.into_iter().map(|(at, date)| Tick { at, label: date.to_string() });
-    Axis::with_ticks(first_s, last_s, labelled.collect())
+    Axis::of_dates(first_s, last_s, labelled.collect())
 }
 
 /// Instant as `2019-03-14`, UTC.
 pub(crate) fn day(instant: Timestamp) -> String {
     Offset::UTC.to_datetime(instant).date().to_string()
+}
+
+/// "2019-03-14 to 2020-01-02", or one day; instants in seconds since 1970-01-01 UTC.
+pub(crate) fn period(first_s: f64, last_s: f64) -> String {
+    let day = |at_s| day_of(at_s).map_or_else(|| "–".to_owned(), |day| day.to_string());
+    let (first, last) = (day(first_s), day(last_s));
+    if first == last { first } else { format!("{first} to {last}") }
 }
 
 /// Every date at this step, none if there are more than `most`.

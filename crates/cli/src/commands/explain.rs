@@ -1,0 +1,224 @@
+//! `cruisefit explain`: what an effect, a column, a set of criteria or a verdict is, from the library's own entries.
+
+use std::fmt::Write;
+
+use flight::column::Column;
+use flight::effect::{EffectId, EffectSign, HiddenParameter};
+use segmenter::TrimCriteria;
+
+use super::effects::typical;
+use crate::args::ExplainArgs;
+use crate::commands::Outcome;
+use crate::failure::Failure;
+
+/// Verdicts of a diagnosis.
+const VERDICTS: [(&str, &str); 4] = [
+    (
+        "no_gap",
+        "Nothing beyond the noise: the model fits these flights. The diagnosis says how large\n\
+         each effect would have to be to be seen.",
+    ),
+    (
+        "effects",
+        "One effect, or a set acting together, explains the gap. The class lists the effects that\n\
+         these flights cannot tell from the first; the advice says what would.",
+    ),
+    (
+        "outside_library",
+        "A gap that is real and that no effect of the library explains. Nothing is applied: look\n\
+         at what the flights have in common in that place, or record more signals.",
+    ),
+    (
+        "insufficient_data",
+        "Too little to say anything: too few flights or segments, or all at one condition.",
+    ),
+];
+/// Names that are farther from the one that was asked for are not offered, in single edits.
+const FARTHEST: usize = 3;
+
+/// Runs the command.
+///
+/// # Errors
+/// A topic that is not known; the nearest ones are named.
+pub(crate) fn run(arguments: &ExplainArgs) -> Result<Outcome, Failure> {
+    let Some(topic) = arguments.topic.as_deref() else {
+        return Ok(Outcome::text(overview()));
+    };
+    let text = EffectId::from_name(topic)
+        .or_else(|| EffectId::ALL.iter().copied().find(|id| id.entry().name == topic))
+        .map(effect)
+        .or_else(|| column_of(topic).map(column))
+        .or_else(|| TrimCriteria::preset(topic).map(|found| criteria(topic, &found)))
+        .or_else(|| verdict(topic));
+    text.map(Outcome::text)
+        .ok_or_else(|| Failure::BadArgument { argument: "TOPIC", reason: unknown(topic) })
+}
+
+fn effect(id: EffectId) -> String {
+    let entry = id.entry();
+    let mut text = format!("{id}: {}\n\n", id.phrase(1.0));
+    if id.phrase(-1.0) != id.phrase(1.0) {
+        let _ = writeln!(text, "Negative:    {}", id.phrase(-1.0));
+    }
+    let _ = writeln!(text, "Model:       {}", entry.perturbation);
+    let _ = writeln!(text, "Unit of θ:   {}", entry.unit);
+    let _ = writeln!(text, "Usual size:  {}", typical(entry));
+    let sign = match entry.sign {
+        EffectSign::Positive => "positive, by physics",
+        EffectSign::Either => "either",
+        EffectSign::Spread => "none: the size is a standard deviation",
+    };
+    let _ = writeln!(text, "Sign:        {sign}");
+    let needs: Vec<&str> = entry.needs.iter().map(|needed| needed.name()).collect();
+    let needs = if needs.is_empty() { "the required columns".to_owned() } else { needs.join(", ") };
+    let _ = writeln!(text, "Needs:       {needs}");
+    let driven: Vec<&str> = entry.driven_by.iter().map(|variable| variable.name()).collect();
+    let driven = if driven.is_empty() {
+        "nothing: it is the same everywhere".to_owned()
+    } else {
+        driven.join(", ")
+    };
+    let _ = writeln!(text, "Depends on:  {driven}");
+    if entry.hidden != HiddenParameter::None {
+        let _ = writeln!(text, "Parameter:   {}", entry.hidden);
+    }
+    text.push_str(if id.is_of_recordings() {
+        "\nAn error of the recording: applied, it corrects recordings and changes no prediction.\n"
+    } else {
+        "\nApplied, it changes predictions.\n"
+    });
+    text
+}
+
+/// A column by its name; of the engines' columns also without a number.
+fn column_of(topic: &str) -> Option<Column> {
+    Column::from_name(topic).or_else(|| {
+        Column::ALL.into_iter().find(|column| column.name().split('(').next() == Some(topic))
+    })
+}
+
+fn column(column: Column) -> String {
+    let units: Vec<&str> = column.units().iter().map(|unit| unit.name).collect();
+    format!(
+        "{}: {}\n\nUnits:     {}\nRange:     {}\nRequired:  {}\n",
+        column.name(),
+        column.meaning(),
+        units.join(", "),
+        column.range().words,
+        if column.is_optional() { "no" } else { "yes; MISSING states that it is not recorded" }
+    )
+}
+
+fn criteria(name: &str, found: &TrimCriteria) -> String {
+    format!(
+        "{name}: largest changes within a stabilised segment\n\n\
+         pressure altitude       {} ft\nvertical speed          {} ft/min\nMach number             {}\n\
+         ground speed            {} kt\nstatic air temperature  {} °C\nN2                      {} %\n\
+         drift                   {}°\nroll                    {}°\nlongest piece           {} s\nshortest segment        {} s\n",
+        found.pressure_altitude_ft,
+        found.vertical_speed_ft_min,
+        found.mach,
+        found.ground_speed_kt,
+        found.static_air_temperature_c,
+        found.n2_percent,
+        found.drift_deg,
+        found.roll_deg,
+        found.piece_maximum_s,
+        found.segment_minimum_s
+    )
+}
+
+fn verdict(topic: &str) -> Option<String> {
+    let (name, words) = VERDICTS.iter().find(|(name, _)| *name == topic)?;
+    Some(format!("{name}\n\n{words}\n"))
+}
+
+/// Every topic.
+fn topics() -> Vec<String> {
+    let effects = EffectId::library(2).into_iter().map(|id| id.to_string());
+    let columns = Column::ALL.into_iter().map(Column::name);
+    let others = TrimCriteria::PRESETS.into_iter().chain(VERDICTS.map(|(name, _)| name));
+    effects.chain(columns).chain(others.map(str::to_owned)).collect()
+}
+
+fn overview() -> String {
+    let list = |names: Vec<String>| {
+        let mut text = String::new();
+        let mut length = 0;
+        for name in names {
+            if length > 0 && length + name.len() + 2 > 78 {
+                text.push_str("\n ");
+                length = 0;
+            }
+            let _ = write!(text, " {name}");
+            length += name.len() + 1;
+        }
+        text
+    };
+    format!(
+        "cruisefit explain TOPIC, where TOPIC is\n\nan effect:\n {}\n\na column of a report:\n {}\n\ntrim criteria:\n {}\n\n\
+         a verdict:\n {}\n",
+        list(EffectId::ALL.iter().map(|id| id.entry().name.to_owned()).collect()),
+        list(Column::ALL.into_iter().map(Column::name).collect()),
+        list(TrimCriteria::PRESETS.map(str::to_owned).to_vec()),
+        list(VERDICTS.map(|(name, _)| name.to_owned()).to_vec())
+    )
+}
+
+fn unknown(topic: &str) -> String {
+    let asked = topic.to_lowercase();
+    let mut near: Vec<(usize, String)> = topics()
+        .into_iter()
+        .map(|name| (edits(&asked, &name.to_lowercase()), name))
+        .filter(|(distance, _)| *distance <= FARTHEST)
+        .collect();
+    near.sort();
+    let near: Vec<String> = near.into_iter().take(3).map(|(_, name)| name).collect();
+    if near.is_empty() {
+        format!("{topic:?} is no effect, column, criteria or verdict; cruisefit explain lists them")
+    } else {
+        format!(
+            "{topic:?} is no effect, column, criteria or verdict; did you mean {}?",
+            near.join(" or ")
+        )
+    }
+}
+
+/// Single letters to insert, delete or replace that lead from one word to another (Levenshtein 1966).
+fn edits(one: &str, other: &str) -> usize {
+    let other: Vec<char> = other.chars().collect();
+    let mut row: Vec<usize> = (0..=other.len()).collect();
+    for (i, letter) in one.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, same) in other.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != *same);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[other.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_topic_is_explained() {
+        for topic in topics() {
+            let arguments = ExplainArgs { topic: Some(topic.clone()) };
+            let text = run(&arguments).unwrap().text;
+            assert!(text.starts_with(&topic) && text.lines().count() > 2, "{topic}: {text}");
+        }
+    }
+
+    #[test]
+    fn edits_by_hand() {
+        // The usual example: kitten, sitten, sittin, sitting.
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(edits("", "abc"), 3);
+        assert!(unknown("tsfc_engine2").contains("tsfc_engine_2"));
+        assert!(unknown("zzzzzzzzzzzz").contains("lists them"));
+    }
+}

@@ -1,0 +1,54 @@
+//! `cruisefit man`: a manual page of the program and of each command, made from the grammar of the command line.
+
+use clap::CommandFactory;
+
+use crate::args::{Cli, ManArgs};
+use crate::commands::Outcome;
+use crate::failure::{Failure, show};
+use crate::files::{make_folder, write_atomically};
+
+/// Writes `cruisefit.1`, `cruisefit-COMMAND.1`, ….
+///
+/// # Errors
+/// A folder or file that cannot be written.
+pub(crate) fn run(arguments: &ManArgs) -> Result<Outcome, Failure> {
+    let folder = &arguments.folder;
+    make_folder(folder)?;
+    let pages = pages(Cli::command()).map_err(|error| Failure::unwritable(folder, error))?;
+    for (name, page) in &pages {
+        write_atomically(&folder.join(name), page)?;
+    }
+    Ok(Outcome::text(format!("{} pages written to {}\n", pages.len(), show(folder))))
+}
+
+/// Every page with its file name: of the program, then of its commands in the order of the help.
+fn pages(program: clap::Command) -> std::io::Result<Vec<(String, Vec<u8>)>> {
+    let mut program = program.disable_help_subcommand(true);
+    program.build();
+    let mut pages = vec![("cruisefit.1".to_owned(), page(program.clone())?)];
+    for command in program.get_subcommands() {
+        pages.push((format!("cruisefit-{}.1", command.get_name()), page(command.clone())?));
+    }
+    Ok(pages)
+}
+
+fn page(command: clap::Command) -> std::io::Result<Vec<u8>> {
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command).render(&mut page)?;
+    Ok(page)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_a_page() {
+        let pages = pages(Cli::command()).unwrap();
+        assert_eq!(pages.len(), 1 + Cli::command().get_subcommands().count());
+        for (name, page) in pages {
+            let page = String::from_utf8(page).unwrap();
+            assert!(page.contains(".TH") && page.contains(".SH SYNOPSIS"), "{name}");
+        }
+    }
+}

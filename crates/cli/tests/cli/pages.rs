@@ -1,0 +1,127 @@
+//! The pages that runs write: their numbers, what they never hold, and how a browser shows them.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::{adapt, cruisefit, fixture, initial_model};
+use test_support::outside::skip;
+
+/// Browsers that are looked for, by the names under which systems install them.
+const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
+
+/// Shows both pages in frames of 390 px and writes what it finds into attributes of its body.
+const FRAMES: &str = r#"<body>
+<iframe id="report" src="adapted-bayes/report.html" style="width:390px;height:900px;border:0"></iframe>
+<iframe id="diagnosis" src="diagnosis/diagnosis.html" style="width:390px;height:900px;border:0"></iframe>
+<script>
+onload = () => {
+  for (const name of ['report', 'diagnosis']) {
+    const frame = document.getElementById(name);
+    const shown = frame.contentDocument;
+    const sort = shown.querySelector('th button');
+    sort?.click();
+    frame.contentWindow.dispatchEvent(new Event('beforeprint'));
+    document.body.setAttribute(`data-${name}`, [
+      `width ${shown.documentElement.scrollWidth}`,
+      `saved ${shown.querySelectorAll('button.save').length > 0}`,
+      `sorted ${sort ? sort.parentElement.getAttribute('aria-sort') : 'none'}`,
+      `folded ${shown.querySelectorAll('details:not([open])').length}`,
+      `loaded ${frame.contentWindow.performance.getEntriesByType('resource').length}`,
+    ].join(', '));
+  }
+};
+</script></body>"#;
+
+#[test]
+fn pages_in_a_browser() {
+    let Some(browser) =
+        BROWSERS.into_iter().find(|name| Command::new(name).arg("--version").output().is_ok())
+    else {
+        skip(&format!("none of {} is installed", BROWSERS.join(", ")));
+        return;
+    };
+    let scratch = tempfile::tempdir().unwrap();
+    cruisefit(&["demo".as_ref(), "-o".as_ref(), scratch.path().as_os_str()]).expect(0);
+    check_numbers(scratch.path());
+    let frames = scratch.path().join("frames.html");
+    fs::write(&frames, FRAMES).unwrap();
+    let shown = Command::new(browser)
+        .args([
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--hide-scrollbars",
+            "--allow-file-access-from-files",
+        ])
+        .args(["--virtual-time-budget=5000", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", scratch.path().join("profile").display()))
+        .arg(format!("file://{}", frames.display()))
+        .output()
+        .unwrap();
+    let dom = String::from_utf8_lossy(&shown.stdout);
+    for (page, sorted) in [("report", "descending"), ("diagnosis", "none")] {
+        let expected =
+            format!("data-{page}=\"width 390, saved true, sorted {sorted}, folded 0, loaded 0\"");
+        let found =
+            dom.split(&format!("data-{page}=\"")).nth(1).and_then(|rest| rest.split('"').next());
+        assert!(dom.contains(&expected), "{page}: found {found:?}, expected {expected}");
+    }
+}
+
+/// Every figure of the verdict stands on the page as in the document.
+fn check_numbers(folder: &Path) {
+    let json = fs::read_to_string(folder.join("diagnosis/diagnosis.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let html = fs::read_to_string(folder.join("diagnosis/diagnosis.html")).unwrap();
+    for diagnosis in json["diagnoses"].as_array().unwrap() {
+        let gap = |name: &str| diagnosis["gap"][name].as_f64().unwrap();
+        for figure in [
+            format!("{:+.2} % in the mean", gap("mean_percent")),
+            format!("{:.2} % rms", gap("rms_percent")),
+            format!("noise alone makes {:.2} %", gap("noise_floor_rms_percent")),
+            format!("{} flights with {} segments", diagnosis["flights"], diagnosis["segments"]),
+        ] {
+            assert!(html.contains(&figure), "{figure}");
+        }
+        for cause in diagnosis["causes"].as_array().unwrap() {
+            let probability = format!("<td>{:.3}</td>", cause["probability"].as_f64().unwrap());
+            assert!(html.contains(&probability), "{probability}");
+        }
+    }
+}
+
+#[test]
+fn a_plot_is_svg_and_nothing_else() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let plot = |source: &Path, name: &str| {
+        let output = scratch.path().join(name);
+        let arguments = ["plot".as_ref(), source.as_os_str(), "-o".as_ref(), output.as_os_str()];
+        (cruisefit(&arguments), output)
+    };
+    let (ran, figure) = plot(&model, "model.svg");
+    ran.expect(0);
+    assert!(fs::read_to_string(figure).unwrap().starts_with("<svg xmlns="));
+    let (ran, figure) = plot(&model, "model.png");
+    ran.expect(2).says("only SVG is drawn");
+    assert!(!figure.exists());
+    let folder = scratch.path().join("adapted");
+    adapt(&model, &folder, &[fixture("reports")], &[]).expect(0);
+    let (ran, figure) = plot(&folder, "tail.svg");
+    ran.expect(0);
+    let svg = fs::read_to_string(figure).unwrap();
+    assert!(svg.contains("error over time") && svg.contains("drag polar at Mach"));
+}
+
+#[test]
+fn a_topic_that_is_nearly_right_is_named() {
+    let ran = cruisefit(&["explain", "tsfc_engine2"]).expect(2);
+    ran.says("did you mean tsfc_engine_2");
+    assert!(cruisefit(&["explain", "wave_drag"]).expect(0).stdout.contains("Mdd"));
+    let effects = cruisefit(&["effects"]).expect(0).stdout;
+    assert!(effects.lines().all(|line| line.chars().count() <= 80), "{effects}");
+    let listed = cruisefit(&["effects", "--json"]).expect(0).stdout;
+    let listed: serde_json::Value = serde_json::from_str(&listed).unwrap();
+    assert_eq!(listed.as_array().unwrap().len(), flight::effect::EffectId::ALL.len());
+}

@@ -1,0 +1,114 @@
+//! The gap segment by segment, before and after effects are added: what a chart is drawn from.
+
+use effects::{EffectModel, Effects};
+
+use crate::input::Input;
+use crate::library::Library;
+use crate::output::addition::Addition;
+use crate::output::region::Region;
+use crate::residuals::reference::Reference;
+use crate::residuals::rows::SegmentRow;
+use crate::residuals::segments::PreparedFlights;
+use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::variables::Variable;
+
+/// The gap at one segment: ln recorded − ln predicted total fuel flow, in per cent, as [`crate::diagnose()`] counts it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SegmentGap {
+    /// Its flight, numbered from 0 among the flights that were used.
+    pub flight: usize,
+    /// Instant, s since 1970.
+    pub date_s: f64,
+    /// Mach number.
+    pub mach: f64,
+    /// Lift coefficient.
+    pub lift_coefficient: f64,
+    /// The variable that was asked for; `None` where it is not recorded.
+    pub driver: Option<f64>,
+    /// Whether it lies in the region that was asked for.
+    pub in_region: bool,
+    /// Before anything is added.
+    pub before_percent: f64,
+    /// With the first effect of the addition, with the first two, and so on; as long as the addition has effects.
+    pub after_percent: Vec<f64>,
+}
+
+/// What charts of a diagnosis show beside the gap.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shown<'a> {
+    /// The effects that are added, one after the other.
+    pub addition: Option<&'a Addition>,
+    /// The place that is marked.
+    pub region: Option<&'a Region>,
+    /// The variable over which the gap is drawn.
+    pub driver: Option<Variable>,
+}
+
+/// The gap at every segment that a diagnosis of the same input uses, in its order. The sizes of the addition were fitted to
+/// these flights: how far the gap shrinks on unseen ones is the diagnosis' closure, not what these add up to.
+///
+/// # Errors
+/// [`DiagnoseError`] for a model that takes no effects, or that knows none of the flights.
+pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGap>, DiagnoseError> {
+    let references = match (input.references, input.baseline) {
+        (Some(given), _) => given,
+        (None, Some(baseline)) => *baseline.references(),
+        (None, None) => references_of(input.model, input.drag_table, input.flights)?,
+    };
+    let model = EffectModel::new(input.model, input.drag_table, references)?;
+    let reference = Reference::from_baseline(input.baseline);
+    // No column of the library is needed: residuals do not depend on what is searched.
+    let (data, _) =
+        PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
+            Library::new(&model, points, engines, starts, |_| false)
+        });
+    let value = |row: &SegmentRow, variable: Variable| match variable {
+        Variable::N2 => row.n2_percent,
+        Variable::Date => Some(row.point.date_s),
+        other => other.value(&row.point, &row.response, &references),
+    };
+    let steps = steps(shown.addition);
+    let trials: Vec<_> = steps.iter().map(|effects| model.trial(effects)).collect();
+    let mut gaps = Vec::with_capacity(data.segments.len());
+    for (flight, rows) in data.flights.iter().enumerate() {
+        for row in &data.segments[rows.segments.clone()] {
+            let gap = row.residual[0];
+            let without = data.predictor.predict(&row.response)[0];
+            let after = |trial| {
+                let with = model.response_at(&row.known, trial);
+                100.0 * (gap - with.map_or(0.0, |with| data.predictor.predict(&with)[0] - without))
+            };
+            gaps.push(SegmentGap {
+                flight,
+                date_s: row.point.date_s,
+                mach: row.point.mach,
+                lift_coefficient: row.response.lift_coefficient,
+                driver: shown.driver.and_then(|variable| value(row, variable)),
+                in_region: shown.region.is_some_and(|region| {
+                    region.conditions.iter().all(|condition| {
+                        value(row, condition.variable).is_some_and(|value| condition.holds(value))
+                    })
+                }),
+                before_percent: 100.0 * gap,
+                after_percent: trials.iter().map(after).collect(),
+            });
+        }
+    }
+    Ok(gaps)
+}
+
+/// The first effect, the first two, and so on.
+fn steps(addition: Option<&Addition>) -> Vec<Effects> {
+    let mut effects = Effects::none();
+    addition
+        .into_iter()
+        .flat_map(|addition| &addition.effects)
+        .map(|added| {
+            effects = effects
+                .clone()
+                .with(added.effect, added.size)
+                .with_hidden(added.effect, added.hidden);
+            effects.clone()
+        })
+        .collect()
+}

@@ -1,0 +1,141 @@
+//! Everything else that a diagnosis holds, folded.
+
+use std::collections::BTreeMap;
+
+use diagnose::Diagnosis;
+use maud::{Markup, html};
+use pipeline::diagnosed_tail::DiagnosedTail;
+use pipeline::diagnosis_text;
+use pipeline::diagnosis_words::{left_out_words, measurement_words, region_words};
+
+use super::causes::named;
+use crate::text::{capitalised, signed, three_digits};
+
+/// The folded part of a tail's section.
+pub(super) fn tables(diagnosed: &DiagnosedTail) -> Markup {
+    let diagnosis = &diagnosed.diagnosis;
+    let notes = diagnosed.notes();
+    html! {
+        details.more {
+            summary { "In full sentences" }
+            @for line in diagnosis_text::lines(diagnosed).iter().skip(1) { p { (line) } }
+        }
+        @if !diagnosis.r#where.is_empty() { details.more { summary { "Places" } (places(diagnosis)) } }
+        @if !diagnosis.causes.is_empty() { details.more { summary { "All causes" } (causes(diagnosis)) } }
+        @if !diagnosis.detectable.is_empty() {
+            details.more { summary { "How small an effect these flights would show" } (detectable(diagnosis)) }
+        }
+        (beforehand(diagnosis))
+        (not_testable(diagnosis))
+        @if !(notes.is_empty() && diagnosis.left_out.is_empty()) {
+            details.more {
+                summary { "Notes on model and data (" (notes.len() + diagnosis.left_out.len()) ")" }
+                ul {
+                    @for (reason, count) in &diagnosis.left_out { li { (count) " segments left out: " (left_out_words(*reason)) "." } }
+                    @for note in &notes { li { (capitalised(note)) "." } }
+                }
+            }
+        }
+    }
+}
+
+fn places(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        div.scroll {
+            table.data data-name="places" {
+                thead { tr {
+                    th scope="col" { "place" } th scope="col" { "segments" } th scope="col" { "mean gap, %" }
+                    th scope="col" { "95 % interval by flight, %" } th scope="col" { "share of the explainable gap" }
+                    th scope="col" { "p, search accounted for" }
+                } }
+                tbody { @for place in &diagnosis.r#where { tr {
+                    th scope="row" { (region_words(&place.region)) }
+                    td { (place.segments) }
+                    td { (signed(Some(place.mean_gap_percent))) }
+                    td { (signed(Some(place.ci95[0]))) " to " (signed(Some(place.ci95[1]))) }
+                    td { @if place.share_of_gap > 1.0 { "all" } @else { (format!("{:.0} %", 100.0 * place.share_of_gap)) } }
+                    td { (format!("{:.3}", place.p_value)) }
+                } } }
+            }
+        }
+    }
+}
+
+fn causes(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        div.scroll {
+            table.data data-name="all-causes" {
+                thead { tr {
+                    th scope="col" { "effect" } th scope="col" { "probability" } th scope="col" { "size" }
+                    th scope="col" { "95 % interval" } th scope="col" { "unit" } th scope="col" { "closes on unseen flights" }
+                    th scope="col" { "cannot be told from" }
+                } }
+                tbody { @for cause in &diagnosis.causes { tr {
+                    th scope="row" { code { (cause.effect) } }
+                    td { (format!("{:.3}", cause.probability)) }
+                    td { (three_digits(cause.magnitude.value)) }
+                    td { (three_digits(cause.magnitude.ci95[0])) " to " (three_digits(cause.magnitude.ci95[1])) }
+                    td { (cause.effect.entry().unit) }
+                    td { @if let Some(closure) = cause.closure { (format!("{:.0} %", 100.0 * closure.share)) } @else { "–" } }
+                    td { @if cause.class.len() > 1 { (named(&cause.class[1..])) } @else { "–" } }
+                } } }
+            }
+        }
+    }
+}
+
+fn detectable(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        p.note { "The smallest size that would be seen with about 60 % probability." }
+        div.scroll {
+            table.data data-name="detectable" {
+                thead { tr { th scope="col" { "effect" } th scope="col" { "smallest size" } th scope="col" { "unit" } } }
+                tbody { @for one in &diagnosis.detectable { tr {
+                    th scope="row" { (one.effect.phrase(1.0)) " " span.id { "(" (one.effect) ")" } }
+                    td { @if let Some(size) = one.smallest { (three_digits(size).trim_start_matches('+')) } @else { "never seen" } }
+                    td { (one.effect.entry().unit) }
+                } } }
+            }
+        }
+    }
+}
+
+/// Effects of typical size that these flights cannot tell apart, by the measurement that could: each measurement once.
+fn beforehand(diagnosis: &Diagnosis) -> Markup {
+    let mut by_measurement: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for one in &diagnosis.detectable {
+        if let Some(best) = one.separations.first() {
+            let pair = format!("{} from {}", one.effect, best.from);
+            by_measurement.entry(measurement_words(&best.measurement)).or_default().push(pair);
+        }
+    }
+    let mut ranked: Vec<(String, Vec<String>)> = by_measurement.into_iter().collect();
+    ranked.sort_by_key(|(_, pairs)| std::cmp::Reverse(pairs.len()));
+    html! {
+        @if !ranked.is_empty() {
+            details.more {
+                summary { "Measurements that would tell other effects apart" }
+                p.note { "Whatever was found: effects of typical size that these flights cannot tell from another, by what would \
+                          tell them best." }
+                ol { @for (measurement, pairs) in &ranked { li { (capitalised(measurement)) ": " (pairs.join(", ")) "." } } }
+            }
+        }
+    }
+}
+
+/// What cannot be tested, by the input that is missing.
+fn not_testable(diagnosis: &Diagnosis) -> Markup {
+    let mut by_need: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for entry in &diagnosis.not_testable {
+        let needs: Vec<&str> = entry.needs.iter().map(|needed| needed.name()).collect();
+        by_need.entry(needs.join(" and ")).or_default().push(entry.effect.to_string());
+    }
+    html! {
+        @if !by_need.is_empty() {
+            details.more {
+                summary { "Not testable with this data (" (diagnosis.not_testable.len()) ")" }
+                ul { @for (need, effects) in &by_need { li { "Without " code { (need) } ": " (effects.join(", ")) "." } } }
+            }
+        }
+    }
+}

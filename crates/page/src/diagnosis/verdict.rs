@@ -1,0 +1,180 @@
+//! What a diagnosis comes to: an answer to what, where, how sure and what to do; and the index of many tails.
+
+use diagnose::{Diagnosis, Verdict};
+use flight::effect::EffectId;
+use maud::{Markup, html};
+use pipeline::diagnosis_words::{acts_on_words, advice, region_words, variable_words};
+
+use super::Tail;
+use crate::text::{capitalised, signed, three_digits};
+
+/// The size of an effect with its standard deviation or interval: the one found together with the verdict's other effects,
+/// else the one found alone.
+fn size_words(diagnosis: &Diagnosis, id: EffectId) -> Option<(f64, String)> {
+    let unit = id.entry().unit;
+    let mut added = diagnosis.addition.iter().flat_map(|addition| &addition.effects);
+    if let Some(added) = added.find(|added| added.effect == id) {
+        let words = format!(
+            "{} ± {} {unit}",
+            three_digits(added.size),
+            three_digits(added.standard_deviation).trim_start_matches('+')
+        );
+        return Some((added.size, words));
+    }
+    let cause = diagnosis.causes.iter().find(|cause| cause.effect == id)?;
+    let [low, high] = cause.magnitude.ci95;
+    let value = cause.magnitude.value;
+    let words =
+        format!("{} {unit} ({} to {})", three_digits(value), three_digits(low), three_digits(high));
+    Some((value, words))
+}
+
+/// An effect in words at the sign that was found, and its name in files.
+pub(super) fn effect(diagnosis: &Diagnosis, id: EffectId) -> Markup {
+    let size = size_words(diagnosis, id).map_or(1.0, |(size, _)| size);
+    html! { (id.phrase(size)) " " span.id { "(" (id) ")" } }
+}
+
+/// The answer, in a box.
+pub(super) fn card(diagnosis: &Diagnosis) -> Markup {
+    let gap = &diagnosis.gap;
+    html! {
+        dl.verdict.gap[gap.detected] {
+            dt { "What" } dd { (what(diagnosis)) }
+            @if let Some(place) = diagnosis.r#where.first() {
+                dt { "Where" }
+                dd {
+                    @if place.region.is_everywhere() { "Everywhere that was flown: it has no place." }
+                    @else {
+                        (capitalised(&region_words(&place.region))) ": " (signed(Some(place.mean_gap_percent)))
+                        " % there (" (signed(Some(place.ci95[0]))) " to " (signed(Some(place.ci95[1]))) " %), "
+                        (place.segments) " of " (diagnosis.segments) " segments."
+                    }
+                }
+            }
+            @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) {
+                dt { "How sure" } dd { (how_sure(diagnosis)) }
+            }
+            dt { "What to do" } dd { (advice(&diagnosis.verdict)) }
+        }
+    }
+}
+
+/// The verdict in a sentence.
+fn what(diagnosis: &Diagnosis) -> Markup {
+    match &diagnosis.verdict {
+        Verdict::NoGap => html! { b { "No gap beyond the noise: the model fits these flights." } },
+        Verdict::InsufficientData(_) => html! { b { "No verdict: too little data." } },
+        Verdict::OutsideLibrary(_) => html! {
+            b { "A real gap that no effect of the library explains" }
+            @if let Some(variable) = diagnosis.outside.variable { "; it depends on " (variable_words(variable)) }
+            @if let Some(acts_on) = diagnosis.outside.acts_on { " and acts on " (acts_on_words(acts_on)) }
+            "."
+        },
+        Verdict::Effects(found) => html! {
+            @for (place, id) in found.effects.iter().enumerate() {
+                @let size = size_words(diagnosis, *id);
+                @if place > 0 { ", together with " }
+                b {
+                    @let phrase = id.phrase(size.as_ref().map_or(1.0, |(size, _)| *size));
+                    @if place == 0 { (capitalised(&phrase)) } @else { (phrase) }
+                }
+                " " span.id { "(" (id) ")" }
+                @if let Some((_, words)) = size { ": " (words) }
+            }
+            "."
+        },
+    }
+}
+
+/// Probability, size of the gap against noise, and what closes on unseen flights.
+fn how_sure(diagnosis: &Diagnosis) -> Markup {
+    let gap = &diagnosis.gap;
+    html! {
+        @match &diagnosis.verdict {
+            Verdict::Effects(found) => {
+                "Probability " (format!("{:.2}", found.probability))
+                @if found.probability < 0.5 { ": no cause stands out, do not act on it" }
+                ". "
+                @let others: Vec<_> = found.class.iter().filter(|id| !found.effects.contains(id)).collect();
+                @if !others.is_empty() {
+                    "These flights cannot tell it from: "
+                    @for (place, id) in others.iter().enumerate() { @if place > 0 { "; " } (effect(diagnosis, **id)) }
+                    ". "
+                }
+            }
+            Verdict::OutsideLibrary(unexplained) => {
+                "Probability " (format!("{:.2}", unexplained.probability)) " that the cause is outside the library. "
+            }
+            _ => {}
+        }
+        "The gap is " (signed(Some(gap.mean_percent))) " % in the mean and " (format!("{:.2}", gap.rms_percent)) " % rms ("
+        (format!("{:.2} to {:.2}", gap.rms_ci95[0], gap.rms_ci95[1])) " %); noise alone makes "
+        (format!("{:.2}", gap.noise_floor_rms_percent)) " %."
+        @if let Some(closure) = diagnosis.verdict.closure() {
+            " On flights that it was not fitted to, " (percent(closure.share)) " of what can be explained closes ("
+            (percent(closure.ci95[0])) " to " (percent(closure.ci95[1])) ")."
+        }
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
+/// All tails in a table: the largest gaps first.
+pub(super) fn index(tails: &[Tail<'_>]) -> Markup {
+    let mut order: Vec<&Tail<'_>> = tails.iter().collect();
+    order.sort_by(|one, other| {
+        let gap = |tail: &Tail<'_>| tail.diagnosed.diagnosis.gap.rms_percent;
+        gap(other).total_cmp(&gap(one))
+    });
+    html! {
+        section {
+            h2 { "Tails" }
+            div.scroll tabindex="0" role="region" aria-label="Verdict of every tail" {
+                table.sort.data.fleet data-name="diagnosis" {
+                    caption { "Largest gap first. A click on a heading sorts." }
+                    thead { tr {
+                        th scope="col" { "tail" } th scope="col" { "verdict" } th scope="col" { "probability" }
+                        th scope="col" { "gap, mean %" } th scope="col" { "rms %" } th scope="col" { "noise %" }
+                        th scope="col" { "closes" }
+                    } }
+                    tbody { @for tail in order { (index_row(tail)) } }
+                }
+            }
+        }
+    }
+}
+
+fn index_row(tail: &Tail<'_>) -> Markup {
+    let diagnosis = &tail.diagnosed.diagnosis;
+    let gap = &diagnosis.gap;
+    let closure = diagnosis.verdict.closure();
+    html! {
+        tr {
+            th scope="row" { a href=(format!("#{}", tail.id)) { (tail.diagnosed.name()) } }
+            td style="text-align:left" { (short_verdict(diagnosis)) }
+            td { @if let Some(found) = diagnosis.verdict.found() { (format!("{:.2}", found.probability)) } @else { "–" } }
+            td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
+            td data-v=(gap.rms_percent) { (format!("{:.2}", gap.rms_percent)) }
+            td data-v=(gap.noise_floor_rms_percent) { (format!("{:.2}", gap.noise_floor_rms_percent)) }
+            td { @if let Some(closure) = closure { (percent(closure.share)) } @else { "–" } }
+        }
+    }
+}
+
+fn short_verdict(diagnosis: &Diagnosis) -> String {
+    match &diagnosis.verdict {
+        Verdict::NoGap => "no gap".to_owned(),
+        Verdict::InsufficientData(_) => "too little data".to_owned(),
+        Verdict::OutsideLibrary(_) => "outside the library".to_owned(),
+        Verdict::Effects(found) => {
+            let told = found.effects.iter().map(|id| {
+                let (size, words) = size_words(diagnosis, *id).unwrap_or((1.0, String::new()));
+                format!("{}: {words}", id.phrase(size))
+            });
+            told.collect::<Vec<_>>().join("; ")
+        }
+    }
+}

@@ -1,0 +1,130 @@
+// What a page does beyond being read: values under the pointer or the arrow keys, tables that sort, filter and are saved as
+// CSV, links that unfold what they lead to, print of everything. Without it the page is complete; it loads nothing.
+(() => {
+  'use strict';
+  const all = (selector, root = document) => [...root.querySelectorAll(selector)];
+  const make = (name, text, attributes = {}) => {
+    const made = Object.assign(document.createElement(name), { textContent: text });
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    return made;
+  };
+
+  const tip = make('div', '', { id: 'tip', role: 'status' });
+  document.body.append(tip);
+  const hide = () => { tip.style.display = 'none'; };
+  const show = (text, x, y) => {
+    tip.textContent = text;
+    tip.style.display = 'block';
+    const size = tip.getBoundingClientRect();
+    tip.style.left = `${Math.max(4, Math.min(x + 12, innerWidth - size.width - 4))}px`;
+    tip.style.top = `${y - size.height - 12 < 4 ? y + 16 : y - size.height - 12}px`;
+  };
+
+  // The points of a chart are read back from its paths: "M64 108h0" is a dot, the frame and the scales are attributes.
+  const points = (svg) => svg.points ??= all('.dot,.disc', svg).flatMap((path) =>
+    [...path.getAttribute('d').matchAll(/M([-\d.]+) ([-\d.]+)h0/g)].map((match) => [+match[1], +match[2]])
+  ).sort((one, other) => one[0] - other[0]);
+  const words = (svg, [x, y]) => {
+    const numbers = (name) => svg.dataset[name].split(' ').map(Number);
+    const [left, right, top, bottom] = numbers('frame');
+    const [[x0, x1], [y0, y1]] = [numbers('x'), numbers('y')];
+    const value = (number) => String(+number.toPrecision(4));
+    const across = x0 + (x - left) / (right - left) * (x1 - x0);
+    const up = y0 + (bottom - y) / (bottom - top) * (y1 - y0);
+    const [acrossName, upName] = all('.label', svg).map((label) => label.textContent);
+    const day = new Date(across * 1000);
+    return `${acrossName}: ${'dates' in svg.dataset ? day.toISOString().slice(0, 10) : value(across)}\n${upName}: ${value(up)}`;
+  };
+  const place = (svg, [x, y]) => {
+    const drawn = svg.getBoundingClientRect();
+    const scale = drawn.width / svg.viewBox.baseVal.width;
+    return [drawn.left + x * scale, drawn.top + y * scale, scale];
+  };
+  for (const svg of all('svg[data-frame]')) {
+    svg.addEventListener('pointermove', (event) => {
+      const named = event.target.closest('[data-tip]');
+      if (named) return show(named.dataset.tip, event.clientX, event.clientY);
+      let best = null;
+      let nearest = 14;
+      for (const point of points(svg)) {
+        const [x, y] = place(svg, point);
+        const distance = Math.hypot(x - event.clientX, y - event.clientY);
+        if (distance < nearest) [nearest, best] = [distance, point];
+      }
+      if (best) show(words(svg, best), event.clientX, event.clientY); else hide();
+    });
+    svg.addEventListener('pointerleave', hide);
+    if (!svg.querySelector('.dot,.disc')) continue;
+    svg.setAttribute('tabindex', '0');
+    let at = -1;
+    svg.addEventListener('keydown', (event) => {
+      const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      if (!step || !points(svg).length) return;
+      event.preventDefault();
+      at = Math.max(0, Math.min(points(svg).length - 1, at + step));
+      show(words(svg, points(svg)[at]), ...place(svg, points(svg)[at]));
+    });
+    svg.addEventListener('blur', hide);
+  }
+  for (const element of all('[data-tip]:not(svg *)')) {
+    element.addEventListener('pointermove', (event) => show(element.dataset.tip, event.clientX, event.clientY));
+    element.addEventListener('pointerleave', hide);
+  }
+  document.addEventListener('keydown', (event) => { if (event.key === 'Escape') hide(); });
+
+  const text = (cell) => cell.innerText.trim();
+  const key = (cell) => cell.dataset.v === undefined ? text(cell) : +cell.dataset.v;
+  for (const table of all('table.sort')) {
+    const heads = all('thead th', table);
+    heads.forEach((head, column) => {
+      const button = make('button', '', { type: 'button' });
+      button.append(...head.childNodes);
+      head.append(button);
+      button.addEventListener('click', () => {
+        const falling = head.getAttribute('aria-sort') === 'descending' ? 1 : -1;
+        heads.forEach((other) => other.removeAttribute('aria-sort'));
+        head.setAttribute('aria-sort', falling < 0 ? 'descending' : 'ascending');
+        const order = (one, other) => {
+          const [a, b] = [key(one.cells[column]), key(other.cells[column])];
+          return falling * (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b)));
+        };
+        table.tBodies[0].append(...[...table.tBodies[0].rows].sort(order));
+      });
+    });
+    if (table.tBodies[0].rows.length < 6) continue;
+    const filter = make('input', '', { type: 'search', placeholder: 'filter tails', 'aria-label': 'filter the rows of this table' });
+    filter.addEventListener('input', () => {
+      for (const row of table.tBodies[0].rows) row.hidden = !text(row).toLowerCase().includes(filter.value.toLowerCase());
+    });
+    (table.closest('.scroll') ?? table).before(filter);
+  }
+
+  // A field that a spreadsheet would take for a formula gets a quote in front; numbers keep their sign.
+  const field = (value) => `"${(/^[=+\-@\t]/.test(value) && !Number.isFinite(Number(value.replace(/[ %]+$/, ''))) ? "'" : '') + value.replaceAll('"', '""')}"`;
+  for (const table of all('table.data')) {
+    const save = make('button', 'Save as CSV', { type: 'button', class: 'save' });
+    save.addEventListener('click', () => {
+      const lines = [...table.rows].map((row) => [...row.cells].map((cell) => field(text(cell).replace(/\s+/g, ' '))).join(','));
+      const link = make('a', '', { download: `${table.dataset.name ?? 'table'}.csv` });
+      link.href = URL.createObjectURL(new Blob([`${lines.join('\r\n')}\r\n`], { type: 'text/csv' }));
+      link.click();
+      URL.revokeObjectURL(link.href);
+    });
+    (table.closest('.scroll') ?? table).after(save);
+  }
+
+  const unfold = () => {
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    for (let fold = target?.closest('details'); fold; fold = fold.parentElement.closest('details')) fold.open = true;
+    target?.scrollIntoView();
+  };
+  addEventListener('hashchange', unfold);
+  if (location.hash) unfold();
+
+  let folded = [];
+  addEventListener('beforeprint', () => {
+    folded = all('details:not([open])');
+    for (const fold of folded) fold.open = true;
+  });
+  addEventListener('afterprint', () => { for (const fold of folded) fold.open = false; });
+})();
