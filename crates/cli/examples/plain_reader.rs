@@ -27,11 +27,15 @@ fn main() -> std::io::Result<()> {
     files.sort();
     let mut bytes = Vec::new();
     let mut sum = 0_u64;
+    let (mut read, mut on_disk) = (0_u64, 0_u64);
     for path in &files {
         bytes.clear();
         File::open(path)?.read_to_end(&mut bytes)?;
+        read += bytes.len() as u64;
+        on_disk += path.metadata()?.len();
         sum += bytes.iter().map(|byte| u64::from(*byte)).sum::<u64>();
     }
     println!("{} files, sum of bytes {sum}", files.len());
+    assert_eq!(read, on_disk, "every byte is read");
     Ok(())
 }

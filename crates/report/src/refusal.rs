@@ -346,12 +346,7 @@ impl fmt::Display for RefusalKind {
                 let or_dash = if column.is_optional() { " or -" } else { "" };
                 write!(f, "a number{or_dash} in {}", column.name())
             }
-            Self::OutOfRange { column, limit, unit } => write!(
-                f,
-                "{} of {} (limit here {limit} {unit})",
-                column.name(),
-                column.range().words
-            ),
+            Self::OutOfRange { column, limit, unit } => write_range(f, *column, *limit, unit),
             Self::TimeNotIncreasing { previous, unit } => {
                 write!(f, "TIME above that of the row before, {previous} {unit}")
             }
@@ -393,6 +388,10 @@ impl fmt::Display for RefusalKind {
             }
         }
     }
+}
+
+fn write_range(f: &mut fmt::Formatter<'_>, column: Column, limit: f64, unit: &str) -> fmt::Result {
+    write!(f, "{} of {} (limit here {limit} {unit})", column.name(), column.range().words)
 }
 
 fn write_missing_column(f: &mut fmt::Formatter<'_>, column: Column) -> fmt::Result {

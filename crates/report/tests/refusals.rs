@@ -135,7 +135,7 @@ fn header_keys() {
 #[test]
 fn header_values() {
     let start = "an instant like 2018-05-20T14:14:21Z (RFC 3339, with Z or an offset) after START";
-    let mass = "a number and lb or kg after";
+    let mass = "a number and lb or kg, at most 1000000 kg after";
     let heat = "a number above zero and MJ/kg after LHV";
     let missing = "one or more of SAT N2 ROLL DRIFT, each once after MISSING";
     let assumed = "assumptions like SAT=ISA+3, each once after ASSUMED";

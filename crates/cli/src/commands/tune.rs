@@ -65,6 +65,20 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         .collect();
     let segments: usize = flights.iter().map(Vec::len).sum();
     let mut text = format!("{} flights, {segments} segments\n", flights.len());
+    search(arguments, &mut model, &flights, &mut text)?;
+    write_model(&model, &arguments.output)?;
+    let _ = writeln!(text, "Settings: {:#?}", model.settings.bayes.values());
+    let _ = writeln!(text, "Written to {}", show(&arguments.output));
+    Ok(Outcome { text, refused: reading.refused })
+}
+
+/// Finds the settings and puts them into the model, a line of text for each step.
+fn search(
+    arguments: &TuneArgs,
+    model: &mut ModelFile,
+    flights: &[Vec<Observation>],
+    text: &mut String,
+) -> Result<(), Failure> {
     let initial = model.initial.drag_table();
     let start = model.settings.bayes;
     let of_model = |error| Failure::bad_file(&arguments.model, error);
@@ -73,7 +87,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         Some(HalfLifeChoice::Never) => with_half_life(start, None)?,
         Some(HalfLifeChoice::Days(days)) => with_half_life(start, Some(days))?,
         Some(HalfLifeChoice::Search) => {
-            let found = search_half_life(initial, start, &flights).map_err(of_model)?;
+            let found = search_half_life(initial, start, flights).map_err(of_model)?;
             for (days, log_density) in &found.tried {
                 let days = days.map_or_else(|| "none".to_owned(), |days| format!("{days} days"));
                 let _ = writeln!(text, "  ln density {log_density:.2}  half-life {days}");
@@ -86,12 +100,12 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         model.settings.bayes = aged;
         text.push_str("Noise stays as it is: with a half-life it is not searched\n");
     } else {
-        let tuned = tune(initial, aged, &flights, &Search::standard()).map_err(of_model)?;
+        let tuned = tune(initial, aged, flights, &Search::standard()).map_err(of_model)?;
         for step in &tuned.path {
             let _ = writeln!(text, "  ln evidence {:.2}  {}", step.log_evidence, step.changed);
         }
         model.settings.bayes = tuned.settings;
-        let span_days = span_days(&flights);
+        let span_days = span_days(flights);
         if arguments.half_life.is_none() && span_days > DAYS_IN_WHICH_AIRCRAFT_AGE {
             let _ = writeln!(
                 text,
@@ -99,10 +113,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
             );
         }
     }
-    write_model(&model, &arguments.output)?;
-    let _ = writeln!(text, "Settings: {:#?}", model.settings.bayes.values());
-    let _ = writeln!(text, "Written to {}", show(&arguments.output));
-    Ok(Outcome { text, refused: reading.refused })
+    Ok(())
 }
 
 /// Over half a year an aircraft's engines lose about what a flight's own errors amount to, 1 %, at 2 % a year.

@@ -132,7 +132,7 @@ const SLIPS: [Slip; 43] = [
     ("ZFW: lb declared as kg", |text| header(text, "ZFW", "52960 kg"), "book-deviation"),
     ("ZFW: kg declared as lb", |text| header(text, "ZFW", "24022 lb"), "book-deviation"),
     ("ZFW: 1 lb", |text| header(text, "ZFW", "1 lb"), "fuel-against-mass"),
-    ("ZFW: 1e9 lb", |text| header(text, "ZFW", "1000000000 lb"), "mass-impossible"),
+    ("ZFW: 1e9 lb", |text| header(text, "ZFW", "1000000000 lb"), "refused"),
     (
         "ZFW and FOB exchanged",
         |text| header(&header(text, "ZFW", "15670 lb"), "FOB", "52960 lb"),

@@ -155,33 +155,7 @@ impl<'a> Design<'a> {
         let kinds = if data.channels.n2 { 2 } else { 1 };
         let smooth = nuisance.end..nuisance.end + kinds * once;
 
-        let mut blocks = Vec::new();
-        let mut at = smooth.end;
-        for variable in AGNOSTIC_VARIABLES {
-            let Some(hats) =
-                values(variable).and_then(|v| Hats::at_quantiles(&v, &AGNOSTIC_QUANTILES))
-            else {
-                continue;
-            };
-            for acts in [Acts::FuelFlow, Acts::Thrust] {
-                if acts == Acts::Thrust && !data.channels.n2 {
-                    continue;
-                }
-                let columns = at..at + hats.len();
-                at = columns.end;
-                blocks.push(Block { variable, acts, columns, hats: Some(hats.clone()) });
-            }
-        }
-        if data.channels.contrasts > 0 {
-            let columns = at..at + data.channels.contrasts;
-            at = columns.end;
-            blocks.push(Block {
-                variable: Variable::Engine,
-                acts: Acts::Split,
-                columns,
-                hats: None,
-            });
-        }
+        let (blocks, at) = agnostic_blocks(data, &values, smooth.end);
         let mut design = Self {
             effects,
             nuisance,
@@ -533,6 +507,37 @@ impl<'a> RowsOfSegment<'a> {
             self.matrix[(self.first + channel, column)] = value * by;
         }
     }
+}
+
+/// Functions of single variables outside the library, and the contrasts of the engines: their columns from `first` on, and the
+/// first column after them.
+fn agnostic_blocks(
+    data: &PreparedFlights<'_>,
+    values: impl Fn(Variable) -> Option<Vec<f64>>,
+    first: usize,
+) -> (Vec<Block>, usize) {
+    let mut blocks = Vec::new();
+    let mut at = first;
+    for variable in AGNOSTIC_VARIABLES {
+        let Some(hats) = values(variable).and_then(|v| Hats::at_quantiles(&v, &AGNOSTIC_QUANTILES))
+        else {
+            continue;
+        };
+        for acts in [Acts::FuelFlow, Acts::Thrust] {
+            if acts == Acts::Thrust && !data.channels.n2 {
+                continue;
+            }
+            let columns = at..at + hats.len();
+            at = columns.end;
+            blocks.push(Block { variable, acts, columns, hats: Some(hats.clone()) });
+        }
+    }
+    if data.channels.contrasts > 0 {
+        let columns = at..at + data.channels.contrasts;
+        at = columns.end;
+        blocks.push(Block { variable: Variable::Engine, acts: Acts::Split, columns, hats: None });
+    }
+    (blocks, at)
 }
 
 /// Share of the recorded accelerations' mean square that their error has, at most 1.

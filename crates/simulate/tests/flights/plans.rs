@@ -435,7 +435,7 @@ proptest::proptest! {
 fn a_flight_that_lacks_thrust_is_drawn_again() {
     let design = FleetDesign { flights: 30, low_share: 0.0, ..small_design() };
     let mut plan = Plan::of_one_tail(11, "T-001", design);
-    plan.weather.isa_deviation_k = simulate::Spread { mean: 25.0, sd: 5.0 };
+    plan.weather.isa_deviation_k = simulate::Spread { mean: 40.0, sd: 5.0 };
     let simulation = Simulation::new(plan.clone()).unwrap();
     let flown = fly_all(&plan);
     let again = flown.iter().filter(|flown| flown.drawn_again > 0).count();

@@ -29,7 +29,7 @@ fn files_are_short() {
     only_known(rule, long.map(|(path, _)| path));
 }
 
-/// The page of the virtual aircraft gives the truth's own form of every effect.
+/// The page of the virtual aircraft gives the truth's own form of every effect, or why there is none.
 #[test]
 fn every_effect_has_its_form_in_the_book() {
     let page = std::fs::read_to_string(root().join("docs/src/theory/virtual_aircraft.md")).unwrap();
