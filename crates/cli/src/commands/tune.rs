@@ -13,7 +13,7 @@ use crate::failure::{Failure, show};
 use crate::models::{check_model_replaceable, read_model, write_model};
 use crate::progress::Progress;
 use crate::reading::FlightRead;
-use pipeline::model_file::LawSettings;
+use pipeline::model_file::{LawSettings, ModelFile};
 
 /// Runs the command.
 ///

@@ -7,14 +7,15 @@
 
 use std::path::{Path, PathBuf};
 
+use adapt::bayes::BayesSettings;
 use diagnose::{
-    Baseline, Diagnosis, FlightRecord, Input, Options, TableUncertainty, Verdict, diagnose,
-    visited_nodes,
+    Baseline, Diagnosis, FlightRecord, Input, Options, Verdict, diagnose, visited_nodes,
 };
 use effects::ExtendedModel;
 use flight::Segment;
 use flight::effect::EffectId;
 use perf_model::{Aircraft, Guide, initial_model};
+use pipeline::whole_model::belief_before_flights;
 use report::Reader;
 use segmenter::TrimCriteria;
 use test_support::outside_data;
@@ -55,22 +56,11 @@ fn records(flights: &[Vec<Segment>]) -> Vec<FlightRecord<'_>> {
     flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
 }
 
-/// A baseline of these flights. The guide's table is a book: it is believed to be off by 10 %, smoothly over 0.3 of lift
-/// coefficient and 0.1 of Mach number, as law `bayes` has it.
+/// A baseline of these flights: before them the guide's table is believed to be off as law `bayes` has it.
 fn learn(model: &ExtendedModel, flights: &[Vec<Segment>]) -> Baseline {
     let records = records(flights);
-    let grid = model.drag_table().grid();
     let visited = visited_nodes(model, model.drag_table(), &records).unwrap();
-    let covariance = |a: usize, b: usize| {
-        let ((lift, mach), (other_lift, other_mach)) = (grid.coordinates(a), grid.coordinates(b));
-        let apart = ((lift - other_lift) / 0.3).powi(2) + ((mach - other_mach) / 0.1).powi(2);
-        0.01 * (-0.5 * apart).exp()
-    };
-    let variances = vec![0.01; grid.nodes()];
-    let belief = TableUncertainty::from_columns(grid.clone(), &visited, &variances, |node| {
-        (0..grid.nodes()).map(|other| covariance(node, other)).collect()
-    })
-    .unwrap();
+    let belief = belief_before_flights(model, BayesSettings::physical_2026(), &visited).unwrap();
     Baseline::learn(model, model.drag_table(), Some(belief), &records).unwrap()
 }
 
