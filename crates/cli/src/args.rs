@@ -1,9 +1,13 @@
 //! The command line's grammar. What a command does is in `commands`.
 
+mod monitor;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use segmenter::TrimCriteria;
+
+pub(crate) use monitor::MonitorArgs;
 
 /// Aircraft performance monitoring from cruise reports.
 ///
@@ -175,6 +179,7 @@ pub(crate) enum LawName {
 
 /// `adapt`
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 pub(crate) struct AdaptArgs {
     /// Reports.
     #[command(flatten)]
@@ -383,56 +388,6 @@ pub(crate) struct DiagnoseArgs {
     /// Also diagnose tails that are more than 15 % off the book on average
     #[arg(long)]
     pub(crate) accept: bool,
-}
-
-/// `monitor`
-#[derive(Debug, Args)]
-pub(crate) struct MonitorArgs {
-    /// Folder that `adapt` wrote
-    #[arg(value_name = "DIR")]
-    pub(crate) folder: PathBuf,
-    /// Events to measure: date,tail,kind,note (wash, engine_change, …)
-    #[arg(long, value_name = "EVENTS.csv")]
-    pub(crate) events: Option<PathBuf>,
-    /// Print a row for each month instead of one for each tail
-    #[arg(long)]
-    pub(crate) month: bool,
-    /// Folder to write to: monitor.html, monitor.json, and tails, months, flights, changes, events, fleet, alerts as .csv
-    #[arg(long, short, value_name = "OUT")]
-    pub(crate) output: Option<PathBuf>,
-    /// Print the JSON document instead of the table
-    #[arg(long)]
-    pub(crate) json: bool,
-    /// Exit with status 3 where a rule fires; may be given several times. deviation=PCT: present level; trend=PCT: per
-    /// year; change=PCT or change=PCT/DAYSd: a step (in the last DAYS days). Either sign, and only where the 95 %
-    /// interval does not hold 0
-    #[arg(long, value_name = "RULE")]
-    pub(crate) alert: Vec<monitor::AlertRule>,
-    /// Newest diagnosis.json, or its folder: alerts name the causes that it names
-    #[arg(long, value_name = "DIAGNOSIS")]
-    pub(crate) diagnosis: Option<PathBuf>,
-    /// kg of CO₂ from a kg of fuel, to print CO₂ a year
-    #[arg(long, value_name = "KG", value_parser = positive)]
-    pub(crate) co2_factor: Option<f64>,
-    /// Price of a kg of fuel in any currency, to print the price a year
-    #[arg(long, value_name = "PRICE", value_parser = positive)]
-    pub(crate) fuel_price: Option<f64>,
-    /// Flights a year [default: as many as were recorded]
-    #[arg(long, value_name = "N", value_parser = positive)]
-    pub(crate) flights_per_year: Option<f64>,
-    /// Basic factor of the flight management system, %: adds the PERF FACTOR, basic plus monitored
-    #[arg(long, value_name = "PCT", allow_negative_numbers = true)]
-    pub(crate) basic_perf_factor: Option<f64>,
-    /// Leave out the deviation by the model before it learnt each flight, for which the model is rebuilt flight by flight
-    #[arg(long)]
-    pub(crate) quick: bool,
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err("expected a number above 0".to_owned()),
-    }
 }
 
 /// `show`

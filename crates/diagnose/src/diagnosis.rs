@@ -138,9 +138,11 @@ fn conclude(
     if unseen.is_some() {
         add_floors(&mut gap, problem, &own, scale);
     }
-    let places = (!options.skip_where)
-        .then(|| find(stacked, &analysis, scale, detected, options.seed))
-        .unwrap_or_default();
+    let places = if options.skip_where {
+        Vec::default()
+    } else {
+        find(stacked, &analysis, scale, detected, options.seed)
+    };
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {

@@ -86,6 +86,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "rounded to a tenth: exact")]
     fn rounding_by_hand() {
         for (percent, expected) in
             [(2.45, 2.5), (2.5, 2.5), (0.1 + 0.2, 0.3), (-0.45, -0.4), (-0.04, 0.0)]
@@ -96,6 +97,7 @@ mod tests {
 
     /// By hand: 5 % more fuel flow than the book is a deviation of 4.879 %, a specific range of 1/1.05.
     #[test]
+    #[expect(clippy::float_cmp, reason = "rounded to a tenth: exact")]
     fn signs_and_sizes() {
         let deviation = 100.0 * 1.05_f64.ln();
         assert!((monitored_fuel_factor_percent(deviation) - 5.0).abs() < 1e-12);

@@ -2,7 +2,7 @@
 //!
 //! Flights between two changes lie on a straight line; lines of different pieces are independent, so that the density of all
 //! flights is a sum over all divisions into pieces, and the sum is done by a recursion over the last start (Fearnhead 2006,
-//! Statistics and Computing 16, 203–213; online as Adams and MacKay 2007 have it). What a flight costs does not depend on
+//! Statistics and Computing 16, 203–213; online as Adams and `MacKay` 2007 have it). What a flight costs does not depend on
 //! how many there were: [`MOST_STARTS`] starts are remembered.
 
 use crate::piece::RunningSums;
@@ -104,8 +104,9 @@ impl ChangeFilter {
         self.density.push(density);
         self.best.push(best);
         let starts = self.starts.iter().zip(&summands);
+        let numbered = |start: usize| u32::try_from(start).unwrap_or(u32::MAX);
         let shares: Vec<(u32, f64)> = starts
-            .map(|(&start, summand)| (start as u32, (summand - density).exp()))
+            .map(|(&start, summand)| (numbered(start), (summand - density).exp()))
             .filter(|(start, share)| *share >= FORGOTTEN_SHARE || *start as usize == index)
             .collect();
         let shares = most_probable(shares);

@@ -13,7 +13,7 @@ pub struct FleetMean {
     pub tails: usize,
 }
 
-/// Mean over tails by the method of moments of DerSimonian and Laird (1986, Controlled Clinical Trials 7, 177–188): each tail
+/// Mean over tails by the method of moments of `DerSimonian` and Laird (1986, Controlled Clinical Trials 7, 177–188): each tail
 /// has a level of its own, known to within its standard deviation. `None` without a tail.
 ///
 /// ```text

@@ -110,7 +110,8 @@ fn filter(
     events: &[usize],
     beliefs: &ChangeBeliefs,
 ) -> ChangeFilter {
-    let mut all: Vec<f64> = series.flights().iter().map(|f| f.deviation_percent()).collect();
+    let mut all: Vec<f64> =
+        series.flights().iter().map(super::series::FlightDeviation::deviation_percent).collect();
     let middle = median(&mut all);
     let mut filter = ChangeFilter::new(*beliefs);
     for (index, (flight, weight)) in series.flights().iter().zip(weights).enumerate() {

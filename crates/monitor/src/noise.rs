@@ -39,7 +39,8 @@ impl Noise {
         let flights = series.flights();
         let within = {
             let freedom: f64 = flights.iter().map(|flight| f64::from(flight.segments() - 1)).sum();
-            let scatter: f64 = flights.iter().map(|flight| flight.scatter_percent2()).sum();
+            let scatter: f64 =
+                flights.iter().map(super::series::FlightDeviation::scatter_percent2).sum();
             let prior = WITHIN_PRIOR_COUNT * WITHIN_PRIOR_PERCENT.powi(2);
             (prior + scatter) / (WITHIN_PRIOR_COUNT + freedom)
         };
@@ -97,7 +98,9 @@ impl Noise {
                 let from = index.saturating_sub(MEDIAN_REACH);
                 let to = (index + MEDIAN_REACH + 1).min(flights.len());
                 neighbours.clear();
-                neighbours.extend(flights[from..to].iter().map(|near| near.deviation_percent()));
+                neighbours.extend(
+                    flights[from..to].iter().map(super::series::FlightDeviation::deviation_percent),
+                );
                 let variance = self.flight_variance_percent2(flight.segments());
                 let distance = flight.deviation_percent() - median(&mut neighbours);
                 let doubt = (STUDENT_DEGREES_OF_FREEDOM + 1.0)
@@ -171,6 +174,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "whole and half numbers are exact")]
     fn median_by_hand() {
         assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);

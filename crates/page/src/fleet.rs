@@ -173,7 +173,8 @@ fn table_row(row: &FleetRow<'_>, adapted: bool, refits: bool, scale: (f64, f64))
 }
 
 /// A cell with the number by which it is sorted.
-fn number(value: Option<f64>, words: String) -> Markup {
+fn number(value: Option<f64>, words: impl Into<String>) -> Markup {
+    let words: String = words.into();
     html! { td data-v=[value] { (words) } }
 }
 

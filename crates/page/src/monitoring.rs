@@ -14,7 +14,6 @@ const HEIGHT: f64 = 320.0;
 const MOST_POINTS: usize = 2000;
 const FEWEST_POINTS: usize = 200;
 const POINTS_OF_PAGE: usize = 60_000;
-/// Up to this many tails all are printed, folded or not.
 
 /// The page of what `monitor` found.
 pub fn monitoring(document: &MonitorDocument) -> String {

@@ -105,6 +105,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "rounded by the same rule: exact")]
     fn a_fuel_factor_is_of_predicted_fuel() {
         // Recorded 109, predicted 100: 8.2569 % of the recorded flow, 9 % of the predicted one.
         assert!((fuel_factor_percent(100.0 * 9.0 / 109.0) - 9.0).abs() < 1e-12);

@@ -98,7 +98,9 @@ pub(crate) fn of_visited(
     let variances: Vec<f64> = posterior.standard_deviation().iter().map(square).collect();
     let column = |node: usize| {
         let mut covariances = posterior.covariances_with(node);
-        covariances.iter_mut().for_each(|value| *value *= scale * scale);
+        for value in &mut covariances {
+            *value *= scale * scale;
+        }
         covariances
     };
     TableUncertainty::from_columns(Arc::clone(grid), visited, &variances, column)

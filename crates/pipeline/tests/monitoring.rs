@@ -101,7 +101,7 @@ fn the_text_fits_a_terminal_and_tables_have_a_row_each() {
     assert_eq!(rows[2], ("flights", 2 * flights));
     assert_eq!(document.fleet[0].tails, 2);
     // Two tails that are alike differ by nothing, and their mean is each of them.
-    assert_eq!(document.fleet[0].between_tails_percent, 0.0);
+    assert!(document.fleet[0].between_tails_percent.abs() < 1e-12);
     let mean = document.fleet[0].deviation_percent.value;
     assert!((mean - document.tails[0].deviation_percent.value).abs() < 1e-9);
 }

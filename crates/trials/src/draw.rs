@@ -117,7 +117,7 @@ impl DrawnCase {
             physics,
             truth,
             book_error: book_error(spec),
-            stated_over_true: if spec.draws[15] % 2 == 0 { 3.0 } else { 1.0 / 3.0 },
+            stated_over_true: if spec.draws[15].is_multiple_of(2) { 3.0 } else { 1.0 / 3.0 },
         })
     }
 
@@ -167,7 +167,7 @@ impl DrawnCase {
 /// A smooth error of a guide's drag: 3 to 8 % in the middle of what is flown, either way, with slopes of up to 3 % across it.
 fn book_error(spec: &CaseSpec) -> DragError {
     let unit = |byte: usize| (f64::from(spec.draws[byte]) + 0.5) / 256.0;
-    let sign = if spec.draws[22] % 2 == 0 { -1.0 } else { 1.0 };
+    let sign = if spec.draws[22].is_multiple_of(2) { -1.0 } else { 1.0 };
     DragError {
         constant: sign * (0.03 + 0.05 * unit(23)),
         per_mach: 0.6 * (unit(30) - 0.5),

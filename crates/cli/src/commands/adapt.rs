@@ -144,7 +144,7 @@ fn learn_all(
             // Few tails can be as large as that, so few jobs can wait inside each other.
             let side_by_side = heads.len() > large.max(tail::READ_AT_A_TIME);
             let count = heads.len();
-            let outcome = run.learn(tail, &start, heads, buffers, side_by_side);
+            let outcome = run.learn(&tail, &start, heads, buffers, side_by_side);
             bar.advance(count);
             outcome
         })

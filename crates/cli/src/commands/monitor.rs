@@ -3,6 +3,7 @@
 mod causes;
 mod stored;
 
+use std::fmt::Write;
 use std::path::Path;
 
 use monitor::cost::CostFactors;
@@ -76,10 +77,11 @@ pub(crate) fn run(
     if let Some(folder) = &arguments.output {
         write(folder, &document)?;
         if !arguments.json {
-            printed.push_str(&format!(
-                "Written to {}: monitor.html, monitor.json, tables (.csv)\n",
+            let _ = writeln!(
+                printed,
+                "Written to {}: monitor.html, monitor.json, tables (.csv)",
                 show(folder)
-            ));
+            );
         }
     }
     Ok((Outcome::text(printed), document.alerts.len()))

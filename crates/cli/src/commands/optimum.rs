@@ -1,5 +1,6 @@
 //! `cruisefit optimum`: what a flight management system would fly with a model, and with the book.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use pipeline::optimum::{
@@ -68,7 +69,7 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
         );
     }
     for path in &arguments.output {
-        text.push_str(&format!("Written to {}\n", show(path)));
+        let _ = writeln!(text, "Written to {}", show(path));
     }
     Ok(Outcome::text(text))
 }

@@ -15,7 +15,7 @@ impl Folder {
         if let Some(lock) = &mut self.lock {
             lock.moved_to(&new);
         }
-        self.path = old.to_owned();
+        old.clone_into(&mut self.path);
         tracing::warn!("the folder as it was is kept as {}", show(&new));
         Ok(())
     }

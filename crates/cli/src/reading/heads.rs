@@ -63,13 +63,12 @@ impl Source {
             for (found, refused) in read {
                 heads.refused.extend(refused);
                 for Found { head, path, read } in found {
-                    let aircraft_type = match types.get(&head.aircraft_type) {
-                        Some(known) => Arc::clone(known),
-                        None => {
-                            let new: Arc<str> = Arc::from(head.aircraft_type.as_str());
-                            types.insert(head.aircraft_type, Arc::clone(&new));
-                            new
-                        }
+                    let aircraft_type = if let Some(known) = types.get(&head.aircraft_type) {
+                        Arc::clone(known)
+                    } else {
+                        let new: Arc<str> = Arc::from(head.aircraft_type.as_str());
+                        types.insert(head.aircraft_type, Arc::clone(&new));
+                        new
                     };
                     heads.tails.entry(head.identity.tail).or_default().push(Head {
                         start: head.identity.start,

@@ -51,10 +51,15 @@ pub(crate) struct SmoothError {
 
 impl Smooth {
     /// Over the values that were flown; `None` where they do not differ.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a whole number from 1 to the most knots"
+    )]
     pub(crate) fn over(variable: Variable, length: f64, values: &[f64]) -> Option<Self> {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if !(high - low > 1e-3 * length) {
+        if (high - low).is_nan() || high - low <= 1e-3 * length {
             return None;
         }
         let middle = values.iter().sum::<f64>() / values.len() as f64;
@@ -93,7 +98,6 @@ impl Smooth {
     }
 
     /// Writes the terms at a value; returns the share of the process' variance that they do not hold.
-    #[expect(clippy::needless_range_loop, reason = "rows and columns of a triangle")]
     pub(crate) fn write(&self, value: f64, into: &mut [f64]) -> f64 {
         let z = self.at(value);
         into[0] = z;

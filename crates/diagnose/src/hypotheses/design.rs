@@ -155,7 +155,7 @@ impl<'a> Design<'a> {
         let kinds = if data.channels.n2 { 2 } else { 1 };
         let smooth = nuisance.end..nuisance.end + kinds * once;
 
-        let (blocks, at) = agnostic_blocks(data, &values, smooth.end);
+        let (blocks, at) = agnostic_blocks(data, values, smooth.end);
         let mut design = Self {
             effects,
             nuisance,

@@ -70,7 +70,10 @@ pub(crate) fn detect(
         || smooth_term > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
     let taught = stacked.data.predictor.baseline.is_some();
+    // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights.
+    let own_error = taught && !evidence.exceeds_uncertainty && !closes_something(unseen);
     let stands_out = something
+        && !own_error
         && is_large(stacked, gap, top)
         && !is_vague(gap, outside, top, taught && makes_worse(unseen));
     let detected = evidence.is_real && (table.is_some() || stands_out);
@@ -90,6 +93,11 @@ fn borne_out(table: TableFinding, unseen: Option<&Shrinkage>) -> TableFinding {
 /// Whether the closure of a name on flights that it was not fitted to may be none.
 fn may_close_nothing(unseen: Option<&Shrinkage>) -> bool {
     unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
+}
+
+/// Whether a name certainly shrinks the gap on flights that it was not fitted to.
+fn closes_something(unseen: Option<&Shrinkage>) -> bool {
+    unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least > 0.0)
 }
 
 /// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does

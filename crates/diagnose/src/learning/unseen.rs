@@ -69,13 +69,14 @@ fn factor_of(mut distances: Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use statrs::distribution::ContinuousCDF;
+
     use super::*;
 
     /// Quantiles of the half-normal distribution: `scipy.stats.halfnorm.ppf`, spaced evenly.
     #[test]
     fn errors_as_announced_keep_the_intervals() {
         let normal = statrs::distribution::Normal::standard();
-        use statrs::distribution::ContinuousCDF;
         let distances = |scale: f64| -> Vec<f64> {
             (0..400)
                 .map(|k| scale * normal.inverse_cdf(0.5 + 0.5 * (f64::from(k) + 0.5) / 400.0))

@@ -55,6 +55,7 @@ impl WholePrediction {
 
     /// Variance of the mean error over these segments of one new flight.
     #[must_use]
+    #[expect(clippy::needless_pass_by_value, reason = "iterators are passed by value")]
     pub fn variance_of_flight<'p>(segments: impl Iterator<Item = &'p Self> + Clone) -> f64 {
         let count = segments.clone().count().max(1) as f64;
         let mean = |of: fn(&Self) -> f64| segments.clone().map(of).sum::<f64>() / count;

@@ -58,10 +58,10 @@ fn density_probabilities_and_best_division_by_brute_force() {
         let total: f64 = divisions.iter().map(|(_, log)| log.exp()).sum();
         assert!((filter.log_density() - total.ln()).abs() < 1e-9);
         let probabilities = filter.probabilities();
-        for flight in 0..y.len() {
+        for (flight, probability) in probabilities.iter().enumerate() {
             let with = divisions.iter().filter(|(starts, _)| starts.contains(&flight));
             let expected = with.map(|(_, log)| log.exp()).sum::<f64>() / total;
-            assert!((probabilities[flight] - expected).abs() < 1e-8, "flight {flight}");
+            assert!((probability - expected).abs() < 1e-8, "flight {flight}");
         }
         let best = divisions.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
         assert_eq!(filter.best_division(), best.0[1..]);

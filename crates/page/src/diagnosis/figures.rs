@@ -203,8 +203,11 @@ fn drawn(
     thinned(segments.len(), MOST_POINTS).into_iter().filter_map(|k| of(&segments[k])).collect()
 }
 
+/// Points of a chart.
+type Points = Vec<(f64, f64)>;
+
 /// Mean date and mean gap of each flight, before and after.
-fn flight_means(segments: &[SegmentGap]) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+fn flight_means(segments: &[SegmentGap]) -> (Points, Points) {
     let (mut before, mut after) = (Vec::new(), Vec::new());
     for flight in segments.chunk_by(|one, other| one.flight == other.flight) {
         let dates_s: Vec<f64> = flight.iter().map(|one| one.date_s).collect();

@@ -74,7 +74,7 @@ pub fn openap(model: &ModelFile, mach: Option<f64>) -> Result<OpenapPolar, Opena
         .map(|(_, lift)| *lift);
     let missing = OpenapError::NotInformed { mach };
     let first = lift_coefficients.next().ok_or(missing)?;
-    let last = lift_coefficients.last().ok_or(missing)?;
+    let last = lift_coefficients.next_back().ok_or(missing)?;
     let points: Vec<(f64, f64)> = (0..=POINTS)
         .map(|k| first + (last - first) * f64::from(k) / f64::from(POINTS))
         .filter_map(|lift| {

@@ -99,8 +99,8 @@ impl TailDeviations {
         let learnt = learnt_deviations_percent(model, segments);
         for (index, shown) in shown.iter_mut().enumerate() {
             let recorded = segments[index].means.fuel_flow_total_kg_s;
-            let against = |predicted: Option<f64>| deviation_percent(recorded, predicted?);
-            shown.initial = against(initial[index].and_then(|of| of.predicted_fuel_flow_kg_s));
+            shown.initial = initial[index]
+                .and_then(|of| deviation_percent(recorded, of.predicted_fuel_flow_kg_s?));
             shown.learnt = learnt[index];
         }
         if before_learning == BeforeLearning::Rebuild {
@@ -236,7 +236,7 @@ fn flight_of(segments: &[Segment], shown: &[Shown], level: f64, engines: usize) 
     }
 }
 
-/// How much more an engine burns than its share of all: 100·ln(N·Wf_k/ΣWf); `None` where engines are not recorded apart.
+/// How much more an engine burns than its share of all: `100·ln(N·Wf_k/ΣWf)`; `None` where engines are not recorded apart.
 fn share_percent(segment: &Segment, engine: usize, engines: usize) -> Option<f64> {
     let flows = &segment.means.fuel_flow_engine_kg_s;
     let total: f64 = flows.iter().sum();

@@ -11,7 +11,7 @@ pub struct Event {
     pub time: Timestamp,
     /// The tail.
     pub tail: String,
-    /// What: wash, engine_change, weighing, …
+    /// What: wash, `engine_change`, weighing, …
     pub kind: String,
     /// In the operator's words; may be empty.
     pub note: String,

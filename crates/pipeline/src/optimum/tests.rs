@@ -1,3 +1,5 @@
+use std::fmt::Write;
+
 use perf_model::{Aircraft, Guide, initial_model};
 
 use super::*;
@@ -37,7 +39,7 @@ fn model(step: f64, mach_exponent: f64) -> ModelFile {
             let flow_kg_h =
                 force_n * (CD0 + K * lift * lift) * tsfc.to_kilograms_per_newton_second() * 3600.0;
             let mass_kg = force_n * lift / units::convert::STANDARD_GRAVITY_M_S2;
-            text += &format!("{mass_kg},37000,{},{flow_kg_h}\n", speed.to_knots());
+            let _ = writeln!(text, "{mass_kg},37000,{},{flow_kg_h}", speed.to_knots());
         }
     }
     let guide = Guide::from_csv(text.as_bytes()).unwrap();
@@ -87,7 +89,7 @@ fn maximum_range_of_a_parabolic_polar_in_closed_form() {
     }
 }
 
-/// 99 % of the greatest specific range: with z = (M/M_mrc)², SR/SR_max = 4 z^1.5/(3 z² + 1), solved by bisection for the
+/// 99 % of the greatest specific range: with z = (`M/M_mrc)²`, `SR/SR_max` = 4 z^1.5/(3 z² + 1), solved by bisection for the
 /// root above 1.
 #[test]
 fn long_range_of_a_parabolic_polar_in_closed_form() {

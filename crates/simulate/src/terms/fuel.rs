@@ -37,6 +37,9 @@ pub(crate) struct ThrottleTerm {
     pub(crate) reference_corrected_thrust_n: f64,
 }
 
+/// Share of an effect's size at a point.
+pub(crate) type FuelForm = fn(&FuelInputs) -> f64;
+
 /// Terms of the fuel flow.
 #[derive(Clone, Debug)]
 pub(crate) struct FuelTerms {
@@ -58,7 +61,7 @@ pub(crate) struct FuelTerms {
     /// Relative fuel flow while anti-ice is on, at a reference corrected thrust, N.
     pub(crate) anti_ice: Option<(f64, f64)>,
     /// Growth of all fuel flow by forms of their own: relative size, and the share of it at a point.
-    pub(crate) added: Vec<(f64, fn(&FuelInputs) -> f64)>,
+    pub(crate) added: Vec<(f64, FuelForm)>,
     /// Reference over actual heating value: factor of all fuel.
     pub(crate) heating_value_factor: f64,
 }

@@ -429,13 +429,16 @@ proptest::proptest! {
     }
 }
 
-/// Hot days on which the engines cannot hold what was drawn for the standard day: each such flight is drawn again, under
+/// Weak engines on hot days, which cannot hold what was drawn for the standard day: each such flight is drawn again, under
 /// its name and START, and the same whenever it is flown.
 #[test]
 fn a_flight_that_lacks_thrust_is_drawn_again() {
     let design = FleetDesign { flights: 30, low_share: 0.0, ..small_design() };
     let mut plan = Plan::of_one_tail(11, "T-001", design);
-    plan.weather.isa_deviation_k = simulate::Spread { mean: 40.0, sd: 5.0 };
+    plan.weather.isa_deviation_k = simulate::Spread { mean: 25.0, sd: 5.0 };
+    let mut aircraft = simulate::AircraftTruth::preset(Preset::CitationX).unwrap();
+    aircraft.engine.rated_thrust_n *= 0.85;
+    plan.aircraft = AircraftChoice::Custom(Box::new(aircraft));
     let simulation = Simulation::new(plan.clone()).unwrap();
     let flown = fly_all(&plan);
     let again = flown.iter().filter(|flown| flown.drawn_again > 0).count();

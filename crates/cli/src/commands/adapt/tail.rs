@@ -62,17 +62,17 @@ impl Run<'_> {
     /// A file that cannot be written. What is wrong with this tail alone is in its outcome.
     pub(super) fn learn(
         &self,
-        tail: String,
+        tail: &str,
         start: &Start<'_>,
         heads: Vec<Head>,
         buffers: &mut Buffers,
         side_by_side: bool,
     ) -> Result<TailOutcome, Failure> {
         let paths: Vec<Box<Path>> = heads.iter().map(|head| head.path.clone()).collect();
-        let attempt = self.folder.flights(&tail).and_then(|known| {
-            let (new, refused, already_known) = self.unknown(heads, &known, buffers);
-            let stored = match (self.folder.holds(&tail), new.is_empty()) {
-                (true, false) => Some(self.folder.load(&tail)?),
+        let attempt = self.folder.flights(tail).and_then(|known| {
+            let (new, refused, already_known) = unknown(heads, &known, buffers);
+            let stored = match (self.folder.holds(tail), new.is_empty()) {
+                (true, false) => Some(self.folder.load(tail)?),
                 _ => None,
             };
             Ok((known, new, refused, already_known, stored))
@@ -86,28 +86,28 @@ impl Run<'_> {
                     RefusedReport::whole(path.into(), reason)
                 };
                 let refused = paths.into_iter().map(refuse).collect();
-                return Ok(TailOutcome { refused, ..self.untouched(&tail)? });
+                return Ok(TailOutcome { refused, ..self.untouched(tail) });
             }
         };
         let mut known = KnownFlights::of(known);
         if let Some(stored) = &stored {
             known.add_segments(&stored.segments);
         }
-        let mut sorting = Sorting::new(&tail, known);
+        let mut sorting = Sorting::new(tail, known);
         sorting.strict = self.arguments.reports.strict;
         if self.arguments.relearn {
             sorting.contradictions = Contradictions::Relearn;
         }
         sorting.refused = refused;
         sorting.already_known = already_known;
-        let reading = self.plausible(&tail, start, &new, buffers, side_by_side);
+        let reading = self.plausible(tail, start, &new, buffers, side_by_side);
         sorting.refused.extend(reading.refused);
         let usable = already_known + reading.flights.len();
         for flight in reading.flights {
             sorting.next(flight);
         }
         let outcome = TailOutcome {
-            tail: tail.clone(),
+            tail: tail.to_owned(),
             usable,
             already_known: sorting.already_known,
             copies: sorting.copies,
@@ -115,40 +115,6 @@ impl Run<'_> {
             ..TailOutcome::default()
         };
         self.learn_sorted(start, sorting, stored, outcome)
-    }
-
-    /// Reports of flights that are not known, or known with other content; and how many are known.
-    fn unknown(
-        &self,
-        heads: Vec<Head>,
-        known: &[KnownFlight],
-        buffers: &mut Buffers,
-    ) -> (Vec<Head>, Vec<RefusedReport>, usize) {
-        if known.is_empty() {
-            return (heads, Vec::new(), 0);
-        }
-        let known = KnownFlights::of(known.to_vec());
-        let mut new = Vec::new();
-        let mut refused = Vec::new();
-        let mut already_known = 0;
-        for head in heads {
-            let Some(flight) = known.find(head.start, &head.flight) else {
-                new.push(head);
-                continue;
-            };
-            let same = match &head.read {
-                Some(read) => Ok(read.has_content(&flight.entry.content)),
-                None => {
-                    buffers.content_of(&head.path).map(|content| content == flight.entry.content)
-                }
-            };
-            match same {
-                Ok(true) => already_known += 1,
-                Ok(false) => new.push(head),
-                Err(refusal) => refused.push(refusal),
-            }
-        }
-        (new, refused, already_known)
     }
 
     /// Reads a tail's reports and sets aside those that its model is not for, or whose dates or figures cannot be right.
@@ -224,13 +190,13 @@ impl Run<'_> {
     pub(super) fn at_rest(&self, tail: &str) -> Result<TailOutcome, Failure> {
         let needs_page = self.on_one_page || !self.folder.has(&page_file(tail));
         if !self.folder.holds(tail) || !(needs_page || self.folder.is_older(tail)) {
-            return self.untouched(tail);
+            return Ok(self.untouched(tail));
         }
         let stored = match self.folder.load(tail) {
             Ok(stored) => stored,
             Err(failure) => {
                 tracing::warn!("tail {tail} is not on the page: {failure}");
-                return self.untouched(tail);
+                return Ok(self.untouched(tail));
             }
         };
         let begun = match self.folder.state_of(tail) {
@@ -244,15 +210,15 @@ impl Run<'_> {
         }
         let result = result_of(stored, 0, Vec::new());
         let section = self.page_of(&result)?;
-        Ok(TailOutcome { section, ..self.untouched(tail)? })
+        Ok(TailOutcome { section, ..self.untouched(tail) })
     }
 
-    fn untouched(&self, tail: &str) -> Result<TailOutcome, Failure> {
-        Ok(TailOutcome {
+    fn untouched(&self, tail: &str) -> TailOutcome {
+        TailOutcome {
             tail: tail.to_owned(),
             state: self.folder.state_of(tail).cloned(),
             ..TailOutcome::default()
-        })
+        }
     }
 
     fn store(
@@ -278,6 +244,37 @@ impl Run<'_> {
         self.folder.stage(&page_file(&result.tail), page::tail_page(&section).as_bytes())?;
         Ok(None)
     }
+}
+
+/// Reports of flights that are not known, or known with other content; and how many are known.
+fn unknown(
+    heads: Vec<Head>,
+    known: &[KnownFlight],
+    buffers: &mut Buffers,
+) -> (Vec<Head>, Vec<RefusedReport>, usize) {
+    if known.is_empty() {
+        return (heads, Vec::new(), 0);
+    }
+    let known = KnownFlights::of(known.to_vec());
+    let mut new = Vec::new();
+    let mut refused = Vec::new();
+    let mut already_known = 0;
+    for head in heads {
+        let Some(flight) = known.find(head.start, &head.flight) else {
+            new.push(head);
+            continue;
+        };
+        let same = match &head.read {
+            Some(read) => Ok(read.has_content(&flight.entry.content)),
+            None => buffers.content_of(&head.path).map(|content| content == flight.entry.content),
+        };
+        match same {
+            Ok(true) => already_known += 1,
+            Ok(false) => new.push(head),
+            Err(refusal) => refused.push(refusal),
+        }
+    }
+    (new, refused, already_known)
 }
 
 /// Path of a tail's own page below the folder.
