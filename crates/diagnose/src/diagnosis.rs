@@ -138,11 +138,8 @@ fn conclude(
     if unseen.is_some() {
         add_floors(&mut gap, problem, &own, scale);
     }
-    let places = if options.skip_where {
-        Vec::default()
-    } else {
-        find(stacked, &analysis, scale, detected, options.seed)
-    };
+    let find = || find(stacked, &analysis, scale, detected, options.seed);
+    let places = if options.skip_where { Vec::default() } else { find() };
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {

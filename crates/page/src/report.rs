@@ -17,7 +17,7 @@ use crate::{fleet, tail};
 
 /// Largest number of points of a chart.
 const MOST_POINTS: usize = 2000;
-/// Up to this many tails one page holds the charts of all; of more, each has its own page. At [`MOST_POINTS`] points in
+/// Up to this many tails one page holds the charts of all; of more, each has its own page. At 2,000 points in
 /// each chart this is a page of about 2 MB.
 pub const TAILS_ON_ONE_PAGE: usize = 30;
 

@@ -429,28 +429,6 @@ proptest::proptest! {
     }
 }
 
-/// Weak engines on hot days, which cannot hold what was drawn for the standard day: each such flight is drawn again, under
-/// its name and START, and the same whenever it is flown.
-#[test]
-fn a_flight_that_lacks_thrust_is_drawn_again() {
-    let design = FleetDesign { flights: 30, low_share: 0.0, ..small_design() };
-    let mut plan = Plan::of_one_tail(11, "T-001", design);
-    plan.weather.isa_deviation_k = simulate::Spread { mean: 25.0, sd: 5.0 };
-    let mut aircraft = simulate::AircraftTruth::preset(Preset::CitationX).unwrap();
-    aircraft.engine.rated_thrust_n *= 0.85;
-    plan.aircraft = AircraftChoice::Custom(Box::new(aircraft));
-    let simulation = Simulation::new(plan.clone()).unwrap();
-    let flown = fly_all(&plan);
-    let again = flown.iter().filter(|flown| flown.drawn_again > 0).count();
-    assert!(again > 0, "no flight of this plan lacks thrust: it shows nothing");
-    for (index, flown) in flown.iter().enumerate() {
-        let (_, drawn) = simulation.flight(index).unwrap();
-        assert_eq!(flown.truth.flight, drawn.flight);
-        assert_eq!(flown.truth.start, drawn.start);
-        assert_eq!(simulation.fly(index).unwrap().report, flown.report);
-    }
-}
-
 #[test]
 fn one_aircraft_does_not_fly_twice_at_a_time() {
     let start = "2024-03-01T00:00:00Z".parse().unwrap();
