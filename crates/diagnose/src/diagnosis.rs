@@ -10,7 +10,7 @@ use crate::advice::distances::{Distances, leading_columns};
 use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
 use crate::judge::closure::{Shrinkage, in_sample, nested};
-use crate::judge::detection::{Detection, Evidence, detect};
+use crate::judge::detection::{Detection, DetectionInput, detect};
 use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{CauseEvidence, causes, dominant};
@@ -72,7 +72,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         return Ok(found);
     }
     let design = Design::new(&data, &references, input.baseline, input.table);
-    let stacked = WhitenedSystem::new(&data, &design, None);
+    let system = WhitenedSystem::new(&data, &design, None);
     let mut notes = Vec::new();
     notes.extend(data.thrust_by_n2_note(&library));
     notes.extend(input.table.and_then(table_in_columns));
@@ -80,17 +80,17 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         notes.push(Note::ReferencesAreMeans);
     }
     let mut result = conclude(
-        Problem { stacked: &stacked, model: &model, library: &library },
+        Problem { system: &system, model: &model, library: &library },
         options,
         &mut notes,
     )?;
     // Heavy tails show only beside the best model; then everything is done again with weights.
-    if let Some(weights) = crate::search::robust::outlier_weights(&stacked, &result.1, &library) {
+    if let Some(weights) = crate::search::robust::outlier_weights(&system, &result.1, &library) {
         notes.push(Note::HeavyTails);
         drop(result);
-        let stacked = WhitenedSystem::new(&data, &design, Some(weights));
+        let system = WhitenedSystem::new(&data, &design, Some(weights));
         result = conclude(
-            Problem { stacked: &stacked, model: &model, library: &library },
+            Problem { system: &system, model: &model, library: &library },
             options,
             &mut notes,
         )?;
@@ -107,21 +107,21 @@ fn conclude(
     options: &Options,
     notes: &mut Vec<Note>,
 ) -> Result<(Diagnosis, Analysis), DiagnoseError> {
-    let Problem { stacked, model, library } = problem;
+    let Problem { system, model, library } = problem;
     let analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
-    let mut outside = compete(stacked, &analysis, library);
+    let mut outside = compete(system, &analysis, library);
     let leading = leading_columns(library, &analysis.models);
-    let distances = Distances::of(stacked.gram(None), stacked.design, leading)
+    let distances = Distances::from_gram(system.gram(None), system.design, leading)
         .ok_or(DiagnoseError::Degenerate)?;
-    let posteriors = dominant(stacked, &analysis, library);
+    let posteriors = dominant(system, &analysis, library);
     let best = &analysis.models[0].0;
-    let scale = noise_scale(&analysis, best, stacked.gram(None).rows);
-    let own = in_sample(problem, &best.model.columns, &best.sizes, scale, options.seed);
-    let mut gap = gap_of(stacked, &analysis, &own, scale);
-    let exceeds = exceeds_uncertainty(&gap, unknown_square(stacked));
+    let scale = noise_scale(&analysis, best, system.gram(None).rows);
+    let own = in_sample(problem, &best.hypothesis.columns, &best.sizes, scale, options.seed);
+    let mut gap = gap_of(system, &analysis, &own, scale);
+    let exceeds = exceeds_uncertainty(&gap, unknown_square(system));
     let real = exceeds || is_real(&analysis, &outside);
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
-    let evidence = Evidence {
+    let detection_input = DetectionInput {
         analysis: &analysis,
         distances: &distances,
         posteriors: &posteriors,
@@ -132,18 +132,19 @@ fn conclude(
         is_real: real,
         exceeds_uncertainty: exceeds,
     };
-    let Detection { detected, table, smooth_term } = detect(problem, &evidence, &mut outside);
+    let Detection { detected, table, smooth_term } =
+        detect(problem, &detection_input, &mut outside);
     gap.detected = detected;
     let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {
         add_floors(&mut gap, problem, &own, scale);
     }
-    let find = || find(stacked, &analysis, scale, detected, options.seed);
+    let find = || find(system, &analysis, scale, detected, options.seed);
     let places = if options.skip_where { Vec::default() } else { find() };
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {
-        level_like: &level_like(stacked, library),
+        level_like: &level_like(system, library),
         analysis: &analysis,
         library,
         distances: &distances,
@@ -165,13 +166,13 @@ fn conclude(
         table: table.as_ref(),
     };
     let diagnosis = Diagnosis {
-        flights: stacked.data.flights.len(),
-        segments: stacked.data.segments.len(),
+        flights: system.data.flights.len(),
+        segments: system.data.segments.len(),
         gap,
         r#where: places,
         causes: causes(&of_causes, &posteriors),
         not_testable: vec![],
-        addition: Addition::of(&analysis, library, verdict.effects(), *model.references())
+        addition: Addition::named(&analysis, library, verdict.effects(), *model.references())
             .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
@@ -184,9 +185,9 @@ fn conclude(
 
 /// Adds the two estimates of the noise floor that need no sensor's standard deviation.
 fn add_floors(gap: &mut Gap, problem: Problem<'_>, own: &Shrinkage, noise_scale: f64) {
-    let Problem { stacked, library, .. } = problem;
-    gap.floor_by_replicates_rms_percent = replicate_floor(stacked, own, noise_scale).map(percent);
-    gap.floor_by_held_out_fit_rms_percent = held_out_floor(stacked, library).map(percent);
+    let Problem { system, library, .. } = problem;
+    gap.floor_by_replicates_rms_percent = replicate_floor(system, own, noise_scale).map(percent);
+    gap.floor_by_held_out_fit_rms_percent = held_out_floor(system, library).map(percent);
 }
 
 /// Root of a mean square, %.

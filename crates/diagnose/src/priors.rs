@@ -27,7 +27,7 @@ deciding_numbers! {
         KNOWN_DEVIATION: f64 = 0.15, "",
             "prior standard deviation of a coefficient that physics says is 1",
             OurChoice "Physics says 1; what is recorded of wind, position and turns is not exact, so that some 15 % are left.";
-        HEATING_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4], "% of fuel flow",
+        FLIGHT_SCATTER_SIZES_PERCENT: [f64; 4] = [0.3, 0.6, 1.2, 2.4], "% of fuel flow",
             "sizes of scatter from flight to flight that are tried",
             OurChoice "From half the typical 0.6 % to four times it, each twice the one before.";
     }

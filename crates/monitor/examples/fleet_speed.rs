@@ -29,7 +29,7 @@ fn main() {
         let beliefs = ChangeBeliefs::of_2026();
         let own = fleet.iter().skip(first).step_by(2);
         own.map(|series| {
-            let history = History::of(series, &[], &beliefs).expect("there are flights");
+            let history = History::fit(series, &[], &beliefs).expect("there are flights");
             let level = history.levels.last_level_percent(series);
             let means = months(series).into_iter();
             let means = means.filter_map(|(_, flights)| history.mean_percent(series, flights));

@@ -149,7 +149,7 @@ impl Score {
         });
         let series = Series::new(flights.collect()).expect("flights in order");
         let history =
-            History::of(&series, &[], &ChangeBeliefs::of_2026()).expect("there are flights");
+            History::fit(&series, &[], &ChangeBeliefs::of_2026()).expect("there are flights");
         let found: Vec<usize> = history.changes.iter().map(|change| change.first_flight).collect();
         let near = |one: &usize, others: &[usize], reach: usize| {
             others.iter().any(|other| one.abs_diff(*other) <= reach)

@@ -171,7 +171,7 @@ mod tests {
                 .unwrap()
         });
         let series = Series::new(flights.collect()).unwrap();
-        let history = History::of(&series, &[], &ChangeBeliefs::of_2026()).unwrap();
+        let history = History::fit(&series, &[], &ChangeBeliefs::of_2026()).unwrap();
         let fired = |text: &str| text.parse::<AlertRule>().unwrap().apply(&series, &history);
         let alerts = fired("change=1.5");
         assert_eq!(alerts.len(), 1);

@@ -37,7 +37,7 @@ pub fn excess_fuel_kg(burnt_kg: f64, deviation_percent: f64) -> f64 {
 impl Cost {
     /// The cost of a level of deviation to flights that burn so much in cruise, this many of them a year.
     #[must_use]
-    pub fn of(
+    pub fn new(
         deviation_percent: f64,
         cruise_fuel_kg: f64,
         recorded_flights_per_year: f64,
@@ -65,14 +65,14 @@ mod tests {
         let deviation = 100.0 * (5050.0_f64 / 5000.0).ln();
         let factors =
             CostFactors { co2_kg_per_kg: Some(3.0), price_per_kg: None, flights_per_year: None };
-        let cost = Cost::of(deviation, 5050.0, 200.0, &factors);
+        let cost = Cost::new(deviation, 5050.0, 200.0, &factors);
         assert!((cost.fuel_kg_per_flight - 50.0).abs() < 1e-9);
         assert!((cost.fuel_kg_per_year - 10_000.0).abs() < 1e-6);
         assert!((cost.co2_kg_per_year.unwrap() - 30_000.0).abs() < 1e-6);
         assert_eq!(cost.price_per_year, None);
         let other = CostFactors { flights_per_year: Some(100.0), ..factors };
         assert!(
-            (Cost::of(deviation, 5050.0, 200.0, &other).fuel_kg_per_year - 5_000.0).abs() < 1e-6
+            (Cost::new(deviation, 5050.0, 200.0, &other).fuel_kg_per_year - 5_000.0).abs() < 1e-6
         );
     }
 }

@@ -61,7 +61,7 @@ impl History {
     /// An event belongs to the first flight that began at or after it. Its effect is measured whether or not it is a change
     /// that the flights would show by themselves.
     #[must_use]
-    pub fn of(series: &Series, events: &[Timestamp], beliefs: &ChangeBeliefs) -> Option<Self> {
+    pub fn fit(series: &Series, events: &[Timestamp], beliefs: &ChangeBeliefs) -> Option<Self> {
         let noise = Noise::estimate(series);
         let weights = noise.weights(series);
         let at_flight: Vec<usize> = events.iter().map(|time| series.first_from(*time)).collect();

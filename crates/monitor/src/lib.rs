@@ -1,6 +1,6 @@
 //! What changed, when and by how much: one aircraft's deviations from a reference over months and years, and a fleet's.
 //!
-//! What it is: [`Series`] holds a deviation per flight, [`History::of`] reads it: the [`Noise`] of flights, the
+//! What it is: [`Series`] holds a deviation per flight, [`History::fit`] reads it: the [`Noise`] of flights, the
 //! [`Change`]s with probability and the interval of their dates, a trend and the [`Levels`] between the changes, the effect of
 //! recorded events. [`months`] groups flights, [`fleet_mean`] tails, [`airbus`] has the terms in which operators report,
 //! [`cost`] what a deviation costs, [`AlertRule`] what somebody should look at.
@@ -29,7 +29,7 @@
 //! }
 //! let series = Series::new(flights)?;
 //! let wash = flight::Timestamp::from_second(86_400 * 60)?;
-//! let history = History::of(&series, &[wash], &ChangeBeliefs::of_2026()).ok_or("no flight")?;
+//! let history = History::fit(&series, &[wash], &ChangeBeliefs::of_2026()).ok_or("no flight")?;
 //! assert_eq!(history.changes.len(), 1);
 //! assert_eq!(history.changes[0].event, Some(0));
 //! let effect = history.events[0].effect_percent.ok_or("flights before and after")?;

@@ -18,7 +18,7 @@ pub struct Month {
 impl Month {
     /// The month of an instant.
     #[must_use]
-    pub fn of(time: flight::Timestamp) -> Self {
+    pub fn from_timestamp(time: flight::Timestamp) -> Self {
         let date = Offset::UTC.to_datetime(time);
         Self { year: date.year(), month: date.month() }
     }
@@ -41,7 +41,7 @@ impl core::fmt::Display for Month {
 pub fn months(series: &Series) -> Vec<(Month, Range<usize>)> {
     let mut found: Vec<(Month, Range<usize>)> = Vec::new();
     for (index, flight) in series.flights().iter().enumerate() {
-        let month = Month::of(flight.time());
+        let month = Month::from_timestamp(flight.time());
         match found.last_mut() {
             Some((last, flights)) if *last == month => flights.end = index + 1,
             _ => found.push((month, index..index + 1)),

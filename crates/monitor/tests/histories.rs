@@ -26,7 +26,7 @@ fn normal(seed: u64) -> impl Iterator<Item = f64> {
 }
 
 fn history(series: &Series, events: &[Timestamp]) -> History {
-    History::of(series, events, &ChangeBeliefs::of_2026()).unwrap()
+    History::fit(series, events, &ChangeBeliefs::of_2026()).unwrap()
 }
 
 /// Annual volume of the Nile at Aswan, 1871 to 1970, 10⁸ m³. Oracle: Cobb (1978, Biometrika 65, 243–251) finds one change,

@@ -20,7 +20,7 @@ fn tail(name: &str, errors_percent: &[f64]) -> TailSummary {
         informed_nodes: None,
         refits: None,
         fuel_flow_error_percent: ErrorsSummary {
-            before: ErrorStatistics::of(errors_percent),
+            before: ErrorStatistics::from_errors(errors_percent),
             after: None,
         },
         interval95_coverage: None,

@@ -326,7 +326,7 @@ mod tests {
 
     #[test]
     fn bars_are_as_high_as_their_counts() {
-        let bins = Bins::of(&[0.1, 0.6, 0.7], 0.5);
+        let bins = Bins::around(&[0.1, 0.6, 0.7], 0.5);
         let chart = chart(Axis::within(0.0, 1.0, 2), Axis::within(0.0, 2.0, 2));
         let bars = chart.bars(&bins, &bins.histogram(&[0.1, 0.6, 0.7]), "a").into_string();
         assert!(bars.contains("M64 108V58H114V8H164V108Z"), "{bars}");

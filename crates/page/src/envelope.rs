@@ -34,7 +34,7 @@ struct Envelope {
 
 /// The table of cells, lift coefficient upwards and Mach number to the right.
 pub(crate) fn envelope(view: &TailView) -> Markup {
-    let Some(envelope) = Envelope::of(view) else {
+    let Some(envelope) = Envelope::from_flights(view) else {
         return html! { p.note { "No segment inside the table: no map of where it flew." } };
     };
     let which = if view.adapted { "after" } else { view.before_label() };
@@ -109,7 +109,7 @@ fn shade(mean_percent: f64) -> String {
 }
 
 impl Envelope {
-    fn of(view: &TailView) -> Option<Self> {
+    fn from_flights(view: &TailView) -> Option<Self> {
         let error = |point: &Point| {
             if view.adapted { point.after } else { point.before }
         };
@@ -206,7 +206,7 @@ mod tests {
             let inside = view.points.iter().filter(|point| {
                 if view.adapted { point.after.is_some() } else { point.before.is_some() }
             });
-            let counted = Envelope::of(&view).map_or(0, |envelope| envelope.segments());
+            let counted = Envelope::from_flights(&view).map_or(0, |envelope| envelope.segments());
             assert_eq!(counted, inside.count());
         }
     }

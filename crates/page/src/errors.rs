@@ -21,15 +21,15 @@ const HEIGHT: f64 = 290.0;
 pub(crate) fn bins(view: &TailView) -> Bins {
     let mut all = view.before();
     all.extend(view.after());
-    Bins::of(&all, BIN_PERCENT)
+    Bins::around(&all, BIN_PERCENT)
 }
 
 /// Histogram of segment errors, before and after on one scale.
 pub(crate) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Markup {
     let (before, after) = (view.before(), view.after());
     let (counted_before, counted_after) = (bins.histogram(&before), bins.histogram(&after));
-    let words_before = words(view.before_label(), &ErrorStatistics::of(&before));
-    let words_after = words("after", &ErrorStatistics::of(&after));
+    let words_before = words(view.before_label(), &ErrorStatistics::from_errors(&before));
+    let words_after = words("after", &ErrorStatistics::from_errors(&after));
     let mut description = format!("Number of segments by error. {words_before}.");
     let mut entries = vec![(Key::Area, BEFORE, words_before.as_str())];
     if view.adapted {
@@ -52,10 +52,10 @@ pub(crate) fn histogram(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
         (chart.bars(bins, &counted_before, BEFORE))
         @if view.adapted { (chart.bars(bins, &counted_after, "after")) }
         (chart.vertical(0.0, "zero"))
-        @if let Some(mean) = ErrorStatistics::of(&before).mean {
+        @if let Some(mean) = ErrorStatistics::from_errors(&before).mean {
             (chart.vertical(mean, "mean before"))
         }
-        @if let Some(mean) = ErrorStatistics::of(&after).mean {
+        @if let Some(mean) = ErrorStatistics::from_errors(&after).mean {
             (chart.vertical(mean, "mean after"))
         }
     };
@@ -240,8 +240,8 @@ mod tests {
     fn a_wrong_flight_is_named_first() {
         let mut view = samples::views().remove(0);
         // Means about +4 %; one flight was recorded with too much mass, and the table has learnt it.
-        view.flights[9].before = ErrorStatistics::of(&[-11.0, -12.0]);
-        view.flights[9].after = ErrorStatistics::of(&[0.0, 0.1]);
+        view.flights[9].before = ErrorStatistics::from_errors(&[-11.0, -12.0]);
+        view.flights[9].after = ErrorStatistics::from_errors(&[0.0, 0.1]);
         let (median, flights) = apart(&view);
         assert!((3.0..5.0).contains(&median), "{median}");
         assert_eq!((flights.len(), flights[0].name.as_str()), (FLIGHTS_NAMED, "F9"));

@@ -28,7 +28,7 @@ struct Drawing<'a> {
 /// Histogram of errors, errors over time and drag polars of one tail as a file of its own; without segments, the polars alone.
 #[must_use]
 pub fn plot(result: &TailResult) -> String {
-    let view = TailView::of(result);
+    let view = TailView::new(result);
     let place = Place { tail: &result.tail, id: "plot".to_owned(), most_points: MOST_POINTS };
     let page = tail::figures(&view, &place).into_string();
     let empty = view.points.is_empty();

@@ -28,7 +28,7 @@ struct Frame {
 pub(crate) fn polars(view: &TailView, place: &Place<'_>) -> Markup {
     let machs = mach_numbers(view);
     let shown = thinned(view.points.len(), place.most_points);
-    let frame = Frame::of(view, &machs);
+    let frame = Frame::around(view, &machs);
     let mut entries = vec![(Key::Line, "initial", "initial table")];
     if view.polars.learnt {
         entries.push((
@@ -147,7 +147,7 @@ fn panel(
 }
 
 impl Frame {
-    fn of(view: &TailView, machs: &[usize]) -> Self {
+    fn around(view: &TailView, machs: &[usize]) -> Self {
         let polars = &view.polars;
         let grid = &polars.lift_coefficient;
         let (first_node, last_node) = nodes_near(grid, &view.points);

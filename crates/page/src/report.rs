@@ -43,7 +43,7 @@ pub struct Section {
 pub fn section(result: &TailResult, anchors: &Anchors) -> Section {
     let id = anchors.0.get(&result.tail).cloned().unwrap_or_default();
     let place = Place { tail: &result.tail, id: id.clone(), most_points: MOST_POINTS };
-    let view = TailView::of(result);
+    let view = TailView::new(result);
     let starts = || view.flights.iter().map(|flight| flight.start_s);
     Section {
         tail: result.tail.clone(),
@@ -61,7 +61,7 @@ pub fn section(result: &TailResult, anchors: &Anchors) -> Section {
 /// The page: `summary` and the details of each tail under a title.
 #[must_use]
 pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
-    let anchors = Anchors::of(tails.iter().map(|tail| tail.tail.as_str()));
+    let anchors = Anchors::new(tails.iter().map(|tail| tail.tail.as_str()));
     let sections: Vec<Section> = tails.iter().map(|tail| section(tail, &anchors)).collect();
     report_of_sections(summary, &sections.iter().collect::<Vec<_>>(), title)
 }
@@ -189,7 +189,7 @@ pub struct Anchors(BTreeMap<String, String>);
 impl Anchors {
     /// Anchors of these tails.
     #[must_use]
-    pub fn of<'a>(tails: impl Iterator<Item = &'a str>) -> Self {
+    pub fn new<'a>(tails: impl Iterator<Item = &'a str>) -> Self {
         let plain = |tail: &str| -> String {
             tail.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect()
         };

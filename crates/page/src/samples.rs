@@ -47,7 +47,7 @@ fn view(points: Vec<Point>, adapted: bool) -> TailView {
     for start_s in starts {
         let of = |of: fn(&Point) -> Option<f64>| {
             let here = points.iter().filter(|point| point.start_s.total_cmp(&start_s).is_eq());
-            ErrorStatistics::of(&here.filter_map(of).collect::<Vec<f64>>())
+            ErrorStatistics::from_errors(&here.filter_map(of).collect::<Vec<f64>>())
         };
         #[expect(clippy::cast_possible_truncation, reason = "whole seconds")]
         let start = Timestamp::from_second(start_s as i64).unwrap();

@@ -75,7 +75,7 @@ pub(crate) struct Polars {
 }
 
 impl TailView {
-    pub(crate) fn of(result: &TailResult) -> Self {
+    pub(crate) fn new(result: &TailResult) -> Self {
         let adapted = result.summary.fuel_flow_error_percent.after.is_some();
         let after = result.errors_after();
         let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
@@ -109,15 +109,15 @@ impl TailView {
             name: flight.to_owned(),
             start,
             start_s: start.as_second() as f64,
-            before: ErrorStatistics::of(&errors.before),
-            after: ErrorStatistics::of(&errors.after),
+            before: ErrorStatistics::from_errors(&errors.before),
+            after: ErrorStatistics::from_errors(&errors.after),
         });
         Self {
             points,
             outside,
             not_observed,
             flights: flights.collect(),
-            polars: Polars::of(&result.model),
+            polars: Polars::from_model(&result.model),
             adapted,
         }
     }
@@ -158,7 +158,7 @@ struct Errors {
 }
 
 impl Polars {
-    fn of(model: &ModelFile) -> Self {
+    fn from_model(model: &ModelFile) -> Self {
         let grid = model.grid();
         let initial = model.initial.drag_table().values().to_vec();
         let informed = model

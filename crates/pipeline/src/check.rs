@@ -88,7 +88,7 @@ pub fn check_report(report: &Report) -> FlightCheck {
         channels::check(report),
     ];
     let mut findings: Vec<DataFinding> =
-        drafts.into_iter().flatten().map(|draft| draft.of(&identity)).collect();
+        drafts.into_iter().flatten().map(|draft| draft.for_flight(&identity)).collect();
     findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
     let (first, last) = (time_s.first().copied(), time_s.last().copied());
     FlightCheck {
@@ -100,7 +100,7 @@ pub fn check_report(report: &Report) -> FlightCheck {
 }
 
 impl Draft {
-    fn of(self, identity: &FlightIdentity) -> DataFinding {
+    fn for_flight(self, identity: &FlightIdentity) -> DataFinding {
         DataFinding {
             severity: self.severity,
             code: self.code,

@@ -27,7 +27,7 @@ impl DiagnosisFigures {
     ///
     /// # Errors
     /// As the diagnosis itself.
-    pub fn of(
+    pub fn new(
         model: &ModelFile,
         input: &Input<'_>,
         diagnosis: &Diagnosis,

@@ -236,5 +236,5 @@ fn errors(evaluated: &[Option<Evaluated>]) -> Vec<Option<f64>> {
 
 fn statistics(evaluated: &[Option<Evaluated>]) -> ErrorStatistics {
     let errors: Vec<f64> = errors(evaluated).into_iter().flatten().collect();
-    ErrorStatistics::of(&errors)
+    ErrorStatistics::from_errors(&errors)
 }

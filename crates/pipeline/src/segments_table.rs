@@ -232,14 +232,14 @@ impl Places {
             .into_iter()
             .chain(REQUIRED.iter().map(|(name, _, _)| *name))
         {
-            if places.of(name).is_none() {
+            if places.index_of(name).is_none() {
                 return Err(SegmentsTableError::MissingColumn { column: name });
             }
         }
         Ok(places)
     }
 
-    fn of(&self, name: &str) -> Option<usize> {
+    fn index_of(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|known| known == name)
     }
 }
@@ -252,7 +252,7 @@ struct Row<'a> {
 impl Row<'_> {
     fn text(&self, name: &str) -> Result<&str, SegmentsTableError> {
         self.places
-            .of(name)
+            .index_of(name)
             .and_then(|place| self.record.get(place))
             .ok_or_else(|| self.wrong(name, "nothing", "a field"))
     }
@@ -280,7 +280,7 @@ impl Row<'_> {
     }
 
     fn optional(&self, name: &str) -> Result<Option<f64>, SegmentsTableError> {
-        let Some(place) = self.places.of(name) else {
+        let Some(place) = self.places.index_of(name) else {
             return Ok(None);
         };
         match self.record.get(place) {

@@ -24,7 +24,7 @@ pub struct ErrorStatistics {
 
 impl ErrorStatistics {
     /// Statistics of errors, summed in the order given.
-    pub fn of(errors_percent: &[f64]) -> Self {
+    pub fn from_errors(errors_percent: &[f64]) -> Self {
         let n = errors_percent.len();
         if n == 0 {
             return Self { mean: None, std: None, max_abs: None, n };
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn hand_computed() {
         // Mean of 1, 2, 6 is 3; squares 4 + 1 + 9 = 14; 14 / 2 = 7.
-        let statistics = ErrorStatistics::of(&[1.0, 2.0, 6.0]);
+        let statistics = ErrorStatistics::from_errors(&[1.0, 2.0, 6.0]);
         assert_eq!(statistics.mean, Some(3.0));
         assert!((statistics.std.unwrap() - 7.0_f64.sqrt()).abs() < 1e-15);
         assert_eq!(statistics.max_abs, Some(6.0));
@@ -88,16 +88,16 @@ mod tests {
 
     #[test]
     fn too_few_say_nothing() {
-        assert_eq!(ErrorStatistics::of(&[]).mean, None);
-        let one = ErrorStatistics::of(&[-2.0]);
+        assert_eq!(ErrorStatistics::from_errors(&[]).mean, None);
+        let one = ErrorStatistics::from_errors(&[-2.0]);
         assert_eq!((one.mean, one.std, one.max_abs), (Some(-2.0), None, Some(2.0)));
     }
 
     #[test]
     fn an_interval_by_flight() {
         // Flights of equal length: the t interval of their means. Means 1, 2, 6: s = √7, t(0.975, 2) = 4.302653 (table).
-        let flights =
-            [[0.5, 1.5], [2.0, 2.0], [5.0, 7.0]].map(|errors| ErrorStatistics::of(&errors));
+        let flights = [[0.5, 1.5], [2.0, 2.0], [5.0, 7.0]]
+            .map(|errors| ErrorStatistics::from_errors(&errors));
         let half = mean_half_width95_by_flight(&flights).unwrap();
         assert!((half - 4.302_653 * (7.0_f64 / 3.0).sqrt()).abs() < 1e-5, "{half}");
         assert_eq!(mean_half_width95_by_flight(&flights[..1]), None);

@@ -38,7 +38,7 @@ fn changed(kinds: &[&str]) -> TailDocument {
         segments.extend(flight);
     }
     let model = model();
-    let deviations = TailDeviations::of(&model, &segments, BeforeLearning::LeaveOut).unwrap();
+    let deviations = TailDeviations::new(&model, &segments, BeforeLearning::LeaveOut).unwrap();
     let tail = segments[0].identity.tail.clone();
     let time = deviations.flights[30].start - jiff::SignedDuration::from_hours(1);
     let event = |kind: &&str| Event {

@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
         folder: &folder,
         source: &source,
         on_one_page: all.len() <= page::TAILS_ON_ONE_PAGE,
-        anchors: page::Anchors::of(all.iter().map(String::as_str)),
+        anchors: page::Anchors::new(all.iter().map(String::as_str)),
     };
     let mut outcomes = learn_all(&run, tails, progress)?;
     // The summary covers every tail that the folder holds, also those without a report in this run.
@@ -112,7 +112,7 @@ fn choose<'a>(
         let mut start = None;
         let mut kept = Vec::with_capacity(heads.len());
         for head in heads {
-            match starts.of(&tail, &head.aircraft_type) {
+            match starts.start(&tail, &head.aircraft_type) {
                 Ok(found) => {
                     start.get_or_insert(found);
                     kept.push(head);

@@ -130,7 +130,7 @@ fn judge(
         let _ = writeln!(
             text,
             "  {name:<14} {}{}",
-            in_words(&ErrorStatistics::of(&errors)),
+            in_words(&ErrorStatistics::from_errors(&errors)),
             match outcome.refused.len() {
                 0 => String::new(),
                 outside => format!("; {outside} outside the table"),
@@ -234,7 +234,7 @@ fn unseen_errors(
         table_only: false,
     };
     let summary = evaluate::evaluate(&arguments, Progress::Hidden)?.summary;
-    Ok(summary.tails.first().map_or((ErrorStatistics::of(&[]), None), |tail| {
+    Ok(summary.tails.first().map_or((ErrorStatistics::from_errors(&[]), None), |tail| {
         (tail.fuel_flow_error_percent.before, tail.interval95_coverage)
     }))
 }

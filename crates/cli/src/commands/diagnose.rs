@@ -223,7 +223,7 @@ fn diagnose_group(
         }
     }
     let figures =
-        DiagnosisFigures::of(group.model, &input, &diagnosis).map_err(|error| wrong(&error))?;
+        DiagnosisFigures::new(group.model, &input, &diagnosis).map_err(|error| wrong(&error))?;
     let compared = compared(group);
     Ok((DiagnosedTail { tail: group.name.clone(), diagnosis, compared, run_notes }, figures))
 }

@@ -86,7 +86,7 @@ pub(crate) fn evaluate(
     let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
     let tails: Vec<EvaluatedTail> = by_tail
         .into_iter()
-        .map(|(tail, (model, flights))| EvaluatedTail::of(tail, model, flights, predicts))
+        .map(|(tail, (model, flights))| EvaluatedTail::new(tail, model, flights, predicts))
         .collect();
     let summary = Summary {
         schema: SCHEMA,
@@ -109,7 +109,7 @@ struct EvaluatedTail {
 }
 
 impl EvaluatedTail {
-    fn of(
+    fn new(
         tail: String,
         model: ModelFile,
         mut flights: Vec<FlightRead>,

@@ -69,7 +69,7 @@ pub(crate) fn run(
     warn_of_events(&events, &documents);
     if let Some(causes) = &causes {
         for alert in &mut alerts {
-            alert.likely_causes = causes.of(&alert.tail);
+            alert.likely_causes = causes.of_tail(&alert.tail);
         }
     }
     let document = MonitorDocument::new(documents, alerts);
@@ -118,7 +118,7 @@ fn monitor_tail(
     options: &MonitorOptions,
 ) -> Result<Option<(TailDocument, Vec<AlertDocument>)>, Failure> {
     let stored::StoredTail { tail, model, segments } = stored::read(folder, path)?;
-    let deviations = TailDeviations::of(&model, &segments, before_learning)
+    let deviations = TailDeviations::new(&model, &segments, before_learning)
         .map_err(|error| Failure::bad_file(path, error))?;
     drop(segments);
     let aircraft_type = model.initial.aircraft().type_code();

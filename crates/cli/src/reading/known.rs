@@ -36,7 +36,7 @@ pub(crate) enum Relation {
 
 impl KnownFlights {
     /// Known are these flights.
-    pub(crate) fn of(flights: Vec<KnownFlight>) -> Self {
+    pub(crate) fn new(flights: Vec<KnownFlight>) -> Self {
         let mut known = Self::default();
         for flight in flights {
             known.push(flight);

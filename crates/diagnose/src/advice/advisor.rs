@@ -24,14 +24,14 @@ impl<'a> Advisor<'a> {
         found: &[usize],
         likely: &[usize],
     ) -> Self {
-        let Problem { stacked, model, library } = problem;
+        let Problem { system, model, library } = problem;
         let confused = classes.iter().filter(|class| class.len() > 1).flatten();
         let columns = confused
             .chain(likely)
             .flat_map(|&effect| library.effects[effect].all_columns())
             .chain(found.iter().copied())
             .collect();
-        let conditions = Conditions::of(stacked, model, library, distances, columns);
+        let conditions = Conditions::from_flights(system, model, library, distances, columns);
         Self { distances, library, conditions }
     }
 

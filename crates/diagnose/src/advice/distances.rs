@@ -23,7 +23,7 @@ pub(crate) struct Distances {
 
 impl Distances {
     /// `leading` has one column an effect; see [`leading_columns`].
-    pub(crate) fn of(gram: &Gram, design: &Design<'_>, leading: Vec<usize>) -> Option<Self> {
+    pub(crate) fn from_gram(gram: &Gram, design: &Design<'_>, leading: Vec<usize>) -> Option<Self> {
         let kept: Vec<usize> = (0..design.effects).collect();
         let out: Vec<usize> = design.nuisance.clone().collect();
         let plain = integrate_out(&gram.matrix, &kept, &out, &vec![1.0; out.len()])?;
@@ -128,7 +128,9 @@ pub(crate) fn leading_columns(library: &Library, models: &[(ScoredHypothesis, f6
     let mut found = vec![false; leading.len()];
     // Most probable first.
     for (scored, _) in models {
-        if let ([column], None) = (&scored.model.columns[..], scored.model.flight_scatter_percent) {
+        if let ([column], None) =
+            (&scored.hypothesis.columns[..], scored.hypothesis.flight_scatter_percent)
+        {
             let effect = library.columns[*column].effect;
             if !core::mem::replace(&mut found[effect], true) {
                 leading[effect] = *column;

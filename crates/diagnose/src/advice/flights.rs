@@ -69,8 +69,8 @@ pub(crate) struct Advised {
 
 impl Conditions {
     /// For these columns of the library; `None` where there is nothing to tell apart or nothing else can be flown.
-    pub(crate) fn of(
-        stacked: &WhitenedSystem<'_>,
+    pub(crate) fn from_flights(
+        system: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         library: &Library,
         distances: &Distances,
@@ -81,11 +81,11 @@ impl Conditions {
         if columns.len() < 2 {
             return None;
         }
-        let gram = stacked.gram(None);
-        let nuisance = stacked.design.nuisance.clone();
-        let known = Known::of(&gram.matrix, &columns, nuisance.clone())?;
-        let envelope = Envelope::of(stacked.data, model)?;
-        let design = stacked.design.of_nuisance(columns.len());
+        let gram = system.gram(None);
+        let nuisance = system.design.nuisance.clone();
+        let known = Known::from_gram(&gram.matrix, &columns, nuisance.clone())?;
+        let envelope = Envelope::from_flights(system.data, model)?;
+        let design = system.design.of_nuisance(columns.len());
         let few = Library {
             effects: library.effects.clone(),
             columns: columns.iter().map(|&column| library.columns[column]).collect::<Vec<Column>>(),
@@ -95,11 +95,11 @@ impl Conditions {
             agnostic_spikes: library.agnostic_spikes,
             spikes_of_right_table: library.spikes_of_right_table,
         };
-        let weight = stacked.mean_weight();
+        let weight = system.mean_weight();
         let mut steady: Vec<FlightInformation> = Vec::new();
         let mut sweeps: Vec<(Sweep, FlightInformation)> = Vec::new();
         for flight in test_flights(&envelope, model) {
-            let planned = stacked.data.planned(model, &few, &flight.points, envelope.recorded);
+            let planned = system.data.planned(model, &few, &flight.points, envelope.recorded);
             let Some(planned) = planned else { continue };
             let rows = design.whitened(&planned, &planned.flights[0], None);
             let rows = faer::Scale(weight) * rows;
@@ -111,7 +111,7 @@ impl Conditions {
         }
         let now = distances.gram_of(&columns);
         let mut ordinary =
-            vec![more_of_the_same(&gram.matrix, &columns, nuisance, stacked.data.flights.len())?];
+            vec![more_of_the_same(&gram.matrix, &columns, nuisance, system.data.flights.len())?];
         for flight in &steady {
             ordinary.push(&now + added(&[(flight, ADVISED_FLIGHTS as f64)])?);
         }

@@ -11,7 +11,7 @@ use crate::hypotheses::backgrounds::Background;
 use crate::library::Library;
 use crate::math::mixture::{Evidence, Factored, Mixture, ln_sum};
 use crate::priors::{
-    EXPECTED_SIGN, HEATING_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
+    EXPECTED_SIGN, FLIGHT_SCATTER_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
 };
 
 /// What a hypothesis is made of.
@@ -26,7 +26,7 @@ pub(crate) struct Hypothesis {
 /// A hypothesis with its score.
 #[derive(Clone, Debug)]
 pub(crate) struct ScoredHypothesis {
-    pub(crate) model: Hypothesis,
+    pub(crate) hypothesis: Hypothesis,
     /// ln of evidence times prior, summed over backgrounds.
     pub(crate) ln_weight: f64,
     /// Posterior means and standard deviations of the sizes.
@@ -126,13 +126,14 @@ impl Scorer {
         0.5 * (NOISE_FREEDOM + self.rows)
     }
 
-    /// ln prior of a model: of its number of effects, of which ones, of their hidden parameters. Over all models the priors
+    /// ln prior of a hypothesis: of its number of effects, of which ones, of their hidden parameters. Over all models the priors
     /// sum to one.
-    pub(crate) fn ln_prior(&self, model: &Hypothesis) -> f64 {
-        if model.columns.iter().any(|&column| self.held[self.effect_of[column]]) {
+    pub(crate) fn ln_prior(&self, hypothesis: &Hypothesis) -> f64 {
+        if hypothesis.columns.iter().any(|&column| self.held[self.effect_of[column]]) {
             return f64::NEG_INFINITY;
         }
-        let size = model.columns.len() + usize::from(model.flight_scatter_percent.is_some());
+        let size =
+            hypothesis.columns.len() + usize::from(hypothesis.flight_scatter_percent.is_some());
         let count = self.effects as f64;
         let choices = match size {
             0 => 1.0,
@@ -140,9 +141,9 @@ impl Scorer {
             _ => 0.5 * count * (count - 1.0),
         };
         let hidden: f64 =
-            model.columns.iter().map(|&column| self.ln_columns[self.effect_of[column]]).sum();
-        let heating = if model.flight_scatter_percent.is_some() {
-            (HEATING_SIZES_PERCENT.len() as f64).ln()
+            hypothesis.columns.iter().map(|&column| self.ln_columns[self.effect_of[column]]).sum();
+        let heating = if hypothesis.flight_scatter_percent.is_some() {
+            (FLIGHT_SCATTER_SIZES_PERCENT.len() as f64).ln()
         } else {
             0.0
         };
@@ -292,7 +293,7 @@ mod tests {
             .into_iter()
             .map(|columns| mass(columns, None))
             .sum();
-        for percent in HEATING_SIZES_PERCENT {
+        for percent in FLIGHT_SCATTER_SIZES_PERCENT {
             for columns in [&[][..], &[0], &[1], &[2]] {
                 total += mass(columns, Some(percent));
             }

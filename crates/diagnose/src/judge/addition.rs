@@ -12,7 +12,7 @@ use crate::thresholds::SCATTER_SHARE;
 impl Addition {
     /// The effects `named` with the sizes that they have in the most probable model of exactly these; `None` where the
     /// search has no such model.
-    pub(crate) fn of(
+    pub(crate) fn named(
         analysis: &Analysis,
         library: &Library,
         named: &[EffectId],
@@ -23,7 +23,7 @@ impl Addition {
             found.len() == named.len() && named.iter().all(|id| found.contains(id))
         })?;
         let mut effects: Vec<AddedEffect> = scored
-            .model
+            .hypothesis
             .columns
             .iter()
             .enumerate()
@@ -34,7 +34,7 @@ impl Addition {
                 hidden: library.columns[column].hidden,
             })
             .collect();
-        effects.extend(scored.model.flight_scatter_percent.map(|percent| AddedEffect {
+        effects.extend(scored.hypothesis.flight_scatter_percent.map(|percent| AddedEffect {
             effect: EffectId::FuelHeatingValue,
             size: percent,
             standard_deviation: SCATTER_SHARE * percent,
@@ -47,9 +47,9 @@ impl Addition {
 }
 
 fn effects_of(scored: &ScoredHypothesis, library: &Library) -> Vec<EffectId> {
-    let columns = scored.model.columns.iter();
+    let columns = scored.hypothesis.columns.iter();
     let mut effects: Vec<EffectId> =
         columns.map(|&column| library.effects[library.columns[column].effect].id).collect();
-    effects.extend(scored.model.flight_scatter_percent.map(|_| EffectId::FuelHeatingValue));
+    effects.extend(scored.hypothesis.flight_scatter_percent.map(|_| EffectId::FuelHeatingValue));
     effects
 }

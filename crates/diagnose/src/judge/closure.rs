@@ -98,21 +98,22 @@ struct Choice {
 
 fn chosen(problem: Problem<'_>, fold: usize) -> Option<Choice> {
     let analysis = analyse(problem, Some(fold))?;
-    let Problem { stacked, library, .. } = problem;
+    let Problem { system, library, .. } = problem;
     let off: f64 = analysis.models.iter().map(|(scored, p)| p * scored.table_share).sum();
-    if stacked.is_book() && off > MORE_PROBABLE_THAN_NOT {
+    if system.is_book() && off > MORE_PROBABLE_THAN_NOT {
         // The table is off for sure; what acts beside it is what the leading hypothesis names, be it nothing.
         let leading = analysis.models.iter().map(|(scored, _)| scored);
-        let best = leading.into_iter().find(|scored| scored.model.flight_scatter_percent.is_none());
-        let named = best.map_or(&[][..], |best| &best.model.columns);
-        let gram = stacked.gram(Some(fold));
-        let table = FittedTable::new(stacked, library, gram, (&analysis, named))?;
+        let best =
+            leading.into_iter().find(|scored| scored.hypothesis.flight_scatter_percent.is_none());
+        let named = best.map_or(&[][..], |best| &best.hypothesis.columns);
+        let gram = system.gram(Some(fold));
+        let table = FittedTable::new(system, library, gram, (&analysis, named))?;
         let (columns, sizes) = (table.columns.clone(), table.sizes.clone());
         return Some(Choice { columns, sizes, table: Some(table) });
     }
     let Analysis { scorer, backgrounds, space, models, clean, .. } = analysis;
     // The verdict's own rule: where nothing at all is improbable, the best named set, be it no more probable than none.
-    let named = models.iter().map(|(scored, _)| scored).find(|s| !s.model.columns.is_empty());
+    let named = models.iter().map(|(scored, _)| scored).find(|s| !s.hypothesis.columns.is_empty());
     let Some(best) = named.filter(|_| clean <= CLEAN_PROBABILITY) else {
         return Some(Choice::default());
     };
@@ -120,7 +121,7 @@ fn chosen(problem: Problem<'_>, fold: usize) -> Option<Choice> {
     let mut found = refine(problem, &scorer, &space, &[(best, at)], Some(fold));
     let found = found.pop().flatten();
     let sizes = found.map_or_else(|| best.sizes.clone(), |found| found.scored.sizes);
-    Some(Choice { columns: best.model.columns.clone(), sizes, table: None })
+    Some(Choice { columns: best.hypothesis.columns.clone(), sizes, table: None })
 }
 
 fn shrinkage<'c>(
@@ -129,8 +130,8 @@ fn shrinkage<'c>(
     seed: u64,
     choice: impl Fn(usize) -> &'c Choice,
 ) -> Shrinkage {
-    let Problem { stacked, model, library } = problem;
-    let data = stacked.data;
+    let Problem { system, model, library } = problem;
+    let data = system.data;
     let mut found = Shrinkage {
         before: vec![],
         after: vec![],
@@ -148,7 +149,7 @@ fn shrinkage<'c>(
             let closed = model.response_at(&row.known, &trial).map_or(0.0, |with| {
                 data.predictor.predict(&with)[0] - data.predictor.predict(&row.response)[0]
             });
-            let of_table = table.as_ref().map_or(0.0, |table| table.drag_at(stacked, row));
+            let of_table = table.as_ref().map_or(0.0, |table| table.drag_at(system, row));
             let closed = closed + of_table * row.drag_over_thrust;
             before += gap * gap;
             after += (gap - closed) * (gap - closed);

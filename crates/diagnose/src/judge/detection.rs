@@ -15,7 +15,7 @@ use crate::thresholds::{
 };
 
 /// What a decision is made from.
-pub(crate) struct Evidence<'a> {
+pub(crate) struct DetectionInput<'a> {
     pub(crate) analysis: &'a Analysis,
     pub(crate) distances: &'a Distances,
     /// Causes, the most probable first.
@@ -43,12 +43,12 @@ pub(crate) struct Detection {
 /// Decides. The probability of a cause outside takes what names lose.
 pub(crate) fn detect(
     problem: Problem<'_>,
-    evidence: &Evidence<'_>,
+    input: &DetectionInput<'_>,
     outside: &mut Outside,
 ) -> Detection {
-    let Problem { stacked, library, .. } = problem;
-    let Evidence { distances, posteriors, gap, own, unseen, .. } = *evidence;
-    let table = TableFinding::of(stacked, evidence.analysis, library)
+    let Problem { system, library, .. } = problem;
+    let DetectionInput { distances, posteriors, gap, own, unseen, .. } = *input;
+    let table = TableFinding::fit(system, input.analysis, library)
         .map(|table| borne_out(table, unseen))
         .filter(|table| table.probability > MORE_PROBABLE_THAN_NOT);
     let smooth_term = outside.probability;
@@ -60,23 +60,23 @@ pub(crate) fn detect(
             closed(unseen, own).filter(|_| !is_scatter),
         );
     let judged = unseen.unwrap_or(own);
-    let leaves_most = judged.after() > LARGEST_REST * judged.floor() / evidence.noise_scale;
+    let leaves_most = judged.after() > LARGEST_REST * judged.floor() / input.noise_scale;
     if table.is_none() && (leaves_most || may_close_nothing(unseen.filter(|_| !is_scatter))) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
     }
     // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
-    let something = evidence.exceeds_uncertainty
+    let something = input.exceeds_uncertainty
         || smooth_term > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
-    let taught = stacked.data.predictor.baseline.is_some();
+    let taught = system.data.predictor.baseline.is_some();
     // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights.
-    let own_error = taught && !evidence.exceeds_uncertainty && !closes_something(unseen);
+    let own_error = taught && !input.exceeds_uncertainty && !closes_something(unseen);
     let stands_out = something
         && !own_error
-        && is_large(stacked, gap, top)
+        && is_large(system, gap, top)
         && !is_vague(gap, outside, top, taught && makes_worse(unseen));
-    let detected = evidence.is_real && (table.is_some() || stands_out);
+    let detected = input.is_real && (table.is_some() || stands_out);
     Detection { detected, table: table.filter(|_| detected), smooth_term }
 }
 

@@ -28,26 +28,26 @@ pub(crate) fn exceeds_uncertainty(gap: &Gap, unknown: f64) -> bool {
 }
 
 /// Whether what is explained, in fuel flow or between engines, or what exceeds the floor is large enough to be a gap at all.
-pub(crate) fn is_large(stacked: &WhitenedSystem<'_>, gap: &Gap, top: Option<&Posterior>) -> bool {
+pub(crate) fn is_large(system: &WhitenedSystem<'_>, gap: &Gap, top: Option<&Posterior>) -> bool {
     let excess = gap.rms_ci95[0].powi(2) - gap.noise_floor_rms_percent.powi(2);
-    let channels = 1 + stacked.data.channels.contrasts;
+    let channels = 1 + system.data.channels.contrasts;
     let explained = top.map_or(0.0, |top| {
-        let scored = &top.model;
-        let scatter = scored.model.flight_scatter_percent.unwrap_or(0.0);
+        let scored = &top.scored;
+        let scatter = scored.hypothesis.flight_scatter_percent.unwrap_or(0.0);
         let mut largest = scatter * scatter;
         for channel in 0..channels {
-            let square: f64 = stacked
+            let square: f64 = system
                 .data
                 .segments
                 .iter()
                 .map(|row| {
-                    let columns = scored.model.columns.iter().zip(&scored.sizes);
+                    let columns = scored.hypothesis.columns.iter().zip(&scored.sizes);
                     let of =
                         |(&column, size): (&usize, &f64)| size * row.signatures[column][channel];
                     columns.map(of).sum::<f64>().powi(2)
                 })
                 .sum();
-            largest = largest.max(1e4 * square / stacked.data.segments.len() as f64);
+            largest = largest.max(1e4 * square / system.data.segments.len() as f64);
         }
         largest
     });
@@ -55,8 +55,8 @@ pub(crate) fn is_large(stacked: &WhitenedSystem<'_>, gap: &Gap, top: Option<&Pos
 }
 
 /// Mean square of ln fuel flow that the table, the chords of its cells and a taught remainder leave open.
-pub(crate) fn unknown_square(stacked: &WhitenedSystem<'_>) -> f64 {
-    let (data, design) = (stacked.data, stacked.design);
+pub(crate) fn unknown_square(system: &WhitenedSystem<'_>) -> f64 {
+    let (data, design) = (system.data, system.design);
     let sum: f64 = data
         .flights
         .iter()
@@ -91,7 +91,7 @@ pub(crate) fn is_vague(
 pub(crate) fn noise_scale(analysis: &Analysis, best: &ScoredHypothesis, rows: usize) -> f64 {
     let at = &analysis.backgrounds[best.background.min(analysis.backgrounds.len() - 1)];
     let explained: f64 = best
-        .model
+        .hypothesis
         .columns
         .iter()
         .zip(&best.sizes)
@@ -102,13 +102,13 @@ pub(crate) fn noise_scale(analysis: &Analysis, best: &ScoredHypothesis, rows: us
 }
 
 pub(crate) fn gap_of(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     own: &Shrinkage,
     scale: f64,
 ) -> Gap {
-    let count = stacked.data.segments.len() as f64;
-    let mean = stacked.data.segments.iter().map(|row| row.residual[0]).sum::<f64>() / count;
+    let count = system.data.segments.len() as f64;
+    let mean = system.data.segments.iter().map(|row| row.residual[0]).sum::<f64>() / count;
     let square = own.before();
     // Interval of the mean square by flight, then its root.
     let flights = own.before.len() as f64;

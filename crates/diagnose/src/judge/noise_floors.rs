@@ -16,11 +16,11 @@ use crate::thresholds::{
 /// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r²,   e what the best model leaves                      [diagnosis.30]
 /// ```
 pub(crate) fn replicate_floor(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     own: &Shrinkage,
     noise_scale: f64,
 ) -> Option<f64> {
-    let data = stacked.data;
+    let data = system.data;
     let (mut sum, mut pairs) = (0.0, 0_usize);
     for flight in &data.flights {
         for index in flight.segments.clone().skip(1) {
@@ -46,8 +46,8 @@ pub(crate) fn replicate_floor(
 
 /// Mean square that a flexible model (all effects, smooth functions of all variables) leaves on folds of flights that it was
 /// not fitted to: an upper bound of the noise, by as much as it cannot learn. `None` where it cannot be fitted.
-pub(crate) fn held_out_floor(stacked: &WhitenedSystem<'_>, library: &Library) -> Option<f64> {
-    let design = stacked.design;
+pub(crate) fn held_out_floor(system: &WhitenedSystem<'_>, library: &Library) -> Option<f64> {
+    let design = system.design;
     let (columns, deviations): (Vec<usize>, Vec<f64>) = library
         .effects
         .iter()
@@ -57,13 +57,13 @@ pub(crate) fn held_out_floor(stacked: &WhitenedSystem<'_>, library: &Library) ->
         .unzip();
     let mut sum = 0.0;
     for fold in 0..CLOSURE_FOLDS {
-        let gram = stacked.gram(Some(fold));
+        let gram = system.gram(Some(fold));
         let sizes = gram.fit(&columns, &deviations, design.residual())?;
-        for (index, flight) in stacked.data.flights.iter().enumerate() {
+        for (index, flight) in system.data.flights.iter().enumerate() {
             if fold_of(index) != fold {
                 continue;
             }
-            let rows = design.fuel_flow(stacked.data, flight);
+            let rows = design.fuel_flow(system.data, flight);
             for row in 0..rows.nrows() {
                 let fitted: f64 = columns
                     .iter()
@@ -74,5 +74,5 @@ pub(crate) fn held_out_floor(stacked: &WhitenedSystem<'_>, library: &Library) ->
             }
         }
     }
-    Some(sum / stacked.data.segments.len() as f64)
+    Some(sum / system.data.segments.len() as f64)
 }

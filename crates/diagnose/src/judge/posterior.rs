@@ -27,7 +27,7 @@ pub(crate) struct Posterior {
     /// The same without the prior sizes of effects.
     pub(crate) flat: f64,
     /// The most probable model in which it is the larger effect.
-    pub(crate) model: ScoredHypothesis,
+    pub(crate) scored: ScoredHypothesis,
     /// Its place in that model.
     pub(crate) place: usize,
 }
@@ -36,7 +36,7 @@ impl Posterior {
     /// Its column of the library and the size there; `None` for scatter between flights.
     pub(crate) fn column_and_size(&self) -> Option<(usize, f64)> {
         self.effect?;
-        Some((self.model.model.columns[self.place], self.model.sizes[self.place]))
+        Some((self.scored.hypothesis.columns[self.place], self.scored.sizes[self.place]))
     }
 
     /// Effects that these flights cannot tell from it, itself first; `None` for scatter between flights.
@@ -48,14 +48,14 @@ impl Posterior {
 
 /// Probability of each effect to be the larger one of what acts, over models.
 pub(crate) fn dominant(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     library: &Library,
 ) -> Vec<Posterior> {
-    let count = stacked.data.segments.len() as f64;
+    let count = system.data.segments.len() as f64;
     let mean_squares: Vec<f64> = (0..library.columns.len())
         .map(|column| {
-            stacked.data.segments.iter().map(|row| row.signatures[column][0].powi(2)).sum::<f64>()
+            system.data.segments.iter().map(|row| row.signatures[column][0].powi(2)).sum::<f64>()
                 / count
         })
         .collect();
@@ -64,7 +64,7 @@ pub(crate) fn dominant(
     let flats = flat_probabilities(analysis, &mean_squares);
     for ((scored, probability), flat) in analysis.models.iter().zip(flats) {
         let mut shares: Vec<(f64, Option<usize>, usize)> = scored
-            .model
+            .hypothesis
             .columns
             .iter()
             .zip(&scored.sizes)
@@ -73,7 +73,7 @@ pub(crate) fn dominant(
                 (size * size * mean_squares[column], Some(library.columns[column].effect), place)
             })
             .collect();
-        if let Some(percent) = scored.model.flight_scatter_percent {
+        if let Some(percent) = scored.hypothesis.flight_scatter_percent {
             shares.push(((percent / 100.0).powi(2), None, 0));
         }
         let Some(&(_, effect, place)) = shares.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
@@ -90,7 +90,7 @@ pub(crate) fn dominant(
                     effect,
                     probability: *probability,
                     flat,
-                    model: scored.clone(),
+                    scored: scored.clone(),
                     place,
                 });
             }
@@ -105,7 +105,7 @@ pub(crate) fn dominant(
 /// sizes: each weight times the ratio of the two densities at the estimate (Laplace's approximation).
 fn flat_probabilities(analysis: &Analysis, mean_squares: &[f64]) -> Vec<f64> {
     let ln_ratio = |scored: &ScoredHypothesis| -> f64 {
-        let columns = scored.model.columns.iter().zip(&scored.sizes);
+        let columns = scored.hypothesis.columns.iter().zip(&scored.sizes);
         columns
             .map(|(&column, &size)| {
                 let ln_flat =
@@ -127,10 +127,10 @@ fn flat_probabilities(analysis: &Analysis, mean_squares: &[f64]) -> Vec<f64> {
 pub(crate) fn presence(analysis: &Analysis, library: &Library) -> Vec<f64> {
     let mut present = vec![0.0; library.effects.len() + 1];
     for (scored, probability) in &analysis.models {
-        for &column in &scored.model.columns {
+        for &column in &scored.hypothesis.columns {
             present[library.columns[column].effect] += probability;
         }
-        if scored.model.flight_scatter_percent.is_some() {
+        if scored.hypothesis.flight_scatter_percent.is_some() {
             present[library.effects.len()] += probability;
         }
     }
@@ -164,7 +164,7 @@ pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> 
             break;
         }
         sum += posterior.probability;
-        let is_best = table.is_none() && posterior.model.model == best.model;
+        let is_best = table.is_none() && posterior.scored.hypothesis == best.hypothesis;
         causes.push(Cause {
             effect: id_of(library, posterior.effect),
             probability: posterior.probability * inside,
@@ -206,11 +206,11 @@ pub(crate) fn closed_unseen(unseen: Option<&Shrinkage>) -> Option<Closure> {
 
 fn magnitude(posterior: &Posterior) -> Magnitude {
     if posterior.effect.is_none() {
-        let percent = posterior.model.model.flight_scatter_percent.unwrap_or(0.0);
+        let percent = posterior.scored.hypothesis.flight_scatter_percent.unwrap_or(0.0);
         return Magnitude { value: percent, ci95: SCATTER_INTERVAL.map(|factor| factor * percent) };
     }
-    let value = posterior.model.sizes[posterior.place];
-    let half = NORMAL_95 * posterior.model.deviations[posterior.place];
+    let value = posterior.scored.sizes[posterior.place];
+    let half = NORMAL_95 * posterior.scored.deviations[posterior.place];
     Magnitude { value, ci95: [value - half, value + half] }
 }
 

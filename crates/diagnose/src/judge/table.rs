@@ -23,19 +23,19 @@ pub(crate) struct TableFinding {
 
 impl TableFinding {
     /// `None` where the table is no guide's, or cannot be fitted.
-    pub(crate) fn of(
-        stacked: &WhitenedSystem<'_>,
+    pub(crate) fn fit(
+        system: &WhitenedSystem<'_>,
         analysis: &Analysis,
         library: &Library,
     ) -> Option<Self> {
-        if !stacked.is_book() {
+        if !system.is_book() {
             return None;
         }
         let probability: f64 =
             analysis.models.iter().map(|(scored, p)| p * scored.table_share).sum();
         let class = class(analysis, library);
-        let best = &analysis.models.first()?.0.model.columns;
-        let magnitude = magnitude(stacked, library, &beyond(library, &class, best))?;
+        let best = &analysis.models.first()?.0.hypothesis.columns;
+        let magnitude = magnitude(system, library, &beyond(library, &class, best))?;
         Some(Self { probability: probability.min(1.0), magnitude, class })
     }
 }
@@ -54,24 +54,24 @@ impl FittedTable {
     /// Fits a guide's table, and of these columns of the library those that no table can hold, to a Gram; `None` where the
     /// matrix is not positive definite.
     pub(crate) fn new(
-        stacked: &WhitenedSystem<'_>,
+        system: &WhitenedSystem<'_>,
         library: &Library,
         gram: &Gram,
         (analysis, named): (&Analysis, &[usize]),
     ) -> Option<Self> {
         let named = beyond(library, &class(analysis, library), named);
-        Self::of_columns(stacked, library, gram, &named)
+        Self::of_columns(system, library, gram, &named)
     }
 
     fn of_columns(
-        stacked: &WhitenedSystem<'_>,
+        system: &WhitenedSystem<'_>,
         library: &Library,
         gram: &Gram,
         named: &[usize],
     ) -> Option<Self> {
-        let (columns, deviations) = columns(stacked, library, named);
-        let solution = gram.fit(&columns, &deviations, stacked.design.residual())?;
-        let of_table = stacked.design.table_columns();
+        let (columns, deviations) = columns(system, library, named);
+        let solution = gram.fit(&columns, &deviations, system.design.residual())?;
+        let of_table = system.design.table_columns();
         let in_table = columns.iter().enumerate().filter(|(_, column)| of_table.contains(column));
         Some(Self {
             columns: named.to_vec(),
@@ -81,8 +81,8 @@ impl FittedTable {
     }
 
     /// By how much the table's drag is off at a segment, ln.
-    pub(crate) fn drag_at(&self, stacked: &WhitenedSystem<'_>, row: &SegmentRow) -> f64 {
-        let Some(table) = stacked.design.table() else { return 0.0 };
+    pub(crate) fn drag_at(&self, system: &WhitenedSystem<'_>, row: &SegmentRow) -> f64 {
+        let Some(table) = system.design.table() else { return 0.0 };
         let mut loadings = vec![0.0; table.rank()];
         table.write(&row.response, &mut loadings);
         loadings.iter().zip(&self.coefficients).map(|(loading, size)| loading * size).sum()
@@ -97,33 +97,29 @@ fn beyond(library: &Library, class: &[EffectId], columns: &[usize]) -> Vec<usize
 
 /// Columns of named effects, then of the nuisance, with their prior standard deviations.
 fn columns(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     library: &Library,
     named: &[usize],
 ) -> (Vec<usize>, Vec<f64>) {
     let wide =
         |column: &usize| FLEXIBLE_EFFECT * library.effects[library.columns[*column].effect].typical;
-    let nuisance = stacked.design.nuisance.clone().map(|column| (column, 1.0));
+    let nuisance = system.design.nuisance.clone().map(|column| (column, 1.0));
     named.iter().map(|column| (*column, wide(column))).chain(nuisance).unzip()
 }
 
 /// Root mean square of the table's error over what was flown, with its interval by linear propagation.
-fn magnitude(
-    stacked: &WhitenedSystem<'_>,
-    library: &Library,
-    named: &[usize],
-) -> Option<Magnitude> {
-    let table = stacked.design.table()?;
-    let gram = stacked.gram(None);
-    let fitted = FittedTable::of_columns(stacked, library, gram, named)?;
-    let segments = &stacked.data.segments;
+fn magnitude(system: &WhitenedSystem<'_>, library: &Library, named: &[usize]) -> Option<Magnitude> {
+    let table = system.design.table()?;
+    let gram = system.gram(None);
+    let fitted = FittedTable::of_columns(system, library, gram, named)?;
+    let segments = &system.data.segments;
     let count = segments.len() as f64;
     let mut square = 0.0;
     let mut slope = vec![0.0; table.rank()];
     let mut loadings = vec![0.0; table.rank()];
     for row in segments {
         table.write(&row.response, &mut loadings);
-        let error = fitted.drag_at(stacked, row);
+        let error = fitted.drag_at(system, row);
         square += error * error / count;
         for (slope, loading) in slope.iter_mut().zip(&loadings) {
             *slope += error * loading / count;
@@ -131,8 +127,8 @@ fn magnitude(
     }
     let rms = square.sqrt();
     // d rms/d coefficient = Σ error·loading/(n·rms); its variance by the posterior covariance of all that was fitted.
-    let (all, deviations) = columns(stacked, library, named);
-    let of_table = stacked.design.table_columns();
+    let (all, deviations) = columns(system, library, named);
+    let of_table = system.design.table_columns();
     let right: Vec<f64> = all
         .iter()
         .map(

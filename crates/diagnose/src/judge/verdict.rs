@@ -128,7 +128,7 @@ const LEVELS: [EffectId; 5] = [
 
 /// Effects that are zero at a reference and, in these flights, have nearly the same sign and size everywhere: their mean signature
 /// exceeds its standard deviation.
-pub(crate) fn level_like(stacked: &WhitenedSystem<'_>, library: &Library) -> Vec<EffectId> {
+pub(crate) fn level_like(system: &WhitenedSystem<'_>, library: &Library) -> Vec<EffectId> {
     const ZERO_AT_REFERENCE: [EffectId; 6] = [
         EffectId::ReynoldsNumber,
         EffectId::TrimDragCg,
@@ -137,7 +137,7 @@ pub(crate) fn level_like(stacked: &WhitenedSystem<'_>, library: &Library) -> Vec
         EffectId::TsfcMachExponent,
         EffectId::TsfcTemperatureExponent,
     ];
-    let segments = &stacked.data.segments;
+    let segments = &system.data.segments;
     let count = segments.len() as f64;
     let is_like = |effect: &&Testable| {
         let of = |row: &SegmentRow| row.signatures[effect.representative][0];
@@ -252,8 +252,8 @@ fn set_of(analysis: &Analysis, library: &Library, top: &Posterior) -> Vec<Effect
     let (best, probability) = &analysis.models[0];
     let mut set = vec![id_of(library, top.effect)];
     if *probability > MORE_PROBABLE_THAN_NOT {
-        let members = best.model.columns.iter().map(|&c| Some(library.columns[c].effect));
-        let scatter = best.model.flight_scatter_percent.map(|_| None);
+        let members = best.hypothesis.columns.iter().map(|&c| Some(library.columns[c].effect));
+        let scatter = best.hypothesis.flight_scatter_percent.map(|_| None);
         for member in members.chain(scatter) {
             let id = id_of(library, member);
             if !set.contains(&id) {

@@ -58,8 +58,8 @@ struct ModelErrorDraws {
 }
 
 impl ModelErrorDraws {
-    fn draw(stacked: &WhitenedSystem<'_>, source: &mut RandomStream, width: usize) -> Self {
-        let design = stacked.design;
+    fn draw(system: &WhitenedSystem<'_>, source: &mut RandomStream, width: usize) -> Self {
+        let design = system.design;
         let taught = design.baseline().map(|baseline| {
             let factor = baseline.factor();
             let unit = Rows::normal(source, factor.ncols(), width);
@@ -71,7 +71,7 @@ impl ModelErrorDraws {
             }
             rows
         });
-        let smooth_amplitude = stacked.clean_smooth_amplitude();
+        let smooth_amplitude = system.clean_smooth_amplitude();
         let smooth = (smooth_amplitude > 0.0).then(|| {
             let mut rows = Rows::normal(source, design.smooth_terms(), width);
             for number in &mut rows.numbers {
@@ -81,7 +81,7 @@ impl ModelErrorDraws {
         });
         let chords = Rows::normal(source, 2, width);
         // A guide's errors are the gap whose place is asked for.
-        let learnt = design.table().filter(|_| !stacked.is_book());
+        let learnt = design.table().filter(|_| !system.is_book());
         let nodes = learnt.map(|table| {
             let unit = Rows::normal(source, table.rank(), width);
             let nodes = table.grid().nodes();
@@ -101,13 +101,13 @@ impl ModelErrorDraws {
     /// Adds what the model does not know, at a segment, to fuel flow and contrasts.
     fn add_at(
         &self,
-        stacked: &WhitenedSystem<'_>,
+        system: &WhitenedSystem<'_>,
         row: &SegmentRow,
         chords: [f64; 2],
         terms: &mut Vec<f64>,
         into: &mut [Vec<f64>],
     ) {
-        let design = stacked.design;
+        let design = system.design;
         if let (Some(taught), Some(baseline)) = (&self.taught, design.baseline()) {
             let layout = baseline.layout();
             terms.resize(layout.remainder.len(), 0.0);
@@ -160,11 +160,11 @@ impl ModelErrorDraws {
 /// How far chords of the drag table may be off in fuel flow, relative, along lift coefficient and Mach number, at every
 /// segment. A learnt remainder has seen the same chords: only the part that its functions cannot follow counts
 /// (least squares).
-pub(crate) fn chords(stacked: &WhitenedSystem<'_>) -> Vec<[f64; 2]> {
-    let segments = &stacked.data.segments;
+pub(crate) fn chords(system: &WhitenedSystem<'_>) -> Vec<[f64; 2]> {
+    let segments = &system.data.segments;
     let mut chords: Vec<[f64; 2]> =
         segments.iter().map(|row| row.chords.map(|chord| chord * row.drag_over_thrust)).collect();
-    let Some(baseline) = stacked.design.baseline() else { return chords };
+    let Some(baseline) = system.design.baseline() else { return chords };
     let count = baseline.remainder_terms();
     let mut terms = vec![0.0; count];
     let mut normal = Mat::<f64>::zeros(count, count);
@@ -213,15 +213,15 @@ pub(crate) struct Drawing<'a> {
 ///
 /// k and s: [`NoiseLevel`]; L and u: \[diagnosis.14\]; N: the columns of what the model does not know.
 pub(crate) fn draw(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     drawing: &Drawing<'_>,
     source: &mut RandomStream,
     mut each: impl FnMut(usize, &[Vec<f64>]),
 ) {
     let Drawing { level, chords, width } = *drawing;
-    let data = stacked.data;
+    let data = system.data;
     let channels = 1 + data.channels.contrasts;
-    let model = ModelErrorDraws::draw(stacked, source, width);
+    let model = ModelErrorDraws::draw(system, source, width);
     let mut values = vec![vec![0.0; width]; channels];
     let mut own = vec![vec![0.0; width]; channels];
     let mut terms = Vec::new();
@@ -250,7 +250,7 @@ pub(crate) fn draw(
                 }
             }
             add(&mut values[0], common.row(rank), level.scatter);
-            model.add_at(stacked, row, chords[index], &mut terms, &mut values);
+            model.add_at(system, row, chords[index], &mut terms, &mut values);
             each(index, &values);
         }
     }

@@ -47,24 +47,24 @@ struct Gaps {
 /// # Errors of method
 /// Sizes are those of the place that stands out most, which is a little more than it is (winner's curse).
 pub(crate) fn find(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     noise_scale: f64,
     is_real: bool,
     seed: u64,
 ) -> Vec<Slice> {
-    let data = stacked.data;
-    let places = places(&data.segments, stacked.design.references());
+    let data = system.data;
+    let places = places(&data.segments, system.design.references());
     let engines = if data.channels.contrasts > 0 { data.channels.contrasts + 1 } else { 0 };
     let search = Search::new(&places, data.segments.len(), engines);
     let mut source = RandomStream::new(seed, NOISE_STREAM);
-    let level = level(stacked, analysis, noise_scale);
-    let (null, variances) = null_of(stacked, &search, level, &mut source);
+    let level = level(system, analysis, noise_scale);
+    let (null, variances) = null_of(system, &search, level, &mut source);
 
-    let as_recorded = gaps(stacked);
-    let noise = Noise::new(stacked, level);
-    let mut left = expected_errors_removed(stacked, &as_recorded);
-    let told = Told { stacked, places: &places, gaps: &as_recorded, variances: &variances };
+    let as_recorded = gaps(system);
+    let noise = Noise::new(system, level);
+    let mut left = expected_errors_removed(system, &as_recorded);
+    let told = Told { system, places: &places, gaps: &as_recorded, variances: &variances };
     let mut found = Vec::new();
     let mut everywhere = (1.0, None);
     while found.len() < MOST_REGIONS {
@@ -96,31 +96,31 @@ pub(crate) fn find(
 }
 
 /// Noise as the best model finds it, never less than announced.
-fn level(stacked: &WhitenedSystem<'_>, analysis: &Analysis, noise_scale: f64) -> NoiseLevel {
+fn level(system: &WhitenedSystem<'_>, analysis: &Analysis, noise_scale: f64) -> NoiseLevel {
     let best = analysis.models.first().map(|(scored, _)| scored);
     let background = best.and_then(|scored| analysis.backgrounds.get(scored.background));
-    let integrated = background.map_or(0.0, |at| stacked.scatter(at.level));
+    let integrated = background.map_or(0.0, |at| system.scatter(at.level));
     let heating =
-        best.and_then(|scored| scored.model.flight_scatter_percent).map_or(0.0, |p| p / 100.0);
+        best.and_then(|scored| scored.hypothesis.flight_scatter_percent).map_or(0.0, |p| p / 100.0);
     NoiseLevel { factor: noise_scale.max(1.0).sqrt(), scatter: integrated.max(heating) }
 }
 
 /// What noise alone does to every place; and the variance that it gives each segment's fuel flow.
 fn null_of(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     search: &Search<'_>,
     level: NoiseLevel,
     source: &mut RandomStream,
 ) -> (Null, Vec<f64>) {
-    let engines = stacked.data.channels.contrasts + 1;
-    let chords = chords(stacked);
+    let engines = system.data.channels.contrasts + 1;
+    let chords = chords(system);
     let mut squares = vec![0.0; search.regions.len()];
-    let mut variances = vec![0.0; stacked.data.segments.len()];
+    let mut variances = vec![0.0; system.data.segments.len()];
     let mut values = vec![vec![0.0; GROUP]; search.series().len()];
     let mut group = |source: &mut RandomStream| {
         let mut sums = search.sums(GROUP);
         draw(
-            stacked,
+            system,
             &Drawing { level, chords: &chords, width: GROUP },
             source,
             |segment, channels| {
@@ -174,8 +174,8 @@ fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
     apart
 }
 
-fn gaps(stacked: &WhitenedSystem<'_>) -> Gaps {
-    let data = stacked.data;
+fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
+    let data = system.data;
     let contrasts = data.channels.contrasts;
     let total = data.segments.iter().map(|row| row.residual[0]).collect();
     let mut apart = vec![
@@ -200,8 +200,8 @@ fn gaps(stacked: &WhitenedSystem<'_>) -> Gaps {
 /// ```text
 /// E(δ | V̇G) = (V̇G − mean)·σ_δ²/var(V̇G),   ∂ ln Wf/∂V̇G = m/F                                    [diagnosis.27]
 /// ```
-fn expected_errors_removed(stacked: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
-    let segments = &stacked.data.segments;
+fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
+    let segments = &system.data.segments;
     let count = segments.len() as f64;
     let mean = segments.iter().map(|row| row.point.acceleration_m_s2).sum::<f64>() / count;
     let variance =
@@ -215,7 +215,7 @@ fn expected_errors_removed(stacked: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
             let slope = row.point.mass_kg / row.response.net_thrust_n;
             *gap += slope * share * (row.point.acceleration_m_s2 - mean);
         }
-        *gap *= stacked.weights.as_ref().map_or(1.0, |weights| weights[index]);
+        *gap *= system.weights.as_ref().map_or(1.0, |weights| weights[index]);
     }
     left
 }
@@ -323,7 +323,7 @@ fn take_out(left: &mut Gaps, candidate: &BinnedRegion, members: &[usize], engine
 
 /// What describes a region.
 struct Told<'a> {
-    stacked: &'a WhitenedSystem<'a>,
+    system: &'a WhitenedSystem<'a>,
     places: &'a [BinnedVariable],
     gaps: &'a Gaps,
     variances: &'a [f64],
@@ -338,7 +338,7 @@ impl Told<'_> {
     fn by_flight(&self, members: &[usize], value: impl Fn(usize) -> f64) -> Vec<(f64, f64)> {
         let mut sums = Vec::new();
         let mut members = members.iter().copied().peekable();
-        for flight in &self.stacked.data.flights {
+        for flight in &self.system.data.flights {
             let (mut sum, mut count) = (0.0, 0.0);
             while let Some(segment) = members.next_if(|segment| *segment < flight.segments.end) {
                 sum += value(segment);

@@ -9,7 +9,7 @@ use crate::search::system::WhitenedSystem;
 /// Products aᵀC⁻¹b over all flights, C the noise of fuel flow: a segment's own, and what its flight has in common.
 pub(crate) struct Noise<'a> {
     flights: Vec<OfFlight>,
-    stacked: &'a WhitenedSystem<'a>,
+    system: &'a WhitenedSystem<'a>,
 }
 
 struct OfFlight {
@@ -28,8 +28,8 @@ struct Projected {
 }
 
 impl<'a> Noise<'a> {
-    pub(crate) fn new(stacked: &'a WhitenedSystem<'a>, level: NoiseLevel) -> Self {
-        let data = stacked.data;
+    pub(crate) fn new(system: &'a WhitenedSystem<'a>, level: NoiseLevel) -> Self {
+        let data = system.data;
         let flights = data
             .flights
             .iter()
@@ -59,11 +59,11 @@ impl<'a> Noise<'a> {
                 OfFlight { weights, loadings, inner: Cholesky::new(&inner) }
             })
             .collect();
-        Self { flights, stacked }
+        Self { flights, system }
     }
 
     fn projected(&self, values: &[f64]) -> Projected {
-        let ranges = self.stacked.data.flights.iter().map(|flight| flight.segments.clone());
+        let ranges = self.system.data.flights.iter().map(|flight| flight.segments.clone());
         let common = self
             .flights
             .iter()
@@ -88,7 +88,7 @@ impl<'a> Noise<'a> {
     fn product(&self, a: (&[f64], &Projected), b: (&[f64], &Projected)) -> f64 {
         let mut sum = 0.0;
         for (index, flight) in self.flights.iter().enumerate() {
-            let range = self.stacked.data.flights[index].segments.clone();
+            let range = self.system.data.flights[index].segments.clone();
             let own: f64 = flight
                 .weights
                 .iter()

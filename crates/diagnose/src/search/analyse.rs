@@ -10,7 +10,7 @@ use crate::library::Testable;
 use crate::math::eliminate::Reduced;
 use crate::math::gram::Gram;
 use crate::math::mixture::ln_sum;
-use crate::priors::HEATING_SIZES_PERCENT;
+use crate::priors::FLIGHT_SCATTER_SIZES_PERCENT;
 use crate::search::refine::{Relinearised, refine};
 use crate::search::singles::{Kinds, search_all, search_flight_scatter};
 use crate::search::system::{EliminatedGrams, Problem, SmoothTerms};
@@ -34,19 +34,19 @@ pub(crate) struct Analysis {
 
 /// Searches. `without` leaves a fold of flights out, and then no model is refined.
 pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<Analysis> {
-    let Problem { stacked, library, .. } = problem;
-    let gram = stacked.gram(without);
+    let Problem { system, library, .. } = problem;
+    let gram = system.gram(without);
     let smooth_terms = if without.is_none() { SmoothTerms::Kept } else { SmoothTerms::LeftOut };
-    let mut levels = Vec::with_capacity(stacked.levels.len());
-    let mut reduced = Vec::with_capacity(stacked.levels.len());
-    for &at in &stacked.levels {
-        let (level, left) = stacked.level(gram, at, without, smooth_terms)?;
+    let mut levels = Vec::with_capacity(system.levels.len());
+    let mut reduced = Vec::with_capacity(system.levels.len());
+    for &at in &system.levels {
+        let (level, left) = system.level(gram, at, without, smooth_terms)?;
         levels.push(level);
         reduced.push(left);
     }
-    let at_levels: Vec<(Level, &Reduced)> = stacked.levels.iter().copied().zip(&reduced).collect();
+    let at_levels: Vec<(Level, &Reduced)> = system.levels.iter().copied().zip(&reduced).collect();
     let space = EliminatedGrams {
-        beliefs: stacked.levels.iter().map(|level| level.table).collect(),
+        beliefs: system.levels.iter().map(|level| level.table).collect(),
         smoothed: smooth_out(problem, &at_levels),
         levels,
         reduced,
@@ -54,11 +54,8 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
     let all = backgrounds(&space.smoothed, library);
     let scorer = Scorer::new(library, gram.rows, held_by_table(problem, &space));
     let kinds = Kinds {
-        nothing: all.iter().map(|at| stacked.is_nothing(at)).collect(),
-        uncertain_table: all
-            .iter()
-            .map(|at| stacked.belief(at) == TableBelief::Uncertain)
-            .collect(),
+        nothing: all.iter().map(|at| system.is_nothing(at)).collect(),
+        uncertain_table: all.iter().map(|at| system.belief(at) == TableBelief::Uncertain).collect(),
     };
     let search = search_all(&scorer, &all, 2, &kinds);
     let mut models = search.models;
@@ -73,15 +70,17 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
     }
     let total = ln_sum(models.iter().map(|m| m.ln_weight));
     let mut heating = Vec::new();
-    for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| without.is_none()) {
+    for percent in FLIGHT_SCATTER_SIZES_PERCENT.into_iter().filter(|_| without.is_none()) {
         let scatter_alone = models.iter().any(|m| {
-            m.model.columns.is_empty()
-                && m.model.flight_scatter_percent.is_some_and(|p| p.total_cmp(&percent).is_eq())
+            m.hypothesis.columns.is_empty()
+                && m.hypothesis
+                    .flight_scatter_percent
+                    .is_some_and(|p| p.total_cmp(&percent).is_eq())
                 && (m.ln_weight - total).exp() > WORTH_REFINING
         });
         if scatter_alone {
             let (_, reduced) =
-                stacked.level(gram, scattered(percent), without, SmoothTerms::Kept)?;
+                system.level(gram, scattered(percent), without, SmoothTerms::Kept)?;
             heating.push((percent, reduced));
         }
     }
@@ -98,8 +97,8 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
 
 /// Every smooth discrepancy that is admitted, over Grams without nuisance.
 fn smooth_out(problem: Problem<'_>, levels: &[(Level, &Reduced)]) -> Vec<Smoothed> {
-    let stacked = problem.stacked;
-    smoothed(levels, stacked.design, |smooth_amplitude| stacked.admits(smooth_amplitude))
+    let system = problem.system;
+    smoothed(levels, system.design, |smooth_amplitude| system.admits(smooth_amplitude))
 }
 
 /// What only drag over lift coefficient and Mach number can be.
@@ -109,7 +108,7 @@ const DRAG_OF_A_TABLE: [EffectId; 4] =
 /// Of every effect, whether a guide's table that is off could hold it as well: it can be seen where the table is right, and no
 /// longer where it may be off. Nothing is held where the table is no guide's.
 fn held_by_table(problem: Problem<'_>, space: &EliminatedGrams) -> Vec<bool> {
-    let Problem { stacked, library, .. } = problem;
+    let Problem { system, library, .. } = problem;
     let at = |belief: TableBelief| {
         let level = space.beliefs.iter().position(|found| *found == belief)?;
         space.reduced.get(level)
@@ -121,7 +120,7 @@ fn held_by_table(problem: Problem<'_>, space: &EliminatedGrams) -> Vec<bool> {
         };
         let hidden =
             seen(TableBelief::Right) == Some(true) && seen(TableBelief::Uncertain) == Some(false);
-        stacked.is_book() && (hidden || DRAG_OF_A_TABLE.contains(&effect.id))
+        system.is_book() && (hidden || DRAG_OF_A_TABLE.contains(&effect.id))
     };
     library.effects.iter().map(of_effect).collect()
 }
@@ -138,14 +137,14 @@ fn with_flight_scatter(
     gram: &Gram,
     scorer: &Scorer,
 ) -> Option<Vec<ScoredHypothesis>> {
-    let Problem { stacked, library, .. } = problem;
+    let Problem { system, library, .. } = problem;
     let mut models = Vec::new();
-    for percent in HEATING_SIZES_PERCENT.into_iter().filter(|_| library.heating_value) {
+    for percent in FLIGHT_SCATTER_SIZES_PERCENT.into_iter().filter(|_| library.heating_value) {
         let at = scattered(percent);
-        if stacked.levels.iter().any(|level| level.scatter >= at.scatter) {
+        if system.levels.iter().any(|level| level.scatter >= at.scatter) {
             continue; // part of the noise already
         }
-        let (_, left) = stacked.level(gram, at, None, SmoothTerms::LeftOut)?;
+        let (_, left) = system.level(gram, at, None, SmoothTerms::LeftOut)?;
         let under = diagonals(&smooth_out(problem, &[(at, &left)]), library);
         models.extend(search_flight_scatter(scorer, &under, percent));
     }
@@ -163,8 +162,8 @@ fn refine_leading(
     let total = ln_sum(models.iter().map(|m| m.ln_weight));
     let leading: Vec<usize> = (0..models.len())
         .filter(|&k| {
-            let model = &models[k].model;
-            !model.columns.is_empty() && model.flight_scatter_percent.is_none()
+            let hypothesis = &models[k].hypothesis;
+            !hypothesis.columns.is_empty() && hypothesis.flight_scatter_percent.is_none()
         })
         .take(REFINED)
         .take_while(|&k| (models[k].ln_weight - total).exp() >= WORTH_REFINING)

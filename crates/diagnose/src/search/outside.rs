@@ -42,14 +42,14 @@ impl Outside {
 
 /// Lets smooth terms compete with the most probable named sets.
 pub(crate) fn compete(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     library: &Library,
 ) -> Outside {
     let scorer = &analysis.scorer;
     let empty = Hypothesis { columns: vec![], flight_scatter_percent: None };
     let none = ScoredHypothesis {
-        model: empty,
+        hypothesis: empty,
         ln_weight: 0.0,
         sizes: vec![],
         deviations: vec![],
@@ -61,22 +61,22 @@ pub(crate) fn compete(
     add_singles(&mut sets, analysis, library);
     let mut weights = Weights { named: Vec::new(), smooth_terms: Vec::new() };
     for set in &sets {
-        let refined = analysis
-            .refined
-            .iter()
-            .find(|found| found.scored.model == set.model && !set.model.columns.is_empty());
+        let refined = analysis.refined.iter().find(|found| {
+            found.scored.hypothesis == set.hypothesis && !set.hypothesis.columns.is_empty()
+        });
         let shifts =
-            refined.map_or_else(|| vec![0.0; set.model.columns.len()], |f| f.shifts.clone());
+            refined.map_or_else(|| vec![0.0; set.hypothesis.columns.len()], |f| f.shifts.clone());
         for (level, reduced) in analysis.space.reduced.iter().enumerate() {
             let changed = refined.map(|found| &found.changed[level]);
-            let ln_share = stacked.levels[level].ln_prior;
-            let spikes = match stacked.levels[level].table {
+            let ln_share = system.levels[level].ln_prior;
+            let spikes = match system.levels[level].table {
                 TableBelief::Uncertain => library.agnostic_spikes.len(),
                 TableBelief::Right => 1,
             };
             let level = (reduced, changed);
-            let set = NamedSet { model: &set.model, level, shifts: &shifts, ln_share, spikes };
-            weights.add(stacked, library, scorer, &set);
+            let set =
+                NamedSet { hypothesis: &set.hypothesis, level, shifts: &shifts, ln_share, spikes };
+            weights.add(system, library, scorer, &set);
         }
     }
     // Flight-to-flight scatter is a named cause as well: an effect that depends on a flight's conditions looks like scatter
@@ -86,15 +86,15 @@ pub(crate) fn compete(
         let model = Hypothesis { columns: vec![], flight_scatter_percent: Some(*percent) };
         let level = (reduced, None);
         let spikes = library.agnostic_spikes.len();
-        let set = NamedSet { model: &model, level, shifts: &[], ln_share: 0.0, spikes };
-        weights.add(stacked, library, scorer, &set);
+        let set = NamedSet { hypothesis: &model, level, shifts: &[], ln_share: 0.0, spikes };
+        weights.add(system, library, scorer, &set);
     }
     let Weights { named, smooth_terms } = weights;
     let inside = ln_sum(named);
     let outside = ln_sum(smooth_terms.iter().map(|a| a.ln));
     let probability = 1.0 / (1.0 + (inside - outside).clamp(-500.0, 500.0).exp());
     // The variable: weights summed over sets and amplitudes.
-    let blocks = &stacked.design.blocks;
+    let blocks = &system.design.blocks;
     let best = (0..blocks.len())
         .map(|block| {
             let ln = ln_sum(smooth_terms.iter().filter(|a| a.block == block).map(|a| a.ln));
@@ -119,11 +119,9 @@ pub(crate) fn compete(
 
 /// Models with a named effect and without scatter between flights, most probable first.
 fn named_models(analysis: &Analysis) -> impl Iterator<Item = &ScoredHypothesis> {
-    analysis
-        .models
-        .iter()
-        .map(|(scored, _)| scored)
-        .filter(|s| !s.model.columns.is_empty() && s.model.flight_scatter_percent.is_none())
+    analysis.models.iter().map(|(scored, _)| scored).filter(|s| {
+        !s.hypothesis.columns.is_empty() && s.hypothesis.flight_scatter_percent.is_none()
+    })
 }
 
 /// Adds the best single model of every effect that a set holds: smooth terms join at most one effect, and the sets may
@@ -135,14 +133,14 @@ fn add_singles<'a>(
 ) {
     let effect = |column: usize| library.columns[column].effect;
     let mut wanted: Vec<usize> =
-        sets.iter().flat_map(|s| &s.model.columns).map(|&column| effect(column)).collect();
+        sets.iter().flat_map(|s| &s.hypothesis.columns).map(|&column| effect(column)).collect();
     wanted.sort_unstable();
     wanted.dedup();
-    for set in sets.iter().filter(|s| s.model.columns.len() == 1) {
-        wanted.retain(|&e| e != effect(set.model.columns[0]));
+    for set in sets.iter().filter(|s| s.hypothesis.columns.len() == 1) {
+        wanted.retain(|&e| e != effect(set.hypothesis.columns[0]));
     }
-    for single in named_models(analysis).filter(|s| s.model.columns.len() == 1) {
-        let own = effect(single.model.columns[0]);
+    for single in named_models(analysis).filter(|s| s.hypothesis.columns.len() == 1) {
+        let own = effect(single.hypothesis.columns[0]);
         if wanted.contains(&own) {
             wanted.retain(|&e| e != own);
             sets.push(single);
@@ -166,7 +164,7 @@ struct WithSmoothTerm {
 
 /// A named set at one level of scatter between flights.
 struct NamedSet<'a> {
-    model: &'a Hypothesis,
+    hypothesis: &'a Hypothesis,
     /// The Gram without nuisance at that level, and what takes the place of its own columns there.
     level: (&'a Reduced, Option<&'a Changed>),
     /// Where the set was linearised.
@@ -181,30 +179,34 @@ impl Weights {
     /// Adds a named set at one level of scatter and every spike, alone and with each smooth terms.
     fn add(
         &mut self,
-        stacked: &WhitenedSystem<'_>,
+        system: &WhitenedSystem<'_>,
         library: &Library,
         scorer: &Scorer,
         set: &NamedSet<'_>,
     ) {
-        let &NamedSet { model, level, shifts, ln_share, .. } = set;
-        let prior = scorer.ln_prior(model) + ln_share;
+        let &NamedSet { hypothesis, level, shifts, ln_share, .. } = set;
+        let prior = scorer.ln_prior(hypothesis) + ln_share;
         for small_effects_scale in library.agnostic_spikes.into_iter().take(set.spikes) {
-            let Some(under) =
-                with_small_effects(stacked, library, level, &model.columns, small_effects_scale)
-            else {
+            let Some(under) = with_small_effects(
+                system,
+                library,
+                level,
+                &hypothesis.columns,
+                small_effects_scale,
+            ) else {
                 continue;
             };
             let alone = under.evidence(scorer, None, shifts);
             self.named.push(prior + (1.0 - PRIOR_OUTSIDE).ln() + alone);
-            if model.columns.len() > 1 {
+            if hypothesis.columns.len() > 1 {
                 continue;
             }
-            let effect = model.columns.first().map(|&column| library.columns[column].effect);
-            let beside = match model.flight_scatter_percent {
+            let effect = hypothesis.columns.first().map(|&column| library.columns[column].effect);
+            let beside = match hypothesis.flight_scatter_percent {
                 Some(_) => Some(Companion::Scatter),
                 None => effect.map(Companion::Effect),
             };
-            let blocks = stacked.design.blocks.len();
+            let blocks = system.design.blocks.len();
             let share = (AGNOSTIC_AMPLITUDES.len() * blocks).max(1) as f64;
             for block in 0..blocks {
                 for amplitude in AGNOSTIC_AMPLITUDES {
@@ -225,13 +227,13 @@ struct Under<'a> {
 }
 
 fn with_small_effects<'a>(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     library: &Library,
     (reduced, changed): (&Reduced, Option<&Changed>),
     columns: &'a [usize],
     small_effects_scale: f64,
 ) -> Option<Under<'a>> {
-    let design = stacked.design;
+    let design = system.design;
     // Columns of `reduced`: effects, smooth, blocks one after the other, residual.
     let first_block = design.effects + design.smooth.len();
     let residual = reduced.matrix.ncols() - 1;
@@ -250,7 +252,7 @@ fn with_small_effects<'a>(
     kept.push(residual);
     let (mut out, mut deviations) = small_effects(library, small_effects_scale);
     // What a learnt remainder may lack does not count as a discovery.
-    let smooth_amplitude = stacked.clean_smooth_amplitude();
+    let smooth_amplitude = system.clean_smooth_amplitude();
     if smooth_amplitude > 0.0 {
         out.extend(design.effects..first_block);
         let deviation = design.smooth_deviation(smooth_amplitude);

@@ -223,7 +223,7 @@ impl Scratch {
     /// The mixture of all terms; `None` where none was kept.
     fn scored(
         &mut self,
-        model: Hypothesis,
+        hypothesis: Hypothesis,
         signs: [EffectSign; 2],
         uncertain_table: &[bool],
     ) -> Option<ScoredHypothesis> {
@@ -280,7 +280,7 @@ impl Scratch {
             flat.iter().zip(uncertain_table).filter(|(_, is)| **is).map(|(weight, _)| weight).sum();
         Some(ScoredHypothesis {
             table_share: with_table / total,
-            model,
+            hypothesis,
             ln_weight: largest + total.ln(),
             sizes: sizes.to_vec(),
             deviations: deviations.to_vec(),
@@ -352,8 +352,8 @@ mod tests {
         let found = search(&scorer, &backgrounds, context);
         assert_eq!(found.len(), 5, "the two columns of one effect make no pair");
         for scored in &found {
-            let (a, b) = (scored.model.columns[0], scored.model.columns[1]);
-            let prior = scorer.ln_prior(&scored.model);
+            let (a, b) = (scored.hypothesis.columns[0], scored.hypothesis.columns[1]);
+            let prior = scorer.ln_prior(&scored.hypothesis);
             let mut sum = Mixture::<2>::new();
             for at in &backgrounds {
                 let one = scorer.two(at, [a, b], [0.0; 2]);

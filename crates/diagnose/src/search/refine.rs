@@ -60,7 +60,7 @@ pub(crate) fn refine(
     starts: &[(&ScoredHypothesis, &Background)],
     without: Option<usize>,
 ) -> Vec<Option<Relinearised>> {
-    let Problem { stacked, model, library } = problem;
+    let Problem { system, model, library } = problem;
     // Smooth terms compete once, at the end, and never on folds.
     let smooth_terms = if without.is_none() { SmoothTerms::Kept } else { SmoothTerms::LeftOut };
     let mut runs: Vec<Option<Relinearisation<'_>>> = starts
@@ -77,10 +77,10 @@ pub(crate) fn refine(
         let linear: Vec<Linear> = running
             .iter()
             .filter_map(|&k| runs[k].as_ref())
-            .map(|run| Linear::new(model, library, &run.start.model.columns, &run.sizes))
+            .map(|run| Linear::new(model, library, &run.start.hypothesis.columns, &run.sizes))
             .collect();
-        let mut fresh = RelinearisedRows::new(stacked, model, &linear, without);
-        let mut products = fresh.products(stacked, smooth_terms);
+        let mut fresh = RelinearisedRows::new(system, model, &linear, without);
+        let mut products = fresh.products(system, smooth_terms);
         let mut finished = Vec::new();
         for (place, &k) in running.iter().enumerate() {
             let Some(run) = &mut runs[k] else { continue };
@@ -88,7 +88,7 @@ pub(crate) fn refine(
                 finished.push(place);
                 continue;
             }
-            let columns = &run.start.model.columns;
+            let columns = &run.start.hypothesis.columns;
             let changed = products.changed(&fresh, place);
             let found = estimate(rescoring, run, &changed, &fresh.levels_of(place))
                 .filter(|found| found.iter().all(|size| size.is_finite()));
@@ -108,7 +108,7 @@ pub(crate) fn refine(
             }
         }
         if smooth_terms == SmoothTerms::Kept && !finished.is_empty() {
-            products.add_smooth_terms(stacked, &fresh);
+            products.add_smooth_terms(system, &fresh);
         }
         for place in finished {
             let k = running[place];
@@ -138,7 +138,7 @@ fn score_everywhere(
 ) -> Relinearised {
     let Rescoring { library, scorer, space } = rescoring;
     let Relinearisation { start, sizes: shifts, .. } = run;
-    let columns = &start.model.columns;
+    let columns = &start.hypothesis.columns;
     let followed: Vec<Changed> =
         space.levels.iter().map(|level| level.follow(changed.clone(), levels)).collect();
     let all: Vec<Background> = space
@@ -146,7 +146,7 @@ fn score_everywhere(
         .iter()
         .flat_map(|under| under.changed(library, columns, &followed[under.level()], |_| true))
         .collect();
-    let prior = scorer.ln_prior(&start.model);
+    let prior = scorer.ln_prior(&start.hypothesis);
     let uncertain = |at: &Background| space.beliefs[at.level] == TableBelief::Uncertain;
     let scored = if let [a, b] = columns[..] {
         let mut sum = Sum::<2>::new();
@@ -155,7 +155,7 @@ fn score_everywhere(
             one.ln += prior + at.ln_prior;
             sum.add(k, one, uncertain(at));
         }
-        sum.scored(start.model.clone())
+        sum.scored(start.hypothesis.clone())
     } else {
         let mut sum = Sum::<1>::new();
         for (k, at) in all.iter().enumerate() {
@@ -163,7 +163,7 @@ fn score_everywhere(
             one.ln += prior + at.ln_prior;
             sum.add(k, one, uncertain(at));
         }
-        sum.scored(start.model.clone())
+        sum.scored(start.hypothesis.clone())
     };
     Relinearised { scored, changed: followed, shifts }
 }
@@ -178,7 +178,7 @@ fn estimate(
     let Rescoring { library, scorer, space } = rescoring;
     let under = space.smoothed.iter().find(|under| under.is_of(run.at))?;
     let followed = space.levels[under.level()].follow(changed.clone(), levels);
-    let columns = &run.start.model.columns;
+    let columns = &run.start.hypothesis.columns;
     let small_effects_scale = |small_effects_scale: f64| {
         small_effects_scale.total_cmp(&run.at.small_effects_scale).is_eq()
     };
@@ -238,7 +238,7 @@ struct RelinearisedRows {
 
 impl RelinearisedRows {
     fn new(
-        stacked: &WhitenedSystem<'_>,
+        system: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         linear: &[Linear],
         without: Option<usize>,
@@ -248,7 +248,7 @@ impl RelinearisedRows {
             starts.push(starts[starts.len() - 1] + one.width());
         }
         let width = starts[linear.len()];
-        let flights = &stacked.data.flights;
+        let flights = &system.data.flights;
         let mut fresh = Self {
             flights: Vec::with_capacity(flights.len()),
             levels: Mat::zeros(flights.len(), width),
@@ -256,7 +256,7 @@ impl RelinearisedRows {
         };
         for (index, flight) in flights.iter().enumerate() {
             let kept = (Some(fold_of(index)) != without)
-                .then(|| fresh.rows(stacked, model, linear, index, flight));
+                .then(|| fresh.rows(system, model, linear, index, flight));
             fresh.flights.push(kept);
         }
         fresh
@@ -265,13 +265,13 @@ impl RelinearisedRows {
     /// Whitened rows of a flight. Residuals are less what the sizes explain, but not yet the residual itself.
     fn rows(
         &self,
-        stacked: &WhitenedSystem<'_>,
+        system: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         linear: &[Linear],
         index: usize,
         flight: &FlightRows,
     ) -> Mat<f64> {
-        let data = stacked.data;
+        let data = system.data;
         let channels = data.channels.count();
         let segments = &data.segments[flight.segments.clone()];
         let rows = segments.len() * channels + usize::from(flight.gauge.is_some());
@@ -315,13 +315,13 @@ impl RelinearisedRows {
             }
         }
         whiten_flight(data, segments, &mut fresh);
-        stacked.weigh(index, &mut fresh);
+        system.weigh(index, &mut fresh);
         fresh
     }
 
     /// Completes the residuals, and multiplies with all but the columns of smooth terms.
-    fn products(&mut self, stacked: &WhitenedSystem<'_>, smooth_terms: SmoothTerms) -> OwnProducts {
-        let design = stacked.design;
+    fn products(&mut self, system: &WhitenedSystem<'_>, smooth_terms: SmoothTerms) -> OwnProducts {
+        let design = system.design;
         let width = self.levels.ncols();
         let end = design.smooth.end;
         let last = match smooth_terms {
@@ -332,7 +332,7 @@ impl RelinearisedRows {
             OwnProducts { cross: Mat::zeros(last + 1, width), own: Mat::zeros(width, width) };
         for (index, rows) in self.flights.iter_mut().enumerate() {
             let Some(rows) = rows else { continue };
-            let whitened = stacked.whitened(index);
+            let whitened = system.whitened(index);
             let residual = whitened.subcols(design.residual(), 1);
             for place in &self.starts[1..] {
                 for (value, of) in
@@ -373,12 +373,12 @@ impl OwnProducts {
     }
 
     /// Products with columns of smooth terms, which were left open.
-    fn add_smooth_terms(&mut self, stacked: &WhitenedSystem<'_>, fresh: &RelinearisedRows) {
-        let design = stacked.design;
+    fn add_smooth_terms(&mut self, system: &WhitenedSystem<'_>, fresh: &RelinearisedRows) {
+        let design = system.design;
         let (start, end) = (design.smooth.end, design.residual());
         for (index, rows) in fresh.flights.iter().enumerate() {
             let Some(rows) = rows else { continue };
-            let whitened = stacked.whitened(index);
+            let whitened = system.whitened(index);
             add_product(
                 self.cross.subrows_mut(start, end - start),
                 whitened.subcols(start, end - start),

@@ -16,12 +16,12 @@ const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 /// w = min(1, √(5/(4 + e²/s²))),  e the largest whitened residual of the segment, s their robust scale   [diagnosis.21]
 /// ```
 pub(crate) fn outlier_weights(
-    stacked: &WhitenedSystem<'_>,
+    system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     library: &Library,
 ) -> Option<Vec<f64>> {
-    let best = analysis.models.first().map_or(&[][..], |(scored, _)| &scored.model.columns);
-    let design = stacked.design;
+    let best = analysis.models.first().map_or(&[][..], |(scored, _)| &scored.hypothesis.columns);
+    let design = system.design;
     let (columns, deviations): (Vec<usize>, Vec<f64>) = best
         .iter()
         .map(|&column| {
@@ -30,15 +30,15 @@ pub(crate) fn outlier_weights(
         .chain(design.nuisance.clone().map(|column| (column, 1.0)))
         .chain(design.smooth.clone().map(|column| (column, ROBUST_SMOOTH)))
         .unzip();
-    let gram = stacked.gram(None);
+    let gram = system.gram(None);
     let solution = gram.fit(&columns, &deviations, design.residual())?;
 
-    let data = stacked.data;
+    let data = system.data;
     let channels = data.channels.count();
     let mut worst = Vec::with_capacity(data.segments.len());
     let mut all = Vec::with_capacity(data.segments.len() * channels);
     for (index, flight) in data.flights.iter().enumerate() {
-        let rows = stacked.whitened(index);
+        let rows = system.whitened(index);
         let mut left = rows.col_as_slice(design.residual()).to_vec();
         for (k, &column) in columns.iter().enumerate() {
             let size = solution[(k, 0)];
@@ -105,12 +105,12 @@ mod tests {
             |points, engines, starts| Library::new(&effects, points, engines, starts, |_| true),
         );
         let design = Design::new(&data, &references, None, None);
-        let stacked = WhitenedSystem::new(&data, &design, None);
-        let gram = stacked.gram(None);
+        let system = WhitenedSystem::new(&data, &design, None);
+        let gram = system.gram(None);
         let square = gram.matrix[(design.residual(), design.residual())];
-        let problem = Problem { stacked: &stacked, model: &effects, library: &library };
+        let problem = Problem { system: &system, model: &effects, library: &library };
         let analysis = analyse(problem, None).unwrap();
-        (gram.rows, square, outlier_weights(&stacked, &analysis, &library).is_some())
+        (gram.rows, square, outlier_weights(&system, &analysis, &library).is_some())
     }
 
     /// By hand: rows and squares of flights with N2 and of flights without are those of each kind alone, added. A channel

@@ -147,10 +147,10 @@ impl<const K: usize> Sum<K> {
         self.mixture.add(one.ln, one.sizes, one.deviations);
     }
 
-    pub(crate) fn scored(&self, model: Hypothesis) -> ScoredHypothesis {
+    pub(crate) fn scored(&self, hypothesis: Hypothesis) -> ScoredHypothesis {
         let mean = self.mixture.mean();
         ScoredHypothesis {
-            model,
+            hypothesis,
             ln_weight: mean.ln,
             sizes: mean.sizes.to_vec(),
             deviations: mean.deviations.to_vec(),

@@ -38,7 +38,7 @@ pub(crate) struct WhitenedSystem<'a> {
 /// What every step of the search works on: the linear system, the model behind it, the effects that are looked for.
 #[derive(Clone, Copy)]
 pub(crate) struct Problem<'a> {
-    pub(crate) stacked: &'a WhitenedSystem<'a>,
+    pub(crate) system: &'a WhitenedSystem<'a>,
     pub(crate) model: &'a EffectModel<'a>,
     pub(crate) library: &'a Library,
 }
@@ -64,7 +64,7 @@ impl<'a> WhitenedSystem<'a> {
                 .map(|flight| design.whitened(data, flight, weights.as_deref()))
                 .collect::<Vec<_>>()
         });
-        let mut stacked = Self {
+        let mut system = Self {
             data,
             design,
             gram: Gram { matrix: Mat::zeros(0, 0), rows: 0 },
@@ -76,15 +76,15 @@ impl<'a> WhitenedSystem<'a> {
         };
         let mut sum = Sum::new(design.columns);
         for index in 0..data.flights.len() {
-            let rows = stacked.whitened(index);
+            let rows = system.whitened(index);
             sum.add(&rows, data.recorded_values(&data.flights[index]));
             let products = rows.transpose() * rows.col(design.smooth.start);
             let level = products.iter().copied().collect();
             drop(rows);
-            stacked.flight_levels.push(level);
+            system.flight_levels.push(level);
         }
-        stacked.gram = sum.finish();
-        stacked
+        system.gram = sum.finish();
+        system
     }
 
     /// The Gram of all flights but those of one fold; of all where none is left out.

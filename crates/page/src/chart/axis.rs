@@ -35,7 +35,7 @@ impl Axis {
     /// From the last tick below `low` to the first above `high`, about `ticks` steps apart.
     pub(crate) fn around(low: f64, high: f64, ticks: usize) -> Self {
         let (low, high) = of_some_length(low, high);
-        let step = Step::of((high - low) / ticks.max(1) as f64);
+        let step = Step::at_least((high - low) / ticks.max(1) as f64);
         let first = (low / step.size() + 1e-9).floor();
         let last = (high / step.size() - 1e-9).ceil();
         Self {
@@ -49,7 +49,7 @@ impl Axis {
     /// Exactly from `low` to `high`, with the ticks that lie on it.
     pub(crate) fn within(low: f64, high: f64, ticks: usize) -> Self {
         let (low, high) = of_some_length(low, high);
-        let step = Step::of((high - low) / ticks.max(1) as f64);
+        let step = Step::at_least((high - low) / ticks.max(1) as f64);
         let first = (low / step.size() - 1e-9).ceil();
         let last = (high / step.size() + 1e-9).floor();
         Self { first: low, last: high, ticks: step.ticks(first, last), values: Values::Numbers }
@@ -97,7 +97,7 @@ impl Axis {
 
 impl Step {
     /// The smallest step that is not below `length`.
-    fn of(length: f64) -> Self {
+    fn at_least(length: f64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "an exponent of a double")]
         let exponent = length.log10().floor() as i32;
         let share = length / 10_f64.powi(exponent);
@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn steps_are_1_2_5_times_a_power_of_ten() {
         for length in [1e-7, 0.003, 0.019, 0.5, 0.51, 1.0, 4.4, 7.0, 99.0, 1.2e6] {
-            let step = Step::of(length);
+            let step = Step::at_least(length);
             assert!([1.0, 2.0, 5.0].contains(&step.digit), "{step:?}");
             assert!(
                 step.size() >= length * (1.0 - 1e-9) && step.size() <= 2.5 * length,

@@ -28,7 +28,7 @@ const SHARE_SHOWN: f64 = 0.98;
 impl Bins {
     /// Bins of `width` around all values, if 60 bins suffice. Otherwise 60 around the median, if they hold 98 % of the
     /// values; otherwise wider bins (2, 4, 10, 20, … widths) that do.
-    pub(crate) fn of(values: &[f64], width: f64) -> Self {
+    pub(crate) fn around(values: &[f64], width: f64) -> Self {
         let mut sorted: Vec<f64> =
             values.iter().copied().filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
@@ -151,7 +151,7 @@ mod tests {
     fn counted_by_hand() {
         // Half-open bins of 0.5 from -0.5: [-0.5, 0) holds -0.1, [0, 0.5) nothing, [0.5, 1) 0.5 and 0.9, [1, 1.5) 1.0.
         let values = [0.5, -0.1, 1.0, 0.9];
-        let bins = Bins::of(&values, 0.5);
+        let bins = Bins::around(&values, 0.5);
         assert_eq!((bins.low(), bins.high(), bins.width()), (-0.5, 1.5, 0.5));
         assert_eq!(bins.histogram(&values).counts, [1, 0, 2, 1]);
     }
@@ -163,7 +163,7 @@ mod tests {
         outlier.push(310.0);
         outlier.push(-95.0);
         for values in [wide, outlier, vec![4.0], vec![0.0; 7], vec![], vec![1e300, -1e300]] {
-            let bins = Bins::of(&values, 0.5);
+            let bins = Bins::around(&values, 0.5);
             let histogram = bins.histogram(&values);
             assert_eq!(total(&histogram), values.len());
             assert!(histogram.counts.len() <= 61, "{}", histogram.counts.len());
@@ -175,7 +175,7 @@ mod tests {
     fn one_wild_value_does_not_widen_the_bins() {
         let mut values: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.01).collect();
         values.push(310.0);
-        let bins = Bins::of(&values, 0.5);
+        let bins = Bins::around(&values, 0.5);
         assert_eq!((bins.width(), bins.low()), (0.5, 0.0));
         assert_eq!(bins.histogram(&values).above, 1);
     }
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn not_finite_is_no_value() {
         let values = [f64::NAN, 1.0, f64::INFINITY];
-        assert_eq!(total(&Bins::of(&values, 0.5).histogram(&values)), 1);
+        assert_eq!(total(&Bins::around(&values, 0.5).histogram(&values)), 1);
     }
 
     #[test]

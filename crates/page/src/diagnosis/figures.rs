@@ -25,7 +25,7 @@ pub(super) fn figures(tail: &Tail<'_>) -> Markup {
     let (before, after) = tail.before_and_after();
     let mut all = before.clone();
     all.extend(&after);
-    let bins = Bins::of(&all, BIN_PERCENT);
+    let bins = Bins::around(&all, BIN_PERCENT);
     html! {
         div.figures {
             (histograms(tail, &bins, &before, &after))

@@ -22,7 +22,7 @@ const SERIOUS_DEVIATION_K: f64 = 45.0;
 const CALIBRATED_AIRSPEED_KT: (f64, f64) = (90.0, 410.0);
 
 pub(super) fn check(report: &Report) -> Vec<Draft> {
-    let Some(air) = Means::of(report) else { return Vec::new() };
+    let Some(air) = Means::from_report(report) else { return Vec::new() };
     let altitude = altitude(&air);
     // A wrong altitude makes the temperature look wrong too.
     let deviation = if altitude.is_some() { None } else { deviation(&air) };
@@ -42,7 +42,7 @@ struct Means {
 }
 
 impl Means {
-    fn of(report: &Report) -> Option<Self> {
+    fn from_report(report: &Report) -> Option<Self> {
         let columns = report.columns();
         let mach = Mach::new(mean(columns.mach.iter().copied())?);
         let pressure_altitude =

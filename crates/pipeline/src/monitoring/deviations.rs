@@ -89,7 +89,7 @@ impl TailDeviations {
     ///
     /// # Errors
     /// A model that cannot learn its own flights again (a damaged file).
-    pub fn of(
+    pub fn new(
         model: &ModelFile,
         segments: &[Segment],
         before_learning: BeforeLearning,

@@ -63,7 +63,7 @@ impl<'a> MonitoredTail<'a> {
                 flights.iter().map(|flight| of(flight)).collect();
             let Some(shown) = shown else { return Ok(None) };
             let series = Series::new(shown)?;
-            Ok(History::of(&series, &times, &beliefs).map(|history| (series, history)))
+            Ok(History::fit(&series, &times, &beliefs).map(|history| (series, history)))
         };
         let Some((series, history)) = read(&|flight| flight.normalised)? else { return Ok(None) };
         let before_learning = read(&|flight| flight.before_learning)?;
@@ -193,7 +193,7 @@ impl<'a> MonitoredTail<'a> {
             .iter()
             .map(|flight| airbus::specific_range_deviation_percent(flight.deviation_percent()))
             .collect();
-        let statistics = ErrorStatistics::of(&each);
+        let statistics = ErrorStatistics::from_errors(&each);
         let last = months.last();
         let retained = last.map_or(0.0, |month| month.retained_fuel_factor_percent);
         AirbusTerms {
@@ -221,7 +221,7 @@ impl<'a> MonitoredTail<'a> {
         // One flight more than intervals; over less than a month it is no rate.
         let recorded = (span > 1.0 / 12.0).then(|| (flights - 1.0) / span);
         let flights_per_year = options.cost.flights_per_year.or(recorded);
-        let cost = Cost::of(
+        let cost = Cost::new(
             level.value,
             fuel / flights.max(1.0),
             flights_per_year.unwrap_or(0.0),

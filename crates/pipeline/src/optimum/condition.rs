@@ -104,7 +104,7 @@ pub fn at(
         .map(|wind| {
             let choices: Vec<Choices<'_>> = kinds
                 .iter()
-                .map(|kind| Choices::of(&curves, aim(*kind, *wind, cost_index)))
+                .map(|kind| Choices::new(&curves, aim(*kind, *wind, cost_index)))
                 .collect();
             let level = |at: usize| LevelOptimum {
                 pressure_altitude_ft: curves[at].0,
@@ -140,7 +140,7 @@ struct Choices<'c> {
 }
 
 impl<'c> Choices<'c> {
-    fn of(curves: &'c [(f64, Curve)], aim: Aim) -> Self {
+    fn new(curves: &'c [(f64, Curve)], aim: Aim) -> Self {
         let choose = |flow: &dyn Fn(&'c Curve) -> &'c [f64]| -> Vec<Option<usize>> {
             curves.iter().map(|(_, curve)| aim.choose(&curve.points, flow(curve))).collect()
         };

@@ -20,7 +20,7 @@ const ROWS: usize = 5000;
 pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
     let mut unpacked = Vec::new();
     let text = decode::recording(bytes, &mut unpacked)?;
-    let columns = Columns::of(&text)?;
+    let columns = Columns::from_text(&text)?;
     let mut quantities = String::new();
     let known: Vec<&'static str> =
         ORDINARY.iter().filter_map(|rule| columns.ordinary(rule, &mut quantities)).collect();
@@ -124,7 +124,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(text: &str) -> Result<Self, Refusal> {
+    fn from_text(text: &str) -> Result<Self, Refusal> {
         let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
         let separator = [b',', b';', b'\t', b'|']
             .into_iter()

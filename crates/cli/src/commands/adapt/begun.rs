@@ -62,7 +62,7 @@ impl<'a> Starts<'a> {
     ///
     /// # Errors
     /// Why there is no model.
-    pub(super) fn of(&mut self, tail: &str, aircraft_type: &str) -> Result<Start<'a>, NoModel> {
+    pub(super) fn start(&mut self, tail: &str, aircraft_type: &str) -> Result<Start<'a>, NoModel> {
         let model = self.models.for_report(tail, aircraft_type)?;
         let law = match self.arguments.law {
             LawName::Bayes => LawChoice::Bayes(model.settings.bayes),

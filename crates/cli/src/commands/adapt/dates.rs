@@ -31,7 +31,7 @@ pub(super) struct Dates {
 
 impl Dates {
     /// The dates of the flights that a model has learnt, and of new ones.
-    pub(super) fn of(model: &ModelFile, new: &[FlightRead]) -> Self {
+    pub(super) fn of_learnt_and_new(model: &ModelFile, new: &[FlightRead]) -> Self {
         let Some(learnt) = model.learnt.as_ref().filter(|_| ages(model)) else {
             return Self { starts: Vec::new() };
         };

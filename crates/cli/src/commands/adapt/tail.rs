@@ -89,7 +89,7 @@ impl Run<'_> {
                 return Ok(TailOutcome { refused, ..self.untouched(tail) });
             }
         };
-        let mut known = KnownFlights::of(known);
+        let mut known = KnownFlights::new(known);
         if let Some(stored) = &stored {
             known.add_segments(&stored.segments);
         }
@@ -255,7 +255,7 @@ fn unknown(
     if known.is_empty() {
         return (heads, Vec::new(), 0);
     }
-    let known = KnownFlights::of(known.to_vec());
+    let known = KnownFlights::new(known.to_vec());
     let mut new = Vec::new();
     let mut refused = Vec::new();
     let mut already_known = 0;
@@ -398,7 +398,7 @@ impl Work {
             }
         };
         self.notes.extend(stored.model.note_of_effects());
-        let dated = Dates::of(&stored.model, &new);
+        let dated = Dates::of_learnt_and_new(&stored.model, &new);
         for flight in new {
             let Some(learnt) = &mut stored.model.learnt else { break };
             let known = known_of(&flight);

@@ -46,7 +46,7 @@ impl Causes {
 
     /// The class of effects that the diagnosis of a tail names, the named ones first; its kind of verdict where it names
     /// none; nothing where the tail was not diagnosed.
-    pub(crate) fn of(&self, tail: &str) -> Vec<String> {
+    pub(crate) fn of_tail(&self, tail: &str) -> Vec<String> {
         let Some(found) = self.0.iter().find(|diagnosis| diagnosis.tail == tail) else {
             return Vec::new();
         };

@@ -59,7 +59,10 @@ impl Envelope {
     ///
     /// Whatever is neither Mach number, pressure altitude, mass nor fuel used is as usual: the median; wind and position
     /// those of the segment whose eastward speed is the median; the date is the last one.
-    pub(crate) fn of(data: &PreparedFlights<'_>, model: &EffectModel<'_>) -> Option<Self> {
+    pub(crate) fn from_flights(
+        data: &PreparedFlights<'_>,
+        model: &EffectModel<'_>,
+    ) -> Option<Self> {
         let of = |value: &dyn Fn(&EffectPoint) -> f64| {
             sorted(data.segments.iter().map(|row| value(&row.point)).collect())
         };

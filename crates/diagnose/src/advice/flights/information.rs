@@ -19,7 +19,7 @@ pub(crate) struct FlightInformation {
 
 impl Known {
     /// From the Gram of all columns: those of `kept`, and the nuisance, of unit prior variance.
-    pub(crate) fn of(
+    pub(crate) fn from_gram(
         gram: &Mat<f64>,
         kept: &[usize],
         nuisance: core::ops::Range<usize>,
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn two_effects_by_hand() {
         let gram = Mat::from_fn(2, 2, |_, _| 1.0);
-        let known = Known::of(&gram, &[0, 1], 2..2).unwrap();
+        let known = Known::from_gram(&gram, &[0, 1], 2..2).unwrap();
         let flight = known.flight(&Mat::from_fn(2, 2, |i, j| [[2.0, 0.0], [0.0, 1.0]][i][j]));
         let then = &gram + added(&[(&flight, 2.0)]).unwrap();
         let (square, slope) = crate::advice::distances::squared(&then, 0, 1, 1.0);
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn nuisance_by_hand() {
         let gram = Mat::from_fn(2, 2, |_, _| 1.0);
-        let known = Known::of(&gram, &[0], 1..2).unwrap();
+        let known = Known::from_gram(&gram, &[0], 1..2).unwrap();
         let flight = known.flight(&Mat::from_fn(1, 2, |_, j| [1.0, -1.0][j]));
         assert!((added(&[(&flight, 1.0)]).unwrap()[(0, 0)] - 1.5).abs() < 1e-14);
     }
@@ -131,7 +131,7 @@ mod tests {
         let (kept, out) = ([0, 1, 2], [3, 4, 5, 6]);
         let integrated =
             |gram: &Mat<f64>| integrate_out(gram, &kept, &out, &[1.0; 4]).unwrap().matrix;
-        let known = Known::of(&gram, &kept, 3..7).unwrap();
+        let known = Known::from_gram(&gram, &kept, 3..7).unwrap();
         let (fa, fb) = (known.flight(&a), known.flight(&b));
         let sum = &gram
             + faer::Scale(3.0) * (a.transpose() * &a)

@@ -32,10 +32,10 @@ fn with<R>(
         |points, engines, starts| Library::new(&effects, points, engines, starts, |_| true),
     );
     let design = Design::new(&data, &references, None, None);
-    let stacked = WhitenedSystem::new(&data, &design, None);
+    let system = WhitenedSystem::new(&data, &design, None);
     let leading = library.effects.iter().map(|effect| effect.representative).collect();
-    let distances = Distances::of(stacked.gram(None), &design, leading).unwrap();
-    then(&stacked, &effects, &library, &distances)
+    let distances = Distances::from_gram(system.gram(None), &design, leading).unwrap();
+    then(&system, &effects, &library, &distances)
 }
 
 fn fleet(flights: usize) -> Vec<Vec<Segment>> {
@@ -56,8 +56,8 @@ fn every_candidate_keeps_to_what_was_flown() {
             (low.min(value), high.max(value))
         })
     };
-    with(&model, &flights, |stacked, effects, _, _| {
-        let envelope = Envelope::of(stacked.data, effects).unwrap();
+    with(&model, &flights, |system, effects, _, _| {
+        let envelope = Envelope::from_flights(system.data, effects).unwrap();
         let candidates = test_flights(&envelope, effects);
         for kind in [None, Some(Kind::Mach), Some(Kind::Level)] {
             let is_of_kind = |flight: &TestFlight| flight.sweep.map(Kind::from) == kind;
@@ -96,8 +96,8 @@ fn every_candidate_keeps_to_what_was_flown() {
 fn a_planned_flight_has_the_rows_of_a_flown_one() {
     let model = exact_model();
     let flights = fleet(12);
-    with(&model, &flights, |stacked, effects, library, _| {
-        let data = stacked.data;
+    with(&model, &flights, |system, effects, library, _| {
+        let data = system.data;
         let columns = [EffectId::ZeroLiftDrag, EffectId::MachBias, EffectId::TsfcMachExponent]
             .map(|id| column(library, id));
         let few = Library {
@@ -112,18 +112,18 @@ fn a_planned_flight_has_the_rows_of_a_flown_one() {
         let flown = &data.flights[3];
         let points: Vec<_> =
             data.segments[flown.segments.clone()].iter().map(|row| row.point).collect();
-        let recorded = envelope::Envelope::of(data, effects).unwrap().recorded;
+        let recorded = envelope::Envelope::from_flights(data, effects).unwrap().recorded;
         let planned = data.planned(effects, &few, &points, recorded).unwrap();
-        let design = stacked.design.of_nuisance(columns.len());
+        let design = system.design.of_nuisance(columns.len());
         let rows = design.whitened(&planned, &planned.flights[0], None);
-        let expected = stacked.design.whitened(data, flown, None);
+        let expected = system.design.whitened(data, flown, None);
         assert_eq!(rows.nrows(), expected.nrows());
         for row in 0..rows.nrows() {
             for (k, &column) in columns.iter().enumerate() {
                 let (found, known) = (rows[(row, k)], expected[(row, column)]);
                 assert!((found - known).abs() <= 1e-9 * known.abs().max(1.0), "{found} {known}");
             }
-            for (k, column) in stacked.design.nuisance.clone().enumerate() {
+            for (k, column) in system.design.nuisance.clone().enumerate() {
                 let (found, known) = (rows[(row, columns.len() + k)], expected[(row, column)]);
                 assert!((found - known).abs() <= 1e-9 * known.abs().max(1.0), "{found} {known}");
             }
@@ -136,9 +136,10 @@ fn a_planned_flight_has_the_rows_of_a_flown_one() {
 fn flights_never_tell_less() {
     let model = exact_model();
     let flights = fleet(20);
-    with(&model, &flights, |stacked, effects, library, distances| {
+    with(&model, &flights, |system, effects, library, distances| {
         let columns: Vec<usize> = library.effects.iter().map(|e| e.representative).collect();
-        let conditions = Conditions::of(stacked, effects, library, distances, columns).unwrap();
+        let conditions =
+            Conditions::from_flights(system, effects, library, distances, columns).unwrap();
         assert!(conditions.programs.len() > 20);
         let grams = conditions.programs.iter().map(|program| &program.gram);
         for gram in grams.chain(&conditions.ordinary) {
@@ -167,11 +168,12 @@ fn a_fleet_at_one_mach_number_is_told_to_sweep_it() {
         means.true_airspeed_m_s *= mach / means.mach;
         means.mach = mach;
     }
-    with(&model, &flights, |stacked, effects, library, distances| {
+    with(&model, &flights, |system, effects, library, distances| {
         let exponent = column(library, EffectId::TsfcMachExponent);
         let factor = column(library, EffectId::TsfcFactor);
         let conditions =
-            Conditions::of(stacked, effects, library, distances, vec![factor, exponent]).unwrap();
+            Conditions::from_flights(system, effects, library, distances, vec![factor, exponent])
+                .unwrap();
         let size = 0.1;
         assert!(distances.squared(exponent, factor, size).0 < 0.1 * CONFUSED);
         let advised = conditions.advised(exponent, factor..factor + 1, size);
@@ -199,10 +201,11 @@ fn sweeps(advised: &Advised) -> Vec<Sweep> {
 fn advice_is_ranked_and_repeats() {
     let model = exact_model();
     let flights = fleet(20);
-    with(&model, &flights, |stacked, effects, library, distances| {
+    with(&model, &flights, |system, effects, library, distances| {
         let columns: Vec<usize> = (0..library.columns.len()).collect();
-        let again =
-            || Conditions::of(stacked, effects, library, distances, columns.clone()).unwrap();
+        let again = || {
+            Conditions::from_flights(system, effects, library, distances, columns.clone()).unwrap()
+        };
         let (conditions, other) = (again(), again());
         let mut offered = 0;
         for k in &library.effects {
@@ -228,8 +231,8 @@ fn a_measured_deck_shrinks_nothing_but_the_deck() {
     for segment in flights.iter_mut().flatten() {
         segment.means.n2_percent.clear();
     }
-    with(&model, &flights, |stacked, _, library, distances| {
-        assert!(!stacked.data.channels.n2);
+    with(&model, &flights, |system, _, library, distances| {
+        assert!(!system.data.channels.n2);
         let largest = (0..library.columns.len())
             .map(|k| distances.with_deck[(k, k)] / distances.gram[(k, k)] - 1.0)
             .fold(0.0, f64::max);
