@@ -92,9 +92,7 @@ impl TryFrom<AddedEffectRecord> for AddedEffect {
     type Error = UnknownEffect;
 
     fn try_from(record: AddedEffectRecord) -> Result<Self, UnknownEffect> {
-        let Some(effect) = EffectId::from_name(&record.effect) else {
-            return Err(UnknownEffect { name: record.effect });
-        };
+        let effect = effect_of(&record.effect)?;
         let hidden = match effect.entry().hidden {
             HiddenParameter::None => HiddenParameter::None,
             HiddenParameter::DragDivergenceMach(mach) => {
@@ -112,6 +110,11 @@ impl TryFrom<AddedEffectRecord> for AddedEffect {
         let AddedEffectRecord { size, standard_deviation, .. } = record;
         Ok(Self { effect, size, standard_deviation, hidden })
     }
+}
+
+/// The effect of a name in a file.
+pub(crate) fn effect_of(name: &str) -> Result<EffectId, UnknownEffect> {
+    EffectId::from_name(name).ok_or_else(|| UnknownEffect { name: name.to_owned() })
 }
 
 #[cfg(test)]

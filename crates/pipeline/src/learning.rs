@@ -174,7 +174,7 @@ fn baseline_of(
 ) -> Result<Baseline, String> {
     let table = initial.drag_table();
     let visited = visited_nodes(initial, table, flights).map_err(|error| error.to_string())?;
-    let belief = belief_before_flights(initial, settings, &visited)?;
+    let belief = belief_before_flights(initial, settings, &visited).map_err(|e| e.to_string())?;
     Baseline::learn(initial, table, Some(belief), flights).map_err(|error| error.to_string())
 }
 

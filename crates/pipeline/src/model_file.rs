@@ -6,10 +6,11 @@
 //! program or an editor changed is noticed before anybody acts on it.
 
 mod applied;
+mod error;
 mod text;
 
 pub use applied::{AppliedRecord, DiagnosisRecord};
-pub use text::ModelTextError;
+pub use error::{ModelTextError, ModelValueError};
 
 use std::sync::Arc;
 

@@ -1,6 +1,7 @@
 //! What a model predicts with everything that it has learnt, or with its drag table alone.
 
-use diagnose::{TableUncertainty, WholeModel, WholePrediction};
+use adapt::bayes::{BayesSettings, BayesState, InitialError, SolveError};
+use diagnose::{TableUncertainty, TableUncertaintyError, WholeModel, WholePrediction};
 use effects::ExtendedModel;
 use flight::Segment;
 use lut::Table;
@@ -64,18 +65,30 @@ impl SegmentHeld {
     }
 }
 
+/// Why there is no belief about an initial drag table.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BeliefError {
+    /// A table that the law cannot correct.
+    #[error(transparent)]
+    Initial(#[from] InitialError),
+    /// The prior has no solution.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The covariance is invalid.
+    #[error(transparent)]
+    Covariance(#[from] TableUncertaintyError),
+}
+
 /// What law `bayes` believes of an initial drag table before it has learnt anything, over the nodes that flights visit.
 ///
 /// # Errors
-/// A table that the law cannot correct, or a covariance that is invalid, in words.
+/// A table that the law cannot correct, or a covariance that is invalid.
 pub fn belief_before_flights(
     initial: &ExtendedModel,
-    settings: adapt::bayes::BayesSettings,
+    settings: BayesSettings,
     visited: &[usize],
-) -> Result<TableUncertainty, String> {
-    let state = adapt::bayes::BayesState::new(initial.drag_table(), settings)
-        .map_err(|error| error.to_string())?;
-    let prior = state.solve().map_err(|error| error.to_string())?;
-    crate::table_uncertainty::of_visited(&prior, initial.drag_table().grid(), visited, 1.0)
-        .map_err(|error| error.to_string())
+) -> Result<TableUncertainty, BeliefError> {
+    let prior = BayesState::new(initial.drag_table(), settings)?.solve()?;
+    let grid = initial.drag_table().grid();
+    Ok(crate::table_uncertainty::of_visited(&prior, grid, visited, 1.0)?)
 }

@@ -184,7 +184,7 @@ fn extended_by_hand(model: &Path, effects: &str) -> PathBuf {
             ),
             diagnosis: (
                 tail: "SIM-01", flights: 20, segments: 200, first: "2019-01-01T00:00:00Z",
-                last: "2019-06-01T00:00:00Z", probability: 0.97, class: ["x"],
+                last: "2019-06-01T00:00:00Z", probability: 0.97, class: ["drag_factor"],
             ),
         ),
     ],"#

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use diagnose::{AddedEffect, Addition};
 use effects::{AppliedEffects, EffectModelError};
-use flight::effect::HiddenParameter;
+use flight::effect::{EffectId, HiddenParameter};
 use serde::{Deserialize, Serialize};
 
 use super::ModelFile;
-use crate::addition_record::{AdditionRecord, UnknownEffect};
+use crate::addition_record::{AdditionRecord, UnknownEffect, effect_of};
 use crate::diagnosed_tail::POOL;
 
 /// What one diagnosis added to the model.
@@ -45,7 +45,25 @@ pub struct DiagnosisRecord {
     /// Probability of the first effect.
     pub probability: f64,
     /// Effects that the flights could not distinguish from it.
-    pub class: Vec<String>,
+    #[serde(with = "effect_names")]
+    pub class: Vec<EffectId>,
+}
+
+/// Effects by their names.
+mod effect_names {
+    use flight::effect::EffectId;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(class: &[EffectId], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(class.iter().map(ToString::to_string))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<Vec<EffectId>, D::Error> {
+        let names = Vec::<String>::deserialize(from)?;
+        names.iter().map(|name| super::effect_of(name).map_err(serde::de::Error::custom)).collect()
+    }
 }
 
 impl From<&AppliedRecord> for AppliedText {

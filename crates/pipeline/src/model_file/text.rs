@@ -1,6 +1,5 @@
 //! The text of `MODEL.ron`, both ways.
 
-use std::fmt::Display;
 use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
@@ -15,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::applied::{AppliedText, layers_of};
+use super::error::{ModelTextError, ModelValueError};
 use super::{
     AppliedRecord, FORMAT, GuideRecord, LawSettings, LawState, Learnt, LedgerEntry, ModelFile,
     PaperSettings, PaperState,
@@ -30,58 +30,6 @@ const CHECKSUM: &str = "\n    checksum: \"";
 const FIRST_FORMAT: u32 = 1;
 /// The format from which on a baseline is one posterior.
 const FIRST_WITH_POSTERIOR: u32 = 2;
-
-/// Why a text is not a model.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ModelTextError {
-    /// Some other file.
-    #[error("not a model file: it has no `format:` field")]
-    NoModel,
-    /// Written by a newer program.
-    #[error("model format {found}, this program reads up to {FORMAT}")]
-    Newer {
-        /// Its format.
-        found: u32,
-    },
-    /// No checksum at the end.
-    #[error("the file has no checksum: it is cut off")]
-    CutOff,
-    /// The bytes are not those that were written.
-    #[error(
-        "checksum {found} does not match the content ({computed}): the file was changed or damaged"
-    )]
-    Damaged {
-        /// As written in the file.
-        found: String,
-        /// Of the bytes before it.
-        computed: String,
-    },
-    /// Not what a model file holds.
-    #[error("{0}")]
-    Syntax(#[from] ron::error::SpannedError),
-    /// A value that makes no model.
-    #[error("{field}: {reason}")]
-    Value {
-        /// The field.
-        field: &'static str,
-        /// What is wrong.
-        reason: String,
-    },
-}
-
-impl ModelTextError {
-    /// What may be done about it.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Newer { .. } => Some("use a newer cruisefit".to_owned()),
-            Self::CutOff | Self::Damaged { .. } => {
-                Some("take the file from a backup, or adapt again from the reports".to_owned())
-            }
-            _ => None,
-        }
-    }
-}
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -267,10 +215,10 @@ fn model_of(document: Document) -> Result<ModelFile, ModelTextError> {
     // The breakpoints are written out for readers of the file; the aircraft's own are in force.
     let grid = Arc::clone(aircraft.grid());
     if grid.x().breakpoints() != document.grid.lift_coefficient {
-        return Err(value("grid.lift_coefficient", "not the breakpoints of the aircraft's table"));
+        return Err(value("grid.lift_coefficient", ModelValueError::Breakpoints));
     }
     if grid.y().breakpoints() != document.grid.mach {
-        return Err(value("grid.mach", "not the breakpoints of the aircraft's table"));
+        return Err(value("grid.mach", ModelValueError::Breakpoints));
     }
     let table = |field, values: Vec<f64>| {
         Table::new(Arc::clone(&grid), values).map_err(|error| value(field, error))
@@ -307,17 +255,20 @@ fn baseline_of(
     initial: &ExtendedModel,
     settings: BayesSettings,
 ) -> Result<Baseline, ModelTextError> {
-    let wrong = |reason: String| value("learnt.baseline", reason);
+    const FIELD: &str = "learnt.baseline";
     let nodes = initial.drag_table().grid().nodes();
-    if let Some(node) = record.drag_nodes().iter().find(|&&node| node >= nodes) {
-        return Err(wrong(format!("node {node} of a table of {nodes} nodes")));
+    if let Some(&node) = record.drag_nodes().iter().find(|&&node| node >= nodes) {
+        return Err(value(FIELD, ModelValueError::NoSuchNode { node, nodes }));
     }
     let belief = if record.drag_nodes().is_empty() {
         None
     } else {
-        Some(belief_before_flights(initial, settings, record.drag_nodes()).map_err(wrong)?)
+        Some(
+            belief_before_flights(initial, settings, record.drag_nodes())
+                .map_err(|error| value(FIELD, error))?,
+        )
     };
-    Baseline::new(record, belief).map_err(|error| wrong(error.to_string()))
+    Baseline::new(record, belief).map_err(|error| value(FIELD, error))
 }
 
 fn law_of(
@@ -359,18 +310,18 @@ fn flags_from_text(
     nodes: usize,
 ) -> Result<Vec<bool>, ModelTextError> {
     if flags.len() != nodes {
-        return Err(value(field, format!("{} flags for {nodes} nodes", flags.len())));
+        return Err(value(field, ModelValueError::FlagCount { flags: flags.len(), nodes }));
     }
     flags
         .iter()
         .map(|flag| match flag {
             0 => Ok(false),
             1 => Ok(true),
-            other => Err(value(field, format!("found {other}, expected 0 or 1"))),
+            &found => Err(value(field, ModelValueError::Flag { found })),
         })
         .collect()
 }
 
-fn value(field: &'static str, reason: impl Display) -> ModelTextError {
-    ModelTextError::Value { field, reason: reason.to_string() }
+fn value(field: &'static str, reason: impl Into<ModelValueError>) -> ModelTextError {
+    ModelTextError::Value { field, reason: reason.into() }
 }

@@ -106,7 +106,7 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
             first: word(starts().min()),
             last: word(starts().max()),
             probability: found.probability,
-            class: found.class.iter().map(ToString::to_string).collect(),
+            class: found.class.clone(),
         },
     })
 }
