@@ -25,7 +25,7 @@ pub(crate) mod simulate;
 pub(crate) mod trial;
 pub(crate) mod tune;
 
-use pipeline::whole_model::Predicts;
+use pipeline::distinct::distinct;
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
@@ -34,7 +34,6 @@ use crate::failure::{Failure, RefusedReport};
 use crate::files::read_text;
 use crate::inputs;
 use crate::progress::Progress;
-use crate::reading::distinct::distinct;
 use crate::reading::{Reading, Source};
 
 /// The result of a command that did something.
@@ -46,15 +45,18 @@ pub(crate) struct Outcome {
     pub(crate) refused: Vec<RefusedReport>,
 }
 
-/// What `--table-only` asks for.
-pub(crate) const fn predicts(table_only: bool) -> Predicts {
-    if table_only { Predicts::TableOnly } else { Predicts::WholeModel }
-}
-
 impl Outcome {
     /// Done, with this text for standard output.
     pub(crate) fn text(text: impl Into<String>) -> Self {
         Self { text: text.into(), refused: Vec::new() }
+    }
+}
+
+/// Prints serious findings on standard error.
+fn tell_serious(findings: &str) {
+    if !findings.is_empty() {
+        eprint!("{findings}");
+        eprintln!("`cruisefit check` with the same arguments tells all that was found.");
     }
 }
 

@@ -1,9 +1,9 @@
 //! Why a command ended without doing anything, worded so that a person can put it right, and the exit statuses.
 
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use pipeline::summary::RefusedSummary;
+pub(crate) use pipeline::reading::RefusedReport;
 
 /// Exit status 0: everything asked for was done.
 pub(crate) const DONE: u8 = 0;
@@ -146,48 +146,4 @@ impl Failure {
 /// A path for a message: as given, with forward slashes unchanged.
 pub(crate) fn show(path: &Path) -> String {
     path.display().to_string()
-}
-
-/// A report that was refused while the batch continued.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct RefusedReport {
-    /// File.
-    pub(crate) path: PathBuf,
-    /// Physical line from 1, where the refusal has one.
-    pub(crate) line: Option<usize>,
-    /// Column (character) from 1, where the refusal has one.
-    pub(crate) column: Option<usize>,
-    /// What was found and what was expected.
-    pub(crate) reason: String,
-}
-
-impl RefusedReport {
-    /// A report refused as a whole: no position in it is at fault.
-    pub(crate) fn whole(path: PathBuf, reason: impl Display) -> Self {
-        Self { path, line: None, column: None, reason: reason.to_string() }
-    }
-}
-
-impl From<&RefusedReport> for RefusedSummary {
-    fn from(refused: &RefusedReport) -> Self {
-        Self {
-            path: refused.path.display().to_string(),
-            line: refused.line,
-            column: refused.column,
-            reason: refused.reason.clone(),
-        }
-    }
-}
-
-impl Display for RefusedReport {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.path.display())?;
-        if let Some(line) = self.line {
-            write!(f, ":{line}")?;
-            if let Some(column) = self.column {
-                write!(f, ":{column}")?;
-            }
-        }
-        write!(f, ": {}", self.reason)
-    }
 }

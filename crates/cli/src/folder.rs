@@ -6,7 +6,6 @@
 //! while files move has committed: readers look for a file in the waiting folder first, and the next run completes the
 //! moves. A waiting folder of another generation was never committed and is removed.
 
-pub(crate) mod flights;
 pub(crate) mod lock;
 mod older;
 mod restart;
@@ -17,28 +16,17 @@ mod tests;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use flight::Segment;
+use pipeline::adaptation::StoredTail;
 use pipeline::checksum::sha256;
+use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::ModelFile;
 use pipeline::segments_table;
 
 use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
-use flights::KnownFlight;
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
 use state::{FileState, State, TailState};
-
-/// A tail in the folder.
-#[derive(Clone, Debug)]
-pub(crate) struct StoredTail {
-    /// Its model.
-    pub(crate) model: ModelFile,
-    /// Segments of the flights in its ledger, in the order in which they were learnt.
-    pub(crate) segments: Vec<Segment>,
-    /// The flights in its ledger.
-    pub(crate) flights: Vec<KnownFlight>,
-}
 
 /// Whether a folder that exists is continued.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -346,7 +334,7 @@ fn flights_of(
     entry: &TailState,
 ) -> Result<Vec<KnownFlight>, Failure> {
     let bytes = state.bytes_of(folder, &entry.flights)?;
-    flights::read(tail, &bytes)
+    learnt_flights::read(tail, &bytes)
         .map_err(|reason| Failure::bad_file(&folder.join(&entry.flights.file), reason))
 }
 

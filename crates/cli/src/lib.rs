@@ -19,7 +19,6 @@ mod files;
 mod folder;
 mod inputs;
 mod models;
-mod plausibility;
 mod progress;
 mod reading;
 mod simulated_reports;

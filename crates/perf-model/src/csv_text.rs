@@ -173,6 +173,12 @@ impl CsvText {
         Ok(Self { header_line, header, rows })
     }
 
+    /// A header whose rows are somewhere else, checked like that of a text.
+    pub(crate) fn of_header(header: Vec<String>, known: &[Column]) -> Result<Self, CsvError> {
+        check_header(1, &header, known)?;
+        Ok(Self { header_line: 1, header, rows: Vec::new() })
+    }
+
     /// Index of a column, if the file has it.
     pub(crate) fn find(&self, column: &Column) -> Option<usize> {
         self.header.iter().position(|name| name.trim() == column.name)
@@ -227,11 +233,9 @@ impl CsvText {
         let Some(value) = parse_number(found) else {
             return Err(self.error(row, index, CsvErrorReason::NotANumber { found: found.into() }));
         };
-        check_within(column.quantity, column.unit, value, column.minimum, column.maximum).map_err(
-            |domain| {
-                self.error(row, index, CsvErrorReason::OutOfDomain { found: found.into(), domain })
-            },
-        )
+        within(column, value).map_err(|domain| {
+            self.error(row, index, CsvErrorReason::OutOfDomain { found: found.into(), domain })
+        })
     }
 
     /// Like [`number`](Self::number); an empty field or `-` means "not available".
@@ -270,6 +274,11 @@ impl CsvError {
     fn new(line: u64, reason: CsvErrorReason) -> Self {
         Self { line, column: None, reason }
     }
+}
+
+/// A number within its column's limits.
+pub(crate) fn within(column: &Column, value: f64) -> Result<f64, OutOfDomain> {
+    check_within(column.quantity, column.unit, value, column.minimum, column.maximum)
 }
 
 /// Whether a field has a value.

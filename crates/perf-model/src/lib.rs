@@ -64,5 +64,5 @@ pub use model::{
     ModelError, ObserveError, OutsideTable, PerformanceModel, PredictError, Prediction,
     SegmentPrediction,
 };
-pub use points::{FlightPoint, FlightPointRow, FlightPoints};
+pub use points::{FlightPoint, FlightPointRow, FlightPoints, PointCell, PointTable};
 pub use state::SegmentState;

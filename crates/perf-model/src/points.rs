@@ -14,6 +14,10 @@ use crate::columns::{
 use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Row, is_available};
 use crate::guide::{fuel_flow_in, mass_in};
 
+mod table;
+
+pub use table::{PointCell, PointTable};
+
 /// A file of flight points, with every row as it was sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightPoints {
@@ -139,6 +143,7 @@ impl FlightPoint {
 }
 
 /// Index of each column.
+#[derive(Clone, Debug)]
 struct Columns<'c> {
     mass: (usize, &'c Column),
     pressure_altitude: usize,
@@ -209,11 +214,14 @@ fn date(file: &CsvText, row: &Row, index: Option<usize>) -> Result<Option<Timest
         return Ok(None);
     };
     let found = row.fields[index].trim();
-    let parsed = found
-        .parse()
-        .or_else(|_| format!("{found}T00:00:00Z").parse::<Timestamp>())
-        .map_err(|_| file.error(row, index, CsvErrorReason::NotADate { found: found.into() }))?;
-    Ok(Some(parsed))
+    instant_of(found)
+        .map(Some)
+        .ok_or_else(|| file.error(row, index, CsvErrorReason::NotADate { found: found.into() }))
+}
+
+/// An instant, or the first one of a date in UTC.
+fn instant_of(text: &str) -> Option<Timestamp> {
+    text.parse().or_else(|_| format!("{text}T00:00:00Z").parse()).ok()
 }
 
 fn anti_ice(file: &CsvText, row: &Row, index: Option<usize>) -> Result<Option<bool>, CsvError> {

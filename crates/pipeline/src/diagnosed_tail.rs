@@ -69,6 +69,24 @@ impl RunOptions {
         }
         told
     }
+
+    /// What was asked for in words, with the trim criteria, for the page.
+    pub fn in_words(&self, criteria: &str) -> Vec<String> {
+        let mut words = vec![format!("trim criteria {criteria}")];
+        if !self.effects.is_empty() {
+            words.push(format!("only these effects looked for: {}", self.effects.join(", ")));
+        }
+        if !self.without.is_empty() {
+            words.push(format!("not looked for: {}", self.without.join(", ")));
+        }
+        let modes = [
+            (self.pool, "all tails of a type together (--pool)"),
+            (self.table_only, "against the table alone (--table-only)"),
+            (self.allow_learnt, "flights that the model has learnt included (--allow-learnt)"),
+        ];
+        words.extend(modes.iter().filter(|(is, _)| *is).map(|(_, words)| (*words).to_owned()));
+        words
+    }
 }
 
 impl DiagnosedTail {

@@ -7,6 +7,7 @@ use flight::{Observation, Segment};
 use lut::{Outside, Table};
 
 use crate::model_file::ModelFile;
+use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
 use crate::statistics::{ErrorStatistics, NORMAL_95};
 use crate::summary::{ErrorsSummary, TailSummary};
@@ -76,6 +77,27 @@ impl TailResult {
             None => coverage(&data.model, &data.segments),
         };
         Self::put_together(data, before, Vec::new(), summary)
+    }
+
+    /// The result of a model as it was given, over flights of one tail in any order.
+    pub fn of_flights(
+        tail: String,
+        model: ModelFile,
+        mut flights: Vec<FlightRead>,
+        predicts: Predicts,
+    ) -> Self {
+        flights.sort_by(FlightRead::order);
+        let counts = TailCounts {
+            flights: flights.len(),
+            flights_new: flights.len(),
+            samples: flights.iter().map(|flight| flight.reduced.samples as u64).sum(),
+        };
+        let mut notes: Vec<String> = model.note_of_effects().into_iter().collect();
+        for flight in &flights {
+            flight.add_notes(&mut notes);
+        }
+        let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
+        Self::as_given(TailData { tail, model, segments, counts, notes }, predicts)
     }
 
     fn put_together(

@@ -1,11 +1,12 @@
 //! The chain from cruise reports to an adapted, evaluated and diagnosed model, as a library.
 //!
-//! What it is: the pieces between the stages. [`reduction`] takes a report to its stabilised segments, [`learning`] fits a
-//! model one flight after the other, [`evaluation`] compares segments with a table, [`model_file`] is a model with what it
-//! has learnt, as text and back; [`check`] finds what is wrong with
-//! recorded data. Around them: tables of segments ([`segments_table`]) and of a model ([`model_table`]), the
-//! results of a run ([`summary`], [`diagnosis_document`]), and a diagnosis in words
-//! ([`diagnosis_text`], [`diagnosis_words`]).
+//! What it is: the pieces between the stages. [`reading`] takes the bytes of a report to its stabilised segments
+//! ([`reduction`]), [`models`] chooses the model of a report, [`adaptation`] lets a tail learn its flights one after the
+//! other ([`learning`]), [`evaluation`] compares segments with a table, [`prediction`] predicts at flight points,
+//! [`diagnosis_groups`] diagnoses, [`model_file`] is a model with what it has learnt, as text and back; [`check`] finds
+//! what is wrong with recorded data, [`plausibility`] sets aside what is absurd. Around them: tables of segments
+//! ([`segments_table`]) and of a model ([`model_table`]), the results of a run ([`summary`], [`diagnosis_document`]), and a
+//! diagnosis in words ([`diagnosis_text`], [`diagnosis_words`]).
 //! What it is not: it opens no file, starts no thread, reads no clock and prints nothing. It computes no drag, no fuel flow
 //! and no verdict; those are the stages'.
 //!
@@ -15,8 +16,7 @@
 //!
 //! Limits:
 //! - A model file is read whole: one of a thousand nodes by law `bayes` has some 10 MB.
-//! - Flights have to be given in the order of flying; law `paper` learns something else in another order, and no function
-//!   here sorts them.
+//! - [`learning`] takes flights in the order of flying; law `paper` learns something else in another order.
 //! - Words are English.
 //!
 //! ```
@@ -40,6 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod adaptation;
 pub mod addition_record;
 pub mod check;
 pub mod checksum;
@@ -49,18 +50,26 @@ pub mod dates;
 pub mod diagnosed_tail;
 pub mod diagnosis_document;
 pub mod diagnosis_figures;
+pub mod diagnosis_groups;
 pub mod diagnosis_text;
 pub mod diagnosis_words;
 pub mod difference;
+pub mod distinct;
 pub mod evaluation;
 pub mod export;
 pub mod fuel_factor;
+pub mod known_flights;
 pub mod learning;
+pub mod learnt_flights;
 pub mod merging;
 pub mod model_file;
 pub mod model_table;
+pub mod models;
 pub mod monitoring;
 pub mod optimum;
+pub mod plausibility;
+pub mod prediction;
+pub mod reading;
 pub mod reduction;
 pub mod residuals;
 pub mod segments_table;

@@ -18,6 +18,13 @@ pub enum Predicts {
     TableOnly,
 }
 
+impl Predicts {
+    /// The table alone where that is asked for.
+    pub const fn table_only(asked: bool) -> Self {
+        if asked { Self::TableOnly } else { Self::WholeModel }
+    }
+}
+
 impl ModelFile {
     /// The model with everything that it has learnt; `None` where it has learnt no more than a table, or where only the table
     /// is asked for.

@@ -4,14 +4,13 @@
 //! tail's flights in the order of flying. What a tail comes to is written to the folder's waiting room at once, so that
 //! memory holds the tails in work and nothing of those that are done.
 
-mod begun;
-pub(super) mod dates;
 mod results;
-mod sorting;
 mod tail;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use pipeline::adaptation::{LawAsked, Start, Starts};
+use pipeline::distinct::warn_of_copies;
 use rayon::prelude::*;
 
 use crate::args::{AdaptArgs, LawName};
@@ -20,13 +19,11 @@ use crate::failure::{Failure, RefusedReport, show};
 use crate::folder::lock::Busy;
 use crate::folder::{Beginning, Folder};
 use crate::inputs;
-use crate::models::Models;
+use crate::models::read_models;
 use crate::progress::Progress;
-use crate::reading::distinct::warn_of_copies;
 use crate::reading::heads::{Head, Heads};
 use crate::reading::{Buffers, Source};
-use begun::{Start, Starts};
-pub(crate) use tail::{materials, rebuild, result_of, settled, stage};
+pub(crate) use tail::stage;
 
 /// What all tails of a run have in common.
 struct Run<'a> {
@@ -43,7 +40,7 @@ struct Run<'a> {
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, Failure> {
-    let models = Models::read(&arguments.models.models)?;
+    let models = read_models(&arguments.models.models)?;
     check_threshold(arguments)?;
     let source = source_of(&arguments.reports)?;
     let inputs = inputs::collect(&arguments.reports.reports, source.mapping.is_some())?;
@@ -52,13 +49,14 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let Heads { tails, mut refused } = source.heads(inputs.files, &bar);
     bar.finish();
     refused.extend(inputs.refused);
-    let mut starts = Starts::new(&models, arguments);
+    let law = law_of(arguments);
+    let mut starts = Starts::new(&models, law, &arguments.reports.criteria);
     let tails = choose(tails, &mut starts, &mut refused);
     check_refused(&refused, files, arguments.reports.strict, tails.is_empty())?;
     let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };
     let folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
     for (tail, (start, _)) in &tails {
-        starts.check_begun_alike(&folder, tail, start)?;
+        check_begun_alike(arguments, &folder, tail, start)?;
     }
     let mut all: BTreeSet<String> = folder.tails();
     all.extend(tails.keys().cloned());
@@ -151,6 +149,33 @@ fn learn_all(
         .collect();
     bar.finish();
     outcomes
+}
+
+const fn law_of(arguments: &AdaptArgs) -> LawAsked {
+    match arguments.law {
+        LawName::Bayes => LawAsked::Bayes,
+        LawName::Paper => LawAsked::Paper { threshold_percent: arguments.threshold },
+    }
+}
+
+/// A tail that the folder holds must have been begun with the same.
+fn check_begun_alike(
+    arguments: &AdaptArgs,
+    folder: &Folder,
+    tail: &str,
+    start: &Start<'_>,
+) -> Result<(), Failure> {
+    if !folder.holds(tail) || folder.state_of(tail).is_some_and(|s| s.begun == start.begun) {
+        return Ok(());
+    }
+    // A damaged tail is refused when its flights are.
+    let Ok(stored) = folder.load(tail) else { return Ok(()) };
+    match start.difference(tail, &stored.model).map_err(|error| tail::not_correctable(&error))? {
+        None => Ok(()),
+        Some((what, difference)) => {
+            Err(Failure::BegunOtherwise { folder: show(&arguments.output), what, difference })
+        }
+    }
 }
 
 fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {

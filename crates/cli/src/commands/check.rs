@@ -3,14 +3,14 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use pipeline::check::CheckDocument;
+use pipeline::plausibility;
 use pipeline::summary::{RefusedSummary, ReportsSummary};
 
 use crate::args::CheckArgs;
 use crate::commands::{Outcome, check_refused, read_reports};
 use crate::failure::Failure;
 use crate::files::write_atomically;
-use crate::models::Models;
-use crate::plausibility;
+use crate::models::read_models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
 
@@ -20,7 +20,7 @@ use crate::reading::FlightRead;
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &CheckArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models =
-        if arguments.models.is_empty() { None } else { Some(Models::read(&arguments.models)?) };
+        if arguments.models.is_empty() { None } else { Some(read_models(&arguments.models)?) };
     let reading = read_reports(&arguments.reports, progress)?;
     let files = reading.files();
     let nothing_left = reading.flights.is_empty();

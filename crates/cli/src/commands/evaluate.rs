@@ -8,13 +8,13 @@ use flight::{FlightIdentity, Segment};
 
 use crate::args::EvaluateArgs;
 use crate::columns;
-use crate::commands::{Outcome, check_refused, predicts, prepare};
+use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport};
 use crate::files::write_atomically;
-use crate::models::Models;
+use crate::models::read_models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
-use pipeline::evaluation::{self, TailCounts, TailData, TailResult};
+use pipeline::evaluation::{self, TailResult};
 use pipeline::fuel_factor::{self, FuelFactor};
 use pipeline::model_file::ModelFile;
 use pipeline::residuals::{self, FlightResiduals, GivenFlight};
@@ -65,7 +65,7 @@ pub(crate) fn evaluate(
     arguments: &EvaluateArgs,
     progress: Progress,
 ) -> Result<Evaluation, Failure> {
-    let models = Models::read(&arguments.models.models)?;
+    let models = read_models(&arguments.models.models)?;
     let reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
     let mut refused = reading.refused;
@@ -82,7 +82,7 @@ pub(crate) fn evaluate(
     }
     refused.sort_by(|one, other| one.path.cmp(&other.path));
     check_refused(&refused, files, arguments.reports.strict, by_tail.is_empty())?;
-    let predicts = predicts(arguments.table_only);
+    let predicts = Predicts::table_only(arguments.table_only);
     let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
     let tails: Vec<EvaluatedTail> = by_tail
         .into_iter()
@@ -116,15 +116,6 @@ impl EvaluatedTail {
         predicts: Predicts,
     ) -> Self {
         flights.sort_by(FlightRead::order);
-        let counts = TailCounts {
-            flights: flights.len(),
-            flights_new: flights.len(),
-            samples: flights.iter().map(|flight| flight.reduced.samples as u64).sum(),
-        };
-        let mut notes: Vec<String> = model.note_of_effects().into_iter().collect();
-        for flight in &flights {
-            flight.add_notes(&mut notes);
-        }
         let given = flights
             .iter()
             .map(|flight| {
@@ -132,9 +123,7 @@ impl EvaluatedTail {
                 (Arc::clone(&reduced.identity), flight.content.clone(), reduced.segments.len())
             })
             .collect();
-        let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
-        let data = TailData { tail, model, segments, counts, notes };
-        Self { result: TailResult::as_given(data, predicts), flights: given }
+        Self { result: TailResult::of_flights(tail, model, flights, predicts), flights: given }
     }
 
     /// All segments, flight by flight.

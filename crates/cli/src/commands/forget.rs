@@ -3,17 +3,18 @@
 use std::collections::BTreeMap;
 
 use flight::Timestamp;
+use pipeline::adaptation::{RemainderChoice, materials, rebuild, result_of, settled};
 use pipeline::learning::{self, LawChoice};
+use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::{LawState, ModelFile};
 
 use crate::args::ForgetArgs;
 use crate::commands::Outcome;
-use crate::commands::adapt::{materials, rebuild, result_of, settled, stage};
+use crate::commands::adapt::stage;
 use crate::failure::{Failure, show};
-use crate::folder::flights::KnownFlight;
 use crate::folder::lock::Busy;
 use crate::folder::state::TailState;
-use crate::folder::{Beginning, Folder, flights, state};
+use crate::folder::{Beginning, Folder, state};
 
 /// Runs the command.
 ///
@@ -38,8 +39,10 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
     };
     let stored = folder.load(tail)?;
     let place = find(&stored.flights, arguments)?;
-    let had_remainder =
-        stored.model.learnt.as_ref().is_some_and(|learnt| learnt.baseline.is_some());
+    let remainder = match &stored.model.learnt {
+        Some(learnt) if learnt.baseline.is_some() => RemainderChoice::Learn,
+        _ => RemainderChoice::Leave,
+    };
     let mut flights = materials(stored.flights, stored.segments);
     let forgotten = flights.remove(place).known;
     let mut states: BTreeMap<String, TailState> = folder
@@ -57,8 +60,8 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
         };
         let rebuilt = rebuild(as_begun(&stored.model).map_err(|error| wrong(&error))?, flights)
             .map_err(|error| wrong(&error))?;
-        let rebuilt = settled(rebuilt, had_remainder, &mut Vec::new());
-        let csv = flights::to_csv(&rebuilt.flights);
+        let rebuilt = settled(rebuilt, remainder, &mut Vec::new());
+        let csv = learnt_flights::to_csv(&rebuilt.flights);
         let result = result_of(rebuilt, 0, Vec::new());
         states.insert(tail.clone(), stage(&folder, &begun, &result, &csv)?);
     }

@@ -7,12 +7,12 @@ use adapt::bayes::{BayesSettings, Search, SettingValues, search_half_life, tune}
 use flight::Observation;
 
 use crate::args::{HalfLifeChoice, TuneArgs};
-use crate::commands::adapt::dates::refuse_impossible;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
 use crate::models::{check_model_replaceable, read_model, write_model};
 use crate::progress::Progress;
 use crate::reading::FlightRead;
+use pipeline::adaptation::refuse_impossible;
 use pipeline::model_file::{LawSettings, ModelFile};
 
 /// Runs the command.

@@ -5,11 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use flight::Segment;
+use pipeline::adaptation::StoredTail;
+use pipeline::learnt_flights;
 use pipeline::model_file::ModelFile;
 use pipeline::segments_table;
 
-use super::StoredTail;
-use super::flights;
 use crate::failure::Failure;
 use crate::files::file_stem_of_tail;
 use crate::models::read_model;
@@ -45,7 +45,7 @@ pub(super) fn read(folder: &Path) -> Result<BTreeMap<String, StoredTail>, Failur
             continue;
         }
         let segments = segments_of(folder, &tail, &model)?;
-        let flights = flights::of_ledger(&learnt.ledger, &segments)
+        let flights = learnt_flights::of_ledger(&learnt.ledger, &segments)
             .map_err(|reason| Failure::bad_file(&path, reason))?;
         tails.insert(tail, StoredTail { model, segments, flights });
     }

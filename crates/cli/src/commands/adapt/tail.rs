@@ -1,28 +1,27 @@
 //! One tail: its reports are read and sorted, its model learns, its files are written to the waiting room.
 
-use std::borrow::Cow;
 use std::path::Path;
 
-use flight::Segment;
-use pipeline::evaluation::{TailCounts, TailData, TailResult};
-use pipeline::learning::{self, FlightToLearn, LearningError};
-use pipeline::model_file::{Learnt, LedgerEntry, ModelFile};
+use pipeline::adaptation::{
+    self, Contradictions, OlderFlights, RemainderChoice, Sorting, Start, StoredTail,
+    refuse_impossible, result_of,
+};
+use pipeline::evaluation::TailResult;
+use pipeline::known_flights::KnownFlights;
+use pipeline::learning::LearningError;
+use pipeline::learnt_flights::{self, KnownFlight};
+use pipeline::models::check_engines;
+use pipeline::plausibility::{self, Absurd};
 use pipeline::segments_table;
 use rayon::prelude::*;
 
 use super::Run;
-use super::begun::Start;
-use super::dates::{self, Dates};
-use super::sorting::{Contradictions, Sorting};
+use crate::commands::tell_serious;
 use crate::failure::{Failure, RefusedReport};
 use crate::files::file_stem_of_tail;
-use crate::folder::flights::{self, KnownFlight};
+use crate::folder::Folder;
 use crate::folder::state::TailState;
-use crate::folder::{Folder, StoredTail};
-use crate::models::check_engines;
-use crate::plausibility;
 use crate::reading::heads::Head;
-use crate::reading::known::{KnownFlights, entry_of};
 use crate::reading::{Buffers, FlightRead, Reading, Source};
 
 /// So many reports of a tail are read before the first of them is learnt.
@@ -44,15 +43,6 @@ pub(super) struct TailOutcome {
     pub(super) copies: usize,
     /// The first copy, and what it is a copy of.
     pub(super) first_copy: Option<(String, String)>,
-}
-
-/// A flight with its segments: what a model is rebuilt from.
-#[derive(Clone, Debug)]
-pub(crate) struct Material {
-    /// The flight.
-    pub(crate) known: KnownFlight,
-    /// Its segments.
-    pub(crate) segments: Vec<Segment>,
 }
 
 impl Run<'_> {
@@ -94,7 +84,9 @@ impl Run<'_> {
             known.add_segments(&stored.segments);
         }
         let mut sorting = Sorting::new(tail, known);
-        sorting.strict = self.arguments.reports.strict;
+        if self.arguments.reports.strict {
+            sorting.older = OlderFlights::Refuse;
+        }
         if self.arguments.relearn {
             sorting.contradictions = Contradictions::Relearn;
         }
@@ -104,7 +96,7 @@ impl Run<'_> {
         sorting.refused.extend(reading.refused);
         let usable = already_known + reading.flights.len();
         for flight in reading.flights {
-            sorting.next(flight);
+            sorting.sort(flight);
         }
         let outcome = TailOutcome {
             tail: tail.to_owned(),
@@ -142,41 +134,34 @@ impl Run<'_> {
                 }
             }
         }
-        dates::refuse_impossible(&mut reading, flight::Timestamp::now());
+        refuse_impossible(&mut reading, flight::Timestamp::now());
         let book = (&start.model.initial, start.model.initial.drag_table());
-        plausibility::set_aside_absurd(&mut reading, |_| Some(book), self.arguments.accept);
+        let absurd = if self.arguments.accept { Absurd::Accept } else { Absurd::Refuse };
+        tell_serious(&plausibility::set_aside_absurd(&mut reading, |_| Some(book), absurd));
         reading
     }
 
     fn learn_sorted(
         &self,
         start: &Start<'_>,
-        sorting: Sorting<'_>,
+        sorting: Sorting,
         stored: Option<StoredTail>,
         mut outcome: TailOutcome,
     ) -> Result<TailOutcome, Failure> {
-        let tail = outcome.tail.clone();
-        outcome.refused = sorting.refused;
-        if sorting.new.is_empty() {
-            return self.rest(outcome);
-        }
-        let mut work = Work::new(sorting.warnings);
-        let learnt = if sorting.replaced.is_empty() {
-            let new = sorting.new.into_iter().map(|(flight, _)| flight).collect();
-            work.continued(start, &tail, stored, new)?
+        let remainder = if self.arguments.no_remainder {
+            RemainderChoice::Leave
         } else {
-            work.relearnt(start, &tail, stored, sorting.new, &sorting.replaced)?
+            RemainderChoice::Learn
         };
-        outcome.refused.append(&mut work.refused);
-        match learnt {
-            Some(learnt) if work.flights_new > 0 => {
-                outcome.flights_new = work.flights_new;
-                let remember = !self.arguments.no_remainder;
-                let mut notes = work.notes;
-                let learnt = settled(learnt, remember, &mut notes);
-                self.store(&start.begun, learnt, notes, outcome)
+        let found = adaptation::learn(start, &outcome.tail, sorting, stored, remainder)
+            .map_err(|error| not_correctable(&error))?;
+        outcome.refused = found.refused;
+        match found.learnt {
+            Some(learnt) => {
+                outcome.flights_new = found.flights_new;
+                self.store(&start.begun, learnt, found.notes, outcome)
             }
-            _ => self.rest(outcome),
+            None => self.rest(outcome),
         }
     }
 
@@ -228,7 +213,7 @@ impl Run<'_> {
         notes: Vec<String>,
         outcome: TailOutcome,
     ) -> Result<TailOutcome, Failure> {
-        let flights = flights::to_csv(&learnt.flights);
+        let flights = learnt_flights::to_csv(&learnt.flights);
         let result = result_of(learnt, outcome.flights_new, notes);
         let section = self.page_of(&result)?;
         let state = stage(self.folder, begun, &result, &flights)?;
@@ -311,199 +296,6 @@ pub(crate) fn stage(
     })
 }
 
-/// The figures of a tail.
-pub(crate) fn result_of(stored: StoredTail, flights_new: usize, notes: Vec<String>) -> TailResult {
-    let StoredTail { model, segments, flights } = stored;
-    let tail = model.tail().unwrap_or_default().to_owned();
-    let counts = TailCounts {
-        flights: flights.len(),
-        flights_new,
-        samples: flights.iter().map(|flight| flight.entry.samples).sum(),
-    };
-    TailResult::adapted(TailData { tail, model, segments, counts, notes })
-}
-
-/// Brings the model up to date with what it has learnt.
-pub(crate) fn settled(
-    mut stored: StoredTail,
-    remember_remainder: bool,
-    notes: &mut Vec<String>,
-) -> StoredTail {
-    let model = &mut stored.model;
-    let Some(learnt) = &mut model.learnt else { return stored };
-    if let Err(error) = learning::settle(learnt) {
-        // Cannot happen to a state that was read whole.
-        tracing::error!(tail = learnt.tail, "{error}");
-    }
-    if remember_remainder {
-        learning::remember_remainder(&model.initial, learnt, &stored.segments);
-    } else if learnt.baseline.take().is_some() {
-        notes.push(
-            "the remainder of an earlier run is dropped: it belonged to the table before these flights"
-                .to_owned(),
-        );
-    }
-    stored
-}
-
-/// Learns flights anew, one after the other, into a model that has learnt nothing.
-///
-/// # Errors
-/// A flight that cannot be learnt.
-pub(crate) fn rebuild(
-    mut model: ModelFile,
-    flights: Vec<Material>,
-) -> Result<StoredTail, LearningError> {
-    let mut segments = Vec::new();
-    let mut known = Vec::new();
-    let starts = flights.iter().map(|flight| flight.known.start).collect();
-    let dated = Dates::of_starts(&model, starts);
-    for flight in flights {
-        let Some(learnt) = &mut model.learnt else { break };
-        let as_dated = match flight.segments.first() {
-            Some(first) => dated.segments_as_dated(&first.identity, &flight.segments),
-            None => Cow::Borrowed(&flight.segments[..]),
-        };
-        known.push(learn_one(&model.initial, learnt, flight.known, &as_dated)?);
-        segments.extend(flight.segments);
-    }
-    Ok(StoredTail { model, segments, flights: known })
-}
-
-/// A tail's learning in this run.
-#[derive(Debug)]
-struct Work {
-    notes: Vec<String>,
-    refused: Vec<RefusedReport>,
-    flights_new: usize,
-}
-
-impl Work {
-    const fn new(notes: Vec<String>) -> Self {
-        Self { notes, refused: Vec::new(), flights_new: 0 }
-    }
-
-    /// New flights after those that the tail has learnt.
-    fn continued(
-        &mut self,
-        start: &Start<'_>,
-        tail: &str,
-        stored: Option<StoredTail>,
-        new: Vec<FlightRead>,
-    ) -> Result<Option<StoredTail>, Failure> {
-        let mut stored = match stored {
-            Some(stored) => stored,
-            None => {
-                StoredTail { model: start.fresh(tail)?, segments: Vec::new(), flights: Vec::new() }
-            }
-        };
-        self.notes.extend(stored.model.note_of_effects());
-        let dated = Dates::of_learnt_and_new(&stored.model, &new);
-        for flight in new {
-            let Some(learnt) = &mut stored.model.learnt else { break };
-            let known = known_of(&flight);
-            let as_dated = dated.as_dated(&flight).into_owned();
-            match learn_one(&stored.model.initial, learnt, known, &as_dated) {
-                Ok(known) => {
-                    self.flights_new += 1;
-                    flight.add_notes(&mut self.notes);
-                    stored.flights.push(known);
-                    stored.segments.extend(flight.reduced.segments);
-                }
-                Err(error) => self.refused.push(RefusedReport::whole(flight.path, error)),
-            }
-        }
-        Ok(Some(stored))
-    }
-
-    /// The tail from its first flight on, with other versions of some.
-    fn relearnt(
-        &mut self,
-        start: &Start<'_>,
-        tail: &str,
-        stored: Option<StoredTail>,
-        new: Vec<(FlightRead, Option<usize>)>,
-        replaced: &[usize],
-    ) -> Result<Option<StoredTail>, Failure> {
-        let Some(stored) = stored else { return Ok(None) };
-        let mut slots: Vec<Option<Material>> =
-            materials(stored.flights, stored.segments).into_iter().map(Some).collect();
-        for index in replaced {
-            slots[*index] = None;
-        }
-        let mut paths = Vec::new();
-        let mut last = Vec::new();
-        for (flight, replaces) in new {
-            flight.add_notes(&mut self.notes);
-            let material = Material { known: known_of(&flight), segments: flight.reduced.segments };
-            paths.push(flight.path);
-            match replaces {
-                Some(index) => slots[index] = Some(material),
-                None => last.push(material),
-            }
-        }
-        let flights = slots.into_iter().flatten().chain(last).collect();
-        match rebuild(start.fresh(tail)?, flights) {
-            Ok(rebuilt) => {
-                self.notes.extend(rebuilt.model.note_of_effects());
-                self.flights_new = paths.len();
-                Ok(Some(rebuilt))
-            }
-            Err(error) => {
-                let refuse = |path| {
-                    RefusedReport::whole(path, format!("the tail cannot be learnt anew: {error}"))
-                };
-                self.refused.extend(paths.into_iter().map(refuse));
-                Ok(None)
-            }
-        }
-    }
-}
-
-/// Flights with their segments, in the order in which they were learnt.
-pub(crate) fn materials(flights: Vec<KnownFlight>, segments: Vec<Segment>) -> Vec<Material> {
-    let mut segments = segments.into_iter().peekable();
-    flights
-        .into_iter()
-        .map(|known| {
-            let mut own = Vec::new();
-            while let Some(segment) = segments.next_if(|segment| {
-                segment.identity.start == known.start
-                    && segment.identity.flight == known.entry.flight
-            }) {
-                own.push(segment);
-            }
-            Material { known, segments: own }
-        })
-        .collect()
-}
-
-fn known_of(flight: &FlightRead) -> KnownFlight {
-    KnownFlight { entry: entry_of(flight), start: flight.reduced.identity.start, end: flight.end }
-}
-
-/// Learns one flight; returns it with what learning counted.
-fn learn_one(
-    initial: &effects::ExtendedModel,
-    learnt: &mut Learnt,
-    known: KnownFlight,
-    segments: &[Segment],
-) -> Result<KnownFlight, LearningError> {
-    let entry = LedgerEntry { segments: 0, outside_table: 0, ..known.entry.clone() };
-    let result = learning::learn_flight(initial, learnt, &FlightToLearn { entry, segments })?;
-    let entry = learnt.ledger.last().cloned().unwrap_or(known.entry);
-    tracing::debug!(
-        tail = entry.tail,
-        flight = entry.flight,
-        segments = segments.len(),
-        adapted = result.adapted,
-        outside = result.outside_table,
-        refitted = result.refitted,
-        "learnt"
-    );
-    Ok(KnownFlight { entry, ..known })
-}
-
 type Read = Vec<(Vec<FlightRead>, Vec<RefusedReport>)>;
 
 fn read_some(source: &Source, heads: &[Head], buffers: &mut Buffers, side_by_side: bool) -> Read {
@@ -516,4 +308,9 @@ fn read_some(source: &Source, heads: &[Head], buffers: &mut Buffers, side_by_sid
     } else {
         heads.iter().map(|head| read(head, buffers)).collect()
     }
+}
+
+/// An initial model whose table the law cannot correct.
+pub(super) fn not_correctable(error: &LearningError) -> Failure {
+    Failure::BadArgument { argument: "--model", reason: error.to_string() }
 }

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use diagnose::{Diagnosis, Verdict};
 
-use super::Group;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{file_stem_of_tail, make_folder};
 use crate::models::write_model;
 use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
+use pipeline::diagnosis_groups::Group;
 use pipeline::diagnosis_words::joined;
 use pipeline::model_file::{AppliedRecord, DiagnosisRecord};
 

@@ -2,50 +2,65 @@
 
 use flight::Timestamp;
 
-use crate::failure::RefusedReport;
-use crate::reading::FlightRead;
-use crate::reading::known::{KnownFlights, Relation};
+use crate::known_flights::{KnownFlights, Relation};
+use crate::reading::{FlightRead, RefusedReport};
 
 /// What may be done with a report that contradicts a known flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Contradictions {
+pub enum Contradictions {
     /// Refuse it.
     Refuse,
     /// Learn it in place of the known one.
     Relearn,
 }
 
-/// A tail's reports, one after the other.
-#[derive(Debug)]
-pub(super) struct Sorting<'a> {
-    tail: &'a str,
-    pub(super) known: KnownFlights,
-    /// How many of the known flights the folder holds.
-    stored: usize,
-    newest: Option<Timestamp>,
-    pub(super) contradictions: Contradictions,
-    pub(super) strict: bool,
-    /// Flights to learn; with the number of the stored flight that each replaces first.
-    pub(super) new: Vec<(FlightRead, Option<usize>)>,
-    /// Numbers of stored flights that are replaced.
-    pub(super) replaced: Vec<usize>,
-    pub(super) refused: Vec<RefusedReport>,
-    pub(super) already_known: usize,
-    pub(super) copies: usize,
-    pub(super) first_copy: Option<(String, String)>,
-    pub(super) warnings: Vec<String>,
+/// What happens to a flight older than the newest one learnt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OlderFlights {
+    /// It is learnt after newer ones, with a warning.
+    Learn,
+    /// It is refused.
+    Refuse,
 }
 
-impl<'a> Sorting<'a> {
-    /// Nothing but what the folder holds is known.
-    pub(super) fn new(tail: &'a str, known: KnownFlights) -> Self {
+/// A tail's reports, one after the other.
+#[derive(Debug)]
+pub struct Sorting {
+    tail: String,
+    known: KnownFlights,
+    /// How many of the known flights are stored.
+    stored: usize,
+    newest: Option<Timestamp>,
+    /// What happens to a report that contradicts a stored flight.
+    pub contradictions: Contradictions,
+    /// What happens to a flight older than the newest stored one.
+    pub older: OlderFlights,
+    /// Flights to learn; with the number of the stored flight that each replaces first.
+    pub new: Vec<(FlightRead, Option<usize>)>,
+    /// Numbers of stored flights that are replaced.
+    pub replaced: Vec<usize>,
+    /// What is not learnt.
+    pub refused: Vec<RefusedReport>,
+    /// Flights that were known before.
+    pub already_known: usize,
+    /// Copies among the reports themselves.
+    pub copies: usize,
+    /// The first copy, and what it is a copy of.
+    pub first_copy: Option<(String, String)>,
+    /// What is worth knowing about the order of flights.
+    pub warnings: Vec<String>,
+}
+
+impl Sorting {
+    /// Nothing but what is stored is known.
+    pub fn new(tail: &str, known: KnownFlights) -> Self {
         Self {
-            tail,
+            tail: tail.to_owned(),
             stored: known.flights().len(),
             newest: known.flights().iter().map(|flight| flight.start).max(),
             known,
             contradictions: Contradictions::Refuse,
-            strict: false,
+            older: OlderFlights::Learn,
             new: Vec::new(),
             replaced: Vec::new(),
             refused: Vec::new(),
@@ -57,7 +72,7 @@ impl<'a> Sorting<'a> {
     }
 
     /// Sorts the next report, in the order of flying.
-    pub(super) fn next(&mut self, flight: FlightRead) {
+    pub fn sort(&mut self, flight: FlightRead) {
         match self.known.relation(&flight) {
             Relation::New => {
                 if self.is_accepted_by_age(&flight) {
@@ -119,7 +134,7 @@ impl<'a> Sorting<'a> {
             "flight {} of {} is older than the newest one that tail {} has learnt",
             identity.flight, identity.start, self.tail
         );
-        if self.strict {
+        if self.older == OlderFlights::Refuse {
             self.refused.push(RefusedReport::whole(flight.path.clone(), finding));
             return false;
         }

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use crate::checksum::sha256;
+use crate::model_file::LedgerEntry;
 use flight::{Segment, Timestamp};
-use pipeline::checksum::sha256;
-use pipeline::model_file::LedgerEntry;
 
-use super::FlightRead;
-use crate::folder::flights::KnownFlight;
+use crate::learnt_flights::KnownFlight;
+use crate::reading::FlightRead;
 
 /// The flights of one tail, in the order in which they became known.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct KnownFlights {
+pub struct KnownFlights {
     flights: Vec<KnownFlight>,
     by_identity: BTreeMap<(Timestamp, String), usize>,
     by_segments: BTreeMap<String, usize>,
@@ -21,7 +21,7 @@ pub(crate) struct KnownFlights {
 
 /// What a flight is to those that are known. The number is that of the known flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Relation {
+pub enum Relation {
     /// None of them.
     New,
     /// The same flight with the same content.
@@ -36,7 +36,7 @@ pub(crate) enum Relation {
 
 impl KnownFlights {
     /// Known are these flights.
-    pub(crate) fn new(flights: Vec<KnownFlight>) -> Self {
+    pub fn new(flights: Vec<KnownFlight>) -> Self {
         let mut known = Self::default();
         for flight in flights {
             known.push(flight);
@@ -45,7 +45,7 @@ impl KnownFlights {
     }
 
     /// The segments of the known flights, by which the same samples are found at another time.
-    pub(crate) fn add_segments(&mut self, segments: &[Segment]) {
+    pub fn add_segments(&mut self, segments: &[Segment]) {
         for of_flight in segments.chunk_by(|one, other| one.identity == other.identity) {
             let identity = &of_flight[0].identity;
             let key = (identity.start, identity.flight.clone());
@@ -56,7 +56,7 @@ impl KnownFlights {
     }
 
     /// One more.
-    pub(crate) fn add(&mut self, flight: &FlightRead) {
+    pub fn add(&mut self, flight: &FlightRead) {
         let index = self.flights.len();
         if let Some(mark) = mark(&flight.reduced.segments) {
             self.by_segments.entry(mark).or_insert(index);
@@ -75,17 +75,17 @@ impl KnownFlights {
     }
 
     /// The flights.
-    pub(crate) fn flights(&self) -> &[KnownFlight] {
+    pub fn flights(&self) -> &[KnownFlight] {
         &self.flights
     }
 
     /// The flight of this name and START.
-    pub(crate) fn find(&self, start: Timestamp, flight: &str) -> Option<&KnownFlight> {
+    pub fn find(&self, start: Timestamp, flight: &str) -> Option<&KnownFlight> {
         self.by_identity.get(&(start, flight.to_owned())).map(|index| &self.flights[*index])
     }
 
     /// What a flight is to them.
-    pub(crate) fn relation(&self, flight: &FlightRead) -> Relation {
+    pub fn relation(&self, flight: &FlightRead) -> Relation {
         let identity = &flight.reduced.identity;
         let start = identity.start;
         if let Some(index) = self.by_identity.get(&(start, identity.flight.clone())) {
@@ -113,7 +113,7 @@ impl KnownFlights {
     }
 
     /// Why a flight of this relation is not used; `None` where it is new, or a copy that nobody needs to hear of.
-    pub(crate) fn objection(&self, relation: Relation, flight: &FlightRead) -> Option<String> {
+    pub fn objection(&self, relation: Relation, flight: &FlightRead) -> Option<String> {
         let identity = &flight.reduced.identity;
         let told = |index: usize| {
             let known = &self.flights[index];
@@ -139,7 +139,7 @@ impl KnownFlights {
 }
 
 /// A flight's entry in a ledger, but for what learning counts.
-pub(crate) fn entry_of(flight: &FlightRead) -> LedgerEntry {
+pub fn entry_of(flight: &FlightRead) -> LedgerEntry {
     LedgerEntry {
         tail: flight.reduced.identity.tail.clone(),
         flight: flight.reduced.identity.flight.clone(),

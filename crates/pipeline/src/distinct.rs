@@ -2,13 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::known::{KnownFlights, Relation};
-use super::{FlightRead, Reading};
-use crate::failure::RefusedReport;
+use crate::known_flights::{KnownFlights, Relation};
+use crate::reading::{FlightRead, Reading, RefusedReport};
 
 /// Keeps one report of every flight: copies are left out with one warning for all of them, a report that contradicts
 /// another one (other content, the same hours under another name) is refused.
-pub(crate) fn distinct(reading: Reading) -> Reading {
+pub fn distinct(reading: Reading) -> Reading {
     let Reading { flights, mut refused, mut copies } = reading;
     let mut order: Vec<usize> = (0..flights.len()).collect();
     order.sort_by(|one, other| flights[*one].order(&flights[*other]));
@@ -49,7 +48,7 @@ pub(crate) fn distinct(reading: Reading) -> Reading {
 }
 
 /// One warning for all copies of a batch: how many, and the first with what it is a copy of.
-pub(crate) fn warn_of_copies<P: std::fmt::Display>(copies: usize, first: Option<(P, P)>) {
+pub fn warn_of_copies<P: std::fmt::Display>(copies: usize, first: Option<(P, P)>) {
     let Some((copy, original)) = first else { return };
     let (are, count) = match copies {
         1 => ("is a copy", "1 report".to_owned()),

@@ -3,15 +3,14 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::dates;
+use crate::model_file::{LawState, ModelFile};
 use flight::{FlightIdentity, Segment, Timestamp};
-use pipeline::dates;
-use pipeline::model_file::{LawState, ModelFile};
 
-use crate::failure::RefusedReport;
-use crate::reading::{FlightRead, Reading};
+use crate::reading::{FlightRead, Reading, RefusedReport};
 
 /// Moves flights that cannot have been flown when they say to the refused ones.
-pub(crate) fn refuse_impossible(reading: &mut Reading, now: Timestamp) {
+pub fn refuse_impossible(reading: &mut Reading, now: Timestamp) {
     // Fractions of a second are nothing to print.
     let now = Timestamp::from_second(now.as_second()).unwrap_or(now);
     for flight in std::mem::take(&mut reading.flights) {
@@ -24,14 +23,14 @@ pub(crate) fn refuse_impossible(reading: &mut Reading, now: Timestamp) {
 
 /// The dates of a tail's flights, where dates matter: in a model whose knowledge ages.
 #[derive(Clone, Debug)]
-pub(super) struct Dates {
+pub struct Dates {
     /// Starts of the flights that were learnt and of those to be learnt; empty where knowledge does not age.
     starts: Vec<Timestamp>,
 }
 
 impl Dates {
     /// The dates of the flights that a model has learnt, and of new ones.
-    pub(super) fn of_learnt_and_new(model: &ModelFile, new: &[FlightRead]) -> Self {
+    pub fn of_learnt_and_new(model: &ModelFile, new: &[FlightRead]) -> Self {
         let Some(learnt) = model.learnt.as_ref().filter(|_| ages(model)) else {
             return Self { starts: Vec::new() };
         };
@@ -41,17 +40,17 @@ impl Dates {
     }
 
     /// The dates of flights that a model is to learn anew.
-    pub(super) fn of_starts(model: &ModelFile, starts: Vec<Timestamp>) -> Self {
+    pub fn of_starts(model: &ModelFile, starts: Vec<Timestamp>) -> Self {
         Self { starts: if ages(model) { starts } else { Vec::new() } }
     }
 
     /// A flight's segments, on the date that the flight is taken to have been flown on.
-    pub(super) fn as_dated<'f>(&self, flight: &'f FlightRead) -> Cow<'f, [Segment]> {
+    pub fn as_dated<'f>(&self, flight: &'f FlightRead) -> Cow<'f, [Segment]> {
         self.segments_as_dated(&flight.reduced.identity, &flight.reduced.segments)
     }
 
     /// The same of the segments of a flight.
-    pub(super) fn segments_as_dated<'f>(
+    pub fn segments_as_dated<'f>(
         &self,
         identity: &FlightIdentity,
         segments: &'f [Segment],

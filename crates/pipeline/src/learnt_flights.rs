@@ -1,30 +1,30 @@
 //! `flights/TAIL.csv`: the flights that a tail has learnt, in the order in which it learnt them. The model's ledger
 //! with the end of each flight, in a file that is read in no time.
 
+use crate::columns::Columns;
+use crate::model_file::LedgerEntry;
 use flight::{Segment, Timestamp};
-use pipeline::columns::Columns;
-use pipeline::model_file::LedgerEntry;
 
 /// A flight that was learnt.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct KnownFlight {
+pub struct KnownFlight {
     /// Its entry in the model's ledger.
-    pub(crate) entry: LedgerEntry,
+    pub entry: LedgerEntry,
     /// The instant of TIME 0.
-    pub(crate) start: Timestamp,
+    pub start: Timestamp,
     /// The instant of its last sample.
-    pub(crate) end: Timestamp,
+    pub end: Timestamp,
 }
 
 impl KnownFlight {
     /// Whether this flight and another interval of time have more than an instant in common.
-    pub(crate) fn overlaps(&self, start: Timestamp, end: Timestamp) -> bool {
+    pub fn overlaps(&self, start: Timestamp, end: Timestamp) -> bool {
         self.start < end && start < self.end
     }
 }
 
 /// The table.
-pub(crate) fn to_csv(flights: &[KnownFlight]) -> Vec<u8> {
+pub fn to_csv(flights: &[KnownFlight]) -> Vec<u8> {
     let mut columns = Columns::default();
     let entries = || flights.iter().map(|known| &known.entry);
     columns.text("flight", entries().map(|entry| entry.flight.clone()));
@@ -41,7 +41,7 @@ pub(crate) fn to_csv(flights: &[KnownFlight]) -> Vec<u8> {
 ///
 /// # Errors
 /// What a field holds that it cannot.
-pub(crate) fn read(tail: &str, bytes: &[u8]) -> Result<Vec<KnownFlight>, String> {
+pub fn read(tail: &str, bytes: &[u8]) -> Result<Vec<KnownFlight>, String> {
     let mut reader = csv::ReaderBuilder::new().from_reader(bytes);
     let mut flights = Vec::new();
     for record in reader.records() {
@@ -74,10 +74,7 @@ pub(crate) fn read(tail: &str, bytes: &[u8]) -> Result<Vec<KnownFlight>, String>
 ///
 /// # Errors
 /// A START that is no instant.
-pub(crate) fn of_ledger(
-    ledger: &[LedgerEntry],
-    segments: &[Segment],
-) -> Result<Vec<KnownFlight>, String> {
+pub fn of_ledger(ledger: &[LedgerEntry], segments: &[Segment]) -> Result<Vec<KnownFlight>, String> {
     ledger
         .iter()
         .map(|entry| {
@@ -99,7 +96,7 @@ pub(crate) fn of_ledger(
 }
 
 /// The instant some seconds after another; `None` beyond the calendar.
-pub(crate) fn instant_after(start: Timestamp, seconds: f64) -> Option<Timestamp> {
+pub fn instant_after(start: Timestamp, seconds: f64) -> Option<Timestamp> {
     let after = std::time::Duration::try_from_secs_f64(seconds.abs()).ok()?;
     if seconds < 0.0 { start.checked_sub(after).ok() } else { start.checked_add(after).ok() }
 }

@@ -2,21 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use crate::check::{DataFinding, FlightCheck, book, check_flights};
+use crate::evaluation::evaluate;
 use effects::ExtendedModel;
 use flight::Severity;
 use lut::Table;
-use pipeline::check::{DataFinding, FlightCheck, book, check_flights};
-use pipeline::evaluation::evaluate;
 
-use crate::failure::RefusedReport;
-use crate::reading::{FlightRead, Reading};
+use crate::reading::{FlightRead, Reading, RefusedReport};
 
 /// A model and the table of it that flights are compared with.
-pub(crate) type Book<'m> = (&'m ExtendedModel, &'m Table);
+pub type Book<'m> = (&'m ExtendedModel, &'m Table);
 
 /// What is wrong with flights, each by itself and with each other. `now_s` is the present, s since 1970; without it a
 /// result does not depend on the day.
-pub(crate) fn findings(flights: &[FlightRead], now_s: Option<f64>) -> Vec<DataFinding> {
+pub fn findings(flights: &[FlightRead], now_s: Option<f64>) -> Vec<DataFinding> {
     let mut ordered: Vec<&FlightRead> = flights.iter().collect();
     ordered.sort_by(|one, other| one.order(other));
     let checks: Vec<&FlightCheck> = ordered.iter().map(|flight| &flight.reduced.check).collect();
@@ -27,7 +26,7 @@ pub(crate) fn findings(flights: &[FlightRead], now_s: Option<f64>) -> Vec<DataFi
 }
 
 /// What is wrong with the flights of each tail against the book of its model.
-pub(crate) fn against_book<'m>(
+pub fn against_book<'m>(
     flights: &[FlightRead],
     model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
 ) -> Vec<DataFinding> {
@@ -49,25 +48,31 @@ pub(crate) fn against_book<'m>(
     findings
 }
 
-/// Says serious findings on standard error, and unless they are accepted moves the flights of tails that are absurdly far
-/// off the book to the refused ones.
-pub(crate) fn set_aside_absurd<'m>(
+/// What happens to a tail that is absurdly far off its book.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absurd {
+    /// Its flights are refused.
+    Refuse,
+    /// They are used nevertheless.
+    Accept,
+}
+
+/// Serious findings in words, empty where there are none; unless they are accepted, the flights of tails that are absurdly
+/// far off the book are moved to the refused ones.
+pub fn set_aside_absurd<'m>(
     reading: &mut Reading,
     model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
-    accept: bool,
-) {
+    absurd: Absurd,
+) -> String {
     let mut serious = findings(&reading.flights, None);
     let of_book = against_book(&reading.flights, model_of);
     serious.extend(of_book.iter().cloned());
     serious.retain(|finding| finding.severity >= Severity::Serious);
-    if !serious.is_empty() {
-        eprint!("{}", pipeline::check::to_text(&serious));
-        eprintln!("`cruisefit check` with the same arguments tells all that was found.");
+    let told = if serious.is_empty() { String::new() } else { crate::check::to_text(&serious) };
+    if absurd == Absurd::Accept {
+        return told;
     }
-    if accept {
-        return;
-    }
-    let absurd: BTreeMap<String, String> = of_book
+    let refused: BTreeMap<String, String> = of_book
         .into_iter()
         .filter(|finding| finding.code == book::DEVIATION)
         .map(|finding| {
@@ -80,9 +85,10 @@ pub(crate) fn set_aside_absurd<'m>(
         .collect();
     let flights = std::mem::take(&mut reading.flights);
     for flight in flights {
-        match absurd.get(&flight.reduced.identity.tail) {
+        match refused.get(&flight.reduced.identity.tail) {
             Some(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
             None => reading.flights.push(flight),
         }
     }
+    told
 }

@@ -1,0 +1,116 @@
+//! What a tail begins with: an initial model, a law with its settings, trim criteria.
+
+use std::collections::BTreeMap;
+
+use crate::checksum::sha256;
+use crate::learning::{self, LawChoice, LearningError};
+use crate::model_file::{ModelFile, PaperSettings};
+use crate::models::{Models, NoModel};
+
+/// The law that tails are to learn by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LawAsked {
+    /// Law `bayes`, with the settings of each model.
+    Bayes,
+    /// Law `paper`.
+    Paper {
+        /// Per cent; `None` for that of each model.
+        threshold_percent: Option<f64>,
+    },
+}
+
+/// What a tail begins with.
+#[derive(Clone, Debug)]
+pub struct Start<'a> {
+    /// The model as given, with what it may have learnt.
+    pub model: &'a ModelFile,
+    law: LawChoice,
+    criteria: &'a str,
+    /// SHA-256 of all of it, by which a tail is known to have been begun alike.
+    pub begun: String,
+}
+
+impl Start<'_> {
+    /// A model of a tail that has learnt nothing.
+    ///
+    /// # Errors
+    /// An initial table that the law cannot correct.
+    pub fn fresh(&self, tail: &str) -> Result<ModelFile, LearningError> {
+        if let Some(learnt) = &self.model.learnt {
+            tracing::warn!(
+                tail,
+                "the model given has learnt {} flights of tail {}; adaptation starts from its initial part{}",
+                learnt.ledger.len(),
+                learnt.tail,
+                if self.model.applied.is_empty() { "" } else { " and the effects applied to it" }
+            );
+        }
+        let learnt = learning::begin(&self.model.initial, tail, self.criteria, self.law)?;
+        Ok(ModelFile { learnt: Some(learnt), ..self.model.clone() })
+    }
+
+    /// What a stored model of the tail was begun with otherwise, and both values; `None` where it was begun alike.
+    ///
+    /// # Errors
+    /// As for [`Self::fresh`].
+    pub fn difference(
+        &self,
+        tail: &str,
+        stored: &ModelFile,
+    ) -> Result<Option<(&'static str, String)>, LearningError> {
+        let fresh = self.fresh(tail)?;
+        Ok(fresh.difference_of_initial(stored).or_else(|| {
+            fresh.difference_of_law(stored).map(|difference| ("law or setting", difference))
+        }))
+    }
+}
+
+/// What the tails of a run begin with.
+#[derive(Debug)]
+pub struct Starts<'a> {
+    models: &'a Models,
+    law: LawAsked,
+    criteria: &'a str,
+    /// SHA-256 of what the tails of a model begin with, by the model's place in memory.
+    begun: BTreeMap<*const ModelFile, String>,
+}
+
+impl<'a> Starts<'a> {
+    /// Of these models, law and trim criteria (the name of a preset).
+    pub const fn new(models: &'a Models, law: LawAsked, criteria: &'a str) -> Self {
+        Self { models, law, criteria, begun: BTreeMap::new() }
+    }
+
+    /// What a report of this tail and type begins with.
+    ///
+    /// # Errors
+    /// Why there is no model.
+    pub fn start(&mut self, tail: &str, aircraft_type: &str) -> Result<Start<'a>, NoModel> {
+        let model = self.models.for_report(tail, aircraft_type)?;
+        let law = match self.law {
+            LawAsked::Bayes => LawChoice::Bayes(model.settings.bayes),
+            LawAsked::Paper { threshold_percent } => LawChoice::Paper(PaperSettings {
+                threshold_percent: threshold_percent
+                    .unwrap_or(model.settings.paper.threshold_percent),
+            }),
+        };
+        let criteria = self.criteria;
+        let begun = self
+            .begun
+            .entry(std::ptr::from_ref(model))
+            .or_insert_with(|| begun_of(model, &law, criteria))
+            .clone();
+        Ok(Start { model, law, criteria, begun })
+    }
+}
+
+fn begun_of(model: &ModelFile, law: &LawChoice, criteria: &str) -> String {
+    let initial = ModelFile { learnt: None, ..model.clone() };
+    // Where the text cannot be made the model cannot be stored either, which is reported there.
+    let initial = initial.to_text().unwrap_or_default();
+    let law = match law {
+        LawChoice::Paper(settings) => format!("paper {}", settings.threshold_percent),
+        LawChoice::Bayes(_) => "bayes".to_owned(),
+    };
+    sha256(format!("{initial}\n{law}\n{criteria}\n").as_bytes())
+}

@@ -1,0 +1,180 @@
+//! Which flights are diagnosed together and against which model, and their diagnosis.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use diagnose::{DiagnoseError, FlightRecord, Input, Options, TableUncertaintyError, diagnose};
+
+use crate::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
+use crate::diagnosis_figures::DiagnosisFigures;
+use crate::model_file::ModelFile;
+use crate::models::Models;
+use crate::reading::{FlightRead, Reading, RefusedReport};
+use crate::table_uncertainty;
+use crate::whole_model::Predicts;
+
+/// Flights that are diagnosed together, and the model that they are compared with.
+#[derive(Clone, Debug)]
+pub struct Group<'a> {
+    /// The tail; [`POOL`] for all tails of a model.
+    pub name: String,
+    /// Their model.
+    pub model: &'a ModelFile,
+    /// In the order of flying.
+    pub flights: Vec<FlightRead>,
+}
+
+/// Why a group has no diagnosis.
+#[derive(Debug, thiserror::Error)]
+#[error("tail {name}: {reason}")]
+pub struct GroupError {
+    /// The group.
+    pub name: String,
+    /// The reason.
+    pub reason: GroupErrorReason,
+}
+
+/// A reason for which a group has no diagnosis.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum GroupErrorReason {
+    /// The covariance of a learnt table is invalid.
+    #[error(transparent)]
+    Table(#[from] TableUncertaintyError),
+    /// The diagnosis refuses its input.
+    #[error(transparent)]
+    Diagnose(#[from] DiagnoseError),
+}
+
+/// Flights by tail (or all of one model in a pool), as asked; those that their model has learnt, and those without a model,
+/// are moved to the refused ones.
+pub fn group<'a>(models: &'a Models, reading: &mut Reading, asked: &RunOptions) -> Vec<Group<'a>> {
+    let mut groups: BTreeMap<String, Group<'a>> = BTreeMap::new();
+    let mut flights = std::mem::take(&mut reading.flights);
+    flights.sort_by(FlightRead::order);
+    for flight in flights {
+        let model = match models.for_flight(&flight) {
+            Ok(model) => model,
+            Err(reason) => {
+                reading.refused.push(RefusedReport::whole(flight.path, reason));
+                continue;
+            }
+        };
+        if has_learnt(model, &flight) {
+            let finding = format!(
+                "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",
+                flight.reduced.identity.tail,
+                flight.reduced.identity.flight,
+                flight.reduced.identity.start
+            );
+            if !asked.allow_learnt {
+                let reason = format!("{finding} (--allow-learnt diagnoses it anyway)");
+                reading.refused.push(RefusedReport::whole(flight.path, reason));
+                continue;
+            }
+            tracing::warn!("{finding}; diagnosed anyway, as asked");
+        }
+        // A pool has one model: a difference between models is not a gap of either.
+        let (key, name) = if asked.pool {
+            (model.initial.aircraft().type_code().to_owned(), POOL.to_owned())
+        } else {
+            (flight.reduced.identity.tail.clone(), flight.reduced.identity.tail.clone())
+        };
+        let group = groups.entry(key).or_insert_with(|| Group { name, model, flights: Vec::new() });
+        if std::ptr::eq(group.model, model) {
+            group.flights.push(flight);
+        } else {
+            reading.refused.push(RefusedReport::whole(
+                flight.path,
+                "its tail has a model of its own: a pool is diagnosed against one model",
+            ));
+        }
+    }
+    groups.into_values().collect()
+}
+
+impl Group<'_> {
+    /// The group's diagnosis, and what its charts are drawn from. `options` are those of `asked` for the diagnosis itself.
+    ///
+    /// # Errors
+    /// [`GroupError`] where the model's table or the flights are refused.
+    pub fn diagnose(
+        &self,
+        options: &Options,
+        asked: &RunOptions,
+    ) -> Result<(DiagnosedTail, DiagnosisFigures), GroupError> {
+        let wrong = |reason| GroupError { name: self.name.clone(), reason };
+        let records: Vec<FlightRecord<'_>> = self
+            .flights
+            .iter()
+            .filter(|flight| !flight.reduced.segments.is_empty())
+            .map(|flight| FlightRecord {
+                segments: &flight.reduced.segments,
+                gauges: flight.reduced.gauges,
+            })
+            .collect();
+        let predicts = Predicts::table_only(asked.table_only);
+        let table = table_uncertainty::of_model(self.model, predicts, &records)
+            .map_err(|error| wrong(error.into()))?;
+        let baseline = self.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
+        let input = Input {
+            model: &self.model.initial,
+            drag_table: self.model.reference_table(predicts),
+            flights: &records,
+            baseline: if asked.table_only { None } else { baseline },
+            table: table.as_ref(),
+            references: baseline.map(|baseline| *baseline.references()),
+        };
+        let diagnosis = diagnose(&input, options).map_err(|error| wrong(error.into()))?;
+        let figures = DiagnosisFigures::new(self.model, &input, &diagnosis)
+            .map_err(|error| wrong(error.into()))?;
+        let diagnosed = DiagnosedTail {
+            tail: self.name.clone(),
+            diagnosis,
+            compared: self.compared(),
+            run_notes: self.run_notes(asked),
+        };
+        Ok((diagnosed, figures))
+    }
+
+    fn run_notes(&self, asked: &RunOptions) -> Vec<String> {
+        let mut run_notes = asked.restrictions();
+        let learnt = self.model.learnt.as_ref();
+        if learnt.is_none_or(|learnt| learnt.baseline.is_none()) && !asked.table_only {
+            run_notes.push(
+                "the model has learnt no remainder (law bayes learns one from five flights): everything that a table cannot hold \
+                 counts as gap"
+                    .to_owned(),
+            );
+        }
+        let mut seen = BTreeSet::new();
+        for note in self.flights.iter().flat_map(|flight| &flight.reduced.notes) {
+            if seen.insert(note) {
+                run_notes.push(note.clone());
+            }
+        }
+        run_notes
+    }
+
+    fn compared(&self) -> Compared {
+        let starts = || self.flights.iter().map(|flight| flight.reduced.identity.start);
+        let learnt = self.model.learnt.as_ref();
+        Compared {
+            aircraft: self.model.initial.aircraft().name().to_owned(),
+            law: learnt.map(|learnt| learnt.law.told()),
+            flights_learnt: learnt.map_or(0, |learnt| learnt.ledger.len()),
+            first_flight: starts().min().map(|start| start.to_string()),
+            last_flight: starts().max().map(|start| start.to_string()),
+        }
+    }
+}
+
+fn has_learnt(model: &ModelFile, flight: &FlightRead) -> bool {
+    let start = flight.reduced.identity.start.to_string();
+    model.learnt.as_ref().is_some_and(|learnt| {
+        learnt.ledger.iter().any(|entry| {
+            entry.tail == flight.reduced.identity.tail
+                && entry.flight == flight.reduced.identity.flight
+                && entry.start == start
+        })
+    })
+}

@@ -1,0 +1,181 @@
+//! What a model predicts at flight points, with the standard deviation of what a segment recorded there would show.
+
+use std::sync::Arc;
+
+use diagnose::{WholeModel, WholePrediction};
+use effects::{AppliedEffects, EffectModelError, ExtendedModel};
+use flight::{Cruise, FlightIdentity, Segment, SegmentMeans, Timestamp};
+use perf_model::fuel_flow::fuel_flow_error_percent;
+use perf_model::{FlightPoint, Prediction};
+use units::{FuelFlowTotal, Temperature};
+
+use crate::columns::Columns;
+use crate::model_file::ModelFile;
+use crate::whole_model::Predicts;
+
+/// A model, prepared for any number of predictions.
+#[derive(Debug)]
+pub struct Predictor<'a> {
+    model: &'a ModelFile,
+    current: ExtendedModel,
+    whole: Option<WholeModel<'a>>,
+    /// Without effects: the imagined segment is recorded by the aircraft's sensors without any error of theirs.
+    plain: Option<ExtendedModel>,
+    /// Relative scatter between flights of an applied effect.
+    scatter: f64,
+}
+
+/// What is predicted at a flight point.
+#[derive(Clone, Copy, Debug)]
+pub struct PointPrediction {
+    /// The prediction, with everything that predicts.
+    pub prediction: Prediction,
+    /// Standard deviation of the fuel flow of all engines, kg/s; `None` by a law that states none.
+    pub fuel_flow_std_kg_s: Option<f64>,
+    /// ln of the fuel flow over that of the learnt table; `None` where the table alone predicts.
+    pub beyond_table: Option<f64>,
+}
+
+impl<'a> Predictor<'a> {
+    /// A predictor with all that a model has learnt, or with its table alone.
+    ///
+    /// # Errors
+    /// A learnt table that makes no model (law `paper` takes what it is given).
+    pub fn new(model: &'a ModelFile, predicts: Predicts) -> Result<Self, EffectModelError> {
+        let effects = model.initial.effects();
+        Ok(Self {
+            current: model.current()?,
+            whole: model.whole(predicts),
+            plain: model.initial.with_effects(AppliedEffects::default()).ok(),
+            scatter: effects.map_or(0.0, AppliedEffects::fuel_heating_value_deviation),
+            model,
+        })
+    }
+
+    /// Whether more than the table predicts.
+    pub const fn is_whole(&self) -> bool {
+        self.whole.is_some()
+    }
+
+    /// The prediction at a flight point.
+    ///
+    /// # Errors
+    /// Why there is none, in words: a number outside its domain, a point outside the table.
+    pub fn at(&self, point: &FlightPoint) -> Result<PointPrediction, String> {
+        let by_table = self.current.predict(point).map_err(|error| error.to_string())?;
+        let Some(whole) = &self.whole else {
+            return Ok(PointPrediction {
+                prediction: by_table,
+                fuel_flow_std_kg_s: self.deviation(point, &by_table, None),
+                beyond_table: None,
+            });
+        };
+        let found = whole.of_point(point).map_err(|error| error.to_string())?;
+        let beyond = found.ln_fuel_flow - by_table.fuel_flow_total.to_kilograms_per_second().ln();
+        let total = FuelFlowTotal::kilograms_per_second(found.ln_fuel_flow.exp());
+        let prediction = by_table.with_fuel_flow(total, point);
+        Ok(PointPrediction {
+            prediction,
+            fuel_flow_std_kg_s: self.deviation(point, &prediction, Some(&found)),
+            beyond_table: Some(beyond),
+        })
+    }
+
+    /// Appends the columns of predictions at points, of which those outside the model have none: `fuel_flow_kg_s`,
+    /// `fuel_flow_std_kg_s` (empty by law `paper`), `specific_range_m_kg`, `lift_coefficient`, `drag_coefficient`,
+    /// `extrapolated` (1 or 0), with measured fuel flows `error_percent`, and where more than the table predicts
+    /// `remainder_percent`.
+    pub fn append_columns(
+        &self,
+        columns: &mut Columns,
+        measured: Option<&[Option<FuelFlowTotal>]>,
+        predicted: &[Option<PointPrediction>],
+    ) {
+        let figure = |of: fn(&Prediction) -> f64| {
+            predicted.iter().map(move |point| point.as_ref().map(|point| of(&point.prediction)))
+        };
+        columns.number("fuel_flow_kg_s", figure(|p| p.fuel_flow_total.to_kilograms_per_second()));
+        columns.number(
+            "fuel_flow_std_kg_s",
+            predicted.iter().map(|point| point.as_ref()?.fuel_flow_std_kg_s),
+        );
+        columns
+            .number("specific_range_m_kg", figure(|p| p.specific_range.to_meters_per_kilogram()));
+        columns.number("lift_coefficient", figure(|p| p.lift_coefficient));
+        columns.number("drag_coefficient", figure(|p| p.drag_coefficient));
+        columns.number("extrapolated", figure(|p| if p.extrapolated { 1.0 } else { 0.0 }));
+        if let Some(measured) = measured {
+            let error = |(measured, point): (&Option<FuelFlowTotal>, &Option<PointPrediction>)| {
+                let predicted = point.as_ref()?.prediction.fuel_flow_total;
+                Some(fuel_flow_error_percent((*measured)?, predicted))
+            };
+            columns.number("error_percent", measured.iter().zip(predicted).map(error));
+        }
+        if self.is_whole() {
+            columns.number(
+                "remainder_percent",
+                predicted.iter().map(|point| Some(100.0 * point.as_ref()?.beyond_table?.exp_m1())),
+            );
+        }
+    }
+
+    /// Standard deviation, in kg/s, of what a segment recorded there would show: the uncertainty of what was learnt, the
+    /// part common to a flight, the segment's own noise, and any applied scatter between flights. By the whole model the
+    /// noise is as large as flights showed it to be, by the table alone as the aircraft's sensors and the law's settings
+    /// have it.
+    fn deviation(
+        &self,
+        point: &FlightPoint,
+        prediction: &Prediction,
+        whole: Option<&WholePrediction>,
+    ) -> Option<f64> {
+        // The imagined segment is recorded by the aircraft's sensors without any error of theirs.
+        let plain = self.plain.as_ref()?;
+        let total_kg_s = prediction.fuel_flow_total.to_kilograms_per_second();
+        let kg_s = if let Some(whole) = whole {
+            whole.variance().sqrt() * total_kg_s
+        } else {
+            let posterior = self.model.posterior()?;
+            let segment = imagined_segment(point, prediction, plain);
+            let sensors = plain.observe(&segment).ok()?.variance;
+            let per_relative_drag_kg_s = posterior.initial().interpolate(&prediction.cell)
+                * prediction.fuel_flow_per_drag_coefficient_kg_s;
+            posterior.segment_variance(&prediction.cell, &sensors).sqrt() * per_relative_drag_kg_s
+        };
+        Some(if self.scatter > 0.0 { kg_s.hypot(self.scatter * total_kg_s) } else { kg_s })
+    }
+}
+
+/// The segment of ten samples that the aircraft would record at a flight point if it burnt what is predicted.
+fn imagined_segment(
+    point: &FlightPoint,
+    prediction: &Prediction,
+    model: &effects::ExtendedModel,
+) -> Segment {
+    let engines = model.aircraft().engines();
+    let cruise = SegmentMeans::cruise(&Cruise {
+        pressure_altitude: point.pressure_altitude,
+        static_air_temperature: point
+            .static_air_temperature()
+            .unwrap_or(Temperature::kelvin(f64::NAN)),
+        mach: point.mach,
+        true_airspeed: prediction.true_airspeed,
+        mass: point.mass,
+        fuel_flow_total: prediction.fuel_flow_total,
+    });
+    let means = SegmentMeans {
+        fuel_flow_engine_kg_s: vec![cruise.fuel_flow_total_kg_s / engines as f64; engines],
+        ..cruise
+    };
+    let identity = FlightIdentity {
+        tail: String::new(),
+        start: point.date.unwrap_or(Timestamp::UNIX_EPOCH),
+        flight: String::new(),
+    };
+    Segment {
+        identity: Arc::new(identity),
+        rows: (0..10).collect(),
+        means,
+        temperature_assumed: false,
+    }
+}

@@ -1,0 +1,232 @@
+//! The bytes of a report or recording into reduced flights, and what was refused of them.
+
+use std::cmp::Ordering;
+use std::fmt::{Display, Formatter};
+use std::path::{Path, PathBuf};
+
+use flight::{Severity, Timestamp};
+use report::mapping::Mapping;
+use report::{Parsed, Reader, Refusal, TextLayout};
+use segmenter::TrimCriteria;
+
+use crate::checksum::sha256;
+use crate::learnt_flights::instant_after;
+use crate::reduction::ReducedFlight;
+use crate::segments_table;
+use crate::summary::RefusedSummary;
+
+/// One flight, reduced to its segments.
+#[derive(Clone, Debug)]
+pub struct FlightRead {
+    /// File it came from, or what its caller calls its bytes.
+    pub path: PathBuf,
+    /// By what its content is known again: SHA-256 of the uncompressed report, hexadecimal; of a recording read with a
+    /// mapping, `read:` and SHA-256 of the flight as it was read, so that a corrected mapping is other content.
+    pub content: String,
+    /// SHA-256 of the uncompressed file: the content of a recording in folders of older programs.
+    pub content_of_file: String,
+    /// The instant of its last sample.
+    pub end: Timestamp,
+    /// What it was reduced to.
+    pub reduced: ReducedFlight,
+}
+
+impl FlightRead {
+    /// The order of flying; of two reports of one flight, the order of their paths.
+    pub fn order(&self, other: &Self) -> Ordering {
+        (&self.reduced.identity, &self.path).cmp(&(&other.reduced.identity, &other.path))
+    }
+
+    /// Whether this is the content of a ledger's entry.
+    pub fn has_content(&self, content: &str) -> bool {
+        self.content == content || self.content_of_file == content
+    }
+
+    /// Adds this flight's notes to those of its tail, each sentence once.
+    pub fn add_notes(&self, notes: &mut Vec<String>) {
+        for note in &self.reduced.notes {
+            if !notes.contains(note) {
+                notes.push(note.clone());
+            }
+        }
+    }
+}
+
+/// A report that was refused while the batch continued.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RefusedReport {
+    /// File, or what its caller calls its bytes.
+    pub path: PathBuf,
+    /// Physical line from 1, where the refusal has one.
+    pub line: Option<usize>,
+    /// Column (character) from 1, where the refusal has one.
+    pub column: Option<usize>,
+    /// What was found and what was expected.
+    pub reason: String,
+}
+
+impl RefusedReport {
+    /// A report refused as a whole: no position in it is at fault.
+    pub fn whole(path: PathBuf, reason: impl Display) -> Self {
+        Self { path, line: None, column: None, reason: reason.to_string() }
+    }
+
+    /// A report refused at a position of its text.
+    pub fn at(path: PathBuf, refusal: &Refusal) -> Self {
+        Self {
+            path,
+            line: Some(refusal.line),
+            column: Some(refusal.column),
+            reason: format!("found {}, expected {}", refusal.found, refusal.kind),
+        }
+    }
+}
+
+impl From<&RefusedReport> for RefusedSummary {
+    fn from(refused: &RefusedReport) -> Self {
+        Self {
+            path: refused.path.display().to_string(),
+            line: refused.line,
+            column: refused.column,
+            reason: refused.reason.clone(),
+        }
+    }
+}
+
+impl Display for RefusedReport {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+            if let Some(column) = self.column {
+                write!(f, ":{column}")?;
+            }
+        }
+        write!(f, ": {}", self.reason)
+    }
+}
+
+/// All results from a set of files, in the order of the files.
+#[derive(Clone, Debug, Default)]
+pub struct Reading {
+    /// Flights.
+    pub flights: Vec<FlightRead>,
+    /// Files, or parts of them, that were refused.
+    pub refused: Vec<RefusedReport>,
+    /// Copies of reports that are used once.
+    pub copies: usize,
+}
+
+impl Reading {
+    /// Reports that were met, used or refused.
+    pub const fn files(&self) -> usize {
+        self.flights.len() + self.refused.len() + self.copies
+    }
+}
+
+/// What a file came to: its flights, and what was refused of it.
+pub type FileRead = (Vec<FlightRead>, Vec<RefusedReport>);
+
+/// Reads one report after the other into the same buffers.
+#[derive(Default)]
+pub struct FlightReader {
+    unpacked: Vec<u8>,
+    reader: Reader,
+}
+
+impl std::fmt::Debug for FlightReader {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("FlightReader").finish_non_exhaustive()
+    }
+}
+
+impl FlightReader {
+    /// The flights in the bytes of a cruise report or, with a mapping, of a recording (plain or gzip), and what of them was
+    /// refused. `path` is what results call the bytes; a mapping may take a text of the header from its file name.
+    pub fn read(
+        &mut self,
+        path: &Path,
+        bytes: &[u8],
+        mapping: Option<&Mapping>,
+        criteria: &TrimCriteria,
+    ) -> FileRead {
+        // Content is identified by its uncompressed bytes: a report that was compressed later is the same report.
+        let parsed = report::unpack(bytes, &mut self.unpacked).and_then(|bytes| {
+            let parsed = match mapping {
+                None => self.reader.read(bytes).map(|parsed| vec![parsed]),
+                Some(mapping) => {
+                    let name = path.file_name().unwrap_or_default().to_string_lossy();
+                    mapping.read_named(bytes, &name)
+                }
+            };
+            parsed.map(|parsed| (sha256(bytes), parsed))
+        });
+        let (content_of_file, parsed) = match parsed {
+            Ok(parsed) => parsed,
+            Err(refusal) => {
+                return (Vec::new(), vec![RefusedReport::at(path.to_owned(), &refusal)]);
+            }
+        };
+        let mut flights = Vec::new();
+        let mut refused = Vec::new();
+        for parsed in parsed {
+            let content = match mapping {
+                None => Ok(content_of_file.clone()),
+                Some(_) => content_as_read(&parsed.report),
+            };
+            match content.and_then(|content| reduce(path, parsed, content, criteria)) {
+                Ok(flight) => {
+                    let content_of_file = content_of_file.clone();
+                    flights.push(FlightRead { content_of_file, ..flight });
+                }
+                Err(reason) => refused.push(RefusedReport::whole(path.to_owned(), reason)),
+            }
+        }
+        (flights, refused)
+    }
+
+    /// SHA-256 of the uncompressed content of a file, whose bytes these are.
+    ///
+    /// # Errors
+    /// Bytes that cannot be unpacked.
+    pub fn content_of(&mut self, path: &Path, bytes: &[u8]) -> Result<String, RefusedReport> {
+        let bytes = report::unpack(bytes, &mut self.unpacked).map_err(|refusal| {
+            let reason = format!("found {}, expected {}", refusal.found, refusal.kind);
+            RefusedReport::whole(path.to_owned(), reason)
+        })?;
+        Ok(sha256(bytes))
+    }
+}
+
+fn reduce(
+    path: &Path,
+    parsed: Parsed,
+    content: String,
+    criteria: &TrimCriteria,
+) -> Result<FlightRead, String> {
+    let Parsed { report, findings } = parsed;
+    let mut notes = Vec::new();
+    for finding in findings {
+        if finding.severity >= Severity::Warning {
+            tracing::warn!(file = %path.display(), line = finding.line, "{}", finding.message);
+        }
+        notes.push(finding.message);
+    }
+    let start = report.header().identity.start;
+    let last_s = report.columns().time_s.last().copied().unwrap_or_default();
+    let end = instant_after(start, last_s)
+        .ok_or_else(|| format!("the last TIME, {last_s} s after START, is no date"))?;
+    let reduced =
+        ReducedFlight::from_report(report, criteria, notes).map_err(|error| error.to_string())?;
+    if let Some(column) = reduced.segments.iter().find_map(segments_table::not_finite) {
+        return Err(format!("the mean of {column} over a segment is not a finite number"));
+    }
+    Ok(FlightRead { path: path.to_owned(), content_of_file: String::new(), content, end, reduced })
+}
+
+/// By what a flight out of a recording is known again: header and every sample, to the bit.
+fn content_as_read(report: &flight::Report) -> Result<String, String> {
+    let text =
+        report::write(report, &TextLayout::exact(), &[]).map_err(|error| error.to_string())?;
+    Ok(format!("read:{}", sha256(text.as_bytes())))
+}
