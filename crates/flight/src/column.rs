@@ -5,9 +5,11 @@ use units::convert::{
     KILOGRAMS_PER_SECOND_PER_POUND_PER_HOUR, METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT,
 };
 
-/// Makes the enum, the list and the names from one list, so that they cannot differ in length.
+use crate::MAXIMUM_ENGINES;
+
+/// Makes the enum, the list and everything that is known of a column from one list.
 macro_rules! columns {
-    ($($(#[$doc:meta])* $column:ident $(($engine:ty))? = $name:literal,)*) => {
+    ($($(#[$doc:meta])* $column:ident $(($engine:ty))? = $name:literal $entry:expr,)*) => {
         /// A column of the cruise report. Engine columns carry the engine's number from 1.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Column {
@@ -33,17 +35,32 @@ macro_rules! columns {
             }
 
             /// The name in files, without an engine's number.
-            const fn stem(self) -> &'static str {
+            pub(crate) const fn stem(self) -> &'static str {
                 match self {
                     $(Self::$column $((columns!(@any $engine)))? => $name,)*
                 }
             }
 
+            const fn entry(self) -> Entry {
+                match self {
+                    $(Self::$column $((columns!(@any $engine)))? => $entry,)*
+                }
+            }
+
             /// The engine's number from 1.
-            const fn engine(self) -> Option<u8> {
+            pub(crate) const fn engine(self) -> Option<u8> {
                 match self {
                     $($(Self::$column(engine) => { let engine: $engine = engine; Some(engine) })?)*
                     _ => None,
+                }
+            }
+
+            /// The same column of another engine; the column itself where it has no engine.
+            const fn of_engine(self, engine: u8) -> Self {
+                match self {
+                    $(Self::$column $((columns!(@any $engine)))? => {
+                        Self::$column $((columns!(@value engine $engine)))?
+                    })*
                 }
             }
 
@@ -70,47 +87,81 @@ macro_rules! columns {
 
 columns! {
     /// `TIME`: time since START.
-    Time = "TIME",
+    Time = "TIME" required("time since START", TIME, ANY_INCREASING),
     /// `ALT`: pressure altitude.
-    PressureAltitude = "ALT",
+    PressureAltitude = "ALT" required("pressure altitude", LENGTH, ALTITUDE_RANGE),
     /// `SAT`: static air temperature.
-    StaticAirTemperature = "SAT",
+    StaticAirTemperature = "SAT" required("static air temperature", TEMPERATURE, celsius(60.0, "-100 to +60 degC")),
     /// `MACH`: Mach number.
-    Mach = "MACH",
+    Mach = "MACH" required("Mach number", RATIO, closed(0.1, 0.99, "0.1 to 0.99")),
     /// `VTAS`: true airspeed.
-    TrueAirspeed = "VTAS",
+    TrueAirspeed = "VTAS" required("true airspeed", SPEED, SPEED_RANGE),
     /// `GSPD`: ground speed.
-    GroundSpeed = "GSPD",
+    GroundSpeed = "GSPD" required("ground speed", SPEED, SPEED_RANGE),
     /// `ROLL`: roll angle.
-    Roll = "ROLL",
+    Roll = "ROLL" required("roll angle", ANGLE, UP_TO_90_DEG),
     /// `DRIFT`: drift angle, track minus heading.
-    Drift = "DRIFT",
+    Drift = "DRIFT" required("drift angle (track minus heading)", ANGLE, UP_TO_90_DEG),
     /// `N2(k)`: high-pressure rotor speed of engine k.
-    N2(u8) = "N2",
+    N2(u8) = "N2" required("high-pressure rotor speed", PERCENT, ROTOR_SPEED_RANGE),
     /// `WF(k)`: fuel flow of engine k.
-    FuelFlowEngine(u8) = "WF",
+    FuelFlowEngine(u8) = "WF" required("fuel flow of one engine", FLOW, flow("above 0 to 100000 lb/h")),
     /// `WF`: fuel flow of all engines, where they are not recorded apart.
-    FuelFlowTotal = "WF",
+    FuelFlowTotal = "WF" required("fuel flow of all engines", FLOW, flow("above 0 to 100000 lb/h per engine")),
     /// `FU`: fuel used since engine start, all engines.
-    FuelUsed = "FU",
+    FuelUsed = "FU" required("fuel used since engine start, all engines", MASS, from_zero("0 to FOB")),
     /// `LAT`: latitude.
-    Latitude = "LAT",
+    Latitude = "LAT" optional("latitude", ANGLE, UP_TO_90_DEG),
     /// `LON`: longitude.
-    Longitude = "LON",
+    Longitude = "LON" direction("longitude", ANGLE, closed(-180.0, 360.0, "-180 to 360 deg")),
     /// `HDG`: true heading.
-    TrueHeading = "HDG",
+    TrueHeading = "HDG" direction("true heading", ANGLE, closed(-360.0, 360.0, "-360 to 360 deg")),
     /// `CG`: center of gravity.
-    CenterOfGravity = "CG",
+    CenterOfGravity = "CG" optional("center of gravity", PERCENT_MAC, closed(-50.0, 150.0, "-50 to 150 %MAC")),
     /// `TAT`: total air temperature.
-    TotalAirTemperature = "TAT",
+    TotalAirTemperature = "TAT" optional("total air temperature", TEMPERATURE, celsius(90.0, "-100 to +90 degC")),
     /// `N1(k)`: low-pressure rotor speed of engine k.
-    N1(u8) = "N1",
+    N1(u8) = "N1" optional("low-pressure rotor speed", PERCENT, ROTOR_SPEED_RANGE),
     /// `EGT(k)`: exhaust gas temperature of engine k.
-    ExhaustGasTemperature(u8) = "EGT",
+    ExhaustGasTemperature(u8) = "EGT" optional("exhaust gas temperature", TEMPERATURE, celsius(1500.0, "-100 to 1500 degC")),
     /// `FQ`: fuel quantity by the tank gauges, independent of the flow meters.
-    FuelQuantity = "FQ",
+    FuelQuantity = "FQ" optional("fuel quantity by the tank gauges", MASS, from_zero("0 to 1.02 FOB")),
     /// `A/I`: anti-ice bleed, 0 or 1.
-    AntiIce = "A/I",
+    AntiIce = "A/I" optional("anti-ice bleed", RATIO, closed(0.0, 1.0, "0 or 1")),
+}
+
+/// What is known of a column besides its name.
+struct Entry {
+    meaning: &'static str,
+    units: &'static [ColumnUnit],
+    is_optional: bool,
+    is_direction: bool,
+    range: ColumnRange,
+}
+
+const fn required(
+    meaning: &'static str,
+    units: &'static [ColumnUnit],
+    range: ColumnRange,
+) -> Entry {
+    Entry { meaning, units, is_optional: false, is_direction: false, range }
+}
+
+const fn optional(
+    meaning: &'static str,
+    units: &'static [ColumnUnit],
+    range: ColumnRange,
+) -> Entry {
+    Entry { meaning, units, is_optional: true, is_direction: false, range }
+}
+
+/// An optional column whose values are angles around the circle.
+const fn direction(
+    meaning: &'static str,
+    units: &'static [ColumnUnit],
+    range: ColumnRange,
+) -> Entry {
+    Entry { is_direction: true, ..optional(meaning, units, range) }
 }
 
 /// A unit a column may be written in: name, and SI (or canonical) value = `factor` × number + `offset`.
@@ -160,6 +211,41 @@ const PERCENT_MAC: &[ColumnUnit] = &[unit("%MAC", 1.0)];
 /// Largest fuel flow of one engine that the format allows: 100 000 lb/h.
 const MAXIMUM_ENGINE_FUEL_FLOW_KG_S: f64 = 100_000.0 * KILOGRAMS_PER_SECOND_PER_POUND_PER_HOUR;
 
+const fn closed(minimum: f64, maximum: f64, words: &'static str) -> ColumnRange {
+    ColumnRange { minimum: Some(minimum), maximum: Some(maximum), minimum_excluded: false, words }
+}
+
+const fn from_zero(words: &'static str) -> ColumnRange {
+    ColumnRange { minimum: Some(0.0), maximum: None, minimum_excluded: false, words }
+}
+
+/// From -100 °C on.
+const fn celsius(maximum: f64, words: &'static str) -> ColumnRange {
+    closed(KELVIN_AT_ZERO_CELSIUS - 100.0, KELVIN_AT_ZERO_CELSIUS + maximum, words)
+}
+
+const fn flow(words: &'static str) -> ColumnRange {
+    ColumnRange {
+        minimum: Some(0.0),
+        maximum: Some(MAXIMUM_ENGINE_FUEL_FLOW_KG_S),
+        minimum_excluded: true,
+        words,
+    }
+}
+
+const ANY_INCREASING: ColumnRange = ColumnRange {
+    minimum: None,
+    maximum: None,
+    minimum_excluded: false,
+    words: "any, strictly increasing",
+};
+const ALTITUDE_RANGE: ColumnRange =
+    closed(-2_000.0 * METERS_PER_FOOT, 60_000.0 * METERS_PER_FOOT, "-2000 to 60000 ft");
+const SPEED_RANGE: ColumnRange =
+    closed(50.0 * METERS_PER_SECOND_PER_KNOT, 1000.0 * METERS_PER_SECOND_PER_KNOT, "50 to 1000 kt");
+const UP_TO_90_DEG: ColumnRange = closed(-90.0, 90.0, "-90 to 90 deg");
+const ROTOR_SPEED_RANGE: ColumnRange = closed(0.0, 130.0, "0 to 130 %");
+
 /// Names of all columns as the format's page prints them, for messages.
 pub const COLUMN_NAMES: &str = SPACED_NAMES.split_at(1).1;
 
@@ -180,6 +266,15 @@ impl Column {
         Self::from_stem(stem, Some(engine))
     }
 
+    /// Every column that a report of so many engines may lack, in the order of the format's page.
+    pub fn optional_ones(engines: usize) -> impl Iterator<Item = Self> {
+        let optional = Self::ALL.into_iter().filter(|column| column.is_optional());
+        optional.flat_map(move |column| {
+            let numbers = column.engine().map_or(1, |_| engines.min(MAXIMUM_ENGINES));
+            (1_u8..).take(numbers).map(move |engine| column.of_engine(engine))
+        })
+    }
+
     /// The name in files.
     #[must_use]
     pub fn name(self) -> String {
@@ -193,50 +288,13 @@ impl Column {
     /// The meaning of the column, in the field's words.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
-        match self {
-            Self::Time => "time since START",
-            Self::PressureAltitude => "pressure altitude",
-            Self::StaticAirTemperature => "static air temperature",
-            Self::Mach => "Mach number",
-            Self::TrueAirspeed => "true airspeed",
-            Self::GroundSpeed => "ground speed",
-            Self::Roll => "roll angle",
-            Self::Drift => "drift angle (track minus heading)",
-            Self::N2(_) => "high-pressure rotor speed",
-            Self::FuelFlowEngine(_) => "fuel flow of one engine",
-            Self::FuelFlowTotal => "fuel flow of all engines",
-            Self::FuelUsed => "fuel used since engine start, all engines",
-            Self::Latitude => "latitude",
-            Self::Longitude => "longitude",
-            Self::TrueHeading => "true heading",
-            Self::CenterOfGravity => "center of gravity",
-            Self::TotalAirTemperature => "total air temperature",
-            Self::N1(_) => "low-pressure rotor speed",
-            Self::ExhaustGasTemperature(_) => "exhaust gas temperature",
-            Self::FuelQuantity => "fuel quantity by the tank gauges",
-            Self::AntiIce => "anti-ice bleed",
-        }
+        self.entry().meaning
     }
 
     /// The units this column may be written in; the first is the one that reports usually carry.
     #[must_use]
     pub const fn units(self) -> &'static [ColumnUnit] {
-        match self {
-            Self::Time => TIME,
-            Self::PressureAltitude => LENGTH,
-            Self::StaticAirTemperature
-            | Self::TotalAirTemperature
-            | Self::ExhaustGasTemperature(_) => TEMPERATURE,
-            Self::Mach | Self::AntiIce => RATIO,
-            Self::TrueAirspeed | Self::GroundSpeed => SPEED,
-            Self::Roll | Self::Drift | Self::Latitude | Self::Longitude | Self::TrueHeading => {
-                ANGLE
-            }
-            Self::N2(_) | Self::N1(_) => PERCENT,
-            Self::FuelFlowEngine(_) | Self::FuelFlowTotal => FLOW,
-            Self::FuelUsed | Self::FuelQuantity => MASS,
-            Self::CenterOfGravity => PERCENT_MAC,
-        }
+        self.entry().units
     }
 
     /// The unit in which a [`Report`](crate::Report) stores the column: the one with factor 1 and no offset.
@@ -251,105 +309,20 @@ impl Column {
     /// Whether `-` (not available for this sample) is allowed in it, and the column may be absent without `MISSING`.
     #[must_use]
     pub const fn is_optional(self) -> bool {
-        match self {
-            Self::Latitude
-            | Self::Longitude
-            | Self::TrueHeading
-            | Self::CenterOfGravity
-            | Self::TotalAirTemperature
-            | Self::N1(_)
-            | Self::ExhaustGasTemperature(_)
-            | Self::FuelQuantity
-            | Self::AntiIce => true,
-            Self::Time
-            | Self::PressureAltitude
-            | Self::StaticAirTemperature
-            | Self::Mach
-            | Self::TrueAirspeed
-            | Self::GroundSpeed
-            | Self::Roll
-            | Self::Drift
-            | Self::N2(_)
-            | Self::FuelFlowEngine(_)
-            | Self::FuelFlowTotal
-            | Self::FuelUsed => false,
-        }
+        self.entry().is_optional
+    }
+
+    /// Whether its values are angles around the circle, of which 359° and 1° have the mean 0°.
+    #[must_use]
+    pub const fn is_direction(self) -> bool {
+        self.entry().is_direction
     }
 
     /// Inclusive range in the stored unit. The upper limits that depend on the report (total fuel flow by the number of
     /// engines, fuel used and fuel quantity by the fuel on board) are for the caller to check.
     #[must_use]
     pub const fn range(self) -> ColumnRange {
-        const fn closed(minimum: f64, maximum: f64, words: &'static str) -> ColumnRange {
-            ColumnRange {
-                minimum: Some(minimum),
-                maximum: Some(maximum),
-                minimum_excluded: false,
-                words,
-            }
-        }
-        match self {
-            Self::Time => ColumnRange {
-                minimum: None,
-                maximum: None,
-                minimum_excluded: false,
-                words: "any, strictly increasing",
-            },
-            Self::PressureAltitude => {
-                closed(-2_000.0 * METERS_PER_FOOT, 60_000.0 * METERS_PER_FOOT, "-2000 to 60000 ft")
-            }
-            Self::StaticAirTemperature => closed(
-                KELVIN_AT_ZERO_CELSIUS - 100.0,
-                KELVIN_AT_ZERO_CELSIUS + 60.0,
-                "-100 to +60 degC",
-            ),
-            Self::TotalAirTemperature => closed(
-                KELVIN_AT_ZERO_CELSIUS - 100.0,
-                KELVIN_AT_ZERO_CELSIUS + 90.0,
-                "-100 to +90 degC",
-            ),
-            Self::ExhaustGasTemperature(_) => closed(
-                KELVIN_AT_ZERO_CELSIUS - 100.0,
-                KELVIN_AT_ZERO_CELSIUS + 1500.0,
-                "-100 to 1500 degC",
-            ),
-            Self::Mach => closed(0.1, 0.99, "0.1 to 0.99"),
-            Self::TrueAirspeed | Self::GroundSpeed => closed(
-                50.0 * METERS_PER_SECOND_PER_KNOT,
-                1000.0 * METERS_PER_SECOND_PER_KNOT,
-                "50 to 1000 kt",
-            ),
-            Self::Roll | Self::Drift | Self::Latitude => closed(-90.0, 90.0, "-90 to 90 deg"),
-            Self::N2(_) | Self::N1(_) => closed(0.0, 130.0, "0 to 130 %"),
-            Self::FuelFlowEngine(_) => ColumnRange {
-                minimum: Some(0.0),
-                maximum: Some(MAXIMUM_ENGINE_FUEL_FLOW_KG_S),
-                minimum_excluded: true,
-                words: "above 0 to 100000 lb/h",
-            },
-            Self::FuelFlowTotal => ColumnRange {
-                minimum: Some(0.0),
-                maximum: Some(MAXIMUM_ENGINE_FUEL_FLOW_KG_S),
-                minimum_excluded: true,
-                words: "above 0 to 100000 lb/h per engine",
-            },
-            Self::FuelUsed => ColumnRange {
-                minimum: Some(0.0),
-                maximum: None,
-                minimum_excluded: false,
-                words: "0 to FOB",
-            },
-            Self::FuelQuantity => ColumnRange {
-                minimum: Some(0.0),
-                maximum: None,
-                minimum_excluded: false,
-                words: "0 to 1.02 FOB",
-            },
-            Self::Longitude => closed(-180.0, 360.0, "-180 to 360 deg"),
-            Self::TrueHeading => closed(-360.0, 360.0, "-360 to 360 deg"),
-            Self::CenterOfGravity => closed(-50.0, 150.0, "-50 to 150 %MAC"),
-            Self::AntiIce => closed(0.0, 1.0, "0 or 1"),
-        }
+        self.entry().range
     }
 }
 

@@ -21,6 +21,7 @@ pub mod effect;
 mod finding;
 mod header;
 mod observation;
+mod optional_columns;
 mod report;
 mod segment;
 mod track;
@@ -29,7 +30,8 @@ pub use finding::{Finding, Severity};
 pub use header::{Assumption, FlightIdentity, MissingColumn, ReportHeader, seconds_since_1970};
 pub use jiff::Timestamp;
 pub use observation::{Observation, ObservationVariance};
-pub use report::{FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportDataError};
+pub use optional_columns::{OptionalColumn, OptionalColumns};
+pub use report::{FuelFlowColumns, Report, ReportColumns, ReportDataError};
 pub use segment::{Cruise, Segment, SegmentMeans};
 pub use track::{
     DroppedRun, DroppedRunReason, SampleRun, Sampling, TemperatureSource, Track, TrackDataError,

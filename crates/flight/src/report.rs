@@ -1,9 +1,7 @@
 //! The cruise report as sent.
 
-use crate::{MAXIMUM_ENGINES, ReportHeader};
-
-/// A column whose samples may be unavailable one by one.
-pub type OptionalColumn = Vec<Option<f64>>;
+use crate::column::Column;
+use crate::{MAXIMUM_ENGINES, OptionalColumn, OptionalColumns, ReportHeader};
 
 /// Fuel flow as it was recorded: engine by engine, or the total only.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,24 +63,8 @@ pub struct ReportColumns {
     pub fuel_flow: FuelFlowColumns,
     /// Fuel used since engine start by all engines, kg.
     pub fuel_used_kg: Vec<f64>,
-    /// Latitude, degrees, north positive.
-    pub latitude_deg: Option<OptionalColumn>,
-    /// Longitude, degrees, east positive.
-    pub longitude_deg: Option<OptionalColumn>,
-    /// True heading, degrees.
-    pub true_heading_deg: Option<OptionalColumn>,
-    /// Center of gravity, % of the mean aerodynamic chord.
-    pub center_of_gravity_percent_mac: Option<OptionalColumn>,
-    /// Total air temperature, K.
-    pub total_air_temperature_k: Option<OptionalColumn>,
-    /// Low-pressure rotor speed, %, by engine.
-    pub n1_percent: [Option<OptionalColumn>; MAXIMUM_ENGINES],
-    /// Exhaust gas temperature, K, by engine.
-    pub exhaust_gas_temperature_k: [Option<OptionalColumn>; MAXIMUM_ENGINES],
-    /// Fuel quantity by the tank gauges, kg.
-    pub fuel_quantity_kg: Option<OptionalColumn>,
-    /// Anti-ice bleed, 0 or 1.
-    pub anti_ice: Option<OptionalColumn>,
+    /// Columns that a report may lack, each with samples without a value.
+    pub optional: OptionalColumns,
 }
 
 /// One cruise of one aircraft, as it was sent. Every column has the same length of at least three samples, time
@@ -106,7 +88,7 @@ pub enum ReportDataError {
     /// A column of another length than `time_s`.
     #[error("column {column} has {found} samples, time has {expected}")]
     LengthsDiffer {
-        /// Field name of the column.
+        /// Field name of the column; its name in files where a report may lack it.
         column: &'static str,
         /// Its length.
         found: usize,
@@ -116,7 +98,7 @@ pub enum ReportDataError {
     /// A number that is not finite.
     #[error("column {column} sample {sample}: {value} is not finite")]
     NotFinite {
-        /// Field name of the column.
+        /// Field name of the column; its name in files where a report may lack it.
         column: &'static str,
         /// Sample from 0.
         sample: usize,
@@ -132,6 +114,12 @@ pub enum ReportDataError {
         time_s: f64,
         /// The time before.
         previous_s: f64,
+    },
+    /// A column that every report has, among those that it may lack.
+    #[error("column {column} is not one that a report may lack")]
+    NotOptional {
+        /// Name of the column in files.
+        column: &'static str,
     },
     /// No engine, more than four, or sets of engines that differ.
     #[error("{found} engines in {column}, expected {expected}")]
@@ -228,15 +216,7 @@ fn check_columns(columns: &ReportColumns) -> Result<(), ReportDataError> {
         n2_percent,
         fuel_flow,
         fuel_used_kg,
-        latitude_deg,
-        longitude_deg,
-        true_heading_deg,
-        center_of_gravity_percent_mac,
-        total_air_temperature_k,
-        n1_percent,
-        exhaust_gas_temperature_k,
-        fuel_quantity_kg,
-        anti_ice,
+        optional,
     } = columns;
     let samples = time_s.len();
     if samples < 3 {
@@ -267,22 +247,8 @@ fn check_columns(columns: &ReportColumns) -> Result<(), ReportDataError> {
         }
     }
     check_engines(fuel_flow, n2_percent.as_deref(), samples)?;
-    for (name, column) in [
-        ("latitude_deg", latitude_deg),
-        ("longitude_deg", longitude_deg),
-        ("true_heading_deg", true_heading_deg),
-        ("center_of_gravity_percent_mac", center_of_gravity_percent_mac),
-        ("total_air_temperature_k", total_air_temperature_k),
-        ("fuel_quantity_kg", fuel_quantity_kg),
-        ("anti_ice", anti_ice),
-    ] {
-        check_optional(name, column.as_ref(), samples)?;
-    }
-    for column in n1_percent {
-        check_optional("n1_percent", column.as_ref(), samples)?;
-    }
-    for column in exhaust_gas_temperature_k {
-        check_optional("exhaust_gas_temperature_k", column.as_ref(), samples)?;
+    for (column, values) in optional.iter() {
+        check_optional(column, values, samples)?;
     }
     Ok(())
 }
@@ -347,20 +313,70 @@ fn check_full(
 }
 
 fn check_optional(
-    column: &'static str,
-    values: Option<&OptionalColumn>,
+    column: Column,
+    values: &OptionalColumn,
     expected: usize,
 ) -> Result<(), ReportDataError> {
-    let Some(values) = values else { return Ok(()) };
+    if !column.is_optional() {
+        return Err(ReportDataError::NotOptional { column: column.stem() });
+    }
+    if let Some(engine) = column.engine().map(usize::from)
+        && !(1..=MAXIMUM_ENGINES).contains(&engine)
+    {
+        let column = column.stem();
+        return Err(ReportDataError::Engines { column, found: engine, expected: "1 to 4" });
+    }
     if values.len() != expected {
+        let column = column.stem();
         return Err(ReportDataError::LengthsDiffer { column, found: values.len(), expected });
     }
     for (sample, value) in values.iter().enumerate() {
-        if let Some(value) = value
-            && !value.is_finite()
-        {
-            return Err(ReportDataError::NotFinite { column, sample, value: *value });
+        if let Some(value) = value.filter(|value| !value.is_finite()) {
+            return Err(ReportDataError::NotFinite { column: column.stem(), sample, value });
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn three_samples(optional: OptionalColumns) -> ReportColumns {
+        let of = |value: f64| vec![value; 3];
+        ReportColumns {
+            time_s: vec![0.0, 60.0, 120.0],
+            pressure_altitude_m: of(11_000.0),
+            static_air_temperature_k: None,
+            mach: of(0.8),
+            true_airspeed_m_s: of(236.0),
+            ground_speed_m_s: of(236.0),
+            roll_deg: None,
+            drift_deg: None,
+            n2_percent: None,
+            fuel_flow: FuelFlowColumns::Total(of(0.5)),
+            fuel_used_kg: of(600.0),
+            optional,
+        }
+    }
+
+    fn checked(column: Column, values: OptionalColumn) -> Result<(), ReportDataError> {
+        check_columns(&three_samples([(column, values)].into_iter().collect()))
+    }
+
+    #[test]
+    fn optional_columns_are_checked_like_the_others() {
+        let values = || vec![Some(1.0), None, Some(2.0)];
+        assert_eq!(checked(Column::N1(4), values()), Ok(()));
+        let refused = ReportDataError::NotOptional { column: "MACH" };
+        assert_eq!(checked(Column::Mach, values()), Err(refused));
+        let refused = ReportDataError::Engines { column: "N1", found: 5, expected: "1 to 4" };
+        assert_eq!(checked(Column::N1(5), values()), Err(refused));
+        let refused = ReportDataError::LengthsDiffer { column: "CG", found: 2, expected: 3 };
+        assert_eq!(checked(Column::CenterOfGravity, vec![None; 2]), Err(refused));
+        let infinite = vec![None, Some(f64::INFINITY), None];
+        let value = f64::INFINITY;
+        let refused = ReportDataError::NotFinite { column: "LAT", sample: 1, value };
+        assert_eq!(checked(Column::Latitude, infinite), Err(refused));
+    }
 }

@@ -88,15 +88,7 @@ fn columns_of(report: &Report) -> Vec<(Column, Values<'_>)> {
         n2_percent,
         fuel_flow,
         fuel_used_kg,
-        latitude_deg,
-        longitude_deg,
-        true_heading_deg,
-        center_of_gravity_percent_mac,
-        total_air_temperature_k,
-        n1_percent,
-        exhaust_gas_temperature_k,
-        fuel_quantity_kg,
-        anti_ice,
+        optional,
     } = report.columns();
     let mut columns = Vec::new();
     let mut all = |column, values| columns.push((column, Values::All(values)));
@@ -126,24 +118,7 @@ fn columns_of(report: &Report) -> Vec<(Column, Values<'_>)> {
         }
     }
     all(Column::FuelUsed, fuel_used_kg);
-    let optional = [
-        (Column::Latitude, latitude_deg),
-        (Column::Longitude, longitude_deg),
-        (Column::TrueHeading, true_heading_deg),
-        (Column::CenterOfGravity, center_of_gravity_percent_mac),
-        (Column::TotalAirTemperature, total_air_temperature_k),
-    ];
-    let rotor_speeds = (1..).map(Column::N1).zip(n1_percent);
-    let gas_temperatures = (1..).map(Column::ExhaustGasTemperature).zip(exhaust_gas_temperature_k);
-    let last = [(Column::FuelQuantity, fuel_quantity_kg), (Column::AntiIce, anti_ice)];
-    columns.extend(
-        optional
-            .into_iter()
-            .chain(rotor_speeds)
-            .chain(gas_temperatures)
-            .chain(last)
-            .filter_map(|(column, values)| Some((column, Values::Some(values.as_ref()?)))),
-    );
+    columns.extend(optional.iter().map(|(column, values)| (column, Values::Some(values))));
     columns
 }
 

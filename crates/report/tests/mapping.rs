@@ -7,6 +7,7 @@
 )]
 #![expect(clippy::float_cmp, reason = "whole numbers are exact")]
 
+use flight::column::Column;
 use std::io::Write;
 
 use flight::{Assumption, FuelFlowColumns, MissingColumn};
@@ -85,7 +86,7 @@ fn two_flights_in_one_file() {
     assert_eq!(header.notes[1], ("DERIVED".to_owned(), derived.to_owned()));
     // The row without mass is left out; the center of gravity is optional.
     assert_eq!(columns.time_s, [0.0, 1.0, 3.0]);
-    let center_of_gravity = columns.center_of_gravity_percent_mac.as_ref().unwrap();
+    let center_of_gravity = columns.optional.get(Column::CenterOfGravity).unwrap();
     assert_eq!(*center_of_gravity, [Some(27.5), None, Some(27.5)]);
     // 359° − 2° = 357°, which is −3°.
     assert_eq!(*columns.drift_deg.as_ref().unwrap(), [-3.0; 3]);

@@ -7,6 +7,7 @@
 use std::fmt::Write;
 
 use flight::ReportColumns;
+use flight::column::Column;
 use report::{Mapping, Parsed};
 
 const NAMES: &str = "utc,alt,sat,mach,tas,gs,ff,gw";
@@ -210,7 +211,7 @@ fn tank_gauges_beside_a_gross_mass() {
     )]);
     let parsed = read(&gauges, &rows);
     assert_eq!(parsed[0].report.header().zero_fuel_mass.to_kilograms(), 53_000.0);
-    assert_eq!(columns(&parsed).fuel_quantity_kg.as_ref().unwrap()[2], Some(11_920.0));
+    assert_eq!(columns(&parsed).optional.get(Column::FuelQuantity).unwrap()[2], Some(11_920.0));
 }
 
 #[test]
@@ -271,7 +272,7 @@ fn discretes_and_phases() {
         ),
     ]);
     let parsed = read(&discrete, &rows);
-    let anti_ice = columns(&parsed).anti_ice.as_ref().unwrap();
+    let anti_ice = columns(&parsed).optional.get(Column::AntiIce).unwrap();
     assert_eq!(*anti_ice, [Some(0.0), Some(1.0), Some(1.0)]);
 }
 

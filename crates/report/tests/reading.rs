@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking, in its helpers too")]
 #![expect(clippy::disallowed_methods, reason = "tests read data from files")]
 
+use flight::column::Column;
 use flight::{Assumption, FuelFlowColumns, MissingColumn};
 use report::{Parsed, Reader};
 use test_support::outside_data;
@@ -63,11 +64,11 @@ fn the_sample_of_the_format_page() {
     assert_close(flows[0][0], 654.0 * 0.45359237 / 3600.0);
     assert_close(flows[1][1], 648.0 * 0.45359237 / 3600.0);
     assert_close(columns.fuel_used_kg[2], 1_396.0 * 0.45359237);
-    assert_eq!(columns.latitude_deg.as_ref().unwrap()[0], Some(41.516));
-    assert_eq!(columns.longitude_deg.as_ref().unwrap()[1], Some(-69.829));
-    assert_eq!(columns.true_heading_deg.as_ref().unwrap()[2], Some(118.7));
-    assert_eq!(columns.center_of_gravity_percent_mac.as_ref().unwrap()[2], Some(27.1));
-    assert_eq!(columns.anti_ice.as_ref().unwrap()[0], Some(0.0));
+    assert_eq!(columns.optional.get(Column::Latitude).unwrap()[0], Some(41.516));
+    assert_eq!(columns.optional.get(Column::Longitude).unwrap()[1], Some(-69.829));
+    assert_eq!(columns.optional.get(Column::TrueHeading).unwrap()[2], Some(118.7));
+    assert_eq!(columns.optional.get(Column::CenterOfGravity).unwrap()[2], Some(27.1));
+    assert_eq!(columns.optional.get(Column::AntiIce).unwrap()[0], Some(0.0));
     assert_eq!(report.engines(), Some(2));
 }
 
@@ -186,10 +187,10 @@ fn units_and_other_columns() {
     assert_eq!(columns.time_s, [-60.0, -30.0, 60.0]);
     assert_eq!(columns.static_air_temperature_k.as_ref().unwrap(), &[216.65; 3]);
     assert_eq!(columns.fuel_flow, FuelFlowColumns::Total(vec![2520.0 / 3600.0; 3]));
-    assert_eq!(columns.n1_percent[0].as_ref().unwrap(), &[None, Some(85.0), Some(85.0)]);
-    assert_eq!(columns.exhaust_gas_temperature_k[0].as_ref().unwrap()[0], None);
-    assert_eq!(columns.total_air_temperature_k.as_ref().unwrap()[1], None);
-    assert_eq!(columns.fuel_quantity_kg.as_ref().unwrap()[2], Some(9916.0));
+    assert_eq!(columns.optional.get(Column::N1(1)).unwrap(), &[None, Some(85.0), Some(85.0)]);
+    assert_eq!(columns.optional.get(Column::ExhaustGasTemperature(1)).unwrap()[0], None);
+    assert_eq!(columns.optional.get(Column::TotalAirTemperature).unwrap()[1], None);
+    assert_eq!(columns.optional.get(Column::FuelQuantity).unwrap()[2], Some(9916.0));
     assert_eq!(parsed.report.engines(), Some(1));
 }
 

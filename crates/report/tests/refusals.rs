@@ -554,7 +554,10 @@ fn last_row_without_line_end() {
         let text = complete.strip_suffix(" 27.1 0").unwrap().to_owned() + end;
         let parsed = Reader::new().read(text.as_bytes()).unwrap();
         assert_eq!(parsed.findings[0].code, "last-row-without-line-end", "{end:?}");
-        assert_eq!(parsed.report.columns().anti_ice.as_ref().unwrap()[2], None);
+        assert_eq!(
+            parsed.report.columns().optional.get(flight::column::Column::AntiIce).unwrap()[2],
+            None
+        );
     }
     // A last line that is not a row needs no line end.
     let with_comment = format!("{BASE}# end");

@@ -119,7 +119,10 @@ fn what_the_text_cannot_hold_is_refused() {
             }),
         ),
         ("out-of-range", written(&|_, columns| columns.mach[2] = 1.2)),
-        ("out-of-range", written(&|_, columns| columns.anti_ice = Some(vec![Some(0.5); 3]))),
+        (
+            "out-of-range",
+            written(&|_, columns| columns.optional.insert(Column::AntiIce, vec![Some(0.5); 3])),
+        ),
         ("header-value-malformed", written(&|header, _| header.identity.tail.clear())),
     ];
     for (expected, result) in refused {
@@ -195,15 +198,20 @@ prop_compose! {
                 FuelFlowColumns::Total(within(1e-3, 12.5))
             },
             fuel_used_kg,
-            latitude_deg: thin(present[5], within(-90.0, 90.0)),
-            longitude_deg: thin(present[6], within(-180.0, 360.0)),
-            true_heading_deg: thin(present[7], within(-360.0, 360.0)),
-            center_of_gravity_percent_mac: thin(present[8], within(-50.0, 150.0)),
-            total_air_temperature_k: thin(present[9], within(173.15, 363.15)),
-            n1_percent: [thin(present[10], within(0.0, 130.0)), None, None, None],
-            exhaust_gas_temperature_k: [thin(present[11], within(173.15, 1773.15)), None, None, None],
-            fuel_quantity_kg: thin(present[12], within(0.0, 1.02 * fuel_on_board_kg)),
-            anti_ice: present[13].then(|| vec![Some(1.0); samples]),
+            optional: [
+                (Column::Latitude, thin(present[5], within(-90.0, 90.0))),
+                (Column::Longitude, thin(present[6], within(-180.0, 360.0))),
+                (Column::TrueHeading, thin(present[7], within(-360.0, 360.0))),
+                (Column::CenterOfGravity, thin(present[8], within(-50.0, 150.0))),
+                (Column::TotalAirTemperature, thin(present[9], within(173.15, 363.15))),
+                (Column::N1(1), thin(present[10], within(0.0, 130.0))),
+                (Column::ExhaustGasTemperature(1), thin(present[11], within(173.15, 1773.15))),
+                (Column::FuelQuantity, thin(present[12], within(0.0, 1.02 * fuel_on_board_kg))),
+                (Column::AntiIce, present[13].then(|| vec![Some(1.0); samples])),
+            ]
+            .into_iter()
+            .filter_map(|(column, values)| Some((column, values?)))
+            .collect(),
         };
         let is_assumed = missing.contains(&MissingColumn::StaticAirTemperature);
         let header = ReportHeader {

@@ -1,8 +1,8 @@
 //! Where forty minutes of cruise go: a change of speed, a bumpy minute, and what is left.
 
 use flight::{
-    FlightIdentity, FuelFlowColumns, Report, ReportColumns, ReportHeader, SampleRun, Sampling,
-    TemperatureSource, Timestamp, Track, TrackParts,
+    FlightIdentity, FuelFlowColumns, OptionalColumns, Report, ReportColumns, ReportHeader,
+    SampleRun, Sampling, TemperatureSource, Timestamp, Track, TrackParts,
 };
 use segmenter::{Criterion, TrimCriteria, segment};
 use units::{GroundSpeed, Mass, PressureAltitude};
@@ -23,15 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         n2_percent: None,
         fuel_flow: FuelFlowColumns::Total(of(0.17)),
         fuel_used_kg: of(600.0),
-        latitude_deg: None,
-        longitude_deg: None,
-        true_heading_deg: None,
-        center_of_gravity_percent_mac: None,
-        total_air_temperature_k: None,
-        n1_percent: [const { None }; 4],
-        exhaust_gas_temperature_k: [const { None }; 4],
-        fuel_quantity_kg: None,
-        anti_ice: None,
+        optional: OptionalColumns::default(),
     };
     let header = ReportHeader {
         aircraft_type: "C750".to_owned(),

@@ -1,7 +1,10 @@
 //! Step 4: the mean state over the kept samples of a segment.
 
-use flight::{FuelFlowColumns, OptionalColumn, SampleRun, SegmentMeans, Track};
+use flight::column::Column;
+use flight::{FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn, SampleRun, SegmentMeans, Track};
 use units::mean_direction_deg;
+
+const ENGINES: [u8; MAXIMUM_ENGINES] = [1, 2, 3, 4];
 
 /// Means over the samples `rows` of the track: increasing, within `run`, at least one.
 ///
@@ -16,10 +19,12 @@ pub(crate) fn over(track: &Track, run: &SampleRun, rows: &[usize]) -> SegmentMea
     // Rates are stored from the start of their run.
     let rate =
         |rates: &[f64]| mean_of(rows.iter().map(|row| rates[*row - run.samples.start]), rows.len());
-    let optional = |column: &Option<OptionalColumn>| available(column.as_ref()?, rows);
-    let direction = |column: &Option<OptionalColumn>| {
-        mean_direction_deg(rows.iter().filter_map(|row| column.as_ref()?[*row]))
+    let optional = |column| available(columns.optional.get(column)?, rows);
+    let direction = |column| {
+        let values = columns.optional.get(column)?;
+        mean_direction_deg(rows.iter().filter_map(|row| values[*row]))
     };
+    let by_engine = |column: fn(u8) -> Column| ENGINES.map(|engine| optional(column(engine)));
     let (fuel_flow_total_kg_s, fuel_flow_engine_kg_s) = match &columns.fuel_flow {
         FuelFlowColumns::Total(total) => (mean(total), Vec::new()),
         FuelFlowColumns::PerEngine(engines) => {
@@ -47,16 +52,16 @@ pub(crate) fn over(track: &Track, run: &SampleRun, rows: &[usize]) -> SegmentMea
             .as_ref()
             .map(|roll| mean_of(rows.iter().map(|row| roll[*row] * roll[*row]), rows.len())),
         n2_percent: columns.n2_percent.iter().flatten().map(|engine| mean(engine)).collect(),
-        latitude_deg: optional(&columns.latitude_deg),
-        longitude_deg: direction(&columns.longitude_deg)
+        latitude_deg: optional(Column::Latitude),
+        longitude_deg: direction(Column::Longitude)
             .map(|mean_deg| if mean_deg > 180.0 { mean_deg - 360.0 } else { mean_deg }),
-        true_heading_deg: direction(&columns.true_heading_deg),
-        center_of_gravity_percent_mac: optional(&columns.center_of_gravity_percent_mac),
-        total_air_temperature_k: optional(&columns.total_air_temperature_k),
-        n1_percent: columns.n1_percent.each_ref().map(optional),
-        exhaust_gas_temperature_k: columns.exhaust_gas_temperature_k.each_ref().map(optional),
-        fuel_quantity_kg: optional(&columns.fuel_quantity_kg),
-        anti_ice: optional(&columns.anti_ice),
+        true_heading_deg: direction(Column::TrueHeading),
+        center_of_gravity_percent_mac: optional(Column::CenterOfGravity),
+        total_air_temperature_k: optional(Column::TotalAirTemperature),
+        n1_percent: by_engine(Column::N1),
+        exhaust_gas_temperature_k: by_engine(Column::ExhaustGasTemperature),
+        fuel_quantity_kg: optional(Column::FuelQuantity),
+        anti_ice: optional(Column::AntiIce),
     }
 }
 

@@ -9,6 +9,7 @@ mod bank;
 mod channel;
 mod faults;
 
+use flight::column::Column;
 use serde::{Deserialize, Serialize};
 
 use crate::aircraft::Switch;
@@ -183,6 +184,24 @@ pub struct Columns {
     pub anti_ice: Switch,
     /// `LHV` in the header.
     pub lower_heating_value: Switch,
+}
+
+impl Columns {
+    /// Whether an optional column is recorded.
+    pub(crate) const fn has(&self, column: Column) -> bool {
+        let switch = match column {
+            Column::Latitude | Column::Longitude => self.position,
+            Column::TrueHeading => self.true_heading,
+            Column::CenterOfGravity => self.center_of_gravity,
+            Column::TotalAirTemperature => self.total_air_temperature,
+            Column::N1(_) => self.n1,
+            Column::ExhaustGasTemperature(_) => self.exhaust_gas_temperature,
+            Column::FuelQuantity => self.fuel_quantity,
+            Column::AntiIce => self.anti_ice,
+            _ => Switch::Off,
+        };
+        switch.is_on()
+    }
 }
 
 impl Default for Columns {

@@ -3,7 +3,8 @@
 
 use flight::column::Column;
 use flight::{
-    FlightIdentity, FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportHeader,
+    FlightIdentity, FuelFlowColumns, OptionalColumn, OptionalColumns, Report, ReportColumns,
+    ReportHeader,
 };
 use units::Mass;
 use units::convert::{KELVIN_AT_ZERO_CELSIUS, METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT};
@@ -63,15 +64,7 @@ pub fn steady(step_s: f64, samples: usize) -> ReportColumns {
         n2_percent: Some(vec![of(89.4), of(89.4)]),
         fuel_flow: FuelFlowColumns::PerEngine(vec![of(0.083), of(0.083)]),
         fuel_used_kg: of(600.0),
-        latitude_deg: None,
-        longitude_deg: None,
-        true_heading_deg: None,
-        center_of_gravity_percent_mac: None,
-        total_air_temperature_k: None,
-        n1_percent: [const { None }; 4],
-        exhaust_gas_temperature_k: [const { None }; 4],
-        fuel_quantity_kg: None,
-        anti_ice: None,
+        optional: OptionalColumns::default(),
     }
 }
 
@@ -140,10 +133,10 @@ fn put(columns: &mut ReportColumns, column: Column, optional: OptionalColumn) {
             flows[engine(k)] = full();
         }
         Column::FuelUsed => columns.fuel_used_kg = full(),
-        Column::Latitude => columns.latitude_deg = Some(optional),
-        Column::Longitude => columns.longitude_deg = Some(optional),
-        Column::TrueHeading => columns.true_heading_deg = Some(optional),
-        Column::CenterOfGravity => columns.center_of_gravity_percent_mac = Some(optional),
+        Column::Latitude => columns.optional.insert(Column::Latitude, optional),
+        Column::Longitude => columns.optional.insert(Column::Longitude, optional),
+        Column::TrueHeading => columns.optional.insert(Column::TrueHeading, optional),
+        Column::CenterOfGravity => columns.optional.insert(Column::CenterOfGravity, optional),
         _ => panic!("{column:?} is not expected here"),
     }
 }

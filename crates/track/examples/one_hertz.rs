@@ -1,7 +1,8 @@
 //! A recording of one sample a second becomes a track of one sample a minute.
 
 use flight::{
-    FlightIdentity, FuelFlowColumns, Report, ReportColumns, ReportHeader, Sampling, Timestamp,
+    FlightIdentity, FuelFlowColumns, OptionalColumns, Report, ReportColumns, ReportHeader,
+    Sampling, Timestamp,
 };
 use units::{GroundSpeed, Mass, PressureAltitude};
 
@@ -25,15 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         fuel_flow: FuelFlowColumns::Total(of(0.17)),
         fuel_used_kg: time_s.iter().map(|time_s| 600.0 + 0.17 * time_s).collect(),
         time_s,
-        latitude_deg: None,
-        longitude_deg: None,
-        true_heading_deg: None,
-        center_of_gravity_percent_mac: None,
-        total_air_temperature_k: None,
-        n1_percent: [const { None }; 4],
-        exhaust_gas_temperature_k: [const { None }; 4],
-        fuel_quantity_kg: None,
-        anti_ice: None,
+        optional: OptionalColumns::default(),
     };
     let identity = FlightIdentity {
         tail: "T-001".to_owned(),

@@ -18,6 +18,7 @@
 
 use core::ops::Range;
 
+use flight::column::Column;
 use flight::{FuelFlowColumns, OptionalColumn, Report, ReportColumns};
 use units::mean_direction_deg;
 
@@ -111,7 +112,6 @@ fn average_columns(columns: &ReportColumns, bins: &[Range<usize>]) -> ReportColu
             .collect()
     };
     let engines = |engines: &Vec<Vec<f64>>| -> Vec<Vec<f64>> { engines.iter().map(mean).collect() };
-    let optional = |column: &Option<OptionalColumn>| column.as_ref().map(|c| available(c, bins));
     ReportColumns {
         time_s: mean(&columns.time_s),
         pressure_altitude_m: mean(&columns.pressure_altitude_m),
@@ -127,23 +127,30 @@ fn average_columns(columns: &ReportColumns, bins: &[Range<usize>]) -> ReportColu
             FuelFlowColumns::Total(total) => FuelFlowColumns::Total(mean(total)),
         },
         fuel_used_kg: mean(&columns.fuel_used_kg),
-        latitude_deg: optional(&columns.latitude_deg),
-        longitude_deg: columns.longitude_deg.as_ref().map(|column| {
-            // 0 … 360 back to the −180 … 180 in which longitudes are written.
-            let mut means = directions(column, bins);
-            for mean_deg in means.iter_mut().flatten().filter(|mean_deg| **mean_deg > 180.0) {
-                *mean_deg -= 360.0;
-            }
-            means
-        }),
-        true_heading_deg: columns.true_heading_deg.as_ref().map(|column| directions(column, bins)),
-        center_of_gravity_percent_mac: optional(&columns.center_of_gravity_percent_mac),
-        total_air_temperature_k: optional(&columns.total_air_temperature_k),
-        n1_percent: columns.n1_percent.each_ref().map(optional),
-        exhaust_gas_temperature_k: columns.exhaust_gas_temperature_k.each_ref().map(optional),
-        fuel_quantity_kg: optional(&columns.fuel_quantity_kg),
-        anti_ice: optional(&columns.anti_ice),
+        optional: columns
+            .optional
+            .iter()
+            .map(|(column, values)| (column, average_optional(column, values, bins)))
+            .collect(),
     }
+}
+
+fn average_optional(
+    column: Column,
+    values: &OptionalColumn,
+    bins: &[Range<usize>],
+) -> OptionalColumn {
+    if !column.is_direction() {
+        return available(values, bins);
+    }
+    let mut means = directions(values, bins);
+    if column == Column::Longitude {
+        // 0 … 360 back to the −180 … 180 in which longitudes are written.
+        for mean_deg in means.iter_mut().flatten().filter(|mean_deg| **mean_deg > 180.0) {
+            *mean_deg -= 360.0;
+        }
+    }
+    means
 }
 
 /// Means over the samples that have a value.

@@ -12,7 +12,7 @@
 //! air temperature that was not recorded is taken from the header's assumption or refused, never guessed.
 //!
 //! ```
-//! use flight::{FlightIdentity, FuelFlowColumns, Report, ReportColumns, ReportHeader, Timestamp};
+//! use flight::{FlightIdentity, FuelFlowColumns, Report, OptionalColumns, ReportColumns, ReportHeader, Timestamp};
 //! use units::Mass;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -42,15 +42,7 @@
 //!     n2_percent: Some(vec![vec![89.4; 3]; 2]),
 //!     fuel_flow: FuelFlowColumns::PerEngine(vec![vec![0.083; 3]; 2]),
 //!     fuel_used_kg: vec![600.0, 610.0, 620.0],
-//!     latitude_deg: None,
-//!     longitude_deg: None,
-//!     true_heading_deg: None,
-//!     center_of_gravity_percent_mac: None,
-//!     total_air_temperature_k: None,
-//!     n1_percent: [const { None }; 4],
-//!     exhaust_gas_temperature_k: [const { None }; 4],
-//!     fuel_quantity_kg: None,
-//!     anti_ice: None,
+//!     optional: OptionalColumns::default(),
 //! };
 //! let track = track::derive(Report::new(header, columns)?)?;
 //! assert_eq!(track.mass_kg(), [13_400.0, 13_390.0, 13_380.0]);

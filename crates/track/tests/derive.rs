@@ -2,9 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests; clippy.toml covers test functions only")]
 
+use flight::column::Column;
 use flight::{
-    Assumption, DroppedRun, DroppedRunReason, FuelFlowColumns, Report, ReportColumns, ReportHeader,
-    Sampling, TemperatureSource, Track,
+    Assumption, DroppedRun, DroppedRunReason, FuelFlowColumns, OptionalColumns, Report,
+    ReportColumns, ReportHeader, Sampling, TemperatureSource, Track,
 };
 use proptest::prelude::*;
 use track::{TrackError, derive};
@@ -34,15 +35,7 @@ fn columns(time_s: Vec<f64>) -> ReportColumns {
         drift_deg: Some(of(2.0)),
         n2_percent: Some(vec![of(89.4), of(89.6)]),
         fuel_flow: FuelFlowColumns::PerEngine(vec![of(0.083), of(0.084)]),
-        latitude_deg: None,
-        longitude_deg: None,
-        true_heading_deg: None,
-        center_of_gravity_percent_mac: None,
-        total_air_temperature_k: None,
-        n1_percent: [const { None }; 4],
-        exhaust_gas_temperature_k: [const { None }; 4],
-        fuel_quantity_kg: None,
-        anti_ice: None,
+        optional: OptionalColumns::default(),
     }
 }
 
@@ -158,10 +151,11 @@ fn one_hertz() -> ReportColumns {
     let pairs = |low: f64, high: f64| -> Vec<Option<f64>> {
         (0..220).map(|t| Some(if t % 2 == 0 { low } else { high })).collect()
     };
-    sent.true_heading_deg = Some(pairs(350.0, 20.0));
-    sent.longitude_deg = Some(pairs(179.0, -177.0));
+    sent.optional.insert(Column::TrueHeading, pairs(350.0, 20.0));
+    sent.optional.insert(Column::Longitude, pairs(179.0, -177.0));
     // On during the first 15 s; unknown in the third bin; one value in the last.
-    sent.anti_ice = Some(
+    sent.optional.insert(
+        Column::AntiIce,
         (0..220)
             .map(|t| match t {
                 0..15 | 219 => Some(1.0),
@@ -193,12 +187,13 @@ fn one_hertz_is_averaged_to_minutes() {
     // A ramp of 0.01 m/s a second stays one, although the last step is 50 s.
     assert_eq!(track.runs().len(), 1);
     close(&track.runs()[0].acceleration_m_s2, &[0.01; 4]);
-    let all = |column: &Option<Vec<Option<f64>>>| -> Vec<f64> {
-        column.as_ref().unwrap().iter().map(|value| value.unwrap()).collect()
+    let all = |column: Column| -> Vec<f64> {
+        columns.optional.get(column).unwrap().iter().map(|value| value.unwrap()).collect()
     };
-    close(&all(&columns.true_heading_deg), &[5.0; 4]);
-    close(&all(&columns.longitude_deg), &[-179.0; 4]);
-    assert_eq!(columns.anti_ice, Some(vec![Some(0.25), Some(0.0), None, Some(1.0)]));
+    close(&all(Column::TrueHeading), &[5.0; 4]);
+    close(&all(Column::Longitude), &[-179.0; 4]);
+    let anti_ice = columns.optional.get(Column::AntiIce).unwrap();
+    assert_eq!(*anti_ice, [Some(0.25), Some(0.0), None, Some(1.0)]);
 }
 
 #[test]

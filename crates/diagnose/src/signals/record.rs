@@ -1,5 +1,6 @@
 //! What is diagnosed: flights with their stabilised segments.
 
+use flight::column::Column;
 use flight::{Segment, Track};
 
 use crate::priors::GAUGE_DEVIATION_KG;
@@ -31,7 +32,7 @@ impl GaugeBurn {
     #[must_use]
     pub fn of_track(track: &Track) -> Option<Self> {
         let columns = track.report().columns();
-        let quantity = columns.fuel_quantity_kg.as_ref()?;
+        let quantity = columns.optional.get(Column::FuelQuantity)?;
         let first = quantity.iter().position(Option::is_some)?;
         let last = quantity.iter().rposition(Option::is_some)?;
         let gauged_kg = quantity[first]? - quantity[last]?;

@@ -1,5 +1,6 @@
 //! Channels that do not move, move in coarse steps, or hold another scale.
 
+use flight::column::Column;
 use flight::{FuelFlowColumns, OptionalColumn, Report, Severity};
 use units::convert::{
     KILOGRAMS_PER_SECOND_PER_KILOGRAM_PER_HOUR, METERS_PER_SECOND_PER_KNOT, RADIANS_PER_DEGREE,
@@ -219,7 +220,7 @@ fn rotor_scale(report: &Report) -> Option<Draft> {
 }
 
 fn center_of_gravity(report: &Report) -> Option<Draft> {
-    let percent = mean_of(report.columns().center_of_gravity_percent_mac.as_ref())?;
+    let percent = mean_of(report.columns().optional.get(Column::CenterOfGravity))?;
     let (low, high) = CENTER_OF_GRAVITY_PERCENT_MAC;
     if (low..=high).contains(&percent) {
         return None;
@@ -247,8 +248,9 @@ fn center_of_gravity(report: &Report) -> Option<Draft> {
 /// Headings in radians: never beyond 2π, and of a flight that does not go north.
 fn heading_scale(report: &Report) -> Option<Draft> {
     let columns = report.columns();
-    let headings = columns.true_heading_deg.as_ref()?;
-    let (latitudes, longitudes) = (columns.latitude_deg.as_ref()?, columns.longitude_deg.as_ref()?);
+    let headings = columns.optional.get(Column::TrueHeading)?;
+    let (latitudes, longitudes) =
+        (columns.optional.get(Column::Latitude)?, columns.optional.get(Column::Longitude)?);
     let largest =
         headings.iter().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     if largest > 2.0 * core::f64::consts::PI || headings.iter().flatten().count() < FEWEST_SAMPLES {

@@ -1,5 +1,6 @@
 //! Fuel flow against the fuel that it should add up to, and engine against engine.
 
+use flight::column::Column;
 use flight::{FuelFlowColumns, Report, Severity};
 
 use super::slips::{self, FUEL};
@@ -105,7 +106,7 @@ fn explain(ratio: f64, report: &Report) -> (String, String) {
 /// Tank gauges against flow meters.
 fn quantity_against_flow(report: &Report) -> Option<Draft> {
     let columns = report.columns();
-    let quantity = columns.fuel_quantity_kg.as_ref()?;
+    let quantity = columns.optional.get(Column::FuelQuantity)?;
     let first = quantity.iter().position(Option::is_some)?;
     let last = quantity.iter().rposition(Option::is_some)?;
     if columns.time_s[last] - columns.time_s[first] < 3.0 * SHORTEST_S {
@@ -178,8 +179,9 @@ fn asymmetry(report: &Report) -> Option<Draft> {
 fn rotor_difference(report: &Report, engine: usize) -> Option<(f64, &'static str)> {
     let columns = report.columns();
     let engines = report.engines()?;
+    let n1 = |index: usize| Some(Column::N1(u8::try_from(index + 1).ok()?));
     let n1: Option<Vec<f64>> = (0..engines)
-        .map(|index| mean(columns.n1_percent[index].as_ref()?.iter().flatten().copied()))
+        .map(|index| mean(columns.optional.get(n1(index)?)?.iter().flatten().copied()))
         .collect();
     let (means, rotor) = if let Some(means) = n1 {
         (means, "N1")

@@ -1,6 +1,7 @@
 //! Ground speed and angles against position and heading.
 
 use core::f64::consts::PI;
+use flight::column::Column;
 
 use flight::{Report, Severity};
 use units::convert::{METERS_PER_SECOND_PER_KNOT, RADIANS_PER_DEGREE};
@@ -49,7 +50,8 @@ struct Leg {
 /// The straight steps; none where they are too few to say anything.
 fn legs(report: &Report) -> Vec<Leg> {
     let columns = report.columns();
-    let (Some(latitudes), Some(longitudes)) = (&columns.latitude_deg, &columns.longitude_deg)
+    let (Some(latitudes), Some(longitudes)) =
+        (columns.optional.get(Column::Latitude), columns.optional.get(Column::Longitude))
     else {
         return Vec::new();
     };
@@ -183,7 +185,7 @@ fn speed(report: &Report, legs: &[Leg], (wind_kt, over_air): (f64, f64)) -> Opti
 /// Track from the positions less heading and drift, by either sign of the drift.
 fn drift(report: &Report, legs: &[Leg]) -> Option<Draft> {
     let columns = report.columns();
-    let headings = columns.true_heading_deg.as_ref()?;
+    let headings = columns.optional.get(Column::TrueHeading)?;
     let drifts = columns.drift_deg.as_ref()?;
     let (mut as_declared, mut as_negated, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
     for leg in legs {
@@ -224,7 +226,7 @@ fn drift(report: &Report, legs: &[Leg]) -> Option<Draft> {
 /// Turns in the direction opposite to the roll.
 fn roll(report: &Report) -> Option<Draft> {
     let columns = report.columns();
-    let headings = columns.true_heading_deg.as_ref()?;
+    let headings = columns.optional.get(Column::TrueHeading)?;
     let rolls = columns.roll_deg.as_ref()?;
     let (mut agreeing, mut opposed) = (0_u32, 0_u32);
     for sample in 1..report.len().saturating_sub(1) {

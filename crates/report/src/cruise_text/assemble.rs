@@ -2,8 +2,7 @@
 
 use flight::column::Column;
 use flight::{
-    FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn, Report, ReportColumns, ReportDataError,
-    ReportHeader,
+    FuelFlowColumns, OptionalColumns, Report, ReportColumns, ReportDataError, ReportHeader,
 };
 
 use super::columns::Field;
@@ -24,13 +23,6 @@ pub(super) fn report(
     let flows: Vec<_> = (1..=engine_count)
         .map_while(|engine| table.required(Column::FuelFlowEngine(engine)))
         .collect();
-    let by_engine = |column: fn(u8) -> Column| {
-        let mut columns = [const { None }; MAXIMUM_ENGINES];
-        for (engine, place) in (1..).zip(&mut columns) {
-            *place = table.optional(column(engine));
-        }
-        columns
-    };
     let columns = ReportColumns {
         time_s: table.present(Column::Time),
         pressure_altitude_m: table.present(Column::PressureAltitude),
@@ -47,15 +39,7 @@ pub(super) fn report(
             FuelFlowColumns::PerEngine(flows)
         },
         fuel_used_kg: table.present(Column::FuelUsed),
-        latitude_deg: table.optional(Column::Latitude),
-        longitude_deg: table.optional(Column::Longitude),
-        true_heading_deg: table.optional(Column::TrueHeading),
-        center_of_gravity_percent_mac: table.optional(Column::CenterOfGravity),
-        total_air_temperature_k: table.optional(Column::TotalAirTemperature),
-        n1_percent: by_engine(Column::N1),
-        exhaust_gas_temperature_k: by_engine(Column::ExhaustGasTemperature),
-        fuel_quantity_kg: table.optional(Column::FuelQuantity),
-        anti_ice: table.optional(Column::AntiIce),
+        optional: table.optional(),
     };
     Report::new(header, columns)
 }
@@ -98,8 +82,14 @@ impl Table<'_> {
         Some(self.column(column)?.collect())
     }
 
-    fn optional(&self, column: Column) -> Option<OptionalColumn> {
-        Some(self.column(column)?.map(|value| (!value.is_nan()).then_some(value)).collect())
+    /// Every column that a report may lack, of those that are there.
+    fn optional(&self) -> OptionalColumns {
+        let named = self.fields.iter().zip(self.columns).filter_map(|(field, values)| {
+            let column = field.column.filter(|column| column.is_optional())?;
+            let available = |value: &f64| (!value.is_nan()).then(|| field.convert(*value));
+            field.is_handed_on.then(|| (column, values.iter().map(available).collect()))
+        });
+        named.collect()
     }
 
     fn column(&self, column: Column) -> Option<impl ExactSizeIterator<Item = f64>> {

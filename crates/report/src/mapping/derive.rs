@@ -7,8 +7,8 @@ use core::ops::Range;
 use atmos::{airspeed, isa, temperature};
 use flight::column::Column;
 use flight::{
-    Assumption, Finding, FlightIdentity, FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn, Report,
-    ReportColumns, ReportDataError, ReportHeader, Severity, Timestamp,
+    Assumption, Finding, FlightIdentity, FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn,
+    OptionalColumns, Report, ReportColumns, ReportDataError, ReportHeader, Severity, Timestamp,
 };
 use jiff::SignedDuration;
 use units::{CalibratedAirspeed, Mach, Mass, PressureAltitude, Temperature, TrueAirspeed};
@@ -355,13 +355,12 @@ impl Part<'_, '_> {
             load.fuel_on_board.to_kilograms() * MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD;
         let n2_percent = self.engines(Column::N2)?;
         let flows = self.engines(Column::FuelFlowEngine)?;
-        let mut n1_percent = [const { None }; MAXIMUM_ENGINES];
-        let mut exhaust_gas_temperature_k = [const { None }; MAXIMUM_ENGINES];
-        for (engine, (rotor, gas)) in
-            (1..).zip(n1_percent.iter_mut().zip(&mut exhaust_gas_temperature_k))
-        {
-            *rotor = self.optional(Column::N1(engine), None)?;
-            *gas = self.optional(Column::ExhaustGasTemperature(engine), None)?;
+        let mut optional = OptionalColumns::default();
+        for column in Column::optional_ones(MAXIMUM_ENGINES) {
+            let maximum = (column == Column::FuelQuantity).then_some(fuel_quantity_kg);
+            if let Some(values) = self.optional(column, maximum)? {
+                optional.insert(column, values);
+            }
         }
         Ok(ReportColumns {
             time_s: self.rows.iter().map(|row| self.recording.time_s[*row] - first_s).collect(),
@@ -380,15 +379,7 @@ impl Part<'_, '_> {
             },
             n2_percent: (!n2_percent.is_empty()).then_some(n2_percent),
             fuel_used_kg: load.fuel_used_kg.clone(),
-            latitude_deg: self.optional(Column::Latitude, None)?,
-            longitude_deg: self.optional(Column::Longitude, None)?,
-            true_heading_deg: self.optional(Column::TrueHeading, None)?,
-            center_of_gravity_percent_mac: self.optional(Column::CenterOfGravity, None)?,
-            total_air_temperature_k: self.optional(Column::TotalAirTemperature, None)?,
-            n1_percent,
-            exhaust_gas_temperature_k,
-            fuel_quantity_kg: self.optional(Column::FuelQuantity, Some(fuel_quantity_kg))?,
-            anti_ice: self.optional(Column::AntiIce, None)?,
+            optional,
         })
     }
 

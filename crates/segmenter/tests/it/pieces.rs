@@ -1,6 +1,7 @@
 //! Steps 2 to 4 by hand: cutting, the 2σ filter, what is too short, and the means.
 
 use flight::FuelFlowColumns;
+use flight::column::Column;
 use segmenter::{Criterion, DroppedPiece, PieceDropReason, SampleVerdict};
 use test_support::reports::{header, steady};
 use units::convert::{METERS_PER_FOOT, METERS_PER_SECOND_PER_KNOT};
@@ -188,12 +189,18 @@ fn means_are_over_the_kept_samples() {
     let ramp = |start: f64, step: f64| (0..10).map(|i| start + step * f64::from(i)).collect();
     sent.fuel_flow = FuelFlowColumns::PerEngine(vec![ramp(0.08, 0.001), ramp(0.09, 0.0)]);
     sent.fuel_used_kg = ramp(600.0, 10.0);
-    sent.true_heading_deg = Some([358.0, 2.0].into_iter().cycle().map(Some).take(10).collect());
-    sent.longitude_deg = Some([179.5, -179.5].into_iter().cycle().map(Some).take(10).collect());
-    sent.latitude_deg = Some((0..10).map(|i| (i != 9).then_some(f64::from(i))).collect());
-    sent.anti_ice = Some((0..10).map(|i| Some(if i < 3 { 1.0 } else { 0.0 })).collect());
-    sent.center_of_gravity_percent_mac = Some(vec![None; 10]);
-    sent.n1_percent[1] = Some(vec![Some(81.5); 10]);
+    sent.optional
+        .insert(Column::TrueHeading, [358.0, 2.0].into_iter().cycle().map(Some).take(10).collect());
+    sent.optional.insert(
+        Column::Longitude,
+        [179.5, -179.5].into_iter().cycle().map(Some).take(10).collect(),
+    );
+    sent.optional
+        .insert(Column::Latitude, (0..10).map(|i| (i != 9).then_some(f64::from(i))).collect());
+    sent.optional
+        .insert(Column::AntiIce, (0..10).map(|i| Some(if i < 3 { 1.0 } else { 0.0 })).collect());
+    sent.optional.insert(Column::CenterOfGravity, vec![None; 10]);
+    sent.optional.insert(Column::N1(2), vec![Some(81.5); 10]);
     sent.roll_deg = Some([0.5, -0.3].into_iter().cycle().take(10).collect());
     let (_, segmentation) = segmented(sent);
     assert_eq!(rows(&segmentation), [vec![0, 1, 2, 3, 5, 6, 7, 8, 9]]);

@@ -1,5 +1,6 @@
 //! All sensors of one flight: fed at every step, read at every sample, combined into a report at the end.
 
+use flight::column::Column;
 use flight::{
     FlightIdentity, FuelFlowColumns, OptionalColumn, Report, ReportColumns, ReportDataError,
     ReportHeader,
@@ -17,7 +18,7 @@ use crate::aircraft::{HEATING_FACTOR, Switch};
 use crate::fly::Instant;
 use crate::random::{Purpose, Stream, Streams};
 use crate::state::TrueState;
-use crate::terms::{MAXIMUM_ENGINES, RecordedTerms};
+use crate::terms::RecordedTerms;
 
 /// Pascals in a hectopascal.
 const PASCALS_PER_HECTOPASCAL: f64 = 100.0;
@@ -264,7 +265,7 @@ impl<'a> SensorBank<'a> {
         push(&mut rows.drift_deg, self.drift.round(drift));
 
         let mut total_lb_h = 0.0;
-        for k in 0..self.engines {
+        for (engine, k) in (1..).zip(0..self.engines) {
             let n2 = self.n2[k].measure(state.n2_percent[k], random);
             let n1 = self.n1[k].measure(state.n1_percent[k], random);
             let egt =
@@ -275,10 +276,11 @@ impl<'a> SensorBank<'a> {
             if let Some(engines) = &mut rows.n2_percent {
                 engines[k].push(self.n2[k].round(n2));
             }
-            push_optional(&mut rows.n1_percent[k], self.n1[k].round(n1));
+            push_optional(rows, Column::N1(engine), self.n1[k].round(n1));
             let egt_celsius = self.exhaust_gas_temperature[k].round(egt - KELVIN_AT_ZERO_CELSIUS);
             push_optional(
-                &mut rows.exhaust_gas_temperature_k[k],
+                rows,
+                Column::ExhaustGasTemperature(engine),
                 egt_celsius + KELVIN_AT_ZERO_CELSIUS,
             );
             total_lb_h += flow;
@@ -299,21 +301,19 @@ impl<'a> SensorBank<'a> {
         // A gauge does not indicate less than empty.
         let gauge_lb = self.fuel_quantity.measure(left_lb, random).max(0.0);
         push_optional(
-            &mut rows.fuel_quantity_kg,
+            rows,
+            Column::FuelQuantity,
             self.fuel_quantity.round(gauge_lb) * KILOGRAMS_PER_POUND,
         );
 
         let degrees = self.sensors.position_resolution_deg;
-        push_optional(&mut rows.latitude_deg, round_to(state.latitude_deg, degrees));
-        push_optional(&mut rows.longitude_deg, round_to(state.longitude_deg, degrees));
+        push_optional(rows, Column::Latitude, round_to(state.latitude_deg, degrees));
+        push_optional(rows, Column::Longitude, round_to(state.longitude_deg, degrees));
         let heading = self.heading.measure(state.true_heading_deg, random);
-        push_optional(&mut rows.true_heading_deg, self.heading.round(heading).rem_euclid(360.0));
+        push_optional(rows, Column::TrueHeading, self.heading.round(heading).rem_euclid(360.0));
         let center = self.center_of_gravity.measure(state.center_of_gravity_percent_mac, random);
-        push_optional(
-            &mut rows.center_of_gravity_percent_mac,
-            self.center_of_gravity.round(center),
-        );
-        push_optional(&mut rows.anti_ice, if state.anti_ice { 1.0 } else { 0.0 });
+        push_optional(rows, Column::CenterOfGravity, self.center_of_gravity.round(center));
+        push_optional(rows, Column::AntiIce, if state.anti_ice { 1.0 } else { 0.0 });
         Ok(())
     }
 
@@ -344,7 +344,7 @@ impl<'a> SensorBank<'a> {
                 + KELVIN_AT_ZERO_CELSIUS
         };
         push(&mut rows.static_air_temperature_k, celsius(computed.static_air_temperature_k));
-        push_optional(&mut rows.total_air_temperature_k, celsius(total_air_temperature_k));
+        push_optional(rows, Column::TotalAirTemperature, celsius(total_air_temperature_k));
         let knots = computed.true_airspeed_m_s / METERS_PER_SECOND_PER_KNOT;
         rows.true_airspeed_m_s.push(
             round_to(knots, self.sensors.true_airspeed_resolution_kt) * METERS_PER_SECOND_PER_KNOT,
@@ -383,21 +383,14 @@ fn push(column: &mut Option<Vec<f64>>, value: f64) {
     }
 }
 
-fn push_optional(column: &mut Option<OptionalColumn>, value: f64) {
-    if let Some(values) = column {
+fn push_optional(rows: &mut ReportColumns, column: Column, value: f64) {
+    if let Some(values) = rows.optional.get_mut(column) {
         values.push(Some(value));
     }
 }
 
 fn empty_rows(engines: usize, columns: &Columns) -> ReportColumns {
-    let optional = |switch: Switch| switch.is_on().then(Vec::new);
-    let by_engine = |switch: Switch| {
-        let mut all: [Option<OptionalColumn>; MAXIMUM_ENGINES] = Default::default();
-        for column in all.iter_mut().take(engines) {
-            *column = optional(switch);
-        }
-        all
-    };
+    let recorded = Column::optional_ones(engines).filter(|column| columns.has(*column));
     ReportColumns {
         time_s: Vec::new(),
         pressure_altitude_m: Vec::new(),
@@ -414,14 +407,6 @@ fn empty_rows(engines: usize, columns: &Columns) -> ReportColumns {
             FuelFlowColumns::Total(Vec::new())
         },
         fuel_used_kg: Vec::new(),
-        latitude_deg: optional(columns.position),
-        longitude_deg: optional(columns.position),
-        true_heading_deg: optional(columns.true_heading),
-        center_of_gravity_percent_mac: optional(columns.center_of_gravity),
-        total_air_temperature_k: optional(columns.total_air_temperature),
-        n1_percent: by_engine(columns.n1),
-        exhaust_gas_temperature_k: by_engine(columns.exhaust_gas_temperature),
-        fuel_quantity_kg: optional(columns.fuel_quantity),
-        anti_ice: optional(columns.anti_ice),
+        optional: recorded.map(|column| (column, OptionalColumn::new())).collect(),
     }
 }

@@ -1,6 +1,6 @@
 //! Faults of a recording: missing rows, missing values, stuck values.
 
-use flight::{FuelFlowColumns, OptionalColumn, ReportColumns};
+use flight::{FuelFlowColumns, ReportColumns};
 
 use super::Faults;
 use crate::random::Stream;
@@ -14,7 +14,7 @@ pub(crate) fn apply(rows: &mut ReportColumns, faults: &Faults, random: &mut Stre
         stick(rows, faults, random);
     }
     if faults.drop_out > 0.0 {
-        for column in optional_columns(rows) {
+        for column in rows.optional.values_mut() {
             for value in column.iter_mut() {
                 if random.chance(faults.drop_out) {
                     *value = None;
@@ -29,7 +29,7 @@ pub(crate) fn apply(rows: &mut ReportColumns, faults: &Faults, random: &mut Stre
             for column in full_columns(rows) {
                 retain(column, &keep);
             }
-            for column in optional_columns(rows) {
+            for column in rows.optional.values_mut() {
                 retain(column, &keep);
             }
             retain(&mut rows.time_s, &keep);
@@ -92,19 +92,5 @@ fn full_columns(rows: &mut ReportColumns) -> Vec<&mut Vec<f64>> {
         FuelFlowColumns::PerEngine(engines) => all.extend(engines),
         FuelFlowColumns::Total(total) => all.push(total),
     }
-    all
-}
-
-fn optional_columns(rows: &mut ReportColumns) -> Vec<&mut OptionalColumn> {
-    let mut all: Vec<&mut OptionalColumn> = Vec::new();
-    all.extend(rows.latitude_deg.as_mut());
-    all.extend(rows.longitude_deg.as_mut());
-    all.extend(rows.true_heading_deg.as_mut());
-    all.extend(rows.center_of_gravity_percent_mac.as_mut());
-    all.extend(rows.total_air_temperature_k.as_mut());
-    all.extend(rows.n1_percent.iter_mut().flatten());
-    all.extend(rows.exhaust_gas_temperature_k.iter_mut().flatten());
-    all.extend(rows.fuel_quantity_kg.as_mut());
-    all.extend(rows.anti_ice.as_mut());
     all
 }

@@ -55,28 +55,13 @@ pub(super) fn check_ranges(report: &Report) -> Result<(), OutOfRange> {
     for value in &columns.fuel_used_kg {
         check_up_to(Column::FuelUsed, *value, fuel_on_board_kg)?;
     }
-    for value in columns.fuel_quantity_kg.iter().flatten().flatten() {
-        check_up_to(Column::FuelQuantity, *value, FUEL_QUANTITY_FACTOR * fuel_on_board_kg)?;
-    }
-    for (column, values) in [
-        (Column::Latitude, &columns.latitude_deg),
-        (Column::Longitude, &columns.longitude_deg),
-        (Column::TrueHeading, &columns.true_heading_deg),
-        (Column::CenterOfGravity, &columns.center_of_gravity_percent_mac),
-        (Column::TotalAirTemperature, &columns.total_air_temperature_k),
-    ] {
-        for value in values.iter().flatten().flatten() {
-            check(column, *value)?;
-        }
-    }
-    for (engine, (n1, egt)) in
-        (1..).zip(columns.n1_percent.iter().zip(&columns.exhaust_gas_temperature_k))
-    {
-        for value in n1.iter().flatten().flatten() {
-            check(Column::N1(engine), *value)?;
-        }
-        for value in egt.iter().flatten().flatten() {
-            check(Column::ExhaustGasTemperature(engine), *value)?;
+    for (column, values) in columns.optional.iter() {
+        for value in values.iter().flatten() {
+            if column == Column::FuelQuantity {
+                check_up_to(column, *value, FUEL_QUANTITY_FACTOR * fuel_on_board_kg)?;
+            } else {
+                check(column, *value)?;
+            }
         }
     }
     Ok(())

@@ -46,9 +46,10 @@ pub(crate) fn fly_first(plan: Plan) -> Flown {
 /// A column by its name in files, optional values unwrapped.
 pub(crate) fn column(report: &Report, name: &str) -> Vec<f64> {
     use flight::FuelFlowColumns;
+    use flight::column::Column;
     let c = report.columns();
-    let optional = |column: &Option<Vec<Option<f64>>>| {
-        column.as_ref().unwrap().iter().map(|value| value.unwrap()).collect::<Vec<_>>()
+    let optional = |column: Column| {
+        c.optional.get(column).unwrap().iter().map(|value| value.unwrap()).collect::<Vec<_>>()
     };
     let engine = |k: usize| match &c.fuel_flow {
         FuelFlowColumns::PerEngine(engines) => engines[k].clone(),
@@ -68,15 +69,15 @@ pub(crate) fn column(report: &Report, name: &str) -> Vec<f64> {
         "WF(1)" => engine(0),
         "WF(2)" => engine(1),
         "FU" => c.fuel_used_kg.clone(),
-        "HDG" => optional(&c.true_heading_deg),
-        "LAT" => optional(&c.latitude_deg),
-        "CG" => optional(&c.center_of_gravity_percent_mac),
-        "TAT" => optional(&c.total_air_temperature_k),
-        "N1(1)" => optional(&c.n1_percent[0]),
-        "EGT(1)" => optional(&c.exhaust_gas_temperature_k[0]),
-        "EGT(2)" => optional(&c.exhaust_gas_temperature_k[1]),
-        "FQ" => optional(&c.fuel_quantity_kg),
-        "A/I" => optional(&c.anti_ice),
+        "HDG" => optional(Column::TrueHeading),
+        "LAT" => optional(Column::Latitude),
+        "CG" => optional(Column::CenterOfGravity),
+        "TAT" => optional(Column::TotalAirTemperature),
+        "N1(1)" => optional(Column::N1(1)),
+        "EGT(1)" => optional(Column::ExhaustGasTemperature(1)),
+        "EGT(2)" => optional(Column::ExhaustGasTemperature(2)),
+        "FQ" => optional(Column::FuelQuantity),
+        "A/I" => optional(Column::AntiIce),
         _ => unreachable!("{name}"),
     }
 }

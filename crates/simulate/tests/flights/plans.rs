@@ -164,7 +164,8 @@ fn faults_leave_rows_and_values_out_as_often_as_asked() {
     for flown in fly_all(&plan) {
         let columns = flown.report.columns();
         rows += flown.report.len();
-        absent += columns.latitude_deg.as_ref().unwrap().iter().filter(|v| v.is_none()).count();
+        absent +=
+            columns.optional.get(Column::Latitude).unwrap().iter().filter(|v| v.is_none()).count();
         for name in ["GSPD", "WF(1)", "WF(2)"] {
             // Four in a row the same to the last digit.
             stuck += column(&flown.report, name)
