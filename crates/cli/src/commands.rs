@@ -3,6 +3,7 @@
 pub(crate) mod adapt;
 pub(crate) mod check;
 pub(crate) mod completions;
+pub(crate) mod convert;
 pub(crate) mod demo;
 pub(crate) mod diagnose;
 pub(crate) mod effects;
@@ -14,6 +15,7 @@ pub(crate) mod golden;
 pub(crate) mod guide;
 pub(crate) mod init;
 pub(crate) mod man;
+pub(crate) mod mapping;
 pub(crate) mod merge;
 pub(crate) mod monitor;
 pub(crate) mod optimum;

@@ -55,6 +55,8 @@ fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize)
         Command::Guide(arguments) => commands::guide::run(arguments),
         Command::Adapt(arguments) => commands::adapt::run(arguments, progress),
         Command::Check(arguments) => commands::check::run(arguments, progress),
+        Command::Mapping(arguments) => commands::mapping::run(arguments),
+        Command::Convert(arguments) => commands::convert::run(arguments, progress),
         Command::Forget(arguments) => commands::forget::run(arguments),
         Command::Segment(arguments) => commands::segment::run(arguments, progress),
         Command::Tune(arguments) => commands::tune::run(arguments, progress),

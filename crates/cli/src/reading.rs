@@ -42,6 +42,16 @@ impl Buffers {
     }
 }
 
+/// The bytes of a file.
+///
+/// # Errors
+/// Why it is not read.
+pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    bytes::read(path, &mut bytes)?;
+    Ok(bytes)
+}
+
 impl Source {
     /// Reads files and finds their segments; file by file in parallel, results in the order of the files.
     pub(crate) fn read_all(&self, files: &[PathBuf], progress: &Bar) -> Reading {

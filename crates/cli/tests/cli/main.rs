@@ -20,6 +20,7 @@ mod json_schema;
 mod monitor;
 mod optimum;
 mod pages;
+mod recordings;
 mod reference;
 mod remainder;
 mod residuals;

@@ -1,17 +1,15 @@
 //! A first mapping for a recording, from the names and values of its columns. What is a guess is marked `// ?`.
 
+mod columns;
 mod names;
 
 use core::fmt::Write;
 
+use columns::Columns;
 use names::{Name, engine_of};
 
-use super::table::{self, Form};
 use crate::decode;
 use crate::refusal::Refusal;
-
-/// Rows whose values are looked at.
-const ROWS: usize = 5000;
 
 /// The text of a mapping file that reads this recording, as far as names and values tell.
 ///
@@ -28,7 +26,7 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
     columns.air_data(&known, &mut quantities);
     Ok(format!(
         "// Made from the names and values of a recording. Lines with `// ?` are guesses.\n\
-         (\n    format: 1,\n{separator}    bad_rows: LeaveRowOut,\n    out_of_range: LeaveRowOut,\n\
+         (\n    format: 1,\n{separator}{decimal}{units_row}    bad_rows: LeaveRowOut,\n    out_of_range: LeaveRowOut,\n\
          {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n    mass: {mass}\n\
          \x20   // Level cruise; leave it away where the recording holds nothing else.\n\
          \x20   cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n)\n",
@@ -36,6 +34,8 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
             b',' => String::new(),
             other => format!("    separator: {:?},\n", char::from(other)),
         },
+        decimal = if columns.decimal == ',' { "    decimal: ',',\n" } else { "" },
+        units_row = if columns.units_row { "    units_row: true,\n" } else { "" },
         texts = columns.texts(),
         time = columns.time(),
         mass = columns.mass(),
@@ -55,6 +55,7 @@ enum Kind {
     Temperature,
     Mach,
     Speed,
+    CalibratedSpeed,
     Angle,
     Mass,
     Percent,
@@ -77,6 +78,8 @@ const ORDINARY: [Rule; 13] = [
             "baroaltitude",
             "altitude",
             "alt",
+            "flightlevel",
+            "fl",
         ],
         Kind::Altitude,
     ),
@@ -98,7 +101,7 @@ const ORDINARY: [Rule; 13] = [
     rule("A/I", &["antiice", "wingantiice", "engantiice", "ai"], Kind::Discrete),
 ];
 const CALIBRATED: Rule =
-    rule("", &["calibratedairspeed", "computedairspeed", "cas", "ias"], Kind::Speed);
+    rule("", &["calibratedairspeed", "computedairspeed", "cas", "ias"], Kind::CalibratedSpeed);
 const TRACK: Rule = rule("", &["trackangletrue", "tracktrue", "track", "trk"], Kind::Angle);
 const GROSS: Rule = rule(
     "",
@@ -116,60 +119,7 @@ const ENGINE_NAMES: [(&str, &[&str]); 4] = [
     ("EGT", &["egt", "itt", "exhaustgastemperature"]),
 ];
 
-/// A recording's columns: names and the first rows.
-struct Columns {
-    form: Form,
-    names: Vec<Name>,
-    rows: Vec<Vec<String>>,
-}
-
 impl Columns {
-    fn from_text(text: &str) -> Result<Self, Refusal> {
-        let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-        let separator = [b',', b';', b'\t', b'|']
-            .into_iter()
-            .max_by_key(|separator| first.matches(char::from(*separator)).count())
-            .unwrap_or(b',');
-        let form = Form { separator, comment: None };
-        let names = table::names(form, text)?.iter().map(|name| Name::new(name)).collect();
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(true)
-            .flexible(true)
-            .delimiter(separator)
-            .trim(csv::Trim::All)
-            .from_reader(text.as_bytes());
-        let rows = reader
-            .records()
-            .take(ROWS)
-            .filter_map(Result::ok)
-            .map(|record| record.iter().map(str::to_owned).collect())
-            .collect();
-        Ok(Self { form, names, rows })
-    }
-
-    /// The column of the first of the rule's names that is there.
-    fn find(&self, rule: &Rule) -> Option<usize> {
-        rule.names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)))
-    }
-
-    fn texts_of(&self, column: usize) -> impl Iterator<Item = &str> {
-        self.rows.iter().filter_map(move |row| row.get(column)).map(String::as_str)
-    }
-
-    /// Median of a column's numbers.
-    fn median(&self, column: usize) -> Option<f64> {
-        let mut numbers: Vec<f64> =
-            self.texts_of(column).filter_map(|text| text.parse().ok()).collect();
-        numbers.retain(|number: &f64| number.is_finite());
-        numbers.sort_by(f64::total_cmp);
-        numbers.get(numbers.len() / 2).copied()
-    }
-
-    /// Largest number of a column: what a flight reaches in cruise.
-    fn largest(&self, column: usize) -> Option<f64> {
-        self.texts_of(column).filter_map(|text| text.parse::<f64>().ok()).reduce(f64::max)
-    }
-
     /// `column: …, unit: …` of a column, and whether the unit is a guess.
     fn recorded(&self, column: usize, kind: Kind) -> (String, bool) {
         let name = &self.names[column];
@@ -199,7 +149,9 @@ impl Columns {
             Kind::Mach if largest > 1.5 => ("unit: \"-\", scale: 0.01", true),
             Kind::Mach => ("unit: \"-\"", false),
             Kind::Speed if largest > 330.0 => ("unit: \"kt\"", true),
-            Kind::Speed => ("unit: \"m/s\"", true),
+            // 180 m/s is 350 kt: more than an airliner's limit.
+            Kind::CalibratedSpeed if largest > 180.0 => ("unit: \"kt\"", true),
+            Kind::Speed | Kind::CalibratedSpeed => ("unit: \"m/s\"", true),
             Kind::Angle => ("unit: \"deg\"", false),
             Kind::Mass => ("unit: \"kg\"", true),
             Kind::Percent => ("unit: \"%MAC\"", false),
@@ -266,7 +218,7 @@ impl Columns {
         if !has("MACH") {
             match self.find(&CALIBRATED) {
                 Some(column) => {
-                    let (fields, _) = self.recorded(column, Kind::Speed);
+                    let (fields, _) = self.recorded(column, Kind::CalibratedSpeed);
                     line(text, "MACH", &format!("FromCalibratedAirspeed({fields})"), true);
                 }
                 None => line(text, "MACH", "FromTrueAirspeed", true),
@@ -337,7 +289,7 @@ impl Columns {
         ];
         let found =
             names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)));
-        let Some(column) = found else {
+        let Some(column) = found.or_else(|| self.column_of_dates()) else {
             return "Seconds(column: \"TIME\", start: \"2000-01-01T00:00:00Z\"),   // ?".to_owned();
         };
         let name = &self.names[column].sent;

@@ -42,7 +42,14 @@ const UNITS: [(&str, &str); 27] = [
 ];
 
 impl Name {
-    pub(super) fn new(sent: &str) -> Self {
+    /// `in_row` is what a row of units says of the column.
+    pub(super) fn new(sent: &str, in_row: Option<&str>) -> Self {
+        let mut name = Self::from_name(sent);
+        name.unit = in_row.and_then(unit_called).or(name.unit);
+        name
+    }
+
+    fn from_name(sent: &str) -> Self {
         let pieces: Vec<String> = sent
             .split(|letter: char| !letter.is_alphanumeric())
             .filter(|piece| !piece.is_empty())
@@ -76,8 +83,8 @@ impl Name {
             (Kind::Temperature, "degF") => {
                 "unit: \"degC\", scale: 0.5555555556, offset: -17.77777778"
             }
-            (Kind::Speed, "kt") => "unit: \"kt\"",
-            (Kind::Speed, "m/s") => "unit: \"m/s\"",
+            (Kind::Speed | Kind::CalibratedSpeed, "kt") => "unit: \"kt\"",
+            (Kind::Speed | Kind::CalibratedSpeed, "m/s") => "unit: \"m/s\"",
             (Kind::Mass, "kg") => "unit: \"kg\"",
             (Kind::Mass, "lb") => "unit: \"lb\"",
             (Kind::Percent, "%") => "unit: \"%MAC\"",
@@ -89,6 +96,15 @@ impl Name {
     pub(super) fn flow_unit(&self) -> Option<&'static str> {
         self.unit.filter(|unit| ["kg/h", "lb/h", "kg/s"].contains(unit))
     }
+}
+
+/// What we call a unit that stands by itself, whatever its marks and capitals.
+pub(super) fn unit_called(text: &str) -> Option<&'static str> {
+    let plain: String =
+        text.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>().to_lowercase();
+    let own = ["kt", "ft", "m", "m/s", "kg", "lb", "kg/h", "lb/h", "kg/s", "degC", "K", "deg", "%"];
+    let as_written = own.into_iter().find(|unit| *unit == text.trim());
+    as_written.or_else(|| UNITS.iter().find(|(word, _)| *word == plain).map(|(_, unit)| *unit))
 }
 
 /// The engine of a column named by one of `stems` and a number, a letter or a side; `None` for any other column.

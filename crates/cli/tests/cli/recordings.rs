@@ -1,0 +1,87 @@
+//! `cruisefit mapping` and `convert`: from a recording of another layout to reports, without writing a mapping by hand.
+
+use std::path::{Path, PathBuf};
+
+use crate::support::{cruisefit, root};
+
+fn layout(name: &str) -> PathBuf {
+    root().join("fixtures/layouts").join(name)
+}
+
+fn mapping_of(recording: &Path, mapping: &Path) {
+    let made =
+        cruisefit(&["mapping".as_ref(), recording.as_os_str(), "-o".as_ref(), mapping.as_os_str()]);
+    made.expect(0).says("it reads 1 flight with");
+}
+
+/// Segments of what these arguments read.
+fn segments(arguments: &[&std::ffi::OsStr]) -> String {
+    let mut all: Vec<&std::ffi::OsStr> = vec!["segment".as_ref()];
+    all.extend(arguments);
+    cruisefit(&all).expect(0).stdout
+}
+
+#[test]
+fn converted_reports_hold_what_the_mapping_reads() {
+    for name in ["02_sparse_qar.csv", "03_european.csv", "04_units_row.csv", "11_unicode_text.txt"]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let (mapping, reports) = (folder.path().join("M.ron"), folder.path().join("reports"));
+        let recording = layout(name);
+        mapping_of(&recording, &mapping);
+        let convert = [
+            "convert".as_ref(),
+            "--mapping".as_ref(),
+            mapping.as_os_str(),
+            recording.as_os_str(),
+            "-o".as_ref(),
+            reports.as_os_str(),
+        ];
+        cruisefit(&convert).expect(0);
+        let directly = ["--mapping".as_ref(), mapping.as_os_str(), recording.as_os_str()];
+        let direct = segments(&directly);
+        assert!(direct.lines().count() > 1, "{name}: {direct}");
+        assert_eq!(direct, segments(&[reports.as_os_str()]), "{name}");
+        // Written again it is the same; what somebody changed is not lost.
+        cruisefit(&convert).expect(0);
+        let report = std::fs::read_dir(&reports).unwrap().next().unwrap().unwrap().path();
+        std::fs::write(&report, "mine").unwrap();
+        cruisefit(&convert).expect(2).says("--force");
+        assert_eq!(std::fs::read_to_string(&report).unwrap(), "mine");
+    }
+}
+
+#[test]
+fn a_dry_run_shows_what_each_column_became_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = folder.path().join("M.ron");
+    let recording = layout("04_units_row.csv");
+    mapping_of(&recording, &mapping);
+    let shown = cruisefit(&[
+        "convert".as_ref(),
+        "--dry-run".as_ref(),
+        "--mapping".as_ref(),
+        mapping.as_os_str(),
+        recording.as_os_str(),
+    ])
+    .expect(0)
+    .stdout;
+    // 2639 lb/h of each engine in the recording; a report has pounds too.
+    assert!(shown.contains("CRUISE-REPORT 1"), "{shown}");
+    assert!(shown.contains("WF(1) WF(2)"), "{shown}");
+    assert!(shown.contains("nothing written"), "{shown}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_file_that_is_no_table_gets_a_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("NOTES.csv");
+    std::fs::write(&path, b"\x00\x01\x02").unwrap();
+    cruisefit(&["mapping".as_ref(), path.as_os_str()]).expect(2);
+    let mine = folder.path().join("M.ron");
+    std::fs::write(&mine, "mine").unwrap();
+    let recording = layout("01_named_units.csv");
+    let over = ["mapping".as_ref(), recording.as_os_str(), "-o".as_ref(), mine.as_os_str()];
+    cruisefit(&over).expect(2).says("--force");
+}

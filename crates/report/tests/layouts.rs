@@ -1,0 +1,60 @@
+//! Twelve invented but typical layouts: the first mapping reads each as it is. They were at hand while it was written.
+//!
+//! `fixtures/layouts/make_layouts.py` writes the recordings.
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
+
+use std::path::Path;
+
+use report::Mapping;
+use report::mapping::first_mapping;
+
+const LAYOUTS: [&str; 12] = [
+    "01_named_units.csv",
+    "02_sparse_qar.csv",
+    "03_european.csv",
+    "04_units_row.csv",
+    "05_split_date.tsv",
+    "06_time_of_day.csv",
+    "07_epoch_ms.csv",
+    "08_analyser.csv",
+    "09_load_sheet.csv",
+    "10_discretes.csv",
+    "11_unicode_text.txt",
+    "12_bad_rows.csv",
+];
+
+#[test]
+fn every_layout_is_read_with_its_first_mapping() {
+    let mut failed = Vec::new();
+    for name in LAYOUTS {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/layouts").join(name);
+        #[expect(clippy::disallowed_methods, reason = "tests read data from files")]
+        let bytes = std::fs::read(path).unwrap();
+        let text = first_mapping(&bytes).unwrap();
+        let read =
+            Mapping::from_ron(&text).map_err(|error| error.to_string()).and_then(|mapping| {
+                mapping.read_named(&bytes, name).map_err(|error| error.to_string())
+            });
+        match read {
+            Ok(reports) => {
+                let columns = reports[0].report.columns();
+                let last = columns.time_s.len() - 1;
+                let mach = columns.mach[last];
+                let duration_s = columns.time_s[last];
+                // As made: half an hour at Mach 0.78, 2400 kg/h; mapped cruise is trimmed by a minute at either end.
+                let flow_kg_h = 3600.0 * columns.fuel_flow.total_kg_s(last);
+                let is_as_made = (mach - 0.78).abs() < 0.003
+                    && duration_s > 1500.0
+                    && (flow_kg_h - 2400.0).abs() < 30.0;
+                if !is_as_made {
+                    failed.push(format!(
+                        "{name}: Mach {mach}, {duration_s} s, {flow_kg_h} kg/h\n{text}"
+                    ));
+                }
+            }
+            Err(error) => failed.push(format!("{name}: {error}\n{text}")),
+        }
+    }
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
