@@ -1,6 +1,7 @@
 //! The command line's grammar. What a command does is in `commands`.
 
 mod monitor;
+mod recordings;
 
 use std::path::PathBuf;
 
@@ -8,6 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use segmenter::TrimCriteria;
 
 pub(crate) use monitor::MonitorArgs;
+pub(crate) use recordings::{ConvertArgs, MappingArgs};
 
 /// Aircraft performance monitoring from cruise reports.
 ///
@@ -121,43 +123,6 @@ pub(crate) struct ModelArgs {
     /// one of its type
     #[arg(long = "model", required = true, value_name = "MODEL.ron")]
     pub(crate) models: Vec<PathBuf>,
-}
-
-/// `mapping`
-#[derive(Debug, Args)]
-pub(crate) struct MappingArgs {
-    /// Recording: delimited text, plain or gzip
-    #[arg(value_name = "RECORDING")]
-    pub(crate) recording: PathBuf,
-    /// Mapping file to write [default: standard output]
-    #[arg(long, short, value_name = "MAPPING.ron")]
-    pub(crate) output: Option<PathBuf>,
-    /// Replace a file that holds something else
-    #[arg(long)]
-    pub(crate) force: bool,
-}
-
-/// `convert`
-#[derive(Debug, Args)]
-pub(crate) struct ConvertArgs {
-    /// Recordings: files, folders (searched recursively for .csv, .gz) and globs
-    #[arg(required = true, value_name = "RECORDINGS")]
-    pub(crate) recordings: Vec<PathBuf>,
-    /// Mapping file (RON), or the name of a preset
-    #[arg(long, value_name = "MAPPING")]
-    pub(crate) mapping: String,
-    /// Folder to write to, one report a flight, values as they were read
-    #[arg(long, short, value_name = "DIR", required_unless_present = "dry_run")]
-    pub(crate) output: Option<PathBuf>,
-    /// Write nothing; show what each column became in the first ten samples of each flight
-    #[arg(long, conflicts_with = "output")]
-    pub(crate) dry_run: bool,
-    /// Replace reports that hold something else
-    #[arg(long)]
-    pub(crate) force: bool,
-    /// Stop before anything is written if a recording is refused
-    #[arg(long)]
-    pub(crate) strict: bool,
 }
 
 /// `check`

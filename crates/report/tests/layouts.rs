@@ -2,8 +2,6 @@
 //!
 //! `fixtures/layouts/make_layouts.py` writes the recordings.
 
-#![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
-
 use std::path::Path;
 
 use report::Mapping;
