@@ -19,6 +19,7 @@ mod files;
 mod folder;
 mod inputs;
 mod models;
+mod parquet_text;
 mod progress;
 mod reading;
 mod simulated_reports;

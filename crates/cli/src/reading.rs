@@ -3,6 +3,7 @@
 mod bytes;
 pub(crate) mod heads;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use pipeline::reading::{FileRead, FlightReader};
@@ -10,6 +11,7 @@ use rayon::prelude::*;
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
+use crate::parquet_text;
 use crate::progress::Bar;
 
 pub(crate) use pipeline::reading::{FlightRead, Reading, RefusedReport};
@@ -42,14 +44,37 @@ impl Buffers {
     }
 }
 
-/// The bytes of a file.
-///
-/// # Errors
-/// Why it is not read.
-pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, String> {
-    let mut bytes = Vec::new();
-    bytes::read(path, &mut bytes)?;
-    Ok(bytes)
+/// The text of a recording: the bytes of a file, or the rows of a Parquet file as comma-separated text.
+#[derive(Debug)]
+pub(crate) struct Recording {
+    pub(crate) bytes: Vec<u8>,
+    /// Whether the text was made here, with commas and decimal points whatever a mapping says.
+    is_from_table: bool,
+}
+
+impl Recording {
+    /// Reads a recording.
+    ///
+    /// # Errors
+    /// Why it is not read.
+    pub(crate) fn read(path: &Path) -> Result<Self, String> {
+        let mut bytes = Vec::new();
+        bytes::read(path, &mut bytes)?;
+        let is_from_table = parquet_text::is_parquet(&bytes);
+        if is_from_table {
+            bytes = parquet_text::csv_of_file(path)?;
+        }
+        Ok(Self { bytes, is_from_table })
+    }
+
+    /// The mapping as it applies to this text.
+    pub(crate) fn mapped_by<'m>(&self, mapping: &'m Mapping) -> Cow<'m, Mapping> {
+        if self.is_from_table {
+            Cow::Owned(mapping.comma_separated())
+        } else {
+            Cow::Borrowed(mapping)
+        }
+    }
 }
 
 impl Source {
@@ -76,6 +101,16 @@ impl Source {
         if let Err(reason) = bytes::read(path, &mut buffers.raw) {
             return (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
         }
-        buffers.reader.read(path, &buffers.raw, self.mapping.as_ref(), &self.criteria)
+        let mut mapping = self.mapping.as_ref().map(Cow::Borrowed);
+        if let Some(known) = mapping.as_ref().filter(|_| parquet_text::is_parquet(&buffers.raw)) {
+            buffers.raw = match parquet_text::csv_of_file(path) {
+                Ok(text) => text,
+                Err(reason) => {
+                    return (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
+                }
+            };
+            mapping = Some(Cow::Owned(known.comma_separated()));
+        }
+        buffers.reader.read(path, &buffers.raw, mapping.as_deref(), &self.criteria)
     }
 }

@@ -16,7 +16,7 @@ use crate::files::outputs::check_replaceable;
 use crate::files::{make_folder, write_atomically};
 use crate::inputs;
 use crate::progress::Progress;
-use crate::reading::bytes_of;
+use crate::reading::Recording;
 
 /// Samples that a dry run shows of each flight.
 const SHOWN_SAMPLES: usize = 10;
@@ -56,10 +56,12 @@ struct Converted {
 }
 
 fn read(mapping: &Mapping, path: &Path) -> Result<Vec<Converted>, RefusedReport> {
-    let bytes = bytes_of(path).map_err(|reason| RefusedReport::whole(path.to_owned(), reason))?;
+    let recording =
+        Recording::read(path).map_err(|reason| RefusedReport::whole(path.to_owned(), reason))?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let parsed = mapping
-        .read_named(&bytes, &name)
+    let parsed = recording
+        .mapped_by(mapping)
+        .read_named(&recording.bytes, &name)
         .map_err(|refusal| RefusedReport::at(path.to_owned(), &refusal))?;
     Ok(parsed.into_iter().map(|parsed| Converted { path: path.to_owned(), parsed }).collect())
 }

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use parquet::file::reader::{FileReader, SerializedFileReader};
 use perf_model::{FlightPointRow, FlightPoints};
 use units::FuelFlowTotal;
 
@@ -11,6 +10,7 @@ use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::models::read_model;
+use crate::parquet_text;
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
 use pipeline::prediction::Predictor;
@@ -82,38 +82,8 @@ fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
 /// Flight points as CSV text; a Parquet file's rows are written as such first.
 fn points_text(path: &Path) -> Result<Vec<u8>, Failure> {
     let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
-    if !bytes.starts_with(b"PAR1") {
+    if !parquet_text::is_parquet(&bytes) {
         return Ok(bytes);
     }
-    let file = std::fs::File::open(path).map_err(|error| Failure::unreadable(path, error))?;
-    let wrong = |error: parquet::errors::ParquetError| Failure::bad_file(path, error);
-    let reader = SerializedFileReader::new(file).map_err(wrong)?;
-    let names: Vec<String> = reader
-        .metadata()
-        .file_metadata()
-        .schema_descr()
-        .columns()
-        .iter()
-        .map(|column| column.name().to_owned())
-        .collect();
-    let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
-    // Writing to memory cannot fail.
-    let _ = writer.write_record(&names);
-    for row in reader.get_row_iter(None).map_err(wrong)? {
-        let row = row.map_err(wrong)?;
-        let _ = writer.write_record(row.get_column_iter().map(|(_, field)| cell(field)));
-    }
-    writer.into_inner().map_err(|error| Failure::bad_file(path, error))
-}
-
-fn cell(field: &parquet::record::Field) -> String {
-    use parquet::record::Field;
-    match field {
-        Field::Null => String::new(),
-        Field::Str(text) => text.clone(),
-        Field::Double(value) => value.to_string(),
-        Field::Float(value) => value.to_string(),
-        Field::Bool(flag) => u8::from(*flag).to_string(),
-        other => other.to_string(),
-    }
+    parquet_text::csv_of_file(path).map_err(|error| Failure::bad_file(path, error))
 }

@@ -85,3 +85,36 @@ fn a_file_that_is_no_table_gets_a_reason() {
     let over = ["mapping".as_ref(), recording.as_os_str(), "-o".as_ref(), mine.as_os_str()];
     cruisefit(&over).expect(2).says("--force");
 }
+
+/// Oracle: pyarrow, which wrote the files (`fixtures/layouts/make_parquet.py`).
+#[test]
+fn parquet_of_any_codec_is_read_as_the_text_it_was_made_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = folder.path().join("M.ron");
+    let text = layout("01_named_units.csv");
+    mapping_of(&text, &mapping);
+    let without_flight = |table: String| {
+        // The flight is the name of the file.
+        let lines = table.lines().map(|line| {
+            let fields: Vec<&str> = line
+                .split(',')
+                .enumerate()
+                .filter(|(k, _)| *k != 1)
+                .map(|(_, field)| field)
+                .collect();
+            fields.join(",")
+        });
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    let read =
+        |path: &Path| segments(&["--mapping".as_ref(), mapping.as_os_str(), path.as_os_str()]);
+    let expected = without_flight(read(&text));
+    assert!(expected.lines().count() > 1);
+    for codec in ["none", "snappy", "gzip", "brotli", "lz4", "zstd"] {
+        let path = layout(&format!("13_{codec}.parquet"));
+        assert_eq!(without_flight(read(&path)), expected, "{codec}");
+        mapping_of(&path, &folder.path().join(format!("{codec}.ron")));
+    }
+    // Without a mapping it is no report.
+    cruisefit(&["segment".as_ref(), layout("13_snappy.parquet").as_os_str()]).expect(2);
+}
