@@ -120,6 +120,9 @@ impl ExtendedModel {
     /// # Errors
     /// [`ObserveError`] where the base model gives no observation, or an effect no prediction.
     pub fn observe(&self, segment: &Segment) -> Result<Observation, ObserveError> {
+        if self.applied.is_none() {
+            return Ok(self.base.observe(segment)?);
+        }
         let bare = self.without_effects(segment, self.drag_table())?;
         Ok(self.base.observe(&bare)?)
     }
@@ -186,6 +189,9 @@ impl ExtendedModel {
     /// # Errors
     /// [`EffectError`] where a correction leaves the domain of a quantity.
     pub fn corrected<'s>(&self, segment: &'s Segment) -> Result<Cow<'s, Segment>, EffectError> {
+        if self.applied.is_none() {
+            return Ok(Cow::Borrowed(segment));
+        }
         Ok(match self.corrected_means(&segment.means)? {
             Cow::Borrowed(_) => Cow::Borrowed(segment),
             Cow::Owned(means) => Cow::Owned(Segment { means, ..segment.clone() }),

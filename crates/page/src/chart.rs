@@ -9,10 +9,12 @@ use maud::{Markup, html};
 
 mod axis;
 mod bins;
+mod coordinate;
 pub(crate) mod dates;
 
 pub(crate) use axis::{Axis, Tick};
 pub(crate) use bins::{Bins, Histogram, thinned};
+use coordinate::{coordinate, push_point};
 
 /// Room for labels around the frame.
 const LEFT: f64 = 64.0;
@@ -113,8 +115,8 @@ impl Chart {
         let mut pen = 'M';
         for point in points {
             match self.place(*point) {
-                Some((x, y)) => {
-                    let _ = write!(d, "{pen}{} {}", coordinate(x), coordinate(y));
+                Some(place) => {
+                    push_point(&mut d, pen, place);
                     pen = 'L';
                 }
                 None => pen = 'M',
@@ -230,10 +232,12 @@ impl Mark {
             match self {
                 // A line of length zero with round ends is drawn as a point.
                 Self::Dot | Self::Disc | Self::Ring => {
-                    let _ = write!(d, "M{} {}h0", coordinate(x), coordinate(y));
+                    push_point(&mut d, 'M', (x, y));
+                    d.push_str("h0");
                 }
                 Self::Diamond => {
-                    let _ = write!(d, "M{} {}l4 4l-4 4l-4-4z", coordinate(x), coordinate(y - 4.0));
+                    push_point(&mut d, 'M', (x, y - 4.0));
+                    d.push_str("l4 4l-4 4l-4-4z");
                 }
             }
         }
@@ -272,16 +276,6 @@ fn path(class: &str, d: &str) -> Markup {
         @if !d.is_empty() {
             path class=(class) d=(d) {}
         }
-    }
-}
-
-/// A tenth of a pixel is enough.
-fn coordinate(value: f64) -> String {
-    let text = format!("{value:.1}");
-    match text.strip_suffix(".0") {
-        Some("-0") => "0".to_owned(),
-        Some(whole) => whole.to_owned(),
-        None => text,
     }
 }
 

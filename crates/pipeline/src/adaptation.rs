@@ -173,7 +173,7 @@ impl Work {
         for flight in new {
             let Some(learnt) = &mut stored.model.learnt else { break };
             let known = known_of(&flight);
-            let as_dated = dated.as_dated(&flight).into_owned();
+            let as_dated = dated.as_dated(&flight);
             match learn_one(&stored.model.initial, learnt, known, &as_dated) {
                 Ok(known) => {
                     self.flights_new += 1;

@@ -15,13 +15,13 @@ mod ground;
 mod load;
 mod slips;
 
+use std::hash::{DefaultHasher, Hasher};
+
 use flight::{FlightIdentity, Report, Severity};
 use serde::Serialize;
 
 pub use document::{CheckDocument, SCHEMA, to_text};
 pub use flights::check_flights;
-
-use crate::checksum::sha256;
 
 /// Something that is, or may be, wrong with the data of a flight or of a tail.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -68,8 +68,9 @@ pub struct FlightCheck {
     pub identity: FlightIdentity,
     /// Instants of first and last sample, s since 1970.
     pub instants_s: (f64, f64),
-    /// SHA-256 of the recorded columns: the same in a copy under another name or date.
-    pub fingerprint: String,
+    /// Hash of the recorded columns: the same in a copy under another name or date. Of this program's run only: it is
+    /// not kept.
+    pub fingerprint: u64,
     /// What was found.
     pub findings: Vec<DataFinding>,
 }
@@ -134,21 +135,21 @@ fn severity_word<S: serde::Serializer>(
     serializer.serialize_str(word(*severity))
 }
 
-fn fingerprint(report: &Report) -> String {
+fn fingerprint(report: &Report) -> u64 {
     let columns = report.columns();
-    let mut bytes = Vec::new();
+    let mut hasher = DefaultHasher::new();
     for series in [
         &columns.pressure_altitude_m,
         &columns.mach,
         &columns.ground_speed_m_s,
         &columns.true_airspeed_m_s,
     ] {
-        bytes.extend(series.iter().flat_map(|value| value.to_le_bytes()));
+        series.iter().for_each(|value| hasher.write_u64(value.to_bits()));
     }
-    let samples = columns.time_s.len();
-    bytes
-        .extend((0..samples).flat_map(|sample| columns.fuel_flow.total_kg_s(sample).to_le_bytes()));
-    sha256(&bytes)
+    for sample in 0..columns.time_s.len() {
+        hasher.write_u64(columns.fuel_flow.total_kg_s(sample).to_bits());
+    }
+    hasher.finish()
 }
 
 /// Arithmetic mean; `None` of nothing.

@@ -24,16 +24,16 @@ impl Cells {
         }
     }
 
-    fn push_field(&self, row: usize, field: &mut String) {
+    fn push_field(&self, row: usize, text: &mut String) {
         match self {
-            Self::Text(values) => field.push_str(&values[row]),
+            Self::Text(values) => push_quoted(&values[row], text),
             Self::Count(values) => {
                 // Writing to a string cannot fail.
-                let _ = write!(field, "{}", values[row]);
+                let _ = write!(text, "{}", values[row]);
             }
             Self::Number(values) => {
                 if let Some(value) = values[row] {
-                    push_shortest(value, field);
+                    push_shortest(value, text);
                 }
             }
         }
@@ -46,12 +46,39 @@ pub fn push_shortest(value: f64, text: &mut String) {
     if value.is_finite() {
         let mut buffer = zmij::Buffer::new();
         let printed = buffer.format_finite(value);
-        if !printed.contains('e') {
+        if !printed.bytes().any(|byte| byte == b'e') {
             text.push_str(printed.strip_suffix(".0").unwrap_or(printed));
             return;
         }
     }
     let _ = write!(text, "{value}");
+}
+
+/// Appends a field, in quotes where it has to be.
+///
+/// # Source
+/// RFC 4180, section 2.
+fn push_quoted(field: &str, text: &mut String) {
+    if !field.contains([',', '"', '\n', '\r']) {
+        text.push_str(field);
+        return;
+    }
+    text.push('"');
+    for (index, part) in field.split('"').enumerate() {
+        text.push_str(if index == 0 { "" } else { "\"\"" });
+        text.push_str(part);
+    }
+    text.push('"');
+}
+
+/// Ends the line that begins at `start` and in which a comma follows every field. A line of one empty field is written as
+/// quotes: an empty line would be none.
+fn end_line(text: &mut String, start: usize) {
+    text.pop();
+    if text.len() == start {
+        text.push_str("\"\"");
+    }
+    text.push('\n');
 }
 
 /// Columns of one length, with names, in order.
@@ -88,19 +115,21 @@ impl Columns {
 
     /// The table as CSV with a header line.
     pub fn to_csv(&self) -> Vec<u8> {
-        let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
-        // Writing to memory cannot fail.
-        let _ = writer.write_record(self.columns.iter().map(|(name, _)| name.as_str()));
-        let mut field = String::new();
-        for row in 0..self.rows() {
-            for (_, cells) in &self.columns {
-                field.clear();
-                cells.push_field(row, &mut field);
-                let _ = writer.write_field(&field);
-            }
-            let _ = writer.write_record(None::<&[u8]>);
+        let mut text = String::new();
+        for (name, _) in &self.columns {
+            push_quoted(name, &mut text);
+            text.push(',');
         }
-        writer.into_inner().unwrap_or_default()
+        end_line(&mut text, 0);
+        for row in 0..self.rows() {
+            let start = text.len();
+            for (_, cells) in &self.columns {
+                cells.push_field(row, &mut text);
+                text.push(',');
+            }
+            end_line(&mut text, start);
+        }
+        text.into_bytes()
     }
 }
 
@@ -122,7 +151,27 @@ mod tests {
         assert_eq!(text, "tail,samples,mach\nT-001,9,0.30000000000000004\n\"T, \"\"2\"\"\",10,\n");
     }
 
+    #[test]
+    fn a_line_of_one_empty_field_is_a_line() {
+        let mut columns = Columns::default();
+        columns.text("a", ["", "b"].into_iter().map(str::to_owned));
+        assert_eq!(columns.to_csv(), b"a\n\"\"\nb\n");
+    }
+
     proptest::proptest! {
+        /// Oracle: the writer of the `csv` crate.
+        #[test]
+        fn text_is_quoted_as_the_csv_crate_quotes(fields in proptest::collection::vec("[ -~\n\r,\"é]{0,6}", 1..5)) {
+            let mut columns = Columns::default();
+            let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+            for field in &fields {
+                columns.text("name", std::iter::once(field.clone()));
+            }
+            writer.write_record(fields.iter().map(|_| "name")).unwrap();
+            writer.write_record(&fields).unwrap();
+            proptest::prop_assert_eq!(columns.to_csv(), writer.into_inner().unwrap());
+        }
+
         /// Oracle: `Display` of the standard library; where two shortest decimals are equally near, either is right.
         #[test]
         fn numbers_are_as_short_as_those_of_display(value in proptest::num::f64::ANY, power in -30..30_i32) {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use flight::Segment;
+use flight::{MAXIMUM_ENGINES, Segment};
 use serde::{Deserialize, Serialize};
 use units::{PressureAltitude, Temperature, TemperatureDifference};
 
@@ -20,6 +20,10 @@ pub struct Reference {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct ConditionMeans(BTreeMap<String, Reference>);
+
+/// Names of the engines' rotor speeds.
+const N2_PERCENT: [&str; MAXIMUM_ENGINES] =
+    ["n2_1_percent", "n2_2_percent", "n2_3_percent", "n2_4_percent"];
 
 impl ConditionMeans {
     /// Adds a segment: Welford's running mean, so that learning in two runs gives the same bits as in one.
@@ -41,8 +45,8 @@ impl ConditionMeans {
         self.add_value("roll_deg", means.roll_deg);
         self.add_value("latitude_deg", means.latitude_deg);
         self.add_value("anti_ice", means.anti_ice);
-        for (k, n2) in means.n2_percent.iter().enumerate() {
-            self.add_value(&format!("n2_{}_percent", k + 1), Some(*n2));
+        for (name, n2) in N2_PERCENT.iter().zip(&means.n2_percent) {
+            self.add_value(name, Some(*n2));
         }
     }
 

@@ -155,16 +155,16 @@ pub fn evaluate_model(
 ///
 /// Coefficients are those without the effects that the model contains; the predicted fuel flow is the *recorded* one less
 /// the error, effects included.
-pub fn evaluate(
+pub fn evaluate<'s>(
     model: &ExtendedModel,
     table: &Table,
-    segments: &[Segment],
+    segments: impl IntoIterator<Item = &'s Segment>,
 ) -> Vec<Option<Evaluated>> {
     // Some effects are shares of the table's own drag: they are those of the table that is asked.
     let moved = model.effects().and_then(|_| model.with_drag_table(table.clone()).ok());
     let model = moved.as_ref().unwrap_or(model);
     segments
-        .iter()
+        .into_iter()
         .map(|segment| match model.observe(segment) {
             Ok(observation) => {
                 let error = error_percent(table, &observation);

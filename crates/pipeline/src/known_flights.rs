@@ -1,9 +1,9 @@
 //! What a flight is to flights that are known: new, the same, another version of one, or the same hours again.
 
 use std::collections::BTreeMap;
+use std::hash::{DefaultHasher, Hasher};
 use std::time::Duration;
 
-use crate::checksum::sha256;
 use crate::model_file::LedgerEntry;
 use flight::{Segment, Timestamp};
 
@@ -15,7 +15,7 @@ use crate::reading::FlightRead;
 pub struct KnownFlights {
     flights: Vec<KnownFlight>,
     by_identity: BTreeMap<(Timestamp, String), usize>,
-    by_segments: BTreeMap<String, usize>,
+    by_segments: BTreeMap<u64, usize>,
     longest: Duration,
 }
 
@@ -155,12 +155,13 @@ fn length(start: Timestamp, end: Timestamp) -> Duration {
     end.duration_since(start).try_into().unwrap_or(Duration::ZERO)
 }
 
-/// What the same samples have in common whatever name and START they are given: the bits of the segments' means.
-fn mark(segments: &[Segment]) -> Option<String> {
+/// What the same samples have in common whatever name and START they are given: a hash of the bits of the segments'
+/// means. Of this program's run only: it is not kept.
+fn mark(segments: &[Segment]) -> Option<u64> {
     if segments.is_empty() {
         return None;
     }
-    let mut bits = Vec::with_capacity(segments.len() * 40);
+    let mut hasher = DefaultHasher::new();
     for segment in segments {
         let means = &segment.means;
         for value in [
@@ -170,8 +171,8 @@ fn mark(segments: &[Segment]) -> Option<String> {
             means.mass_kg,
             means.fuel_flow_total_kg_s,
         ] {
-            bits.extend_from_slice(&value.to_bits().to_le_bytes());
+            hasher.write_u64(value.to_bits());
         }
     }
-    Some(sha256(&bits))
+    Some(hasher.finish())
 }

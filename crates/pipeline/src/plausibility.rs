@@ -40,9 +40,8 @@ pub fn against_book<'m>(
             continue;
         };
         of_tail.sort_by(|one, other| one.order(other));
-        let segments: Vec<flight::Segment> =
-            of_tail.iter().flat_map(|flight| flight.reduced.segments.iter().cloned()).collect();
-        let evaluated = evaluate(model, table, &segments);
+        let segments = of_tail.iter().flat_map(|flight| &flight.reduced.segments);
+        let evaluated = evaluate(model, table, segments);
         findings.extend(book::against_book(tail, &evaluated));
     }
     findings

@@ -1,5 +1,6 @@
 //! `segments/TAIL.csv`: every segment with its mean state, and back.
 
+use std::fmt::Write as _;
 use std::sync::Arc;
 
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans};
@@ -133,7 +134,7 @@ pub fn table(rows: &[SegmentRow], engines: usize) -> Columns {
     let means = |of: Getter| rows.iter().map(move |row| of(&row.segment.means));
     columns.text("tail", rows.iter().map(|row| row.segment.identity.tail.clone()));
     columns.text("flight", rows.iter().map(|row| row.segment.identity.flight.clone()));
-    columns.text("start", rows.iter().map(|row| row.segment.identity.start.to_string()));
+    columns.text("start", starts(rows));
     let (time, rest) = REQUIRED.split_at(1);
     for (name, get, _) in time {
         columns.number(*name, rows.iter().map(|row| Some(get(&row.segment.means))));
@@ -363,7 +364,24 @@ impl Row<'_> {
     }
 }
 
+/// START of each row as text, printed once a flight.
+fn starts(rows: &[SegmentRow]) -> impl Iterator<Item = String> {
+    let mut last: Option<(&Arc<FlightIdentity>, String)> = None;
+    rows.iter().map(move |row| {
+        let identity = &row.segment.identity;
+        match &last {
+            Some((known, text)) if Arc::ptr_eq(known, identity) => text.clone(),
+            _ => last.insert((identity, identity.start.to_string())).1.clone(),
+        }
+    })
+}
+
 fn join(rows: &[u32]) -> String {
-    let rows: Vec<String> = rows.iter().map(u32::to_string).collect();
-    rows.join(";")
+    let mut text = String::with_capacity(5 * rows.len());
+    for (index, row) in rows.iter().enumerate() {
+        text.push_str(if index == 0 { "" } else { ";" });
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{row}");
+    }
+    text
 }

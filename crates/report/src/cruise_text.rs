@@ -56,14 +56,14 @@ pub struct Reader {
     streamed: Vec<u8>,
     unpacked: Vec<u8>,
     fields: Vec<Field>,
-    columns: Vec<Vec<f64>>,
+    values: Vec<f64>,
 }
 
 impl Reader {
     /// A reader with empty buffers.
     #[must_use]
     pub const fn new() -> Self {
-        Self { streamed: Vec::new(), unpacked: Vec::new(), fields: Vec::new(), columns: Vec::new() }
+        Self { streamed: Vec::new(), unpacked: Vec::new(), fields: Vec::new(), values: Vec::new() }
     }
 
     /// Reads one report from its bytes, plain or gzip.
@@ -72,7 +72,7 @@ impl Reader {
     /// The first [`Refusal`] in reading order.
     pub fn read(&mut self, bytes: &[u8]) -> Result<Parsed, Refusal> {
         let text = decode::text(bytes, &mut self.unpacked)?;
-        read_text(text, &mut self.fields, &mut self.columns)
+        read_text(text, &mut self.fields, &mut self.values)
     }
 
     /// Reads one report from a stream, plain or gzip, to the stream's end.
@@ -82,14 +82,14 @@ impl Reader {
     pub fn read_from(&mut self, stream: impl BufRead) -> Result<Parsed, Refusal> {
         decode::bytes_of(stream, &mut self.streamed)?;
         let text = decode::text(&self.streamed, &mut self.unpacked)?;
-        read_text(text, &mut self.fields, &mut self.columns)
+        read_text(text, &mut self.fields, &mut self.values)
     }
 }
 
 fn read_text(
     text: &str,
     fields: &mut Vec<Field>,
-    columns: &mut Vec<Vec<f64>>,
+    values: &mut Vec<f64>,
 ) -> Result<Parsed, Refusal> {
     let mut lines = Lines::new(text);
     let mut findings = Vec::new();
@@ -97,11 +97,11 @@ fn read_text(
     let (header, names) = header::read(&mut lines, &mut findings)?;
     let engines = columns::read(names, &mut lines, &header, fields, &mut findings)?;
     let first_row = lines.clone();
-    let rows = rows::read(&mut lines, fields, columns, &mut findings)?;
+    let rows = rows::read(&mut lines, fields, values, &mut findings)?;
     if rows < 3 {
         return Err(lines.refuse_end(Found::Rows(rows), RefusalKind::TooFewRows));
     }
-    let report = assemble::report(header, fields, engines, columns)
+    let report = assemble::report(header, fields, engines, values)
         .map_err(|error| assemble::refusal(error, first_row))?;
     Ok(Parsed { report, findings })
 }

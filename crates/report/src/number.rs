@@ -16,6 +16,56 @@ const EXACT_DIGITS: usize = 15;
 /// every field of a report. `None` for anything else, also at the end of `bytes`; [`leading`] handles that.
 #[inline]
 pub(crate) fn short(bytes: &[u8]) -> Option<(f64, &[u8])> {
+    let is_negative = bytes.first() == Some(&b'-');
+    let unsigned = if is_negative { &bytes[1..] } else { bytes };
+    match within_a_word(unsigned) {
+        Some((magnitude, length)) => {
+            Some((if is_negative { -magnitude } else { magnitude }, &unsigned[length..]))
+        }
+        None => short_by_bytes(bytes),
+    }
+}
+
+/// A number without sign and exponent that ends within the first eight bytes, and its length: all eight are looked at
+/// together, as one 64-bit word whose lowest byte is the first.
+///
+/// # Source
+/// Eight digits in three multiplications: Lemire 2021, "Number parsing at a gigabyte per second", section 6.
+#[inline]
+fn within_a_word(bytes: &[u8]) -> Option<(f64, usize)> {
+    const EACH: u64 = 0x0101_0101_0101_0101;
+    let eight: &[u8; 8] = bytes.first_chunk()?;
+    let word = u64::from_le_bytes(*eight);
+    // Digits become 0 to 9. Of each byte that is not one of these the highest bit is set.
+    let digits = word ^ (EACH * 0x30);
+    let no_digit = (((digits & (EACH * 0x7f)) + EACH * 0x76) | digits) & (EACH * 0x80);
+    let point = (no_digit.trailing_zeros() / 8) as usize;
+    if point == 8 {
+        return None;
+    }
+    let has_point = eight[point] == b'.';
+    let (digits, fraction_digits, length) = if has_point {
+        let end = ((no_digit & (no_digit - 1)).trailing_zeros() / 8) as usize;
+        // Closed up over the point.
+        let whole = digits & ((1 << (8 * point)) - 1);
+        (whole | (digits >> 8) & (u64::MAX << (8 * point)), end - point - 1, end)
+    } else {
+        (digits, 0, point)
+    };
+    let count = length - usize::from(has_point);
+    if length == 8 || count == 0 || eight[length] == b'e' {
+        return None;
+    }
+    // The last digit to the highest byte, zeros before the first.
+    let pairs = (digits << (64 - 8 * count)).wrapping_mul(10 * 0x100 + 1) >> 8;
+    let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul(100 * 0x1_0000 + 1) >> 16;
+    let mantissa = (fours & 0x0000_ffff_0000_ffff).wrapping_mul(10_000 * 0x1_0000_0000 + 1) >> 32;
+    // Both operands are exact, so the quotient is the nearest double (Clinger 1990).
+    Some((mantissa as f64 / POWERS_OF_TEN[fraction_digits], length))
+}
+
+/// As [`short`], byte by byte.
+fn short_by_bytes(bytes: &[u8]) -> Option<(f64, &[u8])> {
     let mut rest = bytes.iter();
     let mut byte = *rest.next()?;
     let is_negative = byte == b'-';

@@ -11,6 +11,8 @@ use report::MAXIMUM_TEXT_BYTES;
 const TRIES: u32 = 100;
 const BETWEEN_TRIES: Duration = Duration::from_millis(20);
 
+const NO_FILE: &str = "not a regular file: write what it gives to a file first";
+
 /// Reads a whole file.
 ///
 /// # Errors
@@ -39,22 +41,35 @@ pub(super) fn read_beginning(path: &Path, length: u64, bytes: &mut Vec<u8>) -> R
 fn open(path: &Path) -> Result<File, String> {
     let mut tries = 0;
     loop {
-        // Asked before it is opened: opening a pipe waits for somebody to write into it.
-        match std::fs::metadata(path) {
-            Ok(known) if !known.is_file() => {
-                return Err("not a regular file: write what it gives to a file first".to_owned());
-            }
-            Ok(_) => {}
-            Err(error) => return Err(error.to_string()),
-        }
-        match File::open(path) {
+        let file = match open_without_waiting(path) {
             Err(error) if is_out_of_handles(&error) && tries < TRIES => {
                 tries += 1;
                 std::thread::sleep(BETWEEN_TRIES);
+                continue;
             }
-            result => return result.map_err(|error| error.to_string()),
-        }
+            // What cannot be opened may be no file either, and then that is what has to be said.
+            Err(error) => match path.metadata() {
+                Ok(known) if !known.is_file() => return Err(NO_FILE.to_owned()),
+                _ => return Err(error.to_string()),
+            },
+            Ok(file) => file,
+        };
+        let known = file.metadata().map_err(|error| error.to_string())?;
+        return if known.is_file() { Ok(file) } else { Err(NO_FILE.to_owned()) };
     }
+}
+
+/// Opens a file for reading; a pipe without waiting for somebody to write into it.
+#[cfg(unix)]
+fn open_without_waiting(path: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    let without_waiting = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
+    File::options().read(true).custom_flags(without_waiting).open(path)
+}
+
+#[cfg(not(unix))]
+fn open_without_waiting(path: &Path) -> io::Result<File> {
+    File::open(path)
 }
 
 #[cfg(unix)]

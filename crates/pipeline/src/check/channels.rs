@@ -1,5 +1,7 @@
 //! Channels that do not move, move in coarse steps, or hold another scale.
 
+use std::borrow::Cow;
+
 use flight::column::Column;
 use flight::{FuelFlowColumns, OptionalColumn, Report, Severity};
 use units::convert::{
@@ -34,46 +36,46 @@ pub(super) fn check(report: &Report) -> Vec<Draft> {
 }
 
 /// A recorded channel that moves in every cruise.
-struct Channel {
-    name: String,
-    values: Vec<f64>,
+struct Channel<'a> {
+    name: Cow<'static, str>,
+    values: &'a [f64],
     /// Step between neighbouring values from which the channel is coarse, in its stored unit and in words.
     coarse: (f64, &'static str),
 }
 
-fn channels(report: &Report) -> Vec<Channel> {
+fn channels(report: &Report) -> Vec<Channel<'_>> {
     let columns = report.columns();
     let mut channels = Vec::new();
-    let mut push = |name: String, values: &[f64], coarse: (f64, &'static str)| {
-        channels.push(Channel { name, values: values.to_vec(), coarse });
+    let mut push = |name: Cow<'static, str>, values, coarse: (f64, &'static str)| {
+        channels.push(Channel { name, values, coarse });
     };
     let knot = METERS_PER_SECOND_PER_KNOT;
-    push("GSPD".to_owned(), &columns.ground_speed_m_s, (4.5 * knot, "5 kt"));
-    push("VTAS".to_owned(), &columns.true_airspeed_m_s, (4.5 * knot, "5 kt"));
+    push("GSPD".into(), &columns.ground_speed_m_s, (4.5 * knot, "5 kt"));
+    push("VTAS".into(), &columns.true_airspeed_m_s, (4.5 * knot, "5 kt"));
     let is_assumed = !report.header().assumed.is_empty();
     if let (Some(values), false) = (&columns.static_air_temperature_k, is_assumed) {
-        push("SAT".to_owned(), values, (1.9, "2 K"));
+        push("SAT".into(), values, (1.9, "2 K"));
     }
-    push("MACH".to_owned(), &columns.mach, (0.0095, "0.01"));
+    push("MACH".into(), &columns.mach, (0.0095, "0.01"));
     let per_hour = KILOGRAMS_PER_SECOND_PER_KILOGRAM_PER_HOUR;
     match &columns.fuel_flow {
         FuelFlowColumns::Total(total) => {
-            push("WF".to_owned(), total, (95.0 * per_hour, "100 kg/h"));
+            push("WF".into(), total, (95.0 * per_hour, "100 kg/h"));
         }
         FuelFlowColumns::PerEngine(engines) => {
             for (engine, values) in engines.iter().enumerate() {
-                push(format!("WF({})", engine + 1), values, (45.0 * per_hour, "50 kg/h"));
+                push(format!("WF({})", engine + 1).into(), values, (45.0 * per_hour, "50 kg/h"));
             }
         }
     }
     channels
 }
 
-impl Channel {
+impl Channel<'_> {
     /// Number of different values, counted to 3.
     fn distinct(&self) -> usize {
         let mut seen: Vec<f64> = Vec::new();
-        for value in &self.values {
+        for value in self.values {
             if !seen.contains(value) {
                 seen.push(*value);
             }
@@ -164,15 +166,20 @@ impl Channel {
 
     /// Steps that are large for the channel. At least four values have to be met: two levels of a cruise are no step.
     fn coarse(&self) -> Option<Draft> {
-        let mut sorted = self.values.clone();
+        let (limit, words) = self.coarse;
+        let is_fine = |pair: &[f64]| pair[0] != pair[1] && (pair[1] - pair[0]).abs() < limit;
+        // Nearly every channel has such neighbours in time, and is not sorted then: the smallest step is smaller still.
+        if self.values.len() < FEWEST_SAMPLES || self.values.windows(2).any(is_fine) {
+            return None;
+        }
+        let mut sorted = self.values.to_vec();
         sorted.sort_by(f64::total_cmp);
         sorted.dedup();
         let fewest = if self.name == "MACH" { 3 } else { 4 };
-        if self.values.len() < FEWEST_SAMPLES || sorted.len() < fewest {
+        if sorted.len() < fewest {
             return None;
         }
         let step = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-        let (limit, words) = self.coarse;
         if step < limit {
             return None;
         }

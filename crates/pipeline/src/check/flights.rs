@@ -48,11 +48,11 @@ fn finding(
 
 /// The same recorded columns under another name, tail or date.
 fn copies(flights: &[&FlightCheck]) -> Vec<DataFinding> {
-    let mut seen: BTreeMap<&str, &FlightCheck> = BTreeMap::new();
+    let mut seen: BTreeMap<u64, &FlightCheck> = BTreeMap::new();
     let mut findings = Vec::new();
     for flight in flights {
-        let Some(first) = seen.get(flight.fingerprint.as_str()) else {
-            seen.insert(&flight.fingerprint, flight);
+        let Some(first) = seen.get(&flight.fingerprint) else {
+            seen.insert(flight.fingerprint, flight);
             continue;
         };
         let [this, other] = [flight, first].map(|one| &one.identity);

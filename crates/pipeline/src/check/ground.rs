@@ -55,61 +55,83 @@ fn legs(report: &Report) -> Vec<Leg> {
     else {
         return Vec::new();
     };
-    let position = |sample: usize| Some((latitudes[sample]?, longitudes[sample]?));
-    let positions: Vec<Option<Position>> = (0..report.len()).map(position).collect();
+    let position =
+        |sample: usize| Some(Position::of_degrees(latitudes[sample]?, longitudes[sample]?));
     let mut legs = Vec::new();
-    let mut begun: Option<usize> = None;
+    let mut begun: Option<(usize, Position)> = None;
     for sample in 0..report.len() {
-        let Some(to) = positions[sample] else { continue };
-        let Some(first) = begun else {
-            begun = Some(sample);
-            continue;
-        };
-        let seconds = columns.time_s[sample] - columns.time_s[first];
-        if seconds < STEP_S {
+        let recorded = latitudes[sample].is_some() && longitudes[sample].is_some();
+        let seconds =
+            begun.map_or(0.0, |(first, _)| columns.time_s[sample] - columns.time_s[first]);
+        if !recorded || begun.is_some() && seconds < STEP_S {
             continue;
         }
-        begun = Some(sample);
-        if let Some(from) = positions[first]
+        let Some(to) = position(sample) else { continue };
+        if let Some((first, from)) = begun.replace((sample, to))
             && seconds < LONGEST_STEP_S
-            && is_straight(&positions, first, sample)
         {
-            let (distance_m, track_deg) = great_circle(from, to);
-            legs.push(Leg { first, last: sample, speed_m_s: distance_m / seconds, track_deg });
+            let distance_m = from.distance_m(to);
+            let between = [1, 2, 3].map(|quarter| first + (sample - first) * quarter / 4);
+            let way =
+                [Some(from), position(between[0]), position(between[1]), position(between[2])];
+            if is_straight(way.into_iter().flatten().chain([to]), distance_m) {
+                let (speed_m_s, track_deg) = (distance_m / seconds, from.course_deg(to));
+                legs.push(Leg { first, last: sample, speed_m_s, track_deg });
+            }
         }
     }
     if legs.len() < FEWEST_LEGS { Vec::new() } else { legs }
 }
 
-/// Whether the way from one sample to another over three between them is hardly longer than the great circle.
-fn is_straight(positions: &[Option<Position>], first: usize, last: usize) -> bool {
-    let by_quarters: Vec<Position> =
-        (0..=4).filter_map(|quarter| positions[first + (last - first) * quarter / 4]).collect();
-    let way_m: f64 = by_quarters.windows(2).map(|pair| great_circle(pair[0], pair[1]).0).sum();
-    match (by_quarters.first(), by_quarters.last()) {
-        (Some(from), Some(to)) => way_m <= STRAIGHT * great_circle(*from, *to).0,
-        _ => false,
+/// Whether the way over these positions is hardly longer than the great circle between its ends.
+fn is_straight(mut way: impl Iterator<Item = Position>, distance_m: f64) -> bool {
+    let Some(mut from) = way.next() else { return false };
+    let mut way_m = 0.0;
+    for to in way {
+        way_m += from.distance_m(to);
+        from = to;
     }
+    way_m <= STRAIGHT * distance_m
 }
 
-/// Latitude and longitude, degrees.
-type Position = (f64, f64);
+/// A position on a sphere.
+#[derive(Clone, Copy)]
+struct Position {
+    latitude: f64,
+    longitude_deg: f64,
+    cosine_of_latitude: f64,
+}
 
-/// Distance in m and initial course in degrees from one position (latitude, longitude in degrees) to another, on a
-/// sphere.
-fn great_circle(from_deg: Position, to_deg: Position) -> (f64, f64) {
-    let [from_latitude, to_latitude] =
-        [from_deg.0, to_deg.0].map(|angle| angle * RADIANS_PER_DEGREE);
-    let longitude = (to_deg.1 - from_deg.1) * RADIANS_PER_DEGREE;
-    let haversine = (0.5 * (to_latitude - from_latitude)).sin().powi(2)
-        + from_latitude.cos() * to_latitude.cos() * (0.5 * longitude).sin().powi(2);
-    let course = f64::atan2(
-        longitude.sin() * to_latitude.cos(),
-        from_latitude.cos() * to_latitude.sin()
-            - from_latitude.sin() * to_latitude.cos() * longitude.cos(),
-    );
-    let distance_m = 2.0 * EARTH_RADIUS_M * haversine.sqrt().clamp(0.0, 1.0).asin();
-    (distance_m, course / RADIANS_PER_DEGREE)
+impl Position {
+    fn of_degrees(latitude_deg: f64, longitude_deg: f64) -> Self {
+        let latitude = latitude_deg * RADIANS_PER_DEGREE;
+        Self { latitude, longitude_deg, cosine_of_latitude: latitude.cos() }
+    }
+
+    /// Change of longitude to another position, radians.
+    fn longitude_to(self, to: Self) -> f64 {
+        (to.longitude_deg - self.longitude_deg) * RADIANS_PER_DEGREE
+    }
+
+    /// Distance along the great circle, m.
+    fn distance_m(self, to: Self) -> f64 {
+        let haversine = (0.5 * (to.latitude - self.latitude)).sin().powi(2)
+            + self.cosine_of_latitude
+                * to.cosine_of_latitude
+                * (0.5 * self.longitude_to(to)).sin().powi(2);
+        2.0 * EARTH_RADIUS_M * haversine.sqrt().clamp(0.0, 1.0).asin()
+    }
+
+    /// Initial course along the great circle, degrees.
+    fn course_deg(self, to: Self) -> f64 {
+        let longitude = self.longitude_to(to);
+        let course = f64::atan2(
+            longitude.sin() * to.cosine_of_latitude,
+            self.cosine_of_latitude * to.latitude.sin()
+                - self.latitude.sin() * to.cosine_of_latitude * longitude.cos(),
+        );
+        course / RADIANS_PER_DEGREE
+    }
 }
 
 /// An angle brought to -180 to 180 degrees.
@@ -121,16 +143,20 @@ fn wrapped(angle_deg: f64) -> f64 {
 /// Mean speed of the wind that ground speed, true airspeed and drift give, kt, and ground over true airspeed.
 fn wind(report: &Report) -> (f64, f64) {
     let columns = report.columns();
-    let mut winds = Vec::new();
-    let mut ratios = Vec::new();
-    for sample in 0..report.len() {
-        let (ground, air) = (columns.ground_speed_m_s[sample], columns.true_airspeed_m_s[sample]);
-        let drift = columns.drift_deg.as_ref().map_or(0.0, |drift| drift[sample]);
-        let squared =
-            ground * ground + air * air - 2.0 * ground * air * (drift * RADIANS_PER_DEGREE).cos();
-        winds.push(squared.max(0.0).sqrt() / METERS_PER_SECOND_PER_KNOT);
-        ratios.push(ground / air);
-    }
+    let cosine_of_drift = |sample: usize| {
+        columns.drift_deg.as_ref().map_or(1.0, |drift| (drift[sample] * RADIANS_PER_DEGREE).cos())
+    };
+    let speeds =
+        |sample: usize| (columns.ground_speed_m_s[sample], columns.true_airspeed_m_s[sample]);
+    let winds = (0..report.len()).map(|sample| {
+        let (ground, air) = speeds(sample);
+        let squared = ground * ground + air * air - 2.0 * ground * air * cosine_of_drift(sample);
+        squared.max(0.0).sqrt() / METERS_PER_SECOND_PER_KNOT
+    });
+    let ratios = (0..report.len()).map(|sample| {
+        let (ground, air) = speeds(sample);
+        ground / air
+    });
     (mean(winds).unwrap_or(0.0), mean(ratios).unwrap_or(1.0))
 }
 
@@ -233,8 +259,11 @@ fn roll(report: &Report) -> Option<Draft> {
         let (Some(before), Some(after)) = (headings[sample - 1], headings[sample + 1]) else {
             continue;
         };
+        if rolls[sample].abs() < TURNING_ROLL_DEG {
+            continue;
+        }
         let turned = wrapped(after - before);
-        if rolls[sample].abs() < TURNING_ROLL_DEG || turned.abs() < 1.0 {
+        if turned.abs() < 1.0 {
             continue;
         }
         if (turned > 0.0) == (rolls[sample] > 0.0) { agreeing += 1 } else { opposed += 1 }

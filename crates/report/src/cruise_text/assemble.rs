@@ -9,14 +9,14 @@ use super::columns::Field;
 use crate::line::Lines;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
-/// The report of these rows; `columns` holds one column per field, in the units of the file.
+/// The report of these rows; `values` holds them one after the other, a number per field, in the units of the file.
 pub(super) fn report(
     header: ReportHeader,
     fields: &[Field],
     engines: Option<u8>,
-    columns: &[Vec<f64>],
+    values: &[f64],
 ) -> Result<Report, ReportDataError> {
-    let table = Table { fields, columns };
+    let table = Table { fields, values };
     let engine_count = engines.unwrap_or(0);
     let n2_percent: Vec<_> =
         (1..=engine_count).map_while(|engine| table.required(Column::N2(engine))).collect();
@@ -69,7 +69,7 @@ pub(super) fn refusal(error: ReportDataError, mut lines: Lines<'_>) -> Refusal {
 
 struct Table<'a> {
     fields: &'a [Field],
-    columns: &'a [Vec<f64>],
+    values: &'a [f64],
 }
 
 impl Table<'_> {
@@ -84,10 +84,10 @@ impl Table<'_> {
 
     /// Every column that a report may lack, of those that are there.
     fn optional(&self) -> OptionalColumns {
-        let named = self.fields.iter().zip(self.columns).filter_map(|(field, values)| {
+        let named = self.fields.iter().enumerate().filter_map(|(index, field)| {
             let column = field.column.filter(|column| column.is_optional())?;
             let available = |value: &f64| (!value.is_nan()).then(|| field.convert(*value));
-            field.is_handed_on.then(|| (column, values.iter().map(available).collect()))
+            field.is_handed_on.then(|| (column, self.of_field(index).map(available).collect()))
         });
         named.collect()
     }
@@ -98,6 +98,11 @@ impl Table<'_> {
             .iter()
             .position(|field| field.column == Some(column) && field.is_handed_on)?;
         let field = self.fields[index];
-        Some(self.columns[index].iter().map(move |value| field.convert(*value)))
+        Some(self.of_field(index).map(move |value| field.convert(*value)))
+    }
+
+    /// The values of one field, in the unit of the file.
+    fn of_field(&self, index: usize) -> impl ExactSizeIterator<Item = &f64> {
+        self.values.iter().skip(index).step_by(self.fields.len())
     }
 }

@@ -15,20 +15,19 @@ const FUEL_USED_STEP_KG: f64 = 0.5;
 /// Decimal differences in binary: a fall of exactly one step counts as one step.
 const DIFFERENCE_ROUNDING: f64 = 1e-9;
 
-/// Reads all rows into `columns`, one per field, in the units of the file (NaN for "not available"), and returns the
-/// number of rows.
+/// Reads all rows into `values`, row by row, in the units of the file (NaN for "not available"), and returns the number
+/// of rows.
 pub(super) fn read(
     lines: &mut Lines<'_>,
     fields: &[Field],
-    columns: &mut Vec<Vec<f64>>,
+    values: &mut Vec<f64>,
     findings: &mut Vec<Finding>,
 ) -> Result<usize, Refusal> {
-    columns.iter_mut().for_each(Vec::clear);
-    columns.resize_with(fields.len(), Vec::new);
+    values.clear();
     let mut rows = 0;
     let mut series = Series::new(fields);
     for line in lines.by_ref() {
-        match read_row(line, fields, columns) {
+        match read_row(line, fields, values) {
             Ok(true) => {}
             Ok(false) => continue,
             Err(problem) => return Err(refusal(problem, line, fields)),
@@ -36,7 +35,7 @@ pub(super) fn read(
         if !line.is_ended {
             findings.push(accept_last_row(line, fields)?);
         }
-        series.check(rows, columns, line, fields)?;
+        series.check(&values[rows * fields.len()..], line, fields)?;
         rows += 1;
     }
     Ok(rows)
@@ -50,23 +49,19 @@ enum RowProblem {
     OutOfRange { offset: usize, column: Column, field: usize, value: f64 },
 }
 
-/// Appends the numbers of one line to `columns`; `false` for a line without content. After a problem the columns have
-/// different lengths and must not be used.
+/// Appends the numbers of one line to `values`; `false` for a line without content. After a problem `values` ends in part
+/// of a row and must not be used.
 ///
 /// Not inlined: together with its caller's error handling the loop would not keep its values in registers.
 #[inline(never)]
-fn read_row(
-    line: Line<'_>,
-    fields: &[Field],
-    columns: &mut [Vec<f64>],
-) -> Result<bool, RowProblem> {
+fn read_row(line: Line<'_>, fields: &[Field], values: &mut Vec<f64>) -> Result<bool, RowProblem> {
     let bytes = line.text.as_bytes();
     // In the text that starts at the line, a number ends at the line end at the latest: nothing needs to be compared
     // with the line's length until something other than a number in its range turns up.
     let onward = line.onward.as_bytes();
     let beyond = onward.len() - bytes.len();
     let mut rest = onward;
-    for (index, (field, column)) in fields.iter().zip(columns).enumerate() {
+    for (index, field) in fields.iter().enumerate() {
         rest = skip_blanks(rest);
         // No number is inside the range of an ignored column: it is empty.
         if let Some((number, tail)) = number::short(rest)
@@ -74,7 +69,7 @@ fn read_row(
             && number <= field.high
             && (tail.first().is_some_and(|byte| is_blank(*byte)) || tail.len() == beyond)
         {
-            column.push(number);
+            values.push(number);
             rest = tail;
             continue;
         }
@@ -82,7 +77,7 @@ fn read_row(
             return if index == 0 { Ok(false) } else { Err(RowProblem::WrongLength) };
         }
         let (number, end) = read_field(bytes, onward.len() - rest.len(), index, field)?;
-        column.push(number);
+        values.push(number);
         rest = &onward[end..];
     }
     if is_end_of_meaning(skip_blanks(rest), beyond) {
@@ -165,14 +160,8 @@ impl Series {
     }
 
     #[inline]
-    fn check(
-        &mut self,
-        row: usize,
-        columns: &[Vec<f64>],
-        line: Line<'_>,
-        fields: &[Field],
-    ) -> Result<(), Refusal> {
-        let time = columns[0][row];
+    fn check(&mut self, row: &[f64], line: Line<'_>, fields: &[Field]) -> Result<(), Refusal> {
+        let time = row[0];
         let time_s = fields[0].convert(time);
         if time_s <= self.previous_time_s {
             let kind = RefusalKind::TimeNotIncreasing {
@@ -184,7 +173,7 @@ impl Series {
         self.previous_time_s = time_s;
         self.previous_time = time;
         if let Some(index) = self.anti_ice {
-            let value = columns[index][row];
+            let value = row[index];
             // A difference of doubles is zero only for equal ones; NaN is "not available".
             if !(value == 0.0 || value - 1.0 == 0.0 || value.is_nan()) {
                 let column = Column::AntiIce;
@@ -193,7 +182,7 @@ impl Series {
             }
         }
         let Some(index) = self.fuel_used else { return Ok(()) };
-        let fuel_used = columns[index][row];
+        let fuel_used = row[index];
         if fuel_used < self.largest_fuel_used - self.fuel_used_step - DIFFERENCE_ROUNDING {
             let kind = RefusalKind::FuelUsedFalls {
                 largest: self.largest_fuel_used,
