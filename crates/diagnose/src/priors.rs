@@ -13,6 +13,9 @@ deciding_numbers! {
         PRIOR_OUTSIDE: f64 = 0.20, "",
             "prior probability that something outside the library acts",
             OurChoice "One cause in five: the library is long, but nobody can list every cause.";
+        PRIOR_OTHER_FORM: f64 = 0.50, "",
+            "prior probability that an effect has another form than the library's",
+            OurChoice "An even chance: a truth of another form differs along one variable, or too little to be seen.";
         EXPECTED_SIGN: f64 = 0.95, "",
             "prior probability of the sign that physics expects",
             OurChoice "A sign is a strong expectation and no law: one model in twenty errs the other way.";
@@ -24,6 +27,9 @@ deciding_numbers! {
         FLAT_RANGE: f64 = 0.10, "of fuel flow",
             "range over which the effect of a cause on fuel flow is evenly probable where its prior size is left out",
             OurChoice "Five per cent either way: what an engineer would not call impossible of any cause.";
+        FORM_ERROR: f64 = 0.15, "of the effect",
+            "amplitude of the function of one variable by which its form is off",
+            OurChoice "About the difference between the common laws of one effect, as of friction with Reynolds number.";
         KNOWN_DEVIATION: f64 = 0.15, "",
             "prior standard deviation of a coefficient that physics says is 1",
             OurChoice "Physics says 1; what is recorded of wind, position and turns is not exact, so that some 15 % are left.";

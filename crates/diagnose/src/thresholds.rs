@@ -70,7 +70,7 @@ deciding_numbers! {
             "lower end of the closure by a table fitted to other flights below which a guide's drag is not what is wrong",
             OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.95 and more; shuffled fuel flows 0 to 0.3.";
         LARGEST_REST: f64 = 25.0, "times the stated variance of noise",
-            "mean square that a name leaves beyond which it keeps no more than that share",
+            "mean square that a name leaves beyond which it keeps that share, unless it closes most of the gap",
             OurChoice "Five standard deviations: sensors three times worse than stated leave nine times it.";
         MORE_PROBABLE_THAN_NOT: f64 = 0.5, "",
             "probability of a cause, or of all named ones, above which it carries the verdict",

@@ -87,7 +87,7 @@ impl Prior {
 }
 
 impl Scorer {
-    pub(crate) fn new(library: &Library, rows: usize, held: Vec<bool>) -> Self {
+    pub(crate) fn new(library: &Library, rows: f64, held: Vec<bool>) -> Self {
         let priors = library
             .columns
             .iter()
@@ -114,7 +114,7 @@ impl Scorer {
             effects: library.effects.len() + usize::from(library.heating_value)
                 - held.iter().filter(|held| **held).count(),
             held,
-            rows: rows as f64,
+            rows,
         }
     }
 

@@ -11,7 +11,8 @@ use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
 use crate::search::system::Problem;
 use crate::thresholds::{
-    LARGEST_REST, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
+    LARGEST_REST, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY,
+    UNPROVEN_SHARE,
 };
 
 /// What a decision is made from.
@@ -60,7 +61,8 @@ pub(crate) fn detect(
             closed(unseen, own).filter(|_| !is_scatter),
         );
     let judged = unseen.unwrap_or(own);
-    let leaves_most = judged.after() > LARGEST_REST * judged.floor() / input.noise_scale;
+    let leaves_most = judged.after() > LARGEST_REST * judged.floor() / input.noise_scale
+        && !closes_more_than(OTHER_FORM[0], unseen);
     if table.is_none() && (leaves_most || may_close_nothing(unseen.filter(|_| !is_scatter))) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
     }
@@ -71,7 +73,7 @@ pub(crate) fn detect(
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
     let taught = system.data.predictor.baseline.is_some();
     // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights.
-    let own_error = taught && !input.exceeds_uncertainty && !closes_something(unseen);
+    let own_error = taught && !input.exceeds_uncertainty && !closes_more_than(0.0, unseen);
     let stands_out = something
         && !own_error
         && is_large(system, gap, top)
@@ -95,9 +97,10 @@ fn may_close_nothing(unseen: Option<&Shrinkage>) -> bool {
     unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
 }
 
-/// Whether a name certainly shrinks the gap on flights that it was not fitted to.
-fn closes_something(unseen: Option<&Shrinkage>) -> bool {
-    unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least > 0.0)
+/// Whether a name certainly shrinks the gap by more than this share on flights that it was not fitted to. What a large effect
+/// of another form leaves is many standard deviations of noise.
+fn closes_more_than(share: f64, unseen: Option<&Shrinkage>) -> bool {
+    unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least > share)
 }
 
 /// Whether the named effects make other flights worse. What a learnt remainder leaves need not be noise, but a name that does

@@ -88,7 +88,7 @@ pub(crate) fn is_vague(
 }
 
 /// Noise variance over what the sensors announce, of the best model.
-pub(crate) fn noise_scale(analysis: &Analysis, best: &ScoredHypothesis, rows: usize) -> f64 {
+pub(crate) fn noise_scale(analysis: &Analysis, best: &ScoredHypothesis, rows: f64) -> f64 {
     let at = &analysis.backgrounds[best.background.min(analysis.backgrounds.len() - 1)];
     let explained: f64 = best
         .hypothesis
@@ -98,7 +98,7 @@ pub(crate) fn noise_scale(analysis: &Analysis, best: &ScoredHypothesis, rows: us
         .map(|(&column, size)| at.product(column) * size)
         .sum();
     let square = (at.square - explained).max(0.0);
-    (NOISE_FREEDOM + square) / (NOISE_FREEDOM + rows as f64)
+    (NOISE_FREEDOM + square) / (NOISE_FREEDOM + rows)
 }
 
 pub(crate) fn gap_of(

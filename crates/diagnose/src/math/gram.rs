@@ -8,11 +8,11 @@ use crate::math::linear::{add_gram, symmetrize};
 /// Rows that are multiplied together: a flight alone has too few for fast products.
 const WAITING_ROWS: usize = 384;
 
-/// Gram matrix of all columns, and the number of recorded values behind it.
+/// Gram matrix of all columns, and how many recorded values are behind it: a value that counts less is a part of one.
 #[derive(Clone, Debug)]
 pub(crate) struct Gram {
     pub(crate) matrix: Mat<f64>,
-    pub(crate) rows: usize,
+    pub(crate) rows: f64,
 }
 
 /// A Gram in the making.
@@ -27,15 +27,15 @@ pub(crate) struct Sum {
 impl Sum {
     pub(crate) fn new(columns: usize) -> Self {
         Self {
-            gram: Gram { matrix: Mat::zeros(columns, columns), rows: 0 },
+            gram: Gram { matrix: Mat::zeros(columns, columns), rows: 0.0 },
             waiting: Mat::zeros(WAITING_ROWS, columns),
             waiting_rows: 0,
         }
     }
 
-    /// Adds a flight's whitened rows, `recorded` of which hold a recorded value; the others are zero and count for nothing.
+    /// Adds a flight's whitened rows, in which `recorded` values were recorded; other rows are zero and count for nothing.
     /// They wait until there are many, whose products are made faster.
-    pub(crate) fn add(&mut self, rows: &Mat<f64>, recorded: usize) {
+    pub(crate) fn add(&mut self, rows: &Mat<f64>, recorded: f64) {
         self.gram.rows += recorded;
         if self.waiting_rows + rows.nrows() > self.waiting.nrows() {
             self.multiply_waiting();

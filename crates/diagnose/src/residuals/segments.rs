@@ -268,11 +268,14 @@ impl<'a> PreparedFlights<'a> {
     }
 
     /// Values that were recorded in a flight: channels of its segments, and gauges. A channel that is not recorded in a
-    /// segment has a row of zeros, which is no value.
-    pub(crate) fn recorded_values(&self, flight: &FlightRows) -> usize {
+    /// segment has a row of zeros, which is no value. Values of a segment count by the square of its weight.
+    pub(crate) fn recorded_values(&self, flight: &FlightRows, weights: Option<&[f64]>) -> f64 {
         let segments = &self.segments[flight.segments.clone()];
-        let recorded = |row: &SegmentRow| row.is_recorded.iter().filter(|&&is| is).count();
-        segments.iter().map(recorded).sum::<usize>() + usize::from(flight.gauge.is_some())
+        let recorded = |row: &SegmentRow| row.is_recorded.iter().filter(|&&is| is).count() as f64;
+        let weight = |place: usize| weights.map_or(1.0, |weights| weights[place]);
+        let values = segments.iter().enumerate();
+        let gauge = if flight.gauge.is_some() { 1.0 } else { 0.0 };
+        values.map(|(place, row)| weight(place).powi(2) * recorded(row)).sum::<f64>() + gauge
     }
 
     pub(crate) fn columns(&self) -> usize {

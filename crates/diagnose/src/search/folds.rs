@@ -24,7 +24,7 @@ impl Folds {
             let each = self.each.get_or_init(make);
             let mut kept = each.iter().enumerate().filter(|(k, _)| *k != fold).map(|(_, g)| g);
             let Some(first) = kept.next() else {
-                return Gram { matrix: Mat::zeros(0, 0), rows: 0 };
+                return Gram { matrix: Mat::zeros(0, 0), rows: 0.0 };
             };
             let mut sum = first.clone();
             for gram in kept {

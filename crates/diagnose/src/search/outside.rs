@@ -7,7 +7,8 @@ use crate::library::Library;
 use crate::math::eliminate::{Changed, Reduced, integrate_few_out, integrate_out};
 use crate::math::linear::gather;
 use crate::math::mixture::ln_sum;
-use crate::priors::{AGNOSTIC_AMPLITUDES, PRIOR_OUTSIDE};
+use crate::priors::{AGNOSTIC_AMPLITUDES, FORM_ERROR, PRIOR_OTHER_FORM, PRIOR_OUTSIDE};
+use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
 use crate::signals::variables::Variable;
@@ -64,6 +65,7 @@ pub(crate) fn compete(
         let refined = analysis.refined.iter().find(|found| {
             found.scored.hypothesis == set.hypothesis && !set.hypothesis.columns.is_empty()
         });
+        let rms = rms_of(system, refined.map_or(*set, |found| &found.scored));
         let shifts =
             refined.map_or_else(|| vec![0.0; set.hypothesis.columns.len()], |f| f.shifts.clone());
         for (level, reduced) in analysis.space.reduced.iter().enumerate() {
@@ -74,8 +76,14 @@ pub(crate) fn compete(
                 TableBelief::Right => 1,
             };
             let level = (reduced, changed);
-            let set =
-                NamedSet { hypothesis: &set.hypothesis, level, shifts: &shifts, ln_share, spikes };
+            let set = NamedSet {
+                hypothesis: &set.hypothesis,
+                level,
+                shifts: &shifts,
+                ln_share,
+                spikes,
+                rms,
+            };
             weights.add(system, library, scorer, &set);
         }
     }
@@ -86,7 +94,8 @@ pub(crate) fn compete(
         let model = Hypothesis { columns: vec![], flight_scatter_percent: Some(*percent) };
         let level = (reduced, None);
         let spikes = library.agnostic_spikes.len();
-        let set = NamedSet { hypothesis: &model, level, shifts: &[], ln_share: 0.0, spikes };
+        let set =
+            NamedSet { hypothesis: &model, level, shifts: &[], ln_share: 0.0, spikes, rms: 0.0 };
         weights.add(system, library, scorer, &set);
     }
     let Weights { named, smooth_terms } = weights;
@@ -173,6 +182,32 @@ struct NamedSet<'a> {
     ln_share: f64,
     /// How many scales of small effects it is held over, from the smallest.
     spikes: usize,
+    /// Root mean square of what it changes ln fuel flow by.
+    rms: f64,
+}
+
+/// Root mean square of what a set changes ln fuel flow by.
+fn rms_of(system: &WhitenedSystem<'_>, set: &ScoredHypothesis) -> f64 {
+    let segments = &system.data.segments;
+    let own = || set.hypothesis.columns.iter().zip(&set.sizes);
+    let square = |row: &SegmentRow| {
+        own().map(|(&column, size)| size * row.signatures[column][0]).sum::<f64>().powi(2)
+    };
+    (segments.iter().map(square).sum::<f64>() / segments.len().max(1) as f64).sqrt()
+}
+
+/// ln evidence of a named set whose form is right, or off by a function of one variable that is a share of the set's own
+/// size: truth never has the library's form, and what a large effect leaves for that reason is no other cause.
+fn with_other_forms(under: &Under<'_>, scorer: &Scorer, set: &NamedSet<'_>, right: f64) -> f64 {
+    let blocks = under.blocks.len();
+    if set.rms <= 0.0 || blocks == 0 {
+        return right;
+    }
+    let amplitude = FORM_ERROR * set.rms;
+    let other =
+        (0..blocks).map(|block| under.evidence(scorer, Some((block, amplitude)), set.shifts));
+    let other = ln_sum(other) - (blocks as f64).ln();
+    ln_sum([PRIOR_OTHER_FORM.ln() + other, (1.0 - PRIOR_OTHER_FORM).ln() + right])
 }
 
 impl Weights {
@@ -197,7 +232,9 @@ impl Weights {
                 continue;
             };
             let alone = under.evidence(scorer, None, shifts);
+            let alone = with_other_forms(&under, scorer, set, alone);
             self.named.push(prior + (1.0 - PRIOR_OUTSIDE).ln() + alone);
+            // Smooth terms of another cause are combined with at most one effect.
             if hypothesis.columns.len() > 1 {
                 continue;
             }
@@ -239,15 +276,12 @@ fn with_small_effects<'a>(
     let residual = reduced.matrix.ncols() - 1;
     let mut kept: Vec<usize> = columns.to_vec();
     let mut blocks = Vec::new();
-    // Smooth terms are combined with at most one effect.
-    if columns.len() <= 1 {
-        let mut at = first_block;
-        for block in &design.blocks {
-            let start = kept.len();
-            kept.extend(at..at + block.columns.len());
-            at += block.columns.len();
-            blocks.push(start..kept.len());
-        }
+    let mut at = first_block;
+    for block in &design.blocks {
+        let start = kept.len();
+        kept.extend(at..at + block.columns.len());
+        at += block.columns.len();
+        blocks.push(start..kept.len());
     }
     kept.push(residual);
     let (mut out, mut deviations) = small_effects(library, small_effects_scale);

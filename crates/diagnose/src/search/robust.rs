@@ -92,7 +92,12 @@ mod tests {
     use test_support::fleet::{Background, Setup, exact_model, fly};
 
     /// Rows, sum of squares of whitened residuals, and whether outlier weights are used.
-    fn noise_of(flights: &[Vec<Segment>]) -> (usize, f64, bool) {
+    fn noise_of(flights: &[Vec<Segment>]) -> (f64, f64, bool) {
+        noise_with(flights, None)
+    }
+
+    /// The same where every segment has this weight.
+    fn noise_with(flights: &[Vec<Segment>], weight: Option<f64>) -> (f64, f64, bool) {
         let model = exact_model();
         let records: Vec<FlightRecord<'_>> =
             flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
@@ -105,7 +110,8 @@ mod tests {
             |points, engines, starts| Library::new(&effects, points, engines, starts, |_| true),
         );
         let design = Design::new(&data, &references, None, None);
-        let system = WhitenedSystem::new(&data, &design, None);
+        let weights = weight.map(|weight| vec![weight; data.segments.len()]);
+        let system = WhitenedSystem::new(&data, &design, weights);
         let gram = system.gram(None);
         let square = gram.matrix[(design.residual(), design.residual())];
         let problem = Problem { system: &system, model: &effects, library: &library };
@@ -126,12 +132,21 @@ mod tests {
         let (rows, square, _) = noise_of(&flights);
         let (rows_with, square_with, _) = noise_of(&flights[..with_n2]);
         let (rows_without, square_without, _) = noise_of(&flights[with_n2..]);
-        let (found, by_hand) = (
-            square / rows as f64,
-            (square_with + square_without) / (rows_with + rows_without) as f64,
-        );
+        let (found, by_hand) =
+            (square / rows, (square_with + square_without) / (rows_with + rows_without));
         assert!((square / (square_with + square_without) - 1.0).abs() < 1e-9);
         assert!((found / by_hand - 1.0).abs() < 1e-9, "{rows} rows: {found}, by hand {by_hand}");
+    }
+
+    /// By hand: with a weight of a half everywhere squares and values are a quarter, and the noise between them is as before.
+    #[test]
+    fn weights_do_not_make_the_noise_smaller() {
+        let setup = Setup { flights: 8, ..Setup::default() };
+        let flights = fly(6, &setup, &[], &Background::default()).flights;
+        let (rows, square, _) = noise_of(&flights);
+        let (weighted_rows, weighted_square, _) = noise_with(&flights, Some(0.5));
+        assert!((weighted_square / square - 0.25).abs() < 1e-12);
+        assert!((weighted_rows / rows - 0.25).abs() < 1e-12, "{rows} {weighted_rows}");
     }
 
     /// Zeros of channels that are not recorded make normal residuals look as if they had heavy tails.

@@ -67,7 +67,7 @@ impl<'a> WhitenedSystem<'a> {
         let mut system = Self {
             data,
             design,
-            gram: Gram { matrix: Mat::zeros(0, 0), rows: 0 },
+            gram: Gram { matrix: Mat::zeros(0, 0), rows: 0.0 },
             folds: Folds::default(),
             weights,
             kept,
@@ -77,7 +77,7 @@ impl<'a> WhitenedSystem<'a> {
         let mut sum = Sum::new(design.columns);
         for index in 0..data.flights.len() {
             let rows = system.whitened(index);
-            sum.add(&rows, data.recorded_values(&data.flights[index]));
+            sum.add(&rows, system.recorded_values(index));
             let products = rows.transpose() * rows.col(design.smooth.start);
             let level = products.iter().copied().collect();
             drop(rows);
@@ -94,8 +94,7 @@ impl<'a> WhitenedSystem<'a> {
             let of = |fold: usize| {
                 let mut sum = Sum::new(self.design.columns);
                 for index in (fold..self.data.flights.len()).step_by(CLOSURE_FOLDS) {
-                    let recorded = self.data.recorded_values(&self.data.flights[index]);
-                    sum.add(&self.whitened(index), recorded);
+                    sum.add(&self.whitened(index), self.recorded_values(index));
                 }
                 sum.finish()
             };
@@ -154,6 +153,14 @@ impl<'a> WhitenedSystem<'a> {
                 self.weights.as_deref(),
             )),
         }
+    }
+
+    /// Values that were recorded in a flight. One with a robust weight w counts as w² of one: that much of its square is left,
+    /// and the noise would seem smaller than it is if it counted whole.
+    fn recorded_values(&self, flight: usize) -> f64 {
+        let rows = &self.data.flights[flight];
+        let of_weights = self.weights.as_ref().map(|weights| &weights[rows.segments.clone()]);
+        self.data.recorded_values(rows, of_weights)
     }
 
     /// Root mean square of the robust weights; 1 without.
