@@ -72,8 +72,12 @@ pub(crate) fn detect(
         || smooth_term > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
     let taught = system.data.predictor.baseline.is_some();
-    // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights.
-    let own_error = taught && !input.exceeds_uncertainty && !closes_more_than(0.0, unseen);
+    // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights, or is itself more
+    // probable than not: names are weighed beside those errors, functions without a name beside a part of them.
+    let is_named = top
+        .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
+    let announced = taught && !input.exceeds_uncertainty;
+    let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
     let stands_out = something
         && !own_error
         && is_large(system, gap, top)
