@@ -1,6 +1,5 @@
 //! Writing files so that neither a reader nor a crash ever leaves half a file.
 
-pub(crate) mod names;
 pub(crate) mod outputs;
 pub(crate) mod steps;
 
@@ -8,7 +7,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
-pub(crate) use names::file_stem_of_tail;
+pub(crate) use pipeline::file_names::file_stem_of_tail;
 
 /// Begins the name of everything that the program puts into a folder for a while.
 pub(crate) const TEMPORARY: &str = ".cruisefit-";

@@ -81,7 +81,7 @@ impl Folder {
             folder.replaces = Some(path);
             return Ok(folder);
         }
-        match State::read(&path)? {
+        match state::read(&path)? {
             Some(state) => folder.state = state,
             None => folder.older = older::read(&path)?,
         }
@@ -136,10 +136,10 @@ impl Folder {
             return Err(Failure::bad_file(&self.path, format!("holds no tail {tail:?}")));
         };
         let path = self.path.join(&entry.model.file);
-        let bytes = self.state.bytes_of(&self.path, &entry.model)?;
+        let bytes = state::bytes_of(&self.state, &self.path, &entry.model)?;
         let model = crate::models::model_of_bytes(&path, &bytes)?;
         let path = self.path.join(&entry.segments.file);
-        let bytes = self.state.bytes_of(&self.path, &entry.segments)?;
+        let bytes = state::bytes_of(&self.state, &self.path, &entry.segments)?;
         let segments =
             segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
         let flights = flights_of(&self.path, &self.state, tail, entry)?;
@@ -208,7 +208,7 @@ impl Folder {
     /// Moves the files of a committed generation to their places and removes what it no longer names.
     fn settle(&self, old: &State) -> std::io::Result<()> {
         steps::sync_folder(&self.path)?;
-        self.move_files(&self.state.waiting(&self.path))?;
+        self.move_files(&state::waiting(&self.state, &self.path))?;
         let files = |state: &State| -> BTreeSet<String> {
             let of_tail = |tail: &TailState| {
                 [&tail.model, &tail.segments, &tail.flights].map(|file| file.file.clone())
@@ -241,7 +241,7 @@ impl Folder {
 
     /// Completes or removes what an interrupted run left.
     fn clear_up(&self) -> std::io::Result<()> {
-        let waiting = self.state.waiting(&self.path);
+        let waiting = state::waiting(&self.state, &self.path);
         if self.state.generation > 0 && waiting.is_dir() {
             tracing::info!("{}: completing a run that was interrupted", show(&self.path));
             self.move_files(&waiting)?;
@@ -303,7 +303,7 @@ impl Drop for Folder {
 /// A file that is damaged.
 pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)>>, Failure> {
     loop {
-        let Some(state) = State::read(folder)? else { return Ok(None) };
+        let Some(state) = state::read(folder)? else { return Ok(None) };
         for stranger in strangers(folder, &state) {
             tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
         }
@@ -312,14 +312,14 @@ pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)
             .values()
             .map(|tail| {
                 let path = folder.join(&tail.model.file);
-                let bytes = state.bytes_of(folder, &tail.model)?;
+                let bytes = state::bytes_of(&state, folder, &tail.model)?;
                 Ok((path.clone(), crate::models::model_of_bytes(&path, &bytes)?))
             })
             .collect::<Result<Vec<_>, Failure>>();
         match models {
             Ok(models) => return Ok(Some(models)),
             // Another process may have stored a newer generation in the meantime.
-            Err(failure) => match State::read(folder)? {
+            Err(failure) => match state::read(folder)? {
                 Some(newer) if newer.generation != state.generation => {}
                 _ => return Err(failure),
             },
@@ -333,7 +333,7 @@ fn flights_of(
     tail: &str,
     entry: &TailState,
 ) -> Result<Vec<KnownFlight>, Failure> {
-    let bytes = state.bytes_of(folder, &entry.flights)?;
+    let bytes = state::bytes_of(&state, folder, &entry.flights)?;
     learnt_flights::read(tail, &bytes)
         .map_err(|reason| Failure::bad_file(&folder.join(&entry.flights.file), reason))
 }

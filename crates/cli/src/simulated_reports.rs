@@ -11,16 +11,14 @@ use rayon::prelude::*;
 use report::TextLayout;
 use serde_json::Value;
 use simulate::{
-    AircraftTruth, Flown, Plan, Preset, Simulation, Switch, TrueState, TruthPhysics, study,
+    AircraftTruth, Flown, Plan, Preset, REPORT_COMMENT, Simulation, Switch, TrueState,
+    TruthPhysics, study,
 };
 use units::FuelFlowTotal;
 
 use crate::failure::Failure;
 use crate::files::{file_stem_of_tail, make_folder, write_atomically, write_unsynced};
 use crate::progress::Progress;
-
-/// First comment of every report: nobody must mistake it for a recording.
-const COMMENT: &str = "simulated with cruisefit, not a real aircraft";
 
 /// The truth, written last: a folder without it was not completed.
 const TRUTH: &str = "TRUTH.json";
@@ -108,7 +106,7 @@ pub(crate) fn check_folder(
     let begins_as_ours = |path: &Path| {
         let mut beginning = [0; 200];
         let read = std::fs::File::open(path).and_then(|mut file| file.read(&mut beginning));
-        read.is_ok_and(|read| String::from_utf8_lossy(&beginning[..read]).contains(COMMENT))
+        read.is_ok_and(|read| String::from_utf8_lossy(&beginning[..read]).contains(REPORT_COMMENT))
     };
     for path in strangers.iter().filter(|path| begins_as_ours(path)) {
         std::fs::remove_file(path).map_err(|error| Failure::unwritable(path, error))?;
@@ -173,7 +171,7 @@ pub(crate) fn write(
                     truth.flight
                 );
             }
-            let text = report::write(&report, &TextLayout::industry(), &[COMMENT])
+            let text = report::write(&report, &TextLayout::industry(), &[REPORT_COMMENT])
                 .map_err(|error| failed(&error))?;
             let identity = &report.header().identity;
             let base = folder.join(file_stem_of_tail(&identity.tail));

@@ -70,3 +70,6 @@ pub use terms::References;
 pub use trim::{TrimError, TrimPoint, Trimmed};
 pub use truth::{EffectTruth, FlightTruth, TRUTH_SCHEMA, TailTruth, Truth};
 pub use weather::{Spread, Turbulence, Weather};
+
+/// First comment of every simulated report: nobody must mistake it for a recording.
+pub const REPORT_COMMENT: &str = "simulated with cruisefit, not a real aircraft";

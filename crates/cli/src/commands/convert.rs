@@ -11,7 +11,7 @@ use report::{Parsed, TextLayout};
 use crate::args::ConvertArgs;
 use crate::commands::{Outcome, check_refused, read_mapping};
 use crate::failure::{Failure, RefusedReport, show};
-use crate::files::names::file_stem_of_tail;
+use crate::files::file_stem_of_tail;
 use crate::files::outputs::check_replaceable;
 use crate::files::{make_folder, write_atomically};
 use crate::inputs;

@@ -7,7 +7,7 @@ use pipeline::checksum::sha256;
 use pipeline::summary::TailSummary;
 
 use super::lock::Busy;
-use super::state::{State, TailState};
+use super::state::{self, TailState};
 use super::{Beginning, Folder};
 use crate::files::steps::faults;
 
@@ -46,11 +46,11 @@ fn open(path: &Path) -> Folder {
 
 /// The version that a reader sees: all files of all tails, or a panic.
 fn version_seen(path: &Path) -> u32 {
-    let state = State::read(path).unwrap().unwrap();
+    let state = state::read(path).unwrap().unwrap();
     let mut seen = Vec::new();
     for tail in state.tails.values() {
         for file in [&tail.model, &tail.segments, &tail.flights] {
-            let bytes = state.bytes_of(path, file).unwrap();
+            let bytes = state::bytes_of(&state, path, file).unwrap();
             let text = String::from_utf8(bytes).unwrap();
             let digit = text.trim_end().rsplit(' ').next().unwrap();
             seen.push(digit.parse::<u32>().unwrap());

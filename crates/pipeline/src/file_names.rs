@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use pipeline::checksum::sha256;
+use crate::checksum::sha256;
 
 /// Longest stem of a file: file systems allow 255 bytes with ending and, for temporary files, beginning.
 const LONGEST: usize = 160;
 
 /// A tail as a file name: letters, digits, `-` and `_` stay, any other character becomes `%` and its hexadecimal
 /// bytes, so that two tails never share a file. A name that is too long for a file ends in its SHA-256 instead.
-pub(crate) fn file_stem_of_tail(tail: &str) -> String {
+pub fn file_stem_of_tail(tail: &str) -> String {
     let mut stem = String::new();
     for byte in tail.bytes() {
         if byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_' {

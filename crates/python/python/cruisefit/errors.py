@@ -1,0 +1,74 @@
+"""Exceptions of cruisefit: each says where its input is wrong, what was found and what was expected."""
+
+from __future__ import annotations
+
+__all__ = ["CruisefitError", "DataWarning", "InputError", "InternalError", "PredictionWarning"]
+
+
+class CruisefitError(Exception):
+    """What every exception of this package is.
+
+    Attributes:
+        message: The reason, without the position.
+        file: File, or what the caller calls its bytes; ``None`` where the input has no name.
+        line: Line of a text, or row of a table, from 1; ``None`` where no line is at fault.
+        column: Column of a text (character, from 1) or name of a table's column; ``None`` where no column is at fault.
+        found: What was found there, where the reason has the form "found …, expected …".
+        expected: What was expected there.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        file: str | None = None,
+        line: int | None = None,
+        column: int | str | None = None,
+    ) -> None:
+        self.message = message
+        self.file = file
+        self.line = line
+        self.column = column
+        self.found, self.expected = found_and_expected(message)
+        where = ""
+        if file is not None:
+            where = f"{file}:"
+        if line is not None:
+            where += f" line {line}," if where else f"line {line},"
+        if column is not None:
+            where += f" column {column},"
+        where = where.rstrip(",").rstrip(":").strip()
+        super().__init__(f"{where}: {message}" if where else message)
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), (self.message, self.file, self.line, self.column)
+
+
+class InputError(CruisefitError, ValueError):
+    """A file, table or argument that is wrong. Nothing was done."""
+
+
+class InternalError(CruisefitError, RuntimeError):
+    """A fault of cruisefit itself. Nothing was done."""
+
+
+class PredictionWarning(UserWarning):
+    """Rows of flight points for which the model has no prediction; their results are null."""
+
+
+class DataWarning(UserWarning):
+    """Serious findings in recorded data; the text lists them."""
+
+
+def found_and_expected(message: str) -> tuple[str | None, str | None]:
+    """The two halves of a reason of the form "found …, expected …"; ``None`` where it has another form.
+
+    >>> found_and_expected('found "1.781", expected MACH of 0.1 to 0.99')
+    ('"1.781"', 'MACH of 0.1 to 0.99')
+    >>> found_and_expected("no such file")
+    (None, None)
+    """
+    _, separator, rest = message.partition("found ")
+    found, comma, expected = rest.partition(", expected ")
+    if not separator or not comma:
+        return None, None
+    return found, expected

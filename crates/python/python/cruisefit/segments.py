@@ -1,0 +1,275 @@
+"""Reports and recordings, reduced to stabilised segments."""
+
+from __future__ import annotations
+
+import glob
+import json
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union
+
+from . import _native
+from ._pages import read_text
+from ._tables import Table, as_stream, is_table, like
+from .errors import InputError, found_and_expected
+
+if TYPE_CHECKING:
+    from .model import Model
+
+__all__ = ["PRESETS", "Check", "Refused", "Report", "Segments", "check", "segment"]
+
+PRESETS = ("ghazi-2020-table-4", "airbus-report-02")
+"""Names of the trim criteria; the first one is the default."""
+
+Report = Union[str, "os.PathLike[str]", bytes, tuple[str, bytes]]
+"""A path (file, folder or glob), the bytes of a report, or its name and bytes."""
+
+_REPORT_ENDINGS = (".txt", ".rpt", ".gz")
+_RECORDING_ENDINGS = (".csv", ".gz")
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A report, flight or point that was refused while the rest continued.
+
+    Attributes:
+        path: File, or what the caller calls its bytes.
+        line: Line from 1, where the refusal has one.
+        column: Column (character) from 1, where the refusal has one.
+        reason: What was found and what was expected.
+    """
+
+    path: str
+    line: int | None
+    column: int | None
+    reason: str
+
+    @property
+    def found(self) -> str | None:
+        """What was found, where the reason has the form "found …, expected …"."""
+        return found_and_expected(self.reason)[0]
+
+    @property
+    def expected(self) -> str | None:
+        """What was expected."""
+        return found_and_expected(self.reason)[1]
+
+    def __str__(self) -> str:
+        place = self.path
+        if self.line is not None:
+            place += f":{self.line}"
+            if self.column is not None:
+                place += f":{self.column}"
+        return f"{place}: {self.reason}"
+
+
+class Segments:
+    """Flights reduced to their stabilised segments: what models adapt to, are evaluated on and are diagnosed with.
+
+    It is a table of segments itself (Arrow C interface): one row per segment, in SI units unless the name of a column says
+    otherwise; a column per engine and per optional signal, null where its input is missing. Made by :func:`segment` or
+    :meth:`from_table`.
+    """
+
+    def __init__(self, flights: _native.Flights) -> None:
+        self._flights = flights
+
+    @property
+    def refused(self) -> list[Refused]:
+        """Reports that were refused, and flights that contradict another one, with their reasons."""
+        return [Refused(*row) for row in self._flights.refused()]
+
+    @property
+    def tails(self) -> list[str]:
+        """Every tail once, in order."""
+        return self._flights.tails()
+
+    @property
+    def criteria(self) -> str:
+        """Name of the trim criteria by which the segments were found."""
+        return self._flights.criteria
+
+    @property
+    def flights(self) -> Table:
+        """One row per flight, each once: path, tail, flight, start, aircraft type, engines, samples, segments, end, SHA-256 of
+        the content, fuel burnt by gauges and meters (kg), notes."""
+        return like(self._flights.table())
+
+    def table(self, library: object = None) -> Table:
+        """The table of segments, in the library that ``library`` (a table) is of, otherwise in pyarrow."""
+        return like(self._flights.segments(), library)
+
+    def to_csv(self) -> bytes:
+        """The table as ``cruisefit segment`` writes it."""
+        return self._flights.segments_csv()
+
+    def of_tails(self, *tails: str) -> Segments:
+        """The flights of these tails alone."""
+        return Segments(self._flights.of_tails(tails))
+
+    def state(self) -> Table:
+        """One row per flight with all that it was reduced to (column ``segments_csv``), for a file or another machine:
+        :meth:`from_state` reads it back to the same bits."""
+        return like(self._flights.state())
+
+    @classmethod
+    def from_state(cls, table: Table, criteria: str = PRESETS[0]) -> Segments:
+        """Flights from :meth:`state`.
+
+        Raises:
+            InputError: A column is missing, or a value is not what its column holds.
+        """
+        return cls(_native.Flights.from_state(as_stream(table), criteria))
+
+    @classmethod
+    def from_table(
+        cls, table: Table, aircraft_type: str, criteria: str = PRESETS[0]
+    ) -> Segments:
+        """Flights from a table of segments alone (``segments/TAIL.csv``, or :meth:`table` after a selection of rows).
+
+        Args:
+            table: Rows with the columns of a table of segments.
+            aircraft_type: Type code of the aircraft, which a table of segments does not hold.
+            criteria: Trim criteria by which the segments were found.
+
+        Raises:
+            InputError: A column is missing, or a value is not what its column holds.
+        """
+        return cls(_native.Flights.from_segments(as_stream(table), aircraft_type, criteria))
+
+    def __add__(self, other: Segments) -> Segments:
+        return Segments(self._flights.and_([other._flights]))
+
+    def __len__(self) -> int:
+        return self._flights.count_segments()
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        return self._flights.segments().__arrow_c_stream__(requested_schema)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Segments: {len(self)} segments of {len(self._flights)} flights, {len(self.tails)} tails, "
+            f"{len(self._flights.refused())} refused>"
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled, (self.state(), self.criteria)
+
+
+def _unpickled(state: Table, criteria: str) -> Segments:
+    return Segments.from_state(state, criteria)
+
+
+def segment(
+    reports: Report | Sequence[Report] | Table,
+    *,
+    mapping: str | os.PathLike[str] | None = None,
+    criteria: str = PRESETS[0],
+    name: str = "table",
+    threads: int | None = None,
+) -> Segments:
+    """Finds the stabilised segments of reports or recordings; needs no model.
+
+    Args:
+        reports: Paths (files; folders, searched for .txt, .rpt and .gz, with a mapping .csv and .gz; globs), bytes, or pairs
+            of name and bytes; one or several. With a mapping also a table (Arrow C interface) whose rows are samples and
+            whose columns the mapping names.
+        mapping: Mapping file (RON), its text, or the name of a preset, for recordings of another layout.
+        criteria: Trim criteria that decide which samples are steady, one of :data:`PRESETS`. Source: Ghazi et al. 2020,
+            table 4, the first; Airbus, Getting to Grips with Aircraft Performance Monitoring, report <02>, the second.
+        name: What results call a table.
+        threads: Threads to use; all processors without it.
+
+    Returns:
+        The segments; reports that were refused are in :attr:`Segments.refused`.
+
+    Raises:
+        InputError: No report at all, unknown criteria, or a mapping that is none.
+        FileNotFoundError: A path, or a pattern, that matches nothing.
+    """
+    reading = _native.Source(criteria, None if mapping is None else _mapping(mapping))
+    if is_table(reports):
+        return Segments(reading.rows(name, as_stream(reports), threads))
+    several: Iterable[Any] = (
+        reports
+        if isinstance(reports, Iterable) and not isinstance(reports, (str, bytes, tuple))
+        else [reports]
+    )
+    paths: set[Path] = set()
+    contents: list[tuple[str, bytes]] = []
+    for one in several:
+        if isinstance(one, bytes):
+            contents.append((f"report {len(contents) + 1}", one))
+        elif isinstance(one, tuple):
+            contents.append(one)
+        else:
+            paths.update(_files(Path(one), _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS))
+    if not paths and not contents:
+        raise InputError("found no cruise report, expected one or more")
+    read = reading.files(sorted(paths), threads)
+    return Segments(read.and_([reading.contents(contents, threads)]) if contents else read)
+
+
+class Check:
+    """What is wrong with recorded data."""
+
+    def __init__(self, document: bytes, text: str) -> None:
+        self._document = document
+        self._text = text
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document of ``cruisefit check --json``."""
+        document: dict[str, Any] = json.loads(self._document)
+        return document
+
+    def to_json(self) -> bytes:
+        """The bytes of the same."""
+        return self._document
+
+    @property
+    def findings(self) -> list[dict[str, Any]]:
+        """Findings, the most serious first: code, severity, tail, flight, message, likely cause, and more."""
+        found: list[dict[str, Any]] = self.to_dict()["findings"]
+        return found
+
+    def __repr__(self) -> str:
+        return self._text
+
+
+def check(segments: Segments, models: Sequence[Model] = ()) -> Check:
+    """What is wrong with reports, before any modelling: units, frozen or wrong channels, copies, dates; with models also
+    against the book. For this, ``segments`` has to come from :func:`segment`: a table of segments has lost the samples.
+
+    Args:
+        segments: Flights of any tails.
+        models: Models to compare fuel flow with.
+
+    Raises:
+        InputError: Two models claim the same tail or type.
+    """
+    return Check(*_native.check([model._native for model in models], segments._flights))
+
+
+def _mapping(mapping: str | os.PathLike[str]) -> str:
+    """The text of a mapping file; a text and the name of a preset as they are."""
+    text = os.fspath(mapping)
+    if "(" in text and "\n" in text:
+        return text
+    path = Path(text)
+    return read_text(path) if path.suffix or path.exists() else text
+
+
+def _files(path: Path, endings: tuple[str, ...]) -> list[Path]:
+    if path.is_dir():
+        files = (file for file in path.rglob("*") if file.is_file())
+        return [file for file in files if file.suffix.lower() in endings]
+    if path.exists():
+        return [path]
+    if not any(character in str(path) for character in "*?["):
+        raise FileNotFoundError(f"{path}: no such file or folder")
+    matches = [Path(match) for match in glob.glob(str(path))]
+    if not matches:
+        raise FileNotFoundError(f"{path}: the pattern matches no file")
+    return [file for match in matches for file in _files(match, endings)]

@@ -1,0 +1,313 @@
+//! What tails learn from flights, and how far a model is off on them.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pipeline::adaptation::{self, StoredTail};
+use pipeline::evaluation::TailResult;
+use pipeline::file_names::file_stem_of_tail;
+use pipeline::folder_state::{self, FileState, State, TailState};
+use pipeline::learnt_flights::{self, KnownFlight};
+use pipeline::reading::RefusedReport;
+use pipeline::segments_table;
+use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
+use pyo3_arrow::PyTable;
+use rayon::prelude::*;
+
+use crate::failure::Failure;
+use crate::flights::{python_table, refused_rows};
+use crate::model::Model;
+use crate::work::run;
+
+/// A tail with what it has learnt.
+#[derive(Clone, Debug)]
+pub(crate) struct Tail {
+    /// Model, segments, figures.
+    pub(crate) result: TailResult,
+    /// The flights in its ledger; empty in an evaluation.
+    pub(crate) flights: Vec<KnownFlight>,
+    /// SHA-256 of what it was begun with; empty where that is not known.
+    pub(crate) begun: String,
+}
+
+impl Tail {
+    /// A tail that has learnt, with what this call added to it.
+    pub(crate) fn learnt(
+        stored: StoredTail,
+        begun: String,
+        flights_new: usize,
+        notes: Vec<String>,
+    ) -> Self {
+        let flights = stored.flights.clone();
+        Self { result: adaptation::result_of(stored, flights_new, notes), flights, begun }
+    }
+
+    /// What is learnt on.
+    pub(crate) fn stored(self) -> StoredTail {
+        let segments = self.result.rows.into_iter().map(|row| row.segment).collect();
+        StoredTail { model: self.result.model, segments, flights: self.flights }
+    }
+
+    fn segments_csv(&self) -> Vec<u8> {
+        let engines = self.result.model.initial.aircraft().engines();
+        segments_table::table(&self.result.rows, engines).to_csv()
+    }
+}
+
+/// Tails with what they have learnt or, of an evaluation, with their models as given.
+#[pyclass(frozen, module = "cruisefit._native")]
+#[derive(Clone, Debug)]
+pub(crate) struct Adapted {
+    pub(crate) tails: Arc<Vec<Tail>>,
+    refused: Arc<Vec<RefusedReport>>,
+    summary: Arc<Summary>,
+    /// Serious findings in the data, in words.
+    findings: Arc<String>,
+}
+
+/// What became of the reports of a call.
+#[derive(Debug, Default)]
+pub(crate) struct Reports {
+    pub(crate) read: usize,
+    pub(crate) already_known: usize,
+    pub(crate) refused: Vec<RefusedReport>,
+    /// Serious findings in the data, in words.
+    pub(crate) findings: String,
+}
+
+/// Model, `segments/TAIL.csv` and `flights/TAIL.csv`, and what the tail was begun with.
+type StoredFiles = (Py<Model>, PyBackedBytes, PyBackedBytes, String);
+
+/// Tail, what it was begun with, and path and SHA-256 of its model, segments and flights.
+type NamedFiles = (String, String, [(String, String); 3]);
+
+#[pymethods]
+impl Adapted {
+    /// Tails, in order.
+    fn tails(&self) -> Vec<String> {
+        self.tails.iter().map(|tail| tail.result.tail.clone()).collect()
+    }
+
+    /// A tail's model.
+    fn model(&self, tail: &str) -> PyResult<Model> {
+        let model = self.tail(tail)?.result.model.clone();
+        Ok(Model { file: Arc::new(model), name: PathBuf::from(tail) })
+    }
+
+    /// A tail's segments with what its initial (or given) table says of them.
+    fn segments(&self, tail: &str) -> PyResult<PyTable> {
+        let result = &self.tail(tail)?.result;
+        let engines = result.model.initial.aircraft().engines();
+        python_table(&segments_table::table(&result.rows, engines))
+    }
+
+    /// The same as the text of `segments/TAIL.csv`.
+    fn segments_csv(&self, tail: &str) -> PyResult<Vec<u8>> {
+        Ok(self.tail(tail)?.segments_csv())
+    }
+
+    /// The text of `flights/TAIL.csv`.
+    fn flights_csv(&self, tail: &str) -> PyResult<Vec<u8>> {
+        Ok(learnt_flights::to_csv(&self.tail(tail)?.flights))
+    }
+
+    /// SHA-256 of what the tail was begun with.
+    fn begun(&self, tail: &str) -> PyResult<String> {
+        Ok(self.tail(tail)?.begun.clone())
+    }
+
+    /// What is worth knowing about a tail's data.
+    fn notes(&self, tail: &str) -> PyResult<Vec<String>> {
+        Ok(self.tail(tail)?.result.notes.clone())
+    }
+
+    /// `summary.json`.
+    fn summary_json(&self) -> Vec<u8> {
+        self.summary.to_json()
+    }
+
+    /// The summary as a table for a person.
+    fn summary_text(&self) -> String {
+        self.summary.to_text()
+    }
+
+    /// Serious findings in the data, in words; empty where there are none.
+    fn findings(&self) -> &str {
+        &self.findings
+    }
+
+    /// `report.html` with the charts of all tails.
+    fn page(&self, title: &str) -> String {
+        let results: Vec<TailResult> = self.tails.iter().map(|tail| tail.result.clone()).collect();
+        page::report(&self.summary, &results, title)
+    }
+
+    /// Path below the folder and bytes of every file that `cruisefit adapt` writes into a new folder.
+    fn files(&self, py: Python<'_>, title: String) -> PyResult<Vec<(String, Vec<u8>)>> {
+        let adapted = self.clone();
+        run(py, None, move |_| adapted.all_files(&title))
+    }
+
+    /// What was refused.
+    fn refused(&self) -> Vec<(String, Option<usize>, Option<usize>, String)> {
+        refused_rows(&self.refused)
+    }
+
+    /// What tails had learnt when their files were made; the begin of their next night.
+    #[staticmethod]
+    fn stored(py: Python<'_>, tails: Vec<StoredFiles>) -> PyResult<Self> {
+        let tails: Vec<(Model, PyBackedBytes, PyBackedBytes, String)> = tails
+            .into_iter()
+            .map(|(model, segments, flights, begun)| {
+                (model.get().clone(), segments, flights, begun)
+            })
+            .collect();
+        run(py, None, move |_| {
+            let tails = tails
+                .into_par_iter()
+                .map(|(model, segments, flights, begun)| {
+                    stored_tail(&model, &segments, &flights, begun)
+                })
+                .collect::<Result<Vec<_>, Failure>>()?;
+            Ok(Self::new(tails, Reports::default()))
+        })
+    }
+
+    /// The files of each tail that the text of a `STATE.ron` names.
+    #[staticmethod]
+    fn state(text: &str) -> PyResult<Vec<NamedFiles>> {
+        let state = State::from_text(text)
+            .map_err(|error| Failure::input(error).in_file(folder_state::NAME))?;
+        let pair = |file: FileState| (file.file, file.sha256);
+        let tails = state.tails.into_iter().map(|(tail, of)| {
+            (tail, of.begun, [pair(of.model), pair(of.segments), pair(of.flights)])
+        });
+        Ok(tails.collect())
+    }
+}
+
+fn stored_tail(
+    model: &Model,
+    segments: &[u8],
+    flights: &[u8],
+    begun: String,
+) -> Result<Tail, Failure> {
+    let named = |error: &dyn std::fmt::Display| {
+        Failure::input(error).in_file(model.name.display().to_string())
+    };
+    let Some(learnt) = &model.file.learnt else {
+        return Err(named(&"has not learnt anything"));
+    };
+    let segments = segments_table::read(segments).map_err(|error| named(&error))?;
+    let flights = learnt_flights::read(&learnt.tail, flights).map_err(|error| named(&error))?;
+    if flights.iter().map(|flight| &flight.entry).ne(&learnt.ledger) {
+        return Err(named(&"found a table of other flights than its ledger, expected the same"));
+    }
+    let stored = StoredTail { model: model.file.as_ref().clone(), segments, flights };
+    Ok(Tail::learnt(stored, begun, 0, Vec::new()))
+}
+
+impl Adapted {
+    /// The result of a call.
+    pub(crate) fn new(mut tails: Vec<Tail>, mut reports: Reports) -> Self {
+        tails.sort_by(|one, other| one.result.tail.cmp(&other.result.tail));
+        reports.refused.sort_by(|one, other| one.path.cmp(&other.path));
+        let summary = Summary {
+            schema: SCHEMA,
+            reports: ReportsSummary {
+                read: reports.read,
+                already_known: reports.already_known,
+                refused: reports.refused.iter().map(RefusedSummary::from).collect(),
+            },
+            tails: tails.iter().map(|tail| tail.result.summary.clone()).collect(),
+        };
+        Self {
+            tails: Arc::new(tails),
+            refused: Arc::new(reports.refused),
+            summary: Arc::new(summary),
+            findings: Arc::new(reports.findings),
+        }
+    }
+
+    fn tail(&self, name: &str) -> Result<&Tail, Failure> {
+        let tails = || self.tails.iter().map(|tail| tail.result.tail.as_str());
+        self.tails.iter().find(|tail| tail.result.tail == name).ok_or_else(|| {
+            Failure::input(format!(
+                "found tail {name:?}, expected one of {:?}",
+                tails().collect::<Vec<_>>()
+            ))
+        })
+    }
+
+    fn all_files(&self, title: &str) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+        let of_tails = self
+            .tails
+            .par_iter()
+            .map(|tail| files_of_tail(tail).map(|files| (tail, files)))
+            .collect::<Result<Vec<_>, Failure>>()?;
+        let mut state = State { generation: 1, ..State::default() };
+        let mut files = Vec::new();
+        for (tail, of_tail) in of_tails {
+            let named = |place: usize| {
+                let (file, bytes): &(String, Vec<u8>) = &of_tail[place];
+                FileState { file: file.clone(), sha256: pipeline::checksum::sha256(bytes) }
+            };
+            let mut summary = tail.result.summary.clone();
+            summary.flights_new = 0;
+            let of_state = TailState {
+                begun: tail.begun.clone(),
+                model: named(0),
+                segments: named(1),
+                flights: named(2),
+                summary,
+            };
+            state.tails.insert(tail.result.tail.clone(), of_state);
+            files.extend(of_tail);
+        }
+        files.extend(self.pages(title));
+        files.push(("summary.json".to_owned(), self.summary.to_json()));
+        let text = state.to_text().map_err(Failure::internal)?;
+        files.push((folder_state::NAME.to_owned(), text.into_bytes()));
+        Ok(files)
+    }
+
+    /// One page with the charts of all tails, or of a large fleet a page per tail.
+    fn pages(&self, title: &str) -> Vec<(String, Vec<u8>)> {
+        const REPORT: &str = "report.html";
+        let names = self.tails.iter().map(|tail| tail.result.tail.as_str());
+        let anchors = page::Anchors::new(names);
+        let sections: Vec<page::Section> =
+            self.tails.par_iter().map(|tail| page::section(&tail.result, &anchors)).collect();
+        if self.tails.len() <= page::TAILS_ON_ONE_PAGE {
+            let sections: Vec<&page::Section> = sections.iter().collect();
+            let report = page::report_of_sections(&self.summary, &sections, title);
+            return vec![(REPORT.to_owned(), report.into_bytes())];
+        }
+        let page_of = |tail: &str| format!("pages/{}.html", file_stem_of_tail(tail));
+        // `%` of the file's name is a character of the name, not of the link.
+        let links = sections
+            .iter()
+            .map(|section| (section.tail.as_str(), page_of(&section.tail).replace('%', "%25")));
+        let report = page::fleet_report(&self.summary, &links.collect(), title);
+        let mut pages = vec![(REPORT.to_owned(), report.into_bytes())];
+        pages.extend(
+            sections
+                .iter()
+                .map(|section| (page_of(&section.tail), page::tail_page(section).into_bytes())),
+        );
+        pages
+    }
+}
+
+/// Model, segments and flights.
+fn files_of_tail(tail: &Tail) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let stem = file_stem_of_tail(&tail.result.tail);
+    let model = tail.result.model.to_text().map_err(Failure::internal)?;
+    Ok(vec![
+        (format!("models/{stem}.ron"), model.into_bytes()),
+        (format!("segments/{stem}.csv"), tail.segments_csv()),
+        (format!("flights/{stem}.csv"), learnt_flights::to_csv(&tail.flights)),
+    ])
+}

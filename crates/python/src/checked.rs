@@ -1,0 +1,162 @@
+//! What is wrong with recorded data, and what changed on tails over months: documents of the command line.
+
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use monitor::cost::CostFactors;
+use pipeline::check::CheckDocument;
+use pipeline::monitoring::{
+    AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail,
+    TailDeviations, TailDocument, read_events, tables,
+};
+use pipeline::plausibility;
+use pipeline::reading::FlightRead;
+use pipeline::summary::{RefusedSummary, ReportsSummary};
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
+use pyo3_arrow::PyTable;
+use rayon::prelude::*;
+
+use crate::adapted::{Adapted, Tail};
+use crate::failure::Failure;
+use crate::flights::{Flights, python_table};
+use crate::model::{Model, models_of};
+use crate::work::run;
+
+/// JSON and text of `cruisefit check`.
+#[pyfunction]
+pub(crate) fn check(
+    py: Python<'_>,
+    models: Vec<Py<Model>>,
+    flights: &Flights,
+) -> PyResult<(Vec<u8>, String)> {
+    let models = if models.is_empty() { None } else { Some(models_of(&models)?) };
+    let flights = flights.clone();
+    run(py, NonZeroUsize::new(1), move |_| {
+        let reading = &flights.reading;
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).ok();
+        let mut findings =
+            plausibility::findings(&reading.flights, now.map(|since| since.as_secs_f64()));
+        if let Some(models) = &models {
+            let book_of = |flight: &FlightRead| {
+                let model = models.for_flight(flight).ok()?;
+                Some((&model.initial, model.drag_coefficient()))
+            };
+            findings.extend(plausibility::against_book(&reading.flights, book_of));
+        }
+        let reports = ReportsSummary {
+            read: reading.flights.len(),
+            already_known: 0,
+            refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+        };
+        let document = CheckDocument::new(reports, findings);
+        Ok((document.to_json(), document.to_text()))
+    })
+}
+
+/// What changed on tails: the document of `cruisefit monitor`.
+#[pyclass(frozen, module = "cruisefit._native")]
+#[derive(Debug)]
+pub(crate) struct Monitored {
+    document: Arc<MonitorDocument>,
+}
+
+/// How tails are monitored, in the words of the Python files.
+#[derive(Debug, FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct MonitorAsked {
+    events: Option<PyBackedBytes>,
+    rules: Vec<String>,
+    co2_kg_per_kg: Option<f64>,
+    fuel_price: Option<f64>,
+    flights_per_year: Option<f64>,
+    basic_performance_factor_percent: Option<f64>,
+    quick: bool,
+    threads: Option<NonZeroUsize>,
+}
+
+/// Deviations, changes, events, fuel factors and costs of every tail that has learnt.
+#[pyfunction]
+pub(crate) fn monitor_tails(
+    py: Python<'_>,
+    adapted: &Adapted,
+    asked: MonitorAsked,
+) -> PyResult<Monitored> {
+    let tails = Arc::clone(&adapted.tails);
+    let document = run(py, asked.threads, move |caller| {
+        let events = match &asked.events {
+            Some(bytes) => {
+                read_events(bytes).map_err(|error| Failure::input(error).in_file("events"))?
+            }
+            None => Vec::new(),
+        };
+        let rules = asked.rules.iter().map(|rule| rule.parse().map_err(Failure::input));
+        let options = MonitorOptions {
+            cost: CostFactors {
+                co2_kg_per_kg: asked.co2_kg_per_kg,
+                price_per_kg: asked.fuel_price,
+                flights_per_year: asked.flights_per_year,
+            },
+            basic_performance_factor_percent: asked.basic_performance_factor_percent,
+            rules: rules.collect::<Result<Vec<_>, Failure>>()?,
+        };
+        let before = if asked.quick { BeforeLearning::LeaveOut } else { BeforeLearning::Rebuild };
+        let found = tails
+            .par_iter()
+            .map(|tail| {
+                caller.still_waits()?;
+                monitor_tail(tail, before, &events, &options)
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        let (mut documents, mut alerts) = (Vec::new(), Vec::new());
+        for (tail, fired) in found.into_iter().flatten() {
+            documents.push(tail);
+            alerts.extend(fired);
+        }
+        documents.sort_by(|one, other| one.tail.cmp(&other.tail));
+        alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
+        Ok(MonitorDocument::new(documents, alerts))
+    })?;
+    Ok(Monitored { document: Arc::new(document) })
+}
+
+fn monitor_tail(
+    tail: &Tail,
+    before: BeforeLearning,
+    events: &[Event],
+    options: &MonitorOptions,
+) -> Result<Option<(TailDocument, Vec<AlertDocument>)>, Failure> {
+    let result = &tail.result;
+    let segments: Vec<flight::Segment> =
+        result.rows.iter().map(|row| row.segment.clone()).collect();
+    let named =
+        |error: &dyn std::fmt::Display| Failure::input(format!("tail {}: {error}", result.tail));
+    let deviations =
+        TailDeviations::new(&result.model, &segments, before).map_err(|error| named(&error))?;
+    let aircraft_type = result.model.initial.aircraft().type_code();
+    let found = MonitoredTail::new((&result.tail, aircraft_type), &deviations, events)
+        .map_err(|error| named(&error))?;
+    Ok(found.map(|found| (found.document(options), found.alerts(options))))
+}
+
+#[pymethods]
+impl Monitored {
+    /// `monitor.json`.
+    fn json(&self) -> Vec<u8> {
+        self.document.to_json()
+    }
+
+    /// `monitor.html`.
+    fn page(&self) -> String {
+        page::monitoring(&self.document)
+    }
+
+    /// The tables of `cruisefit monitor`, by the names of their files.
+    fn tables(&self) -> PyResult<Vec<(String, PyTable)>> {
+        tables(&self.document)
+            .into_iter()
+            .map(|table| Ok((table.name.to_string(), python_table(&table.columns)?)))
+            .collect()
+    }
+}

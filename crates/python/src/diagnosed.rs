@@ -1,0 +1,162 @@
+//! Diagnoses: where models differ from flights and which effect they lack.
+
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+
+use ::diagnose::Options;
+use flight::effect::EffectId;
+use pipeline::diagnosed_tail::{DiagnosedTail, RunOptions};
+use pipeline::diagnosis_document::DiagnosisDocument;
+use pipeline::diagnosis_figures::DiagnosisFigures;
+use pipeline::diagnosis_groups::group;
+use pipeline::diagnosis_text;
+use pipeline::plausibility;
+use pipeline::reading::FlightRead;
+use pipeline::summary::{RefusedSummary, ReportsSummary};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::adapting::absurd_of;
+use crate::failure::Failure;
+use crate::flights::Flights;
+use crate::model::{Model, models_of};
+use crate::work::run;
+
+/// The diagnoses of a call.
+#[pyclass(frozen, module = "cruisefit._native")]
+#[derive(Clone, Debug)]
+pub(crate) struct Diagnosed {
+    diagnoses: Arc<Vec<DiagnosedTail>>,
+    figures: Arc<Vec<DiagnosisFigures>>,
+    reports: Arc<ReportsSummary>,
+    asked: RunOptions,
+    criteria: String,
+    /// Serious findings in the data, in words.
+    findings: String,
+}
+
+/// How flights are diagnosed, in the words of the Python files.
+#[derive(Debug, FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Asked {
+    effects: Vec<String>,
+    without: Vec<String>,
+    pool: bool,
+    table_only: bool,
+    allow_learnt: bool,
+    absurd: String,
+    threads: Option<NonZeroUsize>,
+}
+
+/// Diagnoses by tail, or of all tails of a type together.
+#[pyfunction]
+pub(crate) fn diagnose(
+    py: Python<'_>,
+    models: Vec<Py<Model>>,
+    flights: &Flights,
+    asked: Asked,
+) -> PyResult<Diagnosed> {
+    let options = Options {
+        effects: effects_of("effects", &asked.effects)?,
+        without: effects_of("without", &asked.without)?,
+        ..Options::default()
+    };
+    let absurd = absurd_of(&asked.absurd)?;
+    let threads = asked.threads;
+    let asked = RunOptions {
+        effects: asked.effects,
+        without: asked.without,
+        pool: asked.pool,
+        table_only: asked.table_only,
+        allow_learnt: asked.allow_learnt,
+    };
+    let models = models_of(&models)?;
+    let flights = flights.clone();
+    run(py, threads, move |caller| {
+        let mut reading = flights.distinct().clone();
+        let book_of = |flight: &FlightRead| {
+            let model = models.for_flight(flight).ok()?;
+            Some((&model.initial, model.drag_coefficient()))
+        };
+        let findings = plausibility::set_aside_absurd(&mut reading, book_of, absurd);
+        let groups = group(&models, &mut reading, &asked);
+        let found = groups
+            .par_iter()
+            .map(|group| {
+                caller.still_waits()?;
+                group.diagnose(&options, &asked).map_err(Failure::input)
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        let (diagnoses, figures): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
+        let reports = ReportsSummary {
+            read: groups.iter().map(|group| group.flights.len()).sum(),
+            already_known: 0,
+            refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+        };
+        drop(groups);
+        Ok(Diagnosed {
+            diagnoses: Arc::new(diagnoses),
+            figures: Arc::new(figures),
+            reports: Arc::new(reports),
+            asked,
+            criteria: flights.criteria.clone(),
+            findings,
+        })
+    })
+}
+
+/// The library: id, unit and perturbation of every effect that an aircraft of so many engines can have.
+#[pyfunction]
+pub(crate) fn effects(engines: usize) -> Vec<(String, String, String)> {
+    EffectId::library(engines.min(flight::MAXIMUM_ENGINES))
+        .iter()
+        .map(|effect| {
+            let entry = effect.entry();
+            (effect.to_string(), entry.unit.to_owned(), entry.perturbation.to_owned())
+        })
+        .collect()
+}
+
+#[pymethods]
+impl Diagnosed {
+    /// `diagnosis.json`.
+    fn json(&self) -> PyResult<String> {
+        let document = DiagnosisDocument::new(&self.asked, &self.reports, &self.diagnoses);
+        Ok(document.to_json().map_err(Failure::internal)?)
+    }
+
+    /// `diagnosis.html`.
+    fn page(&self) -> String {
+        let words = self.asked.in_words(&self.criteria);
+        page::diagnosis(&self.reports, &self.diagnoses, &self.figures, &words)
+    }
+
+    /// The lines that the command line prints, tail by tail.
+    fn lines(&self) -> Vec<(String, Vec<String>)> {
+        self.diagnoses.iter().map(|one| (one.tail.clone(), diagnosis_text::lines(one))).collect()
+    }
+
+    /// Serious findings in the data, in words; empty where there are none.
+    fn findings(&self) -> &str {
+        &self.findings
+    }
+}
+
+fn effects_of(argument: &str, names: &[String]) -> Result<Vec<EffectId>, Failure> {
+    names
+        .iter()
+        .map(|name| {
+            EffectId::from_name(name).ok_or_else(|| {
+                let known: Vec<String> = EffectId::library(flight::MAXIMUM_ENGINES)
+                    .iter()
+                    .map(ToString::to_string)
+                    .collect();
+                Failure::input(format!(
+                    "{argument}: found {name:?}, expected one of {}",
+                    known.join(", ")
+                ))
+            })
+        })
+        .collect()
+}

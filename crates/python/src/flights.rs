@@ -1,0 +1,291 @@
+//! Reports and recordings reduced to flights with their stabilised segments.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use arrow_array::RecordBatch;
+use pipeline::columns::Columns;
+use pipeline::distinct::distinct;
+use pipeline::flights_table;
+use pipeline::reading::{FileRead, FlightRead, FlightReader, Reading, RefusedReport};
+use pipeline::segments_table::{self, SegmentRow};
+use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
+use pyo3_arrow::PyTable;
+use pyo3_arrow::input::AnyRecordBatch;
+use rayon::prelude::*;
+use report::mapping::Mapping;
+use segmenter::TrimCriteria;
+
+use crate::failure::Failure;
+use crate::tables::{plain, to_batch, to_csv};
+use crate::work::{Caller, run};
+
+/// How reports are read: by which mapping and which trim criteria.
+#[pyclass(frozen, module = "cruisefit._native")]
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    mapping: Option<Mapping>,
+    criteria: TrimCriteria,
+    criteria_name: String,
+}
+
+/// Flights reduced to their segments, and what was refused.
+#[pyclass(frozen, module = "cruisefit._native")]
+#[derive(Clone, Debug)]
+pub(crate) struct Flights {
+    /// As read, copies among them.
+    pub(crate) reading: Arc<Reading>,
+    pub(crate) criteria: String,
+    /// Each flight once.
+    distinct: Arc<OnceLock<Reading>>,
+}
+
+/// Path, line, column and reason of a refusal.
+type RefusedRow = (String, Option<usize>, Option<usize>, String);
+
+#[pymethods]
+impl Source {
+    /// `mapping`: the text of a mapping file, or the name of a preset.
+    #[new]
+    fn new(criteria: String, mapping: Option<&str>) -> PyResult<Self> {
+        let found = TrimCriteria::preset(&criteria).ok_or_else(|| {
+            let known = TrimCriteria::PRESETS;
+            Failure::input(format!("criteria: found {criteria:?}, expected one of {known:?}"))
+        })?;
+        let mapping = mapping.map(mapping_of).transpose()?;
+        Ok(Self { mapping, criteria: found, criteria_name: criteria })
+    }
+
+    /// Reads files.
+    fn files(
+        &self,
+        py: Python<'_>,
+        paths: Vec<PathBuf>,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Flights> {
+        let reading = self.clone();
+        let read = run(py, threads, move |caller| {
+            read_all(caller, &paths, |path, reader| match std::fs::read(path) {
+                Ok(bytes) => reading.read_one(reader, path, &bytes),
+                Err(error) => (Vec::new(), vec![RefusedReport::whole(path.clone(), error)]),
+            })
+        })?;
+        Ok(self.flights(read))
+    }
+
+    /// Reads contents in memory under the names given.
+    fn contents(
+        &self,
+        py: Python<'_>,
+        reports: Vec<(PathBuf, PyBackedBytes)>,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Flights> {
+        let reading = self.clone();
+        let read = run(py, threads, move |caller| {
+            read_all(caller, &reports, |(name, bytes), reader| {
+                reading.read_one(reader, name, bytes)
+            })
+        })?;
+        Ok(self.flights(read))
+    }
+
+    /// Reads the rows of a recording; the mapping states which column is what.
+    fn rows(
+        &self,
+        py: Python<'_>,
+        name: PathBuf,
+        table: AnyRecordBatch,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Flights> {
+        if self.mapping.is_none() {
+            return Err(Failure::input("the rows of a recording need a mapping").into());
+        }
+        let batches = batches_of(table)?;
+        let reading = self.clone();
+        let read = run(py, threads, move |_| {
+            let text = to_csv(&plain(batches)?)?;
+            Ok(reading.read_one(&mut FlightReader::default(), &name, &text))
+        })?;
+        Ok(self.flights(vec![read]))
+    }
+}
+
+impl Source {
+    fn read_one(&self, reader: &mut FlightReader, path: &Path, bytes: &[u8]) -> FileRead {
+        reader.read(path, bytes, self.mapping.as_ref(), &self.criteria)
+    }
+
+    fn flights(&self, read: Vec<FileRead>) -> Flights {
+        let mut reading = Reading::default();
+        for (flights, refused) in read {
+            reading.flights.extend(flights);
+            reading.refused.extend(refused);
+        }
+        Flights::new(reading, self.criteria_name.clone())
+    }
+}
+
+/// One after the other in each thread, results in the order given.
+fn read_all<T: Sync>(
+    caller: &Caller,
+    reports: &[T],
+    one: impl Fn(&T, &mut FlightReader) -> FileRead + Sync,
+) -> Result<Vec<FileRead>, Failure> {
+    reports
+        .par_iter()
+        .map_init(FlightReader::default, |reader, report| {
+            caller.still_waits()?;
+            Ok(one(report, reader))
+        })
+        .collect()
+}
+
+fn mapping_of(text: &str) -> Result<Mapping, Failure> {
+    if let Some(preset) = Mapping::preset(text) {
+        return Ok(preset);
+    }
+    Mapping::from_ron(text).map_err(|error| Failure::input(crate::failure::chain(&error)))
+}
+
+/// The batches of a table in memory.
+pub(crate) fn batches_of(table: AnyRecordBatch) -> PyResult<Vec<RecordBatch>> {
+    Ok(table.into_table()?.into_inner().0)
+}
+
+/// Columns as a table that Python can take.
+pub(crate) fn python_table(columns: &Columns) -> PyResult<PyTable> {
+    let batch = to_batch(columns)?;
+    let schema = batch.schema();
+    PyTable::try_new(vec![batch], schema)
+}
+
+#[pymethods]
+impl Flights {
+    /// Flights and segments from the table that [`Self::state`] gave.
+    #[staticmethod]
+    fn from_state(py: Python<'_>, table: AnyRecordBatch, criteria: String) -> PyResult<Self> {
+        let batches = batches_of(table)?;
+        let flights = run(py, NonZeroUsize::new(1), move |_| {
+            let text = to_csv(&plain(batches)?)?;
+            flights_table::read(&text).map_err(Failure::input)
+        })?;
+        Ok(Self::new(Reading { flights, ..Reading::default() }, criteria))
+    }
+
+    /// Flights from a table of segments alone: a flight's content is then that of its segments.
+    #[staticmethod]
+    fn from_segments(
+        py: Python<'_>,
+        table: AnyRecordBatch,
+        aircraft_type: String,
+        criteria: String,
+    ) -> PyResult<Self> {
+        let batches = batches_of(table)?;
+        let flights = run(py, NonZeroUsize::new(1), move |_| {
+            let text = to_csv(&plain(batches)?)?;
+            let segments = segments_table::read(&text).map_err(Failure::input)?;
+            Ok(flights_table::from_segments(segments, &aircraft_type))
+        })?;
+        Ok(Self::new(Reading { flights, ..Reading::default() }, criteria))
+    }
+
+    /// These and others, in this order.
+    fn and_(&self, others: Vec<Py<Self>>) -> Self {
+        let mut all = self.reading.as_ref().clone();
+        for other in &others {
+            let other = &other.get().reading;
+            all.flights.extend(other.flights.iter().cloned());
+            all.refused.extend(other.refused.iter().cloned());
+        }
+        Self::new(all, self.criteria.clone())
+    }
+
+    /// The flights of some tails.
+    fn of_tails(&self, tails: Vec<String>) -> Self {
+        let of = |flight: &&FlightRead| tails.contains(&flight.reduced.identity.tail);
+        let flights = self.reading.flights.iter().filter(of).cloned().collect();
+        let refused = self.reading.refused.clone();
+        Self::new(Reading { flights, refused, copies: 0 }, self.criteria.clone())
+    }
+
+    /// Every tail once, in order.
+    fn tails(&self) -> Vec<String> {
+        let mut tails: Vec<String> =
+            self.reading.flights.iter().map(|f| f.reduced.identity.tail.clone()).collect();
+        tails.sort();
+        tails.dedup();
+        tails
+    }
+
+    /// The table of segments, in the order of flying.
+    fn segments(&self) -> PyResult<PyTable> {
+        python_table(&self.segments_columns())
+    }
+
+    /// The table of segments as `segment` writes it.
+    fn segments_csv(&self) -> Vec<u8> {
+        self.segments_columns().to_csv()
+    }
+
+    /// One row per flight, each once, without its segments.
+    fn table(&self) -> PyResult<PyTable> {
+        python_table(&flights_table::table(&self.distinct().flights))
+    }
+
+    /// One row per flight as read, with its segments: all that `from_state` needs.
+    fn state(&self) -> PyResult<PyTable> {
+        python_table(&flights_table::table_with_segments(&self.reading.flights))
+    }
+
+    /// What was refused: reports that cannot be read, and flights that contradict another one.
+    fn refused(&self) -> Vec<RefusedRow> {
+        refused_rows(&self.distinct().refused)
+    }
+
+    /// Trim criteria by which the segments were found.
+    #[getter]
+    fn criteria(&self) -> &str {
+        &self.criteria
+    }
+
+    fn __len__(&self) -> usize {
+        self.distinct().flights.len()
+    }
+
+    /// Number of segments of all flights.
+    fn count_segments(&self) -> usize {
+        self.distinct().flights.iter().map(|flight| flight.reduced.segments.len()).sum()
+    }
+}
+
+impl Flights {
+    fn new(reading: Reading, criteria: String) -> Self {
+        Self { reading: Arc::new(reading), criteria, distinct: Arc::default() }
+    }
+
+    /// Each flight once; what contradicts another one is refused.
+    pub(crate) fn distinct(&self) -> &Reading {
+        self.distinct.get_or_init(|| distinct(self.reading.as_ref().clone()))
+    }
+
+    fn segments_columns(&self) -> Columns {
+        let mut flights: Vec<&FlightRead> = self.distinct().flights.iter().collect();
+        flights.sort_by(|one, other| one.order(other));
+        let rows: Vec<SegmentRow> = flights
+            .into_iter()
+            .flat_map(|flight| &flight.reduced.segments)
+            .map(|segment| SegmentRow { segment: segment.clone(), evaluated: None })
+            .collect();
+        segments_table::table(&rows, segments_table::engines_of(&rows))
+    }
+}
+
+/// Refusals as Python takes them.
+pub(crate) fn refused_rows(refused: &[RefusedReport]) -> Vec<RefusedRow> {
+    refused
+        .iter()
+        .map(|one| (one.path.display().to_string(), one.line, one.column, one.reason.clone()))
+        .collect()
+}

@@ -1,0 +1,182 @@
+//! A model: its file's text in and out, predictions, figures.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use perf_model::{Aircraft, Guide};
+use pipeline::model_file::ModelFile;
+use pipeline::model_table;
+use pipeline::models::Models;
+use pipeline::prediction::Predictor;
+use pipeline::whole_model::Predicts;
+use pyo3::prelude::*;
+use pyo3_arrow::PyTable;
+use pyo3_arrow::input::AnyRecordBatch;
+
+use crate::failure::{Failure, chain};
+use crate::flights::{batches_of, python_table};
+use crate::points;
+use crate::tables::plain;
+use crate::work::run;
+
+/// A model file.
+#[pyclass(frozen, module = "cruisefit._native")]
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    pub(crate) file: Arc<ModelFile>,
+    /// What messages call it.
+    pub(crate) name: PathBuf,
+}
+
+type Prediction = (PyTable, Vec<(u64, String)>);
+
+#[pymethods]
+impl Model {
+    /// A model from the text of its file.
+    #[staticmethod]
+    fn from_text(py: Python<'_>, text: String, name: PathBuf) -> PyResult<Self> {
+        let shown = name.display().to_string();
+        let file = run(py, NonZeroUsize::new(1), move |_| {
+            ModelFile::from_text(&text).map_err(|error| match error.help() {
+                Some(help) => Failure::input(format!("{error} ({help})")).in_file(shown),
+                None => Failure::input(error).in_file(shown),
+            })
+        })?;
+        Ok(Self { file: Arc::new(file), name })
+    }
+
+    /// The initial model of an aircraft file and a guide, and what is worth knowing about it.
+    #[staticmethod]
+    fn initial(
+        py: Python<'_>,
+        aircraft: (String, String),
+        guide: (String, String),
+    ) -> PyResult<(Self, Vec<String>)> {
+        let (file, findings) = run(py, NonZeroUsize::new(1), move |_| {
+            let (aircraft_name, aircraft) = aircraft;
+            let (guide_name, guide) = guide;
+            let aircraft = Aircraft::from_ron(&aircraft).map_err(|error| {
+                Failure::input(format!("not an aircraft file: {error}")).in_file(aircraft_name)
+            })?;
+            let guide = Guide::from_csv(guide.as_bytes())
+                .map_err(|error| Failure::table(&error).in_file(guide_name.clone()))?;
+            let initial = perf_model::initial_model(&aircraft, &guide)
+                .map_err(|error| Failure::input(chain(&error)).in_file(guide_name))?;
+            let findings: Vec<String> =
+                initial.findings.iter().map(|finding| finding.message.clone()).collect();
+            Ok((ModelFile::from_initial(&initial, &guide), findings))
+        })?;
+        let name = PathBuf::from(file.initial.aircraft().type_code());
+        Ok((Self { file: Arc::new(file), name }, findings))
+    }
+
+    /// The file's text.
+    fn to_text(&self) -> PyResult<String> {
+        Ok(self.file.to_text().map_err(Failure::internal)?)
+    }
+
+    /// The table with its predictions, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`.
+    fn predict(
+        &self,
+        py: Python<'_>,
+        table: AnyRecordBatch,
+        predicts: &str,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Prediction> {
+        let predicts = predicts_of(predicts)?;
+        let schema = table.schema()?;
+        let batches = batches_of(table)?;
+        let file = Arc::clone(&self.file);
+        let (batches, refused) = run(py, threads, move |caller| {
+            let predictor = Predictor::new(&file, predicts).map_err(Failure::input)?;
+            points::predict(&predictor, &plain(batches)?, caller)
+        })?;
+        let schema = batches.first().map_or(schema, arrow_array::RecordBatch::schema);
+        Ok((PyTable::try_new(batches, schema)?, refused))
+    }
+
+    /// One row per node of the drag table.
+    fn table(&self) -> PyResult<PyTable> {
+        python_table(&model_table::table(&self.file))
+    }
+
+    /// The six-coefficient polynomial nearest to the drag table, with its covariance where the law provides one.
+    fn polynomial(&self) -> PyResult<PyTable> {
+        python_table(&model_table::polynomial(&self.file).map_err(Failure::input)?)
+    }
+
+    #[getter]
+    fn name(&self) -> String {
+        self.name.display().to_string()
+    }
+
+    #[getter]
+    fn tail(&self) -> Option<&str> {
+        self.file.tail()
+    }
+
+    #[getter]
+    fn aircraft_name(&self) -> &str {
+        self.file.initial.aircraft().name()
+    }
+
+    #[getter]
+    fn aircraft_type(&self) -> &str {
+        self.file.initial.aircraft().type_code()
+    }
+
+    #[getter]
+    fn engines(&self) -> usize {
+        self.file.initial.aircraft().engines()
+    }
+
+    /// The law by which the model has learnt; none for an initial model.
+    #[getter]
+    fn law(&self) -> Option<&'static str> {
+        self.file.learnt.as_ref().map(|learnt| learnt.law.name())
+    }
+
+    /// Number of flights in the ledger.
+    #[getter]
+    fn flights(&self) -> usize {
+        self.file.learnt.as_ref().map_or(0, |learnt| learnt.ledger.len())
+    }
+
+    /// Share of nodes ever adapted, or with at least one effective observation.
+    #[getter]
+    fn informed_nodes(&self) -> f64 {
+        self.file.informed_nodes()
+    }
+
+    /// Effects of applied diagnoses in words.
+    #[getter]
+    fn applied(&self) -> Option<String> {
+        self.file.note_of_effects()
+    }
+}
+
+/// `whole` or `table`.
+///
+/// # Errors
+/// Another word.
+pub(crate) fn predicts_of(word: &str) -> Result<Predicts, Failure> {
+    match word {
+        "whole" => Ok(Predicts::WholeModel),
+        "table" => Ok(Predicts::TableOnly),
+        other => Err(Failure::input(format!("found {other:?}, expected \"whole\" or \"table\""))),
+    }
+}
+
+/// The models of a call.
+///
+/// # Errors
+/// Two models that claim the same tail or type.
+pub(crate) fn models_of(models: &[Py<Model>]) -> Result<Models, Failure> {
+    let models = models.iter().map(|model| {
+        let model = model.get();
+        (model.name.clone(), model.file.as_ref().clone())
+    });
+    Models::new(models.collect())
+        .map_err(|same| Failure::input(&same).in_file(same.path.display().to_string()))
+}

@@ -1,0 +1,164 @@
+"""The border between Python and Rust: errors with their place, threads, forks, signals, memory, pickles."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import multiprocessing
+import os
+import pickle
+import resource
+import signal
+import threading
+import time
+
+import pyarrow as pa
+import pytest
+from conftest import FIXTURES
+
+import cruisefit
+
+POINTS = {"mass_kg": [14000.0], "pressure_altitude_ft": [41000.0], "mach": [0.8]}
+REPORT = sorted((FIXTURES / "ghazi-2020" / "reports").rglob("*.txt"))[0]
+
+
+def test_an_error_has_its_place(initial, tmp_path):
+    with pytest.raises(cruisefit.InputError) as caught:
+        initial.predict(pa.table({**POINTS, "mach": [8.0]}))
+    error = caught.value
+    assert (error.line, error.column) == (1, "mach")
+    assert (error.found, error.expected) == ('"8"', "0.1..=0.99 Mach (Mach number)")
+    assert isinstance(error, ValueError) and isinstance(error, cruisefit.CruisefitError)
+    assert pickle.loads(pickle.dumps(error)).__dict__ == error.__dict__
+
+    with pytest.raises(cruisefit.InputError, match="unknown column"):
+        initial.predict(pa.table({**POINTS, "altitude": [1.0]}))
+    guide = tmp_path / "guide.csv"
+    guide.write_text("weight_lb,pressure_altitude_ft,true_airspeed_kt,fuel_flow_lb_h\n30000,43000,470,x\n")
+    with pytest.raises(cruisefit.InputError) as caught:
+        cruisefit.Model.initial(FIXTURES / "ghazi-2020" / "AIRCRAFT.ron", guide)
+    assert (caught.value.file, caught.value.line, caught.value.column) == (str(guide), 2, "fuel_flow_lb_h")
+    assert caught.value.found == '"x"'
+
+
+def test_a_damaged_model_is_refused(initial):
+    damaged = initial.to_text().replace("type_code", "type_kode", 1)
+    with pytest.raises(cruisefit.InputError, match="checksum") as caught:
+        cruisefit.Model.from_text(damaged, "T-001.ron")
+    assert caught.value.file == "T-001.ron"
+
+
+def test_a_refused_report_has_its_place():
+    text = REPORT.read_text().splitlines()
+    text[-1] = text[-1].replace(text[-1].split()[1], "abc", 1)
+    segments = cruisefit.segment([("bad.txt", "\n".join(text).encode()), REPORT])
+    (refused,) = segments.refused
+    assert (refused.path, refused.line) == ("bad.txt", len(text))
+    assert refused.found == '"abc"' and refused.expected is not None
+    assert str(refused).startswith(f"bad.txt:{len(text)}:")
+    assert len(segments) > 0
+
+
+@pytest.mark.parametrize("junk", [b"", b"\0", b"\x1f\x8b\x08junk", b"CRUISE-REPORT 1\n" * 3, "ü".encode("latin-1")])
+def test_junk_is_refused_not_raised(junk):
+    segments = cruisefit.segment(junk)
+    assert len(segments) == 0 and len(segments.refused) == 1
+
+
+def test_wrong_arguments():
+    with pytest.raises(FileNotFoundError):
+        cruisefit.segment("nowhere.txt")
+    with pytest.raises(cruisefit.InputError, match="criteria"):
+        cruisefit.segment(REPORT, criteria="mine")
+    with pytest.raises(TypeError):
+        cruisefit.Segments.from_table(3, "C750")
+
+
+def test_threads_of_python_at_once(initial):
+    points = pa.table({name: values * 1000 for name, values in POINTS.items()})
+    expected = initial.predict(points)
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        for predicted in pool.map(lambda _: initial.predict(points), range(16)):
+            assert predicted.equals(expected)
+
+
+def test_the_lock_is_released_while_it_works(initial):
+    points = pa.table({name: values * 300_000 for name, values in POINTS.items()})
+    turns, done = 0, threading.Event()
+
+    def work():
+        initial.predict(points, threads=1)
+        done.set()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    while not done.is_set():
+        turns += 1
+        time.sleep(0.001)
+    thread.join()
+    assert turns > 3
+
+
+def _in_child(text):
+    model = cruisefit.Model.from_text(text)
+    return len(cruisefit.segment(REPORT)), pa.table(model.predict(POINTS)).num_rows
+
+
+def test_a_fork_after_use(initial, segments):
+    initial.predict(POINTS)
+    context = multiprocessing.get_context("fork")
+    with context.Pool(2) as pool:
+        results = pool.map_async(_in_child, [initial.to_text()] * 4).get(timeout=60)
+    assert results == [results[0]] * 4 and results[0][1] == 1
+
+
+def test_ctrl_c_ends_a_call(initial):
+    points = pa.table({name: pa.array(values * 8_000_000) for name, values in POINTS.items()})
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        while True:  # however fast the machine is
+            initial.predict(points, threads=1)
+    assert initial.predict(POINTS).num_rows == 1
+
+
+def test_memory_is_flat_after_a_thousand_calls(initial):
+    points = pa.table({name: values * 1000 for name, values in POINTS.items()})
+    content = REPORT.read_bytes()
+
+    def calls(number):
+        for _ in range(number):
+            initial.predict(points, threads=1)
+            cruisefit.segment(content, threads=1)
+
+    def held_kb():
+        with open("/proc/self/statm") as statm:
+            return int(statm.read().split()[1]) * resource.getpagesize() // 1024
+
+    calls(200)
+    before = held_kb()
+    calls(1000)
+    grown = held_kb() - before
+    print(f"grown by {grown} kB in 1,000 calls")
+    assert grown < 8_000
+
+
+def test_pickles(initial, segments):
+    assert pickle.loads(pickle.dumps(initial)).to_text() == initial.to_text()
+    assert pickle.loads(pickle.dumps(segments)).to_csv() == segments.to_csv()
+    adapted = initial.adapt(segments)
+    again = pickle.loads(pickle.dumps(adapted))
+    assert {t: m.to_text() for t, m in again.models.items()} == {
+        t: m.to_text() for t, m in adapted.models.items()
+    }
+
+
+def test_results_show_themselves(initial, segments):
+    adapted = initial.adapt(segments)
+    page = adapted._repr_html_()
+    assert page.startswith("<iframe srcdoc=") and "&lt;svg" in page
+    assert "segments" in repr(segments) and "Citation" in repr(initial)
+    diagnosis = initial.diagnose(segments)
+    assert "<iframe" in diagnosis._repr_html_()
+    tail = diagnosis.diagnoses[0]
+    assert diagnosis[tail.tail] is not None and tail.verdict.advice
+    assert tail.causes == sorted(tail.causes, key=lambda cause: -cause.probability)

@@ -1,0 +1,168 @@
+"""A fleet on Spark gives what one machine gives, to the bit; a poisoned report costs its row."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+
+import pytest
+from conftest import FIXTURES
+
+import cruisefit
+
+pyspark = pytest.importorskip("pyspark")
+if shutil.which("java") is None:
+    pytest.skip("no Java", allow_module_level=True)
+
+from pyspark.sql import SparkSession  # noqa: E402
+
+import cruisefit.spark  # noqa: E402
+
+PLAN = """(
+    seed: 20261122,
+    aircraft: Preset(citation_x),
+    tails: [
+        (tail: "T-1", flights: Designed((flights: 7))),
+        (tail: "T-2", flights: Designed((flights: 3))),
+        (tail: "T-3", flights: Designed((flights: 5))),
+    ],
+)
+"""
+
+
+@pytest.fixture(scope="module")
+def session():
+    os.environ["PYSPARK_PYTHON"] = os.environ["PYSPARK_DRIVER_PYTHON"] = sys.executable
+    # CRUISEFIT_SPARK=local[2] where two executors of their own are too many.
+    master = os.environ.get("CRUISEFIT_SPARK", "local-cluster[2,1,1024]")
+    session = (
+        SparkSession.builder.master(master)
+        .config("spark.ui.enabled", "false")
+        .config("spark.sql.shuffle.partitions", "3")
+        .config("spark.driver.memory", "1g")
+        .config("spark.executor.memory", "1g")
+        .getOrCreate()
+    )
+    session.sparkContext.setLogLevel("ERROR")
+    yield session
+    session.stop()
+
+
+@pytest.fixture(scope="module")
+def reports():
+    return cruisefit.simulate(PLAN).reports
+
+
+@pytest.fixture(scope="module")
+def model():
+    folder = FIXTURES / "ghazi-2020"
+    return cruisefit.Model.initial(folder / "AIRCRAFT.ron", folder / "guide.csv")
+
+
+@pytest.fixture(scope="module")
+def flights(session, reports):
+    poisoned = [("zz-cut.txt", reports[0][1][:3000]), ("zz-junk", b"\0\1"), ("zz-null", None)]
+    frame = session.createDataFrame(reports + poisoned, "name string, content binary").repartition(4)
+    return cruisefit.spark.flights(frame, report="content", path="name").cache()
+
+
+@pytest.fixture(scope="module")
+def adapted(flights, model):
+    return cruisefit.spark.adapt(flights, [model]).cache()
+
+
+def test_a_poisoned_report_costs_its_row(flights, reports):
+    refused = {row.path: row for row in cruisefit.spark.refused(flights).collect()}
+    assert set(refused) == {"zz-cut.txt", "zz-junk", "zz-null"}
+    alone = cruisefit.segment([("zz-cut.txt", reports[0][1][:3000])]).refused[0]
+    row = refused["zz-cut.txt"]
+    assert (row.refused, row.refused_line, row.refused_column) == (alone.reason, alone.line, alone.column)
+    assert flights.where("refused is null").count() == len(reports)
+
+
+def test_segments_are_those_of_one_machine(flights, reports):
+    alone = cruisefit.segment(reports).table().to_pylist()
+    rows = [row.asDict() for row in cruisefit.spark.segment(flights).collect()]
+    key = lambda row: (row["tail"], row["start"], row["flight"], row["time_s"])  # noqa: E731
+    assert len(rows) == len(alone)
+    for ours, theirs in zip(sorted(rows, key=key), sorted(alone, key=key), strict=True):
+        assert {name: ours[name] for name in theirs} == theirs
+
+
+def test_models_are_those_of_one_machine(adapted, model, reports):
+    alone = model.adapt(cruisefit.segment(reports))
+    rows = {row.tail: row for row in adapted.collect()}
+    assert sorted(rows) == alone.tails
+    for tail, row in rows.items():
+        assert row.error is None and row.flights == row.flights_new
+        assert row.model == alone.model(tail).to_text()
+        assert row.segments_csv.encode() == alone.segments_csv(tail)
+
+
+def test_nights_and_parquet(session, model, reports, tmp_path):
+    """Two nights, the state between them in Parquet: what the same nights give on one machine."""
+    names = sorted(name for name, _ in reports)
+    nights = [[r for r in reports if r[0] in set(names[k::2])] for k in range(2)]
+    frame = lambda rows: cruisefit.spark.flights(  # noqa: E731
+        session.createDataFrame(rows, "name string, content binary"), report="content", path="name"
+    )
+    cruisefit.spark.adapt(frame(nights[0]), [model]).write.parquet(str(tmp_path / "night"))
+    begun = session.read.parquet(str(tmp_path / "night"))
+    rows = cruisefit.spark.adapt(frame(nights[1] + nights[0][:1]), [model], begun=begun).collect()
+    one = model.adapt(cruisefit.segment(nights[0]))
+    alone = cruisefit.adapt(cruisefit.segment(nights[1]), [model], begun=one)
+    assert {row.tail: row.model for row in rows} == {t: m.to_text() for t, m in alone.models.items()}
+    assert sum(json.loads(row.summary)["reports"]["already_known"] for row in rows) == 1
+
+
+def test_parts_are_added_up(flights, adapted, model):
+    """In parts nothing is learnt but the table, and sums differ in their last digits."""
+    rows = {row.tail: row for row in cruisefit.spark.adapt(flights, [model], parts=2).collect()}
+    whole = {row.tail: cruisefit.Model.from_text(row.model) for row in adapted.collect()}
+    assert sorted(rows) == sorted(whole)
+    for tail, row in rows.items():
+        assert row.error is None, row.error
+        ours = cruisefit.Model.from_text(row.model)
+        assert ours.flights_learnt == whole[tail].flights_learnt
+        drag = [model.table().column("drag_coefficient").to_pylist() for model in (ours, whole[tail])]
+        # Outlier weights of a part are found without the other part: the project's measured difference is 7.6e-4.
+        assert max(abs(a / b - 1) for a, b in zip(*drag, strict=True)) < 1e-2
+
+
+def test_evaluation_and_diagnosis(flights, adapted, model, reports):
+    segments = cruisefit.segment(reports)
+    own = cruisefit.adapt(segments, [model])
+    evaluated = {row.tail: row for row in cruisefit.spark.evaluate(flights, adapted).collect()}
+    found = cruisefit.spark.diagnose(flights, adapted, allow_learnt=True).collect()
+    assert len(found) == len(evaluated) == 3
+    for row in found:
+        of_tail = segments.of_tails(row.tail)
+        alone = own.model(row.tail).diagnose(of_tail, allow_learnt=True)
+        assert row.error is None and row.diagnosis == alone.to_json()
+        assert row.verdict == alone.diagnoses[0].verdict.kind
+        evaluation = own.model(row.tail).evaluate(of_tail)
+        assert evaluated[row.tail].summary.encode() == evaluation.summary_json()
+
+
+def test_monitoring(flights, adapted, model, reports):
+    own = cruisefit.adapt(cruisefit.segment(reports), [model])
+    for row in cruisefit.spark.monitor(adapted, quick=True).collect():
+        document = own.monitor(quick=True).to_dict()
+        (tail,) = [one for one in document["tails"] if one["tail"] == row.tail]
+        assert row.error is None and json.loads(row.monitor)["tails"] == [tail]
+
+
+def test_a_fleet_at_once(flights, model):
+    rows = cruisefit.spark.fleet(flights, [model], later=flights).collect()
+    assert len(rows) == 3
+    # The later flights are the learnt ones: each is refused by name.
+    assert all(row.model and "ledger" in row.later_error for row in rows)
+
+
+def test_a_tail_without_a_model_costs_its_row(flights):
+    folder = FIXTURES / "global5000"
+    other = cruisefit.Model.initial(folder / "AIRCRAFT.ron", folder / "guide.csv")
+    rows = cruisefit.spark.adapt(flights, [other]).collect()
+    assert len(rows) == 3 and all("aircraft type" in row.error for row in rows)

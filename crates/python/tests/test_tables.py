@@ -1,0 +1,140 @@
+"""Tables of pyarrow, polars, pandas and DuckDB, in and out; random points across types."""
+
+from __future__ import annotations
+
+import datetime
+
+import duckdb
+import numpy as np
+import pandas as pd
+import polars as pl
+import pyarrow as pa
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import cruisefit
+
+ROWS = {
+    "mass_kg": [15000.0, 14000.0, 13500.5],
+    "pressure_altitude_ft": [43000.0, 41000.0, 39000.0],
+    "mach": [0.82, 0.80, 0.78],
+    "isa_deviation_c": [0.0, -5.0, 10.25],
+}
+
+
+def fuel_flow(table) -> list[float]:
+    return pa.table(table).column("fuel_flow_kg_s").to_pylist()
+
+
+def test_every_library_gives_the_same_and_gets_its_own(initial):
+    arrow = pa.table(ROWS)
+    expected = fuel_flow(initial.predict(arrow))
+    assert all(value > 0 for value in expected)
+    for given_table, kind in [
+        (arrow, pa.Table),
+        (pl.DataFrame(ROWS), pl.DataFrame),
+        (pd.DataFrame(ROWS), pd.DataFrame),
+        (duckdb.sql("select * from arrow"), pa.Table),
+        (arrow.to_batches()[0], pa.Table),
+        (ROWS, pa.Table),
+    ]:
+        predicted = initial.predict(given_table)
+        assert isinstance(predicted, kind)
+        back = predicted if kind is not pd.DataFrame else pa.Table.from_pandas(predicted)
+        assert fuel_flow(back) == expected
+
+
+def test_columns_that_come_in_go_out_without_a_copy(initial):
+    table = pa.table(ROWS)
+    predicted = initial.predict(table)
+    for name in table.column_names:
+        ours, theirs = predicted.column(name).chunk(0), table.column(name).chunk(0)
+        assert ours.buffers()[1].address == theirs.buffers()[1].address
+
+
+def test_a_table_cut_anywhere_is_the_same_table(initial):
+    table = pa.table(ROWS)
+    cut = pa.concat_tables([table.slice(0, 1), table.slice(1)])
+    assert initial.predict(cut).combine_chunks().equals(initial.predict(table).combine_chunks())
+    assert fuel_flow(initial.predict(table.slice(1))) == fuel_flow(initial.predict(table))[1:]
+
+
+def test_a_measured_fuel_flow_and_a_date(initial):
+    table = pa.table({**ROWS, "fuel_flow_kg_h": [700.0, None, 650.0],
+                      "date": [datetime.date(2018, 5, 20)] * 3})
+    predicted = initial.predict(table)
+    flow = fuel_flow(predicted)[0] * 3600
+    error = predicted.column("error_percent").to_pylist()
+    assert error[0] == pytest.approx(100 * (700 - flow) / 700, rel=1e-12)
+    assert error[1] is None
+
+
+def test_points_outside_the_table_are_null_and_said(initial):
+    table = pa.table({**ROWS, "mach": [0.82, 0.2, 0.78]})
+    with pytest.warns(cruisefit.PredictionWarning, match="1 points have no prediction; the first is row 2"):
+        predicted = initial.predict(table)
+    assert [value is None for value in fuel_flow(predicted)] == [False, True, False]
+    with pytest.raises(cruisefit.InputError) as caught:
+        initial.predict(table, strict=True)
+    assert caught.value.line == 2
+
+
+TYPES = {
+    "float64": lambda v: pa.array(v, pa.float64()),
+    "text": lambda v: pa.array([repr(x) for x in v], pa.string()),
+    "large_text": lambda v: pa.array([repr(x) for x in v], pa.large_string()),
+    "dictionary": lambda v: pa.array([repr(x) for x in v]).dictionary_encode(),
+}
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    rows=st.lists(
+        st.tuples(
+            st.floats(10_000, 16_000), st.floats(33_000, 45_000), st.floats(0.65, 0.88),
+            st.floats(-20, 20),
+        ),
+        min_size=1,
+        max_size=8,
+    ),
+    types=st.lists(st.sampled_from(sorted(TYPES)), min_size=4, max_size=4),
+    cut=st.integers(0, 8),
+)
+@pytest.mark.filterwarnings("ignore::cruisefit.PredictionWarning")
+def test_random_points_across_types(initial, rows, types, cut):
+    columns = list(zip(*rows))
+    plain = pa.table({name: pa.array(values, pa.float64()) for name, values in zip(ROWS, columns)})
+    typed = pa.table({name: TYPES[kind](values) for name, kind, values in zip(ROWS, types, columns)})
+    typed = pa.concat_tables([typed.slice(0, cut), typed.slice(cut)])
+    assert fuel_flow(initial.predict(typed)) == fuel_flow(initial.predict(plain))
+
+
+def test_whole_numbers_and_single_precision(initial):
+    whole = pa.table({"mass_kg": pa.array([15000], pa.int32()),
+                      "pressure_altitude_ft": pa.array([43000], pa.uint16()),
+                      "mach": pa.array(np.array([0.8125], np.float32)), "anti_ice": [True]})
+    plain = pa.table({"mass_kg": [15000.0], "pressure_altitude_ft": [43000.0], "mach": [0.8125]})
+    assert fuel_flow(initial.predict(whole)) == fuel_flow(initial.predict(plain))
+
+
+def test_segments_are_a_table(segments):
+    rows = pa.table(segments)
+    assert rows.num_rows == len(segments) > 0
+    assert isinstance(segments.table(pl.DataFrame()), pl.DataFrame)
+    assert duckdb.sql("select count(*) from rows").fetchall() == [(len(segments),)]
+    again = cruisefit.Segments.from_table(rows, "C750")
+    assert again.to_csv() == segments.to_csv()
+
+
+def test_a_recording_as_rows_of_a_table():
+    """The rows of a CSV recording, read by polars, are the recording."""
+    from conftest import FIXTURES
+
+    path = FIXTURES / "a320-traffic" / "fuelflow_a320.csv.gz"
+    criteria = "airbus-report-02"  # the default finds no steady segment in it
+    by_file = cruisefit.segment(path, mapping="traffic-a320", criteria=criteria)
+    rows = pl.read_csv(path, infer_schema=False)
+    by_rows = cruisefit.segment(rows, mapping="traffic-a320", criteria=criteria, name=path.name)
+    assert len(by_file) > 0
+    assert by_rows.to_csv() == by_file.to_csv()
