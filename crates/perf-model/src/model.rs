@@ -10,9 +10,11 @@ use units::OutOfDomain;
 use crate::Aircraft;
 use crate::state::SegmentState;
 
+mod level_flight;
 mod observe;
 mod predict;
 
+pub use level_flight::LevelFlights;
 pub use observe::ObserveError;
 pub use predict::{PredictError, Prediction, SegmentPrediction};
 

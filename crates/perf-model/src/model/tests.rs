@@ -8,7 +8,7 @@ use crate::FlightPoint;
 use crate::variance::tests::segment;
 
 /// The synthetic Citation X whose outputs are published: static TSFC 1.0242e-5 kg/(N s), exponent 1.25, 48.96 m².
-fn citation_x() -> PerformanceModel {
+pub(super) fn citation_x() -> PerformanceModel {
     let aircraft = Aircraft::from_ron(
         r#"(
             name: "Synthetic Citation X", type_code: "C750", engines: 2, wing_area_m2: 48.96,
