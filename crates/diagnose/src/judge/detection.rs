@@ -3,11 +3,11 @@
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
 use crate::judge::gap::{is_large, is_vague};
-use crate::judge::posterior::Posterior;
+use crate::judge::posterior::{Posterior, id_of};
 use crate::judge::table::TableFinding;
 use crate::judge::verdict::{beside, closed, credit};
 use crate::output::Gap;
-use crate::search::analyse::Analysis;
+use crate::search::analyse::{Analysis, DRAG_OF_A_TABLE};
 use crate::search::outside::Outside;
 use crate::search::system::Problem;
 use crate::thresholds::{
@@ -72,9 +72,10 @@ pub(crate) fn detect(
         || smooth_term > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
     let taught = system.data.predictor.baseline.is_some();
-    // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights, or is itself more
-    // probable than not: names are weighed beside those errors, functions without a name beside a part of them.
-    let is_named = top
+    // What a taught model announces of its own errors is no gap, unless a name shrinks it on unseen flights, or is more probable
+    // than not and nothing that a table in error could look like.
+    let beyond_table = top.filter(|top| !DRAG_OF_A_TABLE.contains(&id_of(library, top.effect)));
+    let is_named = beyond_table
         .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
     let announced = taught && !input.exceeds_uncertainty;
     let own_error = announced && !is_named && !closes_more_than(0.0, unseen);

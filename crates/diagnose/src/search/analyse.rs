@@ -102,7 +102,7 @@ fn smooth_out(problem: Problem<'_>, levels: &[(Level, &Reduced)]) -> Vec<Smoothe
 }
 
 /// What only drag over lift coefficient and Mach number can be.
-const DRAG_OF_A_TABLE: [EffectId; 4] =
+pub(crate) const DRAG_OF_A_TABLE: [EffectId; 4] =
     [EffectId::DragFactor, EffectId::ZeroLiftDrag, EffectId::InducedDrag, EffectId::WaveDrag];
 
 /// Of every effect, whether a guide's table that is off could hold it as well: it can be seen where the table is right, and no

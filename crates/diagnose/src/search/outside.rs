@@ -102,17 +102,9 @@ pub(crate) fn compete(
     let inside = ln_sum(named);
     let outside = ln_sum(smooth_terms.iter().map(|a| a.ln));
     let probability = 1.0 / (1.0 + (inside - outside).clamp(-500.0, 500.0).exp());
-    // The variable: weights summed over sets and amplitudes.
-    let blocks = &system.design.blocks;
-    let best = (0..blocks.len())
-        .map(|block| {
-            let ln = ln_sum(smooth_terms.iter().filter(|a| a.block == block).map(|a| a.ln));
-            (ln, block)
-        })
-        .max_by(|a, b| a.0.total_cmp(&b.0));
     Outside {
         probability: if probability.is_finite() { probability } else { 0.0 },
-        variable: best.map(|(_, block)| (blocks[block].variable, blocks[block].acts)),
+        variable: leading_variable(system, &smooth_terms),
         beside: (0..library.effects.len())
             .map(Companion::Effect)
             .chain([Companion::Scatter])
@@ -124,6 +116,17 @@ pub(crate) fn compete(
             .filter(|(_, probability)| *probability > 0.0)
             .collect(),
     }
+}
+
+/// The variable of the most probable smooth term, and how it acts: weights summed over sets and amplitudes.
+fn leading_variable(
+    system: &WhitenedSystem<'_>,
+    smooth_terms: &[WithSmoothTerm],
+) -> Option<(Variable, Acts)> {
+    let blocks = &system.design.blocks;
+    let ln = |block: usize| ln_sum(smooth_terms.iter().filter(|a| a.block == block).map(|a| a.ln));
+    let best = (0..blocks.len()).map(|block| (ln(block), block)).max_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(_, block)| (blocks[block].variable, blocks[block].acts))
 }
 
 /// Models with a named effect and without scatter between flights, most probable first.
