@@ -333,7 +333,7 @@ fn flights_of(
     tail: &str,
     entry: &TailState,
 ) -> Result<Vec<KnownFlight>, Failure> {
-    let bytes = state::bytes_of(&state, folder, &entry.flights)?;
+    let bytes = state::bytes_of(state, folder, &entry.flights)?;
     learnt_flights::read(tail, &bytes)
         .map_err(|reason| Failure::bad_file(&folder.join(&entry.flights.file), reason))
 }
