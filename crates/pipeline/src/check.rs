@@ -144,7 +144,9 @@ fn fingerprint(report: &Report) -> u64 {
         &columns.ground_speed_m_s,
         &columns.true_airspeed_m_s,
     ] {
-        series.iter().for_each(|value| hasher.write_u64(value.to_bits()));
+        for value in series {
+            hasher.write_u64(value.to_bits());
+        }
     }
     for sample in 0..columns.time_s.len() {
         hasher.write_u64(columns.fuel_flow.total_kg_s(sample).to_bits());

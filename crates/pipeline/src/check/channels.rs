@@ -167,7 +167,10 @@ impl Channel<'_> {
     /// Steps that are large for the channel. At least four values have to be met: two levels of a cruise are no step.
     fn coarse(&self) -> Option<Draft> {
         let (limit, words) = self.coarse;
-        let is_fine = |pair: &[f64]| pair[0] != pair[1] && (pair[1] - pair[0]).abs() < limit;
+        let is_fine = |pair: &[f64]| {
+            let step = (pair[1] - pair[0]).abs();
+            step > 0.0 && step < limit
+        };
         // Nearly every channel has such neighbours in time, and is not sorted then: the smallest step is smaller still.
         if self.values.len() < FEWEST_SAMPLES || self.values.windows(2).any(is_fine) {
             return None;
