@@ -58,6 +58,9 @@ pub struct BaselineRecord {
     pub(crate) standing_effects: Vec<f64>,
     /// What each of them was worth in ln fuel flow, on average over the flights that it was learnt from.
     pub(crate) standing_means: Vec<f64>,
+    /// Variance of what each of them was worth in ln fuel flow; none in files of older programs.
+    #[serde(default)]
+    pub(crate) standing_variances: Vec<f64>,
     /// Segments that counted less than half.
     pub(crate) outliers: usize,
     /// Factor on stated standard deviations, by flights that were left out.
@@ -249,12 +252,6 @@ impl Baseline {
     /// Prior variance of one smooth function.
     pub(crate) fn smooth_variance(&self) -> f64 {
         (REMAINDER_SMOOTH_DEVIATION * self.parts.scales[0]).powi(2)
-    }
-
-    /// Share of that variance that the terms do not hold, over all functions.
-    pub(crate) fn unflown_share(&self, response: &Response) -> f64 {
-        let mut terms = vec![0.0; self.remainder_terms()];
-        self.write_remainder(response, &mut terms) / self.smooth_variance()
     }
 
     /// Writes the loadings of the drag table at the state that was flown.

@@ -1,7 +1,12 @@
 //! How a baseline is learnt from the residuals of clean flights.
 
+mod channel;
+mod dials;
+mod evidence;
 mod fit;
 mod learn;
-mod moments;
 mod outliers;
+mod posterior;
+mod rows;
+mod sums;
 mod unseen;

@@ -6,6 +6,7 @@ pub(crate) mod eliminate;
 pub(crate) mod gram;
 pub(crate) mod linear;
 pub(crate) mod mixture;
+pub(crate) mod pivoted;
 pub(crate) mod quantile;
 pub(crate) mod random;
 pub(crate) mod vector_ln_exp;

@@ -132,9 +132,6 @@ deciding_numbers! {
         CLOSURE_FOLDS: usize = 5, "folds",
             "folds of flights on which closure is measured",
             OurChoice "Four fifths of the flights still find what all of them find, and each is judged once.";
-        LEARNING_FOLDS: usize = 10, "folds",
-            "folds of flights by which a baseline learns the scatter between flights",
-            OurChoice "Sums over flights make a fold cheap, so that more can be kept to learn from.";
         RESAMPLES: usize = 1000, "",
             "resamples of flights behind an interval",
             OurChoice "An end of a 95 % interval rests on 25 of them. 64 of 66 intervals of closure held the truth.";

@@ -11,7 +11,7 @@ use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
 use crate::statistics::{ErrorStatistics, NORMAL_95};
 use crate::summary::{ErrorsSummary, TailSummary};
-use crate::whole_model::{Predicts, SegmentHeld};
+use crate::whole_model::{Predicts, SegmentHeld, error_percent_of};
 
 /// One tail at the end of a run.
 #[derive(Clone, Debug)]
@@ -137,8 +137,7 @@ pub fn evaluate_model(
             let by_table = by_table?;
             let error = by_table
                 .error_percent
-                .and_then(|_| SegmentHeld::new(&whole, &model.initial, segment))
-                .map(|held| held.error_percent());
+                .and_then(|_| error_percent_of(&whole, &model.initial, segment));
             let share = |error: f64| 1.0 - error / 100.0;
             Some(Evaluated {
                 predicted_fuel_flow_kg_s: error

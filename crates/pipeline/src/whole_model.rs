@@ -65,11 +65,6 @@ impl SegmentHeld {
         let gap = corrected.fuel_flow_total_kg_s.ln() - prediction.ln_fuel_flow;
         gap.is_finite().then_some(Self { gap, prediction })
     }
-
-    /// 100 (recorded − predicted)/recorded fuel flow.
-    pub fn error_percent(&self) -> f64 {
-        -100.0 * (-self.gap).exp_m1()
-    }
 }
 
 /// Why there is no belief about an initial drag table.
@@ -84,6 +79,23 @@ pub enum BeliefError {
     /// The covariance is invalid.
     #[error(transparent)]
     Covariance(#[from] TableUncertaintyError),
+}
+
+/// 100 (recorded − predicted)/recorded fuel flow of a segment, without an interval; `None` outside its table or a domain.
+pub fn error_percent_of(
+    whole: &WholeModel<'_>,
+    model: &ExtendedModel,
+    segment: &Segment,
+) -> Option<f64> {
+    let predicted = whole.ln_fuel_flow_of_segment(segment).ok()?;
+    let corrected = model.corrected_means(&segment.means).ok()?;
+    let gap = corrected.fuel_flow_total_kg_s.ln() - predicted;
+    gap.is_finite().then(|| error_percent(gap))
+}
+
+/// Of ln(recorded) − ln(predicted).
+fn error_percent(gap: f64) -> f64 {
+    -100.0 * (-gap).exp_m1()
 }
 
 /// What law `bayes` believes of an initial drag table before it has learnt anything, over the nodes that flights visit.

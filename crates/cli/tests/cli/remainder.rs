@@ -99,9 +99,8 @@ fn flights_that_no_model_has_seen_are_predicted_better_with_the_remainder() {
         100.0 * covered
     );
     assert!(errors(&with) < 0.93 * errors(&table));
-    // Before, intervals were so wide that all points lay inside. Of thirty flights with errors of their own the share inside a
-    // 95 % interval scatters by some 2.6 points from fleet to fleet: twice that is allowed on this one.
-    assert!(covered > 0.898, "{covered}");
+    // 95 % less what thirty flights, whose segments err together, leave open by chance.
+    assert!(covered > 0.93, "{covered}");
 }
 
 #[test]

@@ -10,15 +10,22 @@ use faer::Mat;
 /// Share of a knot's variance that keeps the kernel's matrix positive definite in doubles.
 const JITTER: f64 = 1e-6;
 
+/// Growth of what is not known beyond the flown values, per cube of lengths. Arithmetic: an integrated Wiener process whose
+/// slope changes over one length by as much as that of the squared exponential kernel, 2/length², has q = 2/length³, and its
+/// variance beyond the last value is q·distance³/3.
+const GROWTH_BEYOND: f64 = 2.0 / 3.0;
+
 /// A smooth function of one variable: a slope, and a Gaussian process with a squared exponential kernel on equally distant
-/// knots over what was flown. Beyond the knots the process fades to 0, and what it does not know there grows to its prior.
+/// knots over what was flown. Beyond the knots the process fades to 0 and the slope goes on; what is not known there grows as
+/// beyond the data of a cubic smoothing spline, with the cube of the distance.
 ///
 /// ```text
 /// f(v) = s·z + φ(z)ᵀc,  φ = L⁻¹k(Z, z),  LLᵀ = k(Z, Z),  k(a, b) = exp(−(a − b)²/2),  z = (v − middle)/length   [baseline.1]
 /// ```
 ///
 /// # Source
-/// Rasmussen and Williams 2006, sections 4.2 and 8.3 (subset of regressors).
+/// Rasmussen and Williams 2006, sections 4.2 and 8.3 (subset of regressors); beyond the data Wahba 1978,
+/// doi 10.1111/j.2517-6161.1978.tb01050.x (the spline as an integrated Wiener process).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SmoothText", into = "SmoothText")]
 pub(crate) struct Smooth {
@@ -110,7 +117,15 @@ impl Smooth {
             into[1 + k] = sum / self.root[(k, k)];
             held += into[1 + k] * into[1 + k];
         }
-        (1.0 - held).max(0.0)
+        let beyond = self.beyond_flown(z);
+        (1.0 - held).max(GROWTH_BEYOND * beyond * beyond * beyond).max(0.0)
+    }
+
+    /// Lengths beyond the last value that was flown; 0 between the first and the last.
+    fn beyond_flown(&self, z: f64) -> f64 {
+        let (first, last) = self.text.knots;
+        let distance = (last - first) / (self.text.count - 1) as f64;
+        (first + distance - z).max(z - last + distance).max(0.0)
     }
 
     fn knot(&self, k: usize) -> f64 {
@@ -170,8 +185,9 @@ mod tests {
                 assert!((found - expected).abs() < 0.01, "{a} {b}: {found} {expected}");
             }
         }
-        // Far away nothing is held, and the slope goes on.
-        assert!(smooth.write(0.95, &mut one) > 0.99);
+        // Far away nothing is held, the slope goes on, and what is not known grows: by hand, 0.1 beyond 0.847 are 5.15 lengths,
+        // ⅔·5.15³ = 91.06.
+        assert!((smooth.write(0.95, &mut one) - 91.06).abs() < 0.01);
         assert!((one[0] - (0.95 - 0.7735) / 0.02).abs() < 1e-9);
     }
 

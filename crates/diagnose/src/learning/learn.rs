@@ -7,8 +7,6 @@ use faer::Mat;
 use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, BaselineRecord};
-use crate::learning::moments::GramSums;
-use crate::learning::outliers::Weights;
 use crate::library::Library;
 use crate::priors::REMAINDER_LENGTHS;
 use crate::residuals::reference::Reference;
@@ -29,11 +27,6 @@ const VARIABLES: [Variable; 6] = [
     Variable::IsaDeviation,
     Variable::Mass,
 ];
-/// How often the scatter between flights is raised. Our choice: raising it changes the fit that it is judged by, so that once is
-/// not enough.
-const INFLATIONS: usize = 3;
-/// How often outliers are weighed. Our choice: a bound on time; clean flights need one.
-const MOST_WEIGHINGS: usize = 5;
 
 impl Baseline {
     /// Learns from clean flights against a model and a drag table. `table` is what is believed of that table before the
@@ -65,23 +58,7 @@ impl Baseline {
             });
         }
         let mut baseline = Self::prior(&data, &references, table);
-        let mut weights = Weights::before(&data);
-        for _ in 0..MOST_WEIGHINGS {
-            let moments = GramSums::new(&baseline, &data, &weights);
-            baseline.tune(&moments);
-            for _ in 0..INFLATIONS {
-                baseline.inflate(&moments);
-            }
-            baseline.fit(&data, &moments)?;
-            baseline.parts.outliers = weights.outliers();
-            baseline.parts.interval_factor = baseline.factor_by_unseen(&moments);
-            let next = weights.after(&data, &baseline);
-            let settled = next.settled(&weights);
-            weights = next;
-            if settled {
-                break;
-            }
-        }
+        baseline.fit(&data)?;
         Ok(baseline)
     }
 
@@ -109,6 +86,7 @@ impl Baseline {
             factor: Vec::new(),
             standing_effects: vec![0.0; STANDING_EFFECTS.len()],
             standing_means: vec![0.0; STANDING_EFFECTS.len()],
+            standing_variances: Vec::new(),
             outliers: 0,
             interval_factor: 1.0,
             rms: f64::NAN,

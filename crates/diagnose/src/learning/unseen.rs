@@ -1,59 +1,144 @@
-//! What a baseline's predictions do on flights that did not teach them: the empirical null of its intervals.
+//! What a channel's predictions do on flights that did not teach them: the empirical null of scatter and of intervals.
 //!
-//! The flights are learnt again without each fold in turn, and the fold's segments are predicted. How far they lie off, over how
-//! far they were announced to lie off, is kept as one factor on every standard deviation that the model states:
-//!
-//! ```text
-//! factor = q/1.96,  q the 95 % quantile of |error|/announced over unseen segments              [baseline.2]
-//! ```
-//!
-//! With few segments a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary segments had been seen in
-//! addition.
+//! Every flight is predicted from all others, in closed form, and judged by its mean (how much flights differ) and value by
+//! value (how far stated intervals reach).
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
-use crate::baseline::Baseline;
-use crate::learning::moments::{GramSums, LeftOutSegment};
+use crate::learning::dials::Dials;
+use crate::learning::evidence::Solved;
+use crate::learning::outliers::Weights;
+use crate::learning::rows::ChannelRows;
+use crate::math::cholesky::Cholesky;
 use crate::math::quantile::{QuantileType, quantile};
-use crate::thresholds::{FACTOR_LIMITS, LEARNING_FOLDS, ORDINARY_SEGMENTS};
+use crate::priors::DIAL_LIMITS;
+use crate::thresholds::{FACTOR_LIMITS, ORDINARY_SEGMENTS};
 
 /// The 97.5 % quantile of the normal distribution.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-impl Baseline {
-    /// The factor on stated standard deviations by flights left out; 1 where there are none.
-    pub(super) fn factor_by_unseen(&self, moments: &GramSums) -> f64 {
-        let mut distances = Vec::new();
-        let all = moments.gram(&self.parts.noise, None);
-        for fold in 0..LEARNING_FOLDS {
-            let judged: Vec<&LeftOutSegment> =
-                moments.segments.iter().filter(|segment| segment.fold == fold).collect();
-            if judged.is_empty() {
-                continue;
-            }
-            let others = &all - moments.gram(&self.parts.noise, Some(fold));
-            let Some((solution, factor)) = self.posterior(&others) else { return 1.0 };
-            let width = self.factor.nrows();
-            let mut loadings = Mat::from_fn(width, judged.len(), |k, at| judged[at].loading[k]);
-            let expected = loadings.transpose() * &solution;
-            factor.solve_lower(&mut loadings);
-            let (within, between) = (self.parts.noise.within[0], self.parts.noise.between[0]);
-            for (k, segment) in judged.into_iter().enumerate() {
-                let of_model: f64 = loadings.col_as_slice(k).iter().map(|l| l * l).sum();
-                let announced = of_model
-                    + self.unflown(segment)
-                    + within * within * segment.within
-                    + between * between * segment.between;
-                distances.push((segment.residual - expected[(k, 0)]).abs() / announced.sqrt());
-            }
-        }
-        factor_of(distances)
-    }
+/// A flight predicted from all others.
+pub(super) struct Unseen {
+    /// Mean error, and the model's part and the segments' part of its variance.
+    mean: f64,
+    of_model: f64,
+    within: f64,
+    /// The same of what a flight has in common, at a factor of 1.
+    between: f64,
+    /// Errors of its values, each with the model's variance and the row that it is of.
+    values: Vec<(f64, f64, usize)>,
+}
 
-    fn unflown(&self, segment: &LeftOutSegment) -> f64 {
-        let drag = segment.drag_over_thrust * segment.drag_over_thrust;
-        segment.unflown_share * self.smooth_variance() + drag * segment.drag_left_out
+/// Flights predicted from all others at given noise.
+///
+/// ```text
+/// e = C Q⁻¹(y − Zα),   cov e = C Q⁻¹ C,   Q = C − Z V Zᵀ                                        [baseline.2]
+/// ```
+///
+/// α and V are the posterior from all flights, C the noise of the flight, Z its rows.
+///
+/// # Source
+/// Sundararajan and Keerthi 2001, doi 10.1162/08997660151134343, here of whole flights.
+pub(super) fn unseen(
+    rows: &ChannelRows,
+    weights: &Weights,
+    solved: &Solved,
+    dials: &Dials,
+) -> Vec<Unseen> {
+    let errors = rows.left(&solved.mean);
+    let left = Mat::from_fn(errors.len(), 1, |row, _| errors[row]);
+    let spread = rows.learnt_columns() * &solved.root;
+    let (within, between) = (dials.within.powi(2), dials.between.powi(2));
+    let groups = rows.groups.iter().enumerate();
+    groups
+        .filter_map(|(group, range)| {
+            let count = range.len();
+            let spread: MatRef<'_, f64> = spread.subrows(range.start, count);
+            let known = spread * spread.transpose();
+            let noise = Mat::from_fn(count, count, |i, j| {
+                let (a, b) = (range.start + i, range.start + j);
+                let own = if i == j { rows.variance[a] / weights.rows[a] } else { 0.0 };
+                let common: f64 = rows.loadings.iter().map(|u| u[a] * u[b]).sum();
+                within * own + between * common / weights.groups[group]
+            });
+            let factor = Cholesky::new(&(&noise - known))?;
+            let mut solved = left.subrows(range.start, count).to_owned();
+            factor.solve(&mut solved);
+            let errors = &noise * &solved;
+            let mut turned = noise.clone();
+            factor.solve_lower(&mut turned);
+            let of_model = turned.transpose() * &turned - &noise;
+            let total = |matrix: &Mat<f64>| -> f64 {
+                (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).map(|at| matrix[at]).sum()
+            };
+            let square = (count * count) as f64;
+            let own: f64 = range.clone().map(|row| rows.variance[row]).sum();
+            let common: f64 = rows
+                .loadings
+                .iter()
+                .map(|u| (u[range.clone()].iter().sum::<f64>() / count as f64).powi(2))
+                .sum();
+            Some(Unseen {
+                mean: (0..count).map(|k| errors[(k, 0)]).sum::<f64>() / count as f64,
+                of_model: total(&of_model).max(0.0) / square,
+                within: within * own / square,
+                between: common,
+                values: (0..count)
+                    .map(|k| (errors[(k, 0)], of_model[(k, k)].max(0.0), range.start + k))
+                    .collect(),
+            })
+        })
+        .collect()
+}
+
+/// The factor between flights at which the mean errors of unseen flights are as large as announced, if that is more.
+///
+/// ```text
+/// Σ_f e_f²/(v_model + v_within + b² v_between) = number of flights
+/// ```
+pub(super) fn scatter_by_unseen(unseen: &[Unseen], now: f64) -> f64 {
+    let excess = |factor: f64| {
+        let of = |flight: &Unseen| {
+            let announced = flight.of_model + flight.within + factor * factor * flight.between;
+            // An absurd flight counts as a distant one.
+            (flight.mean * flight.mean / announced).min(9.0)
+        };
+        unseen.iter().map(of).sum::<f64>() - unseen.len() as f64
+    };
+    if unseen.is_empty() || excess(now) <= 0.0 {
+        return now;
     }
+    let (mut below, mut above) = (now, DIAL_LIMITS.1);
+    for _ in 0..60 {
+        let middle = f64::midpoint(below, above);
+        if excess(middle) > 0.0 { below = middle } else { above = middle }
+    }
+    above
+}
+
+/// The factor on stated standard deviations by unseen values; 1 where there are none. `left_out` is the variance of the model
+/// at a row that no column holds.
+///
+/// ```text
+/// factor = q/1.96,  q the 95 % quantile of |error|/announced over unseen values
+/// ```
+///
+/// With few values a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary ones had been seen in addition.
+pub(super) fn factor_by_unseen(
+    rows: &ChannelRows,
+    unseen: &[Unseen],
+    dials: &Dials,
+    left_out: impl Fn(usize) -> f64,
+) -> f64 {
+    let (within, between) = (dials.within.powi(2), dials.between.powi(2));
+    let values = unseen.iter().flat_map(|flight| &flight.values);
+    let distances = values
+        .map(|&(error, of_model, row)| {
+            let noise = within * rows.variance[row] + between * rows.common_variance(row);
+            error.abs() / (of_model + noise + left_out(row)).sqrt()
+        })
+        .collect();
+    factor_of(distances)
 }
 
 fn factor_of(mut distances: Vec<f64>) -> f64 {

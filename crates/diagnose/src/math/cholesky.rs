@@ -32,6 +32,11 @@ impl Cholesky {
     /// A⁻¹·B in place.
     pub(crate) fn solve(&self, right: &mut Mat<f64>) {
         self.solve_lower(right);
+        self.solve_upper(right);
+    }
+
+    /// L⁻ᵀ·B in place.
+    pub(crate) fn solve_upper(&self, right: &mut Mat<f64>) {
         solve_upper_triangular_in_place(self.lower.transpose(), right.as_mut(), Par::Seq);
     }
 
@@ -75,36 +80,6 @@ pub(crate) fn solve_small_lower<const N: usize>(
         solved[row] = (values[row] - inner) / factor[row][row];
     }
     solved
-}
-
-/// Factors `inner` = `LLᵀ` in place and turns the columns of `into` from `at` on, as many as `inner` has, into themselves times
-/// `L⁻ᵀ`; returns `ln|inner|`. For matrices of the form 1 + UᵀC⁻¹U, whose pivots are not below 1. Both steps go column by
-/// column together: a factor by faer would sum in another order.
-pub(crate) fn factor_and_project(inner: &mut Mat<f64>, into: &mut Mat<f64>, at: usize) -> f64 {
-    let rank = inner.nrows();
-    let mut ln_determinant = 0.0;
-    for column in 0..rank {
-        for k in 0..column {
-            let by = inner[(column, k)];
-            for row in column..rank {
-                let left = inner[(row, k)] * by;
-                inner[(row, column)] -= left;
-            }
-            for row in 0..into.nrows() {
-                let left = into[(row, at + k)] * by;
-                into[(row, at + column)] -= left;
-            }
-        }
-        let pivot = inner[(column, column)].max(1.0).sqrt();
-        ln_determinant += 2.0 * pivot.ln();
-        for row in column..rank {
-            inner[(row, column)] /= pivot;
-        }
-        for row in 0..into.nrows() {
-            into[(row, at + column)] /= pivot;
-        }
-    }
-    ln_determinant
 }
 
 #[cfg(test)]

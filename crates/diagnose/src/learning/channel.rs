@@ -1,0 +1,90 @@
+//! One channel learnt: outlier weights, sizes of noise and remainder, posterior.
+
+use faer::Mat;
+
+use crate::learning::dials::Dials;
+use crate::learning::evidence::Evidence;
+use crate::learning::outliers::Weights;
+use crate::learning::posterior::{ChannelPosterior, prior_parts};
+use crate::learning::rows::ChannelRows;
+use crate::learning::sums::ChannelSums;
+use crate::learning::unseen::{Unseen, scatter_by_unseen, unseen};
+use crate::math::pivoted::{Pivoted, pivoted};
+
+/// How often the scatter between flights is raised. Our choice: raising it changes the fit that it is judged by, so that once is
+/// not enough.
+const INFLATIONS: usize = 3;
+/// How often outliers are weighed. Our choice: a bound on time; clean flights need one.
+const MOST_WEIGHINGS: usize = 5;
+/// Growth of the scatter below which it is not raised again. Our choice: noise need not be known better.
+const SETTLED_SCATTER: f64 = 1.02;
+/// Steps of the search in ln of a factor, before outliers are weighed and after. Our choice: a factor of two, down to 6 %.
+const FIRST_STEPS: [f64; 3] = [0.7, 0.35, 0.15];
+const STEPS: [f64; 2] = [0.15, 0.06];
+/// Noise within flights at which columns are chosen, over that of the aircraft file. Our choice: about the least that is ever
+/// found, where the most columns can be told apart.
+const QUIET: f64 = 0.2;
+/// Information that may be left out of a column there, in prior standard deviations squared: 2 % of the posterior's.
+const NEGLIGIBLE: f64 = 0.02;
+
+/// What a channel's rows came to.
+pub(super) struct LearntChannel {
+    pub(super) posterior: ChannelPosterior,
+    pub(super) weights: Weights,
+    /// Every flight predicted from all others.
+    pub(super) unseen: Vec<Unseen>,
+    /// What is left of every value.
+    pub(super) left: Vec<f64>,
+}
+
+/// Learns a channel. `groups` are the scales of its columns: 0 none, 1 and 2 those of [`Dials::scales`]. `None` where matrices
+/// are not positive definite.
+pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<LearntChannel> {
+    let mut weights = Weights::before(rows);
+    // Few columns hold all others, whatever the weights: from here on they alone are looked at.
+    let reduction = reduction(&ChannelSums::new(rows, &Weights::of_one(rows)), groups.len());
+    let prior = prior_parts(&reduction, groups);
+    let reduced = rows.only(&reduction.pivots);
+    let mut dials = Dials::usual();
+    for weighing in 1.. {
+        let sums = ChannelSums::new(&reduced, &weights);
+        let mut evidence = Evidence::new(&sums, &prior);
+        dials = evidence.likeliest(dials, if weighing == 1 { &FIRST_STEPS } else { &STEPS });
+        let left = reduced.left(&evidence.solved(&dials)?.mean);
+        let next = weights.after(&reduced, &left, &dials);
+        if next.settled(&weights) || weighing == MOST_WEIGHINGS {
+            let unseen = raise_scatter(&reduced, &weights, &mut evidence, &mut dials)?;
+            let points = evidence.averaged(dials);
+            let posterior = ChannelPosterior::averaged(&mut evidence, &points, &reduction, groups)?;
+            return Some(LearntChannel { posterior, weights, unseen, left });
+        }
+        weights = next;
+    }
+    None
+}
+
+/// Raises the scatter between flights to what unseen flights show, and returns those.
+fn raise_scatter(
+    rows: &ChannelRows,
+    weights: &Weights,
+    evidence: &mut Evidence<'_>,
+    dials: &mut Dials,
+) -> Option<Vec<Unseen>> {
+    let mut others = Vec::new();
+    for _ in 0..INFLATIONS {
+        others = unseen(rows, weights, &evidence.solved(dials)?, dials);
+        let between = scatter_by_unseen(&others, dials.between);
+        let settled = between < SETTLED_SCATTER * dials.between;
+        dials.between = between;
+        if settled {
+            break;
+        }
+    }
+    Some(others)
+}
+
+/// Few columns in which all others can be written.
+fn reduction(sums: &ChannelSums, width: usize) -> Pivoted {
+    let quiet = Mat::from_fn(width, width, |i, j| sums.own()[(i, j)] / (QUIET * QUIET));
+    pivoted(&quiet, width, NEGLIGIBLE)
+}

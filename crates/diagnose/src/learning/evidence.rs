@@ -1,0 +1,284 @@
+//! How large noise and remainder are: the marginal likelihood of one channel over a few factors, its largest value, and the
+//! points over which the posterior is averaged.
+//!
+//! Flights say these sizes within some tens of per cent only. The likeliest sizes alone would make every interval too narrow,
+//! so that the posterior is averaged over what the flights leave open.
+
+use faer::Mat;
+
+use crate::learning::dials::{Dials, MOST_DIALS};
+use crate::learning::sums::ChannelSums;
+use crate::math::cholesky::Cholesky;
+use crate::priors::{REMAINDER_SCALE_LN_DEVIATION, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION};
+
+/// Gain of ln likelihood that is not looked for. Our choice: a fifth of a standard deviation of a factor.
+const WORTH_A_LOOK: f64 = 0.02;
+/// Step of the curvature at the largest likelihood. Our choice: wide enough to feel the slope of the sides.
+const CURVATURE_STEP: f64 = 0.25;
+/// Most of what flights may leave open of a factor, in ln. Our choice: as wide as the belief before them.
+const WIDEST: f64 = 1.0;
+
+/// One of the points that the posterior is averaged over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weighted {
+    pub(super) dials: Dials,
+    pub(super) weight: f64,
+}
+
+/// The marginal likelihood of a channel.
+pub(super) struct Evidence<'a> {
+    sums: &'a ChannelSums,
+    /// Prior covariances of the columns: the one that stays, and those that scales multiply.
+    prior: &'a [Mat<f64>],
+    /// The Gram matrix formed last, with Σ ln(1 + ρ²λ), and its ratio.
+    gram: Option<(f64, Mat<f64>, f64)>,
+    /// The prior precision formed last, with `ln|K|`, and its scales.
+    precision: Option<([f64; 2], Mat<f64>, f64)>,
+}
+
+/// Posterior of the columns at one point: mean, and a root of the covariance.
+pub(super) struct Solved {
+    pub(super) mean: Mat<f64>,
+    pub(super) root: Mat<f64>,
+}
+
+impl<'a> Evidence<'a> {
+    pub(super) const fn new(sums: &'a ChannelSums, prior: &'a [Mat<f64>]) -> Self {
+        Self { sums, prior, gram: None, precision: None }
+    }
+
+    /// Factors that this channel has.
+    fn dimensions(&self) -> usize {
+        1 + self.prior.len()
+    }
+
+    /// ln of the marginal likelihood and of the prior of the factors, up to a constant.
+    ///
+    /// ```text
+    /// −½ Σ_f ln|C_f| − ½ ln|K| − ½ ln|K⁻¹ + G| − ½ (y² − gᵀ(K⁻¹ + G)⁻¹g),   K the prior covariance     [diagnosis.17]
+    /// ```
+    fn ln_evidence(&mut self, dials: &Dials) -> f64 {
+        if !dials.is_allowed() {
+            return f64::NEG_INFINITY;
+        }
+        let square = dials.within * dials.within;
+        let Some(factor) = self.factor(dials) else { return f64::NEG_INFINITY };
+        let (Some((_, gram, ln_common)), Some((_, _, ln_prior))) = (&self.gram, &self.precision)
+        else {
+            return f64::NEG_INFINITY;
+        };
+        let width = gram.nrows() - 1;
+        let mut projected = right_side(gram);
+        factor.solve_lower(&mut projected);
+        let explained: f64 = projected.col_as_slice(0).iter().map(|value| value * value).sum();
+        let left = (gram[(width, width)] - explained / square) / square;
+        let ln_noise = self.sums.values as f64 * square.ln() + ln_common;
+        let likelihood = -0.5 * (ln_noise + ln_prior + factor.ln_determinant() + left);
+        likelihood + self.ln_prior(dials)
+    }
+
+    /// Cholesky factor of the posterior precision K⁻¹ + G/w²; Gram matrix and prior are then at hand.
+    fn factor(&mut self, dials: &Dials) -> Option<Cholesky> {
+        let ratio = dials.ratio();
+        if self.gram.as_ref().is_none_or(|(at, ..)| at.to_bits() != ratio.to_bits()) {
+            let (gram, ln_common) = self.sums.gram(ratio);
+            self.gram = Some((ratio, gram, ln_common));
+        }
+        let bits = |scales: [f64; 2]| scales.map(f64::to_bits);
+        if self.precision.as_ref().is_none_or(|(at, ..)| bits(*at) != bits(dials.scales)) {
+            let factor = Cholesky::new(&self.prior_covariance(dials.scales))?;
+            let size = factor.lower().nrows();
+            let mut precision = Mat::identity(size, size);
+            factor.solve(&mut precision);
+            self.precision = Some((dials.scales, precision, factor.ln_determinant()));
+        }
+        let ((_, gram, _), (_, prior, _)) = (self.gram.as_ref()?, self.precision.as_ref()?);
+        let share = 1.0 / (dials.within * dials.within);
+        let mut precision = prior.clone();
+        for column in 0..precision.ncols() {
+            let from = &gram.col_as_slice(column)[column..];
+            let into = &mut precision.col_as_slice_mut(column)[column..];
+            for (into, from) in into.iter_mut().zip(from) {
+                *into += share * from;
+            }
+        }
+        Cholesky::new(&precision)
+    }
+
+    /// Factors are log-normal about what is usual: a few flights do not make noise vanish.
+    fn ln_prior(&self, dials: &Dials) -> f64 {
+        let of = |value: f64, center: f64, ln_deviation: f64| {
+            let z = (value / center).ln() / ln_deviation;
+            -0.5 * z * z
+        };
+        let scales = &dials.scales[..self.dimensions() - 2];
+        of(dials.within, USUAL_NOISE[0], USUAL_NOISE_LN_DEVIATION)
+            + of(dials.between, USUAL_NOISE[1], USUAL_NOISE_LN_DEVIATION)
+            + scales.iter().map(|s| of(*s, 1.0, REMAINDER_SCALE_LN_DEVIATION)).sum::<f64>()
+    }
+
+    /// Prior covariance of the columns at scales.
+    pub(super) fn prior_covariance(&self, scales: [f64; 2]) -> Mat<f64> {
+        let mut covariance = self.prior[0].clone();
+        for (part, scale) in self.prior[1..].iter().zip(scales) {
+            covariance += faer::Scale(scale * scale) * part;
+        }
+        covariance
+    }
+
+    /// The likeliest factors, from a start in ever smaller steps.
+    pub(super) fn likeliest(&mut self, start: Dials, steps: &[f64]) -> Dials {
+        let mut best = (start.coordinates(), self.ln_evidence(&start));
+        for &step in steps {
+            for coordinate in 0..self.dimensions() {
+                self.move_along(&mut best, coordinate, step);
+            }
+        }
+        Dials::at(&best.0)
+    }
+
+    /// One coordinate: to the vertex of the parabola through three values, or on while it rises.
+    fn move_along(&mut self, best: &mut ([f64; MOST_DIALS], f64), coordinate: usize, step: f64) {
+        let mut value_at = |by: f64| {
+            let mut moved = best.0;
+            moved[coordinate] += by;
+            (moved, self.ln_evidence(&Dials::at(&moved)))
+        };
+        let (up, down) = (value_at(step), value_at(-step));
+        let mut found = *best;
+        for one in [up, down] {
+            if one.1 > found.1 {
+                found = one;
+            }
+        }
+        let curvature = up.1 + down.1 - 2.0 * best.1;
+        let slope = 0.5 * (up.1 - down.1);
+        if curvature < 0.0 && slope.is_finite() {
+            let vertex = (-slope / curvature).clamp(-3.0, 3.0);
+            let expected = best.1 + vertex * (slope + 0.5 * vertex * curvature);
+            if expected > found.1 + WORTH_A_LOOK {
+                let one = value_at(step * vertex);
+                if one.1 > found.1 {
+                    found = one;
+                }
+            }
+        }
+        *best = found;
+    }
+
+    /// Points about the likeliest factors whose mean and spread are those of the posterior.
+    ///
+    /// ```text
+    /// ln factor ± √d·σ along each of d factors,  σ⁻² = −∂² ln p,   each with the weight p/p₀·e^{d/2}          [baseline.3]
+    /// ```
+    ///
+    /// # Source
+    /// The points: Arasaratnam and Haykin 2009, doi 10.1109/TAC.2009.2019800 (third-degree spherical-radial rule). The
+    /// averaging and its weights: Rue, Martino and Chopin 2009, doi 10.1111/j.1467-9868.2008.00700.x, section 6.5.
+    pub(super) fn averaged(&mut self, likeliest: Dials) -> Vec<Weighted> {
+        let center = likeliest.coordinates();
+        let highest = self.ln_evidence(&likeliest);
+        let dimensions = self.dimensions();
+        let mut points = Vec::with_capacity(2 * dimensions);
+        for coordinate in 0..dimensions {
+            let mut value_at = |by: f64| {
+                let mut moved = center;
+                moved[coordinate] += by;
+                let dials = Dials::at(&moved);
+                (dials, self.ln_evidence(&dials) - highest)
+            };
+            let curvature = -(value_at(CURVATURE_STEP).1 + value_at(-CURVATURE_STEP).1)
+                / (CURVATURE_STEP * CURVATURE_STEP);
+            let deviation = (1.0 / curvature.max(1e-12).sqrt()).min(WIDEST);
+            let far = (dimensions as f64).sqrt() * deviation;
+            for by in [far, -far] {
+                let (dials, ln_ratio) = value_at(by);
+                let weight = (ln_ratio + 0.5 * dimensions as f64).min(1.0).exp();
+                if weight > 1e-6 {
+                    points.push(Weighted { dials, weight });
+                }
+            }
+        }
+        let sum: f64 = points.iter().map(|point| point.weight).sum();
+        if sum <= 0.0 {
+            return vec![Weighted { dials: likeliest, weight: 1.0 }];
+        }
+        for point in &mut points {
+            point.weight /= sum;
+        }
+        points
+    }
+
+    /// The posterior at one point; `None` where matrices are not positive definite.
+    pub(super) fn solved(&mut self, dials: &Dials) -> Option<Solved> {
+        let factor = self.factor(dials)?;
+        let (_, gram, _) = self.gram.as_ref()?;
+        let mut mean = faer::Scale(1.0 / (dials.within * dials.within)) * right_side(gram);
+        factor.solve(&mut mean);
+        let size = mean.nrows();
+        let mut root = Mat::identity(size, size);
+        factor.solve_upper(&mut root);
+        Some(Solved { mean, root })
+    }
+}
+
+/// Products of the columns with the residual: the last row of a lower triangle.
+fn right_side(gram: &Mat<f64>) -> Mat<f64> {
+    let width = gram.nrows() - 1;
+    Mat::from_fn(width, 1, |column, _| gram[(width, column)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learning::outliers::Weights;
+    use crate::learning::rows::ChannelRows;
+
+    /// A level and a slope over five values of two flights, all of them by hand as one normal distribution: the density of
+    /// N(0, X K Xᵀ + w²D + b²UUᵀ), whose inverse and determinant faer gives.
+    #[test]
+    fn evidence_is_the_density_of_what_was_recorded() {
+        let columns = [
+            [1.0, -0.4, 0.3],
+            [1.0, 0.1, 0.9],
+            [1.0, 0.5, -0.2],
+            [1.0, 0.2, 1.1],
+            [1.0, -1.0, 0.4],
+        ];
+        let rows = ChannelRows {
+            columns: Mat::from_fn(5, 3, |i, j| columns[i][j]),
+            variance: vec![0.5, 0.7, 0.4, 1.0, 0.6],
+            loadings: vec![vec![0.3, 0.4, 0.3, 0.5, 0.2]],
+            groups: vec![0..3, 3..5],
+        };
+        let sums = ChannelSums::new(&rows, &Weights::of_one(&rows));
+        let prior = [
+            Mat::from_fn(2, 2, |i, j| if i == j && i == 0 { 1.0 } else { 0.0 }),
+            Mat::from_fn(2, 2, |i, j| if i == j && i == 1 { 1.0 } else { 0.0 }),
+        ];
+        let density = |dials: &Dials| {
+            let covariance = Mat::from_fn(5, 5, |i, j| {
+                let own = if i == j { dials.within.powi(2) * rows.variance[i] } else { 0.0 };
+                let same = (i < 3) == (j < 3);
+                let common = if same { rows.loadings[0][i] * rows.loadings[0][j] } else { 0.0 };
+                let slope = dials.scales[0].powi(2) * columns[i][1] * columns[j][1];
+                own + dials.between.powi(2) * common + 1.0 + slope
+            });
+            let y = Mat::from_fn(5, 1, |i, _| columns[i][2]);
+            let factor = Cholesky::new(&covariance).unwrap();
+            let mut solved = y.clone();
+            factor.solve(&mut solved);
+            -0.5 * (factor.ln_determinant() + (y.transpose() * &solved)[(0, 0)])
+        };
+        let mut evidence = Evidence::new(&sums, &prior);
+        let mut found = |within: f64, between: f64, scale: f64| {
+            let dials = Dials { within, between, scales: [scale, 1.0] };
+            (evidence.ln_evidence(&dials) - evidence.ln_prior(&dials), density(&dials))
+        };
+        let (at, known) = found(0.6, 0.9, 0.8);
+        for (within, between, scale) in [(0.3, 0.4, 2.0), (1.5, 0.1, 0.2), (0.6, 0.9, 1.1)] {
+            let (other, other_known) = found(within, between, scale);
+            assert!(((other - at) - (other_known - known)).abs() < 1e-10);
+        }
+    }
+}

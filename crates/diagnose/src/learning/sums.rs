@@ -1,0 +1,151 @@
+//! Sums over the flights of one channel from which its Gram matrix follows in closed form, whatever the noise: rows are looked
+//! at once, however often noise is turned.
+//!
+//! With D the segments' own variance and U the loadings of a flight at factors of 1, w and b the factors within flights and
+//! between them, ρ = b/w:
+//!
+//! ```text
+//! UᵀD⁻¹U = QΛQᵀ,   p = XᵀD⁻¹UQ
+//! w² Xᵀ(w²D + b²UUᵀ)⁻¹X = Σ XᵀD⁻¹X − Σ_r ρ²/(1 + ρ²λ_r)·p_r p_rᵀ
+//! ln|w²D + b²UUᵀ| = ln|D| + n ln w² + Σ_r ln(1 + ρ²λ_r)                                    [diagnosis.40]
+//! ```
+
+use faer::{Mat, Side};
+
+use crate::learning::outliers::Weights;
+use crate::learning::rows::ChannelRows;
+use crate::math::gram::Sum;
+use crate::math::linear::subtract_gram;
+
+/// Sums over rows whose noise has factors of 1.
+pub(super) struct ChannelSums {
+    /// Σ XᵀD⁻¹X, the residual as last column.
+    own: Mat<f64>,
+    /// p of every loading of every flight, one column each.
+    common: Mat<f64>,
+    /// Their λ.
+    eigenvalues: Vec<f64>,
+    /// Number of values.
+    pub(super) values: usize,
+}
+
+impl ChannelSums {
+    pub(super) fn new(rows: &ChannelRows, weights: &Weights) -> Self {
+        let size = rows.columns.ncols();
+        let rank = rows.loadings.len();
+        let mut own = Sum::new(size);
+        let mut common = Mat::<f64>::zeros(size, rank * rows.groups.len());
+        let mut eigenvalues = vec![0.0; rank * rows.groups.len()];
+        for (group, range) in rows.groups.iter().enumerate() {
+            let scale: Vec<f64> =
+                range.clone().map(|row| (weights.rows[row] / rows.variance[row]).sqrt()).collect();
+            let mut white = Mat::<f64>::zeros(range.len(), size);
+            for column in 0..size {
+                let from = &rows.columns.col_as_slice(column)[range.clone()];
+                let into = white.col_as_slice_mut(column);
+                for ((into, from), scale) in into.iter_mut().zip(from).zip(&scale) {
+                    *into = from * scale;
+                }
+            }
+            own.add(&white, range.len());
+            let of_group = 1.0 / weights.groups[group].sqrt();
+            let loadings = Mat::from_fn(range.len(), rank, |at, r| {
+                rows.loadings[r][range.start + at] * scale[at] * of_group
+            });
+            let Ok(eigen) = (loadings.transpose() * &loadings).self_adjoint_eigen(Side::Lower)
+            else {
+                continue;
+            };
+            let rotated = &loadings * eigen.U();
+            let projected = white.transpose() * &rotated;
+            for r in 0..rank {
+                let column = rank * group + r;
+                eigenvalues[column] = eigen.S().column_vector()[r].max(0.0);
+                common.col_as_slice_mut(column).copy_from_slice(projected.col_as_slice(r));
+            }
+        }
+        Self { own: own.finish().matrix, common, eigenvalues, values: rows.variance.len() }
+    }
+
+    /// Σ XᵀD⁻¹X of all columns, the residual last.
+    pub(super) const fn own(&self) -> &Mat<f64> {
+        &self.own
+    }
+
+    /// Gram matrix at a ratio ρ of the noise between flights over that within, times w²; lower triangle. And Σ ln(1 + ρ²λ).
+    pub(super) fn gram(&self, ratio: f64) -> (Mat<f64>, f64) {
+        let square = ratio * ratio;
+        let mut gram = self.own.clone();
+        let mut scaled = self.common.clone();
+        let mut ln_common = 0.0;
+        for (column, value) in self.eigenvalues.iter().enumerate() {
+            let share = ratio / (square * value + 1.0).sqrt();
+            for slot in scaled.col_as_slice_mut(column) {
+                *slot *= share;
+            }
+            ln_common += (square * value).ln_1p();
+        }
+        subtract_gram(&mut gram, &scaled);
+        (gram, ln_common)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::linalg::solvers::Solve;
+
+    use super::*;
+
+    /// Numbers without order, from −½ to ½: the golden ratio's multiples.
+    fn number(k: &mut f64) -> f64 {
+        *k += 1.0;
+        (*k * 0.618_033_988_749_895).fract() - 0.5
+    }
+
+    /// The same by the covariance of each flight, inverted (faer's Cholesky solver).
+    #[test]
+    fn gram_is_that_of_the_inverse_covariance_at_any_noise() {
+        let (count, columns, mut k) = (11, 4, 0.0);
+        let rows = ChannelRows {
+            columns: Mat::from_fn(count, columns, |_, _| number(&mut k)),
+            variance: (0..count).map(|_| 1.0 + number(&mut k)).collect(),
+            loadings: (0..2).map(|_| (0..count).map(|_| number(&mut k)).collect()).collect(),
+            groups: vec![0..4, 4..5, 5..11],
+        };
+        let weights = Weights {
+            rows: (0..count).map(|_| 0.7 + number(&mut k)).collect(),
+            groups: vec![1.0, 0.3, 0.8],
+        };
+        let sums = ChannelSums::new(&rows, &weights);
+        for (within, between) in [(0.3, 1.9), (1.7, 0.4)] {
+            let mut expected = Mat::<f64>::zeros(columns, columns);
+            let mut ln_determinant = 0.0;
+            for (group, range) in rows.groups.iter().enumerate() {
+                let part = rows.columns.subrows(range.start, range.len()).to_owned();
+                let covariance = Mat::from_fn(range.len(), range.len(), |i, j| {
+                    let (i, j) = (range.start + i, range.start + j);
+                    let own = if i == j { rows.variance[i] / weights.rows[i] } else { 0.0 };
+                    let common: f64 = rows.loadings.iter().map(|u| u[i] * u[j]).sum();
+                    within * within * own + between * between * common / weights.groups[group]
+                });
+                ln_determinant += covariance.determinant().ln();
+                expected += part.transpose() * covariance.llt(Side::Lower).unwrap().solve(&part);
+            }
+            let (gram, ln_common) = sums.gram(between / within);
+            for column in 0..columns {
+                for row in column..columns {
+                    let found = gram[(row, column)] / (within * within);
+                    let known = expected[(row, column)];
+                    assert!((found - known).abs() < 1e-9 * (1.0 + known.abs()), "{found} {known}");
+                }
+            }
+            let own: f64 = rows
+                .variance
+                .iter()
+                .zip(&weights.rows)
+                .map(|(v, w)| (within * within * v / w).ln())
+                .sum();
+            assert!((own + ln_common - ln_determinant).abs() < 1e-10);
+        }
+    }
+}
