@@ -47,7 +47,7 @@ impl ChannelSums {
                     *into = from * scale;
                 }
             }
-            own.add(&white, range.len());
+            own.add(&white, range.len() as f64);
             let of_group = 1.0 / weights.groups[group].sqrt();
             let loadings = Mat::from_fn(range.len(), rank, |at, r| {
                 rows.loadings[r][range.start + at] * scale[at] * of_group
