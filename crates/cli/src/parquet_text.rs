@@ -16,7 +16,7 @@ pub(crate) fn is_parquet(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// The rows of a Parquet file of any codec, below a line of the column names. Instants are written in UTC, flags as 0 and
+/// The rows of a Parquet file (of any codec but Brotli and LZO), below a line of the column names. Instants are written in UTC, flags as 0 and
 /// 1, nothing where there is no value.
 ///
 /// # Errors
