@@ -117,13 +117,8 @@ fn parquet_is_read_as_the_text_it_was_made_of() {
     }
     // A codec that is left out for its size, and a recording without a mapping, get a reason.
     let brotli = layout("13_brotli.parquet");
-    cruisefit(&[
-        "segment".as_ref(),
-        "--mapping".as_ref(),
-        mapping.as_os_str(),
-        brotli.as_os_str(),
-    ])
-    .expect(2)
-    .says("brotli");
+    cruisefit(&["segment".as_ref(), "--mapping".as_ref(), mapping.as_os_str(), brotli.as_os_str()])
+        .expect(2)
+        .says("brotli");
     cruisefit(&["segment".as_ref(), layout("13_snappy.parquet").as_os_str()]).expect(2);
 }

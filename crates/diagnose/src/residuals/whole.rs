@@ -152,16 +152,13 @@ impl<'a> WholeModel<'a> {
                 found.ok().map(|slope| slope[0])
             };
             let parts = &self.baseline.parts;
-            match slope {
-                Some(slope) => {
-                    carried.mean += slope * size;
-                    carried.slopes[k] = slope;
-                }
+            if let Some(slope) = slope {
+                carried.mean += slope * size;
+                carried.slopes[k] = slope;
+            } else {
                 // As on average over the flights that it was learnt from, and as different from that as they were.
-                None => {
-                    carried.mean += parts.standing_means[k];
-                    carried.unknown += parts.standing_variances.get(k).copied().unwrap_or(0.0);
-                }
+                carried.mean += parts.standing_means[k];
+                carried.unknown += parts.standing_variances.get(k).copied().unwrap_or(0.0);
             }
         }
         carried
