@@ -58,7 +58,11 @@ impl Recording {
     /// # Errors
     /// Why it is not read.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let mut bytes = Vec::new();
+        Self::read_into(path, Vec::new())
+    }
+
+    /// The same into a buffer that was used before.
+    fn read_into(path: &Path, mut bytes: Vec<u8>) -> Result<Self, String> {
         bytes::read(path, &mut bytes)?;
         let is_from_table = parquet_text::is_parquet(&bytes);
         if is_from_table {
@@ -98,19 +102,20 @@ impl Source {
 
     /// Reads a file and finds the segments of its flights.
     pub(crate) fn read_file(&self, path: &Path, buffers: &mut Buffers) -> FileRead {
-        if let Err(reason) = bytes::read(path, &mut buffers.raw) {
-            return (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
-        }
-        let mut mapping = self.mapping.as_ref().map(Cow::Borrowed);
-        if let Some(known) = mapping.as_ref().filter(|_| parquet_text::is_parquet(&buffers.raw)) {
-            buffers.raw = match parquet_text::csv_of_file(path) {
-                Ok(text) => text,
-                Err(reason) => {
-                    return (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
-                }
+        let refused = |reason| (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
+        let Some(mapping) = &self.mapping else {
+            return match bytes::read(path, &mut buffers.raw) {
+                Ok(()) => buffers.reader.read(path, &buffers.raw, None, &self.criteria),
+                Err(reason) => refused(reason),
             };
-            mapping = Some(Cow::Owned(known.comma_separated()));
-        }
-        buffers.reader.read(path, &buffers.raw, mapping.as_deref(), &self.criteria)
+        };
+        let recording = match Recording::read_into(path, std::mem::take(&mut buffers.raw)) {
+            Ok(recording) => recording,
+            Err(reason) => return refused(reason),
+        };
+        let mapping = recording.mapped_by(mapping);
+        let read = buffers.reader.read(path, &recording.bytes, Some(&*mapping), &self.criteria);
+        buffers.raw = recording.bytes;
+        read
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use diagnose::{DiagnoseError, FlightRecord, Input, Options, TableUncertaintyError, diagnose};
+use flight::effect::EffectId;
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use crate::diagnosis_figures::DiagnosisFigures;
@@ -21,6 +22,30 @@ pub struct Group<'a> {
     pub model: &'a ModelFile,
     /// In the order of flying.
     pub flights: Vec<FlightRead>,
+}
+
+/// A name that no effect of the library has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoSuchEffect {
+    /// The name.
+    pub name: String,
+    /// The names that there are, with commas.
+    pub known: String,
+}
+
+/// The effects of these names.
+///
+/// # Errors
+/// The first name that no effect has.
+pub fn effects_named(names: &[String]) -> Result<Vec<EffectId>, NoSuchEffect> {
+    let known = || {
+        let library = EffectId::library(flight::MAXIMUM_ENGINES);
+        library.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    };
+    let named = |name: &String| {
+        EffectId::from_name(name).ok_or_else(|| NoSuchEffect { name: name.clone(), known: known() })
+    };
+    names.iter().map(named).collect()
 }
 
 /// Why a group has no diagnosis.

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::check::{DataFinding, FlightCheck, book, check_flights};
+use crate::check::{CheckDocument, DataFinding, FlightCheck, book, check_flights};
 use crate::evaluation::evaluate;
+use crate::models::Models;
+use crate::summary::{RefusedSummary, ReportsSummary};
 use effects::ExtendedModel;
 use flight::Severity;
 use lut::Table;
@@ -12,6 +14,29 @@ use crate::reading::{FlightRead, Reading, RefusedReport};
 
 /// A model and the table of it that flights are compared with.
 pub type Book<'m> = (&'m ExtendedModel, &'m Table);
+
+/// All that is wrong with what was read, also against the models of the flights where there are some. `now_s` as for
+/// [`findings`].
+pub fn check_document(
+    reading: &Reading,
+    models: Option<&Models>,
+    now_s: Option<f64>,
+) -> CheckDocument {
+    let mut findings = findings(&reading.flights, now_s);
+    if let Some(models) = models {
+        let book_of = |flight: &FlightRead| {
+            let model = models.for_flight(flight).ok()?;
+            Some((&model.initial, model.drag_coefficient()))
+        };
+        findings.extend(against_book(&reading.flights, book_of));
+    }
+    let reports = ReportsSummary {
+        read: reading.flights.len(),
+        already_known: 0,
+        refused: reading.refused.iter().map(RefusedSummary::from).collect(),
+    };
+    CheckDocument::new(reports, findings)
+}
 
 /// What is wrong with flights, each by itself and with each other. `now_s` is the present, s since 1970; without it a
 /// result does not depend on the day.

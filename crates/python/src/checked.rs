@@ -5,14 +5,11 @@ use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use monitor::cost::CostFactors;
-use pipeline::check::CheckDocument;
 use pipeline::monitoring::{
     AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail,
     TailDeviations, TailDocument, read_events, tables,
 };
 use pipeline::plausibility;
-use pipeline::reading::FlightRead;
-use pipeline::summary::{RefusedSummary, ReportsSummary};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3_arrow::PyTable;
@@ -34,23 +31,9 @@ pub(crate) fn check(
     let models = if models.is_empty() { None } else { Some(models_of(&models)?) };
     let flights = flights.clone();
     run(py, NonZeroUsize::new(1), move |_| {
-        let reading = &flights.reading;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).ok();
-        let mut findings =
-            plausibility::findings(&reading.flights, now.map(|since| since.as_secs_f64()));
-        if let Some(models) = &models {
-            let book_of = |flight: &FlightRead| {
-                let model = models.for_flight(flight).ok()?;
-                Some((&model.initial, model.drag_coefficient()))
-            };
-            findings.extend(plausibility::against_book(&reading.flights, book_of));
-        }
-        let reports = ReportsSummary {
-            read: reading.flights.len(),
-            already_known: 0,
-            refused: reading.refused.iter().map(RefusedSummary::from).collect(),
-        };
-        let document = CheckDocument::new(reports, findings);
+        let now_s = now.map(|since| since.as_secs_f64());
+        let document = plausibility::check_document(&flights.reading, models.as_ref(), now_s);
         Ok((document.to_json(), document.to_text()))
     })
 }

@@ -8,7 +8,7 @@ use flight::effect::EffectId;
 use pipeline::diagnosed_tail::{DiagnosedTail, RunOptions};
 use pipeline::diagnosis_document::DiagnosisDocument;
 use pipeline::diagnosis_figures::DiagnosisFigures;
-use pipeline::diagnosis_groups::group;
+use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::plausibility;
 use pipeline::reading::FlightRead;
@@ -144,19 +144,7 @@ impl Diagnosed {
 }
 
 fn effects_of(argument: &str, names: &[String]) -> Result<Vec<EffectId>, Failure> {
-    names
-        .iter()
-        .map(|name| {
-            EffectId::from_name(name).ok_or_else(|| {
-                let known: Vec<String> = EffectId::library(flight::MAXIMUM_ENGINES)
-                    .iter()
-                    .map(ToString::to_string)
-                    .collect();
-                Failure::input(format!(
-                    "{argument}: found {name:?}, expected one of {}",
-                    known.join(", ")
-                ))
-            })
-        })
-        .collect()
+    effects_named(names).map_err(|NoSuchEffect { name, known }| {
+        Failure::input(format!("{argument}: found {name:?}, expected one of {known}"))
+    })
 }

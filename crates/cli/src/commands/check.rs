@@ -2,9 +2,7 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use pipeline::check::CheckDocument;
 use pipeline::plausibility;
-use pipeline::summary::{RefusedSummary, ReportsSummary};
 
 use crate::args::CheckArgs;
 use crate::commands::{Outcome, check_refused, read_reports};
@@ -12,7 +10,6 @@ use crate::failure::Failure;
 use crate::files::write_atomically;
 use crate::models::read_models;
 use crate::progress::Progress;
-use crate::reading::FlightRead;
 
 /// Runs the command.
 ///
@@ -26,20 +23,7 @@ pub(crate) fn run(arguments: &CheckArgs, progress: Progress) -> Result<Outcome, 
     let nothing_left = reading.flights.is_empty();
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
     let now_s = SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs_f64());
-    let mut findings = plausibility::findings(&reading.flights, now_s);
-    if let Some(models) = &models {
-        let book_of = |flight: &FlightRead| {
-            let model = models.for_flight(flight).ok()?;
-            Some((&model.initial, model.drag_coefficient()))
-        };
-        findings.extend(plausibility::against_book(&reading.flights, book_of));
-    }
-    let reports = ReportsSummary {
-        read: reading.flights.len(),
-        already_known: 0,
-        refused: reading.refused.iter().map(RefusedSummary::from).collect(),
-    };
-    let document = CheckDocument::new(reports, findings);
+    let document = plausibility::check_document(&reading, models.as_ref(), now_s);
     if let Some(path) = &arguments.json {
         write_atomically(path, &document.to_json())?;
     }

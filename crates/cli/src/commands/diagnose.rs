@@ -17,7 +17,7 @@ use crate::progress::Progress;
 use crate::reading::FlightRead;
 use pipeline::diagnosed_tail::{DiagnosedTail, RunOptions};
 use pipeline::diagnosis_document::DiagnosisDocument;
-use pipeline::diagnosis_groups::group;
+use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::plausibility::{self, Absurd};
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
@@ -101,21 +101,10 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
 }
 
 fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Failure> {
-    names
-        .iter()
-        .map(|name| {
-            EffectId::from_name(name).ok_or_else(|| {
-                let known: Vec<String> = EffectId::library(flight::MAXIMUM_ENGINES)
-                    .iter()
-                    .map(ToString::to_string)
-                    .collect();
-                Failure::BadArgument {
-                    argument,
-                    reason: format!("no effect {name:?}; known are {}", known.join(", ")),
-                }
-            })
-        })
-        .collect()
+    effects_named(names).map_err(|NoSuchEffect { name, known }| Failure::BadArgument {
+        argument,
+        reason: format!("no effect {name:?}; known are {known}"),
+    })
 }
 
 /// The diagnosis in a dozen lines, and what was assumed.
