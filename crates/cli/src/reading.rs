@@ -2,10 +2,12 @@
 
 mod bytes;
 pub(crate) mod heads;
+mod recording;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use pipeline::reading::recordings::{self, Done, Job, Mapped};
 use pipeline::reading::{FileRead, FlightReader};
 use rayon::prelude::*;
 use report::mapping::Mapping;
@@ -13,6 +15,7 @@ use segmenter::TrimCriteria;
 
 use crate::parquet_text;
 use crate::progress::Bar;
+use recording::Opened;
 
 pub(crate) use pipeline::reading::{FlightRead, Reading, RefusedReport};
 
@@ -58,11 +61,7 @@ impl Recording {
     /// # Errors
     /// Why it is not read.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        Self::read_into(path, Vec::new())
-    }
-
-    /// The same into a buffer that was used before.
-    fn read_into(path: &Path, mut bytes: Vec<u8>) -> Result<Self, String> {
+        let mut bytes = Vec::new();
         bytes::read(path, &mut bytes)?;
         let is_from_table = parquet_text::is_parquet(&bytes);
         if is_from_table {
@@ -109,13 +108,24 @@ impl Source {
                 Err(reason) => refused(reason),
             };
         };
-        let recording = match Recording::read_into(path, std::mem::take(&mut buffers.raw)) {
-            Ok(recording) => recording,
-            Err(reason) => return refused(reason),
-        };
-        let mapping = recording.mapped_by(mapping);
-        let read = buffers.reader.read(path, &recording.bytes, Some(&*mapping), &self.criteria);
-        buffers.raw = recording.bytes;
-        read
+        let criteria = &self.criteria;
+        match recording::open(path) {
+            Ok(Opened::Text(source)) => {
+                recordings::read(&Mapped { path, mapping, criteria }, source, &in_parallel)
+            }
+            Ok(Opened::Parquet) => match parquet_text::csv_of_file(path) {
+                Ok(bytes) => {
+                    let mapping = &mapping.comma_separated();
+                    let mapped = Mapped { path, mapping, criteria };
+                    recordings::read(&mapped, bytes.as_slice(), &in_parallel)
+                }
+                Err(reason) => refused(reason),
+            },
+            Err(reason) => refused(reason),
+        }
     }
+}
+
+fn in_parallel(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> {
+    jobs.into_par_iter().map(work).collect()
 }

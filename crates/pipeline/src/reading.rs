@@ -1,12 +1,14 @@
 //! The bytes of a report or recording into reduced flights, and what was refused of them.
 
+pub mod recordings;
+
 use std::cmp::Ordering;
 use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
 use flight::{Severity, Timestamp};
 use report::mapping::Mapping;
-use report::{Parsed, Reader, Refusal, TextLayout};
+use report::{Parsed, Reader, Refusal};
 use segmenter::TrimCriteria;
 
 use crate::checksum::sha256;
@@ -14,6 +16,7 @@ use crate::learnt_flights::instant_after;
 use crate::reduction::ReducedFlight;
 use crate::segments_table;
 use crate::summary::RefusedSummary;
+use recordings::Mapped;
 
 /// One flight, reduced to its segments.
 #[derive(Clone, Debug)]
@@ -21,9 +24,9 @@ pub struct FlightRead {
     /// File it came from, or what its caller calls its bytes.
     pub path: PathBuf,
     /// By what its content is known again: SHA-256 of the uncompressed report, hexadecimal; of a recording read with a
-    /// mapping, `read:` and SHA-256 of the flight as it was read, so that a corrected mapping is other content.
+    /// mapping, `flight:` and SHA-256 of the flight as it was read, so that a corrected mapping is other content.
     pub content: String,
-    /// SHA-256 of the uncompressed file: the content of a recording in folders of older programs.
+    /// The same: other programs wrote SHA-256 of a recording's whole file here.
     pub content_of_file: String,
     /// The instant of its last sample.
     pub end: Timestamp,
@@ -150,39 +153,26 @@ impl FlightReader {
         mapping: Option<&Mapping>,
         criteria: &TrimCriteria,
     ) -> FileRead {
+        if let Some(mapping) = mapping {
+            return recordings::read(
+                &Mapped { path, mapping, criteria },
+                bytes,
+                &recordings::one_by_one,
+            );
+        }
         // Content is identified by its uncompressed bytes: a report that was compressed later is the same report.
-        let parsed = report::unpack(bytes, &mut self.unpacked).and_then(|bytes| {
-            let parsed = match mapping {
-                None => self.reader.read(bytes).map(|parsed| vec![parsed]),
-                Some(mapping) => {
-                    let name = path.file_name().unwrap_or_default().to_string_lossy();
-                    mapping.read_named(bytes, &name)
-                }
-            };
-            parsed.map(|parsed| (sha256(bytes), parsed))
-        });
-        let (content_of_file, parsed) = match parsed {
+        let parsed = report::unpack(bytes, &mut self.unpacked)
+            .and_then(|bytes| self.reader.read(bytes).map(|parsed| (sha256(bytes), parsed)));
+        let (content, parsed) = match parsed {
             Ok(parsed) => parsed,
             Err(refusal) => {
                 return (Vec::new(), vec![RefusedReport::at(path.to_owned(), &refusal)]);
             }
         };
-        let mut flights = Vec::new();
-        let mut refused = Vec::new();
-        for parsed in parsed {
-            let content = match mapping {
-                None => Ok(content_of_file.clone()),
-                Some(_) => content_as_read(&parsed.report),
-            };
-            match content.and_then(|content| reduce(path, parsed, content, criteria)) {
-                Ok(flight) => {
-                    let content_of_file = content_of_file.clone();
-                    flights.push(FlightRead { content_of_file, ..flight });
-                }
-                Err(reason) => refused.push(RefusedReport::whole(path.to_owned(), reason)),
-            }
+        match reduce(path, parsed, content, criteria) {
+            Ok(flight) => (vec![flight], Vec::new()),
+            Err(reason) => (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]),
         }
-        (flights, refused)
     }
 
     /// SHA-256 of the uncompressed content of a file, whose bytes these are.
@@ -221,12 +211,6 @@ fn reduce(
     if let Some(column) = reduced.segments.iter().find_map(segments_table::not_finite) {
         return Err(format!("the mean of {column} over a segment is not a finite number"));
     }
-    Ok(FlightRead { path: path.to_owned(), content_of_file: String::new(), content, end, reduced })
-}
-
-/// By what a flight out of a recording is known again: header and every sample, to the bit.
-fn content_as_read(report: &flight::Report) -> Result<String, String> {
-    let text =
-        report::write(report, &TextLayout::exact(), &[]).map_err(|error| error.to_string())?;
-    Ok(format!("read:{}", sha256(text.as_bytes())))
+    let content_of_file = content.clone();
+    Ok(FlightRead { path: path.to_owned(), content_of_file, content, end, reduced })
 }

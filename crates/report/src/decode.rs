@@ -12,7 +12,7 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 pub const MAXIMUM_TEXT_BYTES: usize = 512 << 20;
 
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
-const BYTE_ORDER_MARK: char = '\u{feff}';
+pub(crate) const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The uncompressed content of `bytes`: unchanged, or unpacked when they begin as gzip does. For callers that need the
 /// content in addition to the report, for example to hash it.
@@ -42,29 +42,35 @@ pub(crate) fn text<'a>(bytes: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a
     plain(unpack(bytes, unpacked)?)
 }
 
-/// The text of a recording: as [`text`], and from UTF-16 or Windows-1252 too, which other programs export.
+/// The text of a recording's beginning: from UTF-8, UTF-16 or Windows-1252, which other programs export.
 pub(crate) fn recording<'a>(
     bytes: &'a [u8],
     unpacked: &'a mut Vec<u8>,
 ) -> Result<Cow<'a, str>, Refusal> {
     let bytes = unpack(bytes, unpacked)?;
-    let utf_16 = match bytes {
-        [0xff, 0xfe, rest @ ..] => Some((rest, u16::from_le_bytes as fn([u8; 2]) -> u16)),
-        [0xfe, 0xff, rest @ ..] => Some((rest, u16::from_be_bytes as fn([u8; 2]) -> u16)),
-        _ => None,
-    };
-    if let Some((rest, unit)) = utf_16 {
-        let units = rest.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
-        return Ok(Cow::Owned(
-            char::decode_utf16(units)
-                .map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER))
-                .collect(),
-        ));
+    match bytes {
+        [0xff, 0xfe, rest @ ..] => Ok(Cow::Owned(utf_16(rest, u16::from_le_bytes))),
+        [0xfe, 0xff, rest @ ..] => Ok(Cow::Owned(utf_16(rest, u16::from_be_bytes))),
+        _ if core::str::from_utf8(bytes).is_ok() || memchr::memchr(0, bytes).is_some() => {
+            plain(bytes).map(Cow::Borrowed)
+        }
+        _ => Ok(Cow::Owned(bytes.iter().map(|byte| windows_1252(*byte)).collect())),
     }
-    if core::str::from_utf8(bytes).is_ok() || memchr::memchr(0, bytes).is_some() {
-        return plain(bytes).map(Cow::Borrowed);
+}
+
+/// Whole lines of a recording, in UTF-8 or Windows-1252.
+pub(crate) fn piece(bytes: Vec<u8>) -> Result<String, Refusal> {
+    if let Some(at) = memchr::memchr(0, &bytes) {
+        return Err(refuse_at(&bytes, at, Found::Byte(0), RefusalKind::NulByte));
     }
-    Ok(Cow::Owned(bytes.iter().map(|byte| windows_1252(*byte)).collect()))
+    Ok(String::from_utf8(bytes)
+        .unwrap_or_else(|error| error.as_bytes().iter().map(|byte| windows_1252(*byte)).collect()))
+}
+
+/// Text of 16-bit units; what is no character becomes U+FFFD.
+pub(crate) fn utf_16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> String {
+    let units = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+    char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
 }
 
 /// The character of a byte of Windows-1252; the five bytes that it leaves undefined stay control characters.
@@ -138,7 +144,7 @@ fn plain(bytes: &[u8]) -> Result<&str, Refusal> {
 }
 
 /// Refuses at a byte of a text that is perhaps not UTF-8.
-fn refuse_at(bytes: &[u8], at: usize, found: Found, kind: RefusalKind) -> Refusal {
+pub(crate) fn refuse_at(bytes: &[u8], at: usize, found: Found, kind: RefusalKind) -> Refusal {
     let before = &bytes[..at];
     let line_start = memchr::memrchr(b'\n', before).map_or(0, |end| end + 1);
     let line = memchr::memchr_iter(b'\n', before).count() + 1;

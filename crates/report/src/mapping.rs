@@ -7,26 +7,28 @@ mod derive;
 mod file;
 mod first;
 mod level;
+mod pieces;
 mod plan;
+mod stream;
 mod table;
 
 use flight::column::{COLUMN_NAMES, Column};
-use flight::{Finding, Severity};
 use units::OutOfDomain;
 
 use crate::cruise_text::Parsed;
-use crate::decode;
-use crate::refusal::{Found, Refusal, RefusalKind};
-use file::{BadRows, MappingFile};
+use crate::refusal::Refusal;
+use file::MappingFile;
 pub use first::first_mapping;
+pub use pieces::{Piece, Pieces};
 use plan::Plan;
-use table::{Form, Recording, Table};
+pub use stream::{MappedFlight, MappedReport, Stream};
+use table::Recording;
+pub use table::Rows;
 
 /// A mapping file that was checked.
 #[derive(Clone, Debug)]
 pub struct Mapping {
     file: MappingFile,
-    plan: Plan,
 }
 
 /// Why a text is not a mapping file.
@@ -138,12 +140,13 @@ impl Mapping {
     pub fn from_ron(text: &str) -> Result<Self, MappingError> {
         let options = ron::Options::default()
             .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-        let file = options.from_str(text).map_err(|error| MappingError::Form {
+        let file: MappingFile = options.from_str(text).map_err(|error| MappingError::Form {
             line: error.span.start.line,
             column: error.span.start.col,
             source: Box::new(error.code),
         })?;
-        Ok(Self { plan: Plan::new(MappingFile::clone(&file))?, file })
+        Plan::new(file.clone())?;
+        Ok(Self { file })
     }
 
     /// A built-in mapping, by its name in [`PRESETS`].
@@ -162,8 +165,6 @@ impl Mapping {
         mapping.file.decimal = '.';
         mapping.file.comment = None;
         mapping.file.units_row = false;
-        mapping.plan.separator = b',';
-        mapping.plan.comment = None;
         mapping
     }
 
@@ -189,85 +190,25 @@ impl Mapping {
         bytes: &[u8],
         file_name: Option<&str>,
     ) -> Result<Vec<Parsed>, Refusal> {
-        let mut unpacked = Vec::new();
-        let text = decode::recording(bytes, &mut unpacked)?;
-        let plan = self.plan_of(&text)?;
-        let table = table::read(&plan, &text, file_name)?;
+        let mut pieces = Pieces::new(bytes)?;
+        let mut stream = Stream::begin(self, &mut pieces, file_name)?;
         let mut parsed = Vec::new();
-        let mut flights_without = Vec::new();
-        let mut flights_refused = Vec::new();
-        let mut first_refusal = None;
-        let mut longest_s = 0.0_f64;
-        for recording in &table.recordings {
-            let (parts, longest_part_s) = parts(&plan, recording);
-            longest_s = longest_s.max(longest_part_s);
-            if parts.is_empty() {
-                flights_without.push(recording.flight.as_str());
-                continue;
+        while let Some(piece) = stream.next_piece(&mut pieces)? {
+            let rows = stream.rows(piece);
+            let (flights, added) = stream.add(&rows);
+            for flight in flights {
+                parsed.extend(stream.count(stream.report(flight))?);
             }
-            match derive::report(&plan, &table, recording, &parts) {
-                Ok(report) => parsed.push(report),
-                // One flight that cannot be used costs itself.
-                Err(refusal) if plan.bad_rows == BadRows::LeaveRowOut => {
-                    flights_refused.push(format!("{}: {refusal}", recording.flight));
-                    first_refusal.get_or_insert(refusal);
-                }
-                Err(refusal) => return Err(refusal),
-            }
+            added?;
         }
-        let Some(first) = parsed.first_mut() else {
-            return Err(
-                first_refusal.unwrap_or_else(|| self.refuse_without_report(&table, longest_s))
-            );
-        };
-        for refused in flights_refused {
-            first.findings.push(Finding {
-                severity: Severity::Warning,
-                code: "mapped-flight-refused",
-                message: format!("flight {refused}"),
-                line: None,
-            });
+        for flight in stream.finish() {
+            parsed.extend(stream.count(stream.report(flight))?);
         }
-        if !flights_without.is_empty() {
-            first.findings.push(Finding {
-                severity: Severity::Warning,
-                code: "mapped-flight-without-cruise",
-                message: format!(
-                    "no level part long enough in flights of the same file: {}",
-                    flights_without.join(", ")
-                ),
-                line: None,
-            });
+        let findings = stream.end()?;
+        if let Some(first) = parsed.first_mut() {
+            first.findings.extend(findings);
         }
         Ok(parsed)
-    }
-
-    /// The plan for the columns that this text has.
-    fn plan_of(&self, text: &str) -> Result<Plan, Refusal> {
-        let form = Form { separator: self.plan.separator, comment: self.plan.comment };
-        let names = table::names(form, text)?;
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        Plan::new(self.file.resolved(&names)).map_err(|error| Refusal {
-            line: 1,
-            column: 1,
-            found: Found::text(&names.join(" ")),
-            kind: RefusalKind::SourceColumnsUnfit { reason: error.to_string() },
-        })
-    }
-
-    fn refuse_without_report(&self, table: &Table<'_>, longest_s: f64) -> Refusal {
-        match &self.plan.cruise {
-            None => {
-                let rows = table.recordings.iter().map(|recording| recording.time_s.len()).max();
-                table.refuse_end(Found::Rows(rows.unwrap_or(0)), RefusalKind::TooFewRows)
-            }
-            Some(criteria) => table.refuse_end(
-                Found::Number { value: longest_s, unit: "s of level flight" },
-                RefusalKind::NoLevelPart {
-                    needed_s: criteria.minimum_duration_s + 2.0 * criteria.trim_s,
-                },
-            ),
-        }
     }
 }
 

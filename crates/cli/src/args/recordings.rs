@@ -7,7 +7,7 @@ use clap::Args;
 /// `mapping`
 #[derive(Debug, Args)]
 pub(crate) struct MappingArgs {
-    /// Recording: delimited text, plain or gzip, or Parquet
+    /// Recording: delimited text, plain, gzip or Zstandard, or Parquet
     #[arg(value_name = "RECORDING")]
     pub(crate) recording: PathBuf,
     /// Mapping file to write [default: standard output]
@@ -21,7 +21,7 @@ pub(crate) struct MappingArgs {
 /// `convert`
 #[derive(Debug, Args)]
 pub(crate) struct ConvertArgs {
-    /// Recordings: files, folders (searched recursively for .csv, .gz, .parquet) and globs
+    /// Recordings: files, folders (searched recursively for .csv, .gz, .zst, .parquet) and globs
     #[arg(required = true, value_name = "RECORDINGS")]
     pub(crate) recordings: Vec<PathBuf>,
     /// Mapping file (RON), or the name of a preset

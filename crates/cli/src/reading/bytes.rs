@@ -38,7 +38,11 @@ pub(super) fn read_beginning(path: &Path, length: u64, bytes: &mut Vec<u8>) -> R
     Ok(())
 }
 
-fn open(path: &Path) -> Result<File, String> {
+/// Opens a regular file.
+///
+/// # Errors
+/// Why it is not read.
+pub(super) fn open(path: &Path) -> Result<File, String> {
     let mut tries = 0;
     loop {
         let file = match open_without_waiting(path) {

@@ -122,3 +122,25 @@ fn parquet_is_read_as_the_text_it_was_made_of() {
         .says("brotli");
     cruisefit(&["segment".as_ref(), layout("13_snappy.parquet").as_os_str()]).expect(2);
 }
+
+/// Oracle: the same recording not packed.
+#[test]
+fn a_packed_recording_is_read_as_it_is_unpacked() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = folder.path().join("M.ron");
+    let text = layout("01_named_units.csv");
+    mapping_of(&text, &mapping);
+    let written = std::fs::read_to_string(&mapping).unwrap();
+    // The flight would be the name of the file.
+    std::fs::write(&mapping, written.replace("FileName", "Text(\"1\")")).unwrap();
+    let read =
+        |path: &Path| segments(&["--mapping".as_ref(), mapping.as_os_str(), path.as_os_str()]);
+    let expected = read(&text);
+    assert!(expected.lines().count() > 1);
+    let packed = folder.path().join("recording.csv.zst");
+    let bytes = std::fs::read(&text).unwrap();
+    std::fs::write(&packed, zstd::encode_all(bytes.as_slice(), 3).unwrap()).unwrap();
+    assert_eq!(read(&packed), expected);
+    // A folder's packed recordings are found.
+    assert_eq!(read(folder.path()), expected);
+}

@@ -15,7 +15,7 @@ use units::{CalibratedAirspeed, Mach, Mass, PressureAltitude, Temperature, TrueA
 
 use super::file::OutOfRange;
 use super::plan::{Conversion, MachSource, MassPlan, Plan, TemperatureSource, TrueAirspeedSource};
-use super::table::{Recording, Table};
+use super::table::{Layout, Recording};
 use crate::Parsed;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
@@ -25,23 +25,23 @@ const MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD: f64 = 1.02;
 
 /// The report of the level parts of a recording.
 pub(super) fn report(
-    plan: &Plan,
-    table: &Table<'_>,
+    layout: &Layout,
     recording: &Recording,
     parts: &[Range<usize>],
 ) -> Result<Parsed, Refusal> {
+    let plan = &layout.plan;
     let level_rows = parts.iter().map(Range::len).sum();
     let first = parts.first().map_or(0, |part| part.start);
     let (rows, surplus) = rows_in_range(plan, recording, parts);
     let refuse_inconsistent = |error| {
         let found = Found::Rows(level_rows - surplus.len());
-        table.refuse(recording, first, 0, found, RefusalKind::Inconsistent(error))
+        layout.refuse(recording, (first, 0), found, RefusalKind::Inconsistent(error))
     };
     if rows.len() < 3 {
         let error = ReportDataError::TooFewSamples { found: rows.len() };
         return Err(refuse_inconsistent(error));
     }
-    let part = Part { plan, table, recording, rows, level_rows, level_parts: parts.len() };
+    let part = Part { plan, layout, recording, rows, level_rows, level_parts: parts.len() };
     let air = part.air_data()?;
     let load = part.load()?;
     let columns = part.columns(&air, &load)?;
@@ -51,11 +51,11 @@ pub(super) fn report(
         notes.push(("DERIVED".to_owned(), derived.join(", ")));
     }
     let header = ReportHeader {
-        aircraft_type: recording.aircraft.clone(),
+        aircraft_type: recording.texts[0].clone(),
         identity: FlightIdentity {
-            tail: recording.tail.clone(),
+            tail: recording.texts[1].clone(),
             start: part.start()?,
-            flight: recording.flight.clone(),
+            flight: recording.texts[2].clone(),
         },
         zero_fuel_mass: load.zero_fuel_mass,
         fuel_on_board: load.fuel_on_board,
@@ -95,9 +95,9 @@ struct Load {
     largest_rise_kg: Option<f64>,
 }
 
-struct Part<'p, 't> {
+struct Part<'p> {
     plan: &'p Plan,
-    table: &'p Table<'t>,
+    layout: &'p Layout,
     recording: &'p Recording,
     /// Rows of the recording, at least three.
     rows: Vec<usize>,
@@ -167,7 +167,7 @@ impl Limits {
     }
 }
 
-impl Part<'_, '_> {
+impl Part<'_> {
     fn start(&self) -> Result<Timestamp, Refusal> {
         let seconds = self.recording.time_s[self.rows[0]];
         SignedDuration::try_from_secs_f64(seconds)
@@ -181,11 +181,17 @@ impl Part<'_, '_> {
 
     /// `row` counts from the part's first.
     fn refuse(&self, row: usize, input: usize, found: Found, kind: RefusalKind) -> Refusal {
-        self.table.refuse(self.recording, self.rows[row], input, found, kind)
+        self.layout.refuse(self.recording, (self.rows[row], input), found, kind)
     }
 
     fn convert(&self, conversion: &Conversion) -> Vec<f64> {
-        self.rows.iter().map(|row| conversion.apply(&self.recording.numbers, *row)).collect()
+        let numbers = &self.recording.numbers;
+        let (first, rows) = (self.rows[0], self.rows.len());
+        // Nearly always no row between the first and the last is left out.
+        if self.rows[rows - 1] + 1 == first + rows {
+            return conversion.apply_to(numbers, first..first + rows);
+        }
+        self.rows.iter().map(|row| conversion.apply(numbers, *row)).collect()
     }
 
     fn recorded(&self, wanted: Column) -> Option<Series> {
@@ -438,7 +444,7 @@ impl Part<'_, '_> {
     }
 
     fn findings(&self, derived: &[&'static str], load: &Load, surplus: &[Surplus]) -> Vec<Finding> {
-        let first_line = Some(self.table.line(self.recording, self.rows[0]));
+        let first_line = Some(self.recording.lines[self.rows[0]]);
         let note = |severity, code, message| Finding { severity, code, message, line: first_line };
         let mut findings = Vec::new();
         if !derived.is_empty() {
@@ -470,7 +476,7 @@ impl Part<'_, '_> {
                         .as_ref()
                         .map_or_else(String::new, |column| format!(" (most of them {column:?})"))
                 ),
-                line: self.table.first_left_out(self.recording),
+                line: self.recording.first_left_out,
             });
         }
         if let Some(first) = &self.recording.first_bad {
@@ -497,12 +503,12 @@ impl Part<'_, '_> {
                     surplus.len(),
                     column.name()
                 ),
-                line: Some(self.table.line(self.recording, *row)),
+                line: Some(self.recording.lines[*row]),
             });
         }
         let rows = self.recording.time_s.len();
         if let (true, Some(last)) = (self.level_rows < rows, self.rows.last()) {
-            let last_line = self.table.line(self.recording, *last);
+            let last_line = self.recording.lines[*last];
             let message = format!(
                 "level cruise: {} of {rows} rows{}, to line {last_line}; the rest is climb, descent or too short",
                 self.level_rows,

@@ -87,6 +87,22 @@ impl Conversion {
     }
 }
 
+impl Conversion {
+    /// The same for rows that follow each other.
+    pub(super) fn apply_to(&self, numbers: &[Vec<f64>], rows: core::ops::Range<usize>) -> Vec<f64> {
+        let values = numbers[self.input][rows.clone()].iter();
+        match self.minus {
+            None => values.map(|value| value * self.factor + self.offset).collect(),
+            Some(minus) => values
+                .zip(&numbers[minus][rows])
+                .map(|(value, less)| {
+                    wrap_deg(value * self.factor + self.offset - less * self.factor)
+                })
+                .collect(),
+        }
+    }
+}
+
 /// An angle in −180 … 180°.
 fn wrap_deg(angle_deg: f64) -> f64 {
     (angle_deg + 180.0).rem_euclid(360.0) - 180.0

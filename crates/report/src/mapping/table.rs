@@ -1,52 +1,40 @@
-//! Delimited text into recordings: rows of numbers with their line numbers.
+//! Delimited text into recordings: where a recording has what its mapping names, and positions for refusals.
 
+mod flights;
 mod recording;
+mod rows;
 
-use flight::Timestamp;
-
-use super::file::{BadRows, TextSource};
-use super::plan::{Input, Plan, TimeForm};
+use super::MappingError;
+use super::file::{MappingFile, TextSource};
+use super::pieces::Piece;
+use super::plan::{Plan, TimeForm};
+pub(super) use flights::Assembly;
 pub(super) use recording::Recording;
+pub use rows::Rows;
 
-use crate::cruise_text::parse_instant;
-use crate::number;
 use crate::refusal::{Found, Refusal, RefusalKind, nearest};
 
-/// A file of delimited text.
-#[derive(Debug)]
-pub(super) struct Table<'a> {
-    pub(super) recordings: Vec<Recording>,
-    source: Source<'a>,
-    input_fields: Vec<usize>,
+/// How fields are separated, and lines that mean nothing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Form {
+    pub(super) separator: u8,
+    pub(super) comment: Option<u8>,
 }
 
-impl Table<'_> {
-    /// Refuses the number of an input in a row.
-    pub(super) fn refuse(
-        &self,
-        recording: &Recording,
-        row: usize,
-        input: usize,
-        found: Found,
-        kind: RefusalKind,
-    ) -> Refusal {
-        self.source.refuse(recording.lines[row], self.input_fields[input], found, kind)
-    }
+/// A recording's layout: the plan for the columns that it has, and where they are.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub(super) plan: Plan,
+    fields: Fields,
+    /// Fields of a row.
+    columns: usize,
+}
 
-    /// Physical line of a row.
-    pub(super) fn line(&self, recording: &Recording, row: usize) -> usize {
-        self.source.settle(recording.lines[row])
-    }
-
-    /// Physical line of the first row that was left out.
-    pub(super) fn first_left_out(&self, recording: &Recording) -> Option<usize> {
-        recording.first_left_out.map(|line| self.source.settle(line))
-    }
-
-    /// Refuses at the end of the text.
-    pub(super) fn refuse_end(&self, found: Found, kind: RefusalKind) -> Refusal {
-        self.source.refuse_end(found, kind)
-    }
+/// What is below the line of names: the byte at which it begins, and its line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Below {
+    pub(super) byte: usize,
+    pub(super) line: usize,
 }
 
 /// The names of a recording's columns.
@@ -54,59 +42,84 @@ impl Table<'_> {
 /// # Errors
 /// A text without a line of names.
 pub(super) fn names(form: Form, text: &str) -> Result<Vec<String>, Refusal> {
-    let source = Source { text, form };
-    let mut record = csv::StringRecord::new();
-    if !source.next(&mut source.reader(false), &mut record)? {
-        return Err(source.refuse_end(Found::EndOfText, RefusalKind::SourceNamesMissing));
-    }
-    Ok(record.iter().map(str::to_owned).collect())
+    let names = Names::read(form, text, &mut reader(form, text))?;
+    Ok(names.record.iter().map(str::to_owned).collect())
 }
 
-/// Reads all rows of `text`; `file_name` is used for the texts that the mapping takes from the file's name.
-pub(super) fn read<'a>(
-    plan: &Plan,
-    text: &'a str,
-    file_name: Option<&str>,
-) -> Result<Table<'a>, Refusal> {
-    let leaves_out = plan.bad_rows == BadRows::LeaveRowOut;
-    let source = Source { text, form: Form { separator: plan.separator, comment: plan.comment } };
-    let mut reader = source.reader(leaves_out);
-    let mut record = csv::StringRecord::new();
-    if !source.next(&mut reader, &mut record)? {
-        return Err(source.refuse_end(Found::EndOfText, RefusalKind::SourceNamesMissing));
-    }
-    let names = Names { record: record.clone(), source };
-    let fields = Fields::find(plan, &names, file_name)?;
-    if plan.units_row {
-        let _ = source.next(&mut reader, &mut record)?;
-    }
-    let mut recordings: Vec<Recording> = Vec::new();
-    while source.next(&mut reader, &mut record)? {
-        let row = Row { plan, source, record: &record, fields: &fields, line: line_of(&record) };
-        if record.len() == names.record.len() && !row.is_wanted() {
-            continue;
+impl Layout {
+    /// The layout of a recording that begins with these lines; `file_name` is used for the texts that the mapping takes
+    /// from the file's name.
+    pub(super) fn of_text(
+        file: &MappingFile,
+        first: &Piece,
+        file_name: Option<&str>,
+    ) -> Result<(Self, Below), Refusal> {
+        let form = form_of(file);
+        let mut reader = reader(form, &first.text);
+        let names = Names::read(form, &first.text, &mut reader)?;
+        let layout = Self::of_names(file, &names, file_name)?;
+        if layout.plan.units_row {
+            let _ = reader.read_record(&mut csv::StringRecord::new());
         }
-        match row.append_to(&mut recordings, names.record.len()) {
-            Err(refusal) if leaves_out => {
-                if recordings.is_empty() {
-                    recordings.push(Recording::new(["", "", ""], plan.inputs.len()));
-                }
-                if let Some(recording) = recordings.last_mut() {
-                    recording.bad += 1;
-                    recording.first_bad.get_or_insert(refusal);
-                }
-            }
-            result => result?,
-        }
+        let position = reader.position();
+        let byte = usize::try_from(position.byte()).unwrap_or(usize::MAX).min(first.text.len());
+        Ok((layout, Below { byte, line: line_of(position) }))
     }
-    for recording in &mut recordings {
-        recording.settle(plan);
+
+    fn of_names(
+        file: &MappingFile,
+        names: &Names<'_>,
+        file_name: Option<&str>,
+    ) -> Result<Self, Refusal> {
+        let sent: Vec<&str> = names.record.iter().collect();
+        let plan = Plan::new(file.resolved(&sent)).map_err(|error: MappingError| Refusal {
+            line: 1,
+            column: 1,
+            found: Found::text(&sent.join(" ")),
+            kind: RefusalKind::SourceColumnsUnfit { reason: error.to_string() },
+        })?;
+        let fields = Fields::find(&plan, names, file_name)?;
+        Ok(Self { plan, fields, columns: names.record.len() })
     }
-    let input_fields = fields.inputs;
-    Ok(Table { recordings, source, input_fields })
+
+    fn form(&self) -> Form {
+        Form { separator: self.plan.separator, comment: self.plan.comment }
+    }
+
+    /// Refuses the number of an input in a row.
+    pub(super) fn refuse(
+        &self,
+        recording: &Recording,
+        (row, input): (usize, usize),
+        found: Found,
+        kind: RefusalKind,
+    ) -> Refusal {
+        let line = recording.lines[row];
+        let text = recording.line(line);
+        let column = column_of(self.form(), text, self.fields.inputs[input]);
+        Refusal { line, column, found, kind }
+    }
+
+    /// Refuses at a field's place in a line.
+    fn refuse_field(
+        &self,
+        (line, text): (usize, &str),
+        field: usize,
+        found: Found,
+        kind: RefusalKind,
+    ) -> Refusal {
+        Refusal { line, column: column_of(self.form(), text, field), found, kind }
+    }
+}
+
+fn form_of(file: &MappingFile) -> Form {
+    // What is no separator is refused with the mapping itself.
+    let byte = |character: char| u8::try_from(character).ok();
+    Form { separator: byte(file.separator).unwrap_or(b','), comment: file.comment.and_then(byte) }
 }
 
 /// Where the recording has what the mapping names.
+#[derive(Clone, Debug)]
 struct Fields {
     time: usize,
     date: Option<usize>,
@@ -143,210 +156,53 @@ impl Fields {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Row<'r, 'a> {
-    plan: &'r Plan,
-    source: Source<'a>,
-    record: &'r csv::StringRecord,
-    fields: &'r Fields,
-    line: usize,
-}
-
-impl<'r> Row<'r, '_> {
-    /// Whether every column that selects rows holds one of its texts.
-    fn is_wanted(self) -> bool {
-        self.plan
-            .only
-            .iter()
-            .zip(&self.fields.only)
-            .all(|((_, texts), field)| texts.iter().any(|text| *text == self.record[*field]))
-    }
-
-    fn text(self, index: usize) -> Result<&'r str, Refusal> {
-        let (key, place) = &self.fields.texts[index];
-        let value = match place {
-            Text::Constant(value) => value,
-            Text::Field(field) => &self.record[*field],
-        };
-        if value.is_empty() {
-            let field = if let Text::Field(field) = place { *field } else { 0 };
-            let kind = RefusalKind::SourceTextMissing { key };
-            return Err(self.source.refuse(self.line, field, Found::text(""), kind));
-        }
-        Ok(value)
-    }
-
-    /// Adds the row to the recording that it belongs to, which may be a new one.
-    fn append_to(self, recordings: &mut Vec<Recording>, columns: usize) -> Result<(), Refusal> {
-        if self.record.len() != columns {
-            return Err(self.source.refuse_length(self.line, self.record.len(), columns));
-        }
-        let texts = [self.text(0)?, self.text(1)?, self.text(2)?];
-        let inputs = self.plan.inputs.len();
-        if recordings.last().is_none_or(|last| !last.is_of(texts)) {
-            recordings.push(Recording::new(texts, inputs));
-        }
-        let Some(recording) = recordings.last_mut() else { return Ok(()) };
-        if self.is_not_available(&self.record[self.fields.time]) {
-            recording.left_out += 1;
-            recording.first_left_out.get_or_insert(self.line);
-            return Ok(());
-        }
-        let numbers = (self.plan.inputs.iter().zip(&self.fields.inputs))
-            .map(|(input, field)| self.number_of(*field, input))
-            .collect::<Result<Vec<f64>, _>>()?;
-        let mut time_s = self.time_s(recording)?;
-        let previous_s = recording.time_s.last().copied();
-        let gap_s = previous_s.map_or(0.0, |previous| time_s - previous);
-        if self.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s) {
-            let mut next = Recording::new(texts, inputs);
-            time_s = self.time_s(&mut next)?;
-            recordings.push(next);
-        } else if let Some(previous) = previous_s
-            && time_s <= previous
-        {
-            let kind = RefusalKind::TimeNotIncreasing { previous, unit: "s" };
-            let found = Found::text(&self.record[self.fields.time]);
-            return Err(self.source.refuse(self.line, self.fields.time, found, kind));
-        }
-        let Some(recording) = recordings.last_mut() else { return Ok(()) };
-        recording.time_s.push(time_s);
-        recording.lines.push(self.line);
-        for (column, number) in recording.numbers.iter_mut().zip(numbers) {
-            column.push(number);
-        }
-        Ok(())
-    }
-
-    fn is_not_available(self, field: &str) -> bool {
-        field.is_empty() || self.plan.not_available.iter().any(|text| text == field)
-    }
-
-    fn number_of(self, field: usize, input: &Input) -> Result<f64, Refusal> {
-        let text = &self.record[field];
-        match input.values.iter().find(|(known, _)| known == text) {
-            Some((_, value)) => Ok(*value),
-            None => self.number(field, &input.name),
-        }
-    }
-
-    fn number(self, field: usize, name: &str) -> Result<f64, Refusal> {
-        let sent = &self.record[field];
-        if self.is_not_available(sent) {
-            return Ok(f64::NAN);
-        }
-        let with_point = (self.plan.decimal == ',').then(|| sent.replacen(',', ".", 1));
-        let text = with_point.as_deref().unwrap_or(sent);
-        // Other programs write the exponent's letter as a capital.
-        number::whole(text.as_bytes())
-            .or_else(|| {
-                text.contains('E').then(|| number::whole(text.replacen('E', "e", 1).as_bytes()))?
-            })
-            .ok_or_else(|| {
-                let kind = RefusalKind::SourceNotANumber { name: name.to_owned() };
-                self.source.refuse(self.line, field, Found::text(sent), kind)
-            })
-    }
-
-    /// Seconds since the recording's origin, which the first row of a recording with instants sets.
-    fn time_s(self, recording: &mut Recording) -> Result<f64, Refusal> {
-        let field = self.fields.time;
-        let text = &self.record[field];
-        let malformed = || {
-            let kind = RefusalKind::SourceInstantMalformed;
-            self.source.refuse(self.line, field, Found::text(text), kind)
-        };
-        match &self.plan.time {
-            TimeForm::Seconds { start, per_second } => {
-                recording.origin = *start;
-                let seconds = self.number(field, &self.plan.time_column)? / per_second;
-                if seconds.abs() > FARTHEST_S { Err(malformed()) } else { Ok(seconds) }
-            }
-            TimeForm::Timestamp { date_column: _, format, utc_offset } => {
-                let date = self.fields.date.map(|field| &self.record[field]);
-                let joined = date.map_or_else(|| text.to_owned(), |date| format!("{date} {text}"));
-                let instant = match format {
-                    Some(format) => formatted(&joined, format, utc_offset.as_deref()),
-                    None => instant(&joined, utc_offset.as_deref()),
-                }
-                .ok_or_else(malformed)?;
-                if recording.time_s.is_empty() {
-                    recording.origin = instant;
-                }
-                let nanoseconds = instant.as_nanosecond() - recording.origin.as_nanosecond();
-                Ok(nanoseconds as f64 / 1e9)
-            }
-            TimeForm::TimeOfDay { midnight } => {
-                recording.origin = *midnight;
-                let seconds = time_of_day_s(text).ok_or_else(malformed)?;
-                // Later than noon and then earlier: midnight has passed.
-                if seconds < recording.last_time_of_day_s - HALF_A_DAY_S {
-                    recording.days += 1.0;
-                }
-                recording.last_time_of_day_s = seconds;
-                Ok(seconds + recording.days * 2.0 * HALF_A_DAY_S)
-            }
-        }
-    }
-}
-
-const HALF_A_DAY_S: f64 = 43_200.0;
-/// Seconds from an origin beyond which a number is in another unit than seconds.
-const FARTHEST_S: f64 = 2e11;
-
-/// ISO text with `T` or a blank between date and time, with its own offset or with `utc_offset`.
-fn instant(text: &str, utc_offset: Option<&str>) -> Option<Timestamp> {
-    let with_t = text.replacen(' ', "T", 1);
-    parse_instant(&with_t).or_else(|| parse_instant(&(with_t + utc_offset?)))
-}
-
-/// Text of a form as `strptime` names it; an offset in the text counts more than `utc_offset`.
-fn formatted(text: &str, format: &str, utc_offset: Option<&str>) -> Option<Timestamp> {
-    let broken = jiff::fmt::strtime::parse(format, text).ok()?;
-    if broken.offset().is_some() {
-        return broken.to_timestamp().ok();
-    }
-    parse_instant(&(broken.to_datetime().ok()?.to_string() + utc_offset?))
-}
-
-/// Hours, minutes and seconds, separated by colons; s.
-fn time_of_day_s(text: &str) -> Option<f64> {
-    let mut fields = text.split(':').map(|field| number::whole(field.as_bytes()));
-    let (hours, minutes) = (fields.next()??, fields.next()??);
-    let seconds = fields.next().unwrap_or(Some(0.0))?;
-    let is_within = (0.0..24.0).contains(&hours)
-        && (0.0..60.0).contains(&minutes)
-        && (0.0..61.0).contains(&seconds)
-        && fields.next().is_none();
-    is_within.then_some(3600.0 * hours + 60.0 * minutes + seconds)
-}
-
+#[derive(Clone, Debug)]
 enum Text {
     Constant(String),
     Field(usize),
 }
 
+/// The line of names.
 struct Names<'a> {
     record: csv::StringRecord,
-    source: Source<'a>,
+    /// Its physical line.
+    line: usize,
+    text: &'a str,
+    form: Form,
 }
 
-impl Names<'_> {
+impl<'a> Names<'a> {
+    fn read(form: Form, text: &'a str, reader: &mut csv::Reader<&[u8]>) -> Result<Self, Refusal> {
+        let mut record = csv::StringRecord::new();
+        // For text in memory that is UTF-8, and records of any length, no error is possible.
+        if !reader.read_record(&mut record).unwrap_or(false) {
+            let line = text.lines().count().max(1);
+            let last = text.lines().nth(line - 1).unwrap_or_default();
+            let (column, kind) = (last.chars().count() + 1, RefusalKind::SourceNamesMissing);
+            return Err(Refusal { line, column, found: Found::EndOfText, kind });
+        }
+        let line = settle(form, text, record.position().map_or(1, line_of));
+        Ok(Self { record, line, text, form })
+    }
+
     fn find(&self, name: &str) -> Result<usize, Refusal> {
         let mut places = (0..self.record.len()).filter(|field| self.record[*field] == *name);
-        let line = line_of(&self.record);
         let owned = || name.to_owned();
+        let text = self.text.lines().nth(self.line - 1).unwrap_or_default();
         match (places.next(), places.next()) {
             (Some(place), None) => Ok(place),
-            (Some(_), Some(second)) => {
-                let kind = RefusalKind::SourceColumnDoubled { name: owned() };
-                Err(self.source.refuse(line, second, Found::text(name), kind))
-            }
-            (None, _) => {
-                let kind =
-                    RefusalKind::SourceColumnMissing { name: owned(), hint: self.hint(name) };
-                Err(self.source.refuse_line_end(line, kind))
-            }
+            (Some(_), Some(second)) => Err(Refusal {
+                line: self.line,
+                column: column_of(self.form, text, second),
+                found: Found::text(name),
+                kind: RefusalKind::SourceColumnDoubled { name: owned() },
+            }),
+            (None, _) => Err(Refusal {
+                line: self.line,
+                column: text.chars().count() + 1,
+                found: Found::EndOfLine,
+                kind: RefusalKind::SourceColumnMissing { name: owned(), hint: self.hint(name) },
+            }),
         }
     }
 
@@ -373,116 +229,46 @@ impl Names<'_> {
     }
 }
 
-/// The text with what is needed to state a position in it.
-#[derive(Clone, Copy, Debug)]
-struct Source<'a> {
-    text: &'a str,
-    form: Form,
+/// A reader of a text's records, of any length.
+fn reader(form: Form, text: &str) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .delimiter(form.separator)
+        .comment(form.comment)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes())
 }
 
-/// How fields are separated, and lines that mean nothing.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Form {
-    pub(super) separator: u8,
-    pub(super) comment: Option<u8>,
+/// Whether a line means nothing.
+fn means_nothing(form: Form, line: &str) -> bool {
+    line.is_empty() || form.comment.is_some_and(|mark| line.as_bytes()[0] == mark)
 }
 
-impl<'a> Source<'a> {
-    /// A reader of the text's records; with `flexible`, of records of any length.
-    fn reader(self, flexible: bool) -> csv::Reader<&'a [u8]> {
-        csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(flexible)
-            .delimiter(self.form.separator)
-            .comment(self.form.comment)
-            .trim(csv::Trim::All)
-            .from_reader(self.text.as_bytes())
-    }
+/// The line itself: the reader of delimited text counts a record from the blank and comment lines before it.
+fn settle(form: Form, text: &str, line: usize) -> usize {
+    line + text.lines().skip(line - 1).take_while(|text| means_nothing(form, text)).count()
+}
 
-    fn next(
-        self,
-        reader: &mut csv::Reader<&[u8]>,
-        record: &mut csv::StringRecord,
-    ) -> Result<bool, Refusal> {
-        reader.read_record(record).map_err(|error| match error.kind() {
-            csv::ErrorKind::UnequalLengths { pos: Some(position), expected_len, len } => {
-                let line = usize::try_from(position.line()).unwrap_or(usize::MAX);
-                let expected = usize::try_from(*expected_len).unwrap_or(usize::MAX);
-                let found = usize::try_from(*len).unwrap_or(usize::MAX);
-                self.refuse_length(line, found, expected)
-            }
-            // For text in memory that is UTF-8, no other error is possible.
-            _ => self.refuse_end(Found::EndOfText, RefusalKind::InvalidUtf8),
-        })
-    }
-
-    /// A row with too few or too many fields.
-    fn refuse_length(self, line: usize, found: usize, expected: usize) -> Refusal {
-        if found < expected {
-            let mut refusal = self.refuse_line_end(line, RefusalKind::TooFewFields { expected });
-            refusal.found = Found::Fields(found);
-            refusal
-        } else {
-            self.refuse(
-                line,
-                expected,
-                Found::Fields(found),
-                RefusalKind::TooManyFields { expected },
-            )
+/// Character from 1 where a field begins in a line; separators between quotes do not count.
+fn column_of(form: Form, line: &str, field: usize) -> usize {
+    let separator = char::from(form.separator);
+    let mut is_quoted = false;
+    let mut separators = 0;
+    for (index, character) in line.chars().enumerate() {
+        if separators == field {
+            return index + 1;
+        }
+        match character {
+            '"' => is_quoted = !is_quoted,
+            _ if character == separator && !is_quoted => separators += 1,
+            _ => {}
         }
     }
-
-    fn refuse(self, line: usize, field: usize, found: Found, kind: RefusalKind) -> Refusal {
-        let line = self.settle(line);
-        Refusal { line, column: self.column_of(line, field), found, kind }
-    }
-
-    fn refuse_line_end(self, line: usize, kind: RefusalKind) -> Refusal {
-        let line = self.settle(line);
-        let column = self.line(line).chars().count() + 1;
-        Refusal { line, column, found: Found::EndOfLine, kind }
-    }
-
-    fn refuse_end(self, found: Found, kind: RefusalKind) -> Refusal {
-        let line = self.text.lines().count().max(1);
-        Refusal { line, column: self.line(line).chars().count() + 1, found, kind }
-    }
-
-    fn line(self, line: usize) -> &'a str {
-        self.text.lines().nth(line - 1).unwrap_or_default()
-    }
-
-    /// The line itself: the reader of delimited text counts a record from the blank and comment lines before it.
-    fn settle(self, line: usize) -> usize {
-        let means_nothing = |text: &str| {
-            text.is_empty() || self.form.comment.is_some_and(|mark| text.as_bytes()[0] == mark)
-        };
-        let skipped =
-            self.text.lines().skip(line - 1).take_while(|text| means_nothing(text)).count();
-        line + skipped
-    }
-
-    /// Character from 1 where a field begins; separators between quotes do not count.
-    fn column_of(self, line: usize, field: usize) -> usize {
-        let separator = char::from(self.form.separator);
-        let mut is_quoted = false;
-        let mut separators = 0;
-        for (index, character) in self.line(line).chars().enumerate() {
-            if separators == field {
-                return index + 1;
-            }
-            match character {
-                '"' => is_quoted = !is_quoted,
-                _ if character == separator && !is_quoted => separators += 1,
-                _ => {}
-            }
-        }
-        self.line(line).chars().count() + 1
-    }
+    line.chars().count() + 1
 }
 
-/// Physical line of a record.
-fn line_of(record: &csv::StringRecord) -> usize {
-    let line = record.position().map_or(1, csv::Position::line);
-    usize::try_from(line).unwrap_or(usize::MAX)
+/// Line of a position, from 1.
+fn line_of(position: &csv::Position) -> usize {
+    usize::try_from(position.line()).unwrap_or(usize::MAX)
 }

@@ -11,7 +11,7 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 const FUEL_USED_STEP_KG: f64 = 0.5;
 const DIFFERENCE_ROUNDING_KG: f64 = 1e-9;
 
-impl Part<'_, '_> {
+impl Part<'_> {
     pub(super) fn load(&self) -> Result<Load, Refusal> {
         match &self.plan.mass {
             MassPlan::GrossMass { mass, zero_fuel_mass, largest_rise_kg } => {

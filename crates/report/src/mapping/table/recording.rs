@@ -1,23 +1,29 @@
 //! The rows of one flight, slow parameters filled, rows that lack a number left out.
 
+use std::sync::Arc;
+
 use flight::Timestamp;
 
+use crate::mapping::pieces::Piece;
 use crate::mapping::plan::{Fill, Plan};
 use crate::refusal::Refusal;
 
 /// The rows of one flight that have every number the report needs.
 #[derive(Debug)]
 pub(in crate::mapping) struct Recording {
-    pub(in crate::mapping) aircraft: String,
-    pub(in crate::mapping) tail: String,
-    pub(in crate::mapping) flight: String,
+    /// Aircraft, tail, flight.
+    pub(in crate::mapping) texts: Arc<[String; 3]>,
+    /// The text that holds its rows.
+    pub(super) pieces: Vec<Piece>,
+    /// Length of that text.
+    pub(super) kept_bytes: usize,
     /// The instant from which `time_s` counts.
     pub(in crate::mapping) origin: Timestamp,
     /// Strictly increasing.
     pub(in crate::mapping) time_s: Vec<f64>,
     /// `[input][row]`; NaN where an optional number is not available.
     pub(in crate::mapping) numbers: Vec<Vec<f64>>,
-    /// Line of each row, as the reader of delimited text counts.
+    /// Physical line of each row.
     pub(in crate::mapping) lines: Vec<usize>,
     /// Rows that lack a number that the report needs.
     pub(in crate::mapping) left_out: usize,
@@ -35,11 +41,11 @@ pub(in crate::mapping) struct Recording {
 }
 
 impl Recording {
-    pub(super) fn new([aircraft, tail, flight]: [&str; 3], inputs: usize) -> Self {
+    pub(super) fn new(texts: Arc<[String; 3]>, inputs: usize) -> Self {
         Self {
-            aircraft: aircraft.to_owned(),
-            tail: tail.to_owned(),
-            flight: flight.to_owned(),
+            texts,
+            pieces: Vec::new(),
+            kept_bytes: 0,
             origin: Timestamp::UNIX_EPOCH,
             time_s: Vec::new(),
             numbers: vec![Vec::new(); inputs],
@@ -55,12 +61,23 @@ impl Recording {
         }
     }
 
-    pub(super) fn is_of(&self, [aircraft, tail, flight]: [&str; 3]) -> bool {
-        self.aircraft == aircraft && self.tail == tail && self.flight == flight
+    pub(super) fn is_of(&self, texts: &[String; 3]) -> bool {
+        *self.texts == *texts
+    }
+
+    /// Name of the flight.
+    pub(in crate::mapping) fn flight(&self) -> &str {
+        &self.texts[2]
+    }
+
+    /// The text of a line that holds one of its rows.
+    pub(super) fn line(&self, line: usize) -> &str {
+        let later = self.pieces.partition_point(|piece| piece.first_line <= line);
+        later.checked_sub(1).map_or("", |piece| self.pieces[piece].line(line))
     }
 
     /// Fills slow parameters, then leaves out the rows that lack a number.
-    pub(super) fn settle(&mut self, plan: &Plan) {
+    pub(in crate::mapping) fn settle(&mut self, plan: &Plan) {
         for (input, numbers) in plan.inputs.iter().zip(&mut self.numbers) {
             let filled = match input.fill {
                 Fill::Not => 0,
@@ -70,6 +87,11 @@ impl Recording {
             if filled > 0 {
                 self.filled.push((input.name.clone(), filled));
             }
+        }
+        let required =
+            || plan.inputs.iter().zip(&self.numbers).filter(|(input, _)| input.is_required);
+        if !required().any(|(_, numbers)| numbers.iter().any(|number| number.is_nan())) {
+            return;
         }
         let lacks = |row: usize| {
             plan.inputs

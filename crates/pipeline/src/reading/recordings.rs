@@ -1,0 +1,262 @@
+//! A recording of another layout, read flight by flight: what is held at a time is some text and the flights in it, so
+//! that a month of a fleet fits into little memory.
+
+use std::io::BufRead;
+use std::path::Path;
+
+use flight::{Finding, Report, ReportColumns};
+use report::Refusal;
+use report::mapping::{MappedFlight, MappedReport, Mapping, Piece, Pieces, Rows, Stream};
+use segmenter::TrimCriteria;
+
+use super::{FileRead, FlightRead, RefusedReport, reduce};
+use crate::checksum::sha256;
+
+/// Pieces that are read into rows at a time, of about a megabyte each.
+pub const PIECES_AT_A_TIME: usize = 4;
+
+/// How a recording is read.
+#[derive(Clone, Copy, Debug)]
+pub struct Mapped<'a> {
+    /// What results call it; a mapping may take a text of the header from its file name.
+    pub path: &'a Path,
+    /// Its layout.
+    pub mapping: &'a Mapping,
+    /// Which samples are steady.
+    pub criteria: &'a TrimCriteria,
+}
+
+/// Work that does not depend on other work.
+#[derive(Debug)]
+pub enum Job {
+    /// A piece to read into rows.
+    Piece(Piece),
+    /// A flight to reduce.
+    Flight(Box<MappedFlight>),
+}
+
+/// What came of a job.
+#[derive(Debug)]
+pub enum Done {
+    /// Rows of a piece.
+    Rows(Box<Rows>),
+    /// A flight.
+    Flight(Box<Reduced>),
+}
+
+/// What came of a flight.
+#[derive(Debug)]
+pub enum Reduced {
+    /// It is used.
+    Flight(Box<FlightRead>),
+    /// Its report cannot be reduced.
+    Unusable(String),
+    /// It gave no report.
+    NoReport(MappedReport),
+}
+
+/// Does jobs, in any order, and gives what came of them in theirs.
+pub type Spread<'a> = dyn Fn(Vec<Job>, &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> + 'a;
+
+/// Does one job after the other.
+pub fn one_by_one(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> {
+    jobs.into_iter().map(work).collect()
+}
+
+/// The flights in a recording, plain or gzip, and what of it was refused. The result does not depend on `spread`.
+pub fn read(mapped: &Mapped<'_>, source: impl BufRead, spread: &Spread<'_>) -> FileRead {
+    let mut read = Read { mapped: *mapped, flights: Vec::new(), refused: Vec::new() };
+    match read.all(source, spread) {
+        Ok(()) => (read.flights, read.refused),
+        Err(refusal) => (Vec::new(), vec![RefusedReport::at(mapped.path.to_owned(), &refusal)]),
+    }
+}
+
+struct Read<'a> {
+    mapped: Mapped<'a>,
+    flights: Vec<FlightRead>,
+    refused: Vec<RefusedReport>,
+}
+
+impl Read<'_> {
+    fn all(&mut self, source: impl BufRead, spread: &Spread<'_>) -> Result<(), Refusal> {
+        let name = self.mapped.path.file_name().unwrap_or_default().to_string_lossy();
+        let mut pieces = Pieces::new(source)?;
+        let mut stream = Stream::begin(self.mapped.mapping, &mut pieces, Some(&name))?;
+        let mut waiting: Vec<MappedFlight> = Vec::new();
+        let mut has_ended = false;
+        while !has_ended {
+            let mut jobs: Vec<Job> = waiting.drain(..).map(Box::new).map(Job::Flight).collect();
+            let flights = jobs.len();
+            let mut stopped = Ok(());
+            while jobs.len() - flights < PIECES_AT_A_TIME {
+                match stream.next_piece(&mut pieces) {
+                    Ok(Some(piece)) => jobs.push(Job::Piece(piece)),
+                    Ok(None) => {
+                        has_ended = true;
+                        break;
+                    }
+                    Err(refusal) => {
+                        stopped = Err(refusal);
+                        break;
+                    }
+                }
+            }
+            // Refusals are those of the first line at fault: flights that ended before come first.
+            for done in spread(jobs, &|job| self.mapped.work(&stream, job)) {
+                match done {
+                    Done::Flight(reduced) => self.count(&mut stream, *reduced)?,
+                    Done::Rows(rows) => {
+                        let (ended, added) = stream.add(&rows);
+                        waiting.extend(ended);
+                        if let Err(refusal) = added {
+                            self.finish(&mut stream, waiting, spread)?;
+                            return Err(refusal);
+                        }
+                    }
+                }
+            }
+            if stopped.is_err() {
+                self.finish(&mut stream, waiting, spread)?;
+                return stopped;
+            }
+        }
+        waiting.extend(stream.finish());
+        self.finish(&mut stream, waiting, spread)?;
+        let findings = stream.end()?;
+        if let Some(first) = self.flights.first_mut() {
+            first.reduced.notes.extend(notes(self.mapped.path, findings));
+        }
+        Ok(())
+    }
+
+    /// The flights that are still waiting.
+    fn finish(
+        &mut self,
+        stream: &mut Stream,
+        waiting: Vec<MappedFlight>,
+        spread: &Spread<'_>,
+    ) -> Result<(), Refusal> {
+        let jobs = waiting.into_iter().map(Box::new).map(Job::Flight).collect();
+        for done in spread(jobs, &|job| self.mapped.work(stream, job)) {
+            if let Done::Flight(reduced) = done {
+                self.count(stream, *reduced)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, stream: &mut Stream, reduced: Reduced) -> Result<(), Refusal> {
+        match reduced {
+            Reduced::Flight(flight) => {
+                stream.count_report();
+                self.flights.push(*flight);
+            }
+            Reduced::Unusable(reason) => {
+                stream.count_report();
+                self.refused.push(RefusedReport::whole(self.mapped.path.to_owned(), reason));
+            }
+            Reduced::NoReport(report) => {
+                stream.count(report)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Mapped<'_> {
+    fn work(&self, stream: &Stream, job: Job) -> Done {
+        match job {
+            Job::Piece(piece) => Done::Rows(Box::new(stream.rows(piece))),
+            Job::Flight(flight) => Done::Flight(Box::new(self.reduce(stream.report(*flight)))),
+        }
+    }
+
+    fn reduce(&self, mapped: MappedReport) -> Reduced {
+        match mapped {
+            MappedReport::Report(parsed) => {
+                let content = content_as_read(&parsed.report);
+                match reduce(self.path, *parsed, content, self.criteria) {
+                    Ok(flight) => Reduced::Flight(Box::new(flight)),
+                    Err(reason) => Reduced::Unusable(reason),
+                }
+            }
+            other => Reduced::NoReport(other),
+        }
+    }
+}
+
+fn notes(path: &Path, findings: Vec<Finding>) -> Vec<String> {
+    findings
+        .into_iter()
+        .map(|finding| {
+            tracing::warn!(file = %path.display(), "{}", finding.message);
+            finding.message
+        })
+        .collect()
+}
+
+/// By what a flight out of a recording is known again: header and every sample, to the bit.
+fn content_as_read(report: &Report) -> String {
+    let header = report.header();
+    let mut content = format!(
+        "{}\n{}\n{}\n{}\n",
+        header.aircraft_type, header.identity.tail, header.identity.flight, header.identity.start
+    )
+    .into_bytes();
+    for (key, text) in &header.notes {
+        content.extend(format!("{key} {text}\n").into_bytes());
+    }
+    let heating_value = header.lower_heating_value_mj_kg.unwrap_or(f64::NAN);
+    let masses = [header.zero_fuel_mass, header.fuel_on_board].map(units::Mass::to_kilograms);
+    let numbers = [masses[0], masses[1], heating_value];
+    content.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    each_column(report.columns(), |name, values| {
+        content.extend_from_slice(name.as_bytes());
+        content.extend(values.iter().flat_map(|word| word.to_le_bytes()));
+    });
+    format!("flight:{}", sha256(&content))
+}
+
+/// Each column's name and two words that stand for its values.
+fn each_column(columns: &ReportColumns, mut each: impl FnMut(&str, [u64; 2])) {
+    let mut one = |name: &str, values: &[f64]| each(name, folded(values.iter().copied()));
+    one("TIME", &columns.time_s);
+    one("ALT", &columns.pressure_altitude_m);
+    one("SAT", columns.static_air_temperature_k.as_deref().unwrap_or_default());
+    one("MACH", &columns.mach);
+    one("VTAS", &columns.true_airspeed_m_s);
+    one("GSPD", &columns.ground_speed_m_s);
+    one("ROLL", columns.roll_deg.as_deref().unwrap_or_default());
+    one("DRIFT", columns.drift_deg.as_deref().unwrap_or_default());
+    for speeds in columns.n2_percent.iter().flatten() {
+        one("N2", speeds);
+    }
+    match &columns.fuel_flow {
+        flight::FuelFlowColumns::Total(total) => one("WF", total),
+        flight::FuelFlowColumns::PerEngine(flows) => {
+            for flow in flows {
+                one("WF()", flow);
+            }
+        }
+    }
+    one("FU", &columns.fuel_used_kg);
+    for (column, values) in columns.optional.iter() {
+        let values = values.iter().map(|value| value.unwrap_or(f64::NAN));
+        each(&column.name(), folded(values));
+    }
+}
+
+/// 128 bits that depend on every bit of every value and on their order: two sums, one multiplied by an odd number and
+/// rotated at each step, so that no exchange of values leaves both. Against accident, not against intent.
+fn folded(values: impl Iterator<Item = f64>) -> [u64; 2] {
+    // The golden ratio and the square root of three, as odd 64-bit fractions.
+    const FACTORS: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xbb67_ae85_84ca_a73b];
+    let mut words = [0_u64; 2];
+    for value in values {
+        let bits = value.to_bits();
+        words[0] = (words[0] ^ bits).wrapping_mul(FACTORS[0]).rotate_left(29);
+        words[1] = words[1].wrapping_mul(FACTORS[1]).wrapping_add(bits ^ (bits >> 31));
+    }
+    words
+}

@@ -1,0 +1,203 @@
+//! A recording read flight by flight: what is held at a time is a few pieces of text and the flights that they belong to.
+
+use std::io::BufRead;
+use std::sync::Arc;
+
+use flight::{Finding, Severity};
+
+use super::file::BadRows;
+use super::pieces::{Piece, Pieces};
+use super::table::{Assembly, Layout, Recording, Rows};
+use super::{Mapping, derive, parts};
+use crate::Parsed;
+use crate::refusal::{Found, Refusal, RefusalKind};
+
+/// A recording that is being read: pieces are taken one after the other, read into rows (in any order, also at the same
+/// time), and added in their order, which gives the flights that have ended.
+#[derive(Debug)]
+pub struct Stream {
+    layout: Layout,
+    /// What follows the line of names in the first piece.
+    first: Option<Piece>,
+    assembly: Assembly,
+    tally: Tally,
+}
+
+/// The rows of a flight.
+#[derive(Debug)]
+pub struct MappedFlight(Recording);
+
+/// What the rows of a flight came to.
+#[derive(Debug)]
+pub enum MappedReport {
+    /// A report.
+    Report(Box<Parsed>),
+    /// No level part is long enough.
+    WithoutCruise {
+        /// Its name.
+        flight: String,
+        /// Duration of its longest level part, s.
+        longest_s: f64,
+    },
+    /// The flight cannot be used.
+    Refused {
+        /// Its name.
+        flight: String,
+        /// Why.
+        refusal: Box<Refusal>,
+    },
+}
+
+/// What is said of a recording as a whole.
+#[derive(Debug, Default)]
+struct Tally {
+    reports: usize,
+    without_cruise: Vec<String>,
+    refused: Vec<String>,
+    first_refusal: Option<Refusal>,
+    longest_s: f64,
+}
+
+impl Stream {
+    /// Begins to read a recording; `file_name` is used for texts that the mapping takes from it.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a text without the columns that the mapping needs.
+    pub fn begin<R: BufRead>(
+        mapping: &Mapping,
+        pieces: &mut Pieces<R>,
+        file_name: Option<&str>,
+    ) -> Result<Self, Refusal> {
+        let first = pieces.next_piece()?.unwrap_or(Piece::default());
+        let (layout, below) = Layout::of_text(&mapping.file, &first, file_name)?;
+        let assembly = Assembly::new(&first);
+        let text = Arc::new(first.text[below.byte..].to_owned());
+        let first = Some(Piece { text, first_line: below.line });
+        Ok(Self { layout, first, assembly, tally: Tally::default() })
+    }
+
+    /// The next piece of rows; `None` after the last.
+    ///
+    /// # Errors
+    /// As [`Pieces::next_piece`].
+    pub fn next_piece<R: BufRead>(
+        &mut self,
+        pieces: &mut Pieces<R>,
+    ) -> Result<Option<Piece>, Refusal> {
+        match self.first.take() {
+            Some(piece) => Ok(Some(piece)),
+            None => pieces.next_piece(),
+        }
+    }
+
+    /// Reads the rows of a piece.
+    #[must_use]
+    pub fn rows(&self, piece: Piece) -> Rows {
+        self.layout.rows(piece)
+    }
+
+    /// Adds the rows of the next piece; gives the flights that have ended and, where the mapping refuses bad rows, the
+    /// first bad one.
+    pub fn add(&mut self, rows: &Rows) -> (Vec<MappedFlight>, Result<(), Refusal>) {
+        let added = self.assembly.add(&self.layout, rows);
+        (self.ended(), added)
+    }
+
+    /// The flights that end with the recording.
+    pub fn finish(&mut self) -> Vec<MappedFlight> {
+        self.assembly.finish();
+        self.ended()
+    }
+
+    fn ended(&mut self) -> Vec<MappedFlight> {
+        self.assembly.take_ended().into_iter().map(MappedFlight).collect()
+    }
+
+    /// The report of a flight.
+    #[must_use]
+    pub fn report(&self, MappedFlight(mut recording): MappedFlight) -> MappedReport {
+        let plan = &self.layout.plan;
+        recording.settle(plan);
+        let flight = recording.flight().to_owned();
+        let (parts, longest_s) = parts(plan, &recording);
+        if parts.is_empty() {
+            return MappedReport::WithoutCruise { flight, longest_s };
+        }
+        match derive::report(&self.layout, &recording, &parts) {
+            Ok(report) => MappedReport::Report(Box::new(report)),
+            Err(refusal) => MappedReport::Refused { flight, refusal: Box::new(refusal) },
+        }
+    }
+
+    /// Counts a flight that gave a report.
+    pub const fn count_report(&mut self) {
+        self.tally.reports += 1;
+    }
+
+    /// Counts what a flight came to, in the order of the recording.
+    ///
+    /// # Errors
+    /// A flight that cannot be used, where that refuses the recording.
+    pub fn count(&mut self, report: MappedReport) -> Result<Option<Parsed>, Refusal> {
+        match report {
+            MappedReport::Report(parsed) => {
+                self.count_report();
+                return Ok(Some(*parsed));
+            }
+            MappedReport::WithoutCruise { flight, longest_s } => {
+                self.tally.longest_s = self.tally.longest_s.max(longest_s);
+                self.tally.without_cruise.push(flight);
+            }
+            // One flight that cannot be used costs itself.
+            MappedReport::Refused { flight, refusal }
+                if self.layout.plan.bad_rows == BadRows::LeaveRowOut =>
+            {
+                self.tally.refused.push(format!("{flight}: {refusal}"));
+                self.tally.first_refusal.get_or_insert(*refusal);
+            }
+            MappedReport::Refused { refusal, .. } => return Err(*refusal),
+        }
+        Ok(None)
+    }
+
+    /// What is to be said of the recording at its end.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a recording that gave no report.
+    pub fn end(self) -> Result<Vec<Finding>, Refusal> {
+        if self.tally.reports == 0 {
+            return Err(match self.tally.first_refusal {
+                Some(refusal) => refusal,
+                None => self.refuse_without_report(),
+            });
+        }
+        let finding =
+            |code, message| Finding { severity: Severity::Warning, code, message, line: None };
+        let refused = self.tally.refused.iter();
+        let mut findings: Vec<Finding> = refused
+            .map(|refused| finding("mapped-flight-refused", format!("flight {refused}")))
+            .collect();
+        if !self.tally.without_cruise.is_empty() {
+            let flights = self.tally.without_cruise.join(", ");
+            let message =
+                format!("no level part long enough in flights of the same file: {flights}");
+            findings.push(finding("mapped-flight-without-cruise", message));
+        }
+        Ok(findings)
+    }
+
+    fn refuse_without_report(&self) -> Refusal {
+        match &self.layout.plan.cruise {
+            None => {
+                let found = Found::Rows(self.assembly.longest);
+                self.assembly.refuse_end(found, RefusalKind::TooFewRows)
+            }
+            Some(criteria) => self.assembly.refuse_end(
+                Found::Number { value: self.tally.longest_s, unit: "s of level flight" },
+                RefusalKind::NoLevelPart {
+                    needed_s: criteria.minimum_duration_s + 2.0 * criteria.trim_s,
+                },
+            ),
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Rows put together into flights, in the order of the recording.
+
+use std::sync::Arc;
+
+use flight::Timestamp;
+
+use super::rows::{Event, Rows, Times};
+use super::{Layout, Recording};
+use crate::decode::MAXIMUM_TEXT_BYTES;
+use crate::mapping::file::BadRows;
+use crate::mapping::pieces::Piece;
+use crate::mapping::plan::TimeForm;
+use crate::refusal::{Found, Refusal, RefusalKind};
+
+const HALF_A_DAY_S: f64 = 43_200.0;
+
+/// The flight that is not yet at its end, and where the rows end.
+#[derive(Debug, Default)]
+pub(in crate::mapping) struct Assembly {
+    current: Option<Recording>,
+    /// Flights that have ended.
+    ended: Vec<Recording>,
+    /// Number of the last line, and its length in characters.
+    end: (usize, usize),
+    /// Rows of the longest flight.
+    pub(in crate::mapping) longest: usize,
+}
+
+impl Assembly {
+    /// For a recording that begins with this piece.
+    pub(in crate::mapping) fn new(first: &Piece) -> Self {
+        Self { end: first.end(), ..Self::default() }
+    }
+
+    /// Adds the rows of the next piece. The flights before a refusal are among the ended ones.
+    ///
+    /// # Errors
+    /// The first row that is bad, where the mapping refuses such rows.
+    pub(in crate::mapping) fn add(&mut self, layout: &Layout, rows: &Rows) -> Result<(), Refusal> {
+        if !rows.piece.text.is_empty() {
+            self.end = rows.piece.end();
+        }
+        if let Some(current) = &mut self.current {
+            current.keep(&rows.piece)?;
+        }
+        let mut from = 0;
+        for (before, event) in &rows.events {
+            self.add_rows(layout, rows, from..*before)?;
+            from = *before;
+            match event {
+                Event::Texts(texts) => self.begin_if_other(layout, texts, rows)?,
+                Event::WithoutTime(line) => {
+                    let recording = self.current(layout);
+                    recording.left_out += 1;
+                    recording.first_left_out.get_or_insert(*line);
+                }
+                Event::Bad(refusal) => self.leave_out(layout, Refusal::clone(refusal))?,
+            }
+        }
+        self.add_rows(layout, rows, from..rows.times.len())
+    }
+
+    /// The flights that have ended since the last call.
+    pub(in crate::mapping) fn take_ended(&mut self) -> Vec<Recording> {
+        core::mem::take(&mut self.ended)
+    }
+
+    /// Ends the last flight.
+    pub(in crate::mapping) fn finish(&mut self) {
+        if let Some(current) = self.current.take() {
+            self.end_flight(current);
+        }
+    }
+
+    /// Refuses behind the last line.
+    pub(in crate::mapping) fn refuse_end(&self, found: Found, kind: RefusalKind) -> Refusal {
+        Refusal { line: self.end.0.max(1), column: self.end.1 + 1, found, kind }
+    }
+
+    fn end_flight(&mut self, recording: Recording) {
+        self.longest = self.longest.max(recording.time_s.len());
+        self.ended.push(recording);
+    }
+
+    fn begin_if_other(
+        &mut self,
+        layout: &Layout,
+        texts: &Arc<[String; 3]>,
+        rows: &Rows,
+    ) -> Result<(), Refusal> {
+        if self.current.as_ref().is_some_and(|current| current.is_of(texts)) {
+            return Ok(());
+        }
+        self.begin(layout, texts, rows)
+    }
+
+    fn begin(
+        &mut self,
+        layout: &Layout,
+        texts: &Arc<[String; 3]>,
+        rows: &Rows,
+    ) -> Result<(), Refusal> {
+        let mut next = Recording::new(Arc::clone(texts), layout.plan.inputs.len());
+        next.keep(&rows.piece)?;
+        if let Some(before) = self.current.replace(next) {
+            self.end_flight(before);
+        }
+        Ok(())
+    }
+
+    /// The flight to which a row belongs; of rows that say none, one without a name.
+    fn current(&mut self, layout: &Layout) -> &mut Recording {
+        self.current.get_or_insert_with(|| Recording::new(Arc::default(), layout.plan.inputs.len()))
+    }
+
+    fn leave_out(&mut self, layout: &Layout, refusal: Refusal) -> Result<(), Refusal> {
+        if layout.plan.bad_rows == BadRows::Refuse {
+            return Err(refusal);
+        }
+        let recording = self.current(layout);
+        recording.bad += 1;
+        recording.first_bad.get_or_insert(refusal);
+        Ok(())
+    }
+
+    /// Adds rows one behind the other, as far as their time follows.
+    fn add_rows(
+        &mut self,
+        layout: &Layout,
+        rows: &Rows,
+        range: core::ops::Range<usize>,
+    ) -> Result<(), Refusal> {
+        if range.is_empty() {
+            return Ok(());
+        }
+        let mut from = range.start;
+        for row in range.clone() {
+            let recording = self.current(layout);
+            let mut time_s = recording.seconds(layout, &rows.times, row);
+            let previous_s = recording.time_s.last().copied();
+            let gap_s = previous_s.map_or(0.0, |previous| time_s - previous);
+            if layout.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s) {
+                recording.extend(rows, from..row);
+                from = row;
+                let texts = Arc::clone(&recording.texts);
+                self.begin(layout, &texts, rows)?;
+                time_s = self.current(layout).seconds(layout, &rows.times, row);
+            } else if let Some(previous) = previous_s
+                && time_s <= previous
+            {
+                recording.extend(rows, from..row);
+                from = row + 1;
+                let refusal = not_increasing(layout, rows, row, previous);
+                self.leave_out(layout, refusal)?;
+                continue;
+            }
+            self.current(layout).time_s.push(time_s);
+        }
+        self.current(layout).extend(rows, from..range.end);
+        Ok(())
+    }
+}
+
+fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Refusal {
+    let line = rows.lines[row];
+    let text = rows.piece.line(line);
+    let field = layout.fields.time;
+    let mut reader = super::reader(layout.form(), text);
+    let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
+    let found = Found::text(record.get(field).unwrap_or_default());
+    let kind = RefusalKind::TimeNotIncreasing { previous, unit: "s" };
+    layout.refuse_field((line, text), field, found, kind)
+}
+
+impl Recording {
+    /// Keeps a piece that holds rows of this flight: a refusal needs the text of its line.
+    fn keep(&mut self, piece: &Piece) -> Result<(), Refusal> {
+        self.kept_bytes += piece.text.len();
+        self.pieces.push(piece.clone());
+        if self.kept_bytes > MAXIMUM_TEXT_BYTES {
+            let kind = RefusalKind::TooLarge { limit_bytes: MAXIMUM_TEXT_BYTES };
+            return Err(Refusal {
+                line: piece.first_line,
+                column: 1,
+                found: Found::EndOfText,
+                kind,
+            });
+        }
+        Ok(())
+    }
+
+    /// Everything but the times of rows.
+    fn extend(&mut self, rows: &Rows, range: core::ops::Range<usize>) {
+        self.lines.extend_from_slice(&rows.lines[range.clone()]);
+        for (column, numbers) in self.numbers.iter_mut().zip(&rows.numbers) {
+            column.extend_from_slice(&numbers[range.clone()]);
+        }
+    }
+
+    /// Seconds since the flight's origin, which its first instant sets.
+    fn seconds(&mut self, layout: &Layout, times: &Times, row: usize) -> f64 {
+        match times {
+            Times::Seconds(times) => {
+                if let TimeForm::Seconds { start, .. } = &layout.plan.time {
+                    self.origin = *start;
+                }
+                times[row]
+            }
+            Times::Instants(times) => {
+                if self.time_s.is_empty() {
+                    self.origin = times[row];
+                }
+                since_s(times[row], self.origin)
+            }
+            Times::OfDay(times) => {
+                if let TimeForm::TimeOfDay { midnight } = &layout.plan.time {
+                    self.origin = *midnight;
+                }
+                let seconds = times[row];
+                // Later than noon and then earlier: midnight has passed.
+                if seconds < self.last_time_of_day_s - HALF_A_DAY_S {
+                    self.days += 1.0;
+                }
+                self.last_time_of_day_s = seconds;
+                seconds + self.days * 2.0 * HALF_A_DAY_S
+            }
+        }
+    }
+}
+
+fn since_s(instant: Timestamp, origin: Timestamp) -> f64 {
+    let seconds = instant.as_second() - origin.as_second();
+    let nanoseconds = instant.subsec_nanosecond() - origin.subsec_nanosecond();
+    if nanoseconds == 0 {
+        return seconds as f64;
+    }
+    (i128::from(seconds) * 1_000_000_000 + i128::from(nanoseconds)) as f64 / 1e9
+}
