@@ -10,6 +10,7 @@ mod applied;
 mod architecture;
 mod bad_input;
 mod check;
+mod check_findings;
 mod commands;
 mod dates;
 mod diagnosis;

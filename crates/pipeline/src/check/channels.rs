@@ -98,7 +98,9 @@ impl Channel<'_> {
         let (low, high) = self.extremes();
         let is_whole = first == 0 && last + 1 == self.values.len();
         let outside = self.values.len() - (last - first + 1);
-        let equal = self.equal_neighbors(first, last);
+        let value = self.values[first];
+        let at_limit = !is_whole && (value <= low || value >= high);
+        let equal = self.equal_neighbors(first, last, at_limit.then_some(value));
         // A channel of few steps repeats itself: only what moves finely elsewhere is stuck here.
         if !is_whole && (outside < FEWEST_SAMPLES || equal > EQUAL_NEIGHBORS) {
             return None;
@@ -107,8 +109,6 @@ impl Channel<'_> {
         if is_whole && !self.name.starts_with("WF") && !self.name.starts_with("GSPD") {
             return None;
         }
-        let value = self.values[first];
-        let at_limit = !is_whole && (value <= low || value >= high);
         Some(Draft {
             severity: if is_whole { Severity::Serious } else { Severity::Warning },
             code: if at_limit { "channel-saturated" } else { "channel-stuck" },
@@ -145,15 +145,20 @@ impl Channel<'_> {
         best
     }
 
-    /// Share of equal neighbours outside a run.
-    fn equal_neighbors(&self, first: usize, last: usize) -> f64 {
-        let outside = |sample: usize| sample < first || sample >= last;
+    /// Share of equal neighbours outside a run; `limit` is where the channel may end, which it then meets in other runs too:
+    /// they count neither way.
+    fn equal_neighbors(&self, first: usize, last: usize, limit: Option<f64>) -> f64 {
+        let bits = |sample: usize| self.values[sample].to_bits();
+        let limit = limit.map(f64::to_bits);
         let (mut equal, mut pairs) = (0.0, 0.0);
-        for sample in (0..self.values.len().saturating_sub(1)).filter(|sample| outside(*sample)) {
-            pairs += 1.0;
-            if self.values[sample].to_bits() == self.values[sample + 1].to_bits() {
-                equal += 1.0;
+        for sample in 0..self.values.len().saturating_sub(1) {
+            let is_inside = (first..last).contains(&sample);
+            let is_equal = bits(sample) == bits(sample + 1);
+            if is_inside || is_equal && Some(bits(sample)) == limit {
+                continue;
             }
+            pairs += 1.0;
+            equal += f64::from(u8::from(is_equal));
         }
         if pairs > 0.0 { equal / pairs } else { 1.0 }
     }

@@ -1,0 +1,189 @@
+//! Every kind of finding that `cruisefit check` knows is planted once, and recordings that are right have none.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use crate::check::{SLIPS, Slip, check, codes, column, document, header, planted, unit};
+use crate::support::{cruisefit, initial_model, root};
+
+/// Kinds that need two flights or more, each planted in a test of its own.
+const OF_SEVERAL_FLIGHTS: [&str; 3] = ["flight-copied", "flights-overlap", "date-wrong"];
+
+/// The report's first rows.
+fn first_rows(text: &str, rows: usize) -> String {
+    let before = text.lines().position(|line| line.starts_with("TIME")).unwrap() + 2;
+    text.lines().take(before + rows).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+/// A column that is worked out of the row's number and its fuel used.
+fn with_column(text: &str, [name, unit]: [&str; 2], value: fn(f64, f64) -> f64) -> String {
+    let names = text.lines().position(|line| line.starts_with("TIME")).unwrap();
+    let header: Vec<&str> = text.lines().nth(names).unwrap().split_whitespace().collect();
+    let fuel_used = header.iter().position(|word| *word == "FU").unwrap();
+    let lines = text.lines().enumerate().map(|(index, line)| match index {
+        _ if index < names => line.to_owned(),
+        _ if index == names => format!("{line} {name}"),
+        _ if index == names + 1 => format!("{line} {unit}"),
+        _ => {
+            let word = line.split_whitespace().nth(fuel_used).unwrap();
+            let row = (index - names - 2) as f64;
+            format!("{line} {:.1}", value(row, word.parse().unwrap()))
+        }
+    });
+    lines.collect::<Vec<_>>().join("\n") + "\n"
+}
+
+/// The report without the columns that `check` could compare ground speed and angles with.
+fn without_positions(text: &str) -> String {
+    ["LAT", "LON"]
+        .iter()
+        .fold(text.to_owned(), |text, name| text.replacen(name, &format!("X-{name}"), 1))
+}
+
+/// Each row so many times, a minute apart.
+fn slowed(text: &str, times: usize) -> String {
+    let before = text.lines().position(|line| line.starts_with("TIME")).unwrap() + 2;
+    let mut lines: Vec<String> = text.lines().take(before).map(str::to_owned).collect();
+    for (row, line) in text.lines().skip(before).enumerate() {
+        let (_, rest) = line.trim_start().split_once(' ').unwrap();
+        lines.extend((0..times).map(|time| format!("{} {rest}", 60 * (row * times + time))));
+    }
+    lines.join("\n") + "\n"
+}
+
+/// Ground speeds end at what three quarters of the samples exceed, as if the recorder's range did.
+fn clipped(text: &str) -> String {
+    let names = text.lines().position(|line| line.starts_with("TIME")).unwrap();
+    let place = |line: &str| line.split_whitespace().position(|word| word == "GSPD").unwrap();
+    let speed = place(text.lines().nth(names).unwrap());
+    let mut speeds: Vec<f64> = text
+        .lines()
+        .skip(names + 2)
+        .map(|line| line.split_whitespace().nth(speed).unwrap().parse().unwrap())
+        .collect();
+    speeds.sort_by(f64::total_cmp);
+    let limit = speeds[speeds.len() / 4];
+    let lines = text.lines().enumerate().map(|(index, line)| {
+        if index < names + 2 {
+            return line.to_owned();
+        }
+        let mut words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+        words[speed] = words[speed].parse::<f64>().unwrap().min(limit).to_string();
+        words.join(" ")
+    });
+    lines.collect::<Vec<_>>().join("\n") + "\n"
+}
+
+/// The kinds that no slip of a single column shows.
+const MORE_SLIPS: [Slip; 11] = [
+    (
+        "FQ: kg declared as lb",
+        |text| with_column(text, ["FQ", "lb"], |_, used| 0.453_592_37 * (15_670.0 - used)),
+        "fuel-quantity-against-flow",
+    ),
+    (
+        "SAT: total air temperature, and VTAS derived from it",
+        |text| {
+            let warm = column(text, "SAT", |sat| (sat + 273.15) * 1.128 - 273.15);
+            column(&warm, "VTAS", |speed| speed * f64::sqrt(1.128))
+        },
+        "temperature-against-altitude",
+    ),
+    (
+        "GSPD: m/s declared as kt, no position",
+        |text| column(&without_positions(text), "GSPD", |speed| 0.514_444 * speed),
+        "wind-impossible",
+    ),
+    (
+        "HDG: magnetic",
+        |text| column(text, "HDG", |heading| (heading + 15.0).rem_euclid(360.0)),
+        "heading-against-track",
+    ),
+    (
+        "ROLL: sign",
+        // A right turn of 3 degrees a minute, recorded with the left wing down.
+        |text| {
+            let text = text.replacen("HDG", "X-HDG", 1);
+            let turning = with_column(&text, ["HDG", "deg"], |row, _| 20.0 + 3.0 * row.min(20.0));
+            column(&turning, "ROLL", |_| -6.0)
+        },
+        "roll-sign",
+    ),
+    (
+        "WF and FU: lb declared as kg",
+        |text| unit(&unit(text, "WF", "kg/h"), "FU", "kg"),
+        "flow-against-mass",
+    ),
+    ("ZFW: digits too many", |text| header(text, "ZFW", "2000000 lb"), "mass-impossible"),
+    ("HDG: radians", |text| column(text, "HDG", f64::to_radians), "heading-scale"),
+    ("several flights in one", |text| slowed(text, 12), "duration-impossible"),
+    ("a report cut short", |text| first_rows(text, 4), "duration-short"),
+    ("GSPD: clipped", clipped, "channel-saturated"),
+];
+
+#[test]
+fn every_kind_of_finding_is_planted() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let json = folder.path().join("check.json");
+    let mut missed = Vec::new();
+    for (name, slip, expected) in MORE_SLIPS {
+        let reports = planted(folder.path(), slip);
+        let ran = check(&reports, Some(&model), &json);
+        let found = if ran.status == 2 { vec![ran.stderr] } else { codes(&document(&json)) };
+        if !found.iter().any(|code| code == expected) {
+            missed.push(format!("{name}: {found:?}\n{}", ran.stdout));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+    // The page lists every kind; each of them is expected of some slip.
+    let planted: BTreeSet<&str> = (SLIPS.iter().chain(&MORE_SLIPS).map(|(_, _, code)| *code))
+        .chain(OF_SEVERAL_FLIGHTS)
+        .collect();
+    let page = std::fs::read_to_string(root().join("docs/src/guides/check.md")).unwrap();
+    let listed: Vec<&str> = page
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .filter_map(|line| line.split('|').nth(1))
+        .flat_map(|cell| cell.split('`').skip(1).step_by(2))
+        .collect();
+    assert!(listed.len() > 25, "{listed:?}");
+    let never: Vec<&&str> = listed.iter().filter(|code| !planted.contains(*code)).collect();
+    assert!(never.is_empty(), "listed and never planted: {never:?}");
+}
+
+#[test]
+fn layouts_read_with_their_first_mapping_have_no_finding() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = folder.path().join("M.ron");
+    let json = folder.path().join("check.json");
+    let mut layouts: Vec<PathBuf> = std::fs::read_dir(root().join("fixtures/layouts"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_none_or(|ending| ending != "py"))
+        // Of a codec that is not read.
+        .filter(|path| !path.ends_with("13_brotli.parquet"))
+        .collect();
+    layouts.sort();
+    assert_eq!(layouts.len(), 17);
+    for layout in layouts {
+        cruisefit(&[
+            "mapping".as_ref(),
+            layout.as_os_str(),
+            "--force".as_ref(),
+            "-o".as_ref(),
+            mapping.as_os_str(),
+        ])
+        .expect(0);
+        let ran = cruisefit(&[
+            "check".as_ref(),
+            layout.as_os_str(),
+            "--mapping".as_ref(),
+            mapping.as_os_str(),
+            "--json".as_ref(),
+            json.as_os_str(),
+        ])
+        .expect(0);
+        assert_eq!(codes(&document(&json)), Vec::<String>::new(), "{}", ran.stdout);
+    }
+}
