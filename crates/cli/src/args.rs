@@ -5,8 +5,8 @@ mod recordings;
 
 use std::path::PathBuf;
 
+use crate::criteria::NamedCriteria;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use segmenter::TrimCriteria;
 
 pub(crate) use monitor::MonitorArgs;
 pub(crate) use recordings::{ConvertArgs, MappingArgs};
@@ -108,9 +108,10 @@ pub(crate) struct ReportsArgs {
     /// Mapping file (RON), or the name of a preset, for recordings of another layout
     #[arg(long, value_name = "MAPPING")]
     pub(crate) mapping: Option<String>,
-    /// Trim criteria that decide which samples are steady
-    #[arg(long, value_name = "NAME", default_value = TrimCriteria::PRESETS[0], value_parser = TrimCriteria::PRESETS)]
-    pub(crate) criteria: String,
+    /// Trim criteria that decide which samples are steady: ghazi-2020-table-4, airbus-report-02, airbus-report-02-short,
+    /// or a file (RON) of your own
+    #[arg(long, value_name = "CRITERIA", default_value = NamedCriteria::name_of_default())]
+    pub(crate) criteria: NamedCriteria,
     /// Stop before anything is written if a report is refused
     #[arg(long)]
     pub(crate) strict: bool,

@@ -29,7 +29,6 @@ pub(crate) mod tune;
 
 use pipeline::distinct::distinct;
 use report::mapping::Mapping;
-use segmenter::TrimCriteria;
 
 use crate::args::ReportsArgs;
 use crate::failure::{Failure, RefusedReport};
@@ -65,16 +64,7 @@ fn tell_serious(findings: &str) {
 /// How a command reads its reports.
 fn source_of(arguments: &ReportsArgs) -> Result<Source, Failure> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
-    let criteria =
-        TrimCriteria::preset(&arguments.criteria).ok_or_else(|| Failure::BadArgument {
-            argument: "--criteria",
-            reason: format!(
-                "found {:?}, expected one of {:?}",
-                arguments.criteria,
-                TrimCriteria::PRESETS
-            ),
-        })?;
-    Ok(Source { mapping, criteria })
+    Ok(Source { mapping, criteria: arguments.criteria.limits })
 }
 
 /// Collects, reads and segments the reports of a command; each flight once.

@@ -14,6 +14,7 @@
 mod args;
 mod columns;
 mod commands;
+mod criteria;
 mod failure;
 mod files;
 mod folder;

@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     bar.finish();
     refused.extend(inputs.refused);
     let law = law_of(arguments);
-    let mut starts = Starts::new(&models, law, &arguments.reports.criteria);
+    let mut starts = Starts::new(&models, law, &arguments.reports.criteria.name);
     let tails = choose(tails, &mut starts, &mut refused);
     check_refused(&refused, files, arguments.reports.strict, tails.is_empty())?;
     let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };

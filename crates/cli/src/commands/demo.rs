@@ -212,7 +212,7 @@ fn reports_arguments(reports: &[PathBuf]) -> ReportsArgs {
     ReportsArgs {
         reports: reports.to_vec(),
         mapping: None,
-        criteria: segmenter::TrimCriteria::PRESETS[0].to_owned(),
+        criteria: crate::criteria::NamedCriteria::default(),
         strict: true,
     }
 }

@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         &reports,
         &diagnoses,
         &figures,
-        &asked.in_words(&arguments.reports.criteria),
+        &asked.in_words(&arguments.reports.criteria.name),
     );
     write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
     let mut text = String::new();

@@ -136,7 +136,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
             reports: ReportsArgs {
                 reports: golden.reports.iter().map(|report| folder.join(report)).collect(),
                 mapping: None,
-                criteria: segmenter::TrimCriteria::PRESETS[0].to_owned(),
+                criteria: crate::criteria::NamedCriteria::default(),
                 strict: true,
             },
             models: ModelArgs { models: vec![model_path.clone()] },

@@ -24,7 +24,11 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
     // Sorted by the order of flying, whatever the names of the files.
     reading.flights.sort_by(FlightRead::order);
-    let explained = if arguments.explain { explain(&reading.flights) } else { String::new() };
+    let explained = if arguments.explain {
+        explain(&reading.flights) + &loosened(arguments, &reading.flights, progress)?
+    } else {
+        String::new()
+    };
     let flights = reading.flights.len();
     let rows: Vec<SegmentRow> = reading
         .flights
@@ -55,12 +59,55 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
     Ok(Outcome { text, refused: reading.refused })
 }
 
-/// What each criterion cost: one line per flight, then all flights together.
+/// The limit that is tried for the criterion that costs most, times its own.
+const LOOSER: f64 = 2.0;
+/// More flights than this are not listed: what is told of all has to fit on a screen.
+const LISTED_FLIGHTS: usize = 12;
+
+fn tally_of(flights: &[FlightRead]) -> Tally {
+    flights.iter().fold(Tally::NOTHING, |mut total, flight| {
+        total += flight.reduced.tally;
+        total
+    })
+}
+
+/// The criterion that alone costs the most samples, and what other limits of it would give.
+fn loosened(
+    arguments: &SegmentArgs,
+    flights: &[FlightRead],
+    progress: Progress,
+) -> Result<String, Failure> {
+    let total = tally_of(flights);
+    let costliest = Criterion::ALL.into_iter().max_by_key(|criterion| {
+        (total.cost(*criterion).unsteady_alone, usize::MAX - *criterion as usize)
+    });
+    let Some(criterion) = costliest.filter(|one| total.cost(*one).unsteady_alone > 0) else {
+        return Ok(String::new());
+    };
+    let mut reports = arguments.reports.clone();
+    let limits = &mut reports.criteria.limits;
+    let limit = limits.limit(criterion);
+    *limits = limits.with_limit(criterion, LOOSER * limit);
+    let looser = tally_of(&prepare(&reports, progress)?.flights);
+    let unit = criterion.unit();
+    Ok(format!(
+        "{criterion} costs most: {} fail it alone. {} {unit} in place of {limit} {unit} would give {} with {} of {} samples\n(now {} with {}); a looser limit lets less steady flight into the means.\n\n",
+        counted(total.cost(criterion).unsteady_alone, "sample"),
+        LOOSER * limit,
+        counted(looser.segments, "segment"),
+        looser.samples_kept,
+        looser.samples,
+        total.segments,
+        total.samples_kept,
+    ))
+}
+
+/// What each criterion cost: one line for each of a few flights, then all flights together.
 fn explain(flights: &[FlightRead]) -> String {
     let mut text = String::new();
-    let mut total = Tally::NOTHING;
-    for flight in flights {
-        total += flight.reduced.tally;
+    let total = tally_of(flights);
+    let listed = if flights.len() > LISTED_FLIGHTS { &[] } else { flights };
+    for flight in listed {
         let _ = writeln!(
             text,
             "{} {}: {}",
