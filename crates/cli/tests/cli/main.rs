@@ -17,6 +17,7 @@ mod diagnosis;
 mod export;
 mod folder;
 mod guide;
+mod hostile_system;
 mod json_schema;
 mod monitor;
 mod optimum;
