@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PRESETS", "Check", "Refused", "Report", "Segments", "check", "segment"]
 
-PRESETS = ("ghazi-2020-table-4", "airbus-report-02")
+PRESETS = ("ghazi-2020-table-4", "airbus-report-02", "airbus-report-02-short")
 """Names of the trim criteria; the first one is the default."""
 
 Report = Union[str, "os.PathLike[str]", bytes, tuple[str, bytes]]
