@@ -8,11 +8,14 @@ use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType,
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
+use parquet::schema::types::{ColumnPath, Type};
 use pipeline::columns::{Cells, Columns};
 
 use crate::failure::Failure;
 use crate::files::write_atomically;
+
+/// Values that are encoded together.
+const VALUES_AT_ONCE: usize = 1 << 16;
 
 /// Writes to a file whose ending chooses the format, or as CSV to standard output.
 ///
@@ -46,7 +49,9 @@ fn to_parquet(columns: &Columns) -> Result<Vec<u8>, parquet::errors::ParquetErro
                 (PhysicalType::BYTE_ARRAY, Some(LogicalType::String), Repetition::REQUIRED)
             }
             Cells::Count(_) => (PhysicalType::INT64, None, Repetition::REQUIRED),
-            Cells::Number(_) => (PhysicalType::DOUBLE, None, Repetition::OPTIONAL),
+            Cells::Number(_) | Cells::Dense(_) => {
+                (PhysicalType::DOUBLE, None, Repetition::OPTIONAL)
+            }
         };
         fields.push(Arc::new(
             Type::primitive_type_builder(name, physical)
@@ -57,10 +62,16 @@ fn to_parquet(columns: &Columns) -> Result<Vec<u8>, parquet::errors::ParquetErro
     }
     let schema = Type::group_type_builder("segments").with_fields(fields).build()?;
     // No creation time or program version goes in: same input, same bytes.
-    let properties = WriterProperties::builder()
+    let mut properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(3)?))
-        .set_created_by("cruisefit".to_owned())
-        .build();
+        .set_created_by("cruisefit".to_owned());
+    for (name, cells) in columns.iter() {
+        if matches!(cells, Cells::Dense(_)) {
+            // Millions of computed numbers repeat too seldom for a dictionary.
+            properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), false);
+        }
+    }
+    let properties = properties.build();
     let mut bytes = Vec::new();
     let mut writer = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties))?;
     let mut group = writer.next_row_group()?;
@@ -82,6 +93,15 @@ fn to_parquet(columns: &Columns) -> Result<Vec<u8>, parquet::errors::ParquetErro
                 let levels: Vec<i16> =
                     values.iter().map(|value| i16::from(value.is_some())).collect();
                 column.typed::<DoubleType>().write_batch(&present, Some(&levels), None)?;
+            }
+            Cells::Dense(values) => {
+                for values in values.chunks(VALUES_AT_ONCE) {
+                    let present: Vec<f64> =
+                        values.iter().copied().filter(|value| !value.is_nan()).collect();
+                    let levels: Vec<i16> =
+                        values.iter().map(|value| i16::from(!value.is_nan())).collect();
+                    column.typed::<DoubleType>().write_batch(&present, Some(&levels), None)?;
+                }
             }
         }
         column.close()?;

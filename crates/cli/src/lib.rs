@@ -20,6 +20,7 @@ mod files;
 mod folder;
 mod inputs;
 mod models;
+mod parquet_numbers;
 mod parquet_text;
 mod progress;
 mod reading;

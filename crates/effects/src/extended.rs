@@ -165,10 +165,15 @@ impl ExtendedModel {
     /// [`PredictError`] where a number is outside its domain or the point is outside the table.
     pub fn predict(&self, point: &FlightPoint) -> Result<Prediction, PredictError> {
         let plain = self.base.predict(point)?;
-        match self.prepared().filter(|prepared| prepared.changes_predictions()) {
-            None => Ok(plain),
-            Some(_) => self.with_applied(point, plain),
-        }
+        if self.without_applied().is_some() { Ok(plain) } else { self.with_applied(point, plain) }
+    }
+
+    /// The model without any effect where no applied effect changes a prediction for a flight point: [`predict`](Self::predict)
+    /// is then its prediction.
+    #[must_use]
+    pub fn without_applied(&self) -> Option<&PerformanceModel> {
+        let changes = self.prepared().is_some_and(Prepared::changes_predictions);
+        (!changes).then_some(&self.base)
     }
 
     /// The response at a flight point with the applied physical effects; those whose input the point lacks are held at

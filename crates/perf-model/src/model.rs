@@ -14,7 +14,7 @@ mod level_flight;
 mod observe;
 mod predict;
 
-pub use level_flight::LevelFlights;
+pub use level_flight::{LevelFlights, LevelPrediction};
 pub use observe::ObserveError;
 pub use predict::{PredictError, Prediction, SegmentPrediction};
 
@@ -157,7 +157,9 @@ impl PerformanceModel {
     }
 
     /// Whether a node that the guide does not support has a part in the value at a cell's point.
-    fn uses_extrapolated(&self, cell: &Cell) -> bool {
+    #[must_use]
+    #[inline]
+    pub fn uses_extrapolated(&self, cell: &Cell) -> bool {
         cell.nodes()
             .into_iter()
             .zip(cell.weights())

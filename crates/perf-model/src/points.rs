@@ -16,7 +16,7 @@ use crate::guide::{fuel_flow_in, mass_in};
 
 mod table;
 
-pub use table::{PointCell, PointTable};
+pub use table::{LevelColumns, PointCell, PointTable};
 
 /// A file of flight points, with every row as it was sent.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use atmos::isa;
 use flight::{ObservationVariance, Segment};
 use lut::{Cell, Table};
 use units::convert::STANDARD_GRAVITY_M_S2;
-use units::{Mass, OutOfDomain, PressureAltitude};
+use units::{Acceleration, Force, Mach, Mass, OutOfDomain, PressureAltitude, Temperature};
 
 use crate::Aircraft;
 use crate::state::SegmentState;
@@ -38,6 +38,38 @@ pub struct ResidualSensitivity {
     pub ln_mass: f64,
     /// ∂y/∂h, 1/m, with h pressure altitude; Mach number and true airspeed are held.
     pub pressure_altitude_per_m: f64,
+}
+
+/// What the derivatives depend on at a recorded point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RecordedPoint {
+    pub(crate) mach: Mach,
+    pub(crate) static_air_temperature: Temperature,
+    /// That of the ISA at the pressure altitude.
+    pub(crate) standard_temperature: Temperature,
+    pub(crate) mass: Mass,
+    pub(crate) acceleration: Acceleration,
+    pub(crate) drag: Force,
+    pub(crate) net_thrust: Force,
+}
+
+impl RecordedPoint {
+    fn of_state(
+        pressure_altitude: PressureAltitude,
+        state: &SegmentState,
+    ) -> Result<Self, OutOfDomain> {
+        Ok(Self {
+            mach: state.mach,
+            static_air_temperature: Temperature::kelvin(
+                state.temperature_ratio * atmos::constants::SEA_LEVEL_TEMPERATURE_K,
+            ),
+            standard_temperature: isa::temperature(pressure_altitude)?,
+            mass: state.conditions.mass,
+            acceleration: state.conditions.acceleration,
+            drag: state.drag(),
+            net_thrust: state.net_thrust,
+        })
+    }
 }
 
 impl TableSlopes {
@@ -78,16 +110,21 @@ impl ResidualSensitivity {
         state: &SegmentState,
         slopes: TableSlopes,
     ) -> Result<Self, OutOfDomain> {
-        let mach = state.mach.value();
-        let drag_n = state.drag().to_newtons();
-        let mass_kg = state.conditions.mass.to_kilograms();
-        let acceleration_m_s2 = state.conditions.acceleration.to_meters_per_second_squared();
-        let thrust_over_drag = state.net_thrust.to_newtons() / drag_n;
+        Ok(Self::at(aircraft, &RecordedPoint::of_state(pressure_altitude, state)?, slopes))
+    }
+
+    #[inline]
+    fn at(aircraft: &Aircraft, point: &RecordedPoint, slopes: TableSlopes) -> Self {
+        let mach = point.mach.value();
+        let drag_n = point.drag.to_newtons();
+        let mass_kg = point.mass.to_kilograms();
+        let acceleration_m_s2 = point.acceleration.to_meters_per_second_squared();
+        let thrust_over_drag = point.net_thrust.to_newtons() / drag_n;
         let lambda = slopes.along_ln_lift_coefficient;
         let tsfc_slope = aircraft.tsfc_law().mach_exponent * mach / (1.0 + mach);
-        let sat_k = state.temperature_ratio * atmos::constants::SEA_LEVEL_TEMPERATURE_K;
-        let isa_temperature_k = isa::temperature(pressure_altitude)?.to_kelvin();
-        Ok(Self {
+        let sat_k = point.static_air_temperature.to_kelvin();
+        let isa_temperature_k = point.standard_temperature.to_kelvin();
+        Self {
             ln_fuel_flow: thrust_over_drag,
             mach: (-2.0 + 2.0 * lambda - thrust_over_drag * tsfc_slope) / mach - slopes.along_mach,
             static_air_temperature_per_k: -0.5 * thrust_over_drag / sat_k,
@@ -95,7 +132,7 @@ impl ResidualSensitivity {
             ln_mass: -lambda - mass_kg * acceleration_m_s2 / drag_n,
             pressure_altitude_per_m: (1.0 - lambda) * STANDARD_GRAVITY_M_S2
                 / (SPECIFIC_GAS_CONSTANT_J_KG_K * isa_temperature_k),
-        })
+        }
     }
 }
 
@@ -115,28 +152,41 @@ pub fn observation_variance(
     slopes: TableSlopes,
 ) -> Result<ObservationVariance, OutOfDomain> {
     let means = &segment.means;
-    let sensors = aircraft.sensors();
     let pressure_altitude = PressureAltitude::meters(means.pressure_altitude_m);
-    let sensitivity = ResidualSensitivity::new(aircraft, pressure_altitude, state, slopes)?;
+    let fuel_flow_relative_variance = total_fuel_flow_relative_variance(
+        aircraft.sensors().fuel_flow_percent / 100.0,
+        &means.fuel_flow_engine_kg_s,
+        aircraft.engines(),
+    );
+    let point = RecordedPoint::of_state(pressure_altitude, state)?;
+    Ok(propagated(aircraft, &point, slopes, fuel_flow_relative_variance, segment.samples()))
+}
+
+/// The sensors' standard deviations by the derivatives at a point, for a segment of this many samples.
+#[inline]
+pub(crate) fn propagated(
+    aircraft: &Aircraft,
+    point: &RecordedPoint,
+    slopes: TableSlopes,
+    fuel_flow_relative_variance: f64,
+    samples: usize,
+) -> ObservationVariance {
+    let sensors = aircraft.sensors();
+    let sensitivity = ResidualSensitivity::at(aircraft, point, slopes);
     let square = |x: f64| x * x;
-    let segment_variance = square(sensitivity.ln_fuel_flow)
-        * total_fuel_flow_relative_variance(
-            sensors.fuel_flow_percent / 100.0,
-            &means.fuel_flow_engine_kg_s,
-            aircraft.engines(),
-        )
+    let segment_variance = square(sensitivity.ln_fuel_flow) * fuel_flow_relative_variance
         + square(sensitivity.mach * sensors.mach)
         + square(sensitivity.static_air_temperature_per_k * sensors.static_air_temperature_k)
         + square(
             sensitivity.acceleration_s2_per_m
-                * mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, segment.samples()),
+                * mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, samples),
         )
         + square(sensitivity.pressure_altitude_per_m * sensors.pressure_altitude_m);
-    let mass = sensors.mass.relative_to(Mass::kilograms(means.mass_kg));
+    let mass = sensors.mass.relative_to(point.mass);
     let flight_variance =
         square(sensitivity.ln_fuel_flow * sensors.lower_heating_value_percent / 100.0)
             + square(sensitivity.ln_mass * mass);
-    Ok(ObservationVariance { segment: segment_variance, flight: flight_variance })
+    ObservationVariance { segment: segment_variance, flight: flight_variance }
 }
 
 /// Relative variance of total fuel flow when the readings of all engines have independent errors of the same relative

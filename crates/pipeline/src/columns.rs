@@ -13,6 +13,8 @@ pub enum Cells {
     Count(Vec<u64>),
     /// Numbers, perhaps absent.
     Number(Vec<Option<f64>>),
+    /// Numbers, NaN where absent: half the memory.
+    Dense(Vec<f64>),
 }
 
 impl Cells {
@@ -21,6 +23,7 @@ impl Cells {
             Self::Text(values) => values.len(),
             Self::Count(values) => values.len(),
             Self::Number(values) => values.len(),
+            Self::Dense(values) => values.len(),
         }
     }
 
@@ -36,6 +39,11 @@ impl Cells {
                     push_shortest(value, text);
                 }
             }
+            Self::Dense(values) => {
+                if !values[row].is_nan() {
+                    push_shortest(values[row], text);
+                }
+            }
         }
     }
 }
@@ -46,7 +54,9 @@ pub fn push_shortest(value: f64, text: &mut String) {
     if value.is_finite() {
         let mut buffer = zmij::Buffer::new();
         let printed = buffer.format_finite(value);
-        if !printed.bytes().any(|byte| byte == b'e') {
+        // Far from where any program begins to write exponents nothing needs to be looked for.
+        let is_plain = (1e-4..1e15).contains(&value.abs());
+        if is_plain || !printed.bytes().any(|byte| byte == b'e') {
             text.push_str(printed.strip_suffix(".0").unwrap_or(printed));
             return;
         }
@@ -103,6 +113,11 @@ impl Columns {
         self.columns.push((name.into(), Cells::Number(values.collect())));
     }
 
+    /// Adds a column of numbers, NaN where one is absent.
+    pub fn dense(&mut self, name: impl Into<String>, values: Vec<f64>) {
+        self.columns.push((name.into(), Cells::Dense(values)));
+    }
+
     /// Names and cells, in order.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &Cells)> {
         self.columns.iter().map(|(name, cells)| (name.as_str(), cells))
@@ -142,13 +157,17 @@ mod tests {
         columns.text("tail", ["T-001", "T, \"2\""].into_iter().map(str::to_owned));
         columns.count("samples", [9, 10].into_iter());
         columns.number("mach", [Some(0.1 + 0.2), None].into_iter());
+        columns.dense("lift_coefficient", vec![f64::NAN, 0.5]);
         columns
     }
 
     #[test]
     fn csv_quotes_and_keeps_the_bits() {
         let text = String::from_utf8(table().to_csv()).unwrap();
-        assert_eq!(text, "tail,samples,mach\nT-001,9,0.30000000000000004\n\"T, \"\"2\"\"\",10,\n");
+        assert_eq!(
+            text,
+            "tail,samples,mach,lift_coefficient\nT-001,9,0.30000000000000004,\n\"T, \"\"2\"\"\",10,,0.5\n"
+        );
     }
 
     #[test]

@@ -5,13 +5,18 @@ use std::sync::Arc;
 use diagnose::{WholeModel, WholePrediction};
 use effects::{AppliedEffects, EffectModelError, ExtendedModel};
 use flight::{Cruise, FlightIdentity, Segment, SegmentMeans, Timestamp};
-use perf_model::fuel_flow::fuel_flow_error_percent;
 use perf_model::{FlightPoint, Prediction};
 use units::{FuelFlowTotal, Temperature};
 
-use crate::columns::Columns;
 use crate::model_file::ModelFile;
 use crate::whole_model::Predicts;
+
+mod points;
+
+pub use points::{PredictedPoints, measured_kg_s};
+
+/// Samples of the segment that a standard deviation is of, as many as the whole model's is of.
+const SAMPLES: u32 = 10;
 
 /// A model, prepared for any number of predictions.
 #[derive(Debug)]
@@ -81,44 +86,6 @@ impl<'a> Predictor<'a> {
         })
     }
 
-    /// Appends the columns of predictions at points, of which those outside the model have none: `fuel_flow_kg_s`,
-    /// `fuel_flow_std_kg_s` (empty by law `paper`), `specific_range_m_kg`, `lift_coefficient`, `drag_coefficient`,
-    /// `extrapolated` (1 or 0), with measured fuel flows `error_percent`, and where more than the table predicts
-    /// `remainder_percent`.
-    pub fn append_columns(
-        &self,
-        columns: &mut Columns,
-        measured: Option<&[Option<FuelFlowTotal>]>,
-        predicted: &[Option<PointPrediction>],
-    ) {
-        let figure = |of: fn(&Prediction) -> f64| {
-            predicted.iter().map(move |point| point.as_ref().map(|point| of(&point.prediction)))
-        };
-        columns.number("fuel_flow_kg_s", figure(|p| p.fuel_flow_total.to_kilograms_per_second()));
-        columns.number(
-            "fuel_flow_std_kg_s",
-            predicted.iter().map(|point| point.as_ref()?.fuel_flow_std_kg_s),
-        );
-        columns
-            .number("specific_range_m_kg", figure(|p| p.specific_range.to_meters_per_kilogram()));
-        columns.number("lift_coefficient", figure(|p| p.lift_coefficient));
-        columns.number("drag_coefficient", figure(|p| p.drag_coefficient));
-        columns.number("extrapolated", figure(|p| if p.extrapolated { 1.0 } else { 0.0 }));
-        if let Some(measured) = measured {
-            let error = |(measured, point): (&Option<FuelFlowTotal>, &Option<PointPrediction>)| {
-                let predicted = point.as_ref()?.prediction.fuel_flow_total;
-                Some(fuel_flow_error_percent((*measured)?, predicted))
-            };
-            columns.number("error_percent", measured.iter().zip(predicted).map(error));
-        }
-        if self.is_whole() {
-            columns.number(
-                "remainder_percent",
-                predicted.iter().map(|point| Some(100.0 * point.as_ref()?.beyond_table?.exp_m1())),
-            );
-        }
-    }
-
     /// Standard deviation, in kg/s, of what a segment recorded there would show: the uncertainty of what was learnt, the
     /// part common to a flight, the segment's own noise, and any applied scatter between flights. By the whole model the
     /// noise is as large as flights showed it to be, by the table alone as the aircraft's sensors and the law's settings
@@ -142,11 +109,16 @@ impl<'a> Predictor<'a> {
                 * prediction.fuel_flow_per_drag_coefficient_kg_s;
             posterior.segment_variance(&prediction.cell, &sensors).sqrt() * per_relative_drag_kg_s
         };
-        Some(if self.scatter > 0.0 { kg_s.hypot(self.scatter * total_kg_s) } else { kg_s })
+        Some(self.with_scatter(kg_s, total_kg_s))
+    }
+
+    /// A standard deviation with any applied scatter between flights.
+    fn with_scatter(&self, kg_s: f64, total_kg_s: f64) -> f64 {
+        if self.scatter > 0.0 { kg_s.hypot(self.scatter * total_kg_s) } else { kg_s }
     }
 }
 
-/// The segment of ten samples that the aircraft would record at a flight point if it burnt what is predicted.
+/// The segment that the aircraft would record at a flight point if it burnt what is predicted.
 fn imagined_segment(
     point: &FlightPoint,
     prediction: &Prediction,
@@ -174,8 +146,11 @@ fn imagined_segment(
     };
     Segment {
         identity: Arc::new(identity),
-        rows: (0..10).collect(),
+        rows: (0..SAMPLES).collect(),
         means,
         temperature_assumed: false,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,59 +1,117 @@
 #!/usr/bin/env python3
-"""Speed of the package beside what it is compared with, in the same run: ratios, since machines differ.
+"""Speed of predictions beside what they are compared with, in the same run: ratios, since machines differ.
 
-    python crates/python/benches/speed.py [--points 10000000]
+    python crates/python/benches/speed.py [--points 10000000] [--whole 200000] [--program target/release/cruisefit]
 
-`Model.predict` by an initial model against OpenAP's fuel flow in numpy, at the same points (A320, FL320 to FL380).
+At the same points (where the Global 5000 of fixtures/global5000 flies), best processor seconds of alternating runs:
+
+- `Model.predict` by an initial model, by a learnt drag table with standard deviations, and by all that a model has learnt (of
+  so many points as `--whole` says), against OpenAP's fuel flow in numpy;
+- with `--program` and polars, Parquet to Parquet on one core: `cruisefit predict` against polars around OpenAP.
 """
 
 import argparse
+import os
+import resource
+import subprocess
+import sys
+import tempfile
 import time
 import warnings
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.parquet as pq
 from openap import FuelFlow
 
 import cruisefit
 
 ROOT = Path(__file__).resolve().parents[3]
+FIXTURE = ROOT / "fixtures" / "global5000"
+PEER = """
+import sys
+import polars
+from openap import FuelFlow, aero
+points = polars.read_parquet(sys.argv[1])
+mass, altitude, mach = (points[name].to_numpy() for name in ("mass_kg", "pressure_altitude_ft", "mach"))
+airspeed = mach * aero.vsound(altitude * aero.ft) / aero.kts
+flow = FuelFlow("GLF6").enroute(mass=mass, tas=airspeed, alt=altitude)
+points.with_columns(polars.Series("fuel_flow_kg_s", flow)).write_parquet(sys.argv[2])
+"""
 
 
 def seconds(work):
-    begun = time.perf_counter()
+    begun = time.process_time(), time.perf_counter()
     work()
-    return time.perf_counter() - begun
+    return time.process_time() - begun[0], time.perf_counter() - begun[1]
+
+
+def child_seconds(command, environment=None):
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def draw(n):
+    random = np.random.default_rng(1)
+    return pa.table({
+        "mass_kg": random.uniform(27_000, 36_000, n),
+        "pressure_altitude_ft": random.uniform(38_000, 45_000, n),
+        "mach": random.uniform(0.74, 0.84, n),
+        "isa_deviation_c": random.uniform(-10, 10, n),
+    })
+
+
+def compare(name, model, points, repeats, **options):
+    """Prints processor and wall seconds of both and the ratios."""
+    mass, altitude, mach, _ = (column.to_numpy() for column in points.columns)
+    airspeed = mach * 295.07 / 0.514444
+    peer = FuelFlow("GLF6")
+    ours, theirs, wall = [], [], []
+    for _ in range(repeats):
+        theirs.append(seconds(lambda: peer.enroute(mass=mass, tas=airspeed, alt=altitude)))
+        ours.append(seconds(lambda: model.predict(points, threads=1, **options)))
+        wall.append(seconds(lambda: model.predict(points, **options))[1])
+    (peer_cpu, peer_wall), (cpu, _) = (tuple(map(min, zip(*runs))) for runs in (theirs, ours))
+    n = points.num_rows
+    print(f"{name:24} {n:9} points  OpenAP {n / peer_cpu / 1e6:6.2f} M/s  here {n / cpu / 1e6:6.2f} M/s of one core: "
+          f"ratio {peer_cpu / cpu:.2f}; by the clock on {os.cpu_count()} cores {peer_wall / min(wall):.2f}")
+
+
+def parquet_to_parquet(points, program, repeats):
+    with tempfile.TemporaryDirectory() as folder:
+        given, ours, theirs, model = (f"{folder}/{name}" for name in ("in.parquet", "ours.parquet", "theirs.parquet", "MODEL.ron"))
+        pq.write_table(points, given)
+        subprocess.run([program, "init", "--aircraft", FIXTURE / "AIRCRAFT.ron", "--guide", FIXTURE / "guide.csv", "-o", model],
+                       check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        one_core = ["taskset", "-c", "0"]
+        here, peer = [], []
+        environment = os.environ | {"POLARS_MAX_THREADS": "1", "OMP_NUM_THREADS": "1"}
+        for _ in range(repeats):
+            peer.append(child_seconds([*one_core, sys.executable, "-c", PEER, given, theirs], environment))
+            here.append(child_seconds([*one_core, program, "predict", "--model", model, given, "-o", ours]))
+        print(f"Parquet to Parquet       {points.num_rows:9} points  polars and OpenAP {min(peer):.2f} s  "
+              f"cruisefit predict {min(here):.2f} s (six columns for one): ratio {min(peer) / min(here):.2f}")
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--points", type=int, default=10_000_000)
+    parser.add_argument("--whole", type=int, default=200_000)
     parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--program", default="")
     arguments = parser.parse_args()
-    n = arguments.points
-    random = np.random.default_rng(1)
-    mass_kg = random.uniform(55_000, 70_000, n)
-    altitude_ft = random.uniform(32_000, 38_000, n)
-    mach = random.uniform(0.76, 0.80, n)
-    temperature_k = 288.15 - 0.0019812 * np.minimum(altitude_ft, 36_089)
-    true_airspeed_kt = mach * 661.4786 * np.sqrt(temperature_k / 288.15)
-    points = pa.table({"mass_kg": mass_kg, "pressure_altitude_ft": altitude_ft, "mach": mach})
-    folder = ROOT / "fixtures" / "a320-generic"
     warnings.simplefilter("ignore")
-    model = cruisefit.Model.initial(folder / "AIRCRAFT.ron", folder / "guide.csv")
-    other = FuelFlow("A320")
-    ours, ours_one, theirs = [], [], []
-    for _ in range(arguments.repeats):
-        theirs.append(seconds(lambda: other.enroute(mass=mass_kg, tas=true_airspeed_kt, alt=altitude_ft)))
-        ours.append(seconds(lambda: model.predict(points)))
-        ours_one.append(seconds(lambda: model.predict(points, threads=1)))
-    predicted = model.predict(points.slice(0, 100_000))
-    missing = predicted.column("fuel_flow_kg_s").null_count
-    print(f"{n} points, best of {arguments.repeats}: OpenAP {min(theirs):.2f} s; "
-          f"Model.predict {min(ours):.2f} s, on one thread {min(ours_one):.2f} s")
-    print(f"ratio {min(theirs) / min(ours):.2f}, on one thread {min(theirs) / min(ours_one):.2f}; "
-          f"{missing} of the first 100000 points outside the table")
+    points = draw(arguments.points)
+    initial = cruisefit.Model.initial(FIXTURE / "AIRCRAFT.ron", FIXTURE / "guide.csv")
+    learnt = cruisefit.Model.load(FIXTURE / "bayes/expected/SIM-01.ron")
+    compare("initial model", initial, points, arguments.repeats)
+    compare("table with deviations", learnt, points, arguments.repeats, table_only=True)
+    compare("whole model", learnt, points.slice(0, arguments.whole), arguments.repeats)
+    if arguments.program:
+        parquet_to_parquet(points, arguments.program, arguments.repeats)
 
 
 if __name__ == "__main__":

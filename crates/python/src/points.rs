@@ -1,17 +1,18 @@
 //! Predictions at the flight points of an Arrow table.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
-use arrow_array::RecordBatch;
-use arrow_schema::{Field, Schema};
-use perf_model::{PointCell, PointTable};
-use pipeline::columns::Columns;
-use pipeline::prediction::{PointPrediction, Predictor};
+use arrow_array::cast::AsArray;
+use arrow_array::types::Float64Type;
+use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch};
+use arrow_schema::{DataType, Field, Schema};
+use perf_model::{FlightPoint, PointCell, PointTable};
+use pipeline::prediction::{PredictedPoints, Predictor, measured_kg_s};
 use rayon::prelude::*;
-use units::FuelFlowTotal;
 
 use crate::failure::Failure;
-use crate::tables::{Reader, Value, to_arrow};
+use crate::tables::{Reader, Value};
 use crate::work::Caller;
 
 /// Rows that a thread predicts before it asks whether the caller still waits. Our choice: some 50 ms of work.
@@ -67,6 +68,36 @@ fn predict_batch(
     batch: RecordBatch,
     any_measured: bool,
 ) -> Result<Predicted, Failure> {
+    let at_once = points.level_columns(|column| numbers(batch.column(column)));
+    let predicted = match at_once.filter(|_| predictor.needs_conditions_only()) {
+        Some(columns) => {
+            let measured = columns.measured_fuel_flow_kg_s().filter(|_| any_measured);
+            predictor.at_level_flights(columns.flights(), measured)
+        }
+        None => predict_rows(predictor, points, before, &batch, any_measured)?,
+    };
+    let PredictedPoints { columns, refused } = predicted;
+    let mut fields: Vec<Arc<Field>> = batch.schema().fields().iter().cloned().collect();
+    let mut arrays = batch.columns().to_vec();
+    for (name, values) in columns {
+        // Nulls or not, the column has one type in every part of the table.
+        fields.push(Arc::new(Field::new(name, DataType::Float64, true)));
+        arrays.push(Arc::new(with_nulls(values)));
+    }
+    let batch =
+        RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays).map_err(Failure::internal)?;
+    let numbered = |(place, reason)| ((before + place + 1) as u64, reason);
+    Ok((batch, refused.into_iter().map(numbered).collect()))
+}
+
+/// Predictions at rows that are looked at cell by cell.
+fn predict_rows(
+    predictor: &Predictor<'_>,
+    points: &PointTable,
+    before: usize,
+    batch: &RecordBatch,
+    any_measured: bool,
+) -> Result<PredictedPoints, Failure> {
     let schema = batch.schema();
     let readers = schema
         .fields()
@@ -74,39 +105,31 @@ fn predict_batch(
         .zip(batch.columns())
         .map(|(field, array)| Reader::new(field.name(), array))
         .collect::<Result<Vec<_>, _>>()?;
-    let mut predicted: Vec<Option<PointPrediction>> = Vec::with_capacity(batch.num_rows());
-    let mut measured: Vec<Option<FuelFlowTotal>> = Vec::new();
-    let mut refused = Vec::new();
-    for row in 0..batch.num_rows() {
+    let rows = (0..batch.num_rows()).map(|row| {
         let number = (before + row + 1) as u64;
-        let point = points
+        points
             .point(number, |column| cell(readers[column].value(row)))
-            .map_err(|error| Failure::table(&error))?;
-        if any_measured {
-            measured.push(point.measured_fuel_flow_total);
-        }
-        match predictor.at(&point) {
-            Ok(prediction) => predicted.push(Some(prediction)),
-            // The row stays, without values: a planner's table keeps its lines.
-            Err(error) => {
-                predicted.push(None);
-                refused.push((number, error));
-            }
-        }
-    }
-    let mut columns = Columns::default();
-    predictor.append_columns(&mut columns, any_measured.then_some(measured.as_slice()), &predicted);
-    let (new_fields, new_arrays) = to_arrow(&columns)?;
-    let mut fields: Vec<Arc<Field>> = schema.fields().iter().cloned().collect();
-    let mut arrays = batch.columns().to_vec();
-    for (field, array) in new_fields.into_iter().zip(new_arrays) {
-        // Nulls or not, the column has one type in every part of the table.
-        fields.push(Arc::new(field));
-        arrays.push(array);
-    }
-    let batch =
-        RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays).map_err(Failure::internal)?;
-    Ok((batch, refused))
+            .map_err(|error| Failure::table(&error))
+    });
+    let rows = rows.collect::<Result<Vec<FlightPoint>, Failure>>()?;
+    let measured = any_measured.then(|| measured_kg_s(&rows));
+    Ok(predictor.at_points(&rows, measured.as_deref()))
+}
+
+/// The values of an array of numbers, NaN for nulls; `None` for other arrays.
+fn numbers(array: &ArrayRef) -> Option<Cow<'_, [f64]>> {
+    let array = array.as_primitive_opt::<Float64Type>()?;
+    Some(match array.nulls().filter(|nulls| nulls.null_count() > 0) {
+        None => Cow::Borrowed(&array.values()[..]),
+        Some(_) => array.iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
+    })
+}
+
+/// An array with a null for each NaN.
+fn with_nulls(values: Vec<f64>) -> Float64Array {
+    let missing = values.iter().any(|value| value.is_nan());
+    let nulls = missing.then(|| values.iter().map(|value| !value.is_nan()).collect());
+    Float64Array::new(values.into(), nulls)
 }
 
 fn cell(value: Value<'_>) -> PointCell<'_> {

@@ -37,8 +37,12 @@ pub(crate) fn to_arrow(columns: &Columns) -> Result<(Vec<Field>, Vec<ArrayRef>),
             Cells::Number(values) => {
                 (DataType::Float64, Arc::new(values.iter().copied().collect::<Float64Array>()))
             }
+            Cells::Dense(values) => {
+                let cells = values.iter().map(|value| (!value.is_nan()).then_some(*value));
+                (DataType::Float64, Arc::new(cells.collect::<Float64Array>()))
+            }
         };
-        fields.push(Field::new(name, kind, matches!(cells, Cells::Number(_))));
+        fields.push(Field::new(name, kind, matches!(cells, Cells::Number(_) | Cells::Dense(_))));
         arrays.push(array);
     }
     Ok((fields, arrays))

@@ -6,7 +6,7 @@ use lut::{Cell, Table};
 use super::blocks::{BlockFactor, BlockMatrix, Layout, SelectedInverse};
 use super::guard::{GuardReport, project};
 use super::information::Information;
-use super::{BayesSettings, coefficients, prior};
+use super::{BayesSettings, VarianceByCell, coefficients, prior};
 
 /// The solution: every node's correction and drag with their uncertainty, informed or not.
 ///
@@ -14,15 +14,15 @@ use super::{BayesSettings, coefficients, prior};
 /// [`segment_variance`](Self::segment_variance) includes what a new flight and a new segment add.
 #[derive(Clone, Debug)]
 pub struct Posterior {
-    initial: Table,
-    settings: BayesSettings,
+    pub(super) initial: Table,
+    pub(super) settings: BayesSettings,
     drag: Table,
     correction: Vec<f64>,
     standard_deviation: Vec<f64>,
     observations: Vec<f64>,
     guard: Option<GuardReport>,
     factor: BlockFactor,
-    inverse: SelectedInverse,
+    pub(super) inverse: SelectedInverse,
 }
 
 /// Why there is no solution.
@@ -151,6 +151,12 @@ impl Posterior {
         self.relative_variance(cell)
             + self.settings.flight_variance(of_sensors)
             + self.settings.segment_variance(of_sensors)
+    }
+
+    /// The same for many points.
+    #[must_use]
+    pub fn variance_by_cell(&self) -> VarianceByCell<'_> {
+        VarianceByCell::new(self)
     }
 
     /// Relative covariances of the table's drag at several located points, row by row: the errors of the table are

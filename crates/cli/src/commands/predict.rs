@@ -1,19 +1,20 @@
 //! `cruisefit predict`: fuel flow and specific range at flight points.
 
+use std::borrow::Cow;
+use std::io::Read;
 use std::path::Path;
 
-use perf_model::{FlightPointRow, FlightPoints};
-use units::FuelFlowTotal;
+use perf_model::{FlightPoint, FlightPointRow, FlightPoints, PointCell, PointTable};
 
 use crate::args::PredictArgs;
 use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::models::read_model;
-use crate::parquet_text;
+use crate::{parquet_numbers, parquet_text};
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
-use pipeline::prediction::Predictor;
+use pipeline::prediction::{Predictor, measured_kg_s};
 use pipeline::whole_model::Predicts;
 
 /// Runs the command.
@@ -24,47 +25,106 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     let predictor = Predictor::new(&model, Predicts::table_only(arguments.table_only))
         .map_err(|error| Failure::bad_file(&arguments.model, error))?;
+    if let Some(outcome) = predict_numbers(arguments, &model, &predictor)? {
+        return Ok(outcome);
+    }
     let text = points_text(&arguments.points)?;
     let points = FlightPoints::from_csv(&text)
         .map_err(|error| Failure::bad_file(&arguments.points, error))?;
-    let mut refused = Vec::new();
-    let mut predicted = Vec::with_capacity(points.rows().len());
-    for row in points.rows() {
-        match predictor.at(&row.point) {
-            Ok(found) => predicted.push(Some(found)),
-            // The row stays, without values: a planner's table keeps its lines.
-            Err(reason) => {
-                predicted.push(None);
-                refused.push(RefusedReport {
-                    path: arguments.points.clone(),
-                    line: usize::try_from(row.line).ok(),
-                    column: None,
-                    reason,
-                });
-            }
-        }
-    }
     let mut columns = Columns::default();
     for (column, name) in points.header().iter().enumerate() {
         let fields = points.rows().iter().map(|row| row.fields[column].clone());
         columns.text(name.as_str(), fields);
     }
-    let measured: Vec<Option<FuelFlowTotal>> =
-        points.rows().iter().map(|row| row.point.measured_fuel_flow_total).collect();
-    let any_measured = measured.iter().any(Option::is_some);
-    predictor.append_columns(&mut columns, any_measured.then_some(&measured), &predicted);
+    let flights: Vec<FlightPoint> = points.rows().iter().map(|row| row.point).collect();
+    let measured = measured_kg_s(&flights);
+    let any_measured = measured.iter().any(|flow| !flow.is_nan());
+    let mut predicted = predictor.at_points(&flights, any_measured.then_some(&measured[..]));
+    let refused = std::mem::take(&mut predicted.refused);
+    predicted.append_to(&mut columns);
     columns::write(&columns, arguments.output.as_deref())?;
     tell_references(&model, points.rows());
+    Ok(outcome(
+        arguments,
+        &predictor,
+        points.rows().len(),
+        refused.into_iter().map(|(place, reason)| (points.rows()[place].line, reason)),
+    ))
+}
+
+/// What the command says; `refused`: lines and reasons. The rows stay, without values: a planner's table keeps its lines.
+fn outcome(
+    arguments: &PredictArgs,
+    predictor: &Predictor<'_>,
+    points: usize,
+    refused: impl Iterator<Item = (u64, String)>,
+) -> Outcome {
+    let refused: Vec<RefusedReport> = refused
+        .map(|(line, reason)| RefusedReport {
+            path: arguments.points.clone(),
+            line: usize::try_from(line).ok(),
+            column: None,
+            reason,
+        })
+        .collect();
     let text = arguments.output.as_ref().map_or_else(String::new, |path| {
         let by = if predictor.is_whole() { " by all that the model has learnt" } else { "" };
         format!(
-            "{} of {} points predicted{by}, written to {}\n",
-            points.rows().len() - refused.len(),
-            points.rows().len(),
+            "{} of {points} points predicted{by}, written to {}\n",
+            points - refused.len(),
             show(path)
         )
     });
-    Ok(Outcome { text, refused })
+    Outcome { text, refused }
+}
+
+/// The command for a Parquet file of plain numbers, of which there may be millions: column by column. `None` for a file that
+/// has to be read row by row.
+fn predict_numbers(
+    arguments: &PredictArgs,
+    model: &ModelFile,
+    predictor: &Predictor<'_>,
+) -> Result<Option<Outcome>, Failure> {
+    let bad =
+        |error: &dyn std::fmt::Display| Failure::bad_file(&arguments.points, error.to_string());
+    let mut beginning = [0; 4];
+    let is_parquet = std::fs::File::open(&arguments.points)
+        .and_then(|mut file| file.read_exact(&mut beginning))
+        .is_ok()
+        && parquet_text::is_parquet(&beginning);
+    // What applied effects lack at a point is said of points one by one.
+    if !is_parquet || model.initial.effects().is_some() {
+        return Ok(None);
+    }
+    let Some(input) =
+        parquet_numbers::columns_of_file(&arguments.points).map_err(|error| bad(&error))?
+    else {
+        return Ok(None);
+    };
+    let names = input.iter().map(|(name, _)| name.clone()).collect();
+    let table = PointTable::new(names).map_err(|error| bad(&error))?;
+    let Some(points) = table.level_columns(|column| Some(Cow::Borrowed(&input[column].1[..])))
+    else {
+        for row in 0..input[0].1.len() {
+            let cell = |column: usize| PointCell::Number(input[column].1[row]);
+            table.point(row as u64 + 2, cell).map_err(|error| bad(&error))?;
+        }
+        return Ok(None);
+    };
+    let measured = points.measured_fuel_flow_kg_s();
+    let measured = measured.filter(|flows| flows.iter().any(|flow| !flow.is_nan()));
+    let flights = points.flights();
+    let mut predicted = predictor.at_level_flights(flights, measured);
+    let refused = std::mem::take(&mut predicted.refused);
+    let mut columns = Columns::default();
+    for (name, values) in input {
+        columns.dense(name, values);
+    }
+    predicted.append_to(&mut columns);
+    columns::write(&columns, arguments.output.as_deref())?;
+    // As in a text, line 1 has the names.
+    let lines = refused.into_iter().map(|(place, reason)| (place as u64 + 2, reason));
+    Ok(Some(outcome(arguments, predictor, flights.count(), lines)))
 }
 
 /// Warns once about each applied effect that is held at its reference because an input is missing.

@@ -1,4 +1,4 @@
-//! Fuel flow at many flight points of level flight: columns in, a column out.
+//! Predictions at many flight points of level flight: columns in, one short record per point out.
 //!
 //! A difficult file. Powers and exponentials cost more than all the rest of a prediction, so that each of them is replaced by a
 //! polynomial, fitted once a call to the very function that a single prediction calls. Its error is that of rounding. What
@@ -9,12 +9,18 @@ use atmos::constants::{
     HIGHEST_PRESSURE_ALTITUDE_M, LOWEST_PRESSURE_ALTITUDE_M, TROPOPAUSE_PRESSURE_ALTITUDE_M,
 };
 use atmos::{airspeed, isa};
-use lut::Outside;
-use units::{Mach, Mass, Pressure, PressureAltitude, Temperature};
+use flight::ObservationVariance;
+use lut::{Cell, Outside};
+use units::{
+    Acceleration, Force, FuelFlowTotal, Mach, Mass, Pressure, PressureAltitude, SpecificRange,
+    Temperature, TrueAirspeed,
+};
 
 use super::PerformanceModel;
 use crate::forces;
+use crate::specific_range::specific_range;
 use crate::tsfc::tsfc;
+use crate::variance::{self, RecordedPoint, TableSlopes};
 
 /// Flight points as columns of one length.
 #[derive(Clone, Copy, Debug)]
@@ -29,13 +35,53 @@ pub struct LevelFlights<'a> {
     pub isa_deviation_k: &'a [f64],
 }
 
+/// What is predicted at one of many flight points; the numbers of [`Prediction`](super::Prediction).
+#[derive(Clone, Copy, Debug)]
+pub struct LevelPrediction {
+    /// Fuel flow of all engines.
+    pub fuel_flow_total: FuelFlowTotal,
+    /// True airspeed.
+    pub true_airspeed: TrueAirspeed,
+    /// Net thrust of all engines, equal to drag.
+    pub net_thrust: Force,
+    /// Lift coefficient.
+    pub lift_coefficient: f64,
+    /// Drag coefficient of the table.
+    pub drag_coefficient: f64,
+    /// Change of predicted total fuel flow with drag coefficient, kg/s.
+    pub fuel_flow_per_drag_coefficient_kg_s: f64,
+    /// Static air temperature.
+    pub static_air_temperature: Temperature,
+    /// Temperature of the ISA at the pressure altitude.
+    pub standard_temperature: Temperature,
+    /// Gross mass.
+    pub mass: Mass,
+    /// Mach number.
+    pub mach: Mach,
+    /// Cell of the table.
+    pub cell: Cell,
+}
+
+impl LevelPrediction {
+    /// Specific range.
+    #[must_use]
+    #[inline]
+    pub fn specific_range(&self) -> SpecificRange {
+        specific_range(self.true_airspeed, self.fuel_flow_total)
+    }
+}
+
 /// Points whose states are computed together: few enough to stay in registers and the nearest cache.
 const BLOCK: usize = 64;
 
 /// What is known of the points of a block before the table is asked.
 struct Block {
+    standard_temperature_k: [f64; BLOCK],
     static_air_temperature_k: [f64; BLOCK],
+    true_airspeed_m_s: [f64; BLOCK],
     lift_coefficient: [f64; BLOCK],
+    /// Drag of a drag coefficient of 1, N.
+    dynamic_force_n: [f64; BLOCK],
     /// Fuel flow of a drag coefficient of 1, kg/s.
     fuel_flow_per_drag_coefficient_kg_s: [f64; BLOCK],
 }
@@ -45,23 +91,42 @@ impl PerformanceModel {
     /// [`predict`](Self::predict) finds none. Within 1e-12 of what `predict` finds.
     #[must_use]
     pub fn fuel_flows_kg_s(&self, points: LevelFlights<'_>) -> Vec<f64> {
+        let mut flows = vec![f64::NAN; points.count()];
+        self.predict_level(points, |place, predicted| {
+            flows[place] = predicted.fuel_flow_total.to_kilograms_per_second();
+        });
+        flows
+    }
+
+    /// Hands the prediction at each point that all columns have to `each`, with its place from 0; none where
+    /// [`predict`](Self::predict) finds none. Within 1e-12 of what `predict` finds, wherever a column is cut.
+    #[inline]
+    pub fn predict_level(
+        &self,
+        points: LevelFlights<'_>,
+        mut each: impl FnMut(usize, &LevelPrediction),
+    ) {
         let functions = Functions::of(self);
         let columns =
             [points.mass_kg, points.pressure_altitude_m, points.mach, points.isa_deviation_k];
-        let count = columns.iter().map(|column| column.len()).min().unwrap_or(0);
-        let mut flows = vec![f64::NAN; count];
+        let count = points.count();
         let mut block = Block {
+            standard_temperature_k: [0.0; BLOCK],
             static_air_temperature_k: [0.0; BLOCK],
+            true_airspeed_m_s: [0.0; BLOCK],
             lift_coefficient: [0.0; BLOCK],
+            dynamic_force_n: [0.0; BLOCK],
             fuel_flow_per_drag_coefficient_kg_s: [0.0; BLOCK],
         };
-        for (index, flows) in flows.chunks_mut(BLOCK).enumerate() {
-            let from = index * BLOCK;
-            let columns = columns.map(|column| &column[from..from + flows.len()]);
+        for from in (0..count).step_by(BLOCK) {
+            let columns = columns.map(|column| &column[from..count.min(from + BLOCK)]);
             self.fill(&mut block, &functions, columns);
-            self.ask_table(&block, columns, flows);
+            for place in 0..columns[0].len() {
+                if let Some(predicted) = self.ask_table(&block, columns, place) {
+                    each(from + place, &predicted);
+                }
+            }
         }
-        flows
     }
 
     /// Every quantity of a block that the table does not decide. Points outside a domain get numbers without meaning.
@@ -83,33 +148,93 @@ impl PerformanceModel {
             let dynamic_pressure =
                 airspeed::dynamic_pressure(isa::density(pressure, sat), airspeed);
             let tsfc = functions.tsfc_at_sea_level.at(*mach) * isa::temperature_ratio(sat).sqrt();
+            block.standard_temperature_k[place] = standard_k;
             block.static_air_temperature_k[place] = sat.to_kelvin();
+            block.true_airspeed_m_s[place] = airspeed.to_meters_per_second();
             block.lift_coefficient[place] =
                 forces::lift_coefficient(Mass::kilograms(*mass_kg), dynamic_pressure, area);
-            block.fuel_flow_per_drag_coefficient_kg_s[place] =
-                dynamic_pressure.to_pascals() * area.to_square_meters() * tsfc;
+            let dynamic_force_n = dynamic_pressure.to_pascals() * area.to_square_meters();
+            block.dynamic_force_n[place] = dynamic_force_n;
+            block.fuel_flow_per_drag_coefficient_kg_s[place] = dynamic_force_n * tsfc;
         }
     }
 
-    /// Drag coefficients from the table, and with them fuel flows; what is outside a domain or the table stays NaN.
-    fn ask_table(&self, block: &Block, columns: [&[f64]; 4], flows: &mut [f64]) {
-        let [masses_kg, altitudes_m, machs, _] = columns;
-        let table = self.drag_table();
-        for (place, flow) in flows.iter_mut().enumerate() {
-            let is_inside = masses_kg[place] >= f64::MIN_POSITIVE
-                && masses_kg[place] <= f64::MAX
-                && altitudes_m[place] >= LOWEST_PRESSURE_ALTITUDE_M
-                && altitudes_m[place] <= HIGHEST_PRESSURE_ALTITUDE_M
-                && machs[place] >= f64::MIN_POSITIVE
-                && block.static_air_temperature_k[place] >= f64::MIN_POSITIVE;
-            if !is_inside {
-                continue;
-            }
-            let (lift_coefficient, mach) = (block.lift_coefficient[place], machs[place]);
-            if let Ok(cell) = table.grid().locate(lift_coefficient, mach, Outside::Error) {
-                *flow = table.interpolate(&cell) * block.fuel_flow_per_drag_coefficient_kg_s[place];
-            }
+    /// Drag coefficient from the table, and with it the prediction; none outside a domain or the table.
+    #[inline]
+    fn ask_table(
+        &self,
+        block: &Block,
+        columns: [&[f64]; 4],
+        place: usize,
+    ) -> Option<LevelPrediction> {
+        let [mass_kg, altitude_m, mach, _] = columns.map(|column| column[place]);
+        let is_inside = mass_kg >= f64::MIN_POSITIVE
+            && mass_kg <= f64::MAX
+            && altitude_m >= LOWEST_PRESSURE_ALTITUDE_M
+            && altitude_m <= HIGHEST_PRESSURE_ALTITUDE_M
+            && mach >= f64::MIN_POSITIVE
+            && block.static_air_temperature_k[place] >= f64::MIN_POSITIVE;
+        if !is_inside {
+            return None;
         }
+        let table = self.drag_table();
+        let lift_coefficient = block.lift_coefficient[place];
+        let cell = table.grid().locate(lift_coefficient, mach, Outside::Error).ok()?;
+        let drag_coefficient = table.interpolate(&cell);
+        let per_drag_coefficient_kg_s = block.fuel_flow_per_drag_coefficient_kg_s[place];
+        Some(LevelPrediction {
+            fuel_flow_total: FuelFlowTotal::kilograms_per_second(
+                drag_coefficient * per_drag_coefficient_kg_s,
+            ),
+            true_airspeed: TrueAirspeed::meters_per_second(block.true_airspeed_m_s[place]),
+            net_thrust: Force::newtons(drag_coefficient * block.dynamic_force_n[place]),
+            lift_coefficient,
+            drag_coefficient,
+            fuel_flow_per_drag_coefficient_kg_s: per_drag_coefficient_kg_s,
+            static_air_temperature: Temperature::kelvin(block.static_air_temperature_k[place]),
+            standard_temperature: Temperature::kelvin(block.standard_temperature_k[place]),
+            mass: Mass::kilograms(mass_kg),
+            mach: Mach::new(mach),
+            cell,
+        })
+    }
+
+    /// Variance of what a segment of this many samples, recorded in level flight without acceleration at such a point and
+    /// burning what is predicted, would show against *this model's* table: that of [`observe`](Self::observe). The
+    /// prediction may be of another table on the same grid.
+    #[must_use]
+    #[inline]
+    pub fn level_variance(
+        &self,
+        predicted: &LevelPrediction,
+        samples: usize,
+    ) -> ObservationVariance {
+        let aircraft = self.aircraft();
+        let slopes =
+            TableSlopes::at(self.drag_table(), &predicted.cell, predicted.lift_coefficient);
+        let point = RecordedPoint {
+            mach: predicted.mach,
+            static_air_temperature: predicted.static_air_temperature,
+            standard_temperature: predicted.standard_temperature,
+            mass: predicted.mass,
+            acceleration: Acceleration::meters_per_second_squared(0.0),
+            drag: predicted.net_thrust,
+            net_thrust: predicted.net_thrust,
+        };
+        let fuel_flow = aircraft.sensors().fuel_flow_percent / 100.0;
+        // All engines burn alike.
+        let fuel_flow =
+            variance::total_fuel_flow_relative_variance(fuel_flow, &[], aircraft.engines());
+        variance::propagated(aircraft, &point, slopes, fuel_flow, samples)
+    }
+}
+
+impl LevelFlights<'_> {
+    /// Number of points that all columns have.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        let columns = [self.mass_kg, self.pressure_altitude_m, self.mach, self.isa_deviation_k];
+        columns.iter().map(|column| column.len()).min().unwrap_or(0)
     }
 }
 

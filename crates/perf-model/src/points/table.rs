@@ -1,9 +1,12 @@
 //! Flight points from a table in memory, whose cells are numbers rather than text.
 
+use std::borrow::Cow;
+
 use flight::Timestamp;
 use units::{Angle, Mach, PressureAltitude, TemperatureDifference};
 
 use super::{COLUMNS, Columns, FlightPoint};
+use crate::LevelFlights;
 use crate::columns::{
     CG_PERCENT_MAC, ISA_DEVIATION_C, LATITUDE_DEG, MACH, PRESSURE_ALTITUDE_FT, TRUE_HEADING_DEG,
 };
@@ -30,6 +33,35 @@ pub enum PointCell<'a> {
     Instant(Timestamp),
 }
 
+/// Flight points of a table of plain numbers, as columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelColumns {
+    mass_kg: Vec<f64>,
+    pressure_altitude_m: Vec<f64>,
+    mach: Vec<f64>,
+    isa_deviation_k: Vec<f64>,
+    measured_fuel_flow_kg_s: Option<Vec<f64>>,
+}
+
+impl LevelColumns {
+    /// The points.
+    #[must_use]
+    pub fn flights(&self) -> LevelFlights<'_> {
+        LevelFlights {
+            mass_kg: &self.mass_kg,
+            pressure_altitude_m: &self.pressure_altitude_m,
+            mach: &self.mach,
+            isa_deviation_k: &self.isa_deviation_k,
+        }
+    }
+
+    /// Measured fuel flow of all engines at each point, kg/s, NaN where none; `None` for a table without that column.
+    #[must_use]
+    pub fn measured_fuel_flow_kg_s(&self) -> Option<&[f64]> {
+        self.measured_fuel_flow_kg_s.as_deref()
+    }
+}
+
 impl PointTable {
     /// The columns of a table with these names.
     ///
@@ -46,6 +78,58 @@ impl PointTable {
     #[must_use]
     pub fn measured_fuel_flow(&self) -> Option<usize> {
         self.columns.fuel_flow.map(|(index, _)| index)
+    }
+
+    /// All points at once, of a table of plain numbers of which nothing but mass, pressure altitude, Mach number, deviation from
+    /// the ISA and measured fuel flow is wanted. `numbers` gives the values of a column by its position, NaN where a cell
+    /// has none, or `None` where it holds anything but numbers. `None` for every table whose cells have to be looked at one by
+    /// one ([`point`](Self::point)): it then says what is wrong with them, if anything is.
+    #[must_use]
+    pub fn level_columns<'a>(
+        &self,
+        numbers: impl Fn(usize) -> Option<Cow<'a, [f64]>>,
+    ) -> Option<LevelColumns> {
+        let columns = &self.columns;
+        let further = [columns.date, columns.center_of_gravity, columns.anti_ice, columns.latitude];
+        if further.into_iter().chain([columns.true_heading]).any(|column| column.is_some()) {
+            return None;
+        }
+        let required = |index: usize, column: &Column, si: &dyn Fn(f64) -> f64| {
+            let values = numbers(index)?;
+            let (minimum, maximum) = (column.minimum, column.maximum);
+            // NaN is not within.
+            let all_within = values.iter().all(|value| (minimum..=maximum).contains(value));
+            all_within.then(|| values.iter().map(|value| si(*value)).collect::<Vec<f64>>())
+        };
+        let (mass, mass_column) = columns.mass;
+        let mass_kg = required(mass, mass_column, &|v| mass_in(mass_column, v).to_kilograms())?;
+        let isa_deviation_k = match columns.isa_deviation {
+            Some(index) => required(index, &ISA_DEVIATION_C, &|value| {
+                TemperatureDifference::kelvin(value).to_kelvin()
+            })?,
+            None => vec![0.0; mass_kg.len()],
+        };
+        let measured_fuel_flow_kg_s = match columns.fuel_flow {
+            Some((index, column)) => {
+                let within = |value: &f64| (column.minimum..=column.maximum).contains(value);
+                let values = numbers(index)?;
+                let all_within = values.iter().all(|value| value.is_nan() || within(value));
+                let si = |value: &f64| fuel_flow_in(column, *value).to_kilograms_per_second();
+                Some(all_within.then(|| values.iter().map(si).collect())?)
+            }
+            None => None,
+        };
+        Some(LevelColumns {
+            mass_kg,
+            pressure_altitude_m: required(
+                columns.pressure_altitude,
+                &PRESSURE_ALTITUDE_FT,
+                &|value| PressureAltitude::feet(value).to_meters(),
+            )?,
+            mach: required(columns.mach, &MACH, &|value| value)?,
+            isa_deviation_k,
+            measured_fuel_flow_kg_s,
+        })
     }
 
     /// The point of a row (counted from 1, for errors), whose cells are asked for by the position of their column.
@@ -165,6 +249,8 @@ fn words(cell: PointCell<'_>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use units::FuelFlowTotal;
+
     use super::super::FlightPoints;
     use super::*;
 
@@ -226,6 +312,46 @@ mod tests {
         ] {
             assert_eq!(at(column, cell).unwrap_err(), expected);
         }
+    }
+
+    /// The oracle is the table read cell by cell.
+    #[test]
+    fn columns_at_once_are_the_rows_one_by_one() {
+        let names = "weight_lb,pressure_altitude_ft,mach,isa_deviation_c,fuel_flow_lb_h,X-note";
+        let table = PointTable::new(names.split(',').map(str::to_owned).collect()).unwrap();
+        let mut cells = vec![
+            vec![66_000.0, 140_000.0],
+            vec![41_000.0, 35_000.0],
+            vec![0.8, 0.78],
+            vec![-3.5, 10.0],
+            vec![3500.0, f64::NAN],
+        ];
+        let at_once = |cells: &[Vec<f64>]| {
+            table.level_columns(|column| cells.get(column).map(|values| values.into()))
+        };
+        let found = at_once(&cells).unwrap();
+        for row in 0..2 {
+            let cell = |column: usize| PointCell::Number(cells[column][row]);
+            let point = table.point(1, cell).unwrap();
+            let flights = found.flights();
+            assert_eq!(flights.mass_kg[row], point.mass.to_kilograms());
+            assert_eq!(flights.pressure_altitude_m[row], point.pressure_altitude.to_meters());
+            assert_eq!(flights.mach[row], point.mach.value());
+            assert_eq!(flights.isa_deviation_k[row], point.isa_deviation.to_kelvin());
+            let measured = found.measured_fuel_flow_kg_s().unwrap()[row];
+            let of_point = point.measured_fuel_flow_total;
+            assert_eq!(
+                (!measured.is_nan()).then_some(measured),
+                of_point.map(FuelFlowTotal::to_kilograms_per_second)
+            );
+        }
+        for (column, odd) in [(2, 78.0), (2, f64::NAN), (4, -1.0), (0, f64::INFINITY)] {
+            let good = std::mem::replace(&mut cells[column][1], odd);
+            assert_eq!(at_once(&cells), None, "{odd} in column {column}");
+            cells[column][1] = good;
+        }
+        // Words are looked at one by one.
+        assert_eq!(table.level_columns(|_| None), None);
     }
 
     #[test]

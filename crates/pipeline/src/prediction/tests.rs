@@ -1,0 +1,102 @@
+use perf_model::LevelFlights;
+use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
+
+use super::*;
+
+const BAYES: &str = include_str!("../../../../fixtures/global5000/bayes/expected/SIM-01.ron");
+const PAPER: &str = include_str!("../../../../fixtures/global5000/expected/SIM-01.ron");
+
+fn points() -> Vec<FlightPoint> {
+    let share = |step: u32, of: u32| f64::from(step % of) / f64::from(of);
+    (0..2000)
+        .map(|step| FlightPoint {
+            isa_deviation: TemperatureDifference::kelvin(-15.0 + 30.0 * share(step, 7)),
+            measured_fuel_flow_total: (step % 3 == 0)
+                .then(|| FuelFlowTotal::kilograms_per_second(0.4 + share(step, 11))),
+            ..FlightPoint::new(
+                Mass::kilograms(24_000.0 + 16_000.0 * share(step, 37)),
+                PressureAltitude::feet(30_000.0 + 18_000.0 * share(step, 61)),
+                Mach::new(0.70 + 0.4 * share(step, 23)),
+            )
+        })
+        .collect()
+}
+
+/// The oracle is each prediction on its own.
+fn columns_are_single_predictions(text: &str, predicts: Predicts) {
+    let file = ModelFile::from_text(text).unwrap();
+    let predictor = Predictor::new(&file, predicts).unwrap();
+    let points = points();
+    let measured = measured_kg_s(&points);
+    let found = predictor.at_points(&points, Some(&measured));
+    let column = |name: &str| {
+        let named = found.columns.iter().find(|(known, _)| *known == name);
+        named.map(|(_, values)| &values[..])
+    };
+    let near = |name: &str, place: usize, single: Option<f64>| {
+        let value = column(name).unwrap()[place];
+        let agrees = single.map_or(value.is_nan(), |single| {
+            (value - single).abs() <= 1e-12 * single.abs().max(1e-3)
+        });
+        assert!(agrees, "{name} of point {place}: {value}, on its own {single:?}");
+    };
+    let (mut inside, mut refused) = (0, found.refused.iter());
+    for (place, point) in points.iter().enumerate() {
+        let single = predictor.at(point);
+        if let Err(reason) = &single {
+            assert_eq!(refused.next(), Some(&(place, reason.clone())));
+        }
+        let single = single.ok();
+        inside += usize::from(single.is_some());
+        let of = |of: fn(&Prediction) -> f64| single.as_ref().map(|one| of(&one.prediction));
+        near("fuel_flow_kg_s", place, of(|p| p.fuel_flow_total.to_kilograms_per_second()));
+        near("specific_range_m_kg", place, of(|p| p.specific_range.to_meters_per_kilogram()));
+        near("lift_coefficient", place, of(|p| p.lift_coefficient));
+        near("drag_coefficient", place, of(|p| p.drag_coefficient));
+        near("extrapolated", place, of(|p| f64::from(u8::from(p.extrapolated))));
+        near("error_percent", place, single.as_ref().and_then(|one| one.prediction.error_percent));
+        near("fuel_flow_std_kg_s", place, single.as_ref().and_then(|one| one.fuel_flow_std_kg_s));
+        if predictor.is_whole() {
+            let remainder = single.and_then(|one| one.beyond_table).map(f64::exp_m1);
+            near("remainder_percent", place, remainder.map(|share| 100.0 * share));
+        } else {
+            assert_eq!(column("remainder_percent"), None);
+        }
+    }
+    assert!(refused.next().is_none());
+    assert!((300..1900).contains(&inside), "{inside} of {} are inside the table", points.len());
+}
+
+#[test]
+fn columns_of_an_initial_model_and_of_both_laws_are_single_predictions() {
+    columns_are_single_predictions(PAPER, Predicts::WholeModel);
+    columns_are_single_predictions(BAYES, Predicts::TableOnly);
+    columns_are_single_predictions(BAYES, Predicts::WholeModel);
+}
+
+#[test]
+fn columns_do_not_depend_on_where_they_are_cut() {
+    let file = ModelFile::from_text(BAYES).unwrap();
+    let predictor = Predictor::new(&file, Predicts::TableOnly).unwrap();
+    assert!(predictor.needs_conditions_only());
+    let points = points();
+    let column = |of: fn(&FlightPoint) -> f64| points.iter().map(of).collect::<Vec<_>>();
+    let mass_kg = column(|point| point.mass.to_kilograms());
+    let pressure_altitude_m = column(|point| point.pressure_altitude.to_meters());
+    let mach = column(|point| point.mach.value());
+    let isa_deviation_k = column(|point| point.isa_deviation.to_kelvin());
+    let from = |first: usize| LevelFlights {
+        mass_kg: &mass_kg[first..],
+        pressure_altitude_m: &pressure_altitude_m[first..],
+        mach: &mach[first..],
+        isa_deviation_k: &isa_deviation_k[first..],
+    };
+    let whole = predictor.at_points(&points, None);
+    for first in [0, 1, 63, 64, 1000] {
+        let cut = predictor.at_level_flights(from(first), None);
+        for ((name, all), (_, some)) in whole.columns.iter().zip(&cut.columns) {
+            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&all[first..]), bits(some), "{name} from {first}");
+        }
+    }
+}
