@@ -1,5 +1,6 @@
 //! The command line's grammar. What a command does is in `commands`.
 
+mod diagnose;
 mod monitor;
 mod recordings;
 
@@ -8,6 +9,7 @@ use std::path::PathBuf;
 use crate::criteria::NamedCriteria;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use diagnose::DiagnoseArgs;
 pub(crate) use monitor::MonitorArgs;
 pub(crate) use recordings::{ConvertArgs, MappingArgs};
 
@@ -358,43 +360,6 @@ pub(crate) struct EvaluateArgs {
     /// Evaluate the drag table alone, without what else the model has learnt
     #[arg(long)]
     pub(crate) table_only: bool,
-}
-
-/// `diagnose`
-#[derive(Debug, Args)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
-pub(crate) struct DiagnoseArgs {
-    /// Reports.
-    #[command(flatten)]
-    pub(crate) reports: ReportsArgs,
-    /// Models.
-    #[command(flatten)]
-    pub(crate) models: ModelArgs,
-    /// Folder to write to: diagnosis.json, diagnosis.html
-    #[arg(long, short, value_name = "DIR")]
-    pub(crate) output: PathBuf,
-    /// Look for these effects only
-    #[arg(long, value_name = "ID", value_delimiter = ',')]
-    pub(crate) effects: Vec<String>,
-    /// Leave these effects out
-    #[arg(long, value_name = "ID", value_delimiter = ',')]
-    pub(crate) without: Vec<String>,
-    /// Write each tail's model, extended by the effects found, to this folder as TAIL.ron; where the flights cannot
-    /// distinguish several effects, name the right one with --effects
-    #[arg(long, value_name = "DIR")]
-    pub(crate) apply: Option<PathBuf>,
-    /// One diagnosis for all tails together
-    #[arg(long)]
-    pub(crate) pool: bool,
-    /// Count what the model's remainder explains as gap
-    #[arg(long)]
-    pub(crate) table_only: bool,
-    /// Also diagnose flights that the model has learnt
-    #[arg(long)]
-    pub(crate) allow_learnt: bool,
-    /// Also diagnose tails that are more than 15 % off the book on average
-    #[arg(long)]
-    pub(crate) accept: bool,
 }
 
 /// `show`

@@ -27,7 +27,10 @@ pub(crate) mod simulate;
 pub(crate) mod trial;
 pub(crate) mod tune;
 
+use std::path::Path;
+
 use pipeline::distinct::distinct;
+use pipeline::monitoring::{Event, read_events};
 use report::mapping::Mapping;
 
 use crate::args::ReportsArgs;
@@ -122,4 +125,10 @@ fn check_refused(
     } else {
         Failure::Strict { refused: refused.len(), files }
     })
+}
+
+/// What was done to which tail, from a file.
+fn events_of(path: &Path) -> Result<Vec<Event>, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
+    read_events(&bytes).map_err(|error| Failure::bad_file(path, error))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use effects::{EffectModel, EffectModelError};
+use effects::{EffectModel, EffectModelError, EffectReferences};
 use flight::effect::EffectId;
 
 use crate::advice::advisor::Advisor;
@@ -11,24 +11,29 @@ use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
 use crate::judge::closure::{Shrinkage, in_sample, nested};
 use crate::judge::detection::{Detection, DetectionInput, detect};
+use crate::judge::forms::forms;
 use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
-use crate::judge::posterior::{CauseEvidence, causes, dominant};
+use crate::judge::posterior::{causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
 use crate::judge::verdict::{Findings, advisor, level_like, verdict};
 use crate::library::Library;
+use crate::library::dates::DateGrid;
 use crate::output::addition::Addition;
+use crate::output::form::{ActsOn, FoundForm};
 use crate::output::note::Note;
-use crate::output::verdict::Insufficient;
-use crate::output::{ActsOn, Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
+use crate::output::verdict::{Insufficient, Verdict};
+use crate::output::{Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
 use crate::place::find::find;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::outside::{Outside, compete};
+use crate::search::robust::outlier_weights;
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
+use crate::thresholds::{CLOSER_DATES, FORM_VARIABLES, WORTH_CLOSER_DATES};
 
 /// Diagnoses one set of flights.
 ///
@@ -52,77 +57,136 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)
     };
-    let reference = Reference::from_baseline(input.baseline);
-    let (data, mut library) =
-        PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
-            Library::new(&model, points, engines, starts, chosen)
-        });
-    if input.table.map(TableUncertainty::origin) == Some(TableOrigin::Book) {
-        library.believe_book();
+    let not_before = input.references.is_some() || input.baseline.is_some();
+    let run = Run { input, options, model: &model, references: &references };
+    let (mut dates, mut weights) = (None, None);
+    for attempt in 0..=CLOSER_DATES {
+        let kept = dates.take();
+        let reference = Reference::from_baseline(input.baseline);
+        let (data, mut library) = PreparedFlights::prepare(
+            &model,
+            input.flights,
+            reference,
+            |points, engines, starts| {
+                let known_from = not_before.then_some(references.date_s);
+                let dates =
+                    kept.unwrap_or_else(|| DateGrid::coarse(starts, input.events_s, known_from));
+                Library::new(&model, points, engines, dates, chosen)
+            },
+        );
+        if input.table.map(TableUncertainty::origin) == Some(TableOrigin::Book) {
+            library.believe_book();
+        }
+        match run.once(data, &library, weights.take(), attempt < CLOSER_DATES)? {
+            Attempt::Done(found) => return Ok(*found),
+            Attempt::Closer(closer, robust) => (dates, weights) = (Some(*closer), robust),
+        }
     }
-    let not_testable = library
-        .not_testable
-        .iter()
-        .map(|(id, needs)| NotTestable { effect: *id, needs: needs.clone() })
-        .collect();
-    if let Some(reason) = too_little(&data, &library) {
-        let mut found = insufficient(data.flights.len(), data.segments.len(), reason);
-        found.not_testable = not_testable;
-        found.left_out = data.left_out;
-        return Ok(found);
+    Err(DiagnoseError::Degenerate)
+}
+
+/// What one pass over the dates that are tried comes to.
+enum Attempt {
+    Done(Box<Diagnosis>),
+    /// A dated effect leads: these dates are to be tried, with these robust weights of segments.
+    Closer(Box<DateGrid>, Option<Vec<f64>>),
+}
+
+/// What stays the same whatever dates are tried.
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    input: &'a Input<'a>,
+    options: &'a Options,
+    model: &'a EffectModel<'a>,
+    references: &'a EffectReferences,
+}
+
+impl Run<'_> {
+    fn once(
+        self,
+        data: PreparedFlights<'_>,
+        library: &Library,
+        weights: Option<Vec<f64>>,
+        may_go_closer: bool,
+    ) -> Result<Attempt, DiagnoseError> {
+        let Self { input, options, model, references } = self;
+        let not_testable = library
+            .not_testable
+            .iter()
+            .map(|(id, needs)| NotTestable { effect: *id, needs: needs.clone() })
+            .collect();
+        if let Some(reason) = too_little(&data, library) {
+            let mut found = insufficient(data.flights.len(), data.segments.len(), reason);
+            found.not_testable = not_testable;
+            found.left_out = data.left_out;
+            return Ok(Attempt::Done(Box::new(found)));
+        }
+        let design = Design::new(&data, references, input.baseline, input.table);
+        let mut notes = Vec::new();
+        notes.extend(data.thrust_by_n2_note(library));
+        notes.extend(input.table.and_then(table_in_columns));
+        if input.references.is_none() && input.baseline.is_none() {
+            notes.push(Note::ReferencesAreMeans);
+        }
+        let weights = weights.filter(|weights| weights.len() == data.segments.len());
+        let mut system = WhitenedSystem::new(&data, &design, weights);
+        let problem = Problem { system: &system, model, library };
+        let mut analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
+        // Heavy tails show only beside the best model; then everything is done again with weights.
+        if system.weights().is_none()
+            && let Some(weights) = outlier_weights(&system, &analysis, library)
+        {
+            drop(analysis);
+            system = WhitenedSystem::new(&data, &design, Some(weights));
+            let problem = Problem { system: &system, model, library };
+            analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
+        }
+        if let Some(closer) = closer_dates(&analysis, library).filter(|_| may_go_closer) {
+            return Ok(Attempt::Closer(Box::new(closer), system.weights().map(<[f64]>::to_vec)));
+        }
+        if system.weights().is_some() {
+            notes.push(Note::HeavyTails);
+        }
+        let problem = Problem { system: &system, model, library };
+        let mut diagnosis = conclude(problem, &analysis, options, &mut notes)?;
+        diagnosis.not_testable = not_testable;
+        diagnosis.left_out.clone_from(&data.left_out);
+        diagnosis.notes = notes;
+        Ok(Attempt::Done(Box::new(diagnosis)))
     }
-    let design = Design::new(&data, &references, input.baseline, input.table);
-    let system = WhitenedSystem::new(&data, &design, None);
-    let mut notes = Vec::new();
-    notes.extend(data.thrust_by_n2_note(&library));
-    notes.extend(input.table.and_then(table_in_columns));
-    if input.references.is_none() && input.baseline.is_none() {
-        notes.push(Note::ReferencesAreMeans);
-    }
-    let mut result = conclude(
-        Problem { system: &system, model: &model, library: &library },
-        options,
-        &mut notes,
-    )?;
-    // Heavy tails show only beside the best model; then everything is done again with weights.
-    if let Some(weights) = crate::search::robust::outlier_weights(&system, &result.1, &library) {
-        notes.push(Note::HeavyTails);
-        drop(result);
-        let system = WhitenedSystem::new(&data, &design, Some(weights));
-        result = conclude(
-            Problem { system: &system, model: &model, library: &library },
-            options,
-            &mut notes,
-        )?;
-    }
-    let mut diagnosis = result.0;
-    diagnosis.not_testable = not_testable;
-    diagnosis.left_out.clone_from(&data.left_out);
-    diagnosis.notes = notes;
-    Ok(diagnosis)
+}
+
+/// Dates about those of the first hypothesis with a dated effect that is worth it.
+fn closer_dates(analysis: &Analysis, library: &Library) -> Option<DateGrid> {
+    let worth =
+        analysis.models.iter().filter(|(_, probability)| *probability >= WORTH_CLOSER_DATES);
+    worth
+        .flat_map(|(scored, _)| &scored.hypothesis.columns)
+        .map(|&column| &library.columns[column])
+        .find_map(|column| library.dates.closer(library.effects[column.effect].id, column.hidden))
 }
 
 fn conclude(
     problem: Problem<'_>,
+    analysis: &Analysis,
     options: &Options,
     notes: &mut Vec<Note>,
-) -> Result<(Diagnosis, Analysis), DiagnoseError> {
+) -> Result<Diagnosis, DiagnoseError> {
     let Problem { system, model, library } = problem;
-    let analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
-    let mut outside = compete(system, &analysis, library);
+    let mut outside = compete(system, analysis, library);
     let leading = leading_columns(library, &analysis.models);
     let distances = Distances::from_gram(system.gram(None), system.design, leading)
         .ok_or(DiagnoseError::Degenerate)?;
-    let posteriors = dominant(system, &analysis, library);
+    let posteriors = dominant(system, analysis, library);
     let best = &analysis.models[0].0;
-    let scale = noise_scale(&analysis, best, system.gram(None).rows);
+    let scale = noise_scale(analysis, best, system.gram(None).rows);
     let own = in_sample(problem, &best.hypothesis.columns, &best.sizes, scale, options.seed);
-    let mut gap = gap_of(system, &analysis, &own, scale);
+    let mut gap = gap_of(system, analysis, &own, scale);
     let exceeds = exceeds_uncertainty(&gap, unknown_square(system));
-    let real = exceeds || is_real(&analysis, &outside);
+    let real = exceeds || is_real(analysis, &outside);
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
     let detection_input = DetectionInput {
-        analysis: &analysis,
+        analysis,
         distances: &distances,
         posteriors: &posteriors,
         gap: &gap,
@@ -139,13 +203,13 @@ fn conclude(
     if unseen.is_some() {
         add_floors(&mut gap, problem, &own, scale);
     }
-    let find = || find(system, &analysis, scale, detected, options.seed);
-    let places = if options.skip_where { Vec::default() } else { find() };
+    let find = || find(system, analysis, scale, detected, options.seed);
+    let places = if options.skip_where { vec![] } else { find() };
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {
         level_like: &level_like(system, library),
-        analysis: &analysis,
+        analysis,
         library,
         distances: &distances,
         advisor: &advisor,
@@ -157,30 +221,28 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let of_causes = CauseEvidence {
-        analysis: &analysis,
-        outside: &outside,
-        distances: &distances,
-        library,
-        unseen: unseen.as_ref(),
-        table: table.as_ref(),
+    let found_forms = match &verdict {
+        Verdict::OutsideLibrary(_) => {
+            let variables = &outside.leading[..outside.leading.len().min(FORM_VARIABLES)];
+            forms(system, &analysis.scorer, variables, scale, options.seed)
+        }
+        _ => vec![],
     };
-    let diagnosis = Diagnosis {
+    Ok(Diagnosis {
         flights: system.data.flights.len(),
         segments: system.data.segments.len(),
         gap,
         r#where: places,
-        causes: causes(&of_causes, &posteriors),
+        causes: causes(&findings.of_causes(), &posteriors),
         not_testable: vec![],
-        addition: Addition::named(&analysis, library, verdict.effects(), *model.references())
+        addition: Addition::named(analysis, library, verdict.effects(), *model.references())
             .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
-        outside: outside_library(&outside),
+        outside: outside_library(&outside, found_forms),
         left_out: BTreeMap::new(),
         notes: vec![],
-    };
-    Ok((diagnosis, analysis))
+    })
 }
 
 /// Adds the two estimates of the noise floor that need no sensor's standard deviation.
@@ -196,11 +258,12 @@ fn percent(mean_square: f64) -> f64 {
 }
 
 /// What is reported of a cause outside the library.
-fn outside_library(outside: &Outside) -> OutsideLibrary {
+fn outside_library(outside: &Outside, forms: Vec<FoundForm>) -> OutsideLibrary {
     OutsideLibrary {
         probability: outside.probability,
         variable: outside.variable.map(|(variable, _)| variable),
         acts_on: outside.variable.map(|(_, acts)| acts_on(acts)),
+        forms,
     }
 }
 

@@ -23,6 +23,8 @@ pub struct Input<'a> {
     pub table: Option<&'a TableUncertainty>,
     /// Conditions that effects are zero at; else the baseline's, else the means of the data at hand.
     pub references: Option<EffectReferences>,
+    /// Instants, s since 1970, at which something is known to have been done to the aircraft (wash, engine change, repair).
+    pub events_s: &'a [f64],
 }
 
 impl<'a> Input<'a> {
@@ -36,6 +38,7 @@ impl<'a> Input<'a> {
             baseline: None,
             table: None,
             references: None,
+            events_s: &[],
         }
     }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod addition;
 pub(crate) mod closure;
 pub(crate) mod detection;
+pub(crate) mod forms;
 pub(crate) mod gap;
 pub(crate) mod noise_floors;
 pub(crate) mod posterior;

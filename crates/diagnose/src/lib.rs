@@ -127,6 +127,7 @@ pub use diagnosis::diagnose;
 pub use input::{Input, Options};
 pub use numbers::numbers_that_decide;
 pub use output::addition::{AddedEffect, Addition};
+pub use output::form::{ActsOn, Form, FoundForm};
 pub use output::measurement::{
     FlightsOnPurpose, LoadingKind, Measurement, Separation, Sweep, SweepLoading,
 };
@@ -136,7 +137,7 @@ pub use output::verdict::{
     Beside, Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict,
 };
 pub use output::{
-    ActsOn, Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
+    Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
 };
 pub use place::members::region_members;
 pub use place::segment_gaps::{SegmentGap, Shown, segment_gaps};

@@ -2,21 +2,25 @@
 
 use effects::{EffectModel, EffectPoint};
 use flight::effect::{
-    EffectGroup, EffectId, EffectSign, HiddenParameter, NeededInput, StepTarget, ThrottleArgument,
+    EffectGroup, EffectId, EffectSign, HiddenParameter, NeededInput, ThrottleArgument,
 };
 
+use crate::library::dates::DateGrid;
 use crate::priors::{
     AGNOSTIC_SPIKES, BACKGROUND_SPIKES, BOOK_AGNOSTIC_SPIKES, BOOK_OTHER_EFFECTS, BOOK_SPIKES,
-    DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, SPIKES_OF_RIGHT_TABLE, STEP_DATES,
-    THROTTLE_PIVOTS,
+    DIVERGENCE_MACHS, KNOWN_DEVIATION, N2_PIVOT, SPIKES_OF_RIGHT_TABLE, THROTTLE_PIVOTS,
 };
 use crate::thresholds::RECORDED_SHARE;
+
+pub(crate) mod dates;
 
 /// One column: an effect at one value of its hidden parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Column {
     pub(crate) effect: usize,
     pub(crate) hidden: HiddenParameter,
+    /// ln of the number of hidden parameters that are believed in alike.
+    pub(crate) ln_choices: f64,
 }
 
 /// One testable effect with its prior.
@@ -52,6 +56,8 @@ impl Testable {
 pub(crate) struct Library {
     pub(crate) effects: Vec<Testable>,
     pub(crate) columns: Vec<Column>,
+    /// The dates that dated effects have.
+    pub(crate) dates: DateGrid,
     pub(crate) not_testable: Vec<(EffectId, Vec<NeededInput>)>,
     /// `fuel_heating_value`, a variance: not among the columns.
     pub(crate) heating_value: bool,
@@ -68,12 +74,13 @@ impl Library {
         model: &EffectModel<'_>,
         points: &[EffectPoint],
         engines_recorded: bool,
-        flight_starts_s: &[f64],
+        dates: DateGrid,
         chosen: impl Fn(EffectId) -> bool,
     ) -> Self {
         let mut library = Self {
             effects: Vec::new(),
             columns: Vec::new(),
+            dates,
             not_testable: Vec::new(),
             heating_value: false,
             spikes: BACKGROUND_SPIKES,
@@ -90,7 +97,7 @@ impl Library {
             } else if id == EffectId::FuelHeatingValue {
                 library.heating_value = true;
             } else {
-                library.add(id, hidden_grid(id, model, points, flight_starts_s), model);
+                library.add(id, hidden_grid(id, model, points, &library.dates), model);
             }
         }
         library
@@ -111,7 +118,14 @@ impl Library {
         if grid.is_empty() {
             return; // a step needs flights on both sides of a date
         }
-        let typical = model.references().typical_size(id);
+        let usual = model.references().typical_size(id);
+        let typical = match id.entry().hidden {
+            HiddenParameter::History(_) => {
+                let fall_percent = model.references().typical_size(EffectId::StepChange);
+                self.dates.typical_rate(usual, fall_percent)
+            }
+            _ => usual,
+        };
         let known = id.is_known();
         let first_column = self.columns.len();
         let effect = self.effects.len();
@@ -130,7 +144,13 @@ impl Library {
             columns: grid.len(),
             representative: first_column + middle,
         });
-        self.columns.extend(grid.into_iter().map(|hidden| Column { effect, hidden }));
+        let alike = (grid.len() as f64).ln();
+        let dates = &self.dates;
+        self.columns.extend(grid.into_iter().map(|hidden| Column {
+            effect,
+            hidden,
+            ln_choices: dates.ln_choices(id, hidden).unwrap_or(alike),
+        }));
     }
 }
 
@@ -138,10 +158,16 @@ impl Library {
 /// aircraft: its sensors, its loading, one of its engines, its age, an event.
 const fn acts_at_all_times(id: EffectId) -> bool {
     match id.entry().group {
-        EffectGroup::Airframe => !matches!(id, EffectId::AirframeAgeing),
-        EffectGroup::Engine => {
-            !matches!(id, EffectId::TsfcEngine(_) | EffectId::EngineAgeing | EffectId::AntiIceBleed)
+        EffectGroup::Airframe => {
+            !matches!(id, EffectId::AirframeAgeing | EffectId::AirframeHistory)
         }
+        EffectGroup::Engine => !matches!(
+            id,
+            EffectId::TsfcEngine(_)
+                | EffectId::EngineAgeing
+                | EffectId::EngineHistory
+                | EffectId::AntiIceBleed
+        ),
         EffectGroup::Environment => true,
         EffectGroup::Mass | EffectGroup::Sensor | EffectGroup::Event => false,
     }
@@ -168,7 +194,7 @@ fn hidden_grid(
     id: EffectId,
     model: &EffectModel<'_>,
     points: &[EffectPoint],
-    flight_starts_s: &[f64],
+    dates: &DateGrid,
 ) -> Vec<HiddenParameter> {
     match id.entry().hidden {
         HiddenParameter::None => vec![HiddenParameter::None],
@@ -186,13 +212,7 @@ fn hidden_grid(
             Some(mach) => vec![HiddenParameter::DragDivergenceMach(mach.value())],
             None => DIVERGENCE_MACHS.map(HiddenParameter::DragDivergenceMach).to_vec(),
         },
-        HiddenParameter::Step { .. } => step_dates_s(flight_starts_s)
-            .into_iter()
-            .flat_map(|from_s| {
-                [StepTarget::FuelFlow, StepTarget::Drag]
-                    .map(|target| HiddenParameter::Step { from_s, target })
-            })
-            .collect(),
+        HiddenParameter::Step { .. } | HiddenParameter::History(_) => dates.hidden(id).to_vec(),
     }
 }
 
@@ -200,22 +220,4 @@ fn hidden_grid(
 fn tells_thrust_by_n2(points: &[EffectPoint]) -> bool {
     let without = points.iter().filter(|point| point.corrected_thrust_by_n2_n.is_none()).count();
     (without as f64) <= (1.0 - RECORDED_SHARE) * points.len() as f64
-}
-
-/// Dates between flights, evenly by number of flights; none at the very ends.
-fn step_dates_s(flight_starts_s: &[f64]) -> Vec<f64> {
-    let mut starts = flight_starts_s.to_vec();
-    starts.sort_by(f64::total_cmp);
-    let mut dates = Vec::new();
-    for k in 1..=STEP_DATES {
-        let at = k * starts.len() / (STEP_DATES + 1);
-        if at == 0 || at >= starts.len() || starts[at] <= starts[at - 1] {
-            continue;
-        }
-        let between = f64::midpoint(starts[at - 1], starts[at]);
-        if dates.last() != Some(&between) {
-            dates.push(between);
-        }
-    }
-    dates
 }

@@ -8,6 +8,7 @@ use effects::Effects;
 use flight::effect::{EffectId, HiddenParameter, NeededInput};
 
 use crate::output::addition::Addition;
+use crate::output::form::{ActsOn, FoundForm};
 use crate::output::measurement::Separation;
 use crate::output::note::{LeftOutReason, Note};
 use crate::output::region::Region;
@@ -15,6 +16,7 @@ use crate::output::verdict::{Closure, Verdict};
 use crate::signals::variables::Variable;
 
 pub(crate) mod addition;
+pub(crate) mod form;
 pub(crate) mod measurement;
 pub(crate) mod note;
 pub(crate) mod region;
@@ -160,7 +162,7 @@ pub struct Detectable {
 }
 
 /// Probability of a cause outside the library.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OutsideLibrary {
     /// Probability.
     pub probability: f64,
@@ -168,17 +170,9 @@ pub struct OutsideLibrary {
     pub variable: Option<Variable>,
     /// What it acts on.
     pub acts_on: Option<ActsOn>,
-}
-
-/// What a cause outside the library acts on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ActsOn {
-    /// Fuel flow of all engines.
-    FuelFlow,
-    /// Thrust: drag or weight.
-    Thrust,
-    /// One engine's fuel flow.
-    OneEngine,
+    /// Where the verdict is such a cause: functions of single variables that describe it, of different kinds, the most probable
+    /// first.
+    pub forms: Vec<FoundForm>,
 }
 
 impl Diagnosis {

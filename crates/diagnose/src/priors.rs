@@ -49,7 +49,28 @@ deciding_numbers! {
             OurChoice "The range of transport and business aircraft.";
         STEP_DATES: usize = 15, "",
             "dates of a step that are tried, each with equally many flights between",
-            OurChoice "A date is then off by at most a thirty-second of the flights.";
+            OurChoice "A date is then off by at most a thirty-second of the flights, before the dates about a leading one are tried.";
+        FORM_AMPLITUDES: [f64; 3] = [0.005, 0.015, 0.05], "of fuel flow",
+            "root mean squares of a form outside the library that are believed in alike",
+            OurChoice "What the library's effects make at a third of, once and three times their usual sizes.";
+        FORM_PLACES: usize = 15, "",
+            "places of a hinge, step, logistic or bump that are tried, with equally many segments between; then closer ones",
+            OurChoice "As many as dates of a step.";
+        FORM_WIDTHS: [f64; 3] = [0.05, 0.15, 0.4], "of what was flown",
+            "widths of a logistic or bump that are tried; then closer ones",
+            OurChoice "From nearly a step to nearly a line.";
+        FORM_EXPONENTS: [f64; 4] = [-2.0, -1.0, 0.5, 3.0], "",
+            "exponents of a power that are tried; then closer ones",
+            OurChoice "Those that differ from a line and a square where a variable varies by a tenth.";
+        HISTORY_DATES: usize = 7, "",
+            "dates of a fall in a history that are tried first, each with equally many flights between",
+            OurChoice "A date is then off by at most a sixteenth of the flights, before the dates about a leading one are tried.";
+        RECOVERED_COARSE: [f64; 2] = [0.5, 1.0], "",
+            "shares of what has gathered that a fall takes back, tried first",
+            OurChoice "A wash takes back a part, an engine change or repair all.";
+        RECOVERED_FINE: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0], "",
+            "the same about a leading history",
+            OurChoice "A tenth of what has gathered is far below what single flights scatter by.";
     }
     "What else may act in the background" {
         BACKGROUND_SPIKES: [f64; 4] = [0.0, 0.05, 0.15, 0.30], "of typical size",

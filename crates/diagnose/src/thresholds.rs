@@ -124,6 +124,18 @@ deciding_numbers! {
         WORTH_REFINING: f64 = 1e-4, "",
             "probability below which a hypothesis is not simulated again",
             OurChoice "What comes from it cannot be seen in the answer.";
+        FORM_VARIABLES: usize = 2, "",
+            "leading variables whose forms are tried where a cause is outside the library",
+            OurChoice "Time grows with each, and with the products between them; the third is rarely probable.";
+        FORMS_TOLD: usize = 2, "",
+            "forms of different kinds that are told",
+            OurChoice "The best, and the one to hold against it.";
+        WORTH_CLOSER_DATES: f64 = 0.01, "",
+            "probability of a hypothesis with a date below which no closer dates are tried",
+            OurChoice "Each attempt goes through the data again; below this a date is in no answer.";
+        CLOSER_DATES: usize = 12, "",
+            "times that closer dates, or one more fall of a history, are tried at most",
+            OurChoice "Three to a date bring 5,000 flights to a few; four falls are then possible.";
         AGNOSTIC_SETS: usize = 10, "hypotheses",
             "leading hypotheses to which functions without a name are added",
             OurChoice "Time grows with each; the tenth is rarely probable.";

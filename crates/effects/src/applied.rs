@@ -5,7 +5,6 @@
 //! Difficult: an applied effect acts in one of two places. Effects of the aircraft and its surroundings change
 //! predictions. Effects of the recording (sensors, load sheet, fuel quantity) correct recordings before anything else
 //! uses them, and no prediction contains them.
-//! them, and no prediction knows of them.
 
 use flight::effect::{EffectId, HiddenParameter, NeededInput, ThrottleArgument};
 use lut::Table;
@@ -93,9 +92,11 @@ impl AppliedEffects {
         let mut lacking = Vec::new();
         for (id, _) in self.iter().filter(|(id, _)| !id.is_of_recordings()) {
             let missing = match id {
-                EffectId::AirframeAgeing | EffectId::EngineAgeing | EffectId::StepChange => {
-                    point.date.is_none().then_some(DATE)
-                }
+                EffectId::AirframeAgeing
+                | EffectId::EngineAgeing
+                | EffectId::AirframeHistory
+                | EffectId::EngineHistory
+                | EffectId::StepChange => point.date.is_none().then_some(DATE),
                 _ => id.entry().needs.iter().find_map(|needed| lacks(*needed, point)),
             };
             if let Some(missing) = missing
@@ -121,11 +122,11 @@ impl AppliedEffects {
                 if effects.is_empty() {
                     return None;
                 }
-                let effects = match dated {
-                    Dated::Yes => effects,
-                    Dated::No => on_reference_date(&effects, &layer.references),
-                };
-                Some(Terms::new(&effects, &layer.references))
+                let terms = Terms::new(&effects, &layer.references);
+                Some(match dated {
+                    Dated::Yes => terms,
+                    Dated::No => terms.at_reference_date(),
+                })
             })
             .collect()
     }
@@ -164,21 +165,6 @@ const fn over_thrust(hidden: HiddenParameter) -> HiddenParameter {
         }
         other => other,
     }
-}
-
-/// The effects as they are on the date of their references: no ageing since, a step as it was then.
-fn on_reference_date(effects: &Effects, references: &EffectReferences) -> Effects {
-    let ages = |id| matches!(id, EffectId::AirframeAgeing | EffectId::EngineAgeing);
-    let undated = |hidden| match hidden {
-        HiddenParameter::Step { from_s, target } => {
-            let holds = references.date_s >= from_s;
-            let from_s = if holds { f64::NEG_INFINITY } else { f64::INFINITY };
-            HiddenParameter::Step { from_s, target }
-        }
-        other => other,
-    };
-    let effects = effects.as_slice().iter().filter(|effect| !ages(effect.id));
-    effects.map(|effect| SizedEffect { hidden: undated(effect.hidden), ..*effect }).collect()
 }
 
 /// Applied effects prepared for a drag table.

@@ -53,7 +53,7 @@ pub(crate) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) 
 
 /// Years from the reference date to a segment.
 pub(crate) fn years_since_reference(point: &EffectPoint, terms: &Terms) -> f64 {
-    (point.date_s - terms.references.date_s) / (DAYS_PER_YEAR * SECONDS_PER_DAY)
+    (terms.date_s(point.date_s) - terms.references.date_s) / (DAYS_PER_YEAR * SECONDS_PER_DAY)
 }
 
 /// Weight over mass that lift carries.
@@ -123,7 +123,7 @@ pub(crate) fn path_force_n(point: &EffectPoint, flown: &AsFlown, layers: Layers<
 /// The drag coefficient with effects.
 ///
 /// ```text
-/// CD = (CD_table + θ0·1e-4 + θi K(M) CL² + w(Mdd − θw) − w(Mdd) + CD0(M)·((Re/Re_ref)^−θR − 1 + θa t)
+/// CD = (CD_table + θ0·1e-4 + θi K(M) CL² + w(Mdd − θw) − w(Mdd) + CD0(M)·((Re/Re_ref)^−θR − 1 + θa t + θh h(t))
 ///       + θc·1e-4·(CG_ref − CG)/10·CL/0.4 + θϕ·1e-4·ϕ²)·(1 + θD)·(1 + θs from the date on)   [diagnosis.8]
 /// ```
 ///
@@ -157,6 +157,10 @@ fn drag_with_layer(below: AtTable<'_>, point: &EffectPoint, flown: &AsFlown, ter
         drag += drag_rise(mach, lift_coefficient, divergence - terms.size(EffectId::WaveDrag))
             - drag_rise(mach, lift_coefficient, divergence);
     }
+    if terms.size(EffectId::AirframeHistory) != 0.0 {
+        let years = terms.airframe_history.years(terms.date_s(point.date_s));
+        drag += polar.value(0.0, mach) * terms.size(EffectId::AirframeHistory) * years;
+    }
     if terms.size(EffectId::ReynoldsNumber) != 0.0 || terms.size(EffectId::AirframeAgeing) != 0.0 {
         let zero_lift = polar.value(0.0, mach);
         let ratio = flown.unit_reynolds_number_per_m / references.unit_reynolds_number_per_m;
@@ -178,7 +182,7 @@ fn drag_with_layer(below: AtTable<'_>, point: &EffectPoint, flown: &AsFlown, ter
         drag += terms.size(EffectId::AsymmetryDrag) * roll_squared_deg2;
     }
     drag *= 1.0 + terms.size(EffectId::DragFactor);
-    if terms.step_drag != 0.0 && point.date_s >= terms.step_from_s {
+    if terms.step_drag != 0.0 && terms.date_s(point.date_s) >= terms.step_from_s {
         drag *= 1.0 + terms.step_drag;
     }
     drag

@@ -30,7 +30,7 @@ pub(crate) struct Thrust {
 /// Fuel flow that would be recorded: of all engines, and of each.
 ///
 /// ```text
-/// e = (1 + θf)·((1 + M)/(1 + M_ref))^θM·(θT/θT,ref)^θt·(1 + θx((x − xp)/0.25)²)·(1 + θa t)    [diagnosis.9]
+/// e = (1 + θf)·((1 + M)/(1 + M_ref))^θM·(θT/θT,ref)^θt·(1 + θx((x − xp)/0.25)²)·(1 + θa t)·(1 + θh h(t))    [diagnosis.9]
 /// Wf_k = (F/n·TSFC·e·(1 + θ_k) + θo·W̄f/n)·(1 + θb·on)·(1 + θs from the date on)               [diagnosis.10]
 /// recorded Wf_k = Wf_k·(1 + θWF,k)                                                             [diagnosis.11]
 /// ```
@@ -51,7 +51,7 @@ pub(crate) fn recorded_fuel_flow(
         if terms.size(EffectId::AntiIceBleed) != 0.0 {
             all *= 1.0 + terms.size(EffectId::AntiIceBleed) * anti_ice_on(point, flown);
         }
-        if terms.step_fuel_flow != 0.0 && point.date_s >= terms.step_from_s {
+        if terms.step_fuel_flow != 0.0 && terms.date_s(point.date_s) >= terms.step_from_s {
             all *= 1.0 + terms.step_fuel_flow;
         }
     }
@@ -101,6 +101,10 @@ fn tsfc_factor(
     }
     if terms.size(EffectId::EngineAgeing) != 0.0 {
         factor *= 1.0 + terms.size(EffectId::EngineAgeing) * years_since_reference(point, terms);
+    }
+    if terms.size(EffectId::EngineHistory) != 0.0 {
+        let years = terms.engine_history.years(terms.date_s(point.date_s));
+        factor *= 1.0 + terms.size(EffectId::EngineHistory) * years;
     }
     factor
 }

@@ -1,7 +1,7 @@
 //! The effects that act at a point, in the units of the equations, layer by layer.
 
 use flight::MAXIMUM_ENGINES;
-use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
+use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 
 use crate::references::EffectReferences;
 use crate::set::{Effects, SizedEffect};
@@ -45,6 +45,11 @@ pub(crate) struct Terms {
     pub(crate) step_drag: f64,
     /// Instant from which the step holds, s since 1970.
     pub(crate) step_from_s: f64,
+    /// Of the engines and of the airframe.
+    pub(crate) engine_history: History,
+    pub(crate) airframe_history: History,
+    /// Whether everything is as it was on the reference date, whatever the point's.
+    is_at_reference_date: bool,
 }
 
 impl Terms {
@@ -54,6 +59,16 @@ impl Terms {
             terms.add(effect);
         }
         terms
+    }
+
+    /// The same as they were on the date of their references.
+    pub(crate) fn at_reference_date(self) -> Self {
+        Self { is_at_reference_date: true, ..self }
+    }
+
+    /// The date at which they act on a point of a date.
+    pub(crate) const fn date_s(&self, of_point_s: f64) -> f64 {
+        if self.is_at_reference_date { self.references.date_s } else { of_point_s }
     }
 
     /// Size of an effect in the form that the equations need; 0 where it is not there. Effects of single engines and
@@ -106,12 +121,15 @@ impl Terms {
             step_fuel_flow: 0.0,
             step_drag: 0.0,
             step_from_s: f64::INFINITY,
+            engine_history: History::NONE,
+            airframe_history: History::NONE,
+            is_at_reference_date: false,
         }
     }
 
     fn add(&mut self, effect: &SizedEffect) {
         let size = effect.size * effect.id.entry().unit_factor();
-        self.set_hidden(effect.hidden);
+        self.set_hidden(effect);
         match effect.id {
             EffectId::TsfcEngine(engine) => add_engine(&mut self.tsfc_engine, engine, size),
             EffectId::FuelFlowGain => {
@@ -132,8 +150,8 @@ impl Terms {
         }
     }
 
-    const fn set_hidden(&mut self, hidden: HiddenParameter) {
-        match hidden {
+    fn set_hidden(&mut self, effect: &SizedEffect) {
+        match effect.hidden {
             HiddenParameter::None => {}
             HiddenParameter::DragDivergenceMach(mach) => self.drag_divergence_mach = mach,
             HiddenParameter::Throttle { pivot, argument } => {
@@ -141,6 +159,10 @@ impl Terms {
                 self.throttle_argument = argument;
             }
             HiddenParameter::Step { from_s, .. } => self.step_from_s = from_s,
+            HiddenParameter::History(history) if effect.id == EffectId::AirframeHistory => {
+                self.airframe_history = history;
+            }
+            HiddenParameter::History(history) => self.engine_history = history,
         }
     }
 }

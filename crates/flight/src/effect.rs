@@ -12,6 +12,7 @@ mod airframe;
 mod engine;
 mod entry;
 mod hidden;
+mod history;
 mod recording;
 mod surroundings;
 
@@ -19,6 +20,7 @@ pub use entry::{
     DrivingVariable, EffectEntry, EffectGroup, EffectSign, NeededInput, Phrase, TypicalSize,
 };
 pub use hidden::{HiddenParameter, StepTarget, ThrottleArgument};
+pub use history::{History, HistoryError, MAXIMUM_FALLS};
 
 /// Makes the enum, its list and the table of entries from one list, so that they cannot differ in length.
 macro_rules! effects {
@@ -135,6 +137,10 @@ effects! {
     IsobaricSlope = surroundings::ISOBARIC_SLOPE,
     /// A step on an estimated date.
     StepChange = surroundings::STEP_CHANGE,
+    /// TSFC that grows, and falls at dates.
+    EngineHistory = engine::ENGINE_HISTORY,
+    /// Zero-lift drag that grows, and falls at dates.
+    AirframeHistory = airframe::AIRFRAME_HISTORY,
     /// The whole drag table off, smoothly over lift coefficient and Mach number.
     DragTable = airframe::DRAG_TABLE,
 }

@@ -2,7 +2,7 @@
 
 use diagnose::{AddedEffect, Addition};
 use effects::EffectReferences;
-use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
+use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 use serde::{Deserialize, Serialize};
 
 /// Effects of a verdict and what they are zero at.
@@ -31,6 +31,8 @@ struct AddedEffectRecord {
     step_from_s: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     step_target: Option<StepTarget>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    history: Option<History>,
 }
 
 /// A name that no effect has.
@@ -70,6 +72,7 @@ impl From<&AddedEffect> for AddedEffectRecord {
             drag_divergence_mach: None,
             step_from_s: None,
             step_target: None,
+            history: None,
         };
         match added.hidden {
             HiddenParameter::None => {}
@@ -83,6 +86,7 @@ impl From<&AddedEffect> for AddedEffectRecord {
                 record.step_from_s = Some(from_s);
                 record.step_target = Some(target);
             }
+            HiddenParameter::History(history) => record.history = Some(history),
         }
         record
     }
@@ -106,6 +110,9 @@ impl TryFrom<AddedEffectRecord> for AddedEffect {
                 from_s: record.step_from_s.unwrap_or(from_s),
                 target: record.step_target.unwrap_or(target),
             },
+            HiddenParameter::History(none) => {
+                HiddenParameter::History(record.history.unwrap_or(none))
+            }
         };
         let AddedEffectRecord { size, standard_deviation, .. } = record;
         Ok(Self { effect, size, standard_deviation, hidden })

@@ -4,6 +4,8 @@ use diagnose::Diagnosis;
 use serde::{Deserialize, Serialize};
 
 use crate::diagnosis_words::note_words;
+use crate::monitoring::Event;
+use crate::summary::counted;
 
 /// Name of a pool of all tails.
 pub const POOL: &str = "*";
@@ -49,6 +51,9 @@ pub struct RunOptions {
     pub table_only: bool,
     /// Flights that the model has learnt were diagnosed too.
     pub allow_learnt: bool,
+    /// What was done to the aircraft, and when: dates that are tried first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<Event>,
 }
 
 impl RunOptions {
@@ -78,6 +83,9 @@ impl RunOptions {
         }
         if !self.without.is_empty() {
             words.push(format!("not looked for: {}", self.without.join(", ")));
+        }
+        if !self.events.is_empty() {
+            words.push(format!("{} given", counted(self.events.len(), "event")));
         }
         let modes = [
             (self.pool, "all tails of a type together (--pool)"),

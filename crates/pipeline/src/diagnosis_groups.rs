@@ -9,6 +9,7 @@ use crate::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use crate::diagnosis_figures::DiagnosisFigures;
 use crate::model_file::ModelFile;
 use crate::models::Models;
+use crate::monitoring::Event;
 use crate::reading::{FlightRead, Reading, RefusedReport};
 use crate::table_uncertainty;
 use crate::whole_model::Predicts;
@@ -141,6 +142,7 @@ impl Group<'_> {
         let table = table_uncertainty::of_model(self.model, predicts, &records)
             .map_err(|error| wrong(error.into()))?;
         let baseline = self.model.learnt.as_ref().and_then(|learnt| learnt.baseline.as_ref());
+        let events_s = self.events_s(&asked.events);
         let input = Input {
             model: &self.model.initial,
             drag_table: self.model.reference_table(predicts),
@@ -148,6 +150,7 @@ impl Group<'_> {
             baseline: if asked.table_only { None } else { baseline },
             table: table.as_ref(),
             references: baseline.map(|baseline| *baseline.references()),
+            events_s: &events_s,
         };
         let diagnosis = diagnose(&input, options).map_err(|error| wrong(error.into()))?;
         let figures = DiagnosisFigures::new(self.model, &input, &diagnosis)
@@ -159,6 +162,16 @@ impl Group<'_> {
             run_notes: self.run_notes(asked),
         };
         Ok((diagnosed, figures))
+    }
+
+    /// Instants, s since 1970, of what was done to the tails of this group.
+    fn events_s(&self, events: &[Event]) -> Vec<f64> {
+        let flown: BTreeSet<&str> =
+            self.flights.iter().map(|flight| flight.reduced.identity.tail.as_str()).collect();
+        let own = events.iter().filter(|event| flown.contains(event.tail.as_str()));
+        let mut instants: Vec<f64> = own.map(|event| event.time.as_second() as f64).collect();
+        instants.dedup();
+        instants
     }
 
     fn run_notes(&self, asked: &RunOptions) -> Vec<String> {

@@ -8,7 +8,7 @@ use flight::effect::{EffectGroup, EffectId};
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_words::{
-    acts_on_words, advice, joined, measurement_words, region_words, variable_words,
+    acts_on_words, advice, form_words, joined, measurement_words, region_words, variable_words,
 };
 use crate::statistics::NORMAL_95;
 use crate::summary::counted;
@@ -312,6 +312,9 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
                 }
             )
         ));
+    }
+    for (found, words) in outside.forms.iter().zip(["Described best by", "Next best"]) {
+        lines.push(format!("{words} {}.", form_words(found)));
     }
     lines.push("Nothing is applied. Look at what these flights have in common there, or record more signals.".to_owned());
     lines

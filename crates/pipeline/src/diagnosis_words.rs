@@ -8,8 +8,10 @@ use diagnose::{
 };
 use flight::effect::EffectId;
 
+mod form;
 mod region;
 
+pub use form::{form_name, form_parameters, form_words};
 pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
 /// What to do after a verdict: one sentence or two.
@@ -266,6 +268,7 @@ pub const fn variable_words(variable: Variable) -> &'static str {
         Variable::MachExcess => "high Mach number",
         Variable::Engine => "engine",
         Variable::N2 => "N2",
+        Variable::AntiIce => "anti-ice",
     }
 }
 

@@ -69,9 +69,7 @@ pub(crate) fn monitor_tails(
     let tails = Arc::clone(&adapted.tails);
     let document = run(py, asked.threads, move |caller| {
         let events = match &asked.events {
-            Some(bytes) => {
-                read_events(bytes).map_err(|error| Failure::input(error).in_file("events"))?
-            }
+            Some(bytes) => events_of(bytes)?,
             None => Vec::new(),
         };
         let rules = asked.rules.iter().map(|rule| rule.parse().map_err(Failure::input));
@@ -142,4 +140,9 @@ impl Monitored {
             .map(|table| Ok((table.name.to_string(), python_table(&table.columns)?)))
             .collect()
     }
+}
+
+/// What was done to which tail.
+pub(crate) fn events_of(bytes: &[u8]) -> Result<Vec<Event>, Failure> {
+    read_events(bytes).map_err(|error| Failure::input(error).in_file("events"))
 }

@@ -14,9 +14,11 @@ use pipeline::plausibility;
 use pipeline::reading::FlightRead;
 use pipeline::summary::{RefusedSummary, ReportsSummary};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use rayon::prelude::*;
 
 use crate::adapting::absurd_of;
+use crate::checked::events_of;
 use crate::failure::Failure;
 use crate::flights::Flights;
 use crate::model::{Model, models_of};
@@ -44,6 +46,7 @@ pub(crate) struct Asked {
     pool: bool,
     table_only: bool,
     allow_learnt: bool,
+    events: Option<PyBackedBytes>,
     absurd: String,
     threads: Option<NonZeroUsize>,
 }
@@ -69,6 +72,7 @@ pub(crate) fn diagnose(
         pool: asked.pool,
         table_only: asked.table_only,
         allow_learnt: asked.allow_learnt,
+        events: asked.events.as_ref().map_or_else(|| Ok(Vec::new()), |bytes| events_of(bytes))?,
     };
     let models = models_of(&models)?;
     let flights = flights.clone();

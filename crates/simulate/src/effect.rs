@@ -158,7 +158,7 @@ pub struct PlannedEffect {
     /// Size in the effect's unit; the typical size when left out.
     #[serde(default)]
     pub size: Option<f64>,
-    /// `step_change`: the instant from which it holds; the middle of the fleet's dates when left out.
+    /// `step_change`, `engine_history`, `airframe_history`: the instant from which it holds, or of the fall; the middle of the fleet's dates when left out.
     #[serde(default, with = "optional_timestamp")]
     pub from: Option<Timestamp>,
     /// `step_change`: what it multiplies; drag when left out.

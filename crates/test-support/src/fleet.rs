@@ -11,7 +11,7 @@ mod sensors;
 mod truth;
 
 use flight::Segment;
-use flight::effect::{EffectId, TypicalSize};
+use flight::effect::{EffectId, HiddenParameter, TypicalSize};
 
 pub use crate::Random;
 pub use aircraft::{exact_model, isa};
@@ -112,7 +112,9 @@ pub fn fly(seed: u64, setup: &Setup, effects: &[Planted], background: &Backgroun
 fn clutter(planted: &[Planted], deviation: f64, random: &mut Random) -> Vec<Planted> {
     let mut all = Vec::new();
     for id in EffectId::library(2) {
-        if id == EffectId::StepChange || planted.iter().any(|effect| effect.id == id) {
+        let dated =
+            matches!(id.entry().hidden, HiddenParameter::Step { .. } | HiddenParameter::History(_));
+        if dated || planted.iter().any(|effect| effect.id == id) {
             continue;
         }
         let size = random.normal(0.0, deviation) * typical(id);

@@ -111,6 +111,7 @@ impl DiagnosisInputs {
             baseline: self.baseline.as_ref(),
             table: self.uncertainty.as_ref(),
             references: self.baseline.as_ref().map(|baseline| *baseline.references()),
+            events_s: &[],
         }
     }
 }

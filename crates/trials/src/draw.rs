@@ -9,6 +9,8 @@ use simulate::{
     TruthPhysics,
 };
 
+use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
+
 use crate::plan::{Background, CaseSpec, Kind, ReferenceModel, TrialPlan};
 use crate::seal::{CaseTruth, SEALED_SCHEMA};
 
@@ -236,12 +238,23 @@ fn planned(
     let between = |number: usize, low: f64, high: f64| low + unit(number) * (high - low);
     let sign = if id.is_one_sided() || is_known(id) || byte(0) % 2 == 0 { 1.0 } else { -1.0 };
     let mut effect = PlannedEffect::sized(id, sign * times(spec) * id.typical_size(mean_mass_kg));
+    let span_s = (last.as_second() - first.as_second()) as f64;
+    #[expect(clippy::cast_possible_truncation, reason = "seconds, far below 2^53")]
+    let within = || {
+        let after_s = (span_s * between(1, 0.25, 0.75)) as i64;
+        Timestamp::from_second(first.as_second() + after_s).ok()
+    };
     match id {
+        TruthEffect::Library(id @ (EffectId::EngineHistory | EffectId::AirframeHistory)) => {
+            effect.from = within();
+            // What gathers in half of the flights' time is at least what a usual fall takes back.
+            let half_years = 0.5 * span_s / (DAYS_PER_YEAR * SECONDS_PER_DAY);
+            let usual = TruthEffect::Library(id).typical_size(mean_mass_kg);
+            let fall = TruthEffect::Library(EffectId::StepChange).typical_size(mean_mass_kg);
+            effect.size = Some(times(spec) * usual.max(fall / half_years));
+        }
         TruthEffect::Library(EffectId::StepChange) => {
-            let span_s = (last.as_second() - first.as_second()) as f64;
-            #[expect(clippy::cast_possible_truncation, reason = "seconds, far below 2^53")]
-            let after_s = (span_s * between(1, 0.25, 0.75)) as i64;
-            effect.from = Timestamp::from_second(first.as_second() + after_s).ok();
+            effect.from = within();
             effect.target = if byte(2) % 2 == 0 { StepTarget::Drag } else { StepTarget::FuelFlow };
         }
         TruthEffect::Library(EffectId::TsfcThrottle) => effect.at = Some(between(3, 0.9, 1.1)),

@@ -361,6 +361,8 @@ const fn a_table_holds(id: EffectId) -> bool {
             | EffectId::TrimDragCg
             | EffectId::AirframeAgeing
             | EffectId::EngineAgeing
+            | EffectId::AirframeHistory
+            | EffectId::EngineHistory
             | EffectId::ReynoldsNumber
             | EffectId::TsfcTemperatureExponent
             | EffectId::StepChange

@@ -183,6 +183,7 @@ fn diagnose_later(
 ) -> Result<(), Failure> {
     let found = diagnose::run(
         &DiagnoseArgs {
+            events: None,
             accept: false,
             reports: reports_arguments(&[folder.join(flights).join("N750CF")]),
             models: ModelArgs { models: vec![folder.join("adapted-bayes/models/N750CF.ron")] },

@@ -9,7 +9,7 @@ use flight::effect::EffectId;
 use rayon::prelude::*;
 
 use crate::args::DiagnoseArgs;
-use crate::commands::{Outcome, check_refused, prepare, tell_serious};
+use crate::commands::{Outcome, check_refused, events_of, prepare, tell_serious};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::read_models;
@@ -38,6 +38,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         pool: arguments.pool,
         table_only: arguments.table_only,
         allow_learnt: arguments.allow_learnt,
+        events: arguments.events.as_deref().map_or_else(|| Ok(Vec::new()), events_of)?,
     };
     let models = read_models(&arguments.models.models)?;
     let mut reading = prepare(&arguments.reports, progress)?;

@@ -9,13 +9,13 @@ use std::path::Path;
 use monitor::cost::CostFactors;
 use pipeline::monitoring::{
     AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail, Rows,
-    TailDeviations, TailDocument, read_events, tables, text,
+    TailDeviations, TailDocument, tables, text,
 };
 use rayon::prelude::*;
 
 use crate::args::MonitorArgs;
 use crate::columns;
-use crate::commands::Outcome;
+use crate::commands::{Outcome, events_of};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::progress::Progress;
@@ -103,11 +103,6 @@ fn write(folder: &Path, document: &MonitorDocument) -> Result<(), Failure> {
         columns::write(&table.columns, Some(&folder.join(format!("{}.csv", table.name))))?;
     }
     Ok(())
-}
-
-fn events_of(path: &Path) -> Result<Vec<Event>, Failure> {
-    let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
-    read_events(&bytes).map_err(|error| Failure::bad_file(path, error))
 }
 
 fn monitor_tail(

@@ -44,7 +44,7 @@ fn a_trial_is_sealed_scored_and_gone_on_from() {
     // Twice the typical 2 %, of either sign; every other effect is there too, but for those that are known.
     let size = truth["effects"][0]["size"].as_f64().unwrap();
     assert!((size.abs() - 4.0).abs() < 1e-12, "{size}");
-    assert_eq!(truth["clutter"].as_array().unwrap().len(), 27);
+    assert_eq!(truth["clutter"].as_array().unwrap().len(), 29);
 
     // An interrupted run continues: the remaining cases give the same result, to the last byte, on one thread as on
     // two.

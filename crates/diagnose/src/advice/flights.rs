@@ -89,6 +89,7 @@ impl Conditions {
         let few = Library {
             effects: library.effects.clone(),
             columns: columns.iter().map(|&column| library.columns[column]).collect::<Vec<Column>>(),
+            dates: library.dates.clone(),
             not_testable: vec![],
             heating_value: false,
             spikes: library.spikes,

@@ -63,7 +63,8 @@ pub(crate) struct Scorer {
     pub(crate) priors: Vec<Prior>,
     /// Effect of each column.
     pub(crate) effect_of: Vec<usize>,
-    pub(crate) ln_columns: Vec<f64>,
+    /// ln of the number of hidden parameters that each column is one of.
+    pub(crate) ln_choices: Vec<f64>,
     pub(crate) effects: usize,
     /// Effects that no hypothesis names, because the uncertain table holds them.
     pub(crate) held: Vec<bool>,
@@ -110,7 +111,7 @@ impl Scorer {
         Self {
             priors,
             effect_of: library.columns.iter().map(|column| column.effect).collect(),
-            ln_columns: library.effects.iter().map(|e| (e.columns as f64).ln()).collect(),
+            ln_choices: library.columns.iter().map(|column| column.ln_choices).collect(),
             effects: library.effects.len() + usize::from(library.heating_value)
                 - held.iter().filter(|held| **held).count(),
             held,
@@ -140,8 +141,7 @@ impl Scorer {
             1 => count,
             _ => 0.5 * count * (count - 1.0),
         };
-        let hidden: f64 =
-            hypothesis.columns.iter().map(|&column| self.ln_columns[self.effect_of[column]]).sum();
+        let hidden: f64 = hypothesis.columns.iter().map(|&column| self.ln_choices[column]).sum();
         let heating = if hypothesis.flight_scatter_percent.is_some() {
             (FLIGHT_SCATTER_SIZES_PERCENT.len() as f64).ln()
         } else {
@@ -281,7 +281,7 @@ mod tests {
         let scorer = Scorer {
             priors: vec![prior; 3],
             effect_of: vec![0, 1, 1],
-            ln_columns: vec![0.0, 2.0_f64.ln()],
+            ln_choices: vec![0.0, 2.0_f64.ln(), 2.0_f64.ln()],
             effects: 3,
             held: vec![false; 2],
             rows: 10.0,
@@ -319,7 +319,7 @@ mod tests {
         let scorer = Scorer {
             priors: vec![prior],
             effect_of: vec![0],
-            ln_columns: vec![0.0],
+            ln_choices: vec![0.0],
             effects: 1,
             held: vec![false],
             rows,

@@ -6,7 +6,7 @@ use crate::math::random::RandomStream;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::folds::fold_of;
 use crate::search::refine::{effects_of, refine};
-use crate::search::system::Problem;
+use crate::search::system::{Problem, WhitenedSystem};
 use crate::thresholds::{CLEAN_PROBABILITY, CLOSURE_FOLDS, MORE_PROBABLE_THAN_NOT, SMALLEST_GAP};
 
 /// Stream of random numbers behind the interval of closure.
@@ -25,6 +25,43 @@ pub(crate) struct Shrinkage {
 }
 
 impl Shrinkage {
+    /// Before and after a change of each segment's predicted ln fuel flow, by the numbers of flight and segment.
+    pub(crate) fn of_changes(
+        system: &WhitenedSystem<'_>,
+        noise_scale: f64,
+        seed: u64,
+        change: impl Fn(usize, usize) -> f64,
+    ) -> Self {
+        let data = system.data;
+        let mut found = Self {
+            before: vec![],
+            after: vec![],
+            floor: vec![],
+            segments: vec![],
+            left: Vec::with_capacity(data.segments.len()),
+            seed,
+        };
+        for (index, flight) in data.flights.iter().enumerate() {
+            let (mut before, mut after, mut floor) = (0.0, 0.0, 0.0);
+            for segment in flight.segments.clone() {
+                let row = &data.segments[segment];
+                let gap = row.residual[0];
+                let left = gap - change(index, segment);
+                before += gap * gap;
+                after += left * left;
+                found.left.push(left);
+                let own = row.noise.factor[0][0] * row.noise.factor[0][0];
+                let common: f64 = row.noise.common.iter().map(|u| u[0] * u[0]).sum();
+                floor += noise_scale * (own + common);
+            }
+            found.before.push(before);
+            found.after.push(after);
+            found.floor.push(floor);
+            found.segments.push(flight.segments.len() as f64);
+        }
+        found
+    }
+
     fn total(values: &[f64], segments: &[f64]) -> f64 {
         let count: f64 = segments.iter().sum();
         values.iter().sum::<f64>() / count
@@ -131,39 +168,22 @@ fn shrinkage<'c>(
     choice: impl Fn(usize) -> &'c Choice,
 ) -> Shrinkage {
     let Problem { system, model, library } = problem;
-    let data = system.data;
-    let mut found = Shrinkage {
-        before: vec![],
-        after: vec![],
-        floor: vec![],
-        segments: vec![],
-        left: Vec::with_capacity(data.segments.len()),
-        seed,
-    };
-    for (index, flight) in data.flights.iter().enumerate() {
-        let Choice { columns, sizes, table } = choice(fold_of(index));
-        let trial = model.trial(&effects_of(library, columns, sizes));
-        let (mut before, mut after, mut floor) = (0.0, 0.0, 0.0);
-        for row in &data.segments[flight.segments.clone()] {
-            let gap = row.residual[0];
-            let closed = model.response_at(&row.known, &trial).map_or(0.0, |with| {
-                data.predictor.predict(&with)[0] - data.predictor.predict(&row.response)[0]
-            });
-            let of_table = table.as_ref().map_or(0.0, |table| table.drag_at(system, row));
-            let closed = closed + of_table * row.drag_over_thrust;
-            before += gap * gap;
-            after += (gap - closed) * (gap - closed);
-            found.left.push(gap - closed);
-            let own = row.noise.factor[0][0] * row.noise.factor[0][0];
-            let common: f64 = row.noise.common.iter().map(|u| u[0] * u[0]).sum();
-            floor += noise_scale * (own + common);
-        }
-        found.before.push(before);
-        found.after.push(after);
-        found.floor.push(floor);
-        found.segments.push(flight.segments.len() as f64);
-    }
-    found
+    let trials: Vec<_> = (0..CLOSURE_FOLDS)
+        .map(|fold| {
+            let Choice { columns, sizes, .. } = choice(fold);
+            model.trial(&effects_of(library, columns, sizes))
+        })
+        .collect();
+    Shrinkage::of_changes(system, noise_scale, seed, |flight, segment| {
+        let fold = fold_of(flight);
+        let row = &system.data.segments[segment];
+        let predictor = &system.data.predictor;
+        let closed = model
+            .response_at(&row.known, &trials[fold])
+            .map_or(0.0, |with| predictor.predict(&with)[0] - predictor.predict(&row.response)[0]);
+        let of_table = choice(fold).table.as_ref().map_or(0.0, |table| table.drag_at(system, row));
+        closed + of_table * row.drag_over_thrust
+    })
 }
 
 #[cfg(test)]

@@ -62,7 +62,7 @@ pub(crate) const fn insufficient(
         verdict: Verdict::InsufficientData(reason),
         addition: None,
         detectable: vec![],
-        outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None },
+        outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None, forms: vec![] },
         left_out: BTreeMap::new(),
         notes: vec![],
     }

@@ -5,7 +5,7 @@ use flight::effect::EffectId;
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
-use crate::judge::posterior::{Posterior, class_of, closed_unseen, id_of, presence};
+use crate::judge::posterior::{CauseEvidence, Posterior, class_of, closed_unseen, id_of, presence};
 use crate::judge::table::TableFinding;
 use crate::library::{Library, Testable};
 use crate::output::measurement::Separation;
@@ -77,6 +77,20 @@ pub(crate) struct Findings<'a> {
     pub(crate) table: Option<&'a TableFinding>,
     pub(crate) own: &'a Shrinkage,
     pub(crate) unseen: Option<&'a Shrinkage>,
+}
+
+impl<'a> Findings<'a> {
+    /// What causes are judged by.
+    pub(crate) const fn of_causes(&self) -> CauseEvidence<'a> {
+        CauseEvidence {
+            analysis: self.analysis,
+            outside: self.outside,
+            distances: self.distances,
+            library: self.library,
+            unseen: self.unseen,
+            table: self.table,
+        }
+    }
 }
 
 /// The verdict; what named effects leave goes to `notes` too.

@@ -8,6 +8,7 @@ use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, BaselineRecord};
 use crate::library::Library;
+use crate::library::dates::DateGrid;
 use crate::priors::REMAINDER_LENGTHS;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
@@ -47,7 +48,13 @@ impl Baseline {
             flights,
             Reference::Untaught,
             |points, engines, starts| {
-                Library::new(&effect_model, points, engines, starts, |_| false)
+                Library::new(
+                    &effect_model,
+                    points,
+                    engines,
+                    DateGrid::coarse(starts, &[], None),
+                    |_| false,
+                )
             },
         );
         if data.flights.len() < FEWEST_FLIGHTS_OF_A_BASELINE {

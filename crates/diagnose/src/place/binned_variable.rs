@@ -8,7 +8,9 @@ use crate::signals::variables::Variable;
 use crate::thresholds::{BINS, EDGE_TOLERANCE, ROLL_EDGES_DEG};
 
 /// The variables that places are said in, besides the engine.
-const VARIABLES: [Variable; 16] = [
+const VARIABLES: [Variable; 17] = [
+    // Switches first: of two places that fit alike, the first is said.
+    Variable::AntiIce,
     Variable::Mach,
     Variable::LiftCoefficient,
     Variable::PressureAltitude,
@@ -26,6 +28,9 @@ const VARIABLES: [Variable; 16] = [
     Variable::CenterOfGravity,
     Variable::EastwardSpeed,
 ];
+
+/// Share of a segment from which a switch counts as on: most of it.
+const SWITCHED_ON: f64 = 0.5;
 
 /// A variable cut into bins.
 #[derive(Clone, Debug)]
@@ -78,6 +83,7 @@ impl BinnedVariable {
         }
         let mut edges: Vec<f64> = match variable {
             Variable::Roll => ROLL_EDGES_DEG.to_vec(),
+            Variable::AntiIce => vec![SWITCHED_ON],
             Variable::Date => (1..BINS).map(|k| flight_boundary(&sorted, share(k))).collect(),
             _ => (1..BINS).filter_map(|k| readable_edge(&sorted, share(k))).collect(),
         };
@@ -214,6 +220,17 @@ mod tests {
         assert!((from.flown_below - (1_559_347_200.0 + 7.0 * 86_400.0)).abs() < 1e-9);
         assert_eq!(place.condition(4, 5).to, None);
         assert_eq!(place.condition(0, 1).from, None);
+    }
+
+    #[test]
+    fn a_switch_is_on_or_off() {
+        let values: Vec<f64> = (0..100).map(|k| f64::from(u8::from(k >= 93))).collect();
+        let place = BinnedVariable::new(Variable::AntiIce, &values).unwrap();
+        assert_eq!(place.count(), 2);
+        assert_eq!(place.bins[92..94], [0, 1]);
+        let on = place.condition(1, 2);
+        assert!(on.to.is_none() && (on.from.unwrap().value - 0.5).abs() < 1e-15);
+        assert!(BinnedVariable::new(Variable::AntiIce, &[0.0; 50]).is_none());
     }
 
     #[test]

@@ -4,6 +4,7 @@ use effects::{EffectModel, Effects};
 
 use crate::input::Input;
 use crate::library::Library;
+use crate::library::dates::DateGrid;
 use crate::output::addition::Addition;
 use crate::output::region::Region;
 use crate::residuals::reference::Reference;
@@ -60,7 +61,7 @@ pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGa
     // No column of the library is needed: residuals do not depend on what is searched.
     let (data, _) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
-            Library::new(&model, points, engines, starts, |_| false)
+            Library::new(&model, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
         });
     let value = |row: &SegmentRow, variable: Variable| match variable {
         Variable::N2 => row.n2_percent,

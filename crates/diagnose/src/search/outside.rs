@@ -21,6 +21,8 @@ pub(crate) struct Outside {
     pub(crate) probability: f64,
     /// The variable that it depends on, and how it acts.
     pub(crate) variable: Option<(Variable, Acts)>,
+    /// Variables of smooth terms, the most probable first.
+    pub(crate) leading: Vec<Variable>,
     /// If one is needed: the probability of each companion to act in addition to it.
     beside: Vec<(Companion, f64)>,
 }
@@ -105,6 +107,7 @@ pub(crate) fn compete(
     Outside {
         probability: if probability.is_finite() { probability } else { 0.0 },
         variable: leading_variable(system, &smooth_terms),
+        leading: leading_variables(system, &smooth_terms),
         beside: (0..library.effects.len())
             .map(Companion::Effect)
             .chain([Companion::Scatter])
@@ -127,6 +130,28 @@ fn leading_variable(
     let ln = |block: usize| ln_sum(smooth_terms.iter().filter(|a| a.block == block).map(|a| a.ln));
     let best = (0..blocks.len()).map(|block| (ln(block), block)).max_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(_, block)| (blocks[block].variable, blocks[block].acts))
+}
+
+/// All variables, the most probable first: weights summed over sets, amplitudes and what they act on.
+fn leading_variables(
+    system: &WhitenedSystem<'_>,
+    smooth_terms: &[WithSmoothTerm],
+) -> Vec<Variable> {
+    let blocks = &system.design.blocks;
+    let mut variables: Vec<Variable> = blocks
+        .iter()
+        .filter(|block| block.acts != Acts::Split)
+        .map(|block| block.variable)
+        .collect();
+    variables.dedup();
+    let ln = |variable: Variable| {
+        let own = smooth_terms.iter().filter(|term| blocks[term.block].variable == variable);
+        ln_sum(own.map(|term| term.ln))
+    };
+    let mut weighed: Vec<(f64, Variable)> =
+        variables.into_iter().map(|variable| (ln(variable), variable)).collect();
+    weighed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    weighed.into_iter().map(|(_, variable)| variable).collect()
 }
 
 /// Models with a named effect and without scatter between flights, most probable first.

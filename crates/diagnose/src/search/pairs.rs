@@ -317,7 +317,7 @@ mod tests {
                 prior(0.0, 0.5, EffectSign::Either),
             ],
             effect_of: vec![0, 1, 2, 2],
-            ln_columns: vec![0.0, 0.0, 2.0_f64.ln()],
+            ln_choices: vec![0.0, 0.0, 2.0_f64.ln(), 2.0_f64.ln()],
             effects: 3,
             held: vec![false; 3],
             rows: 60.0,

@@ -82,6 +82,7 @@ mod tests {
 
     use super::*;
     use crate::hypotheses::design::Design;
+    use crate::library::dates::DateGrid;
     use crate::residuals::reference::Reference;
     use crate::residuals::segments::PreparedFlights;
     use crate::search::analyse::analyse;
@@ -107,7 +108,11 @@ mod tests {
             &effects,
             &records,
             Reference::Table,
-            |points, engines, starts| Library::new(&effects, points, engines, starts, |_| true),
+            |points, engines, starts| {
+                Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| {
+                    true
+                })
+            },
         );
         let design = Design::new(&data, &references, None, None);
         let weights = weight.map(|weight| vec![weight; data.segments.len()]);

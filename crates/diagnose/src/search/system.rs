@@ -163,6 +163,11 @@ impl<'a> WhitenedSystem<'a> {
         self.data.recorded_values(rows, of_weights)
     }
 
+    /// Robust weights of the segments, where some count less.
+    pub(crate) fn weights(&self) -> Option<&[f64]> {
+        self.weights.as_deref()
+    }
+
     /// Root mean square of the robust weights; 1 without.
     pub(crate) fn mean_weight(&self) -> f64 {
         self.weights.as_ref().map_or(1.0, |weights| {

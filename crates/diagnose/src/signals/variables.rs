@@ -53,6 +53,8 @@ pub enum Variable {
     Engine,
     /// Mean N2 of the engines, %: of a segment, not of a point.
     N2,
+    /// Share of the segment with anti-ice bleed on, as recorded.
+    AntiIce,
 }
 
 impl Variable {
@@ -98,6 +100,7 @@ impl Variable {
             }
             Self::CenterOfGravity => point.center_of_gravity_percent_mac?,
             Self::Mass => point.mass_kg,
+            Self::AntiIce => point.anti_ice?,
             Self::LatitudeCrossWind => {
                 (point.latitude_deg? * RADIANS_PER_DEGREE).sin() * cross_wind()?
             }
@@ -161,6 +164,7 @@ impl From<DrivingVariable> for Variable {
             DrivingVariable::IsaDeviation => Self::IsaDeviation,
             DrivingVariable::EastwardSpeed => Self::EastwardSpeed,
             DrivingVariable::Engine => Self::Engine,
+            DrivingVariable::AntiIce => Self::AntiIce,
         }
     }
 }

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
+use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 use flight::{FlightIdentity, MAXIMUM_ENGINES};
 use lut::surface::Basis;
 use units::{Angle, Mach, Mass, PressureAltitude};
@@ -306,6 +306,26 @@ fn what_a_point_does_not_say_is_at_its_reference() {
     }
     let model = with(Effects::one(EffectId::MachBias, 0.004).with(EffectId::DragFactor, 2.0));
     assert_eq!(model.effects().unwrap().at_reference(&bare_point), vec![]);
+}
+
+/// By hand: without a date, what had gathered by the reference date, half a year's worth; with one, a year later, half of the
+/// sum before the fall and what came after it.
+#[test]
+fn a_history_is_as_on_the_reference_date_where_a_point_has_none() {
+    let year_s = 365.25 * 86_400.0;
+    let reference_s = references().date_s;
+    let history = History::new(reference_s - 0.5 * year_s, 0.5, &[reference_s + 0.5 * year_s]);
+    let hidden = HiddenParameter::History(history.unwrap());
+    let effects =
+        Effects::one(EffectId::EngineHistory, 2.0).with_hidden(EffectId::EngineHistory, hidden);
+    let flow = |model: &ExtendedModel, point: &FlightPoint| {
+        model.predict(point).unwrap().fuel_flow_total.to_kilograms_per_second()
+    };
+    let ratio = |point: &FlightPoint| flow(&with(effects.clone()), point) / flow(&bare(), point);
+    let undated = FlightPoint { date: None, ..flight_point() };
+    assert!((ratio(&undated) - 1.01).abs() < 1e-9, "{}", ratio(&undated));
+    // One year after the reference: (0.5 + 0.5)·0.5 + 0.5 = 1 year.
+    assert!((ratio(&flight_point()) - 1.02).abs() < 1e-6, "{}", ratio(&flight_point()));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use flight::effect::{HiddenParameter, StepTarget, ThrottleArgument};
+use flight::effect::{HiddenParameter, History, StepTarget, ThrottleArgument};
 use flight::{Cruise, FlightIdentity, Segment};
 use lut::surface::{Basis, Surface};
 use perf_model::PerformanceModel;
@@ -109,6 +109,12 @@ fn slope(model: &EffectModel<'_>, at: &EffectPoint, effect: EffectId, step: f64)
         HiddenParameter::Step { target, .. } => {
             HiddenParameter::Step { from_s: at.date_s - 1.0, target }
         }
+        // A year of gathering, of which 60 % was taken back in its middle: 0.5·0.4 + 0.5 = 0.7 years.
+        HiddenParameter::History(_) => {
+            let year_s = 365.25 * 86_400.0;
+            let fall_s = at.date_s - 0.5 * year_s;
+            HiddenParameter::History(History::new(at.date_s - year_s, 0.6, &[fall_s]).unwrap())
+        }
         other => other,
     };
     let value = |size: f64| {
@@ -189,6 +195,8 @@ fn signatures_by_hand(polar: [f64; 6], mach: f64) -> Vec<(EffectId, f64, f64, f6
         (EffectId::LoadFactor, 0.01, e_m * (1.0 / 0.8_f64.to_radians().cos() - 1.0), 1e-2),
         (EffectId::IsobaricSlope, 0.01, 13_500.0 * coriolis * cross / thrust, 2e-4),
         (EffectId::StepChange, 0.01, percent, 2e-5),
+        (EffectId::EngineHistory, 0.01, percent * 0.7, 2e-5),
+        (EffectId::AirframeHistory, 0.01, percent * 0.7 * zero_lift / h.cd, 3e-4),
     ]
 }
 

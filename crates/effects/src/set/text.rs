@@ -1,6 +1,6 @@
 //! A set of effects in the form of the files: names with sizes, then every hidden parameter, used or not.
 
-use flight::effect::{EffectId, HiddenParameter, StepTarget, ThrottleArgument};
+use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 use serde::{Deserialize, Serialize};
 
 use super::Effects;
@@ -23,6 +23,10 @@ struct HiddenText {
     drag_divergence_mach: f64,
     step_from_s: f64,
     step_target: StepTarget,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    engine_history: Option<History>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    airframe_history: Option<History>,
 }
 
 /// A name that no effect has.
@@ -36,7 +40,7 @@ const fn is_corrected_thrust(argument: &ThrottleArgument) -> bool {
 }
 
 impl HiddenText {
-    fn put(&mut self, hidden: HiddenParameter) {
+    fn put(&mut self, id: EffectId, hidden: HiddenParameter) {
         match hidden {
             HiddenParameter::None => {}
             HiddenParameter::DragDivergenceMach(mach) => self.drag_divergence_mach = mach,
@@ -48,12 +52,16 @@ impl HiddenText {
                 self.step_from_s = from_s;
                 self.step_target = target;
             }
+            HiddenParameter::History(history) if id == EffectId::AirframeHistory => {
+                self.airframe_history = Some(history);
+            }
+            HiddenParameter::History(history) => self.engine_history = Some(history),
         }
     }
 
-    /// The value of a parameter of this kind.
-    const fn of_kind(&self, kind: HiddenParameter) -> HiddenParameter {
-        match kind {
+    /// The parameter of an effect.
+    fn of_effect(&self, id: EffectId) -> HiddenParameter {
+        match id.entry().hidden {
             HiddenParameter::None => HiddenParameter::None,
             HiddenParameter::DragDivergenceMach(_) => {
                 HiddenParameter::DragDivergenceMach(self.drag_divergence_mach)
@@ -64,6 +72,11 @@ impl HiddenText {
             },
             HiddenParameter::Step { .. } => {
                 HiddenParameter::Step { from_s: self.step_from_s, target: self.step_target }
+            }
+            HiddenParameter::History(none) => {
+                let of_airframe = id == EffectId::AirframeHistory;
+                let of = if of_airframe { self.airframe_history } else { self.engine_history };
+                HiddenParameter::History(of.unwrap_or(none))
             }
         }
     }
@@ -77,12 +90,15 @@ impl From<Effects> for EffectsText {
             drag_divergence_mach: 0.0,
             step_from_s: 0.0,
             step_target: StepTarget::FuelFlow,
+            engine_history: None,
+            airframe_history: None,
         };
-        for id in EffectId::ALL {
-            hidden.put(id.entry().hidden);
+        let has_history = |hidden| matches!(hidden, HiddenParameter::History(_));
+        for id in EffectId::ALL.iter().filter(|id| !has_history(id.entry().hidden)) {
+            hidden.put(*id, id.entry().hidden);
         }
         for on in &effects.effects {
-            hidden.put(on.hidden);
+            hidden.put(on.id, on.hidden);
         }
         let sizes = effects.iter().map(|(id, size)| (id.to_string(), size)).collect();
         Self { sizes, hidden }
@@ -96,7 +112,7 @@ impl TryFrom<EffectsText> for Effects {
         let mut effects = Self::none();
         for (name, size) in text.sizes {
             let Some(id) = EffectId::from_name(&name) else { return Err(NoSuchEffect(name)) };
-            let hidden = text.hidden.of_kind(id.entry().hidden);
+            let hidden = text.hidden.of_effect(id);
             effects = effects.with(id, size).with_hidden(id, hidden);
         }
         Ok(effects)

@@ -1,8 +1,8 @@
 //! Effects of the airframe's drag.
 
 use super::{
-    DrivingVariable, EffectEntry, EffectGroup, EffectSign, HiddenParameter, NeededInput, Phrase,
-    TypicalSize,
+    DrivingVariable, EffectEntry, EffectGroup, EffectSign, HiddenParameter, History, NeededInput,
+    Phrase, TypicalSize,
 };
 
 /// Drag-divergence Mach number at lift coefficient 0.35 where neither aircraft file nor search gives one: our choice,
@@ -165,6 +165,23 @@ pub(super) const AIRFRAME_AGEING: EffectEntry = EffectEntry {
     phrase: Phrase {
         positive: "zero-lift drag that grows with age",
         negative: "zero-lift drag that falls with age",
+    },
+};
+
+/// Zero-lift drag that grows, and falls at dates.
+pub(super) const AIRFRAME_HISTORY: EffectEntry = EffectEntry {
+    name: "airframe_history",
+    group: EffectGroup::Airframe,
+    unit: "%/year",
+    typical: TypicalSize::Absolute(1.2),
+    sign: EffectSign::Positive,
+    needs: &[],
+    hidden: HiddenParameter::History(History::NONE),
+    driven_by: &[DrivingVariable::Date],
+    perturbation: "zero-lift drag share × (1 + θ·years), of which dates take back a share",
+    phrase: Phrase {
+        positive: "zero-lift drag grows, and falls at dates (washes, repairs)",
+        negative: "zero-lift drag falls, and rises at dates",
     },
 };
 

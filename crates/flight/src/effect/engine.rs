@@ -1,8 +1,8 @@
 //! Effects of the engines' consumption.
 
 use super::{
-    DrivingVariable, EffectEntry, EffectGroup, EffectSign, HiddenParameter, NeededInput, Phrase,
-    ThrottleArgument, TypicalSize,
+    DrivingVariable, EffectEntry, EffectGroup, EffectSign, HiddenParameter, History, NeededInput,
+    Phrase, ThrottleArgument, TypicalSize,
 };
 
 /// TSFC scaled, all engines.
@@ -127,7 +127,11 @@ pub(super) const ANTI_ICE_BLEED: EffectEntry = EffectEntry {
     sign: EffectSign::Positive,
     needs: &[NeededInput::AntiIce],
     hidden: HiddenParameter::None,
-    driven_by: &[DrivingVariable::StaticAirTemperature, DrivingVariable::PressureAltitude],
+    driven_by: &[
+        DrivingVariable::AntiIce,
+        DrivingVariable::StaticAirTemperature,
+        DrivingVariable::PressureAltitude,
+    ],
     perturbation: "Wf·(1 + θ) while on",
     phrase: Phrase { positive: "anti-ice bleed costs more", negative: "anti-ice bleed costs less" },
 };
@@ -144,6 +148,23 @@ pub(super) const ENGINE_AGEING: EffectEntry = EffectEntry {
     driven_by: &[DrivingVariable::Date],
     perturbation: "TSFC·(1 + θ·years)",
     phrase: Phrase { positive: "TSFC grows with age", negative: "TSFC falls with age" },
+};
+
+/// TSFC that grows, and falls at dates.
+pub(super) const ENGINE_HISTORY: EffectEntry = EffectEntry {
+    name: "engine_history",
+    group: EffectGroup::Engine,
+    unit: "%/year",
+    typical: TypicalSize::Absolute(0.8),
+    sign: EffectSign::Positive,
+    needs: &[],
+    hidden: HiddenParameter::History(History::NONE),
+    driven_by: &[DrivingVariable::Date],
+    perturbation: "TSFC·(1 + θ·years), of which dates take back a share",
+    phrase: Phrase {
+        positive: "TSFC grows, and falls at dates (washes, engine changes)",
+        negative: "TSFC falls, and rises at dates",
+    },
 };
 
 /// Flight-to-flight scatter of the fuel's heating value.

@@ -169,6 +169,8 @@ pub enum DrivingVariable {
     EastwardSpeed,
     /// Which engine.
     Engine,
+    /// Whether anti-ice bleed is on, as recorded: a share of the segment.
+    AntiIce,
 }
 
 impl DrivingVariable {
@@ -192,6 +194,7 @@ impl DrivingVariable {
             Self::IsaDeviation => "isa_deviation_k",
             Self::EastwardSpeed => "eastward_speed_m_s",
             Self::Engine => "engine",
+            Self::AntiIce => "anti_ice",
         }
     }
 }

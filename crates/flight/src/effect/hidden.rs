@@ -5,6 +5,8 @@ use core::fmt;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
+use super::History;
+
 /// What a dated step multiplies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -48,6 +50,8 @@ pub enum HiddenParameter {
         /// What it multiplies.
         target: StepTarget,
     },
+    /// `engine_history`, `airframe_history`.
+    History(History),
 }
 
 impl StepTarget {
@@ -82,11 +86,13 @@ impl HiddenParameter {
                 | (Self::DragDivergenceMach(_), Self::DragDivergenceMach(_))
                 | (Self::Throttle { .. }, Self::Throttle { .. })
                 | (Self::Step { .. }, Self::Step { .. })
+                | (Self::History(_), Self::History(_))
         )
     }
 }
 
-/// In words, empty without a parameter: "over N2, pivot 1.0", "Mdd 0.86", "drag from 2018-05-20T00:00:00Z".
+/// In words, empty without a parameter: "over N2, pivot 1.0", "Mdd 0.86", "drag from
+/// 2018-05-20T00:00:00Z".
 impl fmt::Display for HiddenParameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -97,12 +103,27 @@ impl fmt::Display for HiddenParameter {
             }
             Self::Step { from_s, target } => {
                 write!(f, "{} from ", target.words())?;
-                #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
-                match Timestamp::from_second(*from_s as i64) {
-                    Ok(instant) => instant.fmt(f),
-                    Err(_) => Ok(()),
+                write_instant(f, *from_s)
+            }
+            Self::History(history) => {
+                f.write_str("growing since ")?;
+                write_instant(f, history.since_s())?;
+                let recovered_percent = 100.0 * history.recovered();
+                for fall_s in history.falls_s() {
+                    write!(f, ", {recovered_percent:.0} % of it taken back at ")?;
+                    write_instant(f, fall_s)?;
                 }
+                Ok(())
             }
         }
+    }
+}
+
+/// An instant, s since 1970, as RFC 3339; nothing beyond the calendar.
+fn write_instant(f: &mut fmt::Formatter<'_>, instant_s: f64) -> fmt::Result {
+    #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
+    match Timestamp::from_second(instant_s as i64) {
+        Ok(instant) => write!(f, "{instant}"),
+        Err(_) => Ok(()),
     }
 }

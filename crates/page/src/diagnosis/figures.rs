@@ -100,9 +100,10 @@ fn over_time(tail: &Tail<'_>, bins: &Bins) -> Markup {
         .addition
         .iter()
         .flat_map(|addition| &addition.effects)
-        .filter_map(|added| match added.hidden {
-            HiddenParameter::Step { from_s, .. } => Some(from_s),
-            _ => None,
+        .flat_map(|added| match added.hidden {
+            HiddenParameter::Step { from_s, .. } => vec![from_s],
+            HiddenParameter::History(history) => history.falls_s().collect(),
+            _ => vec![],
         })
         .collect();
     let chart = Chart {

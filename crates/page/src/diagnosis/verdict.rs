@@ -3,7 +3,7 @@
 use diagnose::{Diagnosis, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
-use pipeline::diagnosis_words::{acts_on_words, advice, region_words, variable_words};
+use pipeline::diagnosis_words::{acts_on_words, advice, form_words, region_words, variable_words};
 
 use super::Tail;
 use crate::text::{capitalised, signed, three_digits};
@@ -105,6 +105,9 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
             }
             Verdict::OutsideLibrary(unexplained) => {
                 "Probability " (format!("{:.2}", unexplained.probability)) " that the cause is outside the library. "
+                @for (found, words) in diagnosis.outside.forms.iter().zip(["Described best by ", "Next best "]) {
+                    (words) (form_words(found)) ". "
+                }
             }
             _ => {}
         }

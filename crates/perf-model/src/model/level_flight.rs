@@ -168,10 +168,8 @@ impl PerformanceModel {
         place: usize,
     ) -> Option<LevelPrediction> {
         let [mass_kg, altitude_m, mach, _] = columns.map(|column| column[place]);
-        let is_inside = mass_kg >= f64::MIN_POSITIVE
-            && mass_kg <= f64::MAX
-            && altitude_m >= LOWEST_PRESSURE_ALTITUDE_M
-            && altitude_m <= HIGHEST_PRESSURE_ALTITUDE_M
+        let is_inside = (f64::MIN_POSITIVE..=f64::MAX).contains(&mass_kg)
+            && (LOWEST_PRESSURE_ALTITUDE_M..=HIGHEST_PRESSURE_ALTITUDE_M).contains(&altitude_m)
             && mach >= f64::MIN_POSITIVE
             && block.static_air_temperature_k[place] >= f64::MIN_POSITIVE;
         if !is_inside {

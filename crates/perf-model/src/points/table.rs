@@ -326,18 +326,19 @@ mod tests {
             vec![-3.5, 10.0],
             vec![3500.0, f64::NAN],
         ];
-        let at_once = |cells: &[Vec<f64>]| {
-            table.level_columns(|column| cells.get(column).map(|values| values.into()))
-        };
+        let at_once =
+            |cells: &[Vec<f64>]| table.level_columns(|column| cells.get(column).map(Into::into));
         let found = at_once(&cells).unwrap();
-        for row in 0..2 {
-            let cell = |column: usize| PointCell::Number(cells[column][row]);
+        let of = |column: usize, row: usize| PointCell::Number(cells[column][row]);
+        for row in [0, 1] {
+            let cell = |column: usize| of(column, row);
             let point = table.point(1, cell).unwrap();
             let flights = found.flights();
-            assert_eq!(flights.mass_kg[row], point.mass.to_kilograms());
-            assert_eq!(flights.pressure_altitude_m[row], point.pressure_altitude.to_meters());
-            assert_eq!(flights.mach[row], point.mach.value());
-            assert_eq!(flights.isa_deviation_k[row], point.isa_deviation.to_kelvin());
+            let same = |one: f64, other: f64| assert_eq!(one.to_bits(), other.to_bits());
+            same(flights.mass_kg[row], point.mass.to_kilograms());
+            same(flights.pressure_altitude_m[row], point.pressure_altitude.to_meters());
+            same(flights.mach[row], point.mach.value());
+            same(flights.isa_deviation_k[row], point.isa_deviation.to_kelvin());
             let measured = found.measured_fuel_flow_kg_s().unwrap()[row];
             let of_point = point.measured_fuel_flow_total;
             assert_eq!(

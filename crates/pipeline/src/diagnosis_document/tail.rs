@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use diagnose::{
-    Beside, Cause, Closure, Detectable, Diagnosis, Gap, OutsideLibrary, Region, Separation, Slice,
-    Verdict,
+    Beside, Cause, Closure, Detectable, Diagnosis, FoundForm, Gap, OutsideLibrary, Region,
+    Separation, Slice, Verdict,
 };
 use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 use crate::addition_record::AdditionRecord;
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_words::{
-    ENGINE_BOUNDS, acts_on_words, advice, bounds_name, left_out_words, measurement_words,
-    region_words, variable_words,
+    ENGINE_BOUNDS, acts_on_words, advice, bounds_name, form_name, form_parameters, form_words,
+    left_out_words, measurement_words, region_words, variable_words,
 };
 
 /// One tail's diagnosis. Field names, their order and meanings are the format's.
@@ -233,6 +233,67 @@ pub struct OutsideLibraryRecord {
     pub variable: Option<String>,
     /// Whether it acts on thrust (drag, weight), fuel flow or one engine.
     pub acts_on: Option<String>,
+    /// Functions of single variables that describe it, the most probable first; left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub forms: Vec<FormRecord>,
+}
+
+/// A function that describes a cause outside the library.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FormRecord {
+    /// offset, linear, square, power, `hinge_above`, `hinge_below`, step, logistic, bump, product.
+    pub form: String,
+    /// Its variable, by the name of its bounds.
+    pub variable: String,
+    /// The second variable of a product.
+    pub with: Option<String>,
+    /// Fuel flow, or thrust (drag).
+    pub acts_on: String,
+    /// Change of fuel flow in %, or of the drag coefficient in counts, where the function is 1.
+    pub size: f64,
+    /// 95 % interval of the size.
+    pub size_ci95: [f64; 2],
+    /// Where a hinge, step, logistic or bump lies, in the variable's unit.
+    pub place: Option<f64>,
+    /// 95 % interval of that.
+    pub place_ci95: Option<[f64; 2]>,
+    /// Width of a logistic or bump.
+    pub width: Option<f64>,
+    /// Exponent of a power.
+    pub exponent: Option<f64>,
+    /// Mean and standard deviation of the variable: linear forms are in these.
+    pub scale: [f64; 2],
+    /// Probability among all forms that were tried.
+    pub probability: f64,
+    /// Share of the explainable gap that it closes on flights that it was not fitted to.
+    pub closure: Option<f64>,
+    /// 95 % interval of the closure.
+    pub closure_ci95: Option<[f64; 2]>,
+    /// In words.
+    pub statement: String,
+}
+
+impl From<&FoundForm> for FormRecord {
+    fn from(found: &FoundForm) -> Self {
+        let (place, width, exponent, with) = form_parameters(found.form);
+        Self {
+            form: form_name(found.form).to_owned(),
+            variable: bounds_name(found.variable).to_owned(),
+            with: with.map(|variable| bounds_name(variable).to_owned()),
+            acts_on: acts_on_words(found.acts_on).to_owned(),
+            size: found.size,
+            size_ci95: found.size_ci95,
+            place,
+            place_ci95: found.place_ci95,
+            width,
+            exponent,
+            scale: found.scale,
+            probability: found.probability,
+            closure: found.closure.map(|closure| closure.share),
+            closure_ci95: found.closure.map(|closure| closure.ci95),
+            statement: form_words(found),
+        }
+    }
 }
 
 impl From<&DiagnosedTail> for TailDiagnosis {
@@ -415,6 +476,7 @@ impl From<&OutsideLibrary> for OutsideLibraryRecord {
             probability: outside.probability,
             variable: outside.variable.map(|variable| variable_words(variable).to_owned()),
             acts_on: outside.acts_on.map(|acts_on| acts_on_words(acts_on).to_owned()),
+            forms: outside.forms.iter().map(FormRecord::from).collect(),
         }
     }
 }

@@ -21,6 +21,11 @@ pub const fn bounds_name(variable: Variable) -> &'static str {
     names(variable).0
 }
 
+/// Unit of a variable behind a number, with a space before it; empty for most.
+pub(super) const fn unit_words(variable: Variable) -> &'static str {
+    names(variable).2
+}
+
 /// Name of the bounds, name and unit in words.
 const fn names(variable: Variable) -> (&'static str, &'static str, &'static str) {
     match variable {
@@ -44,6 +49,7 @@ const fn names(variable: Variable) -> (&'static str, &'static str, &'static str)
             ("center_of_gravity_percent_mac", "center_of_gravity", " %MAC")
         }
         Variable::EastwardSpeed => ("eastward_speed_m_s", "eastward_speed", " m/s"),
+        Variable::AntiIce => ("anti_ice", "anti_ice", ""),
         Variable::Engine => (ENGINE_BOUNDS, "engine", ""),
         // No region of a diagnosis is described by these.
         Variable::LatitudeCrossWind => ("latitude_cross_wind", "latitude_cross_wind", ""),
@@ -57,6 +63,9 @@ fn condition_words(condition: &Condition) -> String {
     let &Condition { variable, from, to } = condition;
     if variable == Variable::Date {
         return date_words(from, to);
+    }
+    if variable == Variable::AntiIce {
+        return if from.is_some() { "anti-ice on" } else { "anti-ice off" }.to_owned();
     }
     let (_, name, unit) = names(variable);
     // A number of few digits in another unit (42,000 ft) has a tail of them in this one.
@@ -110,6 +119,9 @@ mod tests {
         let mut both = region(Variable::Mass, edge(80.0), None);
         both.engine = Some(2);
         assert_eq!(region_words(&both), "engine 2 and mass >= 80 kg");
+        let switch = |from, to| region_words(&region(Variable::AntiIce, from, to));
+        assert_eq!(switch(edge(0.5), None), "anti-ice on");
+        assert_eq!(switch(None, edge(0.5)), "anti-ice off");
         assert_eq!(region_words(&Region::default()), "everywhere");
     }
 

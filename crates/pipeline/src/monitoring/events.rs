@@ -3,11 +3,13 @@
 use flight::Timestamp;
 use jiff::civil::Date;
 use jiff::tz::TimeZone;
+use serde::{Deserialize, Serialize};
 
 /// An event.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Event {
     /// When: the instant given, or the beginning of the day (UTC). Flights that begin at or after it are after the event.
+    #[serde(with = "instant_text")]
     pub time: Timestamp,
     /// The tail.
     pub tail: String,
@@ -15,6 +17,20 @@ pub struct Event {
     pub kind: String,
     /// In the operator's words; may be empty.
     pub note: String,
+}
+
+/// An instant as RFC 3339 text.
+mod instant_text {
+    use flight::Timestamp;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(value: &Timestamp, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(value)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Timestamp, D::Error> {
+        String::deserialize(from)?.parse().map_err(serde::de::Error::custom)
+    }
 }
 
 /// Why a text is not a table of events.

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from pathlib import Path
 from typing import Any, TypeVar
 
 from . import _native
@@ -210,6 +212,7 @@ def diagnose(
     table_only: bool = False,
     allow_learnt: bool = False,
     accept: bool = False,
+    events: bytes | str | os.PathLike[str] | None = None,
     threads: int | None = None,
 ) -> Diagnosis:
     """Compares models with flights that they have not learnt: where is a gap, which effect is lacking, how far does the gap
@@ -224,6 +227,8 @@ def diagnose(
         table_only: Count as gap what the model has learnt beyond its drag table.
         allow_learnt: Also diagnose flights that the model has learnt, whose gap it hides.
         accept: Also diagnose tails that are more than 15 % off the book, which are refused otherwise.
+        events: What was done to which tail and when (CSV: ``date,tail,kind,note``), a path or bytes: steps and histories try
+            these dates too.
         threads: Threads to use; all processors without it. Tails are diagnosed in parallel.
 
     Raises:
@@ -235,6 +240,7 @@ def diagnose(
         "pool": pool,
         "table_only": table_only,
         "allow_learnt": allow_learnt,
+        "events": events if events is None or isinstance(events, bytes) else Path(events).read_bytes(),
         "absurd": "accept" if accept else "refuse",
         "threads": threads,
     }

@@ -135,6 +135,7 @@ class Model:
             remainder=remainder,
             older_flights=older_flights,
             accept=accept,
+            events=events,
             threads=threads,
         )
 
@@ -156,6 +157,7 @@ class Model:
         table_only: bool = False,
         allow_learnt: bool = False,
         accept: bool = False,
+        events: bytes | str | os.PathLike[str] | None = None,
         threads: int | None = None,
     ) -> Diagnosis:
         """Where the model differs from flights and which effect it lacks. See :func:`cruisefit.diagnose`."""

@@ -10,6 +10,8 @@ use crate::aircraft::DRAG_COEFFICIENT_PER_COUNT;
 use crate::effect::{OutsideEffect, PlannedEffect, TruthEffect};
 
 const PERCENT: f64 = 0.01;
+/// Share of a gathered deterioration that a fall takes back. Our choice: most of it, as washes are said to.
+const TAKEN_BACK: f64 = 0.7;
 /// Mach number of the drag bump and lift coefficient of the floating spoilers, where a plan gives none.
 const DEFAULT_BUMP_MACH: f64 = 0.80;
 const DEFAULT_SPOILER_LIFT_COEFFICIENT: f64 = 0.40;
@@ -57,7 +59,7 @@ impl Terms {
     pub(crate) fn add(&mut self, effect: &PlannedEffect, size: f64, context: &EffectContext<'_>) {
         match effect.id {
             TruthEffect::Library(id) => {
-                self.add_drag(id, size, context);
+                self.add_drag(id, effect, size, context);
                 self.add_fuel(id, effect, size, context);
                 self.add_recorded(id, size, context);
                 self.add_earth(id, size);
@@ -89,7 +91,13 @@ impl Terms {
         }
     }
 
-    fn add_drag(&mut self, id: EffectId, size: f64, context: &EffectContext<'_>) {
+    fn add_drag(
+        &mut self,
+        id: EffectId,
+        effect: &PlannedEffect,
+        size: f64,
+        context: &EffectContext<'_>,
+    ) {
         let references = context.references;
         let terms = &mut self.drag;
         match id {
@@ -110,6 +118,9 @@ impl Terms {
             EffectId::AsymmetryDrag => terms.asymmetry_effect += size * DRAG_COEFFICIENT_PER_COUNT,
             EffectId::AirframeAgeing => {
                 terms.zero_lift_factor *= 1.0 + size * PERCENT * aged_years(context);
+            }
+            EffectId::AirframeHistory => {
+                terms.zero_lift_factor *= 1.0 + size * PERCENT * gathered_years(effect, context);
             }
             _ => {}
         }
@@ -156,6 +167,9 @@ impl Terms {
             }
             EffectId::EngineAgeing => {
                 self.scale_engines(1.0 + size * PERCENT * aged_years(context));
+            }
+            EffectId::EngineHistory => {
+                self.scale_engines(1.0 + size * PERCENT * gathered_years(effect, context));
             }
             _ => {}
         }
@@ -231,4 +245,23 @@ fn aged_years(context: &EffectContext<'_>) -> f64 {
         span * (1.0 - (-since / span).exp()) / (1.0 - (-1.0_f64).exp())
     };
     aged(context.date_s) - aged(references.date_s)
+}
+
+/// Years of a deterioration that gathers from the first date on, fast at first, and of which a fall takes back a share.
+///
+/// ```text
+/// g(t) = a(t) before the fall at tf, a(t) − 0.7·a(tf) from it on;  a(t) = T·(1 − e^(−(t − t1)/T))/(1 − e^−1)   [virtual.18]
+/// ```
+fn gathered_years(effect: &PlannedEffect, context: &EffectContext<'_>) -> f64 {
+    let references = context.references;
+    let first = EffectContext {
+        references: &References { date_s: references.first_date_s, ..*references },
+        ..*context
+    };
+    let fall_s = step_date_s(effect, references);
+    let gathered = aged_years(&first);
+    if context.date_s < fall_s {
+        return gathered;
+    }
+    gathered - TAKEN_BACK * aged_years(&EffectContext { date_s: fall_s, ..first })
 }

@@ -103,6 +103,7 @@ impl Truth {
         }
         cd0 += t(EffectId::ZeroLiftDrag) * 1e-4;
         cd0 *= 1.0 + 0.01 * t(EffectId::AirframeAgeing) * (aged(row.years) - self.means.age);
+        cd0 *= 1.0 + 0.01 * t(EffectId::AirframeHistory) * self.gathered(row.years);
         let induced = K * cl * cl * (1.0 + 0.01 * t(EffectId::InducedDrag));
         let mut cd = cd0 + induced + wave(row.mach + t(EffectId::WaveDrag), cl);
         cd *= 1.0 + 0.01 * t(EffectId::DragFactor);
@@ -115,6 +116,11 @@ impl Truth {
             cd *= 1.0 + 0.01 * t(EffectId::StepChange);
         }
         cd
+    }
+
+    /// Years of a deterioration from the first day on, of which three quarters are taken back on the date of a step.
+    fn gathered(&self, years: f64) -> f64 {
+        if years >= self.step_years { years - 0.75 * self.step_years } else { years }
     }
 
     /// Of both engines, before what tells them apart, kg/s.
@@ -131,6 +137,7 @@ impl Truth {
         let half = if z < 0.0 { 1.15 } else { 0.70 };
         factor *= 1.0 + 0.01 * t(EffectId::TsfcThrottle) * half * (z * z).min(6.0);
         factor *= 1.0 + 0.01 * t(EffectId::EngineAgeing) * (aged(row.years) - means.age);
+        factor *= 1.0 + 0.01 * t(EffectId::EngineHistory) * self.gathered(row.years);
         let mut flow =
             0.48 / (3600.0 * G0) * theta.sqrt() * (1.0 + row.mach).powf(0.8) * thrust * factor;
         if let Some(field) = &self.fuel_field {

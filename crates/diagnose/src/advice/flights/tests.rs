@@ -1,5 +1,6 @@
 use super::sweeps::TestFlight;
 use super::*;
+use crate::library::dates::DateGrid;
 use effects::ExtendedModel;
 use effects::{EffectReferences, Effects};
 use flight::Segment;
@@ -29,7 +30,9 @@ fn with<R>(
         &effects,
         &records,
         Reference::Table,
-        |points, engines, starts| Library::new(&effects, points, engines, starts, |_| true),
+        |points, engines, starts| {
+            Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| true)
+        },
     );
     let design = Design::new(&data, &references, None, None);
     let system = WhitenedSystem::new(&data, &design, None);
@@ -103,6 +106,7 @@ fn a_planned_flight_has_the_rows_of_a_flown_one() {
         let few = Library {
             effects: library.effects.clone(),
             columns: columns.iter().map(|&at| library.columns[at]).collect(),
+            dates: library.dates.clone(),
             not_testable: vec![],
             heating_value: false,
             spikes: library.spikes,
