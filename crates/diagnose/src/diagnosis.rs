@@ -57,7 +57,9 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)
     };
-    let not_before = input.references.is_some() || input.baseline.is_some();
+    // When the model was right, where it has learnt.
+    let is_dated = input.references.is_some() || input.baseline.is_some();
+    let right_at_s = is_dated.then_some(references.date_s);
     let run = Run { input, options, model: &model, references: &references };
     let (mut dates, mut weights) = (None, None);
     for attempt in 0..=CLOSER_DATES {
@@ -68,9 +70,8 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
             input.flights,
             reference,
             |points, engines, starts| {
-                let known_from = not_before.then_some(references.date_s);
                 let dates =
-                    kept.unwrap_or_else(|| DateGrid::coarse(starts, input.events_s, known_from));
+                    kept.unwrap_or_else(|| DateGrid::coarse(starts, input.events_s, right_at_s));
                 Library::new(&model, points, engines, dates, chosen)
             },
         );

@@ -1,10 +1,9 @@
 //! A form outside the library in words.
 
 use diagnose::{ActsOn, Form, FoundForm, Variable};
-use flight::Timestamp;
 use units::convert::SECONDS_PER_DAY;
 
-use super::region::unit_words;
+use super::region::{instant, unit_words};
 use super::variable_words;
 
 /// "CD +9.6 ± 0.8 counts around Mach number 0.781 (width 0.016): closes 93 % on unseen flights".
@@ -67,9 +66,7 @@ fn shape(found: &FoundForm) -> String {
 
 /// The day of an instant, s since 1970.
 fn day(instant_s: f64) -> String {
-    #[expect(clippy::cast_possible_truncation, reason = "the cast saturates")]
-    let instant = Timestamp::from_second(instant_s as i64);
-    instant.map_or_else(|_| String::new(), |instant| instant.strftime("%Y-%m-%d").to_string())
+    instant(instant_s).get(..10).unwrap_or_default().to_owned()
 }
 
 /// A number with as many digits as a hundredth of what the variable varies by needs.
