@@ -1,6 +1,7 @@
 //! Law `bayes`: a smooth Gaussian correction of the initial table, with its uncertainty.
 //!
-//! The table is the initial one times (1 + x), with one number x per node. A prior states that x is smooth and about 10
+//! The table is the initial one times (1 + x), with one number x per node (of a table with more than 40 breakpoints along an
+//! axis, per so manieth node). A prior states that x is smooth and about 10
 //! % in size; every segment observes the four nodes around it; the solution estimates x and its uncertainty everywhere,
 //! including nodes never visited. The book's page on law `bayes` has equations, sources and measured figures.
 //!
@@ -56,6 +57,7 @@ mod polynomial;
 mod posterior;
 mod prior;
 mod settings;
+mod support;
 #[cfg(test)]
 mod tests;
 
@@ -70,6 +72,7 @@ pub use settings::{BayesSettings, SettingValues, SettingsError};
 
 use information::{Information, Row};
 use outlier_weights::{ExpectedResidual, SegmentResidual, WeightSettings};
+use support::Support;
 
 /// Drag of more than this many times the initial table's is not an observation of drag. Our choice: that is an error of
 /// units or of a sensor.
@@ -81,6 +84,7 @@ const SECONDS_A_DAY: f64 = 86_400.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct BayesState {
     initial: Table,
+    support: Support,
     settings: BayesSettings,
     weight_settings: WeightSettings,
     information: Information,
@@ -178,9 +182,11 @@ impl BayesState {
         }
         let (x, y) = (initial.grid().x(), initial.grid().y());
         let middle = (x.first().midpoint(x.last()), y.first().midpoint(y.last()));
+        let support = Support::new(initial.grid());
         Ok(Self {
             weight_settings: WeightSettings::new(&settings, middle),
-            information: Information::new(initial.grid().nodes()),
+            information: Information::new(support.grid().nodes()),
+            support,
             expected_residual: ExpectedResidual::new(),
             initial: initial.clone(), // shares the grid
             settings,
@@ -228,7 +234,7 @@ impl BayesState {
     /// # Errors
     /// [`SolveError`] where the sums are not a positive definite information matrix (a damaged file).
     pub fn solve(&self) -> Result<Posterior, SolveError> {
-        Posterior::new(&self.initial, self.settings, &self.information)
+        Posterior::new(&self.initial, &self.support, self.settings, &self.information)
     }
 
     /// Adds what another state has learnt. The order of the two does not matter, up to rounding.
@@ -309,7 +315,7 @@ impl BayesState {
         self.segments
     }
 
-    /// Nodes that were ever touched: the size of the state.
+    /// Nodes of corrections that were ever touched: the size of the state.
     #[must_use]
     pub fn touched_nodes(&self) -> usize {
         self.information.touched().len()
@@ -334,10 +340,11 @@ impl BayesState {
                         residual,
                         variance: self.settings.segment_variance(&observation.variance),
                     });
+                    let terms = self.support.terms(&self.initial, &cell);
                     flight.rows.push(Row {
-                        nodes: cell.nodes(),
-                        coefficients: coefficients(&self.initial, &cell),
-                        bilinear: cell.weights(),
+                        nodes: terms.nodes,
+                        coefficients: terms.coefficients,
+                        bilinear: terms.bilinear,
                         residual,
                         precision: 0.0,
                         count: 0.0,

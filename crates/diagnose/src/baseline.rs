@@ -1,7 +1,7 @@
 //! What a model remembers of clean flights: how far its initial drag table is off, a smooth remainder, the N2 deck, the split
 //! between engines, effects that the fleet shows at all times, and how large the noise is. One posterior over all of it.
 
-use effects::{EffectReferences, Response};
+use effects::{BetweenNodes, EffectReferences, Response};
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
@@ -61,6 +61,9 @@ pub struct BaselineRecord {
     /// Variance of what each of them was worth in ln fuel flow; none in files of older programs.
     #[serde(default)]
     pub(crate) standing_variances: Vec<f64>,
+    /// Whether the drag table was smooth between its nodes; it was not for older programs.
+    #[serde(default)]
+    pub(crate) smooth_table: bool,
     /// Segments that counted less than half.
     pub(crate) outliers: usize,
     /// Factor on stated standard deviations, by flights that were left out.
@@ -167,6 +170,11 @@ impl Baseline {
     #[must_use]
     pub const fn remaining_rms(&self) -> f64 {
         self.parts.rms
+    }
+
+    /// What the drag table is between its nodes where this is added to it.
+    pub(crate) const fn between_nodes(&self) -> BetweenNodes {
+        if self.parts.smooth_table { BetweenNodes::Smooth } else { BetweenNodes::Straight }
     }
 
     /// Mean of the remainder at a point.

@@ -52,7 +52,9 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
             Err(error) => return Err(error),
         },
     };
-    let model = EffectModel::new(input.model, input.drag_table, references)?;
+    let reference = Reference::from_baseline(input.baseline);
+    let model = EffectModel::new(input.model, input.drag_table, references)?
+        .between_nodes(reference.between_nodes());
     let chosen = |id: EffectId| {
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)

@@ -162,9 +162,12 @@ deciding_numbers! {
         REMAINDER_PRODUCT_DEVIATION: f64 = 0.005, "of fuel flow",
             "prior standard deviation of a product of two variables a length from their middles, before flights scale it",
             OurChoice "Half of that of a function of one variable; the data scale it.";
-        REMAINDER_SCALE_LN_DEVIATION: f64 = 1.0, "ln",
-            "prior spread of the factors by which flights scale these two",
-            OurChoice "A factor of e either way: weak.";
+        SCALE_LN_DEVIATIONS: [f64; 3] = [1.0, 1.0, 2.0], "ln",
+            "prior spread of the factors by which flights scale bends, products, and slopes with standing effects and the drag table",
+            OurChoice "A factor of e either way: weak; of slopes and drag twice that: a model may be anything from right to a quarter off.";
+        PRIOR_LEVEL_ALONE: f64 = 0.10, "",
+            "prior probability that nothing but the level of what an initial model predicts is off",
+            OurChoice "As for the drag of a guide: one in ten is right but for a factor on its fuel flow.";
         REMAINDER_LENGTHS: [f64; 6] = [0.02, 0.10, 600.0, 0.10, 6.0, 0.08],
             "Mach, CL, m, of the reference thrust, K, of the mean mass",
             "lengths over which the remainder bends: Mach number, lift coefficient, pressure altitude, thrust, ISA deviation, mass",
@@ -196,8 +199,14 @@ deciding_numbers! {
         USUAL_NOISE_LN_DEVIATION: f64 = 0.5, "ln",
             "prior spread of the noise factors about what is usual",
             OurChoice "From 0.3 to 0.8 is one standard deviation: few flights do not make noise vanish.";
-        DIAL_LIMITS: (f64, f64) = (0.03, 10.0), "",
-            "least and largest noise factor and scale of the remainder",
+        NOISE_LIMITS: (f64, f64) = (0.03, 10.0), "",
+            "least and largest noise factor",
             OurChoice "What few flights say is not believed beyond a factor of ten or thirty.";
+        SCALE_LIMITS: (f64, f64) = (0.0005, 10.0), "",
+            "least and largest factor on prior standard deviations of what is learnt",
+            OurChoice "Below a thousandth they are nothing.";
+        SCALE_OF_NOTHING: f64 = 0.001, "",
+            "the factor that stands for none of it, where only a level is off",
+            OurChoice "0.01 % of drag: not zero, so that matrices stay definite.";
     }
 }

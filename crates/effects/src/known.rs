@@ -23,6 +23,12 @@ pub struct KnownPoint {
 }
 
 impl KnownPoint {
+    /// The point.
+    #[must_use]
+    pub const fn point(&self) -> &EffectPoint {
+        &self.point
+    }
+
     /// The same point with the corrected thrust that its N2 indicates ([`EffectPoint::corrected_thrust_by_n2_n`]): only
     /// trial effects use it, so the cached quantities stay.
     #[must_use]

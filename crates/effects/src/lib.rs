@@ -96,5 +96,5 @@ pub use mean::mean_references;
 pub use model::EffectModel;
 pub use point::EffectPoint;
 pub use references::EffectReferences;
-pub use response::Response;
+pub use response::{BetweenNodes, Response};
 pub use set::Effects;

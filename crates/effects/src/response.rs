@@ -2,7 +2,7 @@
 
 use flight::MAXIMUM_ENGINES;
 use lut::surface::{Basis, FitError, Surface, fit};
-use lut::{Outside, Table};
+use lut::{Outside, SmoothCell, Table};
 use perf_model::Aircraft;
 use perf_model::tsfc::tsfc;
 use units::Mach;
@@ -48,6 +48,18 @@ pub(crate) struct Bare<'a> {
     pub(crate) drag_table: &'a Table,
     /// CD0(M) and K(M), of which some effects are a share.
     pub(crate) polar: Surface,
+    pub(crate) between_nodes: BetweenNodes,
+}
+
+/// What a drag table is between its nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BetweenNodes {
+    /// Bilinear: as every table of this program is read.
+    #[default]
+    Straight,
+    /// The smooth surface through the nodes ([`SmoothCell`]): a polynomial of the second degree that a table was made of comes
+    /// back exactly, whatever the grid.
+    Smooth,
 }
 
 /// The cached quantities of a point without trial effects.
@@ -55,8 +67,18 @@ pub(crate) struct Bare<'a> {
 pub(crate) struct Known {
     flown: AsFlown,
     gravity_m_s2: f64,
-    table: f64,
+    /// `None` where the point lies elsewhere in the table.
+    table: Option<f64>,
     tsfc_kg_per_n_s: f64,
+}
+
+impl Known {
+    /// The same of an aircraft of another mass.
+    pub(crate) const fn with_mass_kg(mut self, mass_kg: f64) -> Self {
+        self.flown.mass_kg = mass_kg;
+        self.table = None;
+        self
+    }
 }
 
 /// The rule beyond the edge of the drag table.
@@ -97,9 +119,10 @@ pub(crate) fn evaluate(
     };
     let surface_n = flown.dynamic_pressure_pa * bare.aircraft.wing_area().to_square_meters();
     let lift_coefficient = flown.mass_kg * gravity_m_s2 / surface_n;
-    let table = match uncorrected {
-        Some(known) if !layers.trial.moves_the_point() => known.table,
-        _ => table_value(bare.drag_table, lift_coefficient, flown.mach, edge)?,
+    let cached = uncorrected.filter(|_| !layers.trial.moves_the_point());
+    let table = match cached.and_then(|known| known.table) {
+        Some(table) => table,
+        None => table_value(bare, lift_coefficient, flown.mach, edge)?,
     };
     let at = AtTable { drag_coefficient: table, lift_coefficient, polar: &bare.polar };
     let drag_coefficient = drag::drag_coefficient(at, point, &flown, layers);
@@ -136,19 +159,24 @@ pub(crate) fn evaluate(
         unit_reynolds_number_per_m: flown.unit_reynolds_number_per_m,
         mass_kg: flown.mass_kg,
     };
-    Ok((response, Known { flown, gravity_m_s2, table, tsfc_kg_per_n_s }))
+    Ok((response, Known { flown, gravity_m_s2, table: Some(table), tsfc_kg_per_n_s }))
 }
 
 /// The table's drag coefficient, continued in a straight line beyond the edge where an effect moved the point there.
 fn table_value(
-    drag_table: &Table,
+    bare: &Bare<'_>,
     lift_coefficient: f64,
     mach: f64,
     edge: Edge,
 ) -> Result<f64, EffectError> {
+    let Bare { drag_table, between_nodes, .. } = *bare;
     let grid = drag_table.grid();
     let outside = |_| EffectError::OutsideTable { lift_coefficient, mach };
     if edge == Edge::Refuse {
+        if between_nodes == BetweenNodes::Smooth {
+            let cell = SmoothCell::locate(grid, lift_coefficient, mach).map_err(outside)?;
+            return Ok(cell.value_of(drag_table));
+        }
         let cell = grid.locate(lift_coefficient, mach, Outside::Error).map_err(outside)?;
         return Ok(drag_table.interpolate(&cell));
     }
@@ -156,9 +184,13 @@ fn table_value(
     let clamped_mach = mach.clamp(grid.y().first(), grid.y().last());
     let cell = grid.locate(clamped_lift, clamped_mach, Outside::Hold).map_err(outside)?;
     let (along_lift, along_mach) = drag_table.gradient(&cell);
-    Ok(drag_table.interpolate(&cell)
-        + along_lift * (lift_coefficient - clamped_lift)
-        + along_mach * (mach - clamped_mach))
+    let inside = match between_nodes {
+        BetweenNodes::Straight => drag_table.interpolate(&cell),
+        BetweenNodes::Smooth => SmoothCell::locate(grid, clamped_lift, clamped_mach)
+            .map_err(outside)?
+            .value_of(drag_table),
+    };
+    Ok(inside + along_lift * (lift_coefficient - clamped_lift) + along_mach * (mach - clamped_mach))
 }
 
 /// CD0(M) and K(M) of a table.

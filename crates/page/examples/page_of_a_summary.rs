@@ -24,6 +24,7 @@ fn tail(name: &str, errors_percent: &[f64]) -> TailSummary {
             after: None,
         },
         interval95_coverage: None,
+        mean_error_within_percent: None,
     }
 }
 

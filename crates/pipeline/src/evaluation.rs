@@ -1,7 +1,7 @@
 //! What a table predicts for segments, and the results of each tail at the end of a run: the material of summary, tables, pages.
 
 use adapt::paper;
-use diagnose::WholeModel;
+use diagnose::{WholeModel, WholePrediction};
 use effects::ExtendedModel;
 use flight::{Observation, Segment};
 use lut::{Outside, Table};
@@ -60,7 +60,11 @@ impl TailResult {
     /// The result of an adaptation: errors of the initial table before, of the whole learnt model after.
     pub fn adapted(data: TailData) -> Self {
         let before = evaluate(&data.model.initial, data.model.initial.drag_table(), &data.segments);
-        let after = evaluate_model(&data.model, Predicts::WholeModel, &data.segments);
+        let after = match data.model.whole(Predicts::WholeModel) {
+            // It refers to the initial table.
+            Some(whole) => evaluate_whole(&whole, &data.model, &data.segments, before.clone()),
+            None => evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments),
+        };
         let mut summary = summary_of(&data, &before);
         summary.informed_nodes = Some(data.model.informed_nodes());
         summary.refits = data.model.refits();
@@ -73,7 +77,11 @@ impl TailResult {
         let before = evaluate_model(&data.model, predicts, &data.segments);
         let mut summary = summary_of(&data, &before);
         summary.interval95_coverage = match data.model.whole(predicts) {
-            Some(whole) => coverage_of_whole(&whole, &data),
+            Some(whole) => {
+                let found = announced_by_whole(&whole, &data);
+                summary.mean_error_within_percent = found.map(|(_, within)| within);
+                found.map(|(coverage, _)| coverage)
+            }
             None => coverage(&data.model, &data.segments),
         };
         Self::put_together(data, before, Vec::new(), summary)
@@ -130,6 +138,16 @@ pub fn evaluate_model(
 ) -> Vec<Option<Evaluated>> {
     let by_table = evaluate(&model.initial, model.drag_coefficient(), segments);
     let Some(whole) = model.whole(predicts) else { return by_table };
+    evaluate_whole(&whole, model, segments, by_table)
+}
+
+/// The same, given what a table predicts.
+fn evaluate_whole(
+    whole: &WholeModel<'_>,
+    model: &ModelFile,
+    segments: &[Segment],
+    by_table: Vec<Option<Evaluated>>,
+) -> Vec<Option<Evaluated>> {
     segments
         .iter()
         .zip(by_table)
@@ -137,7 +155,7 @@ pub fn evaluate_model(
             let by_table = by_table?;
             let error = by_table
                 .error_percent
-                .and_then(|_| error_percent_of(&whole, &model.initial, segment));
+                .and_then(|_| error_percent_of(whole, &model.initial, segment));
             let share = |error: f64| 1.0 - error / 100.0;
             Some(Evaluated {
                 predicted_fuel_flow_kg_s: error
@@ -204,6 +222,7 @@ fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
         informed_nodes: None,
         refits: None,
         interval95_coverage: None,
+        mean_error_within_percent: None,
         fuel_flow_error_percent: ErrorsSummary { before: statistics(before), after: None },
     }
 }
@@ -215,17 +234,34 @@ fn state_without_errors(
     model.corrected(segment).ok().and_then(|corrected| model.state_of(&corrected).ok())
 }
 
-/// Share of segments whose error lies within the interval that the whole model states for them.
-fn coverage_of_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<f64> {
-    let held = |segment| SegmentHeld::new(whole, &data.model.initial, segment);
-    let inside: Vec<bool> = data
-        .segments
-        .iter()
-        .filter_map(held)
-        .map(|held| held.gap.abs() <= NORMAL_95 * held.prediction.variance().sqrt())
-        .collect();
-    let count = inside.iter().filter(|inside| **inside).count();
-    (!inside.is_empty()).then(|| count as f64 / inside.len() as f64)
+/// Share of segments whose error lies within the interval that the whole model states for them, and half the width of the one
+/// that it states for the mean over these flights, %.
+///
+/// ```text
+/// var(mean) = var of the model's mean error + Σ_f (n_f/n)²·(var_f + mean var_s/n_f),   f new flights, s their segments
+/// ```
+fn announced_by_whole(whole: &WholeModel<'_>, data: &TailData) -> Option<(f64, f64)> {
+    let of_flight = |segments: &[Segment]| -> Vec<SegmentHeld> {
+        let held = |segment| SegmentHeld::new(whole, &data.model.initial, segment);
+        segments.iter().filter_map(held).collect()
+    };
+    let same_flight = |one: &Segment, other: &Segment| one.identity == other.identity;
+    let flights: Vec<_> = data.segments.chunk_by(same_flight).map(of_flight).collect();
+    let all = || flights.iter().flatten();
+    let count = all().count();
+    if count == 0 {
+        return None;
+    }
+    let inside =
+        all().filter(|held| held.gap.abs() <= NORMAL_95 * held.prediction.variance().sqrt());
+    let mut variance = WholePrediction::variance_of_mean(all().map(|held| &held.prediction));
+    for flight in flights.iter().filter(|flight| !flight.is_empty()) {
+        let predictions = || flight.iter().map(|held| &held.prediction);
+        let own = WholePrediction::variance_of_flight(predictions())
+            - WholePrediction::variance_of_mean(predictions());
+        variance += (flight.len() as f64 / count as f64).powi(2) * own;
+    }
+    Some((inside.count() as f64 / count as f64, 100.0 * NORMAL_95 * variance.sqrt()))
 }
 
 /// Share of segments whose error lies within the interval that law `bayes` states for them; `None` by another law, or

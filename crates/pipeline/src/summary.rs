@@ -70,6 +70,10 @@ pub struct TailSummary {
     /// Share of errors within the stated 95 % interval of a segment; absent where the law states none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval95_coverage: Option<f64>,
+    /// Half the width of the 95 % interval that the model states for the mean error of these flights, %; absent where it states
+    /// none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_error_within_percent: Option<f64>,
 }
 
 /// The error of the initial table, and of the final one.
@@ -117,6 +121,13 @@ impl Summary {
                     "{}: {:.1} % of the segments lie within the stated 95 % interval.",
                     tail.tail,
                     100.0 * coverage
+                );
+            }
+            if let Some(within) = tail.mean_error_within_percent {
+                let _ = writeln!(
+                    text,
+                    "{}: the 95 % interval of the mean error of such flights is ±{within:.2} %.",
+                    tail.tail
                 );
             }
         }

@@ -20,6 +20,9 @@ pub struct BayesStateData {
     pub segments: u64,
     /// The instant to which the numbers refer, as ISO 8601 text; `None` where nothing was learnt.
     pub newest: Option<String>,
+    /// Whether nodes are those of fewer corrections than the table has nodes; absent where they are the table's.
+    #[serde(default, skip_serializing_if = "core::ops::Not::not")]
+    pub thinned: bool,
     /// Nodes ever touched, ascending.
     pub nodes: Vec<usize>,
     /// Information matrix over these nodes, lower triangle. Row k ends at the diagonal; entries missing at its start
@@ -69,6 +72,11 @@ pub enum StateDataError {
         /// How many nodes the grid has.
         nodes: usize,
     },
+    /// The nodes are those of the table, or of other corrections than this program has.
+    #[error(
+        "what was learnt is over other nodes than this program corrects: learn the tail anew with --restart"
+    )]
+    OtherNodes,
     /// A number is not finite, or negative where it must not be.
     #[error("{list} of what was learnt has the value {value}")]
     Value {
@@ -91,6 +99,7 @@ impl BayesState {
             flights: self.flights,
             segments: self.segments,
             newest: self.newest.map(|newest| newest.to_string()),
+            thinned: self.support.is_thinned(),
             nodes,
             information: rows,
             vector,
@@ -115,7 +124,11 @@ impl BayesState {
         data: BayesStateData,
     ) -> Result<Self, StateDataError> {
         let mut state = Self::new(initial, settings)?;
-        check(&data, state.grid().nodes())?;
+        if data.thinned != state.support.is_thinned() {
+            return Err(StateDataError::OtherNodes);
+        }
+        let nodes = state.support.grid().nodes();
+        check(&data, nodes)?;
         state.newest = match &data.newest {
             Some(text) => Some(text.parse::<Timestamp>().map_err(|_| StateDataError::Newest)?),
             None if data.flights == 0 && data.nodes.is_empty() => None,
@@ -133,7 +146,7 @@ impl BayesState {
             vector: data.vector,
             observations: data.observations,
         };
-        state.information = Information::from_parts(state.grid().nodes(), &parts);
+        state.information = Information::from_parts(nodes, &parts);
         Ok(state)
     }
 }

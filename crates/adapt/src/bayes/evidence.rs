@@ -277,10 +277,10 @@ fn evidence(
         state.learn_weighted(&flight, flight_weights);
     }
     let solve = |information: &Information| {
-        let matrix = precision(initial, &settings, information);
+        let matrix = precision(state.support.grid(), &settings, information);
         matrix.factor().ok_or(SolveError::NotPositiveDefinite)
     };
-    let prior = solve(&Information::new(initial.grid().nodes()))?;
+    let prior = solve(&Information::new(state.support.grid().nodes()))?;
     let posterior = solve(&state.information)?;
     let vector = state.information.vector();
     let explained: f64 = vector.iter().zip(posterior.solve(&vector)).map(|(a, b)| a * b).sum();

@@ -11,12 +11,15 @@ pub struct VarianceByCell<'p> {
     posterior: &'p Posterior,
     /// For each lowest node of a cell, covariances of drag at its corners relative to nothing (initial drag times relative
     /// covariance times initial drag), the lower triangle row by row, off the diagonal twice. Zeros where a node is the lowest
-    /// of no cell.
+    /// of no cell. None at all where corrections live on fewer nodes than the table's.
     covariances: Vec<[f64; 10]>,
 }
 
 impl<'p> VarianceByCell<'p> {
     pub(super) fn new(posterior: &'p Posterior) -> Self {
+        if posterior.support.is_thinned() {
+            return Self { posterior, covariances: vec![] };
+        }
         let initial = &posterior.initial;
         let (rows, columns) = (initial.grid().x().len(), initial.grid().y().len());
         let mut covariances = vec![[0.0; 10]; rows * columns];
@@ -46,6 +49,9 @@ impl<'p> VarianceByCell<'p> {
     #[must_use]
     #[inline]
     pub fn segment_variance(&self, cell: &Cell, of_sensors: &ObservationVariance) -> f64 {
+        if self.covariances.is_empty() {
+            return self.posterior.segment_variance(cell, of_sensors);
+        }
         let drag = self.posterior.initial.interpolate(cell);
         let [a, b, c, d] = cell.weights();
         let [aa, ba, bb, ca, cb, cc, da, db, dc, dd] = self.covariances[cell.nodes()[0]];

@@ -1,12 +1,13 @@
 //! The result of a solve: corrections, their standard deviations, the corrected table.
 
 use flight::ObservationVariance;
-use lut::{Cell, Table};
+use lut::{Cell, Grid, Table};
 
 use super::blocks::{BlockFactor, BlockMatrix, Layout, SelectedInverse};
 use super::guard::{GuardReport, project};
 use super::information::Information;
-use super::{BayesSettings, VarianceByCell, coefficients, prior};
+use super::support::Support;
+use super::{BayesSettings, VarianceByCell, prior};
 
 /// The solution: every node's correction and drag with their uncertainty, informed or not.
 ///
@@ -15,6 +16,7 @@ use super::{BayesSettings, VarianceByCell, coefficients, prior};
 #[derive(Clone, Debug)]
 pub struct Posterior {
     pub(super) initial: Table,
+    pub(super) support: Support,
     pub(super) settings: BayesSettings,
     drag: Table,
     correction: Vec<f64>,
@@ -37,16 +39,16 @@ pub enum SolveError {
 impl Posterior {
     pub(super) fn new(
         initial: &Table,
+        support: &Support,
         settings: BayesSettings,
         information: &Information,
     ) -> Result<Self, SolveError> {
-        let factor = precision(initial, &settings, information)
+        let factor = precision(support.grid(), &settings, information)
             .factor()
             .ok_or(SolveError::NotPositiveDefinite)?;
         let inverse = factor.selected_inverse();
-        let correction = factor.solve(&information.vector());
-        let variances: Vec<f64> =
-            (0..correction.len()).map(|node| inverse.entry(node, node)).collect();
+        let correction = support.at_table(factor.solve(&information.vector()));
+        let variances = support.variances(|node, other| inverse.entry(node, other));
         if !correction.iter().chain(&variances).all(|value| value.is_finite()) {
             return Err(SolveError::NotPositiveDefinite);
         }
@@ -59,11 +61,12 @@ impl Posterior {
         let guard = project(initial, drag.values_mut(), &precisions);
         Ok(Self {
             initial: initial.clone(),
+            support: support.clone(),
             settings,
             drag,
             correction,
             standard_deviation: variances.into_iter().map(f64::sqrt).collect(),
-            observations: information.observations(),
+            observations: support.at_table(information.observations()),
             guard,
             factor,
             inverse,
@@ -123,7 +126,7 @@ impl Posterior {
     /// The correction at a located point; before the guard.
     #[must_use]
     pub fn correction_at(&self, cell: &Cell) -> f64 {
-        let (nodes, weights) = (cell.nodes(), coefficients(&self.initial, cell));
+        let (nodes, weights) = (cell.nodes(), super::coefficients(&self.initial, cell));
         nodes.iter().zip(&weights).map(|(&node, weight)| weight * self.correction[node]).sum()
     }
 
@@ -133,15 +136,8 @@ impl Posterior {
     /// Book `[bayes.9]`.
     #[must_use]
     pub fn relative_variance(&self, cell: &Cell) -> f64 {
-        let (nodes, weights) = (cell.nodes(), coefficients(&self.initial, cell));
-        let mut variance = 0.0;
-        for k in 0..4 {
-            for other in 0..4 {
-                let covariance = self.inverse.entry(nodes[k], nodes[other]);
-                variance += weights[k] * weights[other] * covariance;
-            }
-        }
-        variance
+        let terms = self.support.terms(&self.initial, cell);
+        terms.variance(|node, other| self.inverse.entry(node, other))
     }
 
     /// Relative variance of what a segment of a new flight will show at a located point: that of the table, of the
@@ -165,9 +161,12 @@ impl Posterior {
     pub fn relative_covariances(&self, cells: &[Cell]) -> Vec<Vec<f64>> {
         let columns: Vec<Vec<(usize, f64)>> = cells
             .iter()
-            .map(|cell| cell.nodes().into_iter().zip(coefficients(&self.initial, cell)).collect())
+            .map(|cell| {
+                let terms = self.support.terms(&self.initial, cell);
+                terms.nodes.into_iter().zip(terms.coefficients).collect()
+            })
             .collect();
-        self.covariances_of(&columns)
+        self.forms(&columns)
     }
 
     /// Covariances of one node's correction with every node's, in node order: a column of the inverse of the precision,
@@ -177,9 +176,11 @@ impl Posterior {
     /// `node` is not a node of the grid.
     #[must_use]
     pub fn covariances_with(&self, node: usize) -> Vec<f64> {
-        let mut unit = vec![0.0; self.correction.len()];
-        unit[node] = 1.0;
-        self.factor.solve(&unit)
+        let mut unit = vec![0.0; self.support.grid().nodes()];
+        for (node, value) in self.support.combination(&[(node, 1.0)]) {
+            unit[node] += value;
+        }
+        self.support.at_table(self.factor.solve(&unit))
     }
 
     /// A table drawn from the distribution of what is known: what the drag may also be, given what was learnt. As many
@@ -191,7 +192,8 @@ impl Posterior {
     #[must_use]
     pub fn drawn(&self, standard_normal: &[f64]) -> Table {
         let nodes = self.correction.len();
-        let deviation = self.factor.correlate(&standard_normal[..nodes]);
+        let numbers = &standard_normal[..self.support.grid().nodes()];
+        let deviation = self.support.at_table(self.factor.correlate(numbers));
         let mut drag = self.initial.clone();
         let mut precisions = vec![0.0; nodes];
         for (node, value) in drag.values_mut().iter_mut().enumerate() {
@@ -202,8 +204,14 @@ impl Posterior {
         drag
     }
 
-    /// Covariances of linear combinations of corrections.
+    /// Covariances of linear combinations of corrections at nodes of the table.
     pub(super) fn covariances_of(&self, columns: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
+        let columns: Vec<_> = columns.iter().map(|one| self.support.combination(one)).collect();
+        self.forms(&columns)
+    }
+
+    /// The same of the corrections that there are.
+    fn forms(&self, columns: &[Vec<(usize, f64)>]) -> Vec<Vec<f64>> {
         let forms = self.factor.quadratic_forms(columns);
         (0..forms.nrows())
             .map(|row| (0..forms.ncols()).map(|column| forms[(row, column)]).collect())
@@ -213,11 +221,10 @@ impl Posterior {
 
 /// The precision matrix: prior and information.
 pub(super) fn precision(
-    initial: &Table,
+    grid: &Grid,
     settings: &BayesSettings,
     information: &Information,
 ) -> BlockMatrix {
-    let grid = initial.grid();
     let (reach_x, reach_y) = information.reach(grid);
     let reach_x = reach_x.max(prior::reach(grid.x()));
     let reach_y = reach_y.max(prior::reach(grid.y()));

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use crate::support::{adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers};
 
+/// Fleets that are flown.
+const SEEDS: std::ops::Range<u32> = 11..15;
 /// Flights of one virtual aircraft with the sensors, wind and scatter of the default, and with all that no table holds.
-const PLAN: &str = r#"(seed: 11, tails: [(tail: "V", flights: Designed((flights: 60)))])"#;
+const PLAN: &str = r#"(seed: SEED, tails: [(tail: "V", flights: Designed((flights: 60)))])"#;
 
 fn run(words: &[&dyn AsRef<std::ffi::OsStr>]) -> crate::support::Ran {
     let arguments: Vec<&std::ffi::OsStr> = words.iter().map(AsRef::as_ref).collect();
@@ -45,21 +47,25 @@ fn rms(errors: impl Iterator<Item = f64>) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-#[test]
-fn flights_that_no_model_has_seen_are_predicted_better_with_the_remainder() {
-    let scratch = tempfile::tempdir().unwrap();
-    let at = |name: &str| scratch.path().join(name);
-    std::fs::write(at("PLAN.ron"), PLAN).unwrap();
+/// Errors of predictions for flights that no model has seen, by the table alone and by the whole model, and the share of the
+/// latter within their stated 95 %.
+struct Judged {
+    table_rms: f64,
+    whole_rms: f64,
+    covered: f64,
+}
+
+/// Thirty flights teach, thirty others judge.
+fn judged(folder: &Path, initial: &Path, seed: u32) -> Judged {
+    let at = |name: &str| folder.join(format!("{seed}-{name}"));
+    std::fs::write(at("PLAN.ron"), PLAN.replace("SEED", &seed.to_string())).unwrap();
     run(&[&"simulate", &at("PLAN.ron"), &"-o", &at("flown")]).expect(0);
-    run(&[&"simulate", &"ghazi-2020", &"-o", &at("study")]).expect(0);
-    let (aircraft, guide) = (at("study/AIRCRAFT.ron"), at("study/guide.csv"));
-    let initial = at("MODEL.ron");
-    run(&[&"init", &"--aircraft", &aircraft, &"--guide", &guide, &"-o", &initial]).expect(0);
+    let flown = at("flown").join("V");
     let reports: Vec<PathBuf> =
-        bytes_below(&at("flown/V")).into_keys().map(|name| at("flown/V").join(name)).collect();
+        bytes_below(&flown).into_keys().map(|name| flown.join(name)).collect();
     let (teaching, judging) = reports.split_at(30);
-    adapt(&initial, &at("out"), teaching, &[]).expect(0);
-    let model = at("out/models/V.ron");
+    adapt(initial, &at("out"), teaching, &[]).expect(0);
+    let model = at("out").join("models/V.ron");
     let segments = at("segments.csv");
     let mut words: Vec<&dyn AsRef<std::ffi::OsStr>> = vec![&"segment", &"-o", &segments];
     words.extend(judging.iter().map(|path| path as &dyn AsRef<std::ffi::OsStr>));
@@ -82,25 +88,34 @@ fn flights_that_no_model_has_seen_are_predicted_better_with_the_remainder() {
     let errors = |of: &std::collections::BTreeMap<String, Vec<String>>| {
         rms(known.iter().map(|&row| number(&of["error_percent"][row])))
     };
-    let covered = known
-        .iter()
-        .filter(|&&row| {
-            let relative =
-                number(&with["fuel_flow_std_kg_s"][row]) / number(&with["fuel_flow_kg_s"][row]);
-            number(&with["error_percent"][row]).abs() < 196.0 * relative
-        })
-        .count() as f64
-        / known.len() as f64;
-    eprintln!(
-        "{} of {rows} points: rms {:.3} % by the table, {:.3} % by the whole model; {:.0} % within 95 %",
-        known.len(),
-        errors(&table),
-        errors(&with),
-        100.0 * covered
-    );
-    assert!(errors(&with) < 0.93 * errors(&table));
-    // 95 % less what thirty flights, whose segments err together, leave open by chance.
-    assert!(covered > 0.93, "{covered}");
+    let inside = |row: &&usize| {
+        let relative =
+            number(&with["fuel_flow_std_kg_s"][**row]) / number(&with["fuel_flow_kg_s"][**row]);
+        number(&with["error_percent"][**row]).abs() < 196.0 * relative
+    };
+    let covered = known.iter().filter(inside).count() as f64 / known.len() as f64;
+    Judged { table_rms: errors(&table), whole_rms: errors(&with), covered }
+}
+
+/// Segments of one flight err together, so that of thirty flights between 87 and 100 % lie inside (standard deviation 4 to 6 %
+/// over fleets): four fleets tell whether intervals hold what they say, one does not.
+#[test]
+fn flights_that_no_model_has_seen_are_predicted_better_with_the_remainder() {
+    let scratch = tempfile::tempdir().unwrap();
+    let at = |name: &str| scratch.path().join(name);
+    run(&[&"simulate", &"ghazi-2020", &"-o", &at("study")]).expect(0);
+    let (aircraft, guide) = (at("study/AIRCRAFT.ron"), at("study/guide.csv"));
+    let initial = at("MODEL.ron");
+    run(&[&"init", &"--aircraft", &aircraft, &"--guide", &guide, &"-o", &initial]).expect(0);
+    let mut covered = 0.0;
+    for seed in SEEDS {
+        let found = judged(scratch.path(), &initial, seed);
+        let Judged { table_rms, whole_rms, .. } = found;
+        assert!(whole_rms < 0.93 * table_rms, "{seed}: {whole_rms} of {table_rms}");
+        covered += found.covered / f64::from(SEEDS.end - SEEDS.start);
+    }
+    // 95 % less one standard deviation of the mean of four fleets.
+    assert!(covered > 0.925, "{covered}");
 }
 
 #[test]

@@ -56,3 +56,48 @@ fn two_runs(law: &str) {
         assert_eq!(whole[name], parts[name], "{name}");
     }
 }
+
+/// One report a night, or all of them at once: the posterior over all of them is the same.
+#[test]
+fn every_night_learns_what_one_run_learns() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let (whole, nights) = (scratch.path().join("whole"), scratch.path().join("nights"));
+    adapt(&model, &whole, &reports(), &[]).expect(0);
+    for report in reports() {
+        adapt(&model, &nights, &[report], &[]).expect(0);
+    }
+    let (whole, nights) = (bytes_below(&whole), bytes_below(&nights));
+    let text = String::from_utf8_lossy(&whole["models/SIM-01.ron"]);
+    assert!(text.contains("drag_nodes"), "twelve flights teach more than the table");
+    for name in ["models/SIM-01.ron", "segments/SIM-01.csv", "flights/SIM-01.csv"] {
+        assert_eq!(whole[name], nights[name], "{name}");
+    }
+}
+
+/// What a tail keeps, in memory and on disk, does not grow with its table: a legal one of 301 × 301 nodes is learnt in seconds.
+#[test]
+fn a_table_of_ninety_thousand_nodes_is_learnt() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    let aircraft = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
+    let start = aircraft.find("table:").unwrap();
+    let fine = "table: (lift_coefficient: (0.10, 0.70, 0.002), mach: (0.50, 0.95, 0.0015)),\n)\n";
+    std::fs::write(folder.join("AIRCRAFT.ron"), format!("{}{fine}", &aircraft[..start])).unwrap();
+    let model = folder.join("FINE.ron");
+    let guide = fixture("guide.csv");
+    let (aircraft, output) = (folder.join("AIRCRAFT.ron"), folder.join("out"));
+    let words: [&std::ffi::OsStr; 7] = [
+        "init".as_ref(),
+        "--aircraft".as_ref(),
+        aircraft.as_ref(),
+        "--guide".as_ref(),
+        guide.as_ref(),
+        "-o".as_ref(),
+        model.as_ref(),
+    ];
+    crate::support::cruisefit(&words).expect(0);
+    adapt(&model, &output, &reports(), &[]).expect(0);
+    let learnt = std::fs::read_to_string(output.join("models/SIM-01.ron")).unwrap();
+    assert!(learnt.contains("thinned: true") && learnt.contains("drag_nodes"));
+}

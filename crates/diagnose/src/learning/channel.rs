@@ -18,9 +18,10 @@ const INFLATIONS: usize = 3;
 const MOST_WEIGHINGS: usize = 5;
 /// Growth of the scatter below which it is not raised again. Our choice: noise need not be known better.
 const SETTLED_SCATTER: f64 = 1.02;
-/// Steps of the search in ln of a factor, before outliers are weighed and after. Our choice: a factor of two, down to 6 %.
-const FIRST_STEPS: [f64; 3] = [0.7, 0.35, 0.15];
-const STEPS: [f64; 2] = [0.15, 0.06];
+/// Steps of the search in ln of a factor, before outliers are weighed and after. Our choice: a factor of two, down to a fifth;
+/// a parabola through three values finds what lies between them, and flights leave some tens of per cent open.
+const FIRST_STEPS: [f64; 2] = [0.6, 0.2];
+const STEPS: [f64; 1] = [0.12];
 /// Noise within flights at which columns are chosen, over that of the aircraft file. Our choice: about the least that is ever
 /// found, where the most columns can be told apart.
 const QUIET: f64 = 0.2;
@@ -37,7 +38,7 @@ pub(super) struct LearntChannel {
     pub(super) left: Vec<f64>,
 }
 
-/// Learns a channel. `groups` are the scales of its columns: 0 none, 1 and 2 those of [`Dials::scales`]. `None` where matrices
+/// Learns a channel. `groups` are the scales of its columns: 0 none, 1 and on those of [`Dials::scales`]. `None` where matrices
 /// are not positive definite.
 pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<LearntChannel> {
     let mut weights = Weights::before(rows);
@@ -54,7 +55,7 @@ pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<Lear
         let next = weights.after(&reduced, &left, &dials);
         if next.settled(&weights) || weighing == MOST_WEIGHINGS {
             let unseen = raise_scatter(&reduced, &weights, &mut evidence, &mut dials)?;
-            let points = evidence.averaged(dials);
+            let points = evidence.points(dials);
             let posterior = ChannelPosterior::averaged(&mut evidence, &points, &reduction, groups)?;
             return Some(LearntChannel { posterior, weights, unseen, left });
         }

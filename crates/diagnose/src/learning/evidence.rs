@@ -6,17 +6,23 @@
 
 use faer::Mat;
 
-use crate::learning::dials::{Dials, MOST_DIALS};
+use crate::learning::dials::{Dials, MOST_DIALS, NOISE_DIALS, SCALES};
 use crate::learning::sums::ChannelSums;
 use crate::math::cholesky::Cholesky;
-use crate::priors::{REMAINDER_SCALE_LN_DEVIATION, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION};
+use crate::priors::{
+    PRIOR_LEVEL_ALONE, SCALE_LN_DEVIATIONS, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
+};
 
 /// Gain of ln likelihood that is not looked for. Our choice: a fifth of a standard deviation of a factor.
 const WORTH_A_LOOK: f64 = 0.02;
 /// Step of the curvature at the largest likelihood. Our choice: wide enough to feel the slope of the sides.
 const CURVATURE_STEP: f64 = 0.25;
-/// Most of what flights may leave open of a factor, in ln. Our choice: as wide as the belief before them.
-const WIDEST: f64 = 1.0;
+/// Most of what flights may leave open of a factor, in ln. Our choice: as wide as the widest belief before them.
+const WIDEST: f64 = 2.0;
+/// Steps of the search for noise where factors are given. Our choice: as where all are sought, after outliers are weighed.
+const NOISE_STEPS: [f64; 3] = [0.35, 0.15, 0.06];
+/// Weight below which a point is left out. Our choice: it would change nothing that is printed.
+const NEGLIGIBLE: f64 = 1e-6;
 
 /// One of the points that the posterior is averaged over.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +39,7 @@ pub(super) struct Evidence<'a> {
     /// The Gram matrix formed last, with Σ ln(1 + ρ²λ), and its ratio.
     gram: Option<(f64, Mat<f64>, f64)>,
     /// The prior precision formed last, with `ln|K|`, and its scales.
-    precision: Option<([f64; 2], Mat<f64>, f64)>,
+    precision: Option<([f64; SCALES], Mat<f64>, f64)>,
 }
 
 /// Posterior of the columns at one point: mean, and a root of the covariance.
@@ -49,7 +55,12 @@ impl<'a> Evidence<'a> {
 
     /// Factors that this channel has.
     fn dimensions(&self) -> usize {
-        1 + self.prior.len()
+        NOISE_DIALS + self.scales()
+    }
+
+    /// Scales among them: the first part of the prior covariance has none.
+    fn scales(&self) -> usize {
+        self.prior.len() - 1
     }
 
     /// ln of the marginal likelihood and of the prior of the factors, up to a constant.
@@ -84,7 +95,7 @@ impl<'a> Evidence<'a> {
             let (gram, ln_common) = self.sums.gram(ratio);
             self.gram = Some((ratio, gram, ln_common));
         }
-        let bits = |scales: [f64; 2]| scales.map(f64::to_bits);
+        let bits = |scales: [f64; SCALES]| scales.map(f64::to_bits);
         if self.precision.as_ref().is_none_or(|(at, ..)| bits(*at) != bits(dials.scales)) {
             let factor = Cholesky::new(&self.prior_covariance(dials.scales))?;
             let size = factor.lower().nrows();
@@ -107,18 +118,18 @@ impl<'a> Evidence<'a> {
 
     /// Factors are log-normal about what is usual: a few flights do not make noise vanish.
     fn ln_prior(&self, dials: &Dials) -> f64 {
-        let of = |value: f64, center: f64, ln_deviation: f64| {
-            let z = (value / center).ln() / ln_deviation;
-            -0.5 * z * z
-        };
-        let scales = &dials.scales[..self.dimensions() - 2];
-        of(dials.within, USUAL_NOISE[0], USUAL_NOISE_LN_DEVIATION)
-            + of(dials.between, USUAL_NOISE[1], USUAL_NOISE_LN_DEVIATION)
-            + scales.iter().map(|s| of(*s, 1.0, REMAINDER_SCALE_LN_DEVIATION)).sum::<f64>()
+        ln_log_normal(dials.within, USUAL_NOISE[0], USUAL_NOISE_LN_DEVIATION)
+            + ln_log_normal(dials.between, USUAL_NOISE[1], USUAL_NOISE_LN_DEVIATION)
+            + self.ln_prior_of_scales(dials)
+    }
+
+    fn ln_prior_of_scales(&self, dials: &Dials) -> f64 {
+        let scales = dials.scales.iter().zip(SCALE_LN_DEVIATIONS).take(self.scales());
+        scales.map(|(scale, deviation)| ln_log_normal(*scale, 1.0, deviation)).sum()
     }
 
     /// Prior covariance of the columns at scales.
-    pub(super) fn prior_covariance(&self, scales: [f64; 2]) -> Mat<f64> {
+    pub(super) fn prior_covariance(&self, scales: [f64; SCALES]) -> Mat<f64> {
         let mut covariance = self.prior[0].clone();
         for (part, scale) in self.prior[1..].iter().zip(scales) {
             covariance += faer::Scale(scale * scale) * part;
@@ -128,9 +139,14 @@ impl<'a> Evidence<'a> {
 
     /// The likeliest factors, from a start in ever smaller steps.
     pub(super) fn likeliest(&mut self, start: Dials, steps: &[f64]) -> Dials {
+        self.likeliest_of(self.dimensions(), start, steps)
+    }
+
+    /// The same of the first few factors; the others stay.
+    fn likeliest_of(&mut self, coordinates: usize, start: Dials, steps: &[f64]) -> Dials {
         let mut best = (start.coordinates(), self.ln_evidence(&start));
         for &step in steps {
-            for coordinate in 0..self.dimensions() {
+            for coordinate in 0..coordinates {
                 self.move_along(&mut best, coordinate, step);
             }
         }
@@ -166,7 +182,45 @@ impl<'a> Evidence<'a> {
         *best = found;
     }
 
-    /// Points about the likeliest factors whose mean and spread are those of the posterior.
+    /// The points that the posterior is averaged over: those about the likeliest factors, and one of a model of which nothing but
+    /// the level is off.
+    ///
+    /// ```text
+    /// p(level alone | y)/(1 − p) = P/(1 − P)·exp(ln p(y | level alone) − ln p(y)),
+    /// ln p(y) = ln p(y | likeliest) + Σ_scales (ln p(scale) + ½ ln 2πσ²)                                    [baseline.5]
+    /// ```
+    ///
+    /// P is [`PRIOR_LEVEL_ALONE`], σ what flights leave open of ln scale; noise is as open either way.
+    ///
+    /// # Source
+    /// Tierney and Kadane 1986, doi 10.1080/01621459.1986.10478240 (Laplace's approximation); Kass and Raftery 1995, doi
+    /// 10.1080/01621459.1995.10476572 (probabilities of two models).
+    pub(super) fn points(&mut self, likeliest: Dials) -> Vec<Weighted> {
+        let (mut points, deviations) = self.averaged(&likeliest);
+        let scales = self.scales();
+        if scales == 0 {
+            return points;
+        }
+        // Noise as likely as it can be either way: unseen flights may have raised it.
+        let all = self.likeliest_of(NOISE_DIALS, likeliest, &NOISE_STEPS);
+        let of_all = self.ln_evidence(&all);
+        let level_alone = self.likeliest_of(NOISE_DIALS, likeliest.of_level_alone(), &NOISE_STEPS);
+        let of_level = self.ln_evidence(&level_alone) - self.ln_prior_of_scales(&level_alone);
+        let open = deviations[NOISE_DIALS..].iter().zip(SCALE_LN_DEVIATIONS).take(scales);
+        let volume: f64 = open.map(|(deviation, prior)| (deviation / prior).ln()).sum();
+        let odds =
+            PRIOR_LEVEL_ALONE / (1.0 - PRIOR_LEVEL_ALONE) * (of_level - of_all - volume).exp();
+        let probability = if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 };
+        for point in &mut points {
+            point.weight *= 1.0 - probability;
+        }
+        points.push(Weighted { dials: level_alone, weight: probability });
+        points.retain(|point| point.weight > NEGLIGIBLE);
+        points
+    }
+
+    /// Points about the likeliest factors whose mean and spread are those of the posterior, and what flights leave open of each
+    /// factor: its standard deviation in ln.
     ///
     /// ```text
     /// ln factor ± √d·σ along each of d factors,  σ⁻² = −∂² ln p,   each with the weight p/p₀·e^{d/2}          [baseline.3]
@@ -175,11 +229,12 @@ impl<'a> Evidence<'a> {
     /// # Source
     /// The points: Arasaratnam and Haykin 2009, doi 10.1109/TAC.2009.2019800 (third-degree spherical-radial rule). The
     /// averaging and its weights: Rue, Martino and Chopin 2009, doi 10.1111/j.1467-9868.2008.00700.x, section 6.5.
-    pub(super) fn averaged(&mut self, likeliest: Dials) -> Vec<Weighted> {
+    fn averaged(&mut self, likeliest: &Dials) -> (Vec<Weighted>, [f64; MOST_DIALS]) {
         let center = likeliest.coordinates();
-        let highest = self.ln_evidence(&likeliest);
+        let highest = self.ln_evidence(likeliest);
         let dimensions = self.dimensions();
-        let mut points = Vec::with_capacity(2 * dimensions);
+        let mut points = Vec::with_capacity(2 * dimensions + 1);
+        let mut deviations = [0.0; MOST_DIALS];
         for coordinate in 0..dimensions {
             let mut value_at = |by: f64| {
                 let mut moved = center;
@@ -190,23 +245,24 @@ impl<'a> Evidence<'a> {
             let curvature = -(value_at(CURVATURE_STEP).1 + value_at(-CURVATURE_STEP).1)
                 / (CURVATURE_STEP * CURVATURE_STEP);
             let deviation = (1.0 / curvature.max(1e-12).sqrt()).min(WIDEST);
+            deviations[coordinate] = deviation;
             let far = (dimensions as f64).sqrt() * deviation;
             for by in [far, -far] {
                 let (dials, ln_ratio) = value_at(by);
                 let weight = (ln_ratio + 0.5 * dimensions as f64).min(1.0).exp();
-                if weight > 1e-6 {
+                if weight > NEGLIGIBLE {
                     points.push(Weighted { dials, weight });
                 }
             }
         }
         let sum: f64 = points.iter().map(|point| point.weight).sum();
         if sum <= 0.0 {
-            return vec![Weighted { dials: likeliest, weight: 1.0 }];
+            return (vec![Weighted { dials: *likeliest, weight: 1.0 }], deviations);
         }
         for point in &mut points {
             point.weight /= sum;
         }
-        points
+        (points, deviations)
     }
 
     /// The posterior at one point; `None` where matrices are not positive definite.
@@ -222,6 +278,12 @@ impl<'a> Evidence<'a> {
     }
 }
 
+/// ln of the density of a factor relative to that at the center of its distribution, over ln of the factor.
+fn ln_log_normal(value: f64, center: f64, ln_deviation: f64) -> f64 {
+    let z = (value / center).ln() / ln_deviation;
+    -0.5 * z * z
+}
+
 /// Products of the columns with the residual: the last row of a lower triangle.
 fn right_side(gram: &Mat<f64>) -> Mat<f64> {
     let width = gram.nrows() - 1;
@@ -233,6 +295,7 @@ mod tests {
     use super::*;
     use crate::learning::outliers::Weights;
     use crate::learning::rows::ChannelRows;
+    use crate::priors::SCALE_OF_NOTHING;
 
     /// A level and a slope over five values of two flights, all of them by hand as one normal distribution: the density of
     /// N(0, X K Xᵀ + w²D + b²UUᵀ), whose inverse and determinant faer gives.
@@ -272,7 +335,7 @@ mod tests {
         };
         let mut evidence = Evidence::new(&sums, &prior);
         let mut found = |within: f64, between: f64, scale: f64| {
-            let dials = Dials { within, between, scales: [scale, 1.0] };
+            let dials = Dials { within, between, scales: [scale, 1.0, 1.0] };
             (evidence.ln_evidence(&dials) - evidence.ln_prior(&dials), density(&dials))
         };
         let (at, known) = found(0.6, 0.9, 0.8);
@@ -280,5 +343,67 @@ mod tests {
             let (other, other_known) = found(within, between, scale);
             assert!(((other - at) - (other_known - known)).abs() < 1e-10);
         }
+    }
+
+    /// Twelve flights of four values, a level and a slope of so many prior standard deviations, noise without order.
+    fn flights_with_slope(slope: f64) -> ChannelRows {
+        let (flights, each) = (12, 4);
+        let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let along = |row: usize| 2.0 * number(7 * row + 3);
+        let value =
+            |row: usize| 0.4 + slope * along(row) + number(row + 1) + number(row / each * 5 + 2);
+        ChannelRows {
+            columns: Mat::from_fn(flights * each, 3, |row, column| match column {
+                0 => 1.0,
+                1 => along(row),
+                _ => value(row),
+            }),
+            variance: vec![0.1; flights * each],
+            loadings: vec![vec![0.3; flights * each]],
+            groups: (0..flights).map(|flight| flight * each..(flight + 1) * each).collect(),
+        }
+    }
+
+    /// The probability that only the level is off: the marginal likelihoods of both models by numerical integration over the
+    /// noise and the scale of the slope.
+    #[test]
+    fn level_alone_is_as_probable_as_by_integration() {
+        let part = |at: usize| Mat::from_fn(2, 2, |i, j| f64::from(u8::from(i == j && i == at)));
+        let prior = [part(0), part(1)];
+        let mut between = 0;
+        for slope in [0.0, 0.15, 0.25, 0.4, 1.5] {
+            let rows = flights_with_slope(slope);
+            let sums = ChannelSums::new(&rows, &Weights::of_one(&rows));
+            let mut evidence = Evidence::new(&sums, &prior);
+            let likeliest = evidence.likeliest(Dials::usual(), &[0.6, 0.3, 0.1, 0.05]);
+            let points = evidence.points(likeliest);
+            let least = SCALE_OF_NOTHING;
+            let is_level = |point: &&Weighted| point.dials.scales[0] < 1.1 * least;
+            let found: f64 = points.iter().filter(is_level).map(|point| point.weight).sum();
+
+            let step = 0.1;
+            let mut sum = |scales: &[f64]| -> f64 {
+                let mut sum = 0.0;
+                for within in (-25..25).map(|k| f64::from(k) * step) {
+                    for ratio in (-25..25).map(|k| f64::from(k) * step) {
+                        for scale in scales {
+                            let dials = Dials::at(&[within, ratio, *scale, 0.0, 0.0]);
+                            sum += (evidence.ln_evidence(&dials) + 20.0).exp();
+                        }
+                    }
+                }
+                sum
+            };
+            let scales: Vec<f64> = (-40..=22).map(|k| f64::from(k) * step).collect();
+            let density = step / (SCALE_LN_DEVIATIONS[0] * core::f64::consts::TAU.sqrt());
+            let all = sum(&scales) * density;
+            let at_least = ln_log_normal(least, 1.0, SCALE_LN_DEVIATIONS[0]);
+            let of_level = sum(&[least.ln()]) / at_least.exp();
+            let odds = PRIOR_LEVEL_ALONE / (1.0 - PRIOR_LEVEL_ALONE) * of_level / all;
+            let expected = odds / (1.0 + odds);
+            assert!((found - expected).abs() < 0.05, "slope {slope}: {found}, {expected}");
+            between += usize::from((0.1..0.9).contains(&expected));
+        }
+        assert!(between > 0, "no case is in doubt");
     }
 }

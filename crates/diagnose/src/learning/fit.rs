@@ -35,7 +35,8 @@ impl Baseline {
         let fuel = learn_channel(&rows, &groups).ok_or(DiagnoseError::Degenerate)?;
         joint.put(&columns, &fuel);
         self.set_noise(0, &fuel);
-        self.parts.scales = fuel.posterior.dials.scales;
+        let [smooth, products, _] = fuel.posterior.dials.scales;
+        self.parts.scales = [smooth, products];
         self.parts.outliers = fuel.weights.outliers();
         let smooth = self.parts.scales[0].powi(2);
         let left_out = |row: usize| unheld[row].smooth * smooth + unheld[row].drag;
@@ -109,16 +110,19 @@ impl Baseline {
         Ok(())
     }
 
-    /// Which scale multiplies a column's prior standard deviation: 0 none.
+    /// Which scale multiplies a column's prior standard deviation: 0 none, that of the level.
     fn scale_group(&self, column: usize) -> usize {
         let layout = self.layout();
-        if column == 0 || !layout.remainder.contains(&column) {
+        if column == 0 {
             return 0;
+        }
+        if !layout.remainder.contains(&column) {
+            return 3;
         }
         let mut start = 1;
         for one in &self.parts.smooth {
             if column == start {
-                return 0;
+                return 3;
             }
             start += one.len();
             if column < start {

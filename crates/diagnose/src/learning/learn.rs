@@ -1,7 +1,6 @@
 //! From clean flights to a baseline.
 
-use effects::ExtendedModel;
-use effects::{EffectModel, EffectReferences};
+use effects::{BetweenNodes, EffectModel, EffectReferences, ExtendedModel};
 use faer::Mat;
 
 use crate::baseline::smooth::Smooth;
@@ -42,7 +41,8 @@ impl Baseline {
         flights: &[FlightRecord<'_>],
     ) -> Result<Self, DiagnoseError> {
         let references = references_of(model, drag_table, flights)?;
-        let effect_model = EffectModel::new(model, drag_table, references)?;
+        let effect_model =
+            EffectModel::new(model, drag_table, references)?.between_nodes(BetweenNodes::Smooth);
         let (data, _) = PreparedFlights::prepare(
             &effect_model,
             flights,
@@ -94,6 +94,7 @@ impl Baseline {
             standing_effects: vec![0.0; STANDING_EFFECTS.len()],
             standing_means: vec![0.0; STANDING_EFFECTS.len()],
             standing_variances: Vec::new(),
+            smooth_table: true,
             outliers: 0,
             interval_factor: 1.0,
             rms: f64::NAN,

@@ -3,7 +3,7 @@
 
 use faer::Mat;
 
-use crate::learning::dials::Dials;
+use crate::learning::dials::{Dials, MOST_DIALS, SCALES};
 use crate::learning::evidence::{Evidence, Weighted};
 use crate::math::cholesky::Cholesky;
 use crate::math::linear::{add_gram, subtract_gram, symmetrize};
@@ -37,14 +37,15 @@ impl ChannelPosterior {
         let mut spread = Mat::<f64>::zeros(rank, rank);
         let mut mean = Mat::<f64>::zeros(rank, 1);
         let mut means = Vec::with_capacity(points.len());
-        let mut squares = [0.0; 4];
+        let mut squares = [0.0; MOST_DIALS];
         for Weighted { dials, weight } in points {
             let solved = evidence.solved(dials)?;
             let part = faer::Scale(weight.sqrt()) * &solved.root;
             add_gram(&mut spread, part.transpose());
             mean += faer::Scale(*weight) * &solved.mean;
             means.push(solved.mean);
-            let all = [dials.within, dials.between, dials.scales[0], dials.scales[1]];
+            let [smooth, products, straight] = dials.scales;
+            let all = [dials.within, dials.between, smooth, products, straight];
             for (sum, value) in squares.iter_mut().zip(all) {
                 *sum += weight * value * value;
             }
@@ -53,8 +54,8 @@ impl ChannelPosterior {
             points[at].weight.sqrt() * (means[at][(k, 0)] - mean[(k, 0)])
         });
         add_gram(&mut spread, apart.as_ref());
-        let [within, between, smooth, products] = squares.map(f64::sqrt);
-        let dials = Dials { within, between, scales: [smooth, products] };
+        let [within, between, smooth, products, straight] = squares.map(f64::sqrt);
+        let dials = Dials { within, between, scales: [smooth, products, straight] };
         let variance = prior_variances(groups, dials.scales);
         let root = Cholesky::new(&evidence.prior_covariance(dials.scales))?;
         // Yᵀ = R⁻¹TΛ, and K⁻¹TΛ.
@@ -78,7 +79,7 @@ impl ChannelPosterior {
 }
 
 /// Prior variances of columns: 1, or the square of the scale of their group.
-fn prior_variances(groups: &[usize], scales: [f64; 2]) -> Vec<f64> {
+fn prior_variances(groups: &[usize], scales: [f64; SCALES]) -> Vec<f64> {
     let of = |group: &usize| group.checked_sub(1).map_or(1.0, |at| scales[at] * scales[at]);
     groups.iter().map(of).collect()
 }

@@ -11,7 +11,7 @@ use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
 use crate::math::cholesky::Cholesky;
 use crate::math::quantile::{QuantileType, quantile};
-use crate::priors::DIAL_LIMITS;
+use crate::priors::NOISE_LIMITS;
 use crate::thresholds::{FACTOR_LIMITS, ORDINARY_SEGMENTS};
 
 /// The 97.5 % quantile of the normal distribution.
@@ -108,7 +108,7 @@ pub(super) fn scatter_by_unseen(unseen: &[Unseen], now: f64) -> f64 {
     if unseen.is_empty() || excess(now) <= 0.0 {
         return now;
     }
-    let (mut below, mut above) = (now, DIAL_LIMITS.1);
+    let (mut below, mut above) = (now, NOISE_LIMITS.1);
     for _ in 0..60 {
         let middle = f64::midpoint(below, above);
         if excess(middle) > 0.0 { below = middle } else { above = middle }

@@ -56,8 +56,9 @@ pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGa
         (None, Some(baseline)) => *baseline.references(),
         (None, None) => references_of(input.model, input.drag_table, input.flights)?,
     };
-    let model = EffectModel::new(input.model, input.drag_table, references)?;
     let reference = Reference::from_baseline(input.baseline);
+    let model = EffectModel::new(input.model, input.drag_table, references)?
+        .between_nodes(reference.between_nodes());
     // No column of the library is needed: residuals do not depend on what is searched.
     let (data, _) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {

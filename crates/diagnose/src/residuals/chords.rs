@@ -4,6 +4,7 @@ use effects::{EffectModel, Response};
 
 /// How far a chord of the drag table may be off, relative to drag: ½·u(1 − u)·Δ², Δ² the mean of the second differences
 /// at the cell's ends, along each axis. `[diagnosis.15]`
+/// The curve of a table that is smooth between its nodes is as uncertain: what an aircraft does within a cell, no node says.
 pub(crate) fn chord_errors(model: &EffectModel<'_>, response: &Response) -> [f64; 2] {
     let table = model.drag_table();
     let grid = table.grid();

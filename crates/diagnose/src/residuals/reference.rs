@@ -1,6 +1,6 @@
 //! What flights are compared with.
 
-use effects::EffectModel;
+use effects::{BetweenNodes, EffectModel};
 use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 
 use crate::baseline::Baseline;
@@ -28,6 +28,11 @@ impl<'a> Reference<'a> {
             Self::Table | Self::Untaught => None,
             Self::Baseline(baseline) => Some(baseline),
         }
+    }
+
+    /// What the drag table is between its nodes: as it was when the baseline was learnt, bilinear where there is none.
+    pub(crate) fn between_nodes(self) -> BetweenNodes {
+        self.baseline().map_or(BetweenNodes::Straight, Baseline::between_nodes)
     }
 
     pub(crate) fn statistics(self, model: &EffectModel<'_>) -> Statistics {

@@ -175,7 +175,7 @@ impl<'a> PreparedFlights<'a> {
             }
         }
         let noise_model = NoiseModel { model, channels, statistics, predict: &predict };
-        let mut noise = noise_model.segment_noise(&kept.point, kept.rows.len(), is_recorded)?;
+        let mut noise = noise_model.segment_noise(&kept.known, kept.rows.len(), is_recorded)?;
         // Scatter between flights that the model contains is no gap: it adds to what a flight has in common.
         let scatter = model.applied().map_or(0.0, AppliedEffects::fuel_heating_value_deviation);
         if let Some(heating) = noise.common.get_mut(HEATING_VALUE_LOADING) {

@@ -23,6 +23,8 @@ const SAMPLES_OF_A_SEGMENT: usize = 10;
 pub struct WholeModel<'a> {
     extended: &'a ExtendedModel,
     model: EffectModel<'a>,
+    /// The same with a bilinear drag table, as everything but what was learnt takes it.
+    bilinear: EffectModel<'a>,
     baseline: &'a Baseline,
     predictor: Predictor<'a>,
     statistics: Statistics,
@@ -34,8 +36,6 @@ pub struct WholeModel<'a> {
 pub struct WholePrediction {
     /// ln of the fuel flow of all engines, kg/s.
     pub ln_fuel_flow: f64,
-    /// The same less what the model's initial table predicts.
-    pub ln_correction: f64,
     /// How it leans on what was learnt, in standard deviations: predictions of one model err together.
     pub loadings: Vec<f64>,
     /// Variance of the model there that is not in the loadings: where nothing was flown.
@@ -95,7 +95,8 @@ impl<'a> WholeModel<'a> {
     /// [`DiagnoseError`] where the model takes no effects.
     pub fn new(extended: &'a ExtendedModel, baseline: &'a Baseline) -> Result<Self, DiagnoseError> {
         let references = *baseline.references();
-        let model = EffectModel::new(extended, extended.drag_table(), references)?;
+        let bilinear = EffectModel::new(extended, extended.drag_table(), references)?;
+        let model = bilinear.clone().between_nodes(baseline.between_nodes());
         let channels = Channels { contrasts: 0, n2: false };
         let deck = baseline.deck().unwrap_or_else(|| Deck::fitted(&[]));
         let reference = Reference::from_baseline(Some(baseline));
@@ -108,7 +109,7 @@ impl<'a> WholeModel<'a> {
             })
             .collect();
         let predictor = Predictor { channels, deck, baseline: Some(baseline) };
-        Ok(Self { extended, model, baseline, predictor, statistics, standing })
+        Ok(Self { extended, model, bilinear, baseline, predictor, statistics, standing })
     }
 
     /// The prediction for a recorded segment, acceleration and all; recordings are corrected by what the model contains.
@@ -177,7 +178,8 @@ impl<'a> WholeModel<'a> {
         }
         let mut found = self.at(&at, SAMPLES_OF_A_SEGMENT)?;
         // Effects that the model contains may depend on the date.
-        found.ln_fuel_flow = of_table.ln_fuel_flow_total + found.ln_correction;
+        let (_, undated) = self.bilinear.known_point(&at)?;
+        found.ln_fuel_flow += of_table.ln_fuel_flow_total - undated.ln_fuel_flow_total;
         Ok(found)
     }
 
@@ -214,11 +216,10 @@ impl<'a> WholeModel<'a> {
             statistics: &self.statistics,
             predict: &predict,
         }
-        .segment_noise(point, samples, recorded)?;
+        .segment_noise(&known, samples, recorded)?;
         let square = |values: &ByChannel| values[0] * values[0];
         Ok(WholePrediction {
             ln_fuel_flow: without + carried.mean,
-            ln_correction: without + carried.mean - response.ln_fuel_flow_total,
             loadings,
             unflown: stated * stated * unflown,
             of_flight: stated * stated * noise.common.iter().map(square).sum::<f64>()

@@ -1,6 +1,6 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
-use effects::{EffectError, EffectModel, EffectPoint, Effects, Response};
+use effects::{EffectError, EffectModel, EffectPoint, Effects, KnownPoint, Response};
 use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
@@ -66,13 +66,14 @@ impl NoiseModel<'_> {
     /// ```
     pub(crate) fn segment_noise(
         &self,
-        point: &EffectPoint,
+        known: &KnownPoint,
         samples: usize,
         recorded: [bool; MAXIMUM_CHANNELS],
     ) -> Result<SegmentNoise, EffectError> {
+        let point = known.point();
         let Self { model, channels, .. } = *self;
         let sensors = model.aircraft().sensors();
-        let slopes = self.slopes(point)?;
+        let slopes = self.slopes(known)?;
         let relative_mass = sensors.mass.relative_to(units::Mass::kilograms(point.mass_kg));
         let covariance = self.own_covariance(&slopes, samples, recorded);
         let common = self.common_loadings(&slopes, relative_mass, recorded);
@@ -85,17 +86,29 @@ impl NoiseModel<'_> {
     }
 
     /// Slopes of every channel along what sensors measure, by central differences.
-    fn slopes(&self, point: &EffectPoint) -> Result<Slopes, EffectError> {
+    fn slopes(&self, known: &KnownPoint) -> Result<Slopes, EffectError> {
+        let point = known.point();
         let sensors = self.model.aircraft().sensors();
         let effects = Effects::none();
-        let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
-            let up = (self.predict)(&self.model.response_beside(&moved(step), &effects)?);
-            let down = (self.predict)(&self.model.response_beside(&moved(-step), &effects)?);
+        let between = |step: f64, up: &Response, down: &Response| {
+            let (up, down) = ((self.predict)(up), (self.predict)(down));
             let mut slope = [0.0; MAXIMUM_CHANNELS];
             for channel in 0..self.channels.count() {
                 slope[channel] = (up[channel] - down[channel]) / (2.0 * step);
             }
-            Ok::<ByChannel, EffectError>(slope)
+            slope
+        };
+        let difference = |step: f64, moved: &dyn Fn(f64) -> EffectPoint| {
+            let up = self.model.response_beside(&moved(step), &effects)?;
+            let down = self.model.response_beside(&moved(-step), &effects)?;
+            Ok::<ByChannel, EffectError>(between(step, &up, &down))
+        };
+        // Mass and acceleration leave the air as it is.
+        let of_motion = |step: f64, moved: &dyn Fn(f64) -> (f64, f64)| {
+            let at = |(mass_kg, acceleration_m_s2)| {
+                self.model.response_with_mass_and_acceleration(known, mass_kg, acceleration_m_s2)
+            };
+            Ok::<ByChannel, EffectError>(between(step, &at(moved(step))?, &at(moved(-step))?))
         };
         let by_mach = difference(sensors.mach.max(1e-6), &|step| EffectPoint {
             mach: point.mach + step,
@@ -115,14 +128,10 @@ impl NoiseModel<'_> {
             pressure_altitude_m: point.pressure_altitude_m + step,
             ..*point
         })?;
-        let by_acceleration = difference(1e-4, &|step| EffectPoint {
-            acceleration_m_s2: point.acceleration_m_s2 + step,
-            ..*point
-        })?;
-        let by_mass = difference(1e-3, &|step| EffectPoint {
-            mass_kg: point.mass_kg * (1.0 + step),
-            ..*point
-        })?;
+        let by_acceleration =
+            of_motion(1e-4, &|step| (point.mass_kg, point.acceleration_m_s2 + step))?;
+        let by_mass =
+            of_motion(1e-3, &|step| (point.mass_kg * (1.0 + step), point.acceleration_m_s2))?;
         Ok(Slopes {
             mach: by_mach,
             static_air_temperature: by_temperature,

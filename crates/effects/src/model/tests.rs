@@ -264,6 +264,55 @@ fn without_effects_it_is_the_models_own_prediction() {
     assert!((at.fuel_flow_share[0] - 0.52).abs() < 1e-15);
 }
 
+/// Fuel flow of level flight is TSFC times drag, so that two tables' predictions differ by the ratio of their drag. Between
+/// nodes of a grid of 0.1 the chord lies above the parabola; the smooth surface is the parabola itself (by hand).
+#[test]
+fn a_smooth_table_is_the_parabola_that_it_was_made_of() {
+    let aircraft = r#"(
+        name: "test", type_code: "TEST", engines: 2, wing_area_m2: 48.96,
+        tsfc: (static_lb_per_lbf_h: 0.48, mach_exponent: 0.8),
+        table: (lift_coefficient: (0.10, 0.70, 0.1), mach: (0.50, 0.95, 0.15)),
+    )"#;
+    let aircraft = Aircraft::from_ron(aircraft).unwrap();
+    let grid = Arc::clone(aircraft.grid());
+    let drag = |(lift, mach): (f64, f64)| CD0 + 0.01 * mach * mach + K * lift * lift;
+    let values = (0..grid.nodes()).map(|node| drag(grid.coordinates(node))).collect();
+    let table = Table::new(Arc::clone(&grid), values).unwrap();
+    let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
+    let marks = vec![false; grid.nodes()];
+    let model: ExtendedModel =
+        PerformanceModel::new(aircraft, polynomial, table, marks).unwrap().into();
+    let bilinear = EffectModel::new(&model, model.drag_table(), references()).unwrap();
+    let smooth = bilinear.clone().between_nodes(BetweenNodes::Smooth);
+    assert!(bilinear.is_bilinear() && !smooth.is_bilinear());
+    for mach in [0.72, 0.77, 0.83] {
+        let at = point(mach);
+        let of = |model: &EffectModel<'_>| model.response(&at, &Effects::none()).unwrap();
+        let (chord, curve) = (of(&bilinear), of(&smooth));
+        let state = (curve.lift_coefficient, mach);
+        let cell = grid.locate(state.0, state.1, lut::Outside::Error).unwrap();
+        let expected = (model.drag_table().interpolate(&cell) / drag(state)).ln();
+        assert!(expected > 1e-4, "the chord is off: {expected}");
+        let found = chord.ln_fuel_flow_total - curve.ln_fuel_flow_total;
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+}
+
+/// The same as a point that is made from the start ([`EffectModel::response_beside`]), to the last bit.
+#[test]
+fn another_mass_or_acceleration_in_the_same_air() {
+    let performance = model(true);
+    let effects = EffectModel::new(&performance, performance.drag_table(), references()).unwrap();
+    let at = point(0.80);
+    let (known, _) = effects.known_point(&at).unwrap();
+    for (mass_kg, acceleration_m_s2) in [(13_500.0, 0.01), (13_700.0, 0.0), (12_900.0, -0.02)] {
+        let moved = EffectPoint { acceleration_m_s2, mass_kg, ..at };
+        let expected = effects.response_beside(&moved, &Effects::none()).unwrap();
+        let found = effects.response_with_mass_and_acceleration(&known, mass_kg, acceleration_m_s2);
+        assert_eq!(found.unwrap(), expected);
+    }
+}
+
 /// A recording with known errors, made from a true state by hand: undoing them gives the true prediction back, not only
 /// to first order.
 #[test]
