@@ -2,6 +2,7 @@
 
 pub(crate) mod chords;
 pub(crate) mod gauges;
+pub(crate) mod level;
 pub(crate) mod planned;
 pub(crate) mod predictor;
 pub(crate) mod reference;

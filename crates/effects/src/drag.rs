@@ -44,7 +44,8 @@ pub(crate) struct AtTable<'p> {
 /// Lock's fourth-power law with the drag-divergence condition ∂CD/∂M = 0.1, from which the offset follows. The fall of
 /// the drag-divergence Mach number with lift coefficient is our choice, a little less than the 0.1 of Korn's equation
 /// without sweep; the lift coefficient at which it is stated is that of cruise in the middle of the envelope.
-pub(crate) fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
+#[must_use]
+pub fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
     let divergence = divergence_mach
         - DIVERGENCE_FALL_PER_LIFT_COEFFICIENT * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);
     let beyond = (mach - divergence + LOCK_OFFSET_MACH).max(0.0);

@@ -88,6 +88,7 @@ mod set;
 mod terms;
 
 pub use applied::{AppliedEffects, AppliedLayer};
+pub use drag::drag_rise;
 pub use engine::ANTI_ICE_PROXY_K;
 pub use error::{EffectError, EffectModelError, ObserveError, PredictError};
 pub use extended::ExtendedModel;
@@ -96,5 +97,5 @@ pub use mean::mean_references;
 pub use model::EffectModel;
 pub use point::EffectPoint;
 pub use references::EffectReferences;
-pub use response::{BetweenNodes, Response};
+pub use response::{BetweenNodes, Response, value_continued};
 pub use set::Effects;

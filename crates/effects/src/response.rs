@@ -120,9 +120,10 @@ pub(crate) fn evaluate(
     let surface_n = flown.dynamic_pressure_pa * bare.aircraft.wing_area().to_square_meters();
     let lift_coefficient = flown.mass_kg * gravity_m_s2 / surface_n;
     let cached = uncorrected.filter(|_| !layers.trial.moves_the_point());
+    let surface = (bare.drag_table, bare.between_nodes);
     let table = match cached.and_then(|known| known.table) {
         Some(table) => table,
-        None => table_value(bare, lift_coefficient, flown.mach, edge)?,
+        None => table_value(surface, lift_coefficient, flown.mach, edge)?,
     };
     let at = AtTable { drag_coefficient: table, lift_coefficient, polar: &bare.polar };
     let drag_coefficient = drag::drag_coefficient(at, point, &flown, layers);
@@ -162,14 +163,23 @@ pub(crate) fn evaluate(
     Ok((response, Known { flown, gravity_m_s2, table: Some(table), tsfc_kg_per_n_s }))
 }
 
+/// A table's drag coefficient, continued in a straight line beyond its edge; `None` where a coordinate is no number.
+#[must_use]
+pub fn value_continued(
+    surface: (&Table, BetweenNodes),
+    lift_coefficient: f64,
+    mach: f64,
+) -> Option<f64> {
+    table_value(surface, lift_coefficient, mach, Edge::Continue).ok()
+}
+
 /// The table's drag coefficient, continued in a straight line beyond the edge where an effect moved the point there.
 fn table_value(
-    bare: &Bare<'_>,
+    (drag_table, between_nodes): (&Table, BetweenNodes),
     lift_coefficient: f64,
     mach: f64,
     edge: Edge,
 ) -> Result<f64, EffectError> {
-    let Bare { drag_table, between_nodes, .. } = *bare;
     let grid = drag_table.grid();
     let outside = |_| EffectError::OutsideTable { lift_coefficient, mach };
     if edge == Edge::Refuse {

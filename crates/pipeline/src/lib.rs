@@ -72,6 +72,7 @@ pub mod monitoring;
 pub mod optimum;
 pub mod plausibility;
 pub mod prediction;
+pub mod public_guide;
 pub mod reading;
 pub mod reduction;
 pub mod residuals;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use diagnose::{WholeModel, WholePrediction};
+use diagnose::{WholeModel, WholeModelOfLevels, WholePrediction};
 use effects::{AppliedEffects, EffectModelError, ExtendedModel};
 use flight::{Cruise, FlightIdentity, Segment, SegmentMeans, Timestamp};
 use perf_model::{FlightPoint, Prediction};
@@ -24,6 +24,8 @@ pub struct Predictor<'a> {
     model: &'a ModelFile,
     current: ExtendedModel,
     whole: Option<WholeModel<'a>>,
+    /// The same for points of conditions alone, where it can be asked that way.
+    whole_of_levels: Option<WholeModelOfLevels>,
     /// Without effects: the imagined segment is recorded by the aircraft's sensors without any error of theirs.
     plain: Option<ExtendedModel>,
     /// Relative scatter between flights of an applied effect.
@@ -48,9 +50,11 @@ impl<'a> Predictor<'a> {
     /// A learnt table that makes no model (law `paper` takes what it is given).
     pub fn new(model: &'a ModelFile, predicts: Predicts) -> Result<Self, EffectModelError> {
         let effects = model.initial.effects();
+        let whole = model.whole(predicts);
         Ok(Self {
             current: model.current()?,
-            whole: model.whole(predicts),
+            whole_of_levels: whole.as_ref().and_then(WholeModel::of_levels),
+            whole,
             plain: model.initial.with_effects(AppliedEffects::default()).ok(),
             scatter: effects.map_or(0.0, AppliedEffects::fuel_heating_value_deviation),
             model,

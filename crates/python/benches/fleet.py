@@ -4,8 +4,11 @@
     python crates/python/benches/fleet.py [--tails 400] [--flights 50] [--kill 0] [--master "local-cluster[2,1,2048]"]
 
 Reports of virtual tails are written as files for the command line and as Parquet for Spark. Both read, learn and write all
-tails. `--kill N` kills N executors of this run at random moments. Times are CPU seconds of all processes and wall-clock
-seconds; a machine that does other work at the same time makes the latter meaningless.
+tails, on two processors. `--kill N` kills N executors of this run at random moments.
+
+CPU seconds are those of every process of a run, executors that were killed and Python's workers among them: each side runs in
+a session of its own, whose processes are read five times a second. They are given by kind of process: driver and executors (Java), workers (Python), the command line. Wall-clock
+seconds mean nothing on a machine that does other work at the same time.
 """
 
 import argparse
@@ -51,9 +54,52 @@ def plan(first, some, flights):
     return f"(seed: {20261122 + first}, aircraft: Preset(citation_x), tails: [{listed}])"
 
 
-def cpu_s():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+class Session:
+    """A command in a session of its own, and the CPU seconds of every process in it."""
+
+    PER_SECOND = os.sysconf("SC_CLK_TCK")
+
+    def __init__(self, command):
+        begun, before = time.perf_counter(), self.waited_for_s()
+        self.seconds = {}
+        process = subprocess.Popen(
+            [str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+        while process.poll() is None:
+            self.look(process.pid)
+            time.sleep(0.2)
+        self.wall_s = time.perf_counter() - begun
+        # Of a run without orphans this is all, to the last moment.
+        self.at_least_s = self.waited_for_s() - before
+        self.output = process.stdout.read().decode()
+        if process.returncode not in (0, 1):
+            sys.exit(f"{command[0]} ended with {process.returncode}")
+
+    def look(self, session):
+        for entry in Path("/proc").iterdir():
+            try:
+                name, fields = (entry / "stat").read_text().split(" (", 1)[1].rsplit(") ", 1)
+            except (OSError, IndexError):
+                continue
+            fields = fields.split()
+            if int(fields[3]) == session:
+                # Parents count what the children that they waited for have used: not again here.
+                self.seconds[entry.name, name] = (int(fields[11]) + int(fields[12])) / self.PER_SECOND
+
+    @staticmethod
+    def waited_for_s():
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
+    def cpu_s(self):
+        return max(sum(self.seconds.values()), self.at_least_s)
+
+    def by_kind(self):
+        kinds = {}
+        for (_, name), seconds in self.seconds.items():
+            kinds[name] = kinds.get(name, 0.0) + seconds
+        kinds = sorted(kinds.items(), key=lambda kind: -kind[1])
+        return ", ".join(f"{name} {seconds:.1f}" for name, seconds in kinds if seconds >= 0.5)
 
 
 def executors(application):
@@ -87,8 +133,12 @@ def on_spark(folder, master, kills):
     import cruisefit.spark
 
     os.environ["PYSPARK_PYTHON"] = os.environ["PYSPARK_DRIVER_PYTHON"] = sys.executable
+    # A job of minutes on two processors: Java's second compiler and its parallel collectors cost more than they save.
+    short = "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC"
     session = (
         SparkSession.builder.master(master)
+        .config("spark.driver.extraJavaOptions", short)
+        .config("spark.executor.extraJavaOptions", short)
         .config("spark.ui.enabled", "false")
         .config("spark.sql.shuffle.partitions", "8")
         .config("spark.executor.memory", "1g")
@@ -99,20 +149,17 @@ def on_spark(folder, master, kills):
     session.sparkContext.setLogLevel("ERROR")
     done = threading.Event()
     killer = threading.Thread(target=kill_some, args=(session.sparkContext.applicationId, kills, done))
-    begun = time.perf_counter()
     killer.start()
     model = cruisefit.Model.initial(FIXTURE / "AIRCRAFT.ron", FIXTURE / "guide.csv")
     reports = session.read.parquet(str(folder / "parquet"))
     flights = cruisefit.spark.flights(reports, report="content", path="path")
     cruisefit.spark.adapt(flights, [model]).write.parquet(str(folder / "adapted"))
-    wall = time.perf_counter() - begun
     done.set()
     killer.join()
     session.stop()
     session.sparkContext._gateway.shutdown()
     session.sparkContext._gateway.proc.stdin.close()
     session.sparkContext._gateway.proc.wait()
-    return wall
 
 
 def main():
@@ -121,19 +168,23 @@ def main():
     parser.add_argument("--flights", type=int, default=50)
     parser.add_argument("--kill", type=int, default=0)
     parser.add_argument("--master", default="local-cluster[2,1,2048]")
+    parser.add_argument("--on-spark", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--program", type=Path, default=ROOT / "target" / "release" / "cruisefit")
     arguments = parser.parse_args()
+    if arguments.on_spark:
+        on_spark(arguments.on_spark, arguments.master, arguments.kill)
+        return
     folder = Path(tempfile.mkdtemp(prefix="cruisefit-fleet-"))
     write_reports(folder, arguments.tails, arguments.flights)
     model = folder / "MODEL.ron"
     cruisefit.Model.initial(FIXTURE / "AIRCRAFT.ron", FIXTURE / "guide.csv").save(model)
-    before, begun = cpu_s(), time.perf_counter()
-    command = [arguments.program, "adapt", folder / "reports", "--model", model, "-o", folder / "out", "--no-progress"]
-    subprocess.run([str(word) for word in command], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    one = (cpu_s() - before, time.perf_counter() - begun)
-    before = cpu_s()
-    wall = on_spark(folder, arguments.master, arguments.kill)
-    many = (cpu_s() - before, wall)
+    # Two processors for both sides.
+    two = ["taskset", "-c", ",".join(map(str, sorted(os.sched_getaffinity(0))[:2]))]
+    adapt = [arguments.program, "adapt", folder / "reports", "--model", model, "-o", folder / "out", "--no-progress"]
+    one = Session([*two, *adapt])
+    here = [sys.executable, __file__, "--on-spark", folder, "--master", arguments.master, "--kill", arguments.kill]
+    many = Session([*two, *here])
+    print(many.output, end="")
     rows = {row["tail"]: row for row in pq.read_table(folder / "adapted").to_pylist()}
     equal = 0
     for tail, row in rows.items():
@@ -143,8 +194,9 @@ def main():
         equal += ours == theirs
     print(f"{arguments.tails * arguments.flights} reports of {arguments.tails} tails; {equal} of {len(rows)} tails on Spark equal "
           "the command line's to the bit (model, segments, flights)")
-    print(f"command line: {one[0]:.1f} CPU s, {one[1]:.1f} s; Spark: {many[0]:.1f} CPU s, {many[1]:.1f} s; "
-          f"ratio {many[0] / one[0]:.1f} by CPU, {many[1] / one[1]:.1f} by wall clock")
+    print(f"command line: {one.cpu_s():.1f} CPU s ({one.by_kind()}), {one.wall_s:.1f} s\n"
+          f"Spark: {many.cpu_s():.1f} CPU s ({many.by_kind()}), {many.wall_s:.1f} s\n"
+          f"ratio {many.cpu_s() / one.cpu_s():.2f} by CPU, {many.wall_s / one.wall_s:.2f} by wall clock")
     shutil.rmtree(folder)
     sys.exit(equal != arguments.tails)
 

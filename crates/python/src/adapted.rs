@@ -144,6 +144,11 @@ impl Adapted {
         page::report(&self.summary, &results, title)
     }
 
+    /// The charts of a tail as SVG.
+    fn plot(&self, tail: &str) -> PyResult<String> {
+        Ok(page::plot(&self.tail(tail)?.result))
+    }
+
     /// Path below the folder and bytes of every file that `cruisefit adapt` writes into a new folder.
     fn files(&self, py: Python<'_>, title: String) -> PyResult<Vec<(String, Vec<u8>)>> {
         let adapted = self.clone();

@@ -19,7 +19,9 @@ use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
 use crate::failure::Failure;
+use crate::recorded_rows;
 use crate::tables::{plain, to_batch, to_csv};
+use crate::warned::Warnings;
 use crate::work::{Caller, run};
 
 /// How reports are read: by which mapping and which trim criteria.
@@ -66,13 +68,13 @@ impl Source {
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
         let reading = self.clone();
-        let read = run(py, threads, move |caller| {
-            read_all(caller, &paths, |path, reader| match std::fs::read(path) {
+        run(py, threads, move |caller| {
+            let read = read_all(caller, &paths, |path, reader| match std::fs::read(path) {
                 Ok(bytes) => reading.read_one(reader, path, &bytes),
                 Err(error) => (Vec::new(), vec![RefusedReport::whole(path.clone(), error)]),
-            })
-        })?;
-        Ok(self.flights(read))
+            })?;
+            Ok(reading.flights(read))
+        })
     }
 
     /// Reads contents in memory under the names given.
@@ -83,12 +85,12 @@ impl Source {
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
         let reading = self.clone();
-        let read = run(py, threads, move |caller| {
-            read_all(caller, &reports, |(name, bytes), reader| {
+        run(py, threads, move |caller| {
+            let read = read_all(caller, &reports, |(name, bytes), reader| {
                 reading.read_one(reader, name, bytes)
-            })
-        })?;
-        Ok(self.flights(read))
+            })?;
+            Ok(reading.flights(read))
+        })
     }
 
     /// Reads the rows of a recording; the mapping states which column is what.
@@ -99,16 +101,16 @@ impl Source {
         table: AnyRecordBatch,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
-        if self.mapping.is_none() {
+        let Some(mapping) = self.mapping.clone() else {
             return Err(Failure::input("the rows of a recording need a mapping").into());
-        }
+        };
         let batches = batches_of(table)?;
         let reading = self.clone();
-        let read = run(py, threads, move |_| {
-            let text = to_csv(&plain(batches)?)?;
-            Ok(reading.read_one(&mut FlightReader::default(), &name, &text))
-        })?;
-        Ok(self.flights(vec![read]))
+        run(py, threads, move |caller| {
+            let how = (&mapping, &reading.criteria);
+            let read = recorded_rows::read(&name, plain(batches)?, how, caller)?;
+            Ok(reading.flights(vec![read]))
+        })
     }
 }
 
@@ -200,6 +202,13 @@ impl Flights {
             all.refused.extend(other.refused.iter().cloned());
         }
         Self::new(all, self.criteria.clone())
+    }
+
+    /// Looks for copies and contradictions, and warns of copies.
+    fn look_through(&self, py: Python<'_>) -> PyResult<()> {
+        Warnings::of(py, || {
+            self.distinct();
+        })
     }
 
     /// The flights of some tails.

@@ -25,8 +25,11 @@ mod failure;
 mod flights;
 mod model;
 mod points;
+mod recorded_rows;
 mod simulated;
+mod starting;
 mod tables;
+mod warned;
 mod work;
 
 /// The extension module `cruisefit._native`.
@@ -46,6 +49,8 @@ mod _native {
     use crate::model::Model;
     #[pymodule_export]
     use crate::simulated::{Simulated, simulate};
+    #[pymodule_export]
+    use crate::starting::{mapping_of_bytes, mapping_of_table, public_guide, public_types};
 
     use pyo3::prelude::*;
 

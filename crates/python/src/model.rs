@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use perf_model::{Aircraft, Guide};
+use pipeline::evaluation::{TailCounts, TailData, TailResult};
 use pipeline::model_file::ModelFile;
 use pipeline::model_table;
 use pipeline::models::Models;
@@ -94,6 +95,20 @@ impl Model {
         })?;
         let schema = batches.first().map_or(schema, arrow_array::RecordBatch::schema);
         Ok((PyTable::try_new(batches, schema)?, refused))
+    }
+
+    /// The charts of the model as SVG.
+    fn plot(&self) -> String {
+        let file = self.file.as_ref().clone();
+        let tail = file.tail().unwrap_or_else(|| file.initial.aircraft().name()).to_owned();
+        let data = TailData {
+            tail,
+            model: file,
+            segments: Vec::new(),
+            counts: TailCounts::default(),
+            notes: Vec::new(),
+        };
+        page::plot(&TailResult::as_given(data, Predicts::WholeModel))
     }
 
     /// One row per node of the drag table.

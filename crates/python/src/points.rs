@@ -69,7 +69,7 @@ fn predict_batch(
     any_measured: bool,
 ) -> Result<Predicted, Failure> {
     let at_once = points.level_columns(|column| numbers(batch.column(column)));
-    let predicted = match at_once.filter(|_| predictor.needs_conditions_only()) {
+    let predicted = match at_once.filter(|_| predictor.predicts_columns()) {
         Some(columns) => {
             let measured = columns.measured_fuel_flow_kg_s().filter(|_| any_measured);
             predictor.at_level_flights(columns.flights(), measured)

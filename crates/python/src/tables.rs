@@ -213,12 +213,7 @@ pub(crate) fn to_csv(batches: &[RecordBatch]) -> Result<Vec<u8>, Failure> {
     for (place, batch) in batches.iter().enumerate() {
         let schema = batch.schema();
         if place == 0 {
-            for (column, field) in schema.fields().iter().enumerate() {
-                if column > 0 {
-                    text.push(',');
-                }
-                append_text(&mut text, field.name());
-            }
+            text.push_str(&header(batch));
             text.push('\n');
         }
         let readers = schema
@@ -228,16 +223,39 @@ pub(crate) fn to_csv(batches: &[RecordBatch]) -> Result<Vec<u8>, Failure> {
             .map(|(field, array)| Reader::new(field.name(), array))
             .collect::<Result<Vec<_>, _>>()?;
         for row in 0..batch.num_rows() {
-            for (column, reader) in readers.iter().enumerate() {
-                if column > 0 {
-                    text.push(',');
-                }
-                append(&mut text, reader.value(row));
-            }
+            append_line(&mut text, &readers, row);
             text.push('\n');
         }
     }
     Ok(text.into_bytes())
+}
+
+/// The line of a table's names.
+pub(crate) fn header(batch: &RecordBatch) -> String {
+    let mut text = String::new();
+    for (column, field) in batch.schema().fields().iter().enumerate() {
+        if column > 0 {
+            text.push(',');
+        }
+        append_text(&mut text, field.name());
+    }
+    text
+}
+
+/// The line of a row.
+pub(crate) fn line(readers: &[Reader<'_>], row: usize) -> String {
+    let mut text = String::new();
+    append_line(&mut text, readers, row);
+    text
+}
+
+fn append_line(text: &mut String, readers: &[Reader<'_>], row: usize) {
+    for (column, reader) in readers.iter().enumerate() {
+        if column > 0 {
+            text.push(',');
+        }
+        append(text, reader.value(row));
+    }
 }
 
 fn append(text: &mut String, value: Value<'_>) {

@@ -1,4 +1,5 @@
-//! One call's work: in threads of its own, without the interpreter's lock, interruptible, no panic across the border.
+//! One call's work: in threads of its own, without the interpreter's lock, interruptible, its warnings raised, no panic across
+//! the border.
 
 use std::any::Any;
 use std::num::NonZeroUsize;
@@ -11,6 +12,7 @@ use std::time::Duration;
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
+use crate::warned::Warnings;
 
 /// How long the calling thread waits before it asks for signals. Our choice: shorter than a person notices.
 const BETWEEN_SIGNALS: Duration = Duration::from_millis(50);
@@ -32,15 +34,18 @@ impl Caller {
 /// Runs `job` in a pool of `threads` threads (one per processor without a number) and waits for it.
 ///
 /// # Errors
-/// The job's own, a panic as `InternalError`, or what a signal handler raised.
+/// The job's own, a panic as `InternalError`, a warning that is to be an error, or what a signal handler raised.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<NonZeroUsize>,
     job: impl FnOnce(&Caller) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
     // Not the process's common pool: its threads would be missing in a process that is forked later.
+    let warnings = Warnings::new();
+    let of_threads = warnings.clone();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.map_or(0, NonZeroUsize::get))
+        .start_handler(move |_| of_threads.listen_to_thread())
         .build()
         .map_err(Failure::internal)?;
     let caller = Caller::default();
@@ -53,7 +58,10 @@ pub(crate) fn run<T: Send + 'static>(
     loop {
         let waiting = &mut receive;
         match py.detach(move || waiting.recv_timeout(BETWEEN_SIGNALS)) {
-            Ok(Ok(result)) => return Ok(result?),
+            Ok(Ok(result)) => {
+                warnings.raise(py)?;
+                return Ok(result?);
+            }
             Ok(Err(panic)) => return Err(panicked(panic.as_ref()).into()),
             Err(RecvTimeoutError::Timeout) => {
                 if let Err(signal) = py.check_signals() {

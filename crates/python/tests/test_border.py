@@ -10,6 +10,7 @@ import resource
 import signal
 import threading
 import time
+import warnings
 
 import pyarrow as pa
 import pytest
@@ -162,3 +163,28 @@ def test_results_show_themselves(initial, segments):
     tail = diagnosis.diagnoses[0]
     assert diagnosis[tail.tail] is not None and tail.verdict.advice
     assert tail.causes == sorted(tail.causes, key=lambda cause: -cause.probability)
+
+
+def test_warnings_of_the_library_reach_the_caller(initial):
+    content = REPORT.read_bytes()
+    with pytest.warns(cruisefit.DataWarning, match="1 report is a copy of others") as caught:
+        copies = cruisefit.segment([("a.txt", content), ("b.txt", content)])
+    assert [warning.filename for warning in caught] == [__file__]
+    assert len(copies.flights.column("flight")) == 1
+
+    with warnings.catch_warnings(), pytest.raises(cruisefit.DataWarning, match="copy"):
+        warnings.simplefilter("error", cruisefit.DataWarning)
+        cruisefit.segment([("a.txt", content), ("b.txt", content)])
+
+
+def test_warnings_do_not_depend_on_threads():
+    content = REPORT.read_bytes()
+    reports = [(f"{name}.txt", content) for name in "abcdef"]
+
+    def said(threads):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            cruisefit.segment(reports, threads=threads)
+        return [str(warning.message) for warning in caught]
+
+    assert said(1) == said(4) != []

@@ -188,3 +188,57 @@ def test_the_demonstration(run, demonstration, tmp_path):
     diagnosis = cruisefit.Model.load(model_file).diagnose(cruisefit.segment(later))
     assert diagnosis.to_json() == (tmp_path / "diagnosis.json").read_text()
     assert diagnosis.to_dict()["schema"] == "cruisefit.diagnosis/1"
+
+
+def test_one_process_at_a_time_writes_a_folder(fixture, models, tmp_path):
+    """Python and the command line keep each other out by the same lock."""
+    import os
+    import subprocess
+
+    from conftest import command_line
+
+    from cruisefit._folder import folder_lock
+
+    initial = models / "initial.ron"
+    adapted = cruisefit.Model.load(initial).adapt(cruisefit.segment(fixture / "reports"), law="paper")
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    with folder_lock(folder):
+        with pytest.raises(BlockingIOError, match=f"process {os.getpid()} on "):
+            adapted.write(folder)
+        command = [command_line(), "adapt", fixture / "reports", "--model", initial, "--law", "paper", "-o", folder]
+        refused = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert refused.returncode == 2 and f"process {os.getpid()} on " in refused.stderr
+    assert list(folder.iterdir()) == []
+    adapted.write(folder)
+    assert not any(file.name.startswith(".") for file in folder.iterdir())
+    taken_up = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert taken_up.returncode == 0, taken_up.stderr
+
+
+def test_charts_and_public_models(run, fixture, models, tmp_path):
+    model = cruisefit.Model.load(models / "initial.ron")
+    run("plot", models / "initial.ron", "-o", tmp_path / "model.svg")
+    model.plot().save(tmp_path / "here.svg")
+    assert (tmp_path / "here.svg").read_bytes() == (tmp_path / "model.svg").read_bytes()
+    adapted = model.adapt(cruisefit.segment(fixture / "reports"), law="paper")
+    adapted.write(tmp_path / "folder")
+    run("plot", tmp_path / "folder", "-o", tmp_path / "tail.svg")
+    assert adapted.plot(adapted.tails[0])._repr_svg_() == (tmp_path / "tail.svg").read_text()
+
+    run("guide", "--type", "b738", "-o", tmp_path)
+    run("init", "--aircraft", tmp_path / "AIRCRAFT.ron", "--guide", tmp_path / "guide.csv", "-o", tmp_path / "B738.ron")
+    assert cruisefit.Model.of_type("b738").to_text() == (tmp_path / "B738.ron").read_text()
+    assert ("A320", 68) in [(code, len(cruisefit.types())) for code, _, _ in cruisefit.types()]
+    with pytest.raises(cruisefit.InputError, match="types"):
+        cruisefit.Model.of_type("X999")
+
+
+def test_a_first_mapping(run, tmp_path):
+    from conftest import FIXTURES
+
+    path = FIXTURES / "a320-traffic" / "fuelflow_a320.csv.gz"
+    text = cruisefit.mapping(path)
+    assert text == run("mapping", path) and "// ?" in text
+    table = pyarrow.csv.read_csv(path)
+    assert "// ?" in cruisefit.mapping(table)

@@ -166,3 +166,32 @@ def test_a_tail_without_a_model_costs_its_row(flights):
     other = cruisefit.Model.initial(folder / "AIRCRAFT.ron", folder / "guide.csv")
     rows = cruisefit.spark.adapt(flights, [other]).collect()
     assert len(rows) == 3 and all("aircraft type" in row.error for row in rows)
+
+
+def test_recordings_whose_samples_are_rows(session):
+    """Samples in any order, by flight: the flights of one machine."""
+    from test_recordings import MAPPING, recording
+
+    import pyarrow as pa
+
+    columns = recording(900, 1.0)
+    table = pa.table(columns)
+    mapping = MAPPING.format(more="")
+    alone = cruisefit.segment(table, mapping=mapping)
+    shuffled = table.take(pa.array([(7 * row) % 900 for row in range(900)]))
+    frame = session.createDataFrame(shuffled.to_pandas()).repartition(3)
+    read = cruisefit.spark.recordings(frame, flight=["tail", "flight"], time="utc", mapping=mapping)
+    rows = sorted(read.collect(), key=lambda row: row.path)
+    assert [row.path for row in rows] == ["D-ABCD/XX,2", "D-ABCD/XX1"]
+    theirs = {row["flight"]: row for row in alone.state().to_pylist()}
+    for row in rows:
+        assert row.refused is None
+        assert (row.content, row.segments_csv) == tuple(
+            theirs[row.flight][name] for name in ("content", "segments_csv")
+        )
+    broken = frame.drop("mach")
+    (reason,) = {
+        row.refused
+        for row in cruisefit.spark.recordings(broken, flight="flight", time="utc", mapping=mapping).collect()
+    }
+    assert "mach" in reason

@@ -14,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cruisefit
+from conftest import FIXTURES
 
 ROWS = {
     "mass_kg": [15000.0, 14000.0, 13500.5],
@@ -129,8 +130,6 @@ def test_segments_are_a_table(segments):
 
 def test_a_recording_as_rows_of_a_table():
     """The rows of a CSV recording, read by polars, are the recording."""
-    from conftest import FIXTURES
-
     path = FIXTURES / "a320-traffic" / "fuelflow_a320.csv.gz"
     criteria = "airbus-report-02"  # the default finds no steady segment in it
     by_file = cruisefit.segment(path, mapping="traffic-a320", criteria=criteria)
@@ -138,3 +137,25 @@ def test_a_recording_as_rows_of_a_table():
     by_rows = cruisefit.segment(rows, mapping="traffic-a320", criteria=criteria, name=path.name)
     assert len(by_file) > 0
     assert by_rows.to_csv() == by_file.to_csv()
+
+
+def test_columns_of_a_whole_model_are_single_predictions():
+    """A heading changes nothing where the latitude is missing, but such points are predicted one by one."""
+    folder = FIXTURES / "global5000"
+    initial = cruisefit.Model.initial(folder / "AIRCRAFT.ron", folder / "guide.csv")
+    model = initial.adapt(cruisefit.segment(folder / "reports")).model()
+    draw = np.random.default_rng(20261122).uniform
+    points = pa.table({
+        "mass_kg": draw(24_000, 40_000, 500), "pressure_altitude_ft": draw(30_000, 48_000, 500),
+        "mach": draw(0.70, 0.90, 500), "isa_deviation_c": draw(-15, 15, 500),
+    })
+    together = model.predict(points)
+    one_by_one = model.predict(points.append_column("true_heading_deg", pa.array([90.0] * 500)))
+    assert "remainder_percent" in together.column_names
+    for name in together.column_names[4:]:
+        ours, theirs = together.column(name), one_by_one.column(name)
+        assert ours.is_valid().equals(theirs.is_valid()) and ours.null_count < 100
+        scale = {"remainder_percent": 100.0, "fuel_flow_std_kg_s": 1e-3}.get(name, 0.0)
+        tolerance = 1e-8 if name == "fuel_flow_std_kg_s" else 1e-12
+        ours, theirs = (column.drop_null().to_numpy() for column in (ours, theirs))
+        assert np.all(np.abs(ours - theirs) <= tolerance * np.maximum(np.abs(theirs), scale)), name

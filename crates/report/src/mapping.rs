@@ -6,6 +6,7 @@
 mod derive;
 mod file;
 mod first;
+mod in_memory;
 mod level;
 mod pieces;
 mod plan;
@@ -19,6 +20,7 @@ use crate::cruise_text::Parsed;
 use crate::refusal::Refusal;
 use file::MappingFile;
 pub use first::first_mapping;
+pub use in_memory::{Cells, Lines, TableRows};
 pub use pieces::{Piece, Pieces};
 use plan::Plan;
 pub use stream::{MappedFlight, MappedReport, Stream};

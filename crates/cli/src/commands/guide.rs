@@ -5,6 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use perf_model::poll_schumann::{self, Parameters, STATED_ACCURACY_PERCENT, guide::PublicGuide};
+use pipeline::public_guide::aircraft_text;
 
 use crate::args::GuideArgs;
 use crate::commands::Outcome;
@@ -29,7 +30,7 @@ pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
     let code = code.to_ascii_uppercase();
     let guide =
         poll_schumann::guide::guide(&code, parameters).map_err(|error| bad(error.to_string()))?;
-    let aircraft = aircraft_text(&guide, parameters).map_err(bad)?;
+    let aircraft = aircraft_text(&guide, parameters).map_err(|error| bad(error.to_string()))?;
     make_folder(folder)?;
     write_atomically(&folder.join("AIRCRAFT.ron"), aircraft.as_bytes())?;
     write_atomically(&folder.join("guide.csv"), guide.to_csv().as_bytes())?;
@@ -54,18 +55,6 @@ fn text(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> String {
         folder = show(folder)
     );
     text
-}
-
-fn aircraft_text(guide: &PublicGuide, parameters: &Parameters) -> Result<String, String> {
-    let config = ron::ser::PrettyConfig::new().struct_names(false);
-    let body =
-        ron::ser::to_string_pretty(&guide.aircraft, config).map_err(|error| error.to_string())?;
-    Ok(format!(
-        "// Public model of Poll and Schumann (The Aeronautical Journal 125 (1284), 2021), parameters of {} as in pycontrails 0.63.5.\n\
-         // Fuel burn within {STATED_ACCURACY_PERCENT} % in the majority of cases; not the manufacturer's book, and not for flight planning.\n\
-         // The TSFC law is the one nearest to the model's engine: {:.1} % root mean square remain.\n{body}\n",
-        parameters.type_code, guide.tsfc_residual_percent
-    ))
 }
 
 fn list() -> String {

@@ -134,6 +134,102 @@ impl Smooth {
     }
 }
 
+/// A smooth function prepared for many values: the kernel at all knots from two exponentials, and the mean as a sum over
+/// knots.
+///
+/// ```text
+/// k(z, Z₀ + j·d) = k(z, Z₀)·r·(r·q)·(r·q²)…,  r = exp((z − Z₀)·d − d²/2),  q = exp(−d²);   f(z) = s·z + k(Z, z)ᵀL⁻ᵀc
+/// ```
+#[derive(Clone, Debug)]
+pub(crate) struct Prepared {
+    text: SmoothText,
+    distance: f64,
+    /// exp(−d²).
+    ratio_falls: f64,
+    slope: f64,
+    /// Of the kernel at each knot.
+    weights: Vec<f64>,
+    /// Rows of the lower Cholesky factor, each ending in the inverse of its diagonal.
+    root: Vec<f64>,
+}
+
+impl Smooth {
+    /// With the means of its terms.
+    pub(crate) fn prepared(&self, means: impl Iterator<Item = f64>) -> Prepared {
+        let count = self.text.count;
+        let mut means = means.chain(core::iter::repeat(0.0));
+        let slope = means.next().unwrap_or(0.0);
+        let mut weights: Vec<f64> = means.take(count).collect();
+        for k in (0..count).rev() {
+            for j in k + 1..count {
+                weights[k] -= self.root[(j, k)] * weights[j];
+            }
+            weights[k] /= self.root[(k, k)];
+        }
+        let mut root = Vec::with_capacity(count * (count + 1) / 2);
+        for k in 0..count {
+            root.extend((0..k).map(|j| self.root[(k, j)]));
+            root.push(1.0 / self.root[(k, k)]);
+        }
+        let distance = (self.text.knots.1 - self.text.knots.0) / (count - 1) as f64;
+        let ratio_falls = (-distance * distance).exp();
+        Prepared { text: self.text, distance, ratio_falls, slope, weights, root }
+    }
+}
+
+impl Prepared {
+    pub(crate) const fn variable(&self) -> Variable {
+        self.text.variable
+    }
+
+    /// Terms: the slope, then the process.
+    pub(crate) const fn len(&self) -> usize {
+        1 + self.text.count
+    }
+
+    /// Lengths from the middle.
+    pub(crate) fn at(&self, value: f64) -> f64 {
+        (value - self.text.middle) / self.text.length
+    }
+
+    /// Hands the kernel at each knot to `each`.
+    fn kernels(&self, z: f64, mut each: impl FnMut(usize, f64)) {
+        let from_first = z - self.text.knots.0;
+        let mut kernel = (-0.5 * from_first * from_first).exp();
+        let mut ratio = (from_first * self.distance - 0.5 * self.distance * self.distance).exp();
+        for knot in 0..self.text.count {
+            each(knot, kernel);
+            kernel *= ratio;
+            ratio *= self.ratio_falls;
+        }
+    }
+
+    /// The function's mean.
+    pub(crate) fn mean(&self, z: f64) -> f64 {
+        let mut sum = self.slope * z;
+        self.kernels(z, |knot, kernel| sum += self.weights[knot] * kernel);
+        sum
+    }
+
+    /// As [`Smooth::write`].
+    pub(crate) fn write(&self, z: f64, into: &mut [f64]) -> f64 {
+        into[0] = z;
+        let terms = &mut into[1..=self.text.count];
+        self.kernels(z, |knot, kernel| terms[knot] = kernel);
+        let (mut held, mut rest) = (0.0, self.root.as_slice());
+        for k in 0..terms.len() {
+            let (row, behind) = rest.split_at(k + 1);
+            let below: f64 = row[..k].iter().zip(&terms[..k]).map(|(l, term)| l * term).sum();
+            terms[k] = (terms[k] - below) * row[k];
+            held += terms[k] * terms[k];
+            rest = behind;
+        }
+        let (first, last) = self.text.knots;
+        let beyond = (first + self.distance - z).max(z - last + self.distance).max(0.0);
+        (1.0 - held).max(GROWTH_BEYOND * beyond * beyond * beyond).max(0.0)
+    }
+}
+
 impl TryFrom<SmoothText> for Smooth {
     type Error = SmoothError;
     fn try_from(text: SmoothText) -> Result<Self, SmoothError> {
@@ -189,6 +285,29 @@ mod tests {
         // ⅔·5.15³ = 91.06.
         assert!((smooth.write(0.95, &mut one) - 91.06).abs() < 0.01);
         assert!((one[0] - (0.95 - 0.7735) / 0.02).abs() < 1e-9);
+    }
+
+    /// The oracle is the function asked term by term.
+    #[test]
+    fn prepared_it_is_the_same_function() {
+        let values: Vec<f64> = (0..50).map(|k| 0.70 + 0.003 * f64::from(k)).collect();
+        let smooth = Smooth::over(Variable::Mach, 0.02, &values).unwrap();
+        let mean = |k: u32| 0.01 * f64::from(k * k % 7) - 0.02;
+        let means: Vec<f64> = (0..20).map(mean).take(smooth.len()).collect();
+        let prepared = smooth.prepared(means.iter().copied());
+        let (mut terms, mut found) = (vec![0.0; smooth.len()], vec![0.0; smooth.len()]);
+        for step in 0..=300 {
+            let value = 0.4 + 0.002 * f64::from(step);
+            let left = smooth.write(value, &mut terms);
+            let z = prepared.at(value);
+            let left_found = prepared.write(z, &mut found);
+            assert!((left - left_found).abs() < 1e-9 * left.max(1e-3), "{value}: {left_found}");
+            for (term, found) in terms.iter().zip(&found) {
+                assert!((term - found).abs() < 1e-12 * term.abs().max(1.0), "{value}: {found}");
+            }
+            let expected: f64 = terms.iter().zip(&means).map(|(term, mean)| term * mean).sum();
+            assert!((prepared.mean(z) - expected).abs() < 1e-12, "{value}");
+        }
     }
 
     #[test]

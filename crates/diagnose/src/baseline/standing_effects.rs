@@ -1,6 +1,7 @@
 //! Effects that a fleet shows at all times.
 
-use flight::effect::{EffectId, HiddenParameter};
+use effects::EffectPoint;
+use flight::effect::{EffectId, HiddenParameter, NeededInput};
 
 use crate::priors::{CARRIED_DEVIATION, CARRIED_DRAG_RISE_MACHS, CARRIED_SLOPE_DEVIATION};
 
@@ -10,6 +11,15 @@ pub(crate) struct StandingEffect {
     pub(crate) hidden: HiddenParameter,
     /// Prior standard deviation of its size over the typical size; 1 is all that physics says where the size is known.
     pub(crate) deviation: f64,
+}
+
+impl StandingEffect {
+    /// Whether a point lacks what the effect needs: not even a substitute counts.
+    pub(crate) fn lacks_input(&self, point: &EffectPoint) -> bool {
+        point.lacks(self.id).is_some()
+            || (self.id.entry().needs.contains(&NeededInput::Roll)
+                && point.roll_squared_deg2.is_none())
+    }
 }
 
 /// What a fleet shows at all times and no table over lift coefficient and Mach number, and no smooth remainder, can hold: the

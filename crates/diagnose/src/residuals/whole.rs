@@ -2,11 +2,11 @@
 
 use effects::{EffectError, EffectModel, EffectPoint, Effects, ExtendedModel, KnownPoint};
 use flight::Segment;
-use flight::effect::EffectId;
 use perf_model::FlightPoint;
 
 use crate::baseline::Baseline;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
+use crate::residuals::level::WholeModelOfLevels;
 use crate::residuals::predictor::Predictor;
 use crate::residuals::reference::Reference;
 use crate::residuals::signatures::Difference;
@@ -136,6 +136,13 @@ impl<'a> WholeModel<'a> {
         Ok(self.predictor.predict(&response)[0] + carried)
     }
 
+    /// The same model for many flight points of which mass, level, Mach number and temperature alone are known; `None` where it
+    /// needs more than these.
+    #[must_use]
+    pub fn of_levels(&self) -> Option<WholeModelOfLevels> {
+        WholeModelOfLevels::new(&self.model, self.baseline, SAMPLES_OF_A_SEGMENT)
+    }
+
     /// What the effects that the fleet shows at all times make of ln fuel flow.
     fn carried(&self, point: &EffectPoint, known: &KnownPoint) -> Carried {
         let mut recorded = [false; MAXIMUM_CHANNELS];
@@ -146,7 +153,7 @@ impl<'a> WholeModel<'a> {
         for (k, effect) in STANDING_EFFECTS.iter().enumerate() {
             let size = self.baseline.standing_effects()[k];
             // As they were learnt: by their slopes.
-            let slope = if lacks(point, effect.id) {
+            let slope = if effect.lacks_input(point) {
                 None
             } else {
                 let found = self.standing[k].signature(&self.model, known, recorded, &untaught);
@@ -236,11 +243,4 @@ struct Carried {
     slopes: [f64; STANDING_EFFECTS.len()],
     /// Variance by the inputs that lack.
     unknown: f64,
-}
-
-/// Whether a point lacks what an effect needs: not even a substitute counts.
-fn lacks(point: &EffectPoint, effect: EffectId) -> bool {
-    use flight::effect::NeededInput;
-    point.lacks(effect).is_some()
-        || (effect.entry().needs.contains(&NeededInput::Roll) && point.roll_squared_deg2.is_none())
 }

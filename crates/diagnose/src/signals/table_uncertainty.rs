@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use effects::{EffectModel, EffectPoint, ExtendedModel, Response};
 use faer::Mat;
-use lut::{Grid, Outside};
+use lut::{Cell, Grid, Outside};
 
 use crate::math::cholesky::Cholesky;
 use crate::signals::record::FlightRecord;
@@ -256,12 +256,27 @@ impl TableUncertainty {
         else {
             return;
         };
+        self.add_cell(&cell, into);
+    }
+
+    /// The same of a cell of its grid.
+    pub(crate) fn write_at(&self, cell: &Cell, into: &mut [f64]) {
+        into.fill(0.0);
+        self.add_cell(cell, into);
+    }
+
+    fn add_cell(&self, cell: &Cell, into: &mut [f64]) {
         for (node, weight) in cell.nodes().into_iter().zip(cell.weights()) {
             let row = &self.factor[node * self.rank..(node + 1) * self.rank];
             for (slot, value) in into.iter_mut().zip(row) {
                 *slot += weight * value;
             }
         }
+    }
+
+    /// Standard deviation of each node that the factor leaves out; none where it has all nodes.
+    pub(crate) fn left_deviations(&self) -> Vec<f64> {
+        self.left.iter().map(|left| left.sqrt()).collect()
     }
 }
 

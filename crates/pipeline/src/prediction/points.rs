@@ -1,7 +1,8 @@
 //! Predictions at many flight points, as columns.
 
+use diagnose::WholeModelOfLevels;
 use perf_model::fuel_flow::fuel_flow_error_percent;
-use perf_model::{FlightPoint, LevelFlights};
+use perf_model::{FlightPoint, LevelFlights, specific_range::specific_range};
 use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, TemperatureDifference};
 
 use super::{PointPrediction, Predictor};
@@ -18,6 +19,9 @@ pub struct PredictedPoints {
     pub refused: Vec<(usize, String)>,
 }
 
+/// Points without a prediction, and why.
+type Refused = Vec<(usize, String)>;
+
 /// The columns that every prediction has, in order.
 #[derive(Debug)]
 struct Figures {
@@ -31,10 +35,12 @@ struct Figures {
 }
 
 impl Predictor<'_> {
-    /// Whether mass, pressure altitude, Mach number and deviation from the ISA alone decide a prediction. It is then computed
-    /// over columns, within 1e-12 of what [`at`](Self::at) finds.
-    pub fn needs_conditions_only(&self) -> bool {
-        self.whole.is_none() && self.current.without_applied().is_some()
+    /// Whether predictions at points of which mass, pressure altitude, Mach number and deviation from the ISA alone are known
+    /// are computed over columns: within 1e-12 of what [`at`](Self::at) finds, standard deviations of the whole model within
+    /// 1e-8.
+    pub fn predicts_columns(&self) -> bool {
+        let whole = self.whole.is_none() || self.whole_of_levels.is_some();
+        whole && self.current.without_applied().is_some()
     }
 
     /// Predictions at flight points. `measured_kg_s`, where anything was measured: fuel flow at each point, NaN where none.
@@ -43,23 +49,33 @@ impl Predictor<'_> {
         points: &[FlightPoint],
         measured_kg_s: Option<&[f64]>,
     ) -> PredictedPoints {
-        if self.needs_conditions_only() {
-            let column = |of: fn(&FlightPoint) -> f64| points.iter().map(of).collect::<Vec<_>>();
-            let flights = LevelFlights {
-                mass_kg: &column(|point| point.mass.to_kilograms()),
-                pressure_altitude_m: &column(|point| point.pressure_altitude.to_meters()),
-                mach: &column(|point| point.mach.value()),
-                isa_deviation_k: &column(|point| point.isa_deviation.to_kelvin()),
-            };
-            return self.by_columns(flights, measured_kg_s);
-        }
         let (mut figures, mut refused) = (Figures::none(points.len()), Vec::new());
+        // Whether a point goes over columns is a matter of the point alone, not of those around it.
+        let is_plain = |point: &FlightPoint| self.predicts_columns() && self.is_plain(point);
+        let plain: Vec<usize> =
+            (0..points.len()).filter(|place| is_plain(&points[*place])).collect();
+        let column = |of: fn(&FlightPoint) -> f64| {
+            plain.iter().map(|place| of(&points[*place])).collect::<Vec<_>>()
+        };
+        let (found, without) = self.by_columns(LevelFlights {
+            mass_kg: &column(|point| point.mass.to_kilograms()),
+            pressure_altitude_m: &column(|point| point.pressure_altitude.to_meters()),
+            mach: &column(|point| point.mach.value()),
+            isa_deviation_k: &column(|point| point.isa_deviation.to_kelvin()),
+        });
+        figures.set_all(&plain, &found);
+        refused.extend(without.into_iter().map(|(place, reason)| (plain[place], reason)));
+        let mut plain = plain.into_iter().peekable();
         for (place, point) in points.iter().enumerate() {
+            if plain.next_if_eq(&place).is_some() {
+                continue;
+            }
             match self.at(point) {
                 Ok(found) => figures.set(place, &found),
                 Err(reason) => refused.push((place, reason)),
             }
         }
+        refused.sort_by_key(|(place, _)| *place);
         figures.into_predicted(self, measured_kg_s, refused)
     }
 
@@ -69,36 +85,36 @@ impl Predictor<'_> {
         flights: LevelFlights<'_>,
         measured_kg_s: Option<&[f64]>,
     ) -> PredictedPoints {
-        if self.needs_conditions_only() {
-            return self.by_columns(flights, measured_kg_s);
+        if self.predicts_columns() {
+            let (figures, refused) = self.by_columns(flights);
+            return figures.into_predicted(self, measured_kg_s, refused);
         }
         let points: Vec<FlightPoint> =
             (0..flights.count()).map(|place| point_of(flights, place)).collect();
         self.at_points(&points, measured_kg_s)
     }
 
-    fn by_columns(
-        &self,
-        flights: LevelFlights<'_>,
-        measured_kg_s: Option<&[f64]>,
-    ) -> PredictedPoints {
+    /// Whether no more than what columns hold decides the prediction at a point.
+    fn is_plain(&self, point: &FlightPoint) -> bool {
+        self.whole.is_none()
+            || (point.latitude.is_none()
+                && point.true_heading.is_none()
+                && point.center_of_gravity_percent_mac.is_none()
+                && point.anti_ice != Some(true))
+    }
+
+    fn by_columns(&self, flights: LevelFlights<'_>) -> (Figures, Refused) {
+        if let Some(whole) = &self.whole_of_levels {
+            return self.by_whole_columns(whole, flights);
+        }
         let model = self.current.base();
         let mut figures = Figures::none(flights.count());
         let variances = self.model.posterior().map(adapt::bayes::Posterior::variance_by_cell);
         let known = variances.as_ref().zip(self.plain.as_ref());
         let mut next = 0;
         let mut refused = Vec::new();
-        let mut refuse_up_to = |figures: &mut Figures, next: usize, place: usize| {
-            for missing in next..place {
-                // Columns say no reason, and a limit may be drawn a rounding apart.
-                match self.at(&point_of(flights, missing)) {
-                    Ok(found) => figures.set(missing, &found),
-                    Err(reason) => refused.push((missing, reason)),
-                }
-            }
-        };
         model.predict_level(flights, |place, predicted| {
-            refuse_up_to(&mut figures, next, place);
+            self.one_by_one(flights, next..place, &mut figures, &mut refused);
             next = place + 1;
             let total_kg_s = predicted.fuel_flow_total.to_kilograms_per_second();
             figures.fuel_flow_kg_s[place] = total_kg_s;
@@ -116,8 +132,59 @@ impl Predictor<'_> {
                 figures.fuel_flow_std_kg_s[place] = self.with_scatter(kg_s, total_kg_s);
             }
         });
-        refuse_up_to(&mut figures, next, flights.count());
-        figures.into_predicted(self, measured_kg_s, refused)
+        self.one_by_one(flights, next..flights.count(), &mut figures, &mut refused);
+        (figures, refused)
+    }
+
+    /// All that was learnt refers to the initial table; what else is stated of a point is by the learnt one, on the same grid.
+    fn by_whole_columns(
+        &self,
+        whole: &WholeModelOfLevels,
+        flights: LevelFlights<'_>,
+    ) -> (Figures, Refused) {
+        let (initial, current) = (self.model.initial.base(), self.current.base());
+        let mut figures = Figures::none(flights.count());
+        figures.remainder_percent = vec![f64::NAN; flights.count()];
+        let (mut refused, mut scratch) = (Vec::new(), Vec::new());
+        let mut next = 0;
+        initial.predict_level(flights, |place, predicted| {
+            let altitude_m = flights.pressure_altitude_m[place];
+            let Some(found) = whole.correction(predicted, altitude_m, &mut scratch) else { return };
+            self.one_by_one(flights, next..place, &mut figures, &mut refused);
+            next = place + 1;
+            let total_kg_s =
+                predicted.fuel_flow_total.to_kilograms_per_second() * found.ln_correction.exp();
+            let drag_coefficient = current.drag_table().interpolate(&predicted.cell);
+            let by_table_kg_s = drag_coefficient * predicted.fuel_flow_per_drag_coefficient_kg_s;
+            let total = FuelFlowTotal::kilograms_per_second(total_kg_s);
+            figures.fuel_flow_kg_s[place] = total_kg_s;
+            figures.fuel_flow_std_kg_s[place] =
+                self.with_scatter(found.variance.sqrt() * total_kg_s, total_kg_s);
+            figures.specific_range_m_kg[place] =
+                specific_range(predicted.true_airspeed, total).to_meters_per_kilogram();
+            figures.lift_coefficient[place] = predicted.lift_coefficient;
+            figures.drag_coefficient[place] = drag_coefficient;
+            figures.extrapolated[place] = flag(current.uses_extrapolated(&predicted.cell));
+            figures.remainder_percent[place] = 100.0 * (total_kg_s / by_table_kg_s - 1.0);
+        });
+        self.one_by_one(flights, next..flights.count(), &mut figures, &mut refused);
+        (figures, refused)
+    }
+
+    /// Points of which columns say nothing: they give no reason, and a limit may be drawn a rounding apart.
+    fn one_by_one(
+        &self,
+        flights: LevelFlights<'_>,
+        places: core::ops::Range<usize>,
+        figures: &mut Figures,
+        refused: &mut Refused,
+    ) {
+        for place in places {
+            match self.at(&point_of(flights, place)) {
+                Ok(found) => figures.set(place, &found),
+                Err(reason) => refused.push((place, reason)),
+            }
+        }
     }
 }
 
@@ -132,6 +199,26 @@ impl Figures {
             drag_coefficient: none(),
             extrapolated: none(),
             remainder_percent: Vec::new(),
+        }
+    }
+
+    /// The figures of some points, at their places.
+    fn set_all(&mut self, places: &[usize], found: &Self) {
+        if !found.remainder_percent.is_empty() {
+            self.remainder_percent.resize(self.fuel_flow_kg_s.len(), f64::NAN);
+        }
+        for (into, from) in [
+            (&mut self.fuel_flow_kg_s, &found.fuel_flow_kg_s),
+            (&mut self.fuel_flow_std_kg_s, &found.fuel_flow_std_kg_s),
+            (&mut self.specific_range_m_kg, &found.specific_range_m_kg),
+            (&mut self.lift_coefficient, &found.lift_coefficient),
+            (&mut self.drag_coefficient, &found.drag_coefficient),
+            (&mut self.extrapolated, &found.extrapolated),
+            (&mut self.remainder_percent, &found.remainder_percent),
+        ] {
+            for (place, value) in places.iter().zip(from) {
+                into[*place] = *value;
+            }
         }
     }
 

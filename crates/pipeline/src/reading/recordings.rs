@@ -65,8 +65,17 @@ pub fn one_by_one(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Do
 
 /// The flights in a recording, plain or gzip, and what of it was refused. The result does not depend on `spread`.
 pub fn read(mapped: &Mapped<'_>, source: impl BufRead, spread: &Spread<'_>) -> FileRead {
+    read_pieces(mapped, Pieces::new(source), spread)
+}
+
+/// The same of a recording's pieces, which may be those of a table in memory; that none begins is a refusal.
+pub fn read_pieces(
+    mapped: &Mapped<'_>,
+    pieces: Result<Pieces<impl BufRead>, Refusal>,
+    spread: &Spread<'_>,
+) -> FileRead {
     let mut read = Read { mapped: *mapped, flights: Vec::new(), refused: Vec::new() };
-    match read.all(source, spread) {
+    match pieces.and_then(|pieces| read.all(pieces, spread)) {
         Ok(()) => (read.flights, read.refused),
         Err(refusal) => (Vec::new(), vec![RefusedReport::at(mapped.path.to_owned(), &refusal)]),
     }
@@ -79,9 +88,12 @@ struct Read<'a> {
 }
 
 impl Read<'_> {
-    fn all(&mut self, source: impl BufRead, spread: &Spread<'_>) -> Result<(), Refusal> {
+    fn all(
+        &mut self,
+        mut pieces: Pieces<impl BufRead>,
+        spread: &Spread<'_>,
+    ) -> Result<(), Refusal> {
         let name = self.mapped.path.file_name().unwrap_or_default().to_string_lossy();
-        let mut pieces = Pieces::new(source)?;
         let mut stream = Stream::begin(self.mapped.mapping, &mut pieces, Some(&name))?;
         let mut waiting: Vec<MappedFlight> = Vec::new();
         let mut has_ended = false;

@@ -33,8 +33,8 @@ from .diagnosis import (
     effects,
 )
 from .errors import CruisefitError, DataWarning, InputError, InternalError, PredictionWarning
-from .model import Model
-from .segments import PRESETS, Check, Refused, Segments, check, segment
+from .model import Model, types
+from .segments import PRESETS, Check, Refused, Segments, check, mapping, segment
 from .simulation import Simulation, simulate
 
 __all__ = [
@@ -65,7 +65,9 @@ __all__ = [
     "diagnose",
     "effects",
     "evaluate",
+    "mapping",
     "merge",
     "segment",
     "simulate",
+    "types",
 ]

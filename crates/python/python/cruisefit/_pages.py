@@ -8,7 +8,21 @@ import os
 import tempfile
 from pathlib import Path
 
-__all__ = ["framed", "read_text", "write_bytes"]
+__all__ = ["Chart", "framed", "read_text", "write_bytes"]
+
+
+class Chart:
+    """Charts as SVG, which a notebook shows."""
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the SVG file: the bytes of ``cruisefit plot``."""
+        write_bytes(path, self.svg.encode())
+
+    def _repr_svg_(self) -> str:
+        return self.svg
 
 
 def framed(page: str, height_px: int = 600) -> str:

@@ -5,16 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tempfile
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
 from . import _native
-from ._pages import framed, read_text, write_bytes
+from ._folder import folder_lock
+from ._pages import Chart, framed, read_text, write_bytes
 from ._tables import Table, like
-from .errors import DataWarning, InputError
+from .errors import InputError, warn
 from .model import Model
 from .segments import Refused, Segments
 
@@ -74,6 +73,14 @@ class _Run:
         """The result as one HTML page with charts."""
         return self._native.page(self._title)
 
+    def plot(self, tail: str) -> Chart:
+        """A tail's charts, its segments among them: ``cruisefit plot DIR --tail TAIL``.
+
+        Raises:
+            InputError: There is no such tail.
+        """
+        return Chart(self._native.plot(tail))
+
     def _repr_html_(self) -> str:
         return framed(self.page())
 
@@ -117,24 +124,24 @@ class Adaptation(_Run):
         return self._native.begun(tail)
 
     def write(self, folder: str | os.PathLike[str]) -> None:
-        """Writes a new folder: the files that ``cruisefit adapt`` writes into one, which can go on from it.
+        """Writes a new folder: the files that ``cruisefit adapt`` writes into one, which can go on from it. While it is
+        written it is locked as the command line locks it; ``STATE.ron``, without which it holds nothing, comes last.
 
         Raises:
             FileExistsError: The folder exists and is not empty. What a folder holds is continued with :meth:`read` and
                 ``begun``, and written to another one; or at the command line.
+            BlockingIOError: Another process is writing the folder; the text names it.
         """
         target = Path(folder)
-        if target.exists() and any(target.iterdir()):
-            raise FileExistsError(f"{target}: found a folder with files, expected a new one")
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".cruisefit-", dir=target.parent) as temporary:
-            # A folder in it, because the temporary one can be read by its owner alone.
-            made = Path(temporary) / "folder"
-            for name, content in self._native.files(self._title):
-                file = made / name
+        target.mkdir(parents=True, exist_ok=True)
+        with folder_lock(target) as lock:
+            if any(file != lock for file in target.iterdir()):
+                raise FileExistsError(f"{target}: found a folder with files, expected a new one")
+            files = self._native.files(self._title)
+            for name, content in sorted(files, key=lambda file: file[0] == "STATE.ron"):
+                file = target / name
                 file.parent.mkdir(parents=True, exist_ok=True)
                 write_bytes(file, content)
-            os.replace(made, target)
 
     @classmethod
     def read(cls, folder: str | os.PathLike[str]) -> Adaptation:
@@ -311,9 +318,9 @@ def adapt(
 
 
 def warn_of_findings(findings: str) -> None:
-    """Warns of serious findings in the data, at the caller's caller."""
+    """Warns of serious findings in the data."""
     if findings:
-        warnings.warn(findings.strip(), DataWarning, stacklevel=3)
+        warn([findings.strip()])
 
 
 def evaluate(

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+
 __all__ = ["CruisefitError", "DataWarning", "InputError", "InternalError", "PredictionWarning"]
 
 
@@ -56,7 +61,8 @@ class PredictionWarning(UserWarning):
 
 
 class DataWarning(UserWarning):
-    """Serious findings in recorded data; the text lists them."""
+    """What recorded data or a model gives reason to look at: serious findings, copies of reports, dates that cannot be right,
+    what was left out. What the command line prints as ``WARN``."""
 
 
 def found_and_expected(message: str) -> tuple[str | None, str | None]:
@@ -72,3 +78,13 @@ def found_and_expected(message: str) -> tuple[str | None, str | None]:
     if not separator or not comma:
         return None, None
     return found, expected
+
+
+def warn(messages: Sequence[str]) -> None:
+    """Raises a :class:`DataWarning` for each message, at the line outside of this package that led here."""
+    package = str(Path(__file__).parent)
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(package):
+        level, frame = level + 1, frame.f_back
+    for message in messages:
+        warnings.warn(message, DataWarning, stacklevel=level)

@@ -18,7 +18,7 @@ from .errors import InputError, found_and_expected
 if TYPE_CHECKING:
     from .model import Model
 
-__all__ = ["PRESETS", "Check", "Refused", "Report", "Segments", "check", "segment"]
+__all__ = ["PRESETS", "Check", "Refused", "Report", "Segments", "check", "mapping", "segment"]
 
 PRESETS = ("ghazi-2020-table-4", "airbus-report-02", "airbus-report-02-short")
 """Names of the trim criteria; the first one is the default."""
@@ -140,7 +140,7 @@ class Segments:
         return cls(_native.Flights.from_segments(as_stream(table), aircraft_type, criteria))
 
     def __add__(self, other: Segments) -> Segments:
-        return Segments(self._flights.and_([other._flights]))
+        return _looked_through(self._flights.and_([other._flights]))
 
     def __len__(self) -> int:
         return self._flights.count_segments()
@@ -191,7 +191,7 @@ def segment(
     """
     reading = _native.Source(criteria, None if mapping is None else _mapping(mapping))
     if is_table(reports):
-        return Segments(reading.rows(name, as_stream(reports), threads))
+        return _looked_through(reading.rows(name, as_stream(reports), threads))
     several: Iterable[Any] = (
         reports
         if isinstance(reports, Iterable) and not isinstance(reports, (str, bytes, tuple))
@@ -209,7 +209,32 @@ def segment(
     if not paths and not contents:
         raise InputError("found no cruise report, expected one or more")
     read = reading.files(sorted(paths), threads)
-    return Segments(read.and_([reading.contents(contents, threads)]) if contents else read)
+    return _looked_through(read.and_([reading.contents(contents, threads)]) if contents else read)
+
+
+def _looked_through(flights: _native.Flights) -> Segments:
+    flights.look_through()
+    return Segments(flights)
+
+
+def mapping(recording: str | os.PathLike[str] | bytes | Table, *, name: str = "table") -> str:
+    """A first mapping for a recording, from the names and values of its columns: ``cruisefit mapping``. Lines marked ``// ?``
+    are guesses to check; the text, corrected, is what :func:`segment` takes as ``mapping``.
+
+    Args:
+        recording: A delimited text (path or bytes, plain or gzip), or a table whose rows are samples, of which the first
+            50 000 are looked at.
+        name: What errors call a table or bytes.
+
+    Raises:
+        InputError: The recording has no line of column names.
+    """
+    if isinstance(recording, bytes):
+        return _native.mapping_of_bytes(name, recording)
+    if is_table(recording):
+        return _native.mapping_of_table(name, as_stream(recording))
+    path = Path(recording)
+    return _native.mapping_of_bytes(str(path), path.read_bytes())
 
 
 class Check:

@@ -1,6 +1,6 @@
 """Fleets on Spark: the chain over DataFrames, grouped by tail.
 
-Reports are rows of a DataFrame with a binary column. Reading is spread over reports, learning and diagnosing over tails: after
+Reports are rows of a DataFrame with a binary column (:func:`flights`), recordings rows of samples (:func:`recordings`). Reading is spread over reports, learning and diagnosing over tails: after
 reading, a flight has shrunk to its segments (some kilobytes), so a year of one tail fits a task whatever its reports' size, and
 a tail with many flights costs no more reading than others. A report that cannot be read costs its row: it comes back with its
 reason. Results are columns of text and numbers that Parquet and Delta hold, the same to the bit as on one machine.
@@ -26,6 +26,7 @@ from pyspark.sql.pandas.types import from_arrow_schema
 
 from . import adaptation, diagnosis
 from ._pages import read_text
+from .errors import InputError
 from .model import Model
 from .segments import PRESETS, Segments, segment as read_segments
 
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
     from .adaptation import Law
 
-__all__ = ["adapt", "diagnose", "evaluate", "fleet", "flights", "monitor", "refused", "segment"]
+__all__ = ["adapt", "diagnose", "evaluate", "fleet", "flights", "monitor", "recordings", "refused", "segment"]
 
 _FLIGHT = [
     ("path", pa.string()),
@@ -131,6 +132,43 @@ def flights(
             yield from _read_batch(paths, contents, rule, criteria)
 
     return rows.mapInArrow(read, from_arrow_schema(_FLIGHTS))
+
+
+def recordings(
+    rows: DataFrame,
+    *,
+    flight: str | Sequence[str],
+    time: str,
+    mapping: str | os.PathLike[str],
+    criteria: str = PRESETS[0],
+) -> DataFrame:
+    """Reads recordings whose samples are rows: one row per flight, or per recording that was refused.
+
+    Args:
+        rows: A row per sample, in any order, with the columns that the mapping names.
+        flight: The column, or columns, that say which flight a sample is of: tail and flight, for example.
+        time: The column by which the samples of a flight are put in order.
+        mapping: Mapping file on the driver, its text, or name of a preset.
+        criteria: Trim criteria, one of :data:`cruisefit.PRESETS`.
+
+    Returns:
+        The columns of :func:`flights`; ``path`` is what ``flight`` holds, separated by slashes.
+    """
+    rule = _mapping_text(mapping)
+    by = [flight] if isinstance(flight, str) else list(flight)
+
+    def read(key: tuple[Any, ...], table: pa.Table) -> pa.Table:
+        name = "/".join(str(one.as_py()) for one in key)
+        try:
+            found = read_segments(
+                table.sort_by(time), mapping=rule, criteria=criteria, name=name, threads=1
+            )
+            return pa.Table.from_batches(_rows_of(found, [], criteria), schema=_FLIGHTS)
+        except InputError as error:
+            row = {"path": name, "refused": error.message, "refused_line": error.line}
+            return pa.Table.from_pylist([row], schema=_FLIGHTS)
+
+    return rows.groupBy(*by).applyInArrow(read, from_arrow_schema(_FLIGHTS))
 
 
 def refused(flights: DataFrame) -> DataFrame:
@@ -419,15 +457,20 @@ def _read_batch(
     pairs = [(path, content) for path, content in zip(paths, contents) if content is not None]
     if pairs:
         read = read_segments(pairs, mapping=mapping, criteria=criteria, threads=1)
+    else:
+        read = None
+    yield from _rows_of(read, [p for p, c in zip(paths, contents) if c is None], criteria)
+
+
+def _rows_of(
+    read: Segments | None, without_content: list[str], criteria: str
+) -> Iterator[pa.RecordBatch]:
+    if read is not None:
         state = read.state()
         state = state.append_column("criteria", pa.array([criteria] * state.num_rows, pa.string()))
         yield from _in_schema(state, _FLIGHTS).to_batches()
-    else:
-        read = None
     rows: list[dict[str, Any]] = [
-        {"path": path, "refused": "found null, expected a report"}
-        for path, content in zip(paths, contents)
-        if content is None
+        {"path": path, "refused": "found null, expected a report"} for path in without_content
     ]
     for one in read.refused if read is not None else []:
         rows.append(

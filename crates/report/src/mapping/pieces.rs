@@ -1,10 +1,13 @@
 //! The text of a recording, piece by piece: whole lines, so that each can be read by itself.
 
+use std::borrow::Cow;
+use std::fmt::{self, Debug, Formatter};
 use std::io::{self, BufRead, Read};
 use std::sync::Arc;
 
 use flate2::bufread::MultiGzDecoder;
 
+use super::in_memory::{Lines, TableRows};
 use crate::decode::{self, MAXIMUM_TEXT_BYTES};
 use crate::refusal::{Found, Refusal, RefusalKind};
 
@@ -16,9 +19,30 @@ const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// Whole lines of a recording.
 #[derive(Clone, Debug, Default)]
 pub struct Piece {
-    pub(super) text: Arc<String>,
+    pub(super) content: Content,
     /// Physical line from 1 of its first line.
     pub(super) first_line: usize,
+}
+
+/// What a piece holds.
+#[derive(Clone, Debug)]
+pub(super) enum Content {
+    /// Text.
+    Text(Arc<String>),
+    /// Rows of a table.
+    Rows(Box<TableRows>),
+    /// Rows of a table that were read: their text, should a refusal need it.
+    Lines {
+        lines: Lines,
+        /// How many.
+        count: usize,
+    },
+}
+
+impl Default for Content {
+    fn default() -> Self {
+        Self::Text(Arc::default())
+    }
 }
 
 /// Reads a recording, plain or gzip, piece by piece.
@@ -32,10 +56,35 @@ pub struct Pieces<R> {
     has_ended: bool,
 }
 
-#[derive(Debug)]
 enum Source<R> {
     Plain(R),
     Gzip(Box<MultiGzDecoder<R>>),
+    /// The line of names is waiting as text.
+    Table(Box<dyn Iterator<Item = TableRows>>),
+}
+
+impl<R> Debug for Source<R> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Plain(_) => "Plain",
+            Self::Gzip(_) => "Gzip",
+            Self::Table(_) => "Table",
+        })
+    }
+}
+
+impl Pieces<io::Empty> {
+    /// Of a table: the line of its columns' names as comma-separated text, then its rows.
+    pub fn of_table(mut names: String, rows: impl Iterator<Item = TableRows> + 'static) -> Self {
+        names.push('\n');
+        Self {
+            source: Source::Table(Box::new(rows)),
+            encoding: None,
+            waiting: names.into_bytes(),
+            next_line: 1,
+            has_ended: false,
+        }
+    }
 }
 
 /// How characters are written. Windows-1252 is told from UTF-8 piece by piece.
@@ -67,6 +116,17 @@ impl<R: BufRead> Pieces<R> {
     /// # Errors
     /// [`Refusal`] for what is no text, or cannot be read or unpacked.
     pub fn next_piece(&mut self) -> Result<Option<Piece>, Refusal> {
+        if let Source::Table(rows) = &mut self.source {
+            if !self.waiting.is_empty() {
+                let names = core::mem::take(&mut self.waiting);
+                return self.piece(names, Encoding::Bytes).map(Some);
+            }
+            let first_line = self.next_line;
+            return Ok(rows.next().map(|rows| {
+                self.next_line += rows.rows;
+                Piece { content: Content::Rows(Box::new(rows)), first_line }
+            }));
+        }
         let mut wanted = PIECE_BYTES;
         loop {
             self.fill(wanted)?;
@@ -102,13 +162,16 @@ impl<R: BufRead> Pieces<R> {
         let read = match &mut self.source {
             Source::Plain(source) => source.take(most).read_to_end(&mut self.waiting),
             Source::Gzip(source) => source.take(most).read_to_end(&mut self.waiting),
+            Source::Table(_) => Ok(0),
         };
         match (read, &self.source) {
             (Ok(read), _) => {
                 self.has_ended = read < missing;
                 Ok(())
             }
-            (Err(error), Source::Plain(_)) => Err(unreadable(&self.waiting, error.kind())),
+            (Err(error), Source::Plain(_) | Source::Table(_)) => {
+                Err(unreadable(&self.waiting, error.kind()))
+            }
             (Err(error), Source::Gzip(_)) if error.kind() == io::ErrorKind::UnexpectedEof => {
                 Err(self.refuse(RefusalKind::GzipTruncated))
             }
@@ -136,7 +199,7 @@ impl<R: BufRead> Pieces<R> {
             _ => text,
         });
         self.next_line += memchr::memchr_iter(b'\n', text.as_bytes()).count();
-        Ok(Piece { text, first_line })
+        Ok(Piece { content: Content::Text(text), first_line })
     }
 }
 
@@ -177,15 +240,47 @@ fn last_line_end(bytes: &[u8], encoding: Encoding) -> usize {
 
 impl Piece {
     /// A line of it, by its number in the recording.
-    pub(super) fn line(&self, line: usize) -> &str {
-        self.text.lines().nth(line - self.first_line).unwrap_or_default()
+    pub(super) fn line(&self, line: usize) -> Cow<'_, str> {
+        let row = line - self.first_line;
+        match &self.content {
+            Content::Text(text) => text.lines().nth(row).unwrap_or_default().into(),
+            Content::Rows(rows) => rows.text.line(row).into(),
+            Content::Lines { lines, .. } => lines.line(row).into(),
+        }
+    }
+
+    /// Bytes of text that it keeps.
+    pub(super) fn kept_bytes(&self) -> usize {
+        match &self.content {
+            Content::Text(text) => text.len(),
+            Content::Rows(_) | Content::Lines { .. } => 0,
+        }
+    }
+
+    /// Whether it has no line.
+    pub(super) fn is_empty(&self) -> bool {
+        match &self.content {
+            Content::Text(text) => text.is_empty(),
+            Content::Rows(rows) => rows.rows == 0,
+            Content::Lines { count, .. } => *count == 0,
+        }
     }
 
     /// The number of its last line, and that line's length in characters.
     pub(super) fn end(&self) -> (usize, usize) {
-        let text = self.text.strip_suffix('\n').unwrap_or(&self.text);
+        let text = match &self.content {
+            Content::Text(text) => text,
+            Content::Rows(rows) => return self.end_of_rows(rows.rows),
+            Content::Lines { count, .. } => return self.end_of_rows(*count),
+        };
+        let text = text.strip_suffix('\n').unwrap_or(text);
         let before = memchr::memchr_iter(b'\n', text.as_bytes()).count();
         let last = text.rsplit('\n').next().unwrap_or_default().trim_end_matches('\r');
         (self.first_line + before, last.chars().count())
+    }
+
+    fn end_of_rows(&self, count: usize) -> (usize, usize) {
+        let last = self.first_line + count.saturating_sub(1);
+        (last, self.line(last).chars().count())
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use flight::{Finding, Severity};
 
 use super::file::BadRows;
-use super::pieces::{Piece, Pieces};
+use super::pieces::{Content, Piece, Pieces};
 use super::table::{Assembly, Layout, Recording, Rows};
 use super::{Mapping, derive, parts};
 use crate::Parsed;
@@ -69,10 +69,14 @@ impl Stream {
         file_name: Option<&str>,
     ) -> Result<Self, Refusal> {
         let first = pieces.next_piece()?.unwrap_or(Piece::default());
-        let (layout, below) = Layout::of_text(&mapping.file, &first, file_name)?;
+        let text = match &first.content {
+            Content::Text(text) => text.as_str(),
+            Content::Rows(_) | Content::Lines { .. } => "",
+        };
+        let (layout, below) = Layout::of_text(&mapping.file, text, file_name)?;
         let assembly = Assembly::new(&first);
-        let text = Arc::new(first.text[below.byte..].to_owned());
-        let first = Some(Piece { text, first_line: below.line });
+        let text = Arc::new(text[below.byte..].to_owned());
+        let first = Some(Piece { content: Content::Text(text), first_line: below.line });
         Ok(Self { layout, first, assembly, tally: Tally::default() })
     }
 

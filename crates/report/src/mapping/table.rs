@@ -1,12 +1,12 @@
 //! Delimited text into recordings: where a recording has what its mapping names, and positions for refusals.
 
+mod columns;
 mod flights;
 mod recording;
 mod rows;
 
 use super::MappingError;
 use super::file::{MappingFile, TextSource};
-use super::pieces::Piece;
 use super::plan::{Plan, TimeForm};
 pub(super) use flights::Assembly;
 pub(super) use recording::Recording;
@@ -51,18 +51,18 @@ impl Layout {
     /// from the file's name.
     pub(super) fn of_text(
         file: &MappingFile,
-        first: &Piece,
+        first: &str,
         file_name: Option<&str>,
     ) -> Result<(Self, Below), Refusal> {
         let form = form_of(file);
-        let mut reader = reader(form, &first.text);
-        let names = Names::read(form, &first.text, &mut reader)?;
+        let mut reader = reader(form, first);
+        let names = Names::read(form, first, &mut reader)?;
         let layout = Self::of_names(file, &names, file_name)?;
         if layout.plan.units_row {
             let _ = reader.read_record(&mut csv::StringRecord::new());
         }
         let position = reader.position();
-        let byte = usize::try_from(position.byte()).unwrap_or(usize::MAX).min(first.text.len());
+        let byte = usize::try_from(position.byte()).unwrap_or(usize::MAX).min(first.len());
         Ok((layout, Below { byte, line: line_of(position) }))
     }
 
@@ -96,7 +96,7 @@ impl Layout {
     ) -> Refusal {
         let line = recording.lines[row];
         let text = recording.line(line);
-        let column = column_of(self.form(), text, self.fields.inputs[input]);
+        let column = column_of(self.form(), &text, self.fields.inputs[input]);
         Refusal { line, column, found, kind }
     }
 

@@ -37,7 +37,7 @@ impl Assembly {
     /// # Errors
     /// The first row that is bad, where the mapping refuses such rows.
     pub(in crate::mapping) fn add(&mut self, layout: &Layout, rows: &Rows) -> Result<(), Refusal> {
-        if !rows.piece.text.is_empty() {
+        if !rows.piece.is_empty() {
             self.end = rows.piece.end();
         }
         if let Some(current) = &mut self.current {
@@ -165,17 +165,17 @@ fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Re
     let line = rows.lines[row];
     let text = rows.piece.line(line);
     let field = layout.fields.time;
-    let mut reader = super::reader(layout.form(), text);
+    let mut reader = super::reader(layout.form(), &text);
     let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
     let found = Found::text(record.get(field).unwrap_or_default());
     let kind = RefusalKind::TimeNotIncreasing { previous, unit: "s" };
-    layout.refuse_field((line, text), field, found, kind)
+    layout.refuse_field((line, &text), field, found, kind)
 }
 
 impl Recording {
     /// Keeps a piece that holds rows of this flight: a refusal needs the text of its line.
     fn keep(&mut self, piece: &Piece) -> Result<(), Refusal> {
-        self.kept_bytes += piece.text.len();
+        self.kept_bytes += piece.kept_bytes();
         self.pieces.push(piece.clone());
         if self.kept_bytes > MAXIMUM_TEXT_BYTES {
             let kind = RefusalKind::TooLarge { limit_bytes: MAXIMUM_TEXT_BYTES };

@@ -1,5 +1,6 @@
 //! The rows of one flight, slow parameters filled, rows that lack a number left out.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use flight::Timestamp;
@@ -71,9 +72,9 @@ impl Recording {
     }
 
     /// The text of a line that holds one of its rows.
-    pub(super) fn line(&self, line: usize) -> &str {
+    pub(super) fn line(&self, line: usize) -> Cow<'_, str> {
         let later = self.pieces.partition_point(|piece| piece.first_line <= line);
-        later.checked_sub(1).map_or("", |piece| self.pieces[piece].line(line))
+        later.checked_sub(1).map_or(Cow::Borrowed(""), |piece| self.pieces[piece].line(line))
     }
 
     /// Fills slow parameters, then leaves out the rows that lack a number.

@@ -10,7 +10,7 @@ use flight::Timestamp;
 use super::{Layout, Text, line_of, means_nothing, reader, settle};
 use crate::cruise_text::parse_instant;
 use crate::mapping::file::BadRows;
-use crate::mapping::pieces::Piece;
+use crate::mapping::pieces::{Content, Piece};
 use crate::mapping::plan::{Input, TimeForm};
 use crate::number;
 use crate::refusal::{Found, Refusal, RefusalKind};
@@ -27,8 +27,8 @@ pub struct Rows {
     /// What comes before a row, in order.
     pub(super) events: Vec<(usize, Event)>,
     /// The last flight met, for its texts.
-    texts: Option<Arc<[String; 3]>>,
-    cache: InstantCache,
+    pub(super) texts: Option<Arc<[String; 3]>>,
+    pub(super) cache: InstantCache,
 }
 
 /// Something that is no row of numbers.
@@ -72,7 +72,11 @@ impl Times {
 impl Layout {
     /// Reads the rows of a piece. With a mapping that refuses bad rows, it ends at the first one.
     pub(in crate::mapping) fn rows(&self, piece: Piece) -> Rows {
-        let text = Arc::clone(&piece.text);
+        let text = match piece.content {
+            Content::Rows(table) => return self.rows_of_table(*table, piece.first_line),
+            Content::Lines { .. } => Arc::default(),
+            Content::Text(ref text) => Arc::clone(text),
+        };
         let mut rows = Rows::new(self, piece);
         if memchr::memchr(b'"', text.as_bytes()).is_some() || has_lone_carriage_return(&text) {
             rows.read_records(self, &text);
@@ -122,7 +126,7 @@ fn split(line: &[u8], separator: u8, start: usize, fields: &mut Fields) {
 }
 
 impl Rows {
-    fn new(layout: &Layout, piece: Piece) -> Self {
+    pub(super) fn new(layout: &Layout, piece: Piece) -> Self {
         Self {
             piece,
             times: Times::new(&layout.plan.time),
@@ -271,7 +275,7 @@ impl Rows {
             };
         }
         let kind = RefusalKind::TooManyFields { expected };
-        row.layout.refuse_field((row.line, line), expected, Found::Fields(found), kind)
+        row.layout.refuse_field((row.line, &line), expected, Found::Fields(found), kind)
     }
 }
 
@@ -363,16 +367,16 @@ impl<'r> Row<'r> {
         found: Found,
         kind: RefusalKind,
     ) -> Refusal {
-        self.layout.refuse_field((line, piece.line(line)), field, found, kind)
+        self.layout.refuse_field((line, &piece.line(line)), field, found, kind)
     }
 }
 
 /// Seconds from an origin beyond which a number is in another unit than seconds.
-const FARTHEST_S: f64 = 2e11;
+pub(super) const FARTHEST_S: f64 = 2e11;
 
 /// The last minute that was read: the instants of a recording differ in their seconds for most of the time.
 #[derive(Debug, Default)]
-struct InstantCache {
+pub(super) struct InstantCache {
     /// Up to the colon before the seconds.
     to_minute: String,
     /// Behind the seconds.
