@@ -21,13 +21,14 @@ HERE = pathlib.Path(__file__).resolve().parent
 CRITERIA = "airbus-report-02"
 # For planted effects, which need thirty segments of a flight of one or two hours.
 LOOSE = HERE / "real/loose.ron"
+PRESETS = HERE.parents[1] / "crates/report/presets"
 BLOCK_S = 600
 # Three samples of a minute, the least that is a segment.
 SHORT_BLOCK_S = 182
 RECORDINGS = [
     ("A320 FDR", "traffic_fuelflow_a320", "traffic-a320", "A320"),
-    ("A320 QAR", "acropole_a320_qar", HERE / "real/acropole_a320.ron", "A320"),
-    ("Citation II", "phlab_c550_openap", HERE / "real/phlab_c550.ron", None),
+    ("A320 QAR", "acropole_a320_qar", PRESETS / "acropole_a320.ron", "A320"),
+    ("Citation II", "phlab_c550_openap", PRESETS / "phlab_c550.ron", None),
 ]
 # What is planted in the blocks that were not learnt: its name, and a factor (of WF, mass) or a shift (of MACH).
 PLANTED = [

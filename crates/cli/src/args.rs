@@ -38,6 +38,10 @@ pub(crate) struct Common {
     /// Show no progress on the terminal
     #[arg(long, global = true)]
     pub(crate) no_progress: bool,
+    /// Project file with options of every command [default: cruisefit.toml of the working folder, if there is one]; what the
+    /// command line gives wins
+    #[arg(long, global = true, value_name = "FILE.toml")]
+    pub(crate) project: Option<PathBuf>,
     /// Log more to stderr (-v: what was done, -vv: why); `RUST_LOG` overrides
     #[arg(long, short, global = true, action = clap::ArgAction::Count)]
     pub(crate) verbose: u8,
@@ -166,6 +170,9 @@ pub(crate) struct InitArgs {
     /// Flight-planning guide (CSV)
     #[arg(long, value_name = "GUIDE.csv")]
     pub(crate) guide: PathBuf,
+    /// Standard deviations of the recorded quantities (RON), in place of those in the aircraft file
+    #[arg(long, value_name = "SENSORS.ron")]
+    pub(crate) sensors: Option<PathBuf>,
     /// Model file to write
     #[arg(long, short, value_name = "MODEL.ron")]
     pub(crate) output: PathBuf,
@@ -325,9 +332,13 @@ pub(crate) struct PredictArgs {
     /// Model file
     #[arg(long, value_name = "MODEL.ron")]
     pub(crate) model: PathBuf,
-    /// Flight points, .csv or .parquet
+    /// Flight points, .csv or .parquet; or a table of segments
     #[arg(value_name = "POINTS")]
     pub(crate) points: PathBuf,
+    /// Mapping file (RON), or the name of a preset: POINTS is a recording of another layout, of which each averaged point
+    /// (or segment) is predicted
+    #[arg(long, value_name = "MAPPING")]
+    pub(crate) mapping: Option<String>,
     /// File to write, .csv or .parquet [default: CSV to standard output]
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,

@@ -92,18 +92,17 @@ fn read_mapping(name: &str) -> Result<Mapping, Failure> {
     }
     let path = std::path::Path::new(name);
     if !path.exists() {
-        let presets: Vec<&str> =
-            report::mapping::PRESETS.iter().map(|(preset, _)| *preset).collect();
-        return Err(Failure::BadArgument {
-            argument: "--mapping",
-            reason: format!(
-                "{name}: no such file, and no preset (presets: {})",
-                presets.join(", ")
-            ),
-        });
+        return Err(no_such_mapping("--mapping", name));
     }
     let text = read_text(path)?;
     Mapping::from_ron(&text).map_err(|error| Failure::bad_file(path, error))
+}
+
+fn no_such_mapping(argument: &'static str, name: &str) -> Failure {
+    let presets: Vec<&str> = report::mapping::PRESETS.iter().map(|(preset, _)| *preset).collect();
+    let presets = presets.join(", ");
+    let reason = format!("{name}: no such file, and no preset (presets: {presets})");
+    Failure::BadArgument { argument, reason }
 }
 
 /// Ends a command before anything is written: where a report was refused under `--strict`, or where none is left.

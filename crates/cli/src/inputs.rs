@@ -29,7 +29,8 @@ struct Collected {
 /// Endings of a folder's files that are read.
 const REPORT_ENDINGS: [&str; 3] = ["txt", "rpt", "gz"];
 /// Endings of a folder's files that are read when a mapping file is given.
-const RECORDING_ENDINGS: [&str; 4] = ["csv", "gz", "zst", "parquet"];
+const RECORDING_ENDINGS: [&str; 8] =
+    ["csv", "gz", "zst", "parquet", "arrow", "arrows", "feather", "ipc"];
 
 /// Collects the files behind arguments: a file is taken as it is, a folder is searched recursively for files with a
 /// report's ending, anything else is tried as a glob.

@@ -12,6 +12,8 @@
 )]
 
 mod args;
+mod arrow_batches;
+mod cells;
 mod columns;
 mod commands;
 mod criteria;
@@ -20,9 +22,10 @@ mod files;
 mod folder;
 mod inputs;
 mod models;
+mod parquet_batches;
 mod parquet_numbers;
-mod parquet_text;
 mod progress;
+mod project;
 mod reading;
 mod simulated_reports;
 mod threads;
@@ -40,7 +43,11 @@ use progress::Progress;
 
 /// Reads the command line, runs the command, and reports the result.
 pub fn run() -> ExitCode {
-    let cli = Cli::parse();
+    let arguments = match project::with_project(std::env::args_os().collect()) {
+        Ok(arguments) => arguments,
+        Err(failure) => return ExitCode::from(print_result(Err(failure))),
+    };
+    let cli = Cli::parse_from(arguments);
     start_logging(cli.common.verbose);
     // Lines are not wrapped: a path with a line break in it cannot be copied. Fails only where a hook is already set.
     let _ = miette::set_hook(Box::new(|_| {

@@ -4,18 +4,18 @@ mod bytes;
 pub(crate) mod heads;
 mod recording;
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use pipeline::reading::recordings::{self, Done, Job, Mapped};
 use pipeline::reading::{FileRead, FlightReader};
 use rayon::prelude::*;
+use report::MAXIMUM_TEXT_BYTES;
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
-use crate::parquet_text;
+use crate::parquet_batches;
 use crate::progress::Bar;
-use recording::Opened;
+pub(crate) use recording::{is_parquet, open};
 
 pub(crate) use pipeline::reading::{FlightRead, Reading, RefusedReport};
 
@@ -47,39 +47,6 @@ impl Buffers {
     }
 }
 
-/// The text of a recording: the bytes of a file, or the rows of a Parquet file as comma-separated text.
-#[derive(Debug)]
-pub(crate) struct Recording {
-    pub(crate) bytes: Vec<u8>,
-    /// Whether the text was made here, with commas and decimal points whatever a mapping says.
-    is_from_table: bool,
-}
-
-impl Recording {
-    /// Reads a recording.
-    ///
-    /// # Errors
-    /// Why it is not read.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let mut bytes = Vec::new();
-        bytes::read(path, &mut bytes)?;
-        let is_from_table = parquet_text::is_parquet(&bytes);
-        if is_from_table {
-            bytes = parquet_text::csv_of_file(path)?;
-        }
-        Ok(Self { bytes, is_from_table })
-    }
-
-    /// The mapping as it applies to this text.
-    pub(crate) fn mapped_by<'m>(&self, mapping: &'m Mapping) -> Cow<'m, Mapping> {
-        if self.is_from_table {
-            Cow::Owned(mapping.comma_separated())
-        } else {
-            Cow::Borrowed(mapping)
-        }
-    }
-}
-
 impl Source {
     /// Reads files and finds their segments; file by file in parallel, results in the order of the files.
     pub(crate) fn read_all(&self, files: &[PathBuf], progress: &Bar) -> Reading {
@@ -103,27 +70,31 @@ impl Source {
     pub(crate) fn read_file(&self, path: &Path, buffers: &mut Buffers) -> FileRead {
         let refused = |reason| (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
         let Some(mapping) = &self.mapping else {
-            return match bytes::read(path, &mut buffers.raw) {
+            return match read_unmapped(path, &mut buffers.raw) {
                 Ok(()) => buffers.reader.read(path, &buffers.raw, None, &self.criteria),
                 Err(reason) => refused(reason),
             };
         };
-        let criteria = &self.criteria;
-        match recording::open(path) {
-            Ok(Opened::Text(source)) => {
-                recordings::read(&Mapped { path, mapping, criteria }, source, &in_parallel)
-            }
-            Ok(Opened::Parquet) => match parquet_text::csv_of_file(path) {
-                Ok(bytes) => {
-                    let mapping = &mapping.comma_separated();
-                    let mapped = Mapped { path, mapping, criteria };
-                    recordings::read(&mapped, bytes.as_slice(), &in_parallel)
-                }
-                Err(reason) => refused(reason),
-            },
+        let mapped = Mapped { path, mapping, criteria: &self.criteria };
+        match open(path) {
+            Ok(mut source) => recordings::read(&mapped, &mut source, &in_parallel),
             Err(reason) => refused(reason),
         }
     }
+}
+
+/// The bytes of a report or of a table of segments; of one in Parquet, its rows as text.
+fn read_unmapped(path: &Path, bytes: &mut Vec<u8>) -> Result<(), String> {
+    bytes::read(path, bytes)?;
+    if is_parquet(bytes) {
+        *bytes = parquet_batches::csv_of_file(path, MAXIMUM_TEXT_BYTES)?;
+        if !pipeline::segments_table::is_table(bytes) {
+            return Err(
+                "a Parquet file that is no table of segments: --mapping is needed".to_owned()
+            );
+        }
+    }
+    Ok(())
 }
 
 fn in_parallel(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> {

@@ -67,8 +67,8 @@ pub struct ReportColumns {
     pub optional: OptionalColumns,
 }
 
-/// One cruise of one aircraft, as it was sent. Every column has the same length of at least three samples, time
-/// strictly increases, every number is finite, every sample's mass is positive.
+/// One cruise of one aircraft, as it was sent. Every column has the same length of at least three samples (one, where each
+/// is an averaged point), time strictly increases, every number is finite, every sample's mass is positive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     header: ReportHeader,
@@ -148,6 +148,20 @@ impl Report {
     /// [`ReportDataError`] when the columns are not consistent with each other. Ranges of single columns are checked by
     /// the reader ([`crate::column::Column::range`]).
     pub fn new(header: ReportHeader, columns: ReportColumns) -> Result<Self, ReportDataError> {
+        if columns.time_s.len() < 3 {
+            return Err(ReportDataError::TooFewSamples { found: columns.time_s.len() });
+        }
+        Self::of_points(header, columns)
+    }
+
+    /// The same where each row is not a sample but the mean over a stable frame: one is enough.
+    ///
+    /// # Errors
+    /// As [`Report::new`].
+    pub fn of_points(
+        header: ReportHeader,
+        columns: ReportColumns,
+    ) -> Result<Self, ReportDataError> {
         check_columns(&columns)?;
         let ramp_mass_kg =
             header.zero_fuel_mass.to_kilograms() + header.fuel_on_board.to_kilograms();
@@ -179,7 +193,7 @@ impl Report {
         self.columns.time_s.len()
     }
 
-    /// Always false: a report has at least three samples.
+    /// Always false: a report has at least one sample.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.columns.time_s.is_empty()
@@ -219,7 +233,7 @@ fn check_columns(columns: &ReportColumns) -> Result<(), ReportDataError> {
         optional,
     } = columns;
     let samples = time_s.len();
-    if samples < 3 {
+    if samples == 0 {
         return Err(ReportDataError::TooFewSamples { found: samples });
     }
     check_full("time_s", time_s, samples)?;

@@ -18,6 +18,11 @@ pub enum Sampling {
         /// Bins that were dropped because they held fewer than half of the samples a bin should hold.
         incomplete_bins: usize,
     },
+    /// Each sample was sent as the mean over a stable frame: its neighbors are other frames.
+    AveragedPoints {
+        /// Length of a frame as stated, s.
+        averaged_over_s: f64,
+    },
 }
 
 /// Where the static air temperature comes from.

@@ -126,6 +126,20 @@ impl Aircraft {
         Self::new(file)
     }
 
+    /// The same aircraft with other standard deviations of its sensors, as the entry `sensors` of an aircraft file states
+    /// them.
+    ///
+    /// # Errors
+    /// [`AircraftError`] for a text that is no such entry, or a value out of its limits.
+    pub fn with_sensors_ron(&self, text: &str) -> Result<Self, AircraftError> {
+        let sensors = ron::from_str(text).map_err(|error| AircraftError::File {
+            line: error.span.end.line,
+            column: error.span.end.col,
+            reason: Box::new(error.code),
+        })?;
+        Self::new(AircraftFile { sensors, ..self.file.clone() })
+    }
+
     /// Writes the aircraft file; reading it back gives the same bits in every number. Defaults are written out.
     ///
     /// # Errors

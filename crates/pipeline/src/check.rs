@@ -78,9 +78,6 @@ pub struct FlightCheck {
 /// Checks one report by itself.
 #[must_use]
 pub fn check_report(report: &Report) -> FlightCheck {
-    let identity = report.header().identity.clone();
-    let time_s = &report.columns().time_s;
-    let start_s = identity.start_s();
     let drafts = [
         load::check(report),
         air::check(report),
@@ -88,8 +85,26 @@ pub fn check_report(report: &Report) -> FlightCheck {
         fuel::check(report),
         channels::check(report),
     ];
-    let mut findings: Vec<DataFinding> =
-        drafts.into_iter().flatten().map(|draft| draft.for_flight(&identity)).collect();
+    checked(report, drafts.into_iter().flatten())
+}
+
+/// Checks averaged points: by what holds at each of them, not by what happens between them.
+#[must_use]
+pub fn check_points(report: &Report) -> FlightCheck {
+    let drafts = [
+        load::check_point(report),
+        air::check(report),
+        fuel::check(report),
+        channels::check(report),
+    ];
+    checked(report, drafts.into_iter().flatten())
+}
+
+fn checked(report: &Report, drafts: impl Iterator<Item = Draft>) -> FlightCheck {
+    let identity = report.header().identity.clone();
+    let time_s = &report.columns().time_s;
+    let start_s = identity.start_s();
+    let mut findings: Vec<DataFinding> = drafts.map(|draft| draft.for_flight(&identity)).collect();
     findings.sort_by_key(|finding| core::cmp::Reverse(finding.severity));
     let (first, last) = (time_s.first().copied(), time_s.last().copied());
     FlightCheck {

@@ -6,6 +6,9 @@ use std::path::PathBuf;
 use crate::model_file::ModelFile;
 use crate::reading::FlightRead;
 
+/// The type of a flight whose source states none: it uses the model of its tail, or the only one there is.
+pub const TYPE_NOT_STATED: &str = "";
+
 /// Why a report has no model.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoModel {
@@ -38,6 +41,14 @@ pub enum NoModel {
         tail: String,
         /// Its type.
         aircraft_type: String,
+    },
+    /// No type, and several models.
+    #[error(
+        "found a flight of tail {tail:?} without aircraft type, expected one model, or one that has learnt from the tail"
+    )]
+    TypeNotStated {
+        /// Tail.
+        tail: String,
     },
     /// No model of the type.
     #[error("found aircraft type {found:?}, expected {expected}")]
@@ -96,12 +107,19 @@ impl Models {
         Ok(model)
     }
 
+    fn first_type(&self) -> &str {
+        self.0.first().map_or("", |(_, model)| model.initial.aircraft().type_code())
+    }
+
     /// The model for a report of this tail and type.
     ///
     /// # Errors
     /// Why there is none.
     pub fn for_report(&self, tail: &str, aircraft_type: &str) -> Result<&ModelFile, NoModel> {
-        let of_type = |model: &&ModelFile| model.initial.aircraft().type_code() == aircraft_type;
+        let of_type = |model: &&ModelFile| {
+            aircraft_type == TYPE_NOT_STATED
+                || model.initial.aircraft().type_code() == aircraft_type
+        };
         let all = || self.0.iter().map(|(_, model)| model);
         if let Some(model) = all().find(|model| tail_of(model) == Some(tail)) {
             return if of_type(&model) {
@@ -113,6 +131,11 @@ impl Models {
                     tail: tail.to_owned(),
                 })
             };
+        }
+        let is_type_open = aircraft_type == TYPE_NOT_STATED
+            && all().any(|m| m.initial.aircraft().type_code() != self.first_type());
+        if is_type_open {
+            return Err(NoModel::TypeNotStated { tail: tail.to_owned() });
         }
         if let Some(model) = all().filter(of_type).find(|model| tail_of(model).is_none()) {
             return Ok(model);

@@ -11,8 +11,10 @@ use units::{FuelFlowTotal, Temperature};
 use crate::model_file::ModelFile;
 use crate::whole_model::Predicts;
 
+mod of_segments;
 mod points;
 
+pub use of_segments::{columns_of_segments, point_of_segment};
 pub use points::{PredictedPoints, measured_kg_s};
 
 /// Samples of the segment that a standard deviation is of, as many as the whole model's is of.

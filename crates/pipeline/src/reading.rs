@@ -6,16 +6,17 @@ use std::cmp::Ordering;
 use std::fmt::{Display, Formatter};
 use std::path::{Path, PathBuf};
 
-use flight::{Severity, Timestamp};
-use report::mapping::Mapping;
+use flight::{Finding, Report, Severity, Timestamp};
+use report::mapping::{MappedPoints, Mapping, Source};
 use report::{Parsed, Reader, Refusal};
 use segmenter::TrimCriteria;
 
 use crate::checksum::sha256;
 use crate::learnt_flights::instant_after;
+use crate::models::TYPE_NOT_STATED;
 use crate::reduction::ReducedFlight;
-use crate::segments_table;
 use crate::summary::RefusedSummary;
+use crate::{flights_table, segments_table};
 use recordings::Mapped;
 
 /// One flight, reduced to its segments.
@@ -144,8 +145,8 @@ impl std::fmt::Debug for FlightReader {
 }
 
 impl FlightReader {
-    /// The flights in the bytes of a cruise report or, with a mapping, of a recording (plain or gzip), and what of them was
-    /// refused. `path` is what results call the bytes; a mapping may take a text of the header from its file name.
+    /// The flights in the bytes of a cruise report, of a table of segments or, with a mapping, of a recording (plain or gzip),
+    /// and what of them was refused. `path` is what results call the bytes; a mapping may take a text of the header from its file name.
     pub fn read(
         &mut self,
         path: &Path,
@@ -154,11 +155,16 @@ impl FlightReader {
         criteria: &TrimCriteria,
     ) -> FileRead {
         if let Some(mapping) = mapping {
-            return recordings::read(
-                &Mapped { path, mapping, criteria },
-                bytes,
-                &recordings::one_by_one,
-            );
+            return match Source::text(bytes) {
+                Ok(mut source) => {
+                    let mapped = Mapped { path, mapping, criteria };
+                    recordings::read(&mapped, &mut source, &recordings::one_by_one)
+                }
+                Err(refusal) => (Vec::new(), vec![RefusedReport::at(path.to_owned(), &refusal)]),
+            };
+        }
+        if segments_table::is_table(bytes) {
+            return read_segments(path, bytes);
         }
         // Content is identified by its uncompressed bytes: a report that was compressed later is the same report.
         let parsed = report::unpack(bytes, &mut self.unpacked)
@@ -188,6 +194,23 @@ impl FlightReader {
     }
 }
 
+/// The flights in a table of segments, as this program writes it.
+fn read_segments(path: &Path, bytes: &[u8]) -> FileRead {
+    let segments = match segments_table::read(bytes) {
+        Ok(segments) => segments,
+        Err(error) => return (Vec::new(), vec![RefusedReport::whole(path.to_owned(), error)]),
+    };
+    let mut flights = flights_table::from_segments(segments, TYPE_NOT_STATED);
+    for flight in &mut flights {
+        path.clone_into(&mut flight.path);
+        flight.reduced.notes.push(
+            "segments as they were written: trim criteria and checks of samples were applied before, if at all"
+                .to_owned(),
+        );
+    }
+    (flights, Vec::new())
+}
+
 fn reduce(
     path: &Path,
     parsed: Parsed,
@@ -195,6 +218,29 @@ fn reduce(
     criteria: &TrimCriteria,
 ) -> Result<FlightRead, String> {
     let Parsed { report, findings } = parsed;
+    let notes = notes_of(path, findings);
+    let end = end_of(&report)?;
+    let reduced =
+        ReducedFlight::from_report(report, criteria, notes).map_err(|error| error.to_string())?;
+    flight_read(path, content, end, reduced)
+}
+
+fn reduce_points(
+    path: &Path,
+    mut points: MappedPoints,
+    criteria: &TrimCriteria,
+    content_of: fn(&Report) -> String,
+) -> Result<FlightRead, String> {
+    let notes = notes_of(path, std::mem::take(&mut points.parsed.findings));
+    let end = end_of(&points.parsed.report)?;
+    // With another averaging time the same numbers say something else.
+    let content = format!("{}:{}", content_of(&points.parsed.report), points.averaged_over_s);
+    let reduced =
+        ReducedFlight::from_points(points, criteria, notes).map_err(|error| error.to_string())?;
+    flight_read(path, content, end, reduced)
+}
+
+fn notes_of(path: &Path, findings: Vec<Finding>) -> Vec<String> {
     let mut notes = Vec::new();
     for finding in findings {
         if finding.severity >= Severity::Warning {
@@ -202,12 +248,22 @@ fn reduce(
         }
         notes.push(finding.message);
     }
+    notes
+}
+
+fn end_of(report: &Report) -> Result<Timestamp, String> {
     let start = report.header().identity.start;
     let last_s = report.columns().time_s.last().copied().unwrap_or_default();
-    let end = instant_after(start, last_s)
-        .ok_or_else(|| format!("the last TIME, {last_s} s after START, is no date"))?;
-    let reduced =
-        ReducedFlight::from_report(report, criteria, notes).map_err(|error| error.to_string())?;
+    instant_after(start, last_s)
+        .ok_or_else(|| format!("the last TIME, {last_s} s after START, is no date"))
+}
+
+fn flight_read(
+    path: &Path,
+    content: String,
+    end: Timestamp,
+    reduced: ReducedFlight,
+) -> Result<FlightRead, String> {
     if let Some(column) = reduced.segments.iter().find_map(segments_table::not_finite) {
         return Err(format!("the mean of {column} over a segment is not a finite number"));
     }

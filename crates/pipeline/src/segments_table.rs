@@ -193,6 +193,11 @@ pub fn engines_of(rows: &[SegmentRow]) -> usize {
         .unwrap_or(0)
 }
 
+/// Whether a text begins as a table of segments does.
+pub fn is_table(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"tail,flight,start,time_s,samples,")
+}
+
 /// Reads a table of segments back, as [`table`] wrote it. A model's predictions are left out: they are computed again.
 ///
 /// # Errors

@@ -10,6 +10,7 @@ mod in_memory;
 mod level;
 mod pieces;
 mod plan;
+mod source;
 mod stream;
 mod table;
 
@@ -23,9 +24,10 @@ pub use first::first_mapping;
 pub use in_memory::{Cells, Lines, TableRows};
 pub use pieces::{Piece, Pieces};
 use plan::Plan;
-pub use stream::{MappedFlight, MappedReport, Stream};
+pub use source::{Batches, Source};
+pub use stream::{MappedFlight, MappedPoints, MappedReport, Stream};
 use table::Recording;
-pub use table::Rows;
+pub use table::{Batch, BatchColumn, Rows, line_of_names};
 
 /// A mapping file that was checked.
 #[derive(Clone, Debug)]
@@ -112,6 +114,18 @@ pub enum MappingError {
         /// The character.
         character: char,
     },
+    /// The scatter of a quantity that no trim criterion limits the changes of.
+    #[error("scatter of \"{name}\", expected one of ALT MACH GSPD SAT N2(1) N2(2) N2(3) N2(4)")]
+    ScatterUnknown {
+        /// The name.
+        name: String,
+    },
+    /// An entry that averaged points cannot have.
+    #[error("{entry} for averaged points, expected it for samples only")]
+    NeedsSamples {
+        /// The entry.
+        entry: &'static str,
+    },
     /// A number outside its limits.
     #[error(transparent)]
     OutOfDomain(#[from] OutOfDomain),
@@ -130,9 +144,17 @@ fn unit_names(column: Column) -> String {
     column.units().iter().map(|unit| unit.name).collect::<Vec<_>>().join(" ")
 }
 
-/// Mapping files built into the program: name and text.
-pub const PRESETS: [(&str, &str); 1] =
-    [("traffic-a320", include_str!("../presets/traffic_a320.ron"))];
+/// Mapping files built into the program: name and text, whose first lines say what it is for and where that is from.
+pub const PRESETS: [(&str, &str); 8] = [
+    ("traffic-a320", include_str!("../presets/traffic_a320.ron")),
+    ("acropole-a320", include_str!("../presets/acropole_a320.ron")),
+    ("phlab-c550", include_str!("../presets/phlab_c550.ron")),
+    ("flight-data-analyzer", include_str!("../presets/flight_data_analyzer.ron")),
+    ("nasa-dashlink", include_str!("../presets/nasa_dashlink.ron")),
+    ("opensky-states", include_str!("../presets/opensky_states.ron")),
+    ("traffic-tables", include_str!("../presets/traffic_tables.ron")),
+    ("cruise-points", include_str!("../presets/cruise_points.ron")),
+];
 
 impl Mapping {
     /// Reads a mapping file.
@@ -156,6 +178,12 @@ impl Mapping {
     pub fn preset(name: &str) -> Option<Self> {
         let (_, text) = PRESETS.iter().find(|(known, _)| *known == name)?;
         Self::from_ron(text).ok()
+    }
+
+    /// Whether its rows are averaged points.
+    #[must_use]
+    pub const fn is_of_points(&self) -> bool {
+        matches!(self.file.rows, file::RowsAre::AveragedPoints { .. })
     }
 
     /// The same mapping for a table that was written as comma-separated text by this program, whatever the separators of
@@ -192,21 +220,9 @@ impl Mapping {
         bytes: &[u8],
         file_name: Option<&str>,
     ) -> Result<Vec<Parsed>, Refusal> {
-        let mut pieces = Pieces::new(bytes)?;
-        let mut stream = Stream::begin(self, &mut pieces, file_name)?;
         let mut parsed = Vec::new();
-        while let Some(piece) = stream.next_piece(&mut pieces)? {
-            let rows = stream.rows(piece);
-            let (flights, added) = stream.add(&rows);
-            for flight in flights {
-                parsed.extend(stream.count(stream.report(flight))?);
-            }
-            added?;
-        }
-        for flight in stream.finish() {
-            parsed.extend(stream.count(stream.report(flight))?);
-        }
-        let findings = stream.end()?;
+        let findings =
+            self.each(&mut Source::text(bytes)?, file_name, |report| parsed.push(report))?;
         if let Some(first) = parsed.first_mut() {
             first.findings.extend(findings);
         }
@@ -218,16 +234,15 @@ impl Mapping {
 /// was rejected.
 fn parts(plan: &Plan, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f64) {
     let rows = recording.time_s.len();
+    let fewest = if plan.points.is_some() { 1 } else { 3 };
     match &plan.cruise {
-        None if rows < 3 => (Vec::new(), 0.0),
+        None if rows < fewest => (Vec::new(), 0.0),
         None => (core::iter::once(0..rows).collect(), 0.0),
         Some(criteria) => {
             let altitude = |(column, _): &&(Column, _)| *column == Column::PressureAltitude;
             let conversion = plan.recorded.iter().find(altitude);
             let pressure_altitude_m: Vec<f64> = conversion
-                .map(|(_, conversion)| {
-                    (0..rows).map(|row| conversion.apply(&recording.numbers, row)).collect()
-                })
+                .map(|(_, conversion)| conversion.apply_to(&recording.numbers, 0..rows))
                 .unwrap_or_default();
             level::level_parts(&recording.time_s, &pressure_altitude_m, criteria)
         }

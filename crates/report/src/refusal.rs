@@ -251,6 +251,13 @@ pub enum RefusalKind {
         /// What the mapping allows, kg.
         admissible_rise_kg: f64,
     },
+    /// A table that cannot be read.
+    TableUnreadable {
+        /// Why.
+        reason: String,
+    },
+    /// Averaged points where a report of samples is wanted.
+    PointsForSamples,
     /// A recording without a level part that is long enough.
     NoLevelPart {
         /// How long it must be, s.
@@ -302,6 +309,8 @@ impl RefusalKind {
             Self::SourceNotANumber { .. } => "source-not-a-number",
             Self::SourceInstantMalformed => "source-instant-malformed",
             Self::GrossMassRises { .. } => "gross-mass-rises",
+            Self::TableUnreadable { .. } => "table-unreadable",
+            Self::PointsForSamples => "points-for-samples",
             Self::NoLevelPart { .. } => "no-level-part",
         }
     }
@@ -376,19 +385,23 @@ impl fmt::Display for RefusalKind {
             Self::SourceColumnDoubled { name } => write!(f, "one column named {name:?}"),
             Self::SourceTextMissing { key } => write!(f, "text for {key}"),
             Self::SourceNotANumber { name } => write!(f, "a number or nothing in {name:?}"),
-            Self::SourceInstantMalformed => f.write_str(
-                "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping",
-            ),
+            Self::SourceInstantMalformed => f.write_str(INSTANT),
             Self::GrossMassRises { smallest_kg, admissible_rise_kg } => write!(
                 f,
                 "gross mass no more than {admissible_rise_kg} kg above its smallest value so far, {smallest_kg} kg"
             ),
+            Self::TableUnreadable { reason } => write!(f, "rows that can be read ({reason})"),
+            Self::PointsForSamples => f.write_str(SAMPLES),
             Self::NoLevelPart { needed_s } => {
                 write!(f, "a level part of at least {needed_s} s, as the mapping's cruise requires")
             }
         }
     }
 }
+
+const INSTANT: &str = "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping";
+const SAMPLES: &str =
+    "samples, of which a cruise report consists; the mapping's rows are averaged points";
 
 fn write_range(f: &mut fmt::Formatter<'_>, column: Column, limit: f64, unit: &str) -> fmt::Result {
     write!(f, "{} of {} (limit here {limit} {unit})", column.name(), column.range().words)
@@ -418,10 +431,8 @@ fn write_units(f: &mut fmt::Formatter<'_>, column: Column) -> fmt::Result {
 }
 
 /// The candidate nearest to a name: at most a third of its letters differ, upper and lower case aside.
-pub(crate) fn nearest<'c>(
-    name: &str,
-    candidates: impl IntoIterator<Item = &'c str>,
-) -> Option<&'c str> {
+#[must_use]
+pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let lower = name.to_lowercase();
     candidates
         .into_iter()

@@ -37,7 +37,7 @@ fn every_column_of_the_format_stands_in_the_guide() {
 #[test]
 fn mappings_in_the_guide_are_read() {
     let shown = blocks(MAPPING, "ron");
-    assert_eq!(shown.len(), 2);
+    assert_eq!(shown.len(), 3);
     for text in &shown {
         Mapping::from_ron(text).unwrap_or_else(|error| panic!("{error:?}"));
     }

@@ -56,3 +56,24 @@ fn every_layout_is_read_with_its_first_mapping() {
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
+
+/// Cruise points: a few rows for each flight, half an hour apart, and flights of one row.
+#[test]
+fn rows_far_apart_are_taken_for_averaged_points() {
+    let names = "utc,registration,flight,altitude_ft,groundspeed_kt,tas_kt,mach,sat_degc,fuel_flow_kg_h,gw_kg";
+    let row = |day: usize, hour: usize, minute: usize| {
+        format!(
+            "2024-03-{day:02}T{hour:02}:{minute:02}:00Z,F-AAAA,X{day},35000,450,449.5,0.78,-54.4,2400,{}",
+            64_000 - 2400 * hour
+        )
+    };
+    let several: Vec<String> =
+        (1..4).flat_map(|day| [(10, 0), (10, 30), (11, 10)].map(|(h, m)| row(day, h, m))).collect();
+    let single: Vec<String> = (1..5).map(|day| row(day, 12, 0)).collect();
+    for rows in [several, single] {
+        let text = format!("{names}\n{}\n", rows.join("\n"));
+        let mapping = first_mapping(text.as_bytes()).unwrap();
+        assert!(mapping.contains("rows: AveragedPoints(averaged_over_s: 60),   // ?"), "{mapping}");
+        assert!(Mapping::from_ron(&mapping).is_ok(), "{mapping}");
+    }
+}

@@ -29,6 +29,7 @@ mod criteria;
 mod criterion;
 mod means;
 mod outliers;
+mod points;
 mod steadiness;
 mod tally;
 mod verdict;
@@ -40,6 +41,7 @@ use flight::{FlightIdentity, SampleRun, Segment, TemperatureSource, Track};
 
 pub use criteria::TrimCriteria;
 pub use criterion::{Criterion, CriterionKind, CriterionSet};
+pub use points::{Scatter, of_points};
 pub use tally::{CriterionCost, Tally};
 pub use verdict::{DroppedPiece, PieceDropReason, SampleVerdict, Segmentation};
 

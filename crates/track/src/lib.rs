@@ -55,6 +55,7 @@ pub mod bins;
 mod error;
 mod interval;
 mod mass;
+mod points;
 mod rate;
 mod temperature;
 
@@ -65,6 +66,7 @@ use flight::{DroppedRun, DroppedRunReason, Report, SampleRun, Sampling, Track, T
 pub use error::TrackError;
 pub use interval::{GAP_INTERVALS, SAMPLE_INTERVAL_MAXIMUM_S};
 pub use mass::gross_mass;
+pub use points::of_averaged_points;
 
 /// Fewest samples of a run: a neighbor criterion compares a run's first sample with the next two.
 pub const RUN_SAMPLES_MINIMUM: usize = 3;

@@ -7,9 +7,12 @@ use clap::Args;
 /// `mapping`
 #[derive(Debug, Args)]
 pub(crate) struct MappingArgs {
-    /// Recording: delimited text, plain, gzip or Zstandard, or Parquet
-    #[arg(value_name = "RECORDING")]
-    pub(crate) recording: PathBuf,
+    /// Recording: delimited text, plain, gzip or Zstandard, Parquet, or Arrow
+    #[arg(value_name = "RECORDING", required_unless_present = "presets")]
+    pub(crate) recording: Option<PathBuf>,
+    /// List the mappings that are built in, with what they are for; of one, its text, to be copied and changed
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "", conflicts_with = "recording")]
+    pub(crate) presets: Option<String>,
     /// Mapping file to write [default: standard output]
     #[arg(long, short, value_name = "MAPPING.ron")]
     pub(crate) output: Option<PathBuf>,
@@ -21,7 +24,7 @@ pub(crate) struct MappingArgs {
 /// `convert`
 #[derive(Debug, Args)]
 pub(crate) struct ConvertArgs {
-    /// Recordings: files, folders (searched recursively for .csv, .gz, .zst, .parquet) and globs
+    /// Recordings: files, folders (searched recursively for .csv, .gz, .zst, .parquet, .arrow, …) and globs
     #[arg(required = true, value_name = "RECORDINGS")]
     pub(crate) recordings: Vec<PathBuf>,
     /// Mapping file (RON), or the name of a preset

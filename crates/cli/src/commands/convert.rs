@@ -15,8 +15,8 @@ use crate::files::file_stem_of_tail;
 use crate::files::outputs::check_replaceable;
 use crate::files::{make_folder, write_atomically};
 use crate::inputs;
-use crate::progress::Progress;
-use crate::reading::Recording;
+use crate::progress::{Bar, Progress};
+use crate::reading::open;
 
 /// Samples that a dry run shows of each flight.
 const SHOWN_SAMPLES: usize = 10;
@@ -30,65 +30,106 @@ const FIRST_COLUMN: &str = "TIME ";
 pub(crate) fn run(arguments: &ConvertArgs, progress: Progress) -> Result<Outcome, Failure> {
     let mapping = read_mapping(&arguments.mapping)?;
     let inputs = inputs::collect(&arguments.recordings, true)?;
-    let bar = progress.bar(inputs.files.len(), "reading recordings");
     let mut refused = inputs.refused;
-    let mut flights = Vec::new();
-    for path in &inputs.files {
-        match read(&mapping, path) {
-            Ok(parsed) => flights.extend(parsed),
-            Err(reason) => refused.push(reason),
-        }
-        bar.step();
+    if arguments.strict {
+        let mut checked = Conversion::new(&mapping, Output::Nowhere);
+        checked.read_all(&inputs.files, &progress.bar(inputs.files.len(), "checking recordings"));
+        refused.append(&mut checked.refused);
+        check_refused(&refused, inputs.files.len(), true, checked.flights == 0)?;
     }
-    bar.finish();
-    check_refused(&refused, inputs.files.len(), arguments.strict, flights.is_empty())?;
-    let text = match &arguments.output {
-        Some(folder) => write_all(&flights, folder, arguments.force, &mut refused)?,
-        None => dry_run(&flights),
+    let output = match &arguments.output {
+        Some(folder) => Output::Folder(folder, arguments.force),
+        None => Output::Shown(String::new()),
+    };
+    let mut conversion = Conversion::new(&mapping, output);
+    conversion.read_all(&inputs.files, &progress.bar(inputs.files.len(), "reading recordings"));
+    if let Some(failure) = conversion.failure {
+        return Err(failure);
+    }
+    refused.append(&mut conversion.refused);
+    let flights = conversion.flights;
+    check_refused(&refused, inputs.files.len(), arguments.strict, flights == 0)?;
+    let text = match conversion.output {
+        Output::Folder(folder, _) => {
+            format!("{} written to {}.\n", counted(conversion.written, "report"), show(folder))
+        }
+        Output::Shown(shown) => {
+            let read = counted(flights, "flight");
+            shown + &format!("{read} read, nothing written; `-o FOLDER` writes them as reports.\n")
+        }
+        Output::Nowhere => String::new(),
     };
     Ok(Outcome { text, refused })
 }
 
-/// A flight as it was read, and where from.
-struct Converted {
-    path: PathBuf,
-    parsed: Parsed,
+/// Where flights go, one after the other: a month of a fleet does not fit into memory.
+enum Output<'a> {
+    /// Reports of their own; whether what is there is replaced.
+    Folder(&'a Path, bool),
+    /// What each column became.
+    Shown(String),
+    /// Nowhere: only what is refused is wanted.
+    Nowhere,
 }
 
-fn read(mapping: &Mapping, path: &Path) -> Result<Vec<Converted>, RefusedReport> {
-    let recording =
-        Recording::read(path).map_err(|reason| RefusedReport::whole(path.to_owned(), reason))?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let parsed = recording
-        .mapped_by(mapping)
-        .read_named(&recording.bytes, &name)
-        .map_err(|refusal| RefusedReport::at(path.to_owned(), &refusal))?;
-    Ok(parsed.into_iter().map(|parsed| Converted { path: path.to_owned(), parsed }).collect())
+struct Conversion<'a> {
+    mapping: &'a Mapping,
+    output: Output<'a>,
+    flights: usize,
+    written: usize,
+    refused: Vec<RefusedReport>,
+    /// What stopped the writing.
+    failure: Option<Failure>,
 }
 
-/// Writes each flight as a report of its own.
-fn write_all(
-    flights: &[Converted],
-    folder: &Path,
-    force: bool,
-    refused: &mut Vec<RefusedReport>,
-) -> Result<String, Failure> {
-    make_folder(folder)?;
-    let mut written = 0;
-    for Converted { path, parsed } in flights {
-        let text = match report::write(&parsed.report, &TextLayout::exact(), &[]) {
-            Ok(text) => text,
-            Err(error) => {
-                refused.push(RefusedReport::whole(path.clone(), error));
-                continue;
-            }
-        };
-        let file = folder.join(file_name(&parsed.report));
-        check_replaceable(&file, force, text.as_bytes(), |_| false)?;
-        write_atomically(&file, text.as_bytes())?;
-        written += 1;
+impl<'a> Conversion<'a> {
+    const fn new(mapping: &'a Mapping, output: Output<'a>) -> Self {
+        Self { mapping, output, flights: 0, written: 0, refused: Vec::new(), failure: None }
     }
-    Ok(format!("{} written to {}.\n", counted(written, "report"), show(folder)))
+
+    fn read_all(&mut self, files: &[PathBuf], bar: &Bar) {
+        for path in files {
+            let mapping = self.mapping;
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let refusal = match open(path) {
+                Ok(mut source) => mapping
+                    .each(&mut source, Some(&name), |parsed| self.take(path, &parsed))
+                    .err()
+                    .map(|refusal| RefusedReport::at(path.clone(), &refusal)),
+                Err(reason) => Some(RefusedReport::whole(path.clone(), reason)),
+            };
+            self.refused.extend(refusal);
+            bar.step();
+        }
+        bar.finish();
+    }
+
+    fn take(&mut self, path: &Path, parsed: &Parsed) {
+        self.flights += 1;
+        match &mut self.output {
+            Output::Shown(shown) => show_flight(path, parsed, shown),
+            Output::Folder(folder, force) if self.failure.is_none() => {
+                match report::write(&parsed.report, &TextLayout::exact(), &[]) {
+                    Ok(text) => match write_report(folder, *force, &parsed.report, text.as_bytes())
+                    {
+                        Ok(()) => self.written += 1,
+                        Err(failure) => self.failure = Some(failure),
+                    },
+                    Err(error) => {
+                        self.refused.push(RefusedReport::whole(path.to_owned(), error));
+                    }
+                }
+            }
+            Output::Folder(..) | Output::Nowhere => {}
+        }
+    }
+}
+
+fn write_report(folder: &Path, force: bool, report: &Report, text: &[u8]) -> Result<(), Failure> {
+    make_folder(folder)?;
+    let file = folder.join(file_name(report));
+    check_replaceable(&file, force, text, |_| false)?;
+    write_atomically(&file, text)
 }
 
 /// Tail, flight and START, each as a file's name may hold it.
@@ -100,31 +141,22 @@ fn file_name(report: &Report) -> String {
     format!("{tail}_{flight}_{start}.txt")
 }
 
-/// What each column became: header, units and the first samples of each flight.
-fn dry_run(flights: &[Converted]) -> String {
-    let mut text = String::new();
-    for Converted { path, parsed } in flights {
-        let report = &parsed.report;
-        let _ = writeln!(text, "# {}: {}", show(path), counted(report.len(), "sample"));
-        for finding in &parsed.findings {
-            let _ = writeln!(text, "# {}", finding.message);
-        }
-        let written = report::write(report, &TextLayout::industry(), &[])
-            .or_else(|_| report::write(report, &TextLayout::exact(), &[]));
-        match written {
-            Ok(written) => text.push_str(first_samples(&written)),
-            Err(error) => {
-                let _ = writeln!(text, "# not as a report: {error}");
-            }
-        }
-        text.push('\n');
+/// What each column became: header, units and the first samples of a flight.
+fn show_flight(path: &Path, parsed: &Parsed, text: &mut String) {
+    let report = &parsed.report;
+    let _ = writeln!(text, "# {}: {}", show(path), counted(report.len(), "sample"));
+    for finding in &parsed.findings {
+        let _ = writeln!(text, "# {}", finding.message);
     }
-    let _ = writeln!(
-        text,
-        "{} read, nothing written; `-o FOLDER` writes them as reports.",
-        counted(flights.len(), "flight")
-    );
-    text
+    let written = report::write(report, &TextLayout::industry(), &[])
+        .or_else(|_| report::write(report, &TextLayout::exact(), &[]));
+    match written {
+        Ok(written) => text.push_str(first_samples(&written)),
+        Err(error) => {
+            let _ = writeln!(text, "# not as a report: {error}");
+        }
+    }
+    text.push('\n');
 }
 
 /// A report's text up to its first samples.

@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
     );
     let model = folder.join("MODEL.ron");
     let initial = init::run(&InitArgs {
+        sensors: None,
         accept: false,
         aircraft: folder.join("AIRCRAFT.ron"),
         guide: folder.join("guide.csv"),
@@ -121,6 +122,7 @@ fn judge(
     for (name, path) in judged {
         let predicted = folder.join(format!("static-{}.csv", name.replace(' ', "-")));
         let outcome = predict::run(&PredictArgs {
+            mapping: None,
             model: path.clone(),
             points: folder.join("static.csv"),
             output: Some(predicted.clone()),

@@ -123,6 +123,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
         tempfile::tempdir().map_err(|error| Failure::unwritable(&std::env::temp_dir(), error))?;
     let model_path = scratch.path().join("MODEL.ron");
     let _ = init::run(&InitArgs {
+        sensors: None,
         accept: true,
         aircraft: folder.join(&golden.aircraft),
         guide: folder.join(&golden.guide),

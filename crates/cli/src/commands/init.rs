@@ -20,6 +20,12 @@ pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     let aircraft = Aircraft::from_ron(&read_text(&arguments.aircraft)?).map_err(|error| {
         Failure::bad_file(&arguments.aircraft, format!("not an aircraft file: {error}"))
     })?;
+    let aircraft = match &arguments.sensors {
+        None => aircraft,
+        Some(path) => aircraft
+            .with_sensors_ron(&read_text(path)?)
+            .map_err(|error| Failure::bad_file(path, error))?,
+    };
     let guide = Guide::from_csv_of_engines(
         read_text(&arguments.guide)?.as_bytes(),
         u8::try_from(aircraft.engines()).unwrap_or(1),

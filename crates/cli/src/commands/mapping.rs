@@ -1,58 +1,101 @@
 //! `cruisefit mapping`: a first mapping file for a recording, from the names and values of its columns.
 
 use std::fmt::Write;
+use std::path::Path;
 
-use report::mapping::{Mapping, first_mapping};
+use report::mapping::{Mapping, PRESETS, first_mapping};
 
 use crate::args::MappingArgs;
-use crate::commands::Outcome;
+use crate::commands::{Outcome, no_such_mapping};
+use crate::criteria::NamedCriteria;
 use crate::failure::{Failure, show};
 use crate::files::outputs::check_replaceable;
 use crate::files::write_atomically;
-use crate::reading::Recording;
+use crate::reading::{Buffers, Source, open};
 use pipeline::reading::RefusedReport;
 use pipeline::summary::counted;
 
 /// What marks a guess in a mapping file.
 const GUESS: &str = "// ?";
+/// So much of a recording is looked at: the cruise of a first flight of hundreds of columns each second.
+const LOOKED_AT_BYTES: usize = 16 << 20;
 
 /// Runs the command.
 ///
 /// # Errors
 /// A recording that cannot be read as a table, or a mapping file that would be lost.
 pub(crate) fn run(arguments: &MappingArgs) -> Result<Outcome, Failure> {
-    let path = &arguments.recording;
-    let recording = Recording::read(path).map_err(|reason| Failure::unreadable(path, reason))?;
-    let text = first_mapping(&recording.bytes).map_err(|refusal| {
-        Failure::bad_file(path, RefusedReport::at(path.clone(), &refusal).reason)
-    })?;
-    // What comes of it is said beside it: standard output may be the mapping file.
-    eprint!("{}", tried(&text, &recording, arguments));
+    let text = match (&arguments.presets, &arguments.recording) {
+        (None, Some(path)) => first_mapping_of(path)?,
+        (presets, _) => return presets_as_text(presets.as_deref().unwrap_or_default()),
+    };
     let Some(output) = &arguments.output else { return Ok(Outcome::text(text)) };
     check_replaceable(output, arguments.force, text.as_bytes(), |_| false)?;
     write_atomically(output, text.as_bytes())?;
     Ok(Outcome::text(format!("Mapping file written to {}.\n", show(output))))
 }
 
+/// The built-in mappings with what they are for, or the text of one.
+fn presets_as_text(name: &str) -> Result<Outcome, Failure> {
+    if let Some((_, text)) = PRESETS.iter().find(|(known, _)| *known == name) {
+        return Ok(Outcome::text(*text));
+    }
+    if !name.is_empty() {
+        return Err(no_such_mapping("--presets", name));
+    }
+    let mut listed = String::new();
+    for (name, text) in PRESETS {
+        let _ = writeln!(listed, "{name}");
+        for line in text.lines().map_while(|line| line.strip_prefix("// ")) {
+            let _ = writeln!(listed, "    {line}");
+        }
+    }
+    listed.push_str("Tables of segments that this program wrote need no mapping.\n");
+    Ok(Outcome::text(listed))
+}
+
+fn first_mapping_of(path: &Path) -> Result<String, Failure> {
+    let recording = open(path).map_err(|reason| Failure::unreadable(path, reason))?;
+    let text = recording
+        .beginning(LOOKED_AT_BYTES)
+        .and_then(|beginning| first_mapping(&beginning))
+        .map_err(|refusal| {
+            Failure::bad_file(path, RefusedReport::at(path.to_owned(), &refusal).reason)
+        })?;
+    // What comes of it is said beside it: standard output may be the mapping file.
+    eprint!("{}", tried(&text, path));
+    Ok(text)
+}
+
 /// How many lines are guesses, and what the mapping makes of the recording as it is.
-fn tried(text: &str, recording: &Recording, arguments: &MappingArgs) -> String {
+fn tried(text: &str, path: &Path) -> String {
     let guesses = text.lines().filter(|line| line.contains(GUESS)).count() - 1;
     let mut said = format!("{} marked `{GUESS}`: check them.\n", counted(guesses, "guess"));
-    let name = arguments.recording.file_name().unwrap_or_default().to_string_lossy();
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let (mut flights, mut rows, mut of) = (0, 0, "sample");
     let read = Mapping::from_ron(text).map_err(|error| error.to_string()).and_then(|mapping| {
-        let mapping = recording.mapped_by(&mapping);
-        mapping.read_named(&recording.bytes, &name).map_err(|error| error.to_string())
+        if mapping.is_of_points() {
+            let criteria = NamedCriteria::default().limits;
+            let source = Source { mapping: Some(mapping), criteria };
+            let (read, refused) = source.read_file(path, &mut Buffers::default());
+            flights = read.len();
+            rows = read.iter().map(|flight| flight.reduced.samples).sum();
+            of = "averaged point";
+            return refused.into_iter().next().map_or(Ok(()), |refused| Err(refused.reason));
+        }
+        let read = mapping.each(&mut open(path)?, Some(&name), |parsed| {
+            flights += 1;
+            rows += parsed.report.len();
+        });
+        read.map(|_| ()).map_err(|error| error.to_string())
     });
     let _ = match read {
-        Ok(reports) => {
-            let samples: usize = reports.iter().map(|parsed| parsed.report.len()).sum();
-            writeln!(
-                said,
-                "As it is, it reads {} with {}.",
-                counted(reports.len(), "flight"),
-                counted(samples, "sample")
-            )
-        }
+        Ok(()) => writeln!(
+            said,
+            "As it is, it reads {} with {}.",
+            counted(flights, "flight"),
+            counted(rows, of)
+        ),
         Err(reason) => writeln!(said, "As it is, the recording is not read: {reason}"),
     };
     said

@@ -4,18 +4,23 @@ use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
 
+use flight::Segment;
 use perf_model::{FlightPoint, FlightPointRow, FlightPoints, PointCell, PointTable};
 
 use crate::args::PredictArgs;
 use crate::columns;
-use crate::commands::Outcome;
+use crate::commands::{Outcome, check_refused, read_mapping};
+use crate::criteria::NamedCriteria;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::models::read_model;
-use crate::{parquet_numbers, parquet_text};
+use crate::reading::{Buffers, FlightRead, Source, is_parquet};
+use crate::{parquet_batches, parquet_numbers};
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
-use pipeline::prediction::{Predictor, measured_kg_s};
+use pipeline::prediction::{Predictor, columns_of_segments, measured_kg_s, point_of_segment};
+use pipeline::segments_table;
 use pipeline::whole_model::Predicts;
+use report::MAXIMUM_TEXT_BYTES;
 
 /// Runs the command.
 ///
@@ -25,6 +30,9 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     let predictor = Predictor::new(&model, Predicts::table_only(arguments.table_only))
         .map_err(|error| Failure::bad_file(&arguments.model, error))?;
+    if arguments.mapping.is_some() || is_segments(&arguments.points) {
+        return predict_segments(arguments, &predictor);
+    }
     if let Some(outcome) = predict_numbers(arguments, &model, &predictor)? {
         return Ok(outcome);
     }
@@ -91,7 +99,7 @@ fn predict_numbers(
     let is_parquet = std::fs::File::open(&arguments.points)
         .and_then(|mut file| file.read_exact(&mut beginning))
         .is_ok()
-        && parquet_text::is_parquet(&beginning);
+        && is_parquet(&beginning);
     // What applied effects lack at a point is said of points one by one.
     if !is_parquet || model.initial.effects().is_some() {
         return Ok(None);
@@ -127,6 +135,53 @@ fn predict_numbers(
     Ok(Some(outcome(arguments, predictor, flights.count(), lines)))
 }
 
+/// Whether a file is a table of segments in text.
+fn is_segments(path: &Path) -> bool {
+    let mut beginning = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut beginning));
+    read.is_ok() && segments_table::is_table(&beginning)
+}
+
+/// The command for averaged points of another layout, or for segments.
+fn predict_segments(
+    arguments: &PredictArgs,
+    predictor: &Predictor<'_>,
+) -> Result<Outcome, Failure> {
+    let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
+    let source = Source { mapping, criteria: NamedCriteria::default().limits };
+    let (mut flights, mut refused) = source.read_file(&arguments.points, &mut Buffers::default());
+    check_refused(&refused, 1, false, flights.is_empty())?;
+    flights.sort_by(FlightRead::order);
+    let segments: Vec<Segment> =
+        flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
+    let points = segments
+        .iter()
+        .map(point_of_segment)
+        .collect::<Result<Vec<FlightPoint>, _>>()
+        .map_err(|error| Failure::bad_file(&arguments.points, error))?;
+    let mut columns = columns_of_segments(&segments, &points);
+    let measured = measured_kg_s(&points);
+    let mut predicted = predictor.at_points(&points, Some(&measured));
+    let unpredicted = std::mem::take(&mut predicted.refused);
+    predicted.append_to(&mut columns);
+    columns::write(&columns, arguments.output.as_deref())?;
+    let place = |place: usize| {
+        let means = &segments[place];
+        format!(
+            "{} {}, TIME {:.0} s",
+            means.identity.tail, means.identity.flight, means.means.time_s
+        )
+    };
+    let unpredicted =
+        unpredicted.into_iter().map(|(point, reason)| (0, format!("{}: {reason}", place(point))));
+    let mut outcome = outcome(arguments, predictor, points.len(), unpredicted);
+    for one in &mut outcome.refused {
+        one.line = None;
+    }
+    refused.append(&mut outcome.refused);
+    Ok(Outcome { refused, ..outcome })
+}
+
 /// Warns once about each applied effect that is held at its reference because an input is missing.
 fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
     let Some(effects) = model.initial.effects() else { return };
@@ -142,8 +197,9 @@ fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
 /// Flight points as CSV text; a Parquet file's rows are written as such first.
 fn points_text(path: &Path) -> Result<Vec<u8>, Failure> {
     let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
-    if !parquet_text::is_parquet(&bytes) {
+    if !is_parquet(&bytes) {
         return Ok(bytes);
     }
-    parquet_text::csv_of_file(path).map_err(|error| Failure::bad_file(path, error))
+    parquet_batches::csv_of_file(path, MAXIMUM_TEXT_BYTES)
+        .map_err(|error| Failure::bad_file(path, error))
 }

@@ -97,7 +97,8 @@ impl Source {
             return (vec![Found { head, path, read: None }], Vec::new());
         }
         let (flights, refused) = self.read_file(&path, buffers);
-        let keep = self.mapping.is_some();
+        // A table of segments holds many flights too.
+        let keep = self.mapping.is_some() || flights.len() > 1;
         let found = flights.into_iter().map(|flight| {
             let identity = (*flight.reduced.identity).clone();
             let aircraft_type = flight.reduced.aircraft_type.clone();

@@ -1,42 +1,49 @@
-//! A recording opened for reading: text as it is unpacked, or Parquet.
+//! A recording opened for reading: text as it is unpacked, Parquet, or Arrow.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::bytes;
-use crate::parquet_text::is_parquet;
+use report::mapping::Source;
 
+use super::bytes;
+use crate::arrow_batches::{self, is_arrow};
+use crate::parquet_batches;
+
+/// What a Parquet file begins with.
+const PARQUET_MAGIC: &[u8] = b"PAR1";
 /// What a Zstandard frame begins with (RFC 8878, section 3.1.1).
 const ZSTANDARD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// Bytes that are read from a file at a time.
 const BUFFER_BYTES: usize = 1 << 18;
 
-/// A recording.
-pub(super) enum Opened {
-    /// Delimited text, plain, gzip, or unpacked from Zstandard.
-    Text(Box<dyn BufRead + Send>),
-    /// A table in columns.
-    Parquet,
+/// Whether these are the first bytes of a Parquet file.
+pub(crate) fn is_parquet(bytes: &[u8]) -> bool {
+    bytes.starts_with(PARQUET_MAGIC)
 }
 
 /// Opens a recording.
 ///
 /// # Errors
 /// Why it is not read.
-pub(super) fn open(path: &Path) -> Result<Opened, String> {
+pub(crate) fn open(path: &Path) -> Result<Source<'static>, String> {
     let mut file = BufReader::with_capacity(BUFFER_BYTES, bytes::open(path)?);
     let beginning = file.fill_buf().map_err(|error| error.to_string())?;
     if is_parquet(beginning) {
-        return Ok(Opened::Parquet);
+        return parquet_batches::source(file.into_inner());
     }
-    if beginning.starts_with(&ZSTANDARD_MAGIC) {
-        return Ok(Opened::Text(Box::new(unpacked(file)?)));
+    if is_arrow(beginning) {
+        return arrow_batches::source(file);
     }
-    Ok(Opened::Text(Box::new(file)))
+    let source = if beginning.starts_with(&ZSTANDARD_MAGIC) {
+        Source::text(unpacked(file)?)
+    } else {
+        Source::text(file)
+    };
+    source.map_err(|refusal| refusal.to_string())
 }
 
-fn unpacked(file: BufReader<File>) -> Result<impl BufRead + Send, String> {
+fn unpacked(file: BufReader<File>) -> Result<impl BufRead, String> {
     let decoder = zstd::stream::read::Decoder::with_buffer(file);
     decoder
         .map(|decoder| BufReader::with_capacity(BUFFER_BYTES, decoder))

@@ -165,7 +165,7 @@ fn layouts_read_with_their_first_mapping_have_no_finding() {
         .filter(|path| !path.ends_with("13_brotli.parquet"))
         .collect();
     layouts.sort();
-    assert_eq!(layouts.len(), 17);
+    assert_eq!(layouts.len(), 22);
     for layout in layouts {
         cruisefit(&[
             "mapping".as_ref(),

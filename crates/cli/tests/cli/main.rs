@@ -22,6 +22,8 @@ mod json_schema;
 mod monitor;
 mod optimum;
 mod pages;
+mod points;
+mod project;
 mod recordings;
 mod reference;
 mod remainder;

@@ -123,6 +123,49 @@ fn parquet_is_read_as_the_text_it_was_made_of() {
     cruisefit(&["segment".as_ref(), layout("13_snappy.parquet").as_os_str()]).expect(2);
 }
 
+/// Oracle: pyarrow and polars, which wrote the files: three codecs in file and stream, texts as dictionary and as views, beside
+/// columns of types that are not read.
+#[test]
+fn arrow_is_read_as_the_text_it_was_made_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = folder.path().join("M.ron");
+    let text = layout("01_named_units.csv");
+    mapping_of(&text, &mapping);
+    // The same flight, whatever the name of the file.
+    let written = std::fs::read_to_string(&mapping).unwrap();
+    std::fs::write(&mapping, written.replace("FileName", "Text(\"F\")")).unwrap();
+    let read =
+        |path: &Path| segments(&["--mapping".as_ref(), mapping.as_os_str(), path.as_os_str()]);
+    let expected = read(&text);
+    assert!(expected.lines().count() > 1);
+    for name in
+        ["14_none.arrow", "14_lz4.arrow", "14_zstd.arrow", "14_stream.arrows", "14_views.arrow"]
+    {
+        assert_eq!(read(&layout(name)), expected, "{name}");
+        mapping_of(&layout(name), &folder.path().join("first.ron"));
+    }
+    // A column that is not read is named where it is asked for; a file that breaks off says so.
+    let lists = folder.path().join("lists.ron");
+    let asked = std::fs::read_to_string(&mapping).unwrap().replace("\"mach\"", "\"lists\"");
+    std::fs::write(&lists, asked).unwrap();
+    let arrow = layout("14_none.arrow");
+    cruisefit(&["segment".as_ref(), "--mapping".as_ref(), lists.as_os_str(), arrow.as_os_str()])
+        .expect(2)
+        .says("column \"lists\" is of a type that is not read");
+    let cut = folder.path().join("cut.arrow");
+    let bytes = std::fs::read(&arrow).unwrap();
+    for length in [9, 100, 2000, bytes.len() / 2] {
+        std::fs::write(&cut, &bytes[..length]).unwrap();
+        cruisefit(&[
+            "segment".as_ref(),
+            "--mapping".as_ref(),
+            mapping.as_os_str(),
+            cut.as_os_str(),
+        ])
+        .expect(2);
+    }
+}
+
 /// Oracle: the same recording not packed.
 #[test]
 fn a_packed_recording_is_read_as_it_is_unpacked() {

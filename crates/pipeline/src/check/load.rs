@@ -26,6 +26,11 @@ pub(super) fn check(report: &Report) -> Vec<Draft> {
         .collect()
 }
 
+/// Of averaged points, whose first and last may be of any two frames.
+pub(super) fn check_point(report: &Report) -> Vec<Draft> {
+    [heating_value(report), masses(report), date(report)].into_iter().flatten().collect()
+}
+
 fn heating_value(report: &Report) -> Option<Draft> {
     let value = report.header().lower_heating_value_mj_kg?;
     let (low, high) = LOWER_HEATING_VALUE_MJ_KG;

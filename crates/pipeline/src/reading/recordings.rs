@@ -6,10 +6,10 @@ use std::path::Path;
 
 use flight::{Finding, Report, ReportColumns};
 use report::Refusal;
-use report::mapping::{MappedFlight, MappedReport, Mapping, Piece, Pieces, Rows, Stream};
+use report::mapping::{MappedFlight, MappedReport, Mapping, Piece, Pieces, Rows, Source, Stream};
 use segmenter::TrimCriteria;
 
-use super::{FileRead, FlightRead, RefusedReport, reduce};
+use super::{FileRead, FlightRead, RefusedReport, reduce, reduce_points};
 use crate::checksum::sha256;
 
 /// Pieces that are read into rows at a time, of about a megabyte each.
@@ -63,20 +63,23 @@ pub fn one_by_one(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Do
     jobs.into_iter().map(work).collect()
 }
 
-/// The flights in a recording, plain or gzip, and what of it was refused. The result does not depend on `spread`.
-pub fn read(mapped: &Mapped<'_>, source: impl BufRead, spread: &Spread<'_>) -> FileRead {
-    read_pieces(mapped, Pieces::new(source), spread)
+/// The flights in a recording, and what of it was refused. The result does not depend on `spread`.
+pub fn read(mapped: &Mapped<'_>, source: &mut Source<'_>, spread: &Spread<'_>) -> FileRead {
+    let mut read = Read { mapped: *mapped, flights: Vec::new(), refused: Vec::new() };
+    match read.all(source, spread) {
+        Ok(()) => (read.flights, read.refused),
+        Err(refusal) => (Vec::new(), vec![RefusedReport::at(mapped.path.to_owned(), &refusal)]),
+    }
 }
 
 /// The same of a recording's pieces, which may be those of a table in memory; that none begins is a refusal.
 pub fn read_pieces(
     mapped: &Mapped<'_>,
-    pieces: Result<Pieces<impl BufRead>, Refusal>,
+    pieces: Result<Pieces<Box<dyn BufRead>>, Refusal>,
     spread: &Spread<'_>,
 ) -> FileRead {
-    let mut read = Read { mapped: *mapped, flights: Vec::new(), refused: Vec::new() };
-    match pieces.and_then(|pieces| read.all(pieces, spread)) {
-        Ok(()) => (read.flights, read.refused),
+    match pieces {
+        Ok(pieces) => read(mapped, &mut Source::Text(pieces), spread),
         Err(refusal) => (Vec::new(), vec![RefusedReport::at(mapped.path.to_owned(), &refusal)]),
     }
 }
@@ -88,13 +91,9 @@ struct Read<'a> {
 }
 
 impl Read<'_> {
-    fn all(
-        &mut self,
-        mut pieces: Pieces<impl BufRead>,
-        spread: &Spread<'_>,
-    ) -> Result<(), Refusal> {
+    fn all(&mut self, source: &mut Source<'_>, spread: &Spread<'_>) -> Result<(), Refusal> {
         let name = self.mapped.path.file_name().unwrap_or_default().to_string_lossy();
-        let mut stream = Stream::begin(self.mapped.mapping, &mut pieces, Some(&name))?;
+        let mut stream = source.begin(self.mapped.mapping, Some(&name))?;
         let mut waiting: Vec<MappedFlight> = Vec::new();
         let mut has_ended = false;
         while !has_ended {
@@ -102,7 +101,7 @@ impl Read<'_> {
             let flights = jobs.len();
             let mut stopped = Ok(());
             while jobs.len() - flights < PIECES_AT_A_TIME {
-                match stream.next_piece(&mut pieces) {
+                match source.next_piece(&mut stream) {
                     Ok(Some(piece)) => jobs.push(Job::Piece(piece)),
                     Ok(None) => {
                         has_ended = true;
@@ -188,13 +187,20 @@ impl Mapped<'_> {
         match mapped {
             MappedReport::Report(parsed) => {
                 let content = content_as_read(&parsed.report);
-                match reduce(self.path, *parsed, content, self.criteria) {
-                    Ok(flight) => Reduced::Flight(Box::new(flight)),
-                    Err(reason) => Reduced::Unusable(reason),
-                }
+                reduced(reduce(self.path, *parsed, content, self.criteria))
+            }
+            MappedReport::Points(points) => {
+                reduced(reduce_points(self.path, *points, self.criteria, content_as_read))
             }
             other => Reduced::NoReport(other),
         }
+    }
+}
+
+fn reduced(flight: Result<FlightRead, String>) -> Reduced {
+    match flight {
+        Ok(flight) => Reduced::Flight(Box::new(flight)),
+        Err(reason) => Reduced::Unusable(reason),
     }
 }
 

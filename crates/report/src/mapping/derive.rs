@@ -23,13 +23,14 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 const LIMIT_ROUNDING: f64 = 1e-12;
 const MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD: f64 = 1.02;
 
-/// The report of the level parts of a recording.
+/// The report of the level parts of a recording; of averaged points also their scatter.
 pub(super) fn report(
     layout: &Layout,
     recording: &Recording,
     parts: &[Range<usize>],
-) -> Result<Parsed, Refusal> {
+) -> Result<(Parsed, Option<PointScatter>), Refusal> {
     let plan = &layout.plan;
+    let fewest = if plan.points.is_some() { 1 } else { 3 };
     let level_rows = parts.iter().map(Range::len).sum();
     let first = parts.first().map_or(0, |part| part.start);
     let (rows, surplus) = rows_in_range(plan, recording, parts);
@@ -37,7 +38,7 @@ pub(super) fn report(
         let found = Found::Rows(level_rows - surplus.len());
         layout.refuse(recording, (first, 0), found, RefusalKind::Inconsistent(error))
     };
-    if rows.len() < 3 {
+    if rows.len() < fewest {
         let error = ReportDataError::TooFewSamples { found: rows.len() };
         return Err(refuse_inconsistent(error));
     }
@@ -70,9 +71,17 @@ pub(super) fn report(
         notes,
     };
     let findings = part.findings(&derived, &load, &surplus);
-    let report = Report::new(header, columns).map_err(refuse_inconsistent)?;
-    Ok(Parsed { report, findings })
+    let scatter = part.scatter();
+    let report = match scatter {
+        None => Report::new(header, columns),
+        Some(_) => Report::of_points(header, columns),
+    };
+    let report = report.map_err(refuse_inconsistent)?;
+    Ok((Parsed { report, findings }, scatter))
 }
+
+/// Standard deviations within the frames of averaged points, by quantity.
+type PointScatter = Vec<(Column, Vec<f64>)>;
 
 /// Numbers in the stored unit of their column, with the input column that a refusal refers to.
 struct Series {
@@ -99,7 +108,7 @@ struct Part<'p> {
     plan: &'p Plan,
     layout: &'p Layout,
     recording: &'p Recording,
-    /// Rows of the recording, at least three.
+    /// Rows of the recording, at least three (of averaged points one).
     rows: Vec<usize>,
     /// Number of rows before any was left out for its range.
     level_rows: usize,
@@ -182,6 +191,13 @@ impl Part<'_> {
     /// `row` counts from the part's first.
     fn refuse(&self, row: usize, input: usize, found: Found, kind: RefusalKind) -> Refusal {
         self.layout.refuse(self.recording, (self.rows[row], input), found, kind)
+    }
+
+    /// `None` where the rows are samples.
+    fn scatter(&self) -> Option<PointScatter> {
+        let points = self.plan.points.as_ref()?;
+        let scatter = points.scatter.iter();
+        Some(scatter.map(|(column, conversion)| (*column, self.convert(conversion))).collect())
     }
 
     fn convert(&self, conversion: &Conversion) -> Vec<f64> {

@@ -33,6 +33,9 @@ impl MappingFile {
         file.mass.columns(&mut columns);
         file.time.columns(&mut columns);
         columns.extend(file.only.iter_mut().map(|(column, _)| column));
+        if let RowsAre::AveragedPoints { scatter, .. } = &mut file.rows {
+            columns.extend(scatter.iter_mut().map(|(_, column, _)| column));
+        }
         for column in columns {
             if let Some(name) = present(column, names) {
                 *column = name;
@@ -123,6 +126,8 @@ pub(super) struct MappingFile {
     #[serde(default)]
     pub(super) units_row: bool,
     #[serde(default)]
+    pub(super) rows: RowsAre,
+    #[serde(default)]
     pub(super) comment: Option<char>,
     #[serde(default)]
     pub(super) not_available: Vec<String>,
@@ -148,6 +153,23 @@ pub(super) struct MappingFile {
     pub(super) new_flight_after_s: Option<f64>,
     #[serde(default)]
     pub(super) cruise: Option<CruiseFile>,
+}
+
+/// What the rows are.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) enum RowsAre {
+    /// Samples of a recorder, one after the other.
+    #[default]
+    Samples,
+    /// Means over stable frames, one a row.
+    AveragedPoints {
+        /// Length of a frame, s.
+        averaged_over_s: f64,
+        /// Standard deviations within a frame: quantity, column, unit.
+        #[serde(default)]
+        scatter: Vec<(String, String, String)>,
+    },
 }
 
 /// What happens to a row with a recorded number outside its column's range.

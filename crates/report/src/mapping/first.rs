@@ -8,6 +8,7 @@ use core::fmt::Write;
 use columns::Columns;
 use names::{Name, engine_of};
 
+use super::{MappedReport, Mapping, Source};
 use crate::decode;
 use crate::refusal::Refusal;
 
@@ -24,12 +25,10 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
         ORDINARY.iter().filter_map(|rule| columns.ordinary(rule, &mut quantities)).collect();
     columns.engines(&mut quantities);
     columns.air_data(&known, &mut quantities);
-    Ok(format!(
+    let mapping = format!(
         "// Made from the names and values of a recording. Lines with `// ?` are guesses.\n\
          (\n    format: 1,\n{separator}{decimal}{units_row}    bad_rows: LeaveRowOut,\n    out_of_range: LeaveRowOut,\n\
-         {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n    mass: {mass}\n\
-         \x20   // Level cruise; leave it away where the recording holds nothing else.\n\
-         \x20   cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n)\n",
+         {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n    mass: {mass}\n{LEVEL_CRUISE})\n",
         separator = match columns.form.separator {
             b',' => String::new(),
             other => format!("    separator: {:?},\n", char::from(other)),
@@ -39,7 +38,46 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
         texts = columns.texts(),
         time = columns.time(),
         mass = columns.mass(),
-    ))
+    );
+    let of_points = mapping.replace(LEVEL_CRUISE, AVERAGED_POINTS);
+    Ok(if is_of_points(&of_points, &text) { of_points } else { mapping })
+}
+
+const LEVEL_CRUISE: &str = "    // Level cruise; leave it away where the recording holds nothing else.\n    cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n";
+const AVERAGED_POINTS: &str = "    // Rows too far apart for samples: means over stable frames.\n    rows: AveragedPoints(averaged_over_s: 60),   // ?\n";
+/// Rows of a flight farther apart than this are no samples: a track refuses them.
+const LONGEST_STEP_S: f64 = 90.0;
+
+/// Whether the rows of flights are too far apart for samples.
+fn is_of_points(mapping: &str, text: &str) -> bool {
+    let mut steps_s = Vec::new();
+    let mut points = 0;
+    let read = |flight: MappedReport| {
+        if let MappedReport::Points(flight) = flight {
+            let time_s = &flight.parsed.report.columns().time_s;
+            points += time_s.len();
+            steps_s.extend(time_s.windows(2).map(|pair| pair[1] - pair[0]));
+        }
+    };
+    if each_flight(mapping, text, read).is_none() {
+        return false;
+    }
+    steps_s.sort_by(f64::total_cmp);
+    // Flights of one row each have no step.
+    steps_s.get(steps_s.len() / 2).map_or(points >= 3, |step_s| *step_s > LONGEST_STEP_S)
+}
+
+/// Reads flights as far as they can be read; `None` where the mapping cannot read the text.
+fn each_flight(mapping: &str, text: &str, mut read: impl FnMut(MappedReport)) -> Option<()> {
+    let mut source = Source::text(text.as_bytes()).ok()?;
+    let mut stream = source.begin(&Mapping::from_ron(mapping).ok()?, Some("F")).ok()?;
+    while let Some(piece) = source.next_piece(&mut stream).ok()? {
+        let rows = stream.rows(piece);
+        let (flights, _) = stream.add(&rows);
+        flights.into_iter().map(|flight| stream.report(flight)).for_each(&mut read);
+    }
+    stream.finish().into_iter().map(|flight| stream.report(flight)).for_each(&mut read);
+    Some(())
 }
 
 /// A quantity that is one column in one unit.

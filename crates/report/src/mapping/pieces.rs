@@ -8,6 +8,7 @@ use std::sync::Arc;
 use flate2::bufread::MultiGzDecoder;
 
 use super::in_memory::{Lines, TableRows};
+use super::table::Batch;
 use crate::decode::{self, MAXIMUM_TEXT_BYTES};
 use crate::refusal::{Found, Refusal, RefusalKind};
 
@@ -16,12 +17,16 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 const PIECE_BYTES: usize = 1 << 19;
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 
-/// Whole lines of a recording.
+/// Whole lines of a recording, or rows of a table.
 #[derive(Clone, Debug, Default)]
 pub struct Piece {
     pub(super) content: Content,
     /// Physical line from 1 of its first line.
     pub(super) first_line: usize,
+    /// Its rows where they are no text; only until they are read.
+    pub(super) batch: Option<Arc<Batch>>,
+    /// What its rows take in memory, where they are no text, bytes.
+    pub(super) bytes: usize,
 }
 
 /// What a piece holds.
@@ -73,7 +78,7 @@ impl<R> Debug for Source<R> {
     }
 }
 
-impl Pieces<io::Empty> {
+impl Pieces<Box<dyn BufRead>> {
     /// Of a table: the line of its columns' names as comma-separated text, then its rows.
     pub fn of_table(mut names: String, rows: impl Iterator<Item = TableRows> + 'static) -> Self {
         names.push('\n');
@@ -124,7 +129,7 @@ impl<R: BufRead> Pieces<R> {
             let first_line = self.next_line;
             return Ok(rows.next().map(|rows| {
                 self.next_line += rows.rows;
-                Piece { content: Content::Rows(Box::new(rows)), first_line }
+                Piece { content: Content::Rows(Box::new(rows)), first_line, ..Piece::default() }
             }));
         }
         let mut wanted = PIECE_BYTES;
@@ -150,6 +155,16 @@ impl<R: BufRead> Pieces<R> {
             }
             wanted = self.waiting.len() + PIECE_BYTES;
         }
+    }
+
+    /// The first whole lines, unpacked, about this many bytes of them.
+    pub(super) fn beginning(mut self, most_bytes: usize) -> Result<Vec<u8>, Refusal> {
+        self.fill(most_bytes)?;
+        if !self.has_ended {
+            let end = last_line_end(&self.waiting, encoding_of(&self.waiting));
+            self.waiting.truncate(end);
+        }
+        Ok(self.waiting)
     }
 
     fn fill(&mut self, wanted: usize) -> Result<(), Refusal> {
@@ -199,7 +214,7 @@ impl<R: BufRead> Pieces<R> {
             _ => text,
         });
         self.next_line += memchr::memchr_iter(b'\n', text.as_bytes()).count();
-        Ok(Piece { content: Content::Text(text), first_line })
+        Ok(Piece { content: Content::Text(text), first_line, ..Piece::default() })
     }
 }
 
@@ -238,6 +253,12 @@ fn last_line_end(bytes: &[u8], encoding: Encoding) -> usize {
     end
 }
 
+impl From<Batch> for Piece {
+    fn from(batch: Batch) -> Self {
+        Self { first_line: batch.first_line(), batch: Some(Arc::new(batch)), ..Self::default() }
+    }
+}
+
 impl Piece {
     /// A line of it, by its number in the recording.
     pub(super) fn line(&self, line: usize) -> Cow<'_, str> {
@@ -249,12 +270,13 @@ impl Piece {
         }
     }
 
-    /// Bytes of text that it keeps.
+    /// Bytes that it keeps.
     pub(super) fn kept_bytes(&self) -> usize {
-        match &self.content {
+        let text = match &self.content {
             Content::Text(text) => text.len(),
             Content::Rows(_) | Content::Lines { .. } => 0,
-        }
+        };
+        text + self.bytes
     }
 
     /// Whether it has no line.

@@ -1,5 +1,7 @@
 //! A checked mapping: every required quantity has a source, every unit is known.
 
+mod mass;
+
 use flight::column::{Column, ColumnUnit};
 use flight::{MAXIMUM_ENGINES, MissingColumn, Timestamp};
 use units::convert::METERS_PER_FOOT;
@@ -7,8 +9,8 @@ use units::{Mass, OutOfDomain, check_within};
 
 use super::MappingError;
 use super::file::{
-    Amount, BadRows, CruiseFile, FORMAT, MappingFile, MassSource, OutOfRange, QuantitySource,
-    TextSource, TimeSource, WithUnit,
+    BadRows, CruiseFile, FORMAT, MappingFile, OutOfRange, QuantitySource, RowsAre, TextSource,
+    TimeSource,
 };
 use super::level::LevelCriteria;
 use crate::cruise_text::parse_instant;
@@ -41,6 +43,16 @@ pub(super) struct Plan {
     pub(super) only: Vec<(String, Vec<String>)>,
     pub(super) new_flight_after_s: Option<f64>,
     pub(super) cruise: Option<LevelCriteria>,
+    /// Where the rows are averaged points.
+    pub(super) points: Option<PointsPlan>,
+}
+
+/// Rows that are means over stable frames.
+#[derive(Clone, Debug)]
+pub(super) struct PointsPlan {
+    pub(super) averaged_over_s: f64,
+    /// Standard deviations within a frame.
+    pub(super) scatter: Vec<(Column, Conversion)>,
 }
 
 /// A column of numbers in the recording.
@@ -175,7 +187,12 @@ impl Plan {
         let Derivations { mach, temperature, true_airspeed } = sources.derivations()?;
         check_engines(|column| sources.is_recorded(column))?;
         let mut inputs = sources.inputs;
-        let mass = mass_plan(file.mass, &mut inputs)?;
+        let mass = mass::mass_plan(file.mass, &mut inputs)?;
+        let points = points_plan(file.rows, &mut inputs)?;
+        if points.is_some() {
+            refuse_for_points("cruise", file.cruise.is_some())?;
+            refuse_for_points("StartMass", matches!(mass, MassPlan::StartMass { .. }))?;
+        }
         let (time_column, time) = time_plan(file.time)?;
         Ok(Self {
             separator: ascii(file.separator)?,
@@ -207,6 +224,7 @@ impl Plan {
                 .map(|gap_s| check_within("gap between flights", "s", gap_s, 1.0, 1e7))
                 .transpose()?,
             cruise: file.cruise.as_ref().map(level_criteria).transpose()?,
+            points,
         })
     }
 
@@ -390,99 +408,41 @@ impl Inputs {
     }
 }
 
+fn points_plan(rows: RowsAre, inputs: &mut Inputs) -> Result<Option<PointsPlan>, MappingError> {
+    let RowsAre::AveragedPoints { averaged_over_s, scatter } = rows else { return Ok(None) };
+    let scatter = scatter.into_iter().map(|(name, column, unit)| {
+        // What the trim criteria limit the changes of.
+        let Some(
+            quantity @ (Column::PressureAltitude
+            | Column::Mach
+            | Column::GroundSpeed
+            | Column::StaticAirTemperature
+            | Column::N2(_)),
+        ) = Column::from_name(&name)
+        else {
+            return Err(MappingError::ScatterUnknown { name });
+        };
+        let factor = known_unit(quantity, &unit)?.factor;
+        let input = inputs.place(column, false);
+        Ok((quantity, Conversion { input, minus: None, factor, offset: 0.0 }))
+    });
+    Ok(Some(PointsPlan {
+        scatter: scatter.collect::<Result<_, _>>()?,
+        averaged_over_s: check_within("averaging time", "s", averaged_over_s, 1.0, 3600.0)?,
+    }))
+}
+
+/// What asks for the samples between the points.
+const fn refuse_for_points(entry: &'static str, is_there: bool) -> Result<(), MappingError> {
+    if is_there { Err(MappingError::NeedsSamples { entry }) } else { Ok(()) }
+}
+
 fn known_unit(column: Column, unit: &str) -> Result<ColumnUnit, MappingError> {
     let known = column.units().iter().find(|known| known.name == unit);
     known.copied().ok_or_else(|| MappingError::UnitUnknown {
         column,
         unit: unit.to_owned(),
         near: nearest(unit, column.units().iter().map(|unit| unit.name)),
-    })
-}
-
-fn mass(WithUnit(value, unit): &WithUnit, what: &'static str) -> Result<Mass, MappingError> {
-    let unit = known_unit(Column::FuelUsed, unit)?;
-    let mass_kg = check_within(what, "kg", value * unit.factor, f64::MIN_POSITIVE, 1e7)?;
-    Ok(Mass::kilograms(mass_kg))
-}
-
-fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassPlan, MappingError> {
-    Ok(match source {
-        MassSource::GrossMass {
-            column,
-            unit,
-            scale,
-            hold_s,
-            interpolate_s,
-            zero_fuel_weight,
-            largest_rise_kg,
-        } => {
-            let mass_column = inputs.conversion(Column::FuelUsed, column, &unit, scale)?;
-            inputs.0[mass_column.input].fill = fill(hold_s, interpolate_s)?;
-            MassPlan::GrossMass {
-                mass: mass_column,
-                zero_fuel_mass: zero_fuel_weight
-                    .map(|value| mass(&value, "zero-fuel mass"))
-                    .transpose()?,
-                largest_rise_kg: check_within(
-                    "largest rise of gross mass",
-                    "kg",
-                    largest_rise_kg,
-                    0.0,
-                    1e5,
-                )?,
-            }
-        }
-        MassSource::FuelUsed { column, unit, scale, zero_fuel_weight, fuel_on_board } => {
-            MassPlan::FuelUsed {
-                fuel_used: inputs.conversion(Column::FuelUsed, column, &unit, scale)?,
-                zero_fuel_mass: Load::Known(mass(&zero_fuel_weight, "zero-fuel mass")?),
-                fuel_on_board: Load::Known(mass(&fuel_on_board, "fuel on board")?),
-            }
-        }
-        MassSource::LoadSheet { fuel_used, zero_fuel_weight, fuel_on_board } => {
-            let Amount::Column(column, unit) = fuel_used else {
-                return Err(MappingError::QuantityNotMapped { column: Column::FuelUsed });
-            };
-            MassPlan::FuelUsed {
-                fuel_used: inputs.conversion(Column::FuelUsed, column, &unit, 1.0)?,
-                zero_fuel_mass: load(zero_fuel_weight, "zero-fuel mass", inputs)?,
-                fuel_on_board: load(fuel_on_board, "fuel on board", inputs)?,
-            }
-        }
-        MassSource::ZeroFuelAndTanks { zero_fuel_weight, tanks, unit, largest_rise_kg } => {
-            MassPlan::ZeroFuelAndTanks {
-                zero_fuel_mass: load(zero_fuel_weight, "zero-fuel mass", inputs)?,
-                tanks: tanks
-                    .into_iter()
-                    .map(|tank| inputs.conversion(Column::FuelUsed, tank, &unit, 1.0))
-                    .collect::<Result<_, _>>()?,
-                largest_rise_kg: check_within(
-                    "largest rise of gross mass",
-                    "kg",
-                    largest_rise_kg,
-                    0.0,
-                    1e5,
-                )?,
-            }
-        }
-        MassSource::StartMass { gross_weight } => {
-            MassPlan::StartMass { gross_mass: load(gross_weight, "gross mass", inputs)? }
-        }
-    })
-}
-
-/// A mass of the load sheet. A column holds for the whole flight: the recorder may send it once.
-fn load(amount: Amount, what: &'static str, inputs: &mut Inputs) -> Result<Load, MappingError> {
-    Ok(match amount {
-        Amount::Value(value, unit) => Load::Known(mass(&WithUnit(value, unit), what)?),
-        Amount::Column(column, unit) => {
-            let conversion = inputs.conversion(Column::FuelUsed, column, &unit, 1.0)?;
-            let input = &mut inputs.0[conversion.input];
-            if input.fill == Fill::Not {
-                input.fill = Fill::Hold(f64::INFINITY);
-            }
-            Load::Column(conversion)
-        }
     })
 }
 

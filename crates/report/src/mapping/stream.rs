@@ -3,6 +3,7 @@
 use std::io::BufRead;
 use std::sync::Arc;
 
+use flight::column::Column;
 use flight::{Finding, Severity};
 
 use super::file::BadRows;
@@ -27,11 +28,24 @@ pub struct Stream {
 #[derive(Debug)]
 pub struct MappedFlight(Recording);
 
+/// Rows of a flight that are means over stable frames.
+#[derive(Debug)]
+pub struct MappedPoints {
+    /// The points as rows of a report, one or more ([`flight::Report::of_points`]).
+    pub parsed: Parsed,
+    /// Length of a frame as the mapping states it, s.
+    pub averaged_over_s: f64,
+    /// Standard deviations within each point's frame, in the stored unit of their quantity; NaN where there is none.
+    pub scatter: Vec<(Column, Vec<f64>)>,
+}
+
 /// What the rows of a flight came to.
 #[derive(Debug)]
 pub enum MappedReport {
     /// A report.
     Report(Box<Parsed>),
+    /// Averaged points.
+    Points(Box<MappedPoints>),
     /// No level part is long enough.
     WithoutCruise {
         /// Its name.
@@ -76,8 +90,30 @@ impl Stream {
         let (layout, below) = Layout::of_text(&mapping.file, text, file_name)?;
         let assembly = Assembly::new(&first);
         let text = Arc::new(text[below.byte..].to_owned());
-        let first = Some(Piece { content: Content::Text(text), first_line: below.line });
+        let content = Content::Text(text);
+        let first = Some(Piece { content, first_line: below.line, ..Piece::default() });
         Ok(Self { layout, first, assembly, tally: Tally::default() })
+    }
+
+    /// Begins to read a table whose columns have these names; its rows come as [`Batch`](super::Batch)es, made into
+    /// pieces. Separators and units rows of the mapping do not apply.
+    ///
+    /// # Errors
+    /// [`Refusal`] for a table without the columns that the mapping needs.
+    pub fn begin_table(
+        mapping: &Mapping,
+        names: &[String],
+        file_name: Option<&str>,
+    ) -> Result<Self, Refusal> {
+        let layout = Layout::of_table(&mapping.comma_separated().file, names, file_name)?;
+        let assembly = Assembly::new(&Piece::default());
+        Ok(Self { layout, first: None, assembly, tally: Tally::default() })
+    }
+
+    /// The places of the columns that are read, in increasing order.
+    #[must_use]
+    pub fn needed(&self) -> Vec<usize> {
+        self.layout.needed()
     }
 
     /// The next piece of rows; `None` after the last.
@@ -128,7 +164,11 @@ impl Stream {
             return MappedReport::WithoutCruise { flight, longest_s };
         }
         match derive::report(&self.layout, &recording, &parts) {
-            Ok(report) => MappedReport::Report(Box::new(report)),
+            Ok((report, None)) => MappedReport::Report(Box::new(report)),
+            Ok((parsed, Some(scatter))) => {
+                let averaged_over_s = plan.points.as_ref().map_or(0.0, |plan| plan.averaged_over_s);
+                MappedReport::Points(Box::new(MappedPoints { parsed, averaged_over_s, scatter }))
+            }
             Err(refusal) => MappedReport::Refused { flight, refusal: Box::new(refusal) },
         }
     }
@@ -147,6 +187,12 @@ impl Stream {
             MappedReport::Report(parsed) => {
                 self.count_report();
                 return Ok(Some(*parsed));
+            }
+            MappedReport::Points(points) => {
+                let line = self.layout.names_line();
+                let found = Found::Rows(points.parsed.report.len());
+                let kind = RefusalKind::PointsForSamples;
+                return Err(Refusal { line, column: 1, found, kind });
             }
             MappedReport::WithoutCruise { flight, longest_s } => {
                 self.tally.longest_s = self.tally.longest_s.max(longest_s);

@@ -1,5 +1,6 @@
 //! Delimited text into recordings: where a recording has what its mapping names, and positions for refusals.
 
+mod batch;
 mod columns;
 mod flights;
 mod recording;
@@ -8,6 +9,7 @@ mod rows;
 use super::MappingError;
 use super::file::{MappingFile, TextSource};
 use super::plan::{Plan, TimeForm};
+pub use batch::{Batch, BatchColumn, line_of_names};
 pub(super) use flights::Assembly;
 pub(super) use recording::Recording;
 pub use rows::Rows;
@@ -28,6 +30,7 @@ pub(super) struct Layout {
     fields: Fields,
     /// Fields of a row.
     columns: usize,
+    names_line: usize,
 }
 
 /// What is below the line of names: the byte at which it begins, and its line.
@@ -66,6 +69,21 @@ impl Layout {
         Ok((layout, Below { byte, line: line_of(position) }))
     }
 
+    /// The layout of a table with these names of columns.
+    pub(super) fn of_table(
+        file: &MappingFile,
+        names: &[String],
+        file_name: Option<&str>,
+    ) -> Result<Self, Refusal> {
+        let record = csv::StringRecord::from_iter(names);
+        let text = names.join(",");
+        Self::of_names(
+            file,
+            &Names { record, line: 1, text: &text, form: form_of(file) },
+            file_name,
+        )
+    }
+
     fn of_names(
         file: &MappingFile,
         names: &Names<'_>,
@@ -79,7 +97,12 @@ impl Layout {
             kind: RefusalKind::SourceColumnsUnfit { reason: error.to_string() },
         })?;
         let fields = Fields::find(&plan, names, file_name)?;
-        Ok(Self { plan, fields, columns: names.record.len() })
+        Ok(Self { plan, fields, columns: names.record.len(), names_line: names.line })
+    }
+
+    /// The line of names.
+    pub(super) const fn names_line(&self) -> usize {
+        self.names_line
     }
 
     fn form(&self) -> Form {

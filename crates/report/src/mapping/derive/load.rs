@@ -155,7 +155,9 @@ impl Part<'_> {
         let zero_fuel_mass = zero_fuel_mass.unwrap_or(Mass::kilograms(smallest_kg));
         let fuel_on_board = Mass::kilograms(first_kg) - zero_fuel_mass;
         let fuel_on_board_kg = fuel_on_board.to_kilograms();
-        if fuel_on_board_kg <= 0.0 || fuel_on_board_kg < burnt_kg {
+        // A single point has burnt nothing yet, so that nothing is known of its fuel where no load sheet is.
+        let is_single = self.plan.points.is_some() && burnt_kg == 0.0;
+        if fuel_on_board_kg < burnt_kg || (fuel_on_board_kg == 0.0 && !is_single) {
             let kind = RefusalKind::MassNotPositive { mass: "fuel on board" };
             let found = Found::Number { value: fuel_on_board_kg - burnt_kg, unit: "kg" };
             return Err(self.refuse(0, masses.input, found, kind));

@@ -19,7 +19,7 @@ impl Layout {
             return rows;
         }
         let text = Arc::new(table.text.text(0..table.rows));
-        self.rows(Piece { content: Content::Text(text), first_line })
+        self.rows(Piece { content: Content::Text(text), first_line, ..Piece::default() })
     }
 
     fn rows_of_columns(&self, table: &mut TableRows, first_line: usize) -> Option<Rows> {
@@ -48,6 +48,7 @@ impl Layout {
         let piece = Piece {
             content: Content::Lines { lines: table.text.clone(), count: table.rows },
             first_line,
+            ..Piece::default()
         };
         Some(Rows {
             numbers: numbers.collect(),

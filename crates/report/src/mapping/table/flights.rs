@@ -39,6 +39,8 @@ impl Assembly {
     pub(in crate::mapping) fn add(&mut self, layout: &Layout, rows: &Rows) -> Result<(), Refusal> {
         if !rows.piece.is_empty() {
             self.end = rows.piece.end();
+        } else if let Some(line) = rows.lines.last() {
+            self.end = (*line, 0);
         }
         if let Some(current) = &mut self.current {
             current.keep(&rows.piece)?;

@@ -71,7 +71,14 @@ impl Times {
 
 impl Layout {
     /// Reads the rows of a piece. With a mapping that refuses bad rows, it ends at the first one.
-    pub(in crate::mapping) fn rows(&self, piece: Piece) -> Rows {
+    pub(in crate::mapping) fn rows(&self, mut piece: Piece) -> Rows {
+        if let Some(batch) = piece.batch.take().and_then(Arc::into_inner) {
+            // What is kept of a piece is counted, whatever its form.
+            let bytes = batch.bytes();
+            let mut rows = self.rows_of_batch(batch);
+            rows.piece.bytes = bytes;
+            return rows;
+        }
         let text = match piece.content {
             Content::Rows(table) => return self.rows_of_table(*table, piece.first_line),
             Content::Lines { .. } => Arc::default(),

@@ -1,0 +1,237 @@
+//! Rows of a table whose cells are numbers and instants rather than text: Parquet, for example.
+//!
+//! Columns go into rows as they are where each is of the kind that the mapping asks for. Everything else (numbers as text,
+//! dates in a column of their own, a value that has to be refused) is written as text first, batch by batch, and read by
+//! the code that reads text, so that both mean the same.
+
+use std::sync::Arc;
+
+use flight::Timestamp;
+
+use super::rows::{Event, FARTHEST_S, Rows, Times};
+use super::{Layout, Text};
+use crate::mapping::pieces::{Content, Piece};
+use crate::mapping::plan::TimeForm;
+
+/// Rows that follow each other, column by column.
+#[derive(Debug, Default)]
+pub struct Batch {
+    /// Rows of the table before it.
+    pub first_row: usize,
+    /// Rows in it.
+    pub rows: usize,
+    /// Columns by their place in the table, those that are needed.
+    pub columns: Vec<(usize, BatchColumn)>,
+}
+
+/// The cells of a column.
+#[derive(Debug)]
+pub enum BatchColumn {
+    /// Numbers, NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Nanoseconds since 1970 in UTC, `None` where there is no instant.
+    Instants(Vec<Option<i64>>),
+    /// Texts, each with the number of rows that it holds for; empty where there is none.
+    Texts(Vec<(String, usize)>),
+}
+
+/// The line on which a table's first row would be in a text: below the names.
+const FIRST_LINE: usize = 2;
+
+impl Batch {
+    /// The line of its first row, were the table a text.
+    pub(in crate::mapping) const fn first_line(&self) -> usize {
+        self.first_row + FIRST_LINE
+    }
+
+    /// About what its numbers take in memory, bytes.
+    pub(in crate::mapping) const fn bytes(&self) -> usize {
+        8 * self.rows * self.columns.len()
+    }
+
+    fn column(&self, place: usize) -> Option<&BatchColumn> {
+        self.columns.iter().find(|(known, _)| *known == place).map(|(_, column)| column)
+    }
+
+    /// The same as comma-separated text, a line for each row, of a table with this many columns.
+    #[must_use]
+    pub fn to_text(&self, fields: usize) -> String {
+        let mut cells: Vec<Cells<'_>> = (0..fields).map(|place| self.cells(place)).collect();
+        let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
+        for _ in 0..self.rows {
+            // Writing to memory cannot fail.
+            let _ =
+                writer.write_record(cells.iter_mut().map(|cells| cells.next().unwrap_or_default()));
+        }
+        let bytes = writer.into_inner().unwrap_or_default();
+        String::from_utf8(bytes).unwrap_or_default()
+    }
+
+    fn cells(&self, place: usize) -> Cells<'_> {
+        match self.column(place) {
+            None => Box::new(core::iter::repeat_n(String::new(), self.rows)),
+            Some(BatchColumn::Numbers(numbers)) => Box::new(
+                numbers
+                    .iter()
+                    .map(|number| if number.is_nan() { String::new() } else { number.to_string() }),
+            ),
+            Some(BatchColumn::Instants(instants)) => Box::new(instants.iter().map(|instant| {
+                let instant = instant.and_then(instant_of);
+                instant.map_or_else(String::new, |instant| instant.to_string())
+            })),
+            Some(BatchColumn::Texts(texts)) => Box::new(
+                texts.iter().flat_map(|(text, rows)| core::iter::repeat_n(text.clone(), *rows)),
+            ),
+        }
+    }
+}
+
+/// The names of columns as the first line of a comma-separated text.
+#[must_use]
+pub fn line_of_names(names: &[String]) -> String {
+    let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+    // Writing to memory cannot fail.
+    let _ = writer.write_record(names);
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+type Cells<'a> = Box<dyn Iterator<Item = String> + 'a>;
+
+fn instant_of(nanoseconds: i64) -> Option<Timestamp> {
+    Timestamp::from_nanosecond(i128::from(nanoseconds)).ok()
+}
+
+impl Layout {
+    /// The places of the columns that are read.
+    pub(in crate::mapping) fn needed(&self) -> Vec<usize> {
+        let fields = &self.fields;
+        let texts = fields.texts.iter().filter_map(|(_, text)| match text {
+            Text::Field(field) => Some(*field),
+            Text::Constant(_) => None,
+        });
+        let mut needed: Vec<usize> = core::iter::once(fields.time)
+            .chain(fields.date)
+            .chain(fields.inputs.iter().copied())
+            .chain(texts)
+            .chain(fields.only.iter().copied())
+            .collect();
+        needed.sort_unstable();
+        needed.dedup();
+        needed
+    }
+
+    /// Reads the rows of a batch.
+    pub(super) fn rows_of_batch(&self, mut batch: Batch) -> Rows {
+        if let Some((times, events)) = self.times_and_texts(&batch) {
+            let piece = Piece { first_line: batch.first_line(), ..Piece::default() };
+            let mut rows = Rows::new(self, piece);
+            rows.times = times;
+            rows.numbers = self.numbers(&mut batch);
+            rows.lines = (batch.first_line()..batch.first_line() + batch.rows).collect();
+            rows.events = events;
+            return rows;
+        }
+        let text = Arc::new(batch.to_text(self.columns));
+        let content = Content::Text(text);
+        self.rows(Piece { content, first_line: batch.first_line(), ..Piece::default() })
+    }
+
+    /// `None` where a column is of another kind than the mapping asks for, or holds what has to be refused.
+    fn times_and_texts(&self, batch: &Batch) -> Option<(Times, Vec<(usize, Event)>)> {
+        for (input, field) in self.plan.inputs.iter().zip(&self.fields.inputs) {
+            let BatchColumn::Numbers(values) = batch.column(*field)? else { return None };
+            if !input.values.is_empty() || values.iter().any(|value| value.is_infinite()) {
+                return None;
+            }
+        }
+        Some((self.times(batch)?, self.texts_of_rows(batch)?))
+    }
+
+    /// The numbers of each input, taken out of the batch.
+    fn numbers(&self, batch: &mut Batch) -> Vec<Vec<f64>> {
+        let inputs = &self.fields.inputs;
+        let mut numbers = Vec::with_capacity(inputs.len());
+        for (index, field) in inputs.iter().enumerate() {
+            let column = batch.columns.iter_mut().find(|(known, _)| known == field);
+            numbers.push(match column {
+                Some((_, BatchColumn::Numbers(values))) if inputs[index + 1..].contains(field) => {
+                    values.clone()
+                }
+                Some((_, BatchColumn::Numbers(values))) => core::mem::take(values),
+                // Every input was found to be one of numbers.
+                _ => vec![f64::NAN; batch.rows],
+            });
+        }
+        numbers
+    }
+
+    fn times(&self, batch: &Batch) -> Option<Times> {
+        let column = batch.column(self.fields.time)?;
+        match (&self.plan.time, column) {
+            (
+                TimeForm::Timestamp { date_column: None, format: None, .. },
+                BatchColumn::Instants(instants),
+            ) => {
+                let instants = instants.iter().map(|instant| instant.and_then(instant_of));
+                Some(Times::Instants(instants.collect::<Option<_>>()?))
+            }
+            (TimeForm::Seconds { per_second, .. }, BatchColumn::Numbers(numbers)) => {
+                let seconds: Vec<f64> = numbers.iter().map(|number| number / per_second).collect();
+                let is_near = |seconds: &f64| seconds.abs() <= FARTHEST_S;
+                seconds.iter().all(is_near).then_some(Times::Seconds(seconds))
+            }
+            _ => None,
+        }
+    }
+
+    /// Where the texts of the header change; `None` where rows are left out, or lack a text.
+    fn texts_of_rows(&self, batch: &Batch) -> Option<Vec<(usize, Event)>> {
+        for ((_, texts), field) in self.plan.only.iter().zip(&self.fields.only) {
+            let BatchColumn::Texts(runs) = batch.column(*field)? else { return None };
+            if !runs.iter().all(|(text, _)| texts.iter().any(|wanted| wanted == text.trim())) {
+                return None;
+            }
+        }
+        let mut changes = vec![0];
+        let mut sources = Vec::with_capacity(3);
+        for (_, text) in &self.fields.texts {
+            let runs = match text {
+                Text::Constant(text) => {
+                    core::slice::from_ref(text).iter().map(|t| (t.as_str(), batch.rows)).collect()
+                }
+                Text::Field(field) => {
+                    let BatchColumn::Texts(runs) = batch.column(*field)? else { return None };
+                    runs.iter().map(|(text, rows)| (text.trim(), *rows)).collect::<Vec<_>>()
+                }
+            };
+            if runs.iter().any(|(text, _)| text.is_empty()) {
+                return None;
+            }
+            let mut end = 0;
+            changes.extend(runs.iter().map(|(_, rows)| {
+                end += rows;
+                end
+            }));
+            sources.push(runs);
+        }
+        changes.sort_unstable();
+        changes.dedup();
+        let events = changes.into_iter().filter(|row| *row < batch.rows).map(|row| {
+            let texts: Vec<String> =
+                sources.iter().map(|runs| text_at(runs, row).to_owned()).collect();
+            let texts: [String; 3] = texts.try_into().unwrap_or_default();
+            (row, Event::Texts(Arc::new(texts)))
+        });
+        Some(events.collect())
+    }
+}
+
+/// The text that holds for a row.
+fn text_at<'t>(runs: &[(&'t str, usize)], row: usize) -> &'t str {
+    let mut end = 0;
+    let found = runs.iter().find(|(_, rows)| {
+        end += rows;
+        row < end
+    });
+    found.map_or("", |(text, _)| text)
+}
