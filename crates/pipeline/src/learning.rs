@@ -175,7 +175,8 @@ fn baseline_of(
     let table = initial.drag_table();
     let visited = visited_nodes(initial, table, flights).map_err(|error| error.to_string())?;
     let belief = belief_before_flights(initial, settings, &visited).map_err(|e| e.to_string())?;
-    Baseline::learn(initial, table, Some(belief), flights).map_err(|error| error.to_string())
+    Baseline::learn(initial, table, Some(belief), flights, settings.values().half_life_days)
+        .map_err(|error| error.to_string())
 }
 
 fn learn_by_paper(

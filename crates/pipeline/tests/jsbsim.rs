@@ -61,7 +61,7 @@ fn learn(model: &ExtendedModel, flights: &[Vec<Segment>]) -> Baseline {
     let records = records(flights);
     let visited = visited_nodes(model, model.drag_table(), &records).unwrap();
     let belief = belief_before_flights(model, BayesSettings::physical_2026(), &visited).unwrap();
-    Baseline::learn(model, model.drag_table(), Some(belief), &records).unwrap()
+    Baseline::learn(model, model.drag_table(), Some(belief), &records, None).unwrap()
 }
 
 fn run(model: &ExtendedModel, baseline: Option<&Baseline>, flights: &[Vec<Segment>]) -> Diagnosis {

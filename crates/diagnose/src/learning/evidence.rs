@@ -83,7 +83,7 @@ impl<'a> Evidence<'a> {
         factor.solve_lower(&mut projected);
         let explained: f64 = projected.col_as_slice(0).iter().map(|value| value * value).sum();
         let left = (gram[(width, width)] - explained / square) / square;
-        let ln_noise = self.sums.values as f64 * square.ln() + ln_common;
+        let ln_noise = self.sums.values * square.ln() + ln_common;
         let likelihood = -0.5 * (ln_noise + ln_prior + factor.ln_determinant() + left);
         likelihood + self.ln_prior(dials)
     }
@@ -313,6 +313,7 @@ mod tests {
             variance: vec![0.5, 0.7, 0.4, 1.0, 0.6],
             loadings: vec![vec![0.3, 0.4, 0.3, 0.5, 0.2]],
             groups: vec![0..3, 3..5],
+            shares: vec![1.0; 2],
         };
         let sums = ChannelSums::new(&rows, &Weights::of_one(&rows));
         let prior = [
@@ -361,6 +362,7 @@ mod tests {
             variance: vec![0.1; flights * each],
             loadings: vec![vec![0.3; flights * each]],
             groups: (0..flights).map(|flight| flight * each..(flight + 1) * each).collect(),
+            shares: vec![1.0; flights],
         }
     }
 

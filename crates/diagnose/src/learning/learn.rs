@@ -10,6 +10,7 @@ use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::priors::REMAINDER_LENGTHS;
 use crate::residuals::reference::Reference;
+use crate::residuals::rows::FlightRows;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::record::FlightRecord;
@@ -17,6 +18,10 @@ use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::Variable;
 use crate::thresholds::FEWEST_FLIGHTS_OF_A_BASELINE;
+
+const SECONDS_A_DAY: f64 = 86_400.0;
+/// Least share of a flight that counts. Our choice: nothing, and no division by zero.
+const LEAST_SHARE: f64 = 1e-9;
 
 /// Variables of the remainder, in the order of their lengths.
 const VARIABLES: [Variable; 6] = [
@@ -30,7 +35,8 @@ const VARIABLES: [Variable; 6] = [
 
 impl Baseline {
     /// Learns from clean flights against a model and a drag table. `table` is what is believed of that table before the
-    /// flights; without it the table is taken as exact.
+    /// flights; without it the table is taken as exact. With a half-life a flight counts by its age at the newest one,
+    /// 2^(−age/half-life).
     ///
     /// # Errors
     /// [`DiagnoseError`] where the model takes no effects, or fewer than five flights are inside the table.
@@ -39,11 +45,12 @@ impl Baseline {
         drag_table: &lut::Table,
         table: Option<TableUncertainty>,
         flights: &[FlightRecord<'_>],
+        half_life_days: Option<f64>,
     ) -> Result<Self, DiagnoseError> {
         let references = references_of(model, drag_table, flights)?;
         let effect_model =
             EffectModel::new(model, drag_table, references)?.between_nodes(BetweenNodes::Smooth);
-        let (data, _) = PreparedFlights::prepare(
+        let (mut data, _) = PreparedFlights::prepare(
             &effect_model,
             flights,
             Reference::Untaught,
@@ -64,6 +71,7 @@ impl Baseline {
                 needed: FEWEST_FLIGHTS_OF_A_BASELINE,
             });
         }
+        count_by_age(&mut data.flights, half_life_days);
         let mut baseline = Self::prior(&data, &references, table);
         baseline.fit(&data)?;
         Ok(baseline)
@@ -104,6 +112,16 @@ impl Baseline {
         baseline.parts.mean = vec![0.0; layout.contrasts.end];
         baseline.factor = Mat::zeros(layout.len(), layout.len());
         baseline
+    }
+}
+
+/// What counts of every flight.
+fn count_by_age(flights: &mut [FlightRows], half_life_days: Option<f64>) {
+    let Some(days) = half_life_days else { return };
+    let newest = flights.iter().map(|flight| flight.start_s).fold(f64::NEG_INFINITY, f64::max);
+    for flight in flights {
+        let age_days = (newest - flight.start_s) / SECONDS_A_DAY;
+        flight.share = (-age_days / days).exp2().max(LEAST_SHARE);
     }
 }
 

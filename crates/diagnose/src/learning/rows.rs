@@ -22,6 +22,8 @@ pub(super) struct ChannelRows {
     pub(super) loadings: Vec<Vec<f64>>,
     /// Rows that err together: those of one flight.
     pub(super) groups: Vec<Range<usize>>,
+    /// Share of what each group says that still counts: its likelihood is taken to that power.
+    pub(super) shares: Vec<f64>,
 }
 
 /// Variance of the prediction at a row that no column holds, at scales of 1.
@@ -122,6 +124,7 @@ impl ChannelRows {
     ) -> Self {
         let mut segments = Vec::with_capacity(data.segments.len());
         let mut groups = Vec::with_capacity(data.flights.len());
+        let mut shares = Vec::with_capacity(data.flights.len());
         for flight in &data.flights {
             let first = segments.len();
             segments.extend(
@@ -129,6 +132,7 @@ impl ChannelRows {
             );
             if segments.len() > first {
                 groups.push(first..segments.len());
+                shares.push(flight.share);
             }
         }
         let rows: Vec<&SegmentRow> = segments.iter().map(|&at| &data.segments[at]).collect();
@@ -150,7 +154,7 @@ impl ChannelRows {
             .filter(|loading| loading.iter().any(|value| *value != 0.0))
             .collect();
         let variance = rows.iter().map(own).collect();
-        Self { columns, variance, loadings, groups }
+        Self { columns, variance, loadings, groups, shares }
     }
 
     /// Only some columns.
@@ -164,6 +168,7 @@ impl ChannelRows {
             variance: self.variance.clone(),
             loadings: self.loadings.clone(),
             groups: self.groups.clone(),
+            shares: self.shares.clone(),
         }
     }
 

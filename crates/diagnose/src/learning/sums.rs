@@ -9,6 +9,8 @@
 //! w² Xᵀ(w²D + b²UUᵀ)⁻¹X = Σ XᵀD⁻¹X − Σ_r ρ²/(1 + ρ²λ_r)·p_r p_rᵀ
 //! ln|w²D + b²UUᵀ| = ln|D| + n ln w² + Σ_r ln(1 + ρ²λ_r)                                    [diagnosis.40]
 //! ```
+//!
+//! A flight of which only a share counts, because knowledge ages, adds that share of each.
 
 use faer::{Mat, Side};
 
@@ -23,10 +25,10 @@ pub(super) struct ChannelSums {
     own: Mat<f64>,
     /// p of every loading of every flight, one column each.
     common: Mat<f64>,
-    /// Their λ.
-    eigenvalues: Vec<f64>,
-    /// Number of values.
-    pub(super) values: usize,
+    /// Their λ, and the share of their flight that counts.
+    eigenvalues: Vec<(f64, f64)>,
+    /// Number of values, each as far as its flight counts.
+    pub(super) values: f64,
 }
 
 impl ChannelSums {
@@ -35,10 +37,13 @@ impl ChannelSums {
         let rank = rows.loadings.len();
         let mut own = Sum::new(size);
         let mut common = Mat::<f64>::zeros(size, rank * rows.groups.len());
-        let mut eigenvalues = vec![0.0; rank * rows.groups.len()];
+        let mut eigenvalues = vec![(0.0, 0.0); rank * rows.groups.len()];
+        let mut values = 0.0;
         for (group, range) in rows.groups.iter().enumerate() {
-            let scale: Vec<f64> =
-                range.clone().map(|row| (weights.rows[row] / rows.variance[row]).sqrt()).collect();
+            let share = rows.shares[group];
+            let of_row = |row: usize| (share * weights.rows[row] / rows.variance[row]).sqrt();
+            let scale: Vec<f64> = range.clone().map(of_row).collect();
+            values += share * range.len() as f64;
             let mut white = Mat::<f64>::zeros(range.len(), size);
             for column in 0..size {
                 let from = &rows.columns.col_as_slice(column)[range.clone()];
@@ -48,7 +53,7 @@ impl ChannelSums {
                 }
             }
             own.add(&white, range.len() as f64);
-            let of_group = 1.0 / weights.groups[group].sqrt();
+            let of_group = 1.0 / (share * weights.groups[group]).sqrt();
             let loadings = Mat::from_fn(range.len(), rank, |at, r| {
                 rows.loadings[r][range.start + at] * scale[at] * of_group
             });
@@ -60,11 +65,11 @@ impl ChannelSums {
             let projected = white.transpose() * &rotated;
             for r in 0..rank {
                 let column = rank * group + r;
-                eigenvalues[column] = eigen.S().column_vector()[r].max(0.0);
+                eigenvalues[column] = (eigen.S().column_vector()[r].max(0.0), share);
                 common.col_as_slice_mut(column).copy_from_slice(projected.col_as_slice(r));
             }
         }
-        Self { own: own.finish().matrix, common, eigenvalues, values: rows.variance.len() }
+        Self { own: own.finish().matrix, common, eigenvalues, values }
     }
 
     /// Σ XᵀD⁻¹X of all columns, the residual last.
@@ -78,12 +83,12 @@ impl ChannelSums {
         let mut gram = self.own.clone();
         let mut scaled = self.common.clone();
         let mut ln_common = 0.0;
-        for (column, value) in self.eigenvalues.iter().enumerate() {
+        for (column, (value, of_flight)) in self.eigenvalues.iter().enumerate() {
             let share = ratio / (square * value + 1.0).sqrt();
             for slot in scaled.col_as_slice_mut(column) {
                 *slot *= share;
             }
-            ln_common += (square * value).ln_1p();
+            ln_common += of_flight * (square * value).ln_1p();
         }
         subtract_gram(&mut gram, &scaled);
         (gram, ln_common)
@@ -111,6 +116,7 @@ mod tests {
             variance: (0..count).map(|_| 1.0 + number(&mut k)).collect(),
             loadings: (0..2).map(|_| (0..count).map(|_| number(&mut k)).collect()).collect(),
             groups: vec![0..4, 4..5, 5..11],
+            shares: vec![0.3, 1.0, 0.8],
         };
         let weights = Weights {
             rows: (0..count).map(|_| 0.7 + number(&mut k)).collect(),
@@ -128,8 +134,10 @@ mod tests {
                     let common: f64 = rows.loadings.iter().map(|u| u[i] * u[j]).sum();
                     within * within * own + between * between * common / weights.groups[group]
                 });
-                ln_determinant += covariance.determinant().ln();
-                expected += part.transpose() * covariance.llt(Side::Lower).unwrap().solve(&part);
+                let share = rows.shares[group];
+                ln_determinant += share * covariance.determinant().ln();
+                let inverse = covariance.llt(Side::Lower).unwrap().solve(&part);
+                expected += faer::Scale(share) * (part.transpose() * inverse);
             }
             let (gram, ln_common) = sums.gram(between / within);
             for column in 0..columns {
@@ -140,10 +148,13 @@ mod tests {
                 }
             }
             let own: f64 = rows
-                .variance
+                .groups
                 .iter()
-                .zip(&weights.rows)
-                .map(|(v, w)| (within * within * v / w).ln())
+                .zip(&rows.shares)
+                .flat_map(|(range, share)| range.clone().map(move |row| (row, share)))
+                .map(|(row, share)| {
+                    share * (within * within * rows.variance[row] / weights.rows[row]).ln()
+                })
                 .sum();
             assert!((own + ln_common - ln_determinant).abs() < 1e-10);
         }

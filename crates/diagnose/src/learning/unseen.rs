@@ -25,6 +25,8 @@ pub(super) struct Unseen {
     within: f64,
     /// The same of what a flight has in common, at a factor of 1.
     between: f64,
+    /// Share of the flight that counts.
+    share: f64,
     /// Errors of its values, each with the model's variance and the row that it is of.
     values: Vec<(f64, f64, usize)>,
 }
@@ -35,7 +37,7 @@ pub(super) struct Unseen {
 /// e = C Q⁻¹(y − Zα),   cov e = C Q⁻¹ C,   Q = C − Z V Zᵀ                                        [baseline.2]
 /// ```
 ///
-/// α and V are the posterior from all flights, C the noise of the flight, Z its rows.
+/// α and V are the posterior from all flights, C the noise of the flight, over the share of it that counts, Z its rows.
 ///
 /// # Source
 /// Sundararajan and Keerthi 2001, doi 10.1162/08997660151134343, here of whole flights.
@@ -55,11 +57,12 @@ pub(super) fn unseen(
             let count = range.len();
             let spread: MatRef<'_, f64> = spread.subrows(range.start, count);
             let known = spread * spread.transpose();
+            let share = rows.shares[group];
             let noise = Mat::from_fn(count, count, |i, j| {
                 let (a, b) = (range.start + i, range.start + j);
                 let own = if i == j { rows.variance[a] / weights.rows[a] } else { 0.0 };
                 let common: f64 = rows.loadings.iter().map(|u| u[a] * u[b]).sum();
-                within * own + between * common / weights.groups[group]
+                (within * own + between * common / weights.groups[group]) / share
             });
             let factor = Cholesky::new(&(&noise - known))?;
             let mut solved = left.subrows(range.start, count).to_owned();
@@ -83,6 +86,7 @@ pub(super) fn unseen(
                 of_model: total(&of_model).max(0.0) / square,
                 within: within * own / square,
                 between: common,
+                share,
                 values: (0..count)
                     .map(|k| (errors[(k, 0)], of_model[(k, k)].max(0.0), range.start + k))
                     .collect(),
@@ -94,16 +98,16 @@ pub(super) fn unseen(
 /// The factor between flights at which the mean errors of unseen flights are as large as announced, if that is more.
 ///
 /// ```text
-/// Σ_f e_f²/(v_model + v_within + b² v_between) = number of flights
+/// Σ_f s_f·e_f²/(v_model + v_within + b² v_between) = Σ_f s_f,   s the share of a flight that counts
 /// ```
 pub(super) fn scatter_by_unseen(unseen: &[Unseen], now: f64) -> f64 {
     let excess = |factor: f64| {
         let of = |flight: &Unseen| {
             let announced = flight.of_model + flight.within + factor * factor * flight.between;
             // An absurd flight counts as a distant one.
-            (flight.mean * flight.mean / announced).min(9.0)
+            flight.share * (flight.mean * flight.mean / announced).min(9.0)
         };
-        unseen.iter().map(of).sum::<f64>() - unseen.len() as f64
+        unseen.iter().map(of).sum::<f64>() - unseen.iter().map(|flight| flight.share).sum::<f64>()
     };
     if unseen.is_empty() || excess(now) <= 0.0 {
         return now;
@@ -123,7 +127,7 @@ pub(super) fn scatter_by_unseen(unseen: &[Unseen], now: f64) -> f64 {
 /// factor = q/1.96,  q the 95 % quantile of |error|/announced over unseen values
 /// ```
 ///
-/// With few values a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary ones had been seen in addition.
+/// A flight of which less than half counts is too old to say what comes. With few values a quantile is hardly known; it is drawn towards 1.96 as if so many ordinary ones had been seen in addition.
 pub(super) fn factor_by_unseen(
     rows: &ChannelRows,
     unseen: &[Unseen],
@@ -131,7 +135,8 @@ pub(super) fn factor_by_unseen(
     left_out: impl Fn(usize) -> f64,
 ) -> f64 {
     let (within, between) = (dials.within.powi(2), dials.between.powi(2));
-    let values = unseen.iter().flat_map(|flight| &flight.values);
+    let recent = unseen.iter().filter(|flight| flight.share >= 0.5);
+    let values = recent.flat_map(|flight| &flight.values);
     let distances = values
         .map(|&(error, of_model, row)| {
             let noise = within * rows.variance[row] + between * rows.common_variance(row);

@@ -52,7 +52,12 @@ impl PreparedFlights<'_> {
         Some(Self {
             channels: self.channels,
             predictor: self.predictor.clone(),
-            flights: vec![FlightRows { segments: 0..segments.len(), gauge }],
+            flights: vec![FlightRows {
+                segments: 0..segments.len(),
+                gauge,
+                start_s: points.first()?.date_s,
+                share: 1.0,
+            }],
             segments,
             left_out: std::collections::BTreeMap::new(),
         })

@@ -52,4 +52,8 @@ pub(crate) struct GaugeRow {
 pub(crate) struct FlightRows {
     pub(crate) segments: core::ops::Range<usize>,
     pub(crate) gauge: Option<GaugeRow>,
+    /// When it began.
+    pub(crate) start_s: f64,
+    /// Share of what the flight says that still counts: 1 where knowledge does not age.
+    pub(crate) share: f64,
 }

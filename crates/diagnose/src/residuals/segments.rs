@@ -137,6 +137,7 @@ impl<'a> PreparedFlights<'a> {
         let differences = Differences::new(model, &library, baseline);
         for (segments, gauges) in inside {
             let first = data.segments.len();
+            let start_s = segments[0].point.date_s;
             for segment in segments {
                 match data.row(model, &segment, &library, &differences, &statistics) {
                     Ok(row) => data.segments.push(row),
@@ -149,7 +150,8 @@ impl<'a> PreparedFlights<'a> {
             if data.segments.len() > first {
                 let gauge =
                     gauges.map(|burn| gauge_row(burn, model, &library, &data.segments[first..]));
-                data.flights.push(FlightRows { segments: first..data.segments.len(), gauge });
+                let segments = first..data.segments.len();
+                data.flights.push(FlightRows { segments, gauge, start_s, share: 1.0 });
             }
         }
         (data, library)
