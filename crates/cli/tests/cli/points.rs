@@ -101,7 +101,7 @@ fn points() -> Files {
     let aircraft = std::fs::read_to_string(fixture("AIRCRAFT.ron")).unwrap();
     let code = aircraft.split("type_code: \"").nth(1).unwrap().split('"').next().unwrap();
     std::fs::write(&mapping, MAPPING.replace("GL5T", code)).unwrap();
-    Files { model, segments, points, mapping, folder }
+    Files { folder, model, segments, points, mapping }
 }
 
 /// The line of the fixture's tail in what a command prints.
