@@ -1,7 +1,7 @@
 //! Arrow IPC files and streams (Feather version 2): the rows of one record batch after the other, some thousands at a time.
 //! Memory is that of a record batch as it is stored.
 //!
-//! A file is read as the stream that it holds: its footer, which only says where batches are, is not needed.
+//! A file says in its footer where batches are; a stream has one after the other.
 //!
 //! # Source
 //! Apache Arrow, "Arrow Columnar Format", and `Message.fbs` and `Schema.fbs`, whose field numbers are those used here.
@@ -10,8 +10,8 @@ mod columns;
 mod fields;
 mod flatbuffer;
 
-use std::collections::BTreeMap;
-use std::io::Read;
+use std::collections::{BTreeMap, VecDeque};
+use std::io::{Read, Seek, SeekFrom};
 
 use report::mapping::{Batch, Source};
 
@@ -21,7 +21,8 @@ use flatbuffer::Table;
 
 /// What a file begins with; a stream begins with a message.
 const MAGIC: &[u8] = b"ARROW1";
-const MAGIC_BYTES: usize = 8;
+/// What a file ends with: the length of its footer, and what it begins with.
+const END_BYTES: i64 = 10;
 /// What a message begins with.
 const CONTINUATION: [u8; 4] = [0xff; 4];
 /// Rows that are given at a time.
@@ -42,7 +43,7 @@ pub(crate) fn is_arrow(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// Why it is not read.
-pub(crate) fn source(file: impl Read + 'static) -> Result<Source<'static>, String> {
+pub(crate) fn source(file: impl Read + Seek + 'static) -> Result<Source<'static>, String> {
     let mut stream = Stream::begin(file)?;
     let fields = &stream.fields;
     let names = fields.iter().map(|field| field.name.clone()).collect();
@@ -55,6 +56,8 @@ pub(crate) fn source(file: impl Read + 'static) -> Result<Source<'static>, Strin
 /// A stream of messages, and the record batch that is being given.
 struct Stream<R> {
     source: R,
+    /// Of a file, where the messages are that have not been read.
+    blocks: Option<VecDeque<u64>>,
     fields: Vec<Field>,
     /// Texts of dictionaries by their number.
     dictionaries: BTreeMap<i64, Vec<String>>,
@@ -69,27 +72,57 @@ struct Message {
     body: Vec<u8>,
 }
 
-impl<R: Read> Stream<R> {
+impl<R: Read + Seek> Stream<R> {
     fn begin(mut source: R) -> Result<Self, String> {
+        let mut beginning = [0; MAGIC.len()];
+        source.read_exact(&mut beginning).map_err(|error| error.to_string())?;
+        if beginning == MAGIC {
+            return Self::of_file(source);
+        }
+        source.rewind().map_err(|error| error.to_string())?;
         let mut beginning = [0; 4];
         source.read_exact(&mut beginning).map_err(|error| error.to_string())?;
-        if beginning != CONTINUATION {
-            let mut rest = [0; MAGIC_BYTES - 4];
-            source.read_exact(&mut rest).map_err(|error| error.to_string())?;
-            source.read_exact(&mut beginning).map_err(|error| error.to_string())?;
-        }
         let message = rest_of_message(&mut source, beginning)?.ok_or("no schema")?;
         let schema = Table::root(&message.metadata)
             .filter(|message| message.byte(1) == Some(SCHEMA))
             .and_then(|message| message.table(2))
             .ok_or("the first message is no schema")?;
+        Self::new(source, None, schema)
+    }
+
+    /// Not every program writes a file as a stream between its ends: what counts is the footer.
+    fn of_file(mut source: R) -> Result<Self, String> {
+        let failed = |error: std::io::Error| error.to_string();
+        source.seek(SeekFrom::End(-END_BYTES)).map_err(failed)?;
+        let end = read(&mut source, END_BYTES)?;
+        let (length, magic) = end.split_first_chunk::<4>().ok_or("no end")?;
+        if magic != MAGIC {
+            return Err("it breaks off: its end is not that of an Arrow file".to_owned());
+        }
+        let length = i64::from(i32::from_le_bytes(*length));
+        source.seek(SeekFrom::End(-END_BYTES - length.max(0))).map_err(failed)?;
+        let footer = read(&mut source, length)?;
+        let footer = Table::root(&footer).ok_or("the footer cannot be read")?;
+        let schema = footer.table(1).ok_or("no schema")?;
+        // Dictionaries before the batches that need them.
+        let mut blocks = VecDeque::new();
+        for vector in [footer.vector(2), footer.vector(3)].into_iter().flatten() {
+            for element in 0..vector.length {
+                let place = vector.block(element).and_then(|place| u64::try_from(place).ok());
+                blocks.push_back(place.ok_or("the footer is damaged")?);
+            }
+        }
+        Self::new(source, Some(blocks), schema)
+    }
+
+    fn new(source: R, blocks: Option<VecDeque<u64>>, schema: Table<'_>) -> Result<Self, String> {
         // Big-endian files exist in the format's description only.
         if schema.short(0).unwrap_or(0) != 0 {
             return Err("big-endian numbers are not read".to_owned());
         }
         let fields = fields::of_schema(schema).ok_or("the schema cannot be read")?;
         let dictionaries = BTreeMap::new();
-        Ok(Self { source, fields, dictionaries, columns: Vec::new(), rows: 0, given: 0 })
+        Ok(Self { source, blocks, fields, dictionaries, columns: Vec::new(), rows: 0, given: 0 })
     }
 
     fn next_batch(&mut self, wanted: &[usize]) -> Result<Option<Batch>, String> {
@@ -113,6 +146,10 @@ impl<R: Read> Stream<R> {
 
     /// Reads a message; false at the end.
     fn read_message(&mut self, wanted: &[usize]) -> Result<bool, String> {
+        if let Some(blocks) = &mut self.blocks {
+            let Some(place) = blocks.pop_front() else { return Ok(false) };
+            self.source.seek(SeekFrom::Start(place)).map_err(|error| error.to_string())?;
+        }
         let mut beginning = [0; 4];
         // A stream may end without saying so.
         if self.source.read(&mut beginning[..1]).map_err(|error| error.to_string())? == 0 {

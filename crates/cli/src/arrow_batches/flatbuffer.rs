@@ -105,6 +105,12 @@ impl<'b> Vector<'b> {
         (element < self.length).then_some((i64::from_le_bytes(pair.0), i64::from_le_bytes(pair.1)))
     }
 
+    /// The first number of an element that is a structure of 24 bytes.
+    pub(super) fn block(self, element: usize) -> Option<i64> {
+        let value = at(self.bytes, self.place.checked_add(24 * element)?)?;
+        (element < self.length).then_some(i64::from_le_bytes(value))
+    }
+
     /// An element that is a 64-bit number.
     pub(super) fn long(self, element: usize) -> Option<i64> {
         let value = at(self.bytes, self.place.checked_add(8 * element)?)?;
