@@ -208,9 +208,10 @@ impl<'a> Evidence<'a> {
         let of_level = self.ln_evidence(&level_alone) - self.ln_prior_of_scales(&level_alone);
         let open = deviations[NOISE_DIALS..].iter().zip(SCALE_LN_DEVIATIONS).take(scales);
         let volume: f64 = open.map(|(deviation, prior)| (deviation / prior).ln()).sum();
-        let odds =
-            PRIOR_LEVEL_ALONE / (1.0 - PRIOR_LEVEL_ALONE) * (of_level - of_all - volume).exp();
-        let probability = if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 };
+        let prior = (PRIOR_LEVEL_ALONE / (1.0 - PRIOR_LEVEL_ALONE)).ln();
+        let ln_odds = prior + of_level - of_all - volume;
+        // No number where neither has a density: then the points stand as they are.
+        let probability = if ln_odds.is_nan() { 0.0 } else { 1.0 / (1.0 + (-ln_odds).exp()) };
         for point in &mut points {
             point.weight *= 1.0 - probability;
         }
