@@ -9,7 +9,7 @@ use flight::effect::EffectId;
 use rayon::prelude::*;
 
 use crate::args::DiagnoseArgs;
-use crate::commands::{Outcome, check_refused, events_of, prepare, tell_serious};
+use crate::commands::{Outcome, check_refused, events_of, prepare, tell_serious, warn_of_events};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::read_models;
@@ -51,6 +51,10 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     tell_serious(&plausibility::set_aside_absurd(&mut reading, book_of, absurd));
     let groups = group(&models, &mut reading, &asked);
     check_refused(&reading.refused, files, arguments.reports.strict, groups.is_empty())?;
+    warn_of_events(&asked.events, |tail| {
+        let mut flights = groups.iter().flat_map(|group| &group.flights);
+        flights.any(|flight| flight.reduced.identity.tail == tail)
+    });
     make_folder(&arguments.output)?;
     let read = groups.iter().map(|group| group.flights.len()).sum();
     let diagnoses = groups

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::args::MonitorArgs;
 use crate::columns;
-use crate::commands::{Outcome, events_of};
+use crate::commands::{Outcome, events_of, warn_of_events};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::progress::Progress;
@@ -66,7 +66,7 @@ pub(crate) fn run(
     }
     documents.sort_by(|one, other| one.tail.cmp(&other.tail));
     alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
-    warn_of_events(&events, &documents);
+    warn_of_events(&events, |tail| documents.iter().any(|known| known.tail == tail));
     if let Some(causes) = &causes {
         for alert in &mut alerts {
             alert.likely_causes = causes.of_tail(&alert.tail);
@@ -124,16 +124,4 @@ fn monitor_tail(
         return Ok(None);
     };
     Ok(Some((found.document(options), found.alerts(options))))
-}
-
-/// Names tails that have events and are not in the folder.
-fn warn_of_events(events: &[Event], tails: &[TailDocument]) {
-    let mut warned: Vec<&str> = Vec::new();
-    for event in events {
-        let known = tails.iter().any(|tail| tail.tail == event.tail);
-        if !known && !warned.contains(&event.tail.as_str()) {
-            warned.push(&event.tail);
-            tracing::warn!(tail = event.tail, "has events, but no flight in the folder");
-        }
-    }
 }

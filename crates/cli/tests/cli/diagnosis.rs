@@ -59,6 +59,21 @@ fn too_little_data_gets_no_name() {
 }
 
 #[test]
+fn tails_with_events_and_no_flight_are_named_once() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let events = scratch.path().join("EVENTS.csv");
+    let text = "date,tail,kind,note\n2019-03-20,SIM-01,wash,\n2019-03-20,SIM-77,wash,\n\
+                2019-03-21,SIM-77,engine change,\n";
+    std::fs::write(&events, text).unwrap();
+    let output = scratch.path().join("diagnosis");
+    let more = ["--events", events.to_str().unwrap()];
+    let ran = diagnose(&model, &output, &reports(1..=2), &more).expect(0);
+    assert_eq!(ran.stderr.matches("has events, but no flight").count(), 1, "{}", ran.stderr);
+    assert!(ran.stderr.contains("SIM-77"), "{}", ran.stderr);
+}
+
+#[test]
 fn unknown_effects_are_refused() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
