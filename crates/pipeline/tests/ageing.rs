@@ -6,10 +6,10 @@ use diagnose::WholeModel;
 use flight::Segment;
 use pipeline::learning::{LawChoice, begin, remember_remainder};
 use test_support::fleet::{Background, Setup, exact_model, fly};
+use units::convert::SECONDS_PER_DAY;
 
 /// Every flight from the middle on burns so much more.
 const MORE: f64 = 0.03;
-const SECONDS_A_DAY: f64 = 86_400.0;
 
 /// Mean of ln recorded less ln predicted fuel flow, over flights that burn more, by a model that all others taught.
 fn left_of_more(flights: &[Vec<Segment>], half_life_days: Option<f64>) -> f64 {
@@ -41,7 +41,7 @@ fn what_is_old_fades() {
         }
     }
     let start_s = |flight: usize| fleet.flights[flight][0].identity.start_s();
-    let days_a_flight = (start_s(39) - start_s(0)) / SECONDS_A_DAY / 39.0;
+    let days_a_flight = (start_s(39) - start_s(0)) / SECONDS_PER_DAY / 39.0;
     let change = (1.0 + MORE).ln();
     let never = left_of_more(&fleet.flights, None) / change;
     assert!((never - 0.5).abs() < 0.15, "{never}");

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::support::{cruisefit, fixture, initial_model};
+use crate::support::{cruisefit, fixture, init, initial_model};
 
 fn project(folder: &Path, text: &str) -> std::path::PathBuf {
     let path = folder.join("cruisefit.toml");
@@ -68,31 +68,9 @@ fn sensors_of_a_project_take_the_place_of_those_of_the_aircraft() {
     std::fs::write(folder.path().join("SENSORS.ron"), "(fuel_flow_percent: 0.25)").unwrap();
     let file = project(folder.path(), "sensors = \"SENSORS.ron\"\n");
     let model = folder.path().join("M.ron");
-    cruisefit(&[
-        "init".as_ref(),
-        "--project".as_ref(),
-        file.as_os_str(),
-        "--aircraft".as_ref(),
-        fixture("AIRCRAFT.ron").as_os_str(),
-        "--guide".as_ref(),
-        fixture("guide.csv").as_os_str(),
-        "-o".as_ref(),
-        model.as_os_str(),
-    ])
-    .expect(0);
+    let of_project = ["--project".as_ref(), file.as_os_str()];
+    init(&model, &of_project).expect(0);
     assert!(std::fs::read_to_string(&model).unwrap().contains("fuel_flow_percent: 0.25"));
     std::fs::write(folder.path().join("SENSORS.ron"), "(fuel_flow: 0.25)").unwrap();
-    cruisefit(&[
-        "init".as_ref(),
-        "--project".as_ref(),
-        file.as_os_str(),
-        "--aircraft".as_ref(),
-        fixture("AIRCRAFT.ron").as_os_str(),
-        "--guide".as_ref(),
-        fixture("guide.csv").as_os_str(),
-        "-o".as_ref(),
-        model.as_os_str(),
-    ])
-    .expect(2)
-    .says("SENSORS.ron");
+    init(&model, &of_project).expect(2).says("SENSORS.ron");
 }

@@ -14,6 +14,13 @@ fn mapping_of(recording: &Path, mapping: &Path) {
     made.expect(0).says("it reads 1 flight with");
 }
 
+/// The same for one flight that is not called as its file.
+fn mapping_of_flight(recording: &Path, mapping: &Path) {
+    mapping_of(recording, mapping);
+    let written = std::fs::read_to_string(mapping).unwrap();
+    std::fs::write(mapping, written.replace("FileName", "Text(\"F\")")).unwrap();
+}
+
 /// Segments of what these arguments read.
 fn segments(arguments: &[&std::ffi::OsStr]) -> String {
     let mut all: Vec<&std::ffi::OsStr> = vec!["segment".as_ref()];
@@ -130,10 +137,7 @@ fn arrow_is_read_as_the_text_it_was_made_of() {
     let folder = tempfile::tempdir().unwrap();
     let mapping = folder.path().join("M.ron");
     let text = layout("01_named_units.csv");
-    mapping_of(&text, &mapping);
-    // The same flight, whatever the name of the file.
-    let written = std::fs::read_to_string(&mapping).unwrap();
-    std::fs::write(&mapping, written.replace("FileName", "Text(\"F\")")).unwrap();
+    mapping_of_flight(&text, &mapping);
     let read =
         |path: &Path| segments(&["--mapping".as_ref(), mapping.as_os_str(), path.as_os_str()]);
     let expected = read(&text);
@@ -172,10 +176,7 @@ fn a_packed_recording_is_read_as_it_is_unpacked() {
     let folder = tempfile::tempdir().unwrap();
     let mapping = folder.path().join("M.ron");
     let text = layout("01_named_units.csv");
-    mapping_of(&text, &mapping);
-    let written = std::fs::read_to_string(&mapping).unwrap();
-    // The flight would be the name of the file.
-    std::fs::write(&mapping, written.replace("FileName", "Text(\"1\")")).unwrap();
+    mapping_of_flight(&text, &mapping);
     let read =
         |path: &Path| segments(&["--mapping".as_ref(), mapping.as_os_str(), path.as_os_str()]);
     let expected = read(&text);

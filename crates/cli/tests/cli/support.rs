@@ -64,17 +64,18 @@ fn flatten(text: &str) -> String {
 /// An initial model of the fixture's aircraft, written to a folder.
 pub(crate) fn initial_model(folder: &Path) -> PathBuf {
     let model = folder.join("MODEL.ron");
-    cruisefit(&[
-        "init".as_ref(),
-        "--aircraft".as_ref(),
-        fixture("AIRCRAFT.ron").as_os_str(),
-        "--guide".as_ref(),
-        fixture("guide.csv").as_os_str(),
-        "-o".as_ref(),
-        model.as_os_str(),
-    ])
-    .expect(0);
+    init(&model, &[]).expect(0);
     model
+}
+
+/// `init` from the fixture's aircraft and guide, with further arguments.
+pub(crate) fn init(model: &Path, more: &[&std::ffi::OsStr]) -> Ran {
+    let (aircraft, guide) = (fixture("AIRCRAFT.ron"), fixture("guide.csv"));
+    let mut arguments: Vec<&std::ffi::OsStr> = vec!["init".as_ref()];
+    arguments.extend(["--aircraft".as_ref(), aircraft.as_os_str()]);
+    arguments.extend(["--guide".as_ref(), guide.as_os_str(), "-o".as_ref(), model.as_os_str()]);
+    arguments.extend(more);
+    cruisefit(&arguments)
 }
 
 /// Adapts a model to reports, with further arguments.

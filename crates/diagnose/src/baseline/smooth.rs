@@ -47,6 +47,32 @@ struct SmoothText {
     count: usize,
 }
 
+impl SmoothText {
+    /// Terms: the slope, then the process.
+    const fn terms(&self) -> usize {
+        1 + self.count
+    }
+
+    /// Lengths from the middle.
+    fn at(&self, value: f64) -> f64 {
+        (value - self.middle) / self.length
+    }
+
+    /// Between two knots, lengths.
+    fn distance(&self) -> f64 {
+        let (first, last) = self.knots;
+        (last - first) / (self.count - 1) as f64
+    }
+
+    /// Share of the process' variance that terms which hold so much of it do not hold: more beyond the last value that was
+    /// flown, one knot inside the last.
+    fn left_of_variance(&self, z: f64, held: f64) -> f64 {
+        let ((first, last), distance) = (self.knots, self.distance());
+        let beyond = (first + distance - z).max(z - last + distance).max(0.0);
+        (1.0 - held).max(GROWTH_BEYOND * beyond * beyond * beyond).max(0.0)
+    }
+}
+
 /// Numbers that are not a smooth function.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("a smooth function of {count} knots from {} to {} at a length of {length}", .knots.0, .knots.1)]
@@ -96,12 +122,12 @@ impl Smooth {
 
     /// Terms: the slope, then the process.
     pub(crate) const fn len(&self) -> usize {
-        1 + self.text.count
+        self.text.terms()
     }
 
     /// Lengths from the middle.
     pub(crate) fn at(&self, value: f64) -> f64 {
-        (value - self.text.middle) / self.text.length
+        self.text.at(value)
     }
 
     /// Writes the terms at a value; returns the share of the process' variance that they do not hold.
@@ -117,15 +143,7 @@ impl Smooth {
             into[1 + k] = sum / self.root[(k, k)];
             held += into[1 + k] * into[1 + k];
         }
-        let beyond = self.beyond_flown(z);
-        (1.0 - held).max(GROWTH_BEYOND * beyond * beyond * beyond).max(0.0)
-    }
-
-    /// Lengths beyond the last value that was flown; 0 between the first and the last.
-    fn beyond_flown(&self, z: f64) -> f64 {
-        let (first, last) = self.text.knots;
-        let distance = (last - first) / (self.text.count - 1) as f64;
-        (first + distance - z).max(z - last + distance).max(0.0)
+        self.text.left_of_variance(z, held)
     }
 
     fn knot(&self, k: usize) -> f64 {
@@ -171,7 +189,7 @@ impl Smooth {
             root.extend((0..k).map(|j| self.root[(k, j)]));
             root.push(1.0 / self.root[(k, k)]);
         }
-        let distance = (self.text.knots.1 - self.text.knots.0) / (count - 1) as f64;
+        let distance = self.text.distance();
         let ratio_falls = (-distance * distance).exp();
         Prepared { text: self.text, distance, ratio_falls, slope, weights, root }
     }
@@ -184,12 +202,12 @@ impl Prepared {
 
     /// Terms: the slope, then the process.
     pub(crate) const fn len(&self) -> usize {
-        1 + self.text.count
+        self.text.terms()
     }
 
     /// Lengths from the middle.
     pub(crate) fn at(&self, value: f64) -> f64 {
-        (value - self.text.middle) / self.text.length
+        self.text.at(value)
     }
 
     /// Hands the kernel at each knot to `each`.
@@ -224,9 +242,7 @@ impl Prepared {
             held += terms[k] * terms[k];
             rest = behind;
         }
-        let (first, last) = self.text.knots;
-        let beyond = (first + self.distance - z).max(z - last + self.distance).max(0.0);
-        (1.0 - held).max(GROWTH_BEYOND * beyond * beyond * beyond).max(0.0)
+        self.text.left_of_variance(z, held)
     }
 }
 

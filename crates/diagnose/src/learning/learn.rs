@@ -2,6 +2,7 @@
 
 use effects::{BetweenNodes, EffectModel, EffectReferences, ExtendedModel};
 use faer::Mat;
+use units::convert::SECONDS_PER_DAY;
 
 use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
@@ -19,7 +20,6 @@ use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::Variable;
 use crate::thresholds::FEWEST_FLIGHTS_OF_A_BASELINE;
 
-const SECONDS_A_DAY: f64 = 86_400.0;
 /// Least share of a flight that counts. Our choice: nothing, and no division by zero.
 const LEAST_SHARE: f64 = 1e-9;
 
@@ -120,7 +120,7 @@ fn count_by_age(flights: &mut [FlightRows], half_life_days: Option<f64>) {
     let Some(days) = half_life_days else { return };
     let newest = flights.iter().map(|flight| flight.start_s).fold(f64::NEG_INFINITY, f64::max);
     for flight in flights {
-        let age_days = (newest - flight.start_s) / SECONDS_A_DAY;
+        let age_days = (newest - flight.start_s) / SECONDS_PER_DAY;
         flight.share = (-age_days / days).exp2().max(LEAST_SHARE);
     }
 }

@@ -31,13 +31,7 @@ pub(super) fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassP
                 zero_fuel_mass: zero_fuel_weight
                     .map(|value| mass(&value, "zero-fuel mass"))
                     .transpose()?,
-                largest_rise_kg: check_within(
-                    "largest rise of gross mass",
-                    "kg",
-                    largest_rise_kg,
-                    0.0,
-                    1e5,
-                )?,
+                largest_rise_kg: largest_rise(largest_rise_kg)?,
             }
         }
         MassSource::FuelUsed { column, unit, scale, zero_fuel_weight, fuel_on_board } => {
@@ -64,13 +58,7 @@ pub(super) fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassP
                     .into_iter()
                     .map(|tank| inputs.conversion(Column::FuelUsed, tank, &unit, 1.0))
                     .collect::<Result<_, _>>()?,
-                largest_rise_kg: check_within(
-                    "largest rise of gross mass",
-                    "kg",
-                    largest_rise_kg,
-                    0.0,
-                    1e5,
-                )?,
+                largest_rise_kg: largest_rise(largest_rise_kg)?,
             }
         }
         MassSource::StartMass { gross_weight } => {
@@ -80,6 +68,10 @@ pub(super) fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassP
 }
 
 /// A mass of the load sheet. A column holds for the whole flight: the recorder may send it once.
+fn largest_rise(kg: f64) -> Result<f64, MappingError> {
+    Ok(check_within("largest rise of gross mass", "kg", kg, 0.0, 1e5)?)
+}
+
 fn load(amount: Amount, what: &'static str, inputs: &mut Inputs) -> Result<Load, MappingError> {
     Ok(match amount {
         Amount::Value(value, unit) => Load::Known(mass(&WithUnit(value, unit), what)?),
