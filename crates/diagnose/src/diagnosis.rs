@@ -243,6 +243,7 @@ fn conclude(
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
         outside: outside_library(&outside, found_forms),
+        held_out: unseen.as_ref().map_or_else(Vec::new, Shrinkage::by_flight),
         left_out: BTreeMap::new(),
         notes: vec![],
     })

@@ -137,7 +137,7 @@ pub use output::verdict::{
     Beside, Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict,
 };
 pub use output::{
-    Cause, Detectable, Diagnosis, Gap, Magnitude, NotTestable, OutsideLibrary, Slice,
+    Cause, Detectable, Diagnosis, Gap, HeldOutFlight, Magnitude, NotTestable, OutsideLibrary, Slice,
 };
 pub use place::members::region_members;
 pub use place::segment_gaps::{SegmentGap, Shown, segment_gaps};

@@ -45,6 +45,9 @@ pub struct Diagnosis {
     pub detectable: Vec<Detectable>,
     /// Probability that something outside the library acts, and the variable that it depends on.
     pub outside: OutsideLibrary,
+    /// The gap of each flight by a choice and fit that has not seen it, in the order of the flights that were used; empty where
+    /// closure is not measured.
+    pub held_out: Vec<HeldOutFlight>,
     /// Segments left out, by reason.
     pub left_out: BTreeMap<LeftOutReason, usize>,
     /// What was assumed, in the order in which it was.
@@ -123,6 +126,19 @@ pub struct Cause {
     pub closure: Option<Closure>,
     /// What it has beyond its size; [`HiddenParameter::None`] for most effects.
     pub hidden: HiddenParameter,
+}
+
+/// The gap of one flight that choice and fit have not seen, root mean squares over its segments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldOutFlight {
+    /// Its segments.
+    pub segments: usize,
+    /// Before anything is added.
+    pub before_rms_percent: f64,
+    /// With what the other flights would add.
+    pub after_rms_percent: f64,
+    /// What noise alone is expected to make.
+    pub noise_rms_percent: f64,
 }
 
 /// A size in the effect's unit ([`flight::effect::EffectEntry::unit`]), with its interval.

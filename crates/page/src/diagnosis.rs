@@ -16,7 +16,14 @@ mod causes;
 mod figures;
 mod map;
 mod tables;
+mod unseen;
 mod verdict;
+
+/// Segments drawn in a chart at most, of one tail and of all together. Our choice: more of one cannot be told apart, and 200
+/// tails must stay below 6 MB.
+const MOST_POINTS: usize = 600;
+const FEWEST_POINTS: usize = 100;
+const POINTS_OF_PAGE: usize = 60_000;
 
 /// The page of diagnoses: the counts of the reports behind them, each diagnosis with what its charts are drawn from (in the
 /// same order), and the options of the run in words.
@@ -35,6 +42,7 @@ pub fn diagnosis(
             id: format!("tail-{}", number + 1),
             diagnosed,
             figures,
+            most_points: (POINTS_OF_PAGE / diagnoses.len()).clamp(FEWEST_POINTS, MOST_POINTS),
         })
         .collect();
     let body = html! {
@@ -45,10 +53,23 @@ pub fn diagnosis(
         }
         @if tails.len() > 1 { (verdict::index(&tails)) }
         (fleet::refused(reports))
-        @for tail in &tails { (section(tail)) }
+        @if tails.len() > TAILS_UNFOLDED {
+            section {
+                h2 { "Tails" }
+                p.note { "Each tail unfolds at a click on its line, or on its name in the table above. All are printed." }
+                @for tail in &tails { (folded(tail)) }
+            }
+        } @else {
+            @for tail in &tails {
+                section id=(tail.id) { h2 { (tail.diagnosed.name()) } (section(tail)) }
+            }
+        }
     };
     framed("Diagnosis of performance models", &body)
 }
+
+/// So many tails lie open below each other; of more each is folded to a line. Our choice: a few screens.
+const TAILS_UNFOLDED: usize = 3;
 
 /// A diagnosis, its figures and its place on the page.
 struct Tail<'a> {
@@ -56,6 +77,8 @@ struct Tail<'a> {
     id: String,
     diagnosed: &'a DiagnosedTail,
     figures: &'a DiagnosisFigures,
+    /// Segments drawn in a chart at most.
+    most_points: usize,
 }
 
 impl Tail<'_> {
@@ -101,12 +124,20 @@ fn head(reports: &ReportsSummary, tails: &[Tail<'_>], options: &[String]) -> Str
     format!("{}.", told.join("; "))
 }
 
+fn folded(tail: &Tail<'_>) -> Markup {
+    html! {
+        details.tail {
+            summary { h3 { (tail.diagnosed.name()) } " " span { (verdict::short(&tail.diagnosed.diagnosis)) } }
+            // The anchor is inside: following a link to it unfolds the section.
+            div id=(tail.id) { (section(tail)) }
+        }
+    }
+}
+
 fn section(tail: &Tail<'_>) -> Markup {
-    let Tail { id, diagnosed, figures } = tail;
+    let Tail { diagnosed, figures, .. } = tail;
     let diagnosis = &diagnosed.diagnosis;
     html! {
-        section id=(id) {
-            h2 { (diagnosed.name()) }
             p.run {
                 (counted(diagnosis.flights, "flight")) " with " (counted(diagnosis.segments, "segment"))
                 @if let Some(period) = tail.period() { ", " (period) }
@@ -120,6 +151,5 @@ fn section(tail: &Tail<'_>) -> Markup {
             }
             (causes::apart(diagnosis))
             (tables::tables(diagnosed))
-        }
     }
 }

@@ -100,7 +100,7 @@ fn fleet(document: &MonitorDocument) -> Markup {
 
 fn table(tails: &[(usize, &TailDocument)]) -> Markup {
     html! {
-        table.fleet {
+        table.fleet.sort.data data-name="monitor" {
             thead {
                 tr {
                     th scope="col" { "tail" } th scope="col" { "flights" } th scope="col" { "level, %" }
@@ -112,12 +112,12 @@ fn table(tails: &[(usize, &TailDocument)]) -> Markup {
                 @for (id, tail) in tails {
                     tr {
                         th scope="row" { a href=(format!("#tail-{id}")) { (tail.tail) } }
-                        td { (tail.flights.len()) }
-                        td { (figure(&tail.deviation_percent)) }
-                        td { (figure(&tail.trend_percent_per_year)) }
-                        td { (signed(Some(tail.airbus.specific_range_deviation_percent))) }
-                        td { (signed_tenths(tail.airbus.retained_fuel_factor_percent)) }
-                        td { (signed_tenths(tail.cost.fuel_kg_per_flight)) }
+                        td data-v=(tail.flights.len()) { (tail.flights.len()) }
+                        td data-v=(tail.deviation_percent.value) { (figure(&tail.deviation_percent)) }
+                        td data-v=(tail.trend_percent_per_year.value) { (figure(&tail.trend_percent_per_year)) }
+                        td data-v=(tail.airbus.specific_range_deviation_percent) { (signed(Some(tail.airbus.specific_range_deviation_percent))) }
+                        td data-v=(tail.airbus.retained_fuel_factor_percent) { (signed_tenths(tail.airbus.retained_fuel_factor_percent)) }
+                        td data-v=(tail.cost.fuel_kg_per_flight) { (signed_tenths(tail.cost.fuel_kg_per_flight)) }
                         td {
                             @match tail.changes.iter().rfind(|change| change.engine.is_none()) {
                                 Some(change) => { (day(&change.since)) ": " (signed(Some(change.step_percent.value))) " %" }
@@ -233,7 +233,7 @@ fn changes(tail: &TailDocument) -> Markup {
 fn months(tail: &TailDocument) -> Markup {
     html! {
         div.scroll {
-            table.small {
+            table.small.data data-name="months" {
                 thead {
                     tr {
                         th scope="col" { "month" } th scope="col" { "flights" } th scope="col" { "deviation, %" }

@@ -104,7 +104,9 @@
   for (const table of all('table.data')) {
     const save = make('button', 'Save as CSV', { type: 'button', class: 'save' });
     save.addEventListener('click', () => {
-      const lines = [...table.rows].map((row) => [...row.cells].map((cell) => field(text(cell).replace(/\s+/g, ' '))).join(','));
+      // Drawings are not numbers; a heading over a drawing and its number is that of the number.
+      const fields = (cell) => [field(text(cell).replace(/\s+/g, ' ')), ...Array(cell.matches('td') ? cell.colSpan - 1 : 0).fill('""')];
+      const lines = [...table.rows].map((row) => [...row.cells].filter((cell) => !cell.matches('.bar,.drawn')).flatMap(fields).join(','));
       const link = make('a', '', { download: `${table.dataset.name ?? 'table'}.csv` });
       link.href = URL.createObjectURL(new Blob([`${lines.join('\r\n')}\r\n`], { type: 'text/csv' }));
       link.click();

@@ -71,6 +71,8 @@ svg .within { stroke: var(--ink); stroke-width: 2.2; }
 .bars thead th { vertical-align: bottom; }
 .bars td.bar { width: 34%; min-width: 6rem; vertical-align: middle; }
 .bar span { display: block; height: .9rem; background: var(--after); border-radius: 2px; min-width: 1px; }
+.bar span.thin { height: .3rem; margin-top: 2px; }
+.bar .fall { display: flex; } .bar span.taken { background: var(--before); opacity: .28; }
 .bar span.before { background: var(--before); } .bar span.noise { background: var(--soft); }
 .bars td.number { white-space: nowrap; width: 4.5rem; } .bars td .id { white-space: nowrap; }
 .bars th:last-child { min-width: 6.5rem; }
@@ -88,6 +90,7 @@ button.save { font: inherit; font-size: .82rem; color: var(--link); background: 
   padding: .1rem .5rem; margin: .3rem 0; cursor: pointer; }
 #tip { display: none; position: fixed; z-index: 9; max-width: 22rem; padding: .3rem .55rem; white-space: pre-line; pointer-events: none;
   background: var(--ink); color: var(--paper); border-radius: 4px; font-size: .85rem; }
+svg .span { stroke: var(--soft); stroke-width: 1.2; }
 svg .interval { stroke: var(--before); stroke-width: 1.6; }
 svg .event { stroke: var(--ink); stroke-width: 1.4; stroke-dasharray: 2 3; }
 .spark { width: 9rem; min-width: 9rem; height: 14px; }

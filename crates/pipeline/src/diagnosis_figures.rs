@@ -18,6 +18,8 @@ pub struct DiagnosisFigures {
     pub model: String,
     /// The variable that the gap is drawn over, beside Mach number, lift coefficient and date.
     pub driver: Option<Variable>,
+    /// What was done to the aircraft: instant, s since 1970, and kind.
+    pub events: Vec<(f64, String)>,
     /// The gap at every segment that was used; empty where the data was insufficient.
     pub segments: Vec<SegmentGap>,
 }
@@ -48,6 +50,7 @@ impl DiagnosisFigures {
             type_code: aircraft.type_code().to_owned(),
             model: model_words(model),
             driver,
+            events: Vec::new(),
             segments,
         })
     }

@@ -153,8 +153,11 @@ impl Group<'_> {
             events_s: &events_s,
         };
         let diagnosis = diagnose(&input, options).map_err(|error| wrong(error.into()))?;
-        let figures = DiagnosisFigures::new(self.model, &input, &diagnosis)
+        let mut figures = DiagnosisFigures::new(self.model, &input, &diagnosis)
             .map_err(|error| wrong(error.into()))?;
+        let events = self.own_events(&asked.events).into_iter();
+        figures.events =
+            events.map(|event| (event.time.as_second() as f64, event.kind.clone())).collect();
         let diagnosed = DiagnosedTail {
             tail: self.name.clone(),
             diagnosis,
@@ -164,11 +167,16 @@ impl Group<'_> {
         Ok((diagnosed, figures))
     }
 
-    /// Instants, s since 1970, of what was done to the tails of this group.
-    fn events_s(&self, events: &[Event]) -> Vec<f64> {
+    /// What was done to the tails of this group.
+    fn own_events<'e>(&self, events: &'e [Event]) -> Vec<&'e Event> {
         let flown: BTreeSet<&str> =
             self.flights.iter().map(|flight| flight.reduced.identity.tail.as_str()).collect();
-        let own = events.iter().filter(|event| flown.contains(event.tail.as_str()));
+        events.iter().filter(|event| flown.contains(event.tail.as_str())).collect()
+    }
+
+    /// Instants of these, s since 1970.
+    fn events_s(&self, events: &[Event]) -> Vec<f64> {
+        let own = self.own_events(events).into_iter();
         let mut instants: Vec<f64> = own.map(|event| event.time.as_second() as f64).collect();
         instants.dedup();
         instants

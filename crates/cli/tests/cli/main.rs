@@ -9,6 +9,7 @@
 mod applied;
 mod architecture;
 mod bad_input;
+mod browser;
 mod check;
 mod check_findings;
 mod commands;

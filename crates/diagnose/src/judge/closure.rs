@@ -3,6 +3,7 @@
 use crate::judge::table::FittedTable;
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
+use crate::output::HeldOutFlight;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::folds::fold_of;
 use crate::search::refine::{effects_of, refine};
@@ -77,6 +78,27 @@ impl Shrinkage {
 
     pub(crate) fn floor(&self) -> f64 {
         Self::total(&self.floor, &self.segments)
+    }
+
+    /// Root mean squares of every flight, %.
+    pub(crate) fn by_flight(&self) -> Vec<HeldOutFlight> {
+        let flights = self.segments.iter().enumerate();
+        flights
+            .map(|(flight, &segments)| {
+                let rms = |squares: &[f64]| 100.0 * (squares[flight] / segments).sqrt();
+                HeldOutFlight {
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        clippy::cast_sign_loss,
+                        reason = "a count, kept as a number for sums"
+                    )]
+                    segments: segments as usize,
+                    before_rms_percent: rms(&self.before),
+                    after_rms_percent: rms(&self.after),
+                    noise_rms_percent: rms(&self.floor),
+                }
+            })
+            .collect()
     }
 
     /// Share of the explainable gap that is closed, with a 95 % interval; `None` where the gap is too small.

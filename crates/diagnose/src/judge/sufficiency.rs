@@ -63,6 +63,7 @@ pub(crate) const fn insufficient(
         addition: None,
         detectable: vec![],
         outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None, forms: vec![] },
+        held_out: vec![],
         left_out: BTreeMap::new(),
         notes: vec![],
     }

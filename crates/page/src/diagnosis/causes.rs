@@ -29,13 +29,15 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> Markup {
         @if !shown.is_empty() {
             figure {
                 figcaption {
-                    b { "Causes." } " Probabilities add up to 1 with those not shown. The size is that of the effect alone; its \
-                    interval is of 95 %."
+                    b { "Causes." } " Probabilities add up to 1 with those not shown. The upper bar: with the sizes that effects \
+                    usually have; the lower one: as if every size were as likely. The size is that of the effect alone, its \
+                    interval of 95 % drawn from zero, the upright line."
                 }
                 div.scroll tabindex="0" role="region" aria-label="Causes" {
                     table.bars.data data-name="causes" {
                         thead { tr {
-                            th scope="col" { "cause" } th scope="col" colspan="2" { "probability" } th scope="col" { "size" }
+                            th scope="col" { "cause" } th scope="col" colspan="2" { "probability" } th scope="col" { "if any size" }
+                            th scope="col" colspan="2" { "size" }
                             th scope="col" { "closes on unseen flights" }
                         } }
                         tbody {
@@ -47,7 +49,7 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> Markup {
                                 }
                                 (bar(outside.probability, "noise"))
                                 td.number { (format!("{:.3}", outside.probability)) }
-                                td { "–" } td { "–" }
+                                td { "–" } td.drawn {} td { "–" } td { "–" }
                             }
                         }
                     }
@@ -65,8 +67,13 @@ fn cause_row(diagnosis: &Diagnosis, cause: &Cause) -> Markup {
                 (effect(diagnosis, cause.effect))
                 @if cause.hidden != HiddenParameter::None { br; span.id { (cause.hidden) } }
             }
-            (bar(cause.probability, "after"))
+            td.bar {
+                (length(cause.probability, "after"))
+                (length(cause.probability_flat, "noise thin"))
+            }
             td.number { (format!("{:.3}", cause.probability)) }
+            td.number { (format!("{:.3}", cause.probability_flat)) }
+            td.drawn { (spark(cause)) }
             td { (three_digits(cause.magnitude.value)) " " (cause.effect.entry().unit) br;
                  span.id { (three_digits(low)) " to " (three_digits(high)) } }
             td.number { @if let Some(closure) = cause.closure {
@@ -78,8 +85,27 @@ fn cause_row(diagnosis: &Diagnosis, cause: &Cause) -> Markup {
 
 /// A bar of this share of the column's width; the number stands beside it.
 fn bar(share: f64, class: &str) -> Markup {
+    html! { td.bar { (length(share, class)) } }
+}
+
+fn length(share: f64, class: &str) -> Markup {
     let width = (100.0 * share).clamp(0.0, 100.0);
-    html! { td.bar { span class=(class) style=(format!("width:{width:.1}%")) {} } }
+    html! { span class=(class) style=(format!("width:{width:.1}%")) {} }
+}
+
+/// A size with its interval on a scale of its own from zero: effects have different units.
+fn spark(cause: &Cause) -> Markup {
+    let [low, high] = cause.magnitude.ci95;
+    let (least, most) = (low.min(0.0), high.max(0.0));
+    let scale = (most - least).max(f64::MIN_POSITIVE);
+    let at = |value: f64| 4.0 + 136.0 * ((value - least) / scale).clamp(0.0, 1.0);
+    html! {
+        svg.spark viewBox="0 0 144 14" aria-hidden="true" {
+            path class="frame" d=(format!("M{:.1} 0V14", at(0.0))) {}
+            path class="span" d=(format!("M{:.1} 7H{:.1}", at(low), at(high))) {}
+            path class="disc after" d=(format!("M{:.1} 7h0", at(cause.magnitude.value))) {}
+        }
+    }
 }
 
 /// From the gap over the effects, one after the other, to the noise.
@@ -87,8 +113,9 @@ pub(super) fn left(diagnosis: &Diagnosis, segments: &[SegmentGap]) -> Markup {
     let gap = &diagnosis.gap;
     let mut steps: Vec<(Markup, f64, &str)> =
         vec![(html! { "gap before" }, gap.rms_percent, "before")];
-    let added = diagnosis.addition.iter().flat_map(|addition| &addition.effects);
-    for (place, added) in added.enumerate() {
+    let effects = diagnosis.addition.iter().flat_map(|addition| &addition.effects);
+    let added = effects.clone().count();
+    for (place, added) in effects.enumerate() {
         let label = html! {
             @if place > 0 { "and with " } @else { "with " } (effect(diagnosis, added.effect))
         };
@@ -117,16 +144,21 @@ pub(super) fn left(diagnosis: &Diagnosis, segments: &[SegmentGap]) -> Markup {
     html! {
         figure {
             figcaption {
-                b { "What is left of the gap." } " Root mean square of the gap, %. “With” an effect: at the size fitted to all of \
-                these flights."
+                b { "From the gap to the noise." } " Root mean square of the gap, %. “With” an effect: at the size fitted to all of \
+                these flights; pale: what that takes away."
             }
             table.bars.data data-name="gap" {
                 thead { tr {
                     th scope="col" { "step" } th scope="col" colspan="2" { "gap, % rms" }
                 } }
-                tbody { @for (label, value, class) in &steps { tr {
+                tbody { @for (place, (label, value, class)) in steps.iter().enumerate() { tr {
                     th scope="row" { (label) }
-                    (bar(value / largest, class))
+                    // What a step of the addition takes away of the one before.
+                    @let taken = if (1..=added).contains(&place) { (steps[place - 1].1 - value).max(0.0) } else { 0.0 };
+                    td.bar { div.fall {
+                        (length(value / largest, class))
+                        @if taken > 0.0 { (length(taken / largest, "taken")) }
+                    } }
                     td.number { (format!("{value:.2}")) }
                 } } }
             }

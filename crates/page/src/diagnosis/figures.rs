@@ -7,7 +7,7 @@ use flight::effect::HiddenParameter;
 use maud::{Markup, html};
 use pipeline::diagnosis_words::variable_words;
 
-use super::{Tail, map};
+use super::{Tail, map, unseen};
 use crate::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
 use crate::text::{capitalised, counted, signed};
 
@@ -15,8 +15,8 @@ use crate::text::{capitalised, counted, signed};
 const BIN_PERCENT: f64 = 0.25;
 const WIDTH: f64 = 500.0;
 const HEIGHT: f64 = 290.0;
-/// Segments drawn in a chart at most. Our choice: more cannot be told apart, and 200 tails must stay below 6 MB.
-const MOST_POINTS: usize = 600;
+/// Events named under the chart. Our choice: about two lines.
+const EVENTS_NAMED: usize = 8;
 /// Groups of equally many segments over the driving variable. Our choice.
 const GROUPS: usize = 8;
 
@@ -31,12 +31,13 @@ pub(super) fn figures(tail: &Tail<'_>) -> Markup {
             (histograms(tail, &bins, &before, &after))
             (map::map(tail))
             (over_time(tail, &bins))
+            (unseen::unseen(tail))
             @if let Some(driver) = tail.figures.driver { (over_driver(tail, &bins, driver)) }
         }
     }
 }
 
-fn chart(tail: &Tail<'_>, what: &str, x: Axis, y: Axis) -> Chart {
+pub(super) fn chart(tail: &Tail<'_>, what: &str, x: Axis, y: Axis) -> Chart {
     Chart {
         id: format!("{}-{}", tail.id, what.replace(' ', "-")),
         title: format!("{}: {what}", tail.diagnosed.name()),
@@ -118,9 +119,12 @@ fn over_time(tail: &Tail<'_>, bins: &Bins) -> Markup {
         )
     };
     let (before, after) = flight_means(segments);
+    let within: Vec<&(f64, String)> =
+        tail.figures.events.iter().filter(|(at, _)| chart.x.holds(*at)).collect();
     let marks = html! {
         (chart.horizontal(0.0, "zero"))
-        (chart.marks(&drawn(segments, |one| Some((one.date_s, one.before_percent))), Mark::Dot, "before"))
+        (chart.marks(&drawn(tail, |one| Some((one.date_s, one.before_percent))), Mark::Dot, "before"))
+        @for (at, _) in &within { (chart.vertical(*at, "mean")) }
         @for step in &steps { (chart.vertical(*step, "event")) }
         (chart.marks(&before, Mark::Ring, "before"))
         (chart.marks(&after, Mark::Disc, "after"))
@@ -132,6 +136,9 @@ fn over_time(tail: &Tail<'_>, bins: &Bins) -> Markup {
     if !after.is_empty() {
         entries.push((Key::Mark(Mark::Disc), "after", "flight mean after"));
     }
+    if !within.is_empty() {
+        entries.push((Key::Line, "mean", "what was done"));
+    }
     if !steps.is_empty() {
         entries.push((Key::Line, "event", "date of the step that was found"));
     }
@@ -140,6 +147,16 @@ fn over_time(tail: &Tail<'_>, bins: &Bins) -> Markup {
             figcaption { b { "The gap over time." } " A step may be an event, a slope may be wear, a flight far off a wrong load sheet." }
             (legend(&entries))
             (chart.draw(&marks))
+            @if !tail.figures.events.is_empty() {
+                p.note {
+                    "What was done: "
+                    @for (place, (at, kind)) in tail.figures.events.iter().take(EVENTS_NAMED).enumerate() {
+                        @if place > 0 { ", " } (dates::period(*at, *at)) " " (kind)
+                    }
+                    @if tail.figures.events.len() > EVENTS_NAMED { " and " (tail.figures.events.len() - EVENTS_NAMED) " more" }
+                    "."
+                }
+            }
         }
     }
 }
@@ -176,7 +193,7 @@ fn over_driver(tail: &Tail<'_>, bins: &Bins, driver: Variable) -> Markup {
     let after = group_mean(|one| one.after_percent.last().copied());
     let marks = html! {
         (chart.horizontal(0.0, "zero"))
-        (chart.marks(&drawn(segments, |one| Some((one.driver?, one.before_percent))), Mark::Dot, "before"))
+        (chart.marks(&drawn(tail, |one| Some((one.driver?, one.before_percent))), Mark::Dot, "before"))
         (chart.polyline(&before, "initial")) (chart.marks(&before, Mark::Ring, "before"))
         (chart.polyline(&after, "final")) (chart.marks(&after, Mark::Disc, "after"))
     };
@@ -197,11 +214,9 @@ fn over_driver(tail: &Tail<'_>, bins: &Bins, driver: Variable) -> Markup {
 }
 
 /// Points of a chart, evenly thinned.
-fn drawn(
-    segments: &[SegmentGap],
-    of: impl Fn(&SegmentGap) -> Option<(f64, f64)>,
-) -> Vec<(f64, f64)> {
-    thinned(segments.len(), MOST_POINTS).into_iter().filter_map(|k| of(&segments[k])).collect()
+fn drawn(tail: &Tail<'_>, of: impl Fn(&SegmentGap) -> Option<(f64, f64)>) -> Points {
+    let segments = &tail.figures.segments;
+    thinned(segments.len(), tail.most_points).into_iter().filter_map(|k| of(&segments[k])).collect()
 }
 
 /// Points of a chart.
@@ -222,7 +237,7 @@ fn flight_means(segments: &[SegmentGap]) -> (Points, Points) {
     (before, after)
 }
 
-fn mean(values: &[f64]) -> Option<f64> {
+pub(super) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 

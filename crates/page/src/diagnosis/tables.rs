@@ -66,13 +66,14 @@ fn causes(diagnosis: &Diagnosis) -> Markup {
         div.scroll {
             table.data data-name="all-causes" {
                 thead { tr {
-                    th scope="col" { "effect" } th scope="col" { "probability" } th scope="col" { "size" }
+                    th scope="col" { "effect" } th scope="col" { "probability" } th scope="col" { "if any size" } th scope="col" { "size" }
                     th scope="col" { "95 % interval" } th scope="col" { "unit" } th scope="col" { "closes on unseen flights" }
                     th scope="col" { "cannot be told from" }
                 } }
                 tbody { @for cause in &diagnosis.causes { tr {
                     th scope="row" { code { (cause.effect) } }
                     td { (format!("{:.3}", cause.probability)) }
+                    td { (format!("{:.3}", cause.probability_flat)) }
                     td { (three_digits(cause.magnitude.value)) }
                     td { (three_digits(cause.magnitude.ci95[0])) " to " (three_digits(cause.magnitude.ci95[1])) }
                     td { (cause.effect.entry().unit) }

@@ -1,5 +1,7 @@
 //! What a diagnosis comes to: an answer to what, where, how sure and what to do; and the index of many tails.
 
+use std::collections::BTreeMap;
+
 use diagnose::{Diagnosis, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
@@ -134,7 +136,8 @@ pub(super) fn index(tails: &[Tail<'_>]) -> Markup {
     });
     html! {
         section {
-            h2 { "Tails" }
+            h2 { "All tails" }
+            p { (in_short(tails)) }
             div.scroll tabindex="0" role="region" aria-label="Verdict of every tail" {
                 table.sort.data.fleet data-name="diagnosis" {
                     caption { "Largest gap first. A click on a heading sorts." }
@@ -150,6 +153,29 @@ pub(super) fn index(tails: &[Tail<'_>]) -> Markup {
     }
 }
 
+/// All verdicts in a sentence, the most frequent first.
+fn in_short(tails: &[Tail<'_>]) -> String {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for tail in tails {
+        let kind = match &tail.diagnosed.diagnosis.verdict {
+            Verdict::Effects(found) => {
+                let diagnosis = &tail.diagnosed.diagnosis;
+                let size = |id| size_words(diagnosis, id).map_or(1.0, |(size, _)| size);
+                let named = found.effects.iter().map(|id| id.phrase(size(*id)));
+                named.collect::<Vec<_>>().join(" with ")
+            }
+            _ => short(&tail.diagnosed.diagnosis),
+        };
+        *counts.entry(kind).or_default() += 1;
+    }
+    let mut ranked: Vec<(String, usize)> = counts.into_iter().collect();
+    // A stable sort: equal counts stay in the order of their words.
+    ranked.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let told: Vec<String> =
+        ranked.iter().map(|(kind, count)| format!("{kind} ({count})")).collect();
+    format!("Of {} tails: {}.", tails.len(), told.join("; "))
+}
+
 fn index_row(tail: &Tail<'_>) -> Markup {
     let diagnosis = &tail.diagnosed.diagnosis;
     let gap = &diagnosis.gap;
@@ -157,7 +183,7 @@ fn index_row(tail: &Tail<'_>) -> Markup {
     html! {
         tr {
             th scope="row" { a href=(format!("#{}", tail.id)) { (tail.diagnosed.name()) } }
-            td style="text-align:left" { (short_verdict(diagnosis)) }
+            td style="text-align:left" { (short(diagnosis)) }
             td { @if let Some(found) = diagnosis.verdict.found() { (format!("{:.2}", found.probability)) } @else { "–" } }
             td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
             td data-v=(gap.rms_percent) { (format!("{:.2}", gap.rms_percent)) }
@@ -167,7 +193,7 @@ fn index_row(tail: &Tail<'_>) -> Markup {
     }
 }
 
-fn short_verdict(diagnosis: &Diagnosis) -> String {
+pub(super) fn short(diagnosis: &Diagnosis) -> String {
     match &diagnosis.verdict {
         Verdict::NoGap => "no gap".to_owned(),
         Verdict::InsufficientData(_) => "too little data".to_owned(),

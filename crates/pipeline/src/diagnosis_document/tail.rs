@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use diagnose::{
-    Beside, Cause, Closure, Detectable, Diagnosis, FoundForm, Gap, OutsideLibrary, Region,
-    Separation, Slice, Verdict,
+    Beside, Cause, Closure, Detectable, Diagnosis, FoundForm, Gap, HeldOutFlight, OutsideLibrary,
+    Region, Separation, Slice, Verdict,
 };
 use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
@@ -45,10 +45,26 @@ pub struct TailDiagnosis {
     pub detectable: Vec<DetectableRecord>,
     /// Probability that something outside the library acts, and the variable that it depends on.
     pub outside: OutsideLibraryRecord,
+    /// The gap of each flight by a choice and fit that has not seen it; empty where closure is not measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held_out: Vec<HeldOutRecord>,
     /// Segments left out, by reason.
     pub left_out: BTreeMap<String, usize>,
     /// What was assumed: references of the data at hand, proxies, robust weights.
     pub notes: Vec<String>,
+}
+
+/// The gap of one flight that choice and fit have not seen: root mean squares over its segments.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HeldOutRecord {
+    /// Its segments.
+    pub segments: usize,
+    /// Before anything is added.
+    pub before_rms_percent: f64,
+    /// With what the other flights would add.
+    pub after_rms_percent: f64,
+    /// What noise alone is expected to make.
+    pub noise_rms_percent: f64,
 }
 
 /// The gap: ln recorded − ln predicted fuel flow, in per cent.
@@ -309,6 +325,7 @@ impl From<&DiagnosedTail> for TailDiagnosis {
             addition,
             detectable,
             outside,
+            held_out,
             left_out,
             notes: _,
         } = &diagnosed.diagnosis;
@@ -332,8 +349,20 @@ impl From<&DiagnosedTail> for TailDiagnosis {
             addition: addition.as_ref().map(AdditionRecord::from),
             detectable: detectable.iter().map(DetectableRecord::from).collect(),
             outside: OutsideLibraryRecord::from(outside),
+            held_out: held_out.iter().map(HeldOutRecord::from).collect(),
             left_out: left_out.map(|(words, count)| (words.to_owned(), count)).collect(),
             notes: diagnosed.notes(),
+        }
+    }
+}
+
+impl From<&HeldOutFlight> for HeldOutRecord {
+    fn from(flight: &HeldOutFlight) -> Self {
+        Self {
+            segments: flight.segments,
+            before_rms_percent: flight.before_rms_percent,
+            after_rms_percent: flight.after_rms_percent,
+            noise_rms_percent: flight.noise_rms_percent,
         }
     }
 }
