@@ -17,7 +17,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use pipeline::adaptation::StoredTail;
-use pipeline::checksum::sha256;
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::ModelFile;
 use pipeline::segments_table;
@@ -165,7 +164,7 @@ impl Folder {
             steps::write(&path, bytes)
         };
         attempt().map_err(|error| Failure::unwritable(&self.path, error))?;
-        Ok(FileState { file: file.to_owned(), sha256: sha256(bytes) })
+        Ok(FileState::of(file, bytes))
     }
 
     /// Makes these tails, with the files that were staged, the state of the folder.

@@ -41,6 +41,12 @@ use commands::Outcome;
 use failure::{ALERTS_RAISED, DONE, Failure, NOTHING_DONE, SOME_REFUSED};
 use progress::Progress;
 
+/// What the fuzz targets reach of the readers of files, which are private; not part of the program.
+#[doc(hidden)]
+pub fn read_columnar(bytes: &[u8]) {
+    reading::recording::read_columnar(bytes);
+}
+
 /// Reads the command line, runs the command, and reports the result.
 pub fn run() -> ExitCode {
     let arguments = match project::with_project(std::env::args_os().collect()) {
@@ -113,9 +119,9 @@ fn print_result(result: Result<(Outcome, usize), Failure>) -> u8 {
     match result {
         Ok((Outcome { text, refused }, alerts)) => {
             // A reader that closes the pipe early (`| head`) is not an error.
-            let _ = std::io::stdout().write_all(text.as_bytes());
+            let _ = std::io::stdout().write_all(shown(&text).as_bytes());
             for one in &refused {
-                eprintln!("refused: {one}");
+                eprintln!("refused: {}", shown(&one.to_string()));
             }
             match (refused.is_empty(), alerts) {
                 (true, 0) => DONE,
@@ -128,4 +134,10 @@ fn print_result(result: Result<(Outcome, usize), Failure>) -> u8 {
             NOTHING_DONE
         }
     }
+}
+
+/// A text as a terminal may get it: names of files and what is quoted of them can hold sequences that it would act on.
+fn shown(text: &str) -> std::borrow::Cow<'_, str> {
+    let acts = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if text.contains(acts) { text.replace(acts, "\u{fffd}").into() } else { text.into() }
 }

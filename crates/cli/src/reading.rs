@@ -2,7 +2,7 @@
 
 mod bytes;
 pub(crate) mod heads;
-mod recording;
+pub(crate) mod recording;
 
 use std::path::{Path, PathBuf};
 

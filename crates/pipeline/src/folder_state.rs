@@ -55,6 +55,18 @@ pub struct FileState {
     pub sha256: String,
 }
 
+impl FileState {
+    /// A file with these bytes.
+    pub fn of(file: &str, bytes: &[u8]) -> Self {
+        Self { file: file.to_owned(), sha256: sha256(bytes) }
+    }
+
+    /// Whether these are the bytes that the state names.
+    pub fn names(&self, bytes: &[u8]) -> bool {
+        sha256(bytes) == self.sha256
+    }
+}
+
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
@@ -142,8 +154,7 @@ mod tests {
     #[test]
     fn the_text_reads_back_and_a_changed_digit_is_noticed() {
         let mut state = State { generation: 7, tails: BTreeMap::new() };
-        let file =
-            |file: &str| FileState { file: file.to_owned(), sha256: sha256(file.as_bytes()) };
+        let file = |file: &str| FileState::of(file, file.as_bytes());
         let json = r#"{"tail": "T, \"1\"", "flights": 3, "flights_new": 0, "samples": 9, "segments": 2, "outside_table": 0,
             "informed_nodes": 0.1, "refits": 1, "fuel_flow_error_percent": {"before": {"mean": 0.25, "std": null,
             "max_abs": 1.5, "n": 2}}}"#;

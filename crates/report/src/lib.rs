@@ -53,6 +53,7 @@ pub mod cruise_text;
 mod decode;
 mod line;
 pub mod mapping;
+mod name;
 mod number;
 mod refusal;
 mod text_layout;

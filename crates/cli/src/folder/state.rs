@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use pipeline::checksum::sha256;
 pub(crate) use pipeline::folder_state::{FileState, NAME, State, TailState};
 
 use crate::failure::Failure;
@@ -44,7 +43,7 @@ pub(crate) fn bytes_of(state: &State, folder: &Path, file: &FileState) -> Result
     let bytes = std::fs::read(waiting(state, folder).join(&file.file))
         .or_else(|_| std::fs::read(&path))
         .map_err(|error| Failure::unreadable(&path, error))?;
-    if sha256(&bytes) == file.sha256 {
+    if file.names(&bytes) {
         return Ok(bytes);
     }
     Err(Failure::BadFile {

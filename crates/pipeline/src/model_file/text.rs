@@ -108,6 +108,8 @@ pub(super) fn print(model: &ModelFile) -> Result<String, ron::Error> {
 
 /// A model from its text.
 pub(super) fn parse(text: &str) -> Result<ModelFile, ModelTextError> {
+    // An editor's byte-order mark is no content.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let format = format_of(text).ok_or(ModelTextError::NoModel)?;
     if format > FORMAT {
         return Err(ModelTextError::Newer { found: format });
@@ -151,7 +153,9 @@ fn format_of(text: &str) -> Option<u32> {
 }
 
 fn checksum_of(body: &str) -> String {
-    // Line ends do not count: a checkout may turn them.
+    // Line ends do not count: a checkout or a mail may turn them. The body ends before a line feed, perhaps after its carriage
+    // return.
+    let body = body.strip_suffix('\r').unwrap_or(body);
     let mut hash = Sha256::new();
     for line in body.lines() {
         hash.update(line.as_bytes());
