@@ -121,6 +121,9 @@ mod diagnosis;
 mod judge;
 mod numbers;
 
+#[cfg(test)]
+mod oracles;
+
 pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;

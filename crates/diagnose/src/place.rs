@@ -1,9 +1,9 @@
 //! Where the gap lies.
 
 pub(crate) mod binned_variable;
-mod draws;
+pub(crate) mod draws;
 pub(crate) mod find;
-mod likelihood;
+pub(crate) mod likelihood;
 pub(crate) mod members;
 mod null;
 mod regions;

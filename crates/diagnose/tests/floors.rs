@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Floors from the ground up.
-const FLOORS: [&str; 19] = [
+const FLOORS: [&str; 20] = [
     "deciding",
     "priors",
     "thresholds",
@@ -31,6 +31,8 @@ const FLOORS: [&str; 19] = [
     "judge",
     "diagnosis",
     "numbers",
+    // Tests of several floors at once.
+    "oracles",
     "lib",
 ];
 

@@ -4,6 +4,7 @@
 //! name, in any order; columns whose name begins with `X-` are ignored, as in cruise reports.
 
 use core::fmt;
+use std::collections::BTreeMap;
 
 use units::{OutOfDomain, check_within};
 
@@ -299,6 +300,8 @@ impl fmt::Display for At<'_> {
 }
 
 fn check_header(line: u64, header: &[String], known: &[Column]) -> Result<(), CsvError> {
+    // A header can hold a hundred thousand names.
+    let mut places: BTreeMap<&str, usize> = BTreeMap::new();
     for (index, name) in header.iter().enumerate() {
         let name = name.trim();
         let error = |reason| CsvError {
@@ -306,7 +309,7 @@ fn check_header(line: u64, header: &[String], known: &[Column]) -> Result<(), Cs
             column: Some(CsvColumn { number: index + 1, name: name.to_owned() }),
             reason,
         };
-        if let Some(first) = header[..index].iter().position(|other| other.trim() == name) {
+        if let Some(first) = places.insert(name, index) {
             return Err(error(CsvErrorReason::DuplicatedColumn { first: first + 1 }));
         }
         if !name.starts_with("X-") && known.iter().all(|column| column.name != name) {

@@ -210,8 +210,7 @@ fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
     let mut left = gaps.clone();
     for (index, (row, gap)) in segments.iter().zip(&mut left.total).enumerate() {
         if variance > 0.0 {
-            // A recording that varies less than its sensor announces is all error.
-            let share = (row.acceleration_deviation_m_s2.powi(2) / variance).min(1.0);
+            let share = error_share(row.acceleration_deviation_m_s2, variance);
             let slope = row.point.mass_kg / row.response.net_thrust_n;
             *gap += slope * share * (row.point.acceleration_m_s2 - mean);
         }
@@ -363,7 +362,7 @@ impl Told<'_> {
     }
 
     fn value(&self, engine: Option<usize>, segment: usize) -> f64 {
-        self.gaps.total[segment] + engine.map_or(0.0, |engine| self.gaps.apart[engine][segment])
+        self.gaps.value(engine, segment)
     }
 
     fn mean(&self, candidate: &BinnedRegion, members: &[usize]) -> f64 {
@@ -398,14 +397,32 @@ impl Told<'_> {
     /// Σ_place (y² − σ²)/Σ (y² − σ²);   of engine k of n  Σ_place (y·y_k − σ²)/n / Σ (y² − σ²)         [diagnosis.28]
     /// ```
     fn share(&self, engine: Option<usize>, members: &[usize]) -> f64 {
+        self.gaps.share(engine, members, self.variances)
+    }
+}
+
+impl Gaps {
+    /// Of fuel flow, or of an engine, at a segment.
+    fn value(&self, engine: Option<usize>, segment: usize) -> f64 {
+        self.total[segment] + engine.map_or(0.0, |engine| self.apart[engine][segment])
+    }
+
+    /// Share of the explainable gap.
+    fn share(&self, engine: Option<usize>, members: &[usize], variances: &[f64]) -> f64 {
         let of = |segment: usize, engine: Option<usize>| {
-            self.gaps.total[segment] * self.value(engine, segment) - self.variances[segment]
+            self.total[segment] * self.value(engine, segment) - variances[segment]
         };
-        let whole: f64 = (0..self.gaps.total.len()).map(|segment| of(segment, None)).sum();
+        let whole: f64 = (0..self.total.len()).map(|segment| of(segment, None)).sum();
         let inside: f64 = members.iter().map(|&segment| of(segment, engine)).sum();
-        let engines = engine.map_or(1.0, |_| self.gaps.apart.len() as f64);
+        let engines = engine.map_or(1.0, |_| self.apart.len() as f64);
         if whole > 0.0 { inside / engines / whole } else { 0.0 }
     }
+}
+
+/// Share of the deviation of a recorded acceleration from the mean that is expected to be error.
+fn error_share(deviation_m_s2: f64, recorded_variance: f64) -> f64 {
+    // A recording that varies less than its sensor announces is all error.
+    (deviation_m_s2.powi(2) / recorded_variance).min(1.0)
 }
 
 /// 95 % interval of a mean, whole flights drawn with replacement.
@@ -429,6 +446,44 @@ mod tests {
         for (found, expected) in four.iter().zip([0.03, -0.01, -0.01, -0.01]) {
             assert!((found - expected).abs() < 1e-15, "{four:?}");
         }
+    }
+
+    /// By hand: 9 and 1 of 10⁻⁴, each with noise of 10⁻⁴ in it, are 8 and 0 of 8: all of it lies in the first segment. Of two
+    /// engines the first has 3·5 − 1 = 14 there and the second 3·1 − 1 = 2, each half: 14/16 and 2/16 of what both make.
+    #[test]
+    fn share_by_hand() {
+        let gaps = Gaps { total: vec![0.03, 0.01], apart: vec![vec![0.02, 0.0], vec![-0.02, 0.0]] };
+        let variances = [1e-4; 2];
+        let share = |engine, members: &[usize]| gaps.share(engine, members, &variances);
+        for (found, expected) in [
+            (share(None, &[0]), 1.0),
+            (share(None, &[1]), 0.0),
+            (share(Some(0), &[0]), 14.0 / 16.0),
+            (share(Some(1), &[0]), 2.0 / 16.0),
+        ] {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+        // Nothing but noise has no shares.
+        assert_eq!(gaps.share(None, &[0], &[1.0; 2]), 0.0);
+    }
+
+    /// Monte Carlo: of accelerations with a standard deviation of 3, recorded with errors of 4, the error is 16/25 of what is
+    /// recorded, on average; what is left of the error after that is no function of the recording.
+    #[test]
+    fn expected_error_of_a_recorded_acceleration() {
+        let mut stream = RandomStream::new(27, 0);
+        let (mut truth, mut error) = (vec![0.0; 200_000], vec![0.0; 200_000]);
+        stream.fill(&mut truth);
+        stream.fill(&mut error);
+        let recorded: Vec<f64> = truth.iter().zip(&error).map(|(t, e)| 3.0 * t + 4.0 * e).collect();
+        let variance = recorded.iter().map(|r| r * r).sum::<f64>() / recorded.len() as f64;
+        let share = error_share(4.0, variance);
+        assert!((share - 16.0 / 25.0).abs() < 0.005, "{share}");
+        let left = recorded.iter().zip(&error).map(|(r, e)| r * (4.0 * e - share * r));
+        // Its standard error: √(25·(16 − 16²/25)/200 000) = 0.027.
+        let product = left.sum::<f64>() / recorded.len() as f64;
+        assert!(product.abs() < 5.0 * 0.027, "{product}");
+        assert_eq!(error_share(4.0, 1.0), 1.0);
     }
 
     #[test]

@@ -62,3 +62,18 @@ fn p_value(of_noise: &[f64], statistic: f64) -> f64 {
     let above = of_noise.iter().filter(|value| **value >= statistic).count();
     (1.0 + above as f64) / (1.0 + of_noise.len() as f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: of 99 draws four are as large or larger, so that five of a hundred are, the gap itself among them.
+    #[test]
+    fn p_values_by_counting() {
+        let of_noise: Vec<f64> = (1..=99).map(f64::from).collect();
+        assert_eq!(p_value(&of_noise, 96.0), 0.05);
+        assert_eq!(p_value(&of_noise, 96.5), 0.04);
+        assert_eq!(p_value(&of_noise, 1000.0), 0.01);
+        assert_eq!(p_value(&of_noise, 0.0), 1.0);
+    }
+}

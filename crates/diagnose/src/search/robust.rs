@@ -65,15 +65,12 @@ pub(crate) fn outlier_weights(
     sizes.sort_by(f64::total_cmp);
     let scale = (MEDIAN_TO_DEVIATION * quantile(&sizes, 0.5, QuantileType::UpperType1))
         .max(LEAST_ROBUST_SCALE);
-    Some(
-        worst
-            .into_iter()
-            .map(|e| {
-                let z = e / scale;
-                ((STUDENT_FREEDOM + 1.0) / (STUDENT_FREEDOM + z * z)).sqrt().min(1.0)
-            })
-            .collect(),
-    )
+    Some(worst.into_iter().map(|e| student_weight(e / scale)).collect())
+}
+
+/// Weight of a segment whose largest residual is z scales: that of Student's distribution.
+pub(crate) fn student_weight(z: f64) -> f64 {
+    ((STUDENT_FREEDOM + 1.0) / (STUDENT_FREEDOM + z * z)).sqrt().min(1.0)
 }
 
 #[cfg(test)]

@@ -196,7 +196,7 @@ impl<'a> WhitenedSystem<'a> {
     /// ```text
     /// G' = G − Σ_f w_f z_f z_fᵀ,  w_f = θ²/(1 + θ² v_fᵀv_f),  ln det = Σ_f ln(1 + θ² v_fᵀv_f)     [diagnosis.20]
     /// ```
-    fn scatter_of(
+    pub(crate) fn scatter_of(
         &self,
         columns: &[usize],
         relative: f64,
@@ -282,9 +282,9 @@ fn levels(data: &PreparedFlights<'_>, design: &Design<'_>) -> Vec<Level> {
 }
 
 /// What scatter between flights takes off a Gram: `[diagnosis.20]`.
-struct Scatter {
+pub(crate) struct Scatter {
     /// One column a flight.
-    scaled: Mat<f64>,
+    pub(crate) scaled: Mat<f64>,
     /// √w of each flight.
     roots: Vec<f64>,
 }

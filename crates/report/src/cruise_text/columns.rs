@@ -1,5 +1,7 @@
 //! The line of column names and the line of units, and from them the meaning of each field of a row.
 
+use std::collections::BTreeMap;
+
 use flight::column::{Column, ColumnUnit};
 use flight::{Finding, MAXIMUM_ENGINES, MissingColumn, ReportHeader, Severity};
 
@@ -91,8 +93,10 @@ type NamedColumn<'a> = (Word<'a>, Option<Column>);
 
 fn read_names(line: Line<'_>) -> Result<Vec<NamedColumn<'_>>, Refusal> {
     let mut columns: Vec<NamedColumn<'_>> = Vec::new();
+    // A line can hold a hundred thousand names.
+    let mut known: BTreeMap<&str, Word<'_>> = BTreeMap::new();
     for word in line.meaning().words() {
-        if let Some((first, _)) = columns.iter().find(|(first, _)| first.text == word.text) {
+        if let Some(first) = known.insert(word.text, word) {
             let first_column = line.text[..first.offset].chars().count() + 1;
             return Err(line.refuse_word(word, RefusalKind::ColumnDoubled { first_column }));
         }
