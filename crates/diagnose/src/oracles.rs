@@ -314,7 +314,8 @@ fn falls_of_chi_square_are_of_two_fits() {
         let ones = DVector::from_element(size, 1.0);
         for (fall, place) in falls.iter().zip(&places) {
             let both = DMatrix::from_columns(&[ones.clone(), DVector::from_column_slice(place)]);
-            let expected = chi_square(&DMatrix::from_columns(&[ones.clone()])) - chi_square(&both);
+            let expected = chi_square(&DMatrix::from_columns(core::slice::from_ref(&ones)))
+                - chi_square(&both);
             assert!((fall / expected - 1.0).abs() < 1e-7, "{fall} {expected}");
         }
     });

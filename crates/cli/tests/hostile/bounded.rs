@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Address space, KiB: four times the 512 MiB that a text may have at most. An allocation beyond it aborts the program.
 const MOST_KIB: u64 = 4 * 512 * 1024;
 /// No measurement: whatever is meant to be linear needs seconds here, what is not needs hours.
-const LONGEST: Duration = Duration::from_secs(120);
+const LONGEST: Duration = Duration::from_mins(2);
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/global5000").join(name)

@@ -109,9 +109,8 @@ fn edited(seed: &[u8], edits: &[Edit]) -> Vec<u8> {
 }
 
 fn entry(name: &str) -> (Entry, &'static [u8]) {
-    let of = |known: &&str| *known == name;
-    let (_, entry) = ENTRIES.iter().find(|(known, _)| of(&known)).unwrap();
-    let (_, seed) = SEEDS.iter().find(|(known, _)| of(&known)).unwrap();
+    let (_, entry) = ENTRIES.iter().find(|(known, _)| *known == name).unwrap();
+    let (_, seed) = SEEDS.iter().find(|(known, _)| *known == name).unwrap();
     (*entry, seed)
 }
 
