@@ -1,6 +1,8 @@
 //! The command line's grammar. What a command does is in `commands`.
 
+mod common;
 mod diagnose;
+pub(crate) mod help;
 mod monitor;
 mod recordings;
 
@@ -9,6 +11,7 @@ use std::path::PathBuf;
 use crate::criteria::NamedCriteria;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+pub(crate) use common::{Common, JsonFlag, JsonOutput, JsonWanted, When};
 pub(crate) use diagnose::DiagnoseArgs;
 pub(crate) use monitor::MonitorArgs;
 pub(crate) use recordings::{ConvertArgs, MappingArgs};
@@ -27,24 +30,6 @@ pub(crate) struct Cli {
     /// Options of every command.
     #[command(flatten)]
     pub(crate) common: Common,
-}
-
-/// Options of every command.
-#[derive(Clone, Debug, Args)]
-pub(crate) struct Common {
-    /// Worker threads; results are the same bytes for any number [default: one per processor]
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-    /// Show no progress on the terminal
-    #[arg(long, global = true)]
-    pub(crate) no_progress: bool,
-    /// Project file with options of every command [default: cruisefit.toml of the working folder, if there is one]; what the
-    /// command line gives wins
-    #[arg(long, global = true, value_name = "FILE.toml")]
-    pub(crate) project: Option<PathBuf>,
-    /// Log more to stderr (-v: what was done, -vv: why); `RUST_LOG` overrides
-    #[arg(long, short, global = true, action = clap::ArgAction::Count)]
-    pub(crate) verbose: u8,
 }
 
 /// The commands.
@@ -78,7 +63,7 @@ pub(crate) enum Command {
     Diagnose(DiagnoseArgs),
     /// What changed over months, when, on which tail: deviations, trends, changes, events, fuel factors
     Monitor(MonitorArgs),
-    /// Show what a model file holds
+    /// Show what a model file, a report, a diagnosis or a folder of results holds
     Show(ShowArgs),
     /// Export a model's drag: CSV, polynomial, OpenAP, JSBSim, JSON
     Export(ExportArgs),
@@ -142,9 +127,9 @@ pub(crate) struct CheckArgs {
     /// model of its tail, otherwise the one of its type
     #[arg(long = "model", value_name = "MODEL.ron")]
     pub(crate) models: Vec<PathBuf>,
-    /// Also write the findings as JSON (schema `cruisefit.check/1`)
-    #[arg(long, value_name = "OUT.json")]
-    pub(crate) json: Option<PathBuf>,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonOutput,
 }
 
 /// `guide`
@@ -159,6 +144,9 @@ pub(crate) struct GuideArgs {
     /// Folder to write to: AIRCRAFT.ron, guide.csv
     #[arg(long, short, value_name = "DIR", required_unless_present = "list")]
     pub(crate) output: Option<PathBuf>,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `init`
@@ -182,6 +170,9 @@ pub(crate) struct InitArgs {
     /// Replace a file that this command did not make
     #[arg(long)]
     pub(crate) force: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// The adaptation laws.
@@ -229,6 +220,9 @@ pub(crate) struct AdaptArgs {
     /// Wait while another process writes the folder, instead of refusing
     #[arg(long)]
     pub(crate) wait: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `forget`
@@ -249,6 +243,9 @@ pub(crate) struct ForgetArgs {
     /// Wait while another process writes the folder, instead of refusing
     #[arg(long)]
     pub(crate) wait: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `tune`
@@ -271,6 +268,9 @@ pub(crate) struct TuneArgs {
     /// Replace a file that this command did not make
     #[arg(long)]
     pub(crate) force: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// What `tune` does about the half-life.
@@ -310,6 +310,9 @@ pub(crate) struct MergeArgs {
     /// Replace a file that this command did not make
     #[arg(long)]
     pub(crate) force: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `segment`
@@ -324,6 +327,9 @@ pub(crate) struct SegmentArgs {
     /// Print what each criterion cost, flight by flight
     #[arg(long)]
     pub(crate) explain: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `predict`
@@ -345,6 +351,9 @@ pub(crate) struct PredictArgs {
     /// Predict with the drag table alone, without what else the model has learnt
     #[arg(long)]
     pub(crate) table_only: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `evaluate`
@@ -356,9 +365,9 @@ pub(crate) struct EvaluateArgs {
     /// Models.
     #[command(flatten)]
     pub(crate) models: ModelArgs,
-    /// Also write the summary as JSON
-    #[arg(long, value_name = "OUT.json")]
-    pub(crate) json: Option<PathBuf>,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonOutput,
     /// Also write each segment's residual, .csv or .parquet. A flight that the model has learnt is predicted by the table
     /// as it was before, which needs the reports of all flights that were learnt until then; column `predicted_by`
     /// states it
@@ -376,9 +385,12 @@ pub(crate) struct EvaluateArgs {
 /// `show`
 #[derive(Debug, Args)]
 pub(crate) struct ShowArgs {
-    /// Model file
-    #[arg(value_name = "MODEL.ron")]
-    pub(crate) model: PathBuf,
+    /// Model file, cruise report (plain or gzip), diagnosis.json, summary.json, or the folder of one
+    #[arg(value_name = "MODEL.ron|REPORT|JSON|DIR")]
+    pub(crate) file: PathBuf,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `export`
@@ -453,6 +465,9 @@ pub(crate) struct OptimumArgs {
     /// File to write, .csv, .parquet or .json; may be given several times
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Vec<PathBuf>,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 fn cost_index(text: &str) -> Result<f64, String> {
@@ -479,9 +494,9 @@ pub(crate) struct PlotArgs {
 /// `effects`
 #[derive(Debug, Args)]
 pub(crate) struct EffectsArgs {
-    /// Print JSON
-    #[arg(long)]
-    pub(crate) json: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `explain`
@@ -490,6 +505,12 @@ pub(crate) struct ExplainArgs {
     /// Effect, column, trim criteria or verdict [default: list them]
     #[arg(value_name = "TOPIC")]
     pub(crate) topic: Option<String>,
+    /// Print all topics as the page of the book that holds them
+    #[arg(long, conflicts_with = "topic")]
+    pub(crate) book: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `completions`
@@ -541,6 +562,9 @@ pub(crate) struct SimulateArgs {
     /// Write into a folder that holds something else; reports of another plan are removed from it
     #[arg(long)]
     pub(crate) force: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `trial`
@@ -564,6 +588,9 @@ pub(crate) struct TrialArgs {
     /// Start over: an existing folder is kept under another name
     #[arg(long)]
     pub(crate) restart: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `demo`

@@ -1,6 +1,5 @@
 //! Tables of named columns, written as CSV or Parquet. An absent value is an empty field in CSV, a null in Parquet.
 
-use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -23,8 +22,7 @@ const VALUES_AT_ONCE: usize = 1 << 16;
 /// An ending that is neither `.csv` nor `.parquet`, or a file that cannot be written.
 pub(crate) fn write(columns: &Columns, path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path else {
-        return std::io::stdout()
-            .write_all(&columns.to_csv())
+        return crate::terminal::print_data(&columns.to_csv())
             .map_err(|error| Failure::unwritable(Path::new("standard output"), error));
     };
     match path.extension().and_then(|ending| ending.to_str()) {

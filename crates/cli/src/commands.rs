@@ -39,6 +39,7 @@ use crate::files::read_text;
 use crate::inputs;
 use crate::progress::Progress;
 use crate::reading::{Reading, Source};
+use crate::terminal;
 
 /// The result of a command that did something.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,20 +48,27 @@ pub(crate) struct Outcome {
     pub(crate) text: String,
     /// What was refused while the rest continued.
     pub(crate) refused: Vec<RefusedReport>,
+    /// The result as a document, where the command has one.
+    pub(crate) json: Option<Vec<u8>>,
 }
 
 impl Outcome {
     /// Done, with this text for standard output.
     pub(crate) fn text(text: impl Into<String>) -> Self {
-        Self { text: text.into(), refused: Vec::new() }
+        Self { text: text.into(), refused: Vec::new(), json: None }
+    }
+
+    /// Done, with this text, and this document for `--json`.
+    pub(crate) fn with_json(text: impl Into<String>, json: impl Into<Vec<u8>>) -> Self {
+        Self { json: Some(json.into()), ..Self::text(text) }
     }
 }
 
 /// Prints serious findings on standard error.
 fn tell_serious(findings: &str) {
     if !findings.is_empty() {
-        eprint!("{findings}");
-        eprintln!("`cruisefit check` with the same arguments tells all that was found.");
+        terminal::tell(findings);
+        terminal::tell("`cruisefit check` with the same arguments tells all that was found.\n");
     }
 }
 
@@ -116,9 +124,7 @@ fn check_refused(
     if !ends {
         return Ok(());
     }
-    for one in refused {
-        eprintln!("refused: {one}");
-    }
+    terminal::tell_refused(refused);
     Err(if nothing_left {
         Failure::AllRefused { files }
     } else {

@@ -41,7 +41,9 @@ impl FromStr for NamedCriteria {
         }
         if !Path::new(text).is_file() {
             let presets = TrimCriteria::PRESETS.join(", ");
-            return Err(format!("neither a file nor one of {presets}"));
+            let meant = report::nearest(text, TrimCriteria::PRESETS)
+                .map_or_else(String::new, |name| format!("; did you mean {name}?"));
+            return Err(format!("neither a file nor one of {presets}{meant}"));
         }
         let file = std::fs::read_to_string(text).map_err(|error| error.to_string())?;
         of_file(&file)

@@ -95,6 +95,21 @@ pub(crate) enum Failure {
         /// Process, host and time, as its lock has them.
         holder: String,
     },
+    /// Two tails that would share their files.
+    #[error(
+        "{folder}: tails {one:?} and {other:?} would have the same files, whose names differ only in case"
+    )]
+    #[diagnostic(help(
+        "adapt one of them in another folder, or use a file system on which case counts"
+    ))]
+    SameFile {
+        /// The folder.
+        folder: String,
+        /// A tail.
+        one: String,
+        /// The other.
+        other: String,
+    },
     /// A file that would be lost.
     #[error("{path} exists and was not made by this command")]
     #[diagnostic(help("choose another name, or --force to replace it"))]
@@ -127,20 +142,49 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
-    /// An unreadable path.
+    /// An unreadable path; of one that does not exist, with the name beside it that was probably meant.
     pub(crate) fn unreadable(path: &Path, reason: impl Display) -> Self {
-        Self::Unreadable { path: show(path), reason: reason.to_string() }
+        let mut reason = plain(&reason.to_string());
+        if let (false, Some(name)) = (path.exists(), name_beside(path)) {
+            reason = format!("{reason}; did you mean {name}?");
+        }
+        Self::Unreadable { path: show(path), reason }
     }
 
     /// An unwritable path.
     pub(crate) fn unwritable(path: &Path, reason: impl Display) -> Self {
-        Self::Unwritable { path: show(path), reason: reason.to_string() }
+        Self::Unwritable { path: show(path), reason: plain(&reason.to_string()) }
     }
 
     /// A file with wrong content.
     pub(crate) fn bad_file(path: &Path, reason: impl Display) -> Self {
         Self::BadFile { path: show(path), reason: reason.to_string(), help: None }
     }
+}
+
+/// What the operating system reports without its number: "No such file or directory", not "(os error 2)".
+fn plain(reason: &str) -> String {
+    let end = reason.rfind(" (os error ").filter(|_| reason.ends_with(')'));
+    reason[..end.unwrap_or(reason.len())].to_owned()
+}
+
+/// The nearest name in the deepest folder of a path that exists.
+fn name_beside(path: &Path) -> Option<String> {
+    let part = path.ancestors().find(|part| {
+        !part.exists()
+            && part.parent().is_some_and(|above| above.as_os_str().is_empty() || above.is_dir())
+    })?;
+    let above = part.parent()?;
+    let searched = if above.as_os_str().is_empty() { Path::new(".") } else { above };
+    let mut names: Vec<String> = std::fs::read_dir(searched)
+        .ok()?
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .collect();
+    // The system lists names in any order: of two equally near the first by name.
+    names.sort();
+    let wanted = part.file_name()?.to_str()?;
+    let name = report::nearest(wanted, names.iter().map(String::as_str))?;
+    Some(show(&above.join(name)))
 }
 
 /// A path for a message: as given, with forward slashes unchanged.

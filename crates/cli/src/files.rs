@@ -1,6 +1,7 @@
 //! Writing files so that neither a reader nor a crash ever leaves half a file.
 
 pub(crate) mod outputs;
+pub(crate) mod standard_input;
 pub(crate) mod steps;
 
 use std::io::Write as _;
@@ -107,12 +108,12 @@ fn behind_links(path: &Path) -> std::io::Result<PathBuf> {
     Err(std::io::Error::other("too many links, one to the other"))
 }
 
-/// Reads a text file.
+/// Reads a text file, or standard input for `-`.
 ///
 /// # Errors
 /// A file that cannot be read or is not UTF-8.
 pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
-    std::fs::read_to_string(path).map_err(|error| {
+    standard_input::file(path).and_then(std::fs::read_to_string).map_err(|error| {
         if error.kind() == std::io::ErrorKind::InvalidData {
             Failure::bad_file(path, "not a text file (invalid UTF-8)")
         } else {

@@ -7,6 +7,7 @@
 //! moves. A waiting folder of another generation was never committed and is removed.
 
 pub(crate) mod lock;
+pub(crate) mod names;
 mod older;
 mod restart;
 pub(crate) mod state;

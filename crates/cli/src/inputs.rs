@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, RefusedReport, show};
+use crate::files::standard_input;
 
 /// The files to read, sorted and without repetition, and how many others were skipped.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,9 +48,7 @@ pub(crate) fn collect(arguments: &[PathBuf], with_mapping: bool) -> Result<Input
     files.sort();
     files.dedup();
     if files.is_empty() {
-        for one in &refused {
-            eprintln!("refused: {one}");
-        }
+        crate::terminal::tell_refused(&refused);
         let inputs: Vec<String> = arguments.iter().map(|path| show(path)).collect();
         return Err(Failure::NoReports {
             inputs: inputs.join(", "),
@@ -77,7 +76,7 @@ fn collect_one(
         collect_folder(argument, endings, collected);
         return Ok(());
     }
-    if argument.exists() {
+    if argument.exists() || standard_input::is_meant(argument) {
         collected.files.push(argument.to_owned());
         return Ok(());
     }

@@ -21,6 +21,7 @@ mod failure;
 mod files;
 mod folder;
 mod inputs;
+mod json;
 mod models;
 mod parquet_batches;
 mod parquet_numbers;
@@ -28,18 +29,22 @@ mod progress;
 mod project;
 mod reading;
 mod simulated_reports;
+mod terminal;
 mod threads;
 
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::FromArgMatches;
 use tracing_subscriber::EnvFilter;
+use tracing_subscriber::layer::SubscriberExt;
 
-use args::{Cli, Command};
+use args::{Cli, Command, JsonWanted};
 use commands::Outcome;
 use failure::{ALERTS_RAISED, DONE, Failure, NOTHING_DONE, SOME_REFUSED};
 use progress::Progress;
+use terminal::Terminal;
+use terminal::warnings::Warnings;
 
 /// What the fuzz targets reach of the readers of files, which are private; not part of the program.
 #[doc(hidden)]
@@ -51,17 +56,40 @@ pub fn read_columnar(bytes: &[u8]) {
 pub fn run() -> ExitCode {
     let arguments = match project::with_project(std::env::args_os().collect()) {
         Ok(arguments) => arguments,
-        Err(failure) => return ExitCode::from(print_result(Err(failure))),
+        Err(failure) => return ExitCode::from(print_result(Err(failure), Told::All)),
     };
-    let cli = Cli::parse_from(arguments);
-    start_logging(cli.common.verbose);
-    // Lines are not wrapped: a path with a line break in it cannot be copied. Fails only where a hook is already set.
-    let _ = miette::set_hook(Box::new(|_| {
-        Box::new(miette::MietteHandlerOpts::new().wrap_lines(false).build())
-    }));
-    let progress = if cli.common.no_progress { Progress::Hidden } else { Progress::Shown };
-    let result = threads::in_pool(cli.common.threads, || run_command(&cli.command, progress));
-    ExitCode::from(print_result(result))
+    let matches = args::help::command().get_matches_from(arguments);
+    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    Terminal::start(&cli.common);
+    let warnings = start_logging(&cli.common);
+    let is_hidden = cli.common.no_progress || cli.common.quiet;
+    let progress = if is_hidden { Progress::Hidden } else { Progress::Shown };
+    let wanted = cli.command.json_wanted();
+    let result = threads::in_pool(cli.common.threads, || {
+        json::check(wanted)?;
+        let (outcome, alerts) = run_command(&cli.command, progress)?;
+        json::deliver(wanted, &outcome)?;
+        Ok((outcome, alerts))
+    });
+    files::standard_input::forget();
+    let told = match (cli.common.quiet, cli.command.prints_results()) {
+        (_, _) if wanted == JsonWanted::Printed => Told::RefusalsOnly,
+        (true, false) => Told::RefusalsOnly,
+        _ => Told::All,
+    };
+    if !cli.common.quiet {
+        terminal::tell(&warnings.take());
+    }
+    ExitCode::from(print_result(result, told))
+}
+
+/// What a run tells when it is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Told {
+    /// Its text and what was refused.
+    All,
+    /// What was refused.
+    RefusalsOnly,
 }
 
 /// The outcome of a command, and how many alerts it raised.
@@ -85,7 +113,7 @@ fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize)
         Command::Export(arguments) => commands::export::run(arguments),
         Command::Optimum(arguments) => commands::optimum::run(arguments),
         Command::Plot(arguments) => commands::plot::run(arguments),
-        Command::Effects(arguments) => commands::effects::run(arguments),
+        Command::Effects(_) => commands::effects::run(),
         Command::Explain(arguments) => commands::explain::run(arguments),
         Command::Completions(arguments) => Ok(commands::completions::run(arguments)),
         Command::Man(arguments) => commands::man::run(arguments),
@@ -97,32 +125,39 @@ fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize)
     outcome.map(|outcome| (outcome, 0))
 }
 
-fn start_logging(verbose: u8) {
-    let level = match verbose {
+/// Events of the library on standard error: warnings at the end, grouped; with `-v` or `RUST_LOG` all as they come.
+fn start_logging(common: &args::Common) -> Warnings {
+    let warnings = Warnings::default();
+    let level = match common.verbose {
         0 => "warn",
         1 => "info",
         _ => "debug",
     };
-    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
-    // Fails only where a program that embeds this one has already set a logger, which then serves.
+    let asked = EnvFilter::try_from_default_env().ok();
+    // Setting a logger fails only where a program that embeds this one has already set one, which then serves.
+    if asked.is_none() && common.verbose == 0 {
+        let subscriber = tracing_subscriber::registry().with(warnings.clone());
+        let _ = tracing::subscriber::set_global_default(subscriber);
+        return warnings;
+    }
     let _ = tracing_subscriber::fmt()
-        .with_env_filter(filter)
+        .with_env_filter(asked.unwrap_or_else(|| EnvFilter::new(level)))
         .with_writer(std::io::stderr)
         .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
         .try_init();
+    warnings
 }
 
 /// Results to standard output, refusals and reasons to standard error; returns the exit status.
-fn print_result(result: Result<(Outcome, usize), Failure>) -> u8 {
+fn print_result(result: Result<(Outcome, usize), Failure>, told: Told) -> u8 {
     match result {
-        Ok((Outcome { text, refused }, alerts)) => {
-            // A reader that closes the pipe early (`| head`) is not an error.
-            let _ = std::io::stdout().write_all(shown(&text).as_bytes());
-            for one in &refused {
-                eprintln!("refused: {}", shown(&one.to_string()));
+        Ok((Outcome { text, refused, .. }, alerts)) => {
+            if told == Told::All {
+                terminal::print(&text);
             }
+            terminal::tell_refused(&refused);
             match (refused.is_empty(), alerts) {
                 (true, 0) => DONE,
                 (false, 0) => SOME_REFUSED,
@@ -130,14 +165,9 @@ fn print_result(result: Result<(Outcome, usize), Failure>) -> u8 {
             }
         }
         Err(failure) => {
-            eprintln!("{:?}", miette::Report::new(failure));
+            let shown = terminal::errors::shown(&failure, Terminal::of_run().err);
+            eprint!("{shown}");
             NOTHING_DONE
         }
     }
-}
-
-/// A text as a terminal may get it: names of files and what is quoted of them can hold sequences that it would act on.
-fn shown(text: &str) -> std::borrow::Cow<'_, str> {
-    let acts = |c: char| c.is_control() && c != '\n' && c != '\t';
-    if text.contains(acts) { text.replace(acts, "\u{fffd}").into() } else { text.into() }
 }

@@ -13,6 +13,7 @@ use report::MAXIMUM_TEXT_BYTES;
 use report::mapping::Mapping;
 use segmenter::TrimCriteria;
 
+use crate::files::standard_input;
 use crate::parquet_batches;
 use crate::progress::Bar;
 pub(crate) use recording::{is_parquet, open};
@@ -87,7 +88,8 @@ impl Source {
 fn read_unmapped(path: &Path, bytes: &mut Vec<u8>) -> Result<(), String> {
     bytes::read(path, bytes)?;
     if is_parquet(bytes) {
-        *bytes = parquet_batches::csv_of_file(path, MAXIMUM_TEXT_BYTES)?;
+        let file = standard_input::file(path).map_err(|error| error.to_string())?;
+        *bytes = parquet_batches::csv_of_file(&file, MAXIMUM_TEXT_BYTES)?;
         if !pipeline::segments_table::is_table(bytes) {
             return Err(
                 "a Parquet file that is no table of segments: --mapping is needed".to_owned()

@@ -1,8 +1,11 @@
 //! Tables of named columns, and their text as CSV.
 //!
-//! Numbers in CSV are the shortest decimals that read back to the same bits; an absent value is an empty field.
+//! Numbers in CSV are the shortest decimals that read back to the same bits; an absent value is an empty field; texts are
+//! made harmless by [`csv_cell`].
 
 use std::fmt::Write as _;
+
+use crate::csv_cell;
 
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,9 +30,19 @@ impl Cells {
         }
     }
 
+    fn value(&self, row: usize) -> serde_json::Value {
+        match self {
+            Self::Text(values) => values[row].as_str().into(),
+            Self::Count(values) => values[row].into(),
+            Self::Number(values) => values[row].into(),
+            // A number that is not finite is `null`.
+            Self::Dense(values) => values[row].into(),
+        }
+    }
+
     fn push_field(&self, row: usize, text: &mut String) {
         match self {
-            Self::Text(values) => push_quoted(&values[row], text),
+            Self::Text(values) => push_quoted(&csv_cell::written(&values[row]), text),
             Self::Count(values) => {
                 // Writing to a string cannot fail.
                 let _ = write!(text, "{}", values[row]);
@@ -128,11 +141,24 @@ impl Columns {
         self.columns.first().map_or(0, |(_, cells)| cells.len())
     }
 
+    /// The table as a JSON array with an object for each row, and `null` for what is absent.
+    pub fn to_json(&self) -> Vec<u8> {
+        let rows: Vec<serde_json::Map<String, serde_json::Value>> = (0..self.rows())
+            .map(|row| {
+                let fields = self.columns.iter();
+                fields.map(|(name, cells)| (name.clone(), cells.value(row))).collect()
+            })
+            .collect();
+        let mut bytes = serde_json::to_vec(&rows).unwrap_or_default();
+        bytes.push(b'\n');
+        bytes
+    }
+
     /// The table as CSV with a header line.
     pub fn to_csv(&self) -> Vec<u8> {
         let mut text = String::new();
         for (name, _) in &self.columns {
-            push_quoted(name, &mut text);
+            push_quoted(&csv_cell::written(name), &mut text);
             text.push(',');
         }
         end_line(&mut text, 0);
@@ -187,7 +213,7 @@ mod tests {
                 columns.text("name", std::iter::once(field.clone()));
             }
             writer.write_record(fields.iter().map(|_| "name")).unwrap();
-            writer.write_record(&fields).unwrap();
+            writer.write_record(fields.iter().map(|field| csv_cell::written(field).into_owned())).unwrap();
             proptest::prop_assert_eq!(columns.to_csv(), writer.into_inner().unwrap());
         }
 

@@ -14,6 +14,7 @@ use segmenter::Tally;
 use crate::check::FlightCheck;
 use crate::checksum::sha256;
 use crate::columns::Columns;
+use crate::csv_cell;
 use crate::learnt_flights::instant_after;
 use crate::reading::FlightRead;
 use crate::reduction::ReducedFlight;
@@ -138,6 +139,11 @@ impl Row<'_> {
             .ok_or(FlightsTableError::MissingColumn { column })
     }
 
+    /// The text that was written to a field.
+    fn plain(&self, column: &'static str) -> Result<String, FlightsTableError> {
+        self.text(column).map(|cell| csv_cell::read(cell).into_owned())
+    }
+
     fn parse<T: std::str::FromStr>(&self, column: &'static str) -> Result<T, FlightsTableError> {
         let found = self.text(column)?;
         found.parse().map_err(|_| FlightsTableError::Field {
@@ -156,11 +162,11 @@ impl Row<'_> {
 
     fn flight(&self) -> Result<FlightRead, FlightsTableError> {
         let identity = FlightIdentity {
-            tail: self.text("tail")?.to_owned(),
+            tail: self.plain("tail")?,
             start: self.parse("start")?,
-            flight: self.text("flight")?.to_owned(),
+            flight: self.plain("flight")?,
         };
-        let segments = segments_table::read(self.text("segments_csv")?.as_bytes())
+        let segments = segments_table::read(self.plain("segments_csv")?.as_bytes())
             .map_err(|source| FlightsTableError::Segments { line: self.line, source })?;
         if segments.iter().any(|segment| *segment.identity != identity) {
             return Err(FlightsTableError::OtherFlight { line: self.line });
@@ -176,16 +182,16 @@ impl Row<'_> {
             }
             _ => None,
         };
-        let notes = self.text("notes")?;
+        let notes = self.plain("notes")?;
         Ok(FlightRead {
-            path: PathBuf::from(self.text("path")?),
+            path: PathBuf::from(self.plain("path")?),
             content: self.text("content")?.to_owned(),
             content_of_file: self.text("content_of_file")?.to_owned(),
             end: self.parse("end")?,
             reduced: ReducedFlight {
                 check: not_checked(&identity),
                 identity: Arc::new(identity),
-                aircraft_type: self.text("aircraft_type")?.to_owned(),
+                aircraft_type: self.plain("aircraft_type")?,
                 engines: self.optional("engines")?,
                 samples: self.parse("samples")?,
                 segments,

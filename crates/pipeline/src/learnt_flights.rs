@@ -2,6 +2,7 @@
 //! with the end of each flight, in a file that is read in no time.
 
 use crate::columns::Columns;
+use crate::csv_cell;
 use crate::model_file::LedgerEntry;
 use flight::{Segment, Timestamp};
 
@@ -58,7 +59,7 @@ pub fn read(tail: &str, bytes: &[u8]) -> Result<Vec<KnownFlight>, String> {
             end: instant(2)?,
             entry: LedgerEntry {
                 tail: tail.to_owned(),
-                flight: text(0).to_owned(),
+                flight: csv_cell::read(text(0)).into_owned(),
                 start: text(1).to_owned(),
                 content: text(3).to_owned(),
                 samples: count(4)?,

@@ -46,6 +46,7 @@ pub mod check;
 pub mod checksum;
 pub mod columns;
 pub mod condition_means;
+pub mod csv_cell;
 pub mod dates;
 pub mod diagnosed_tail;
 pub mod diagnosis_document;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans};
 
 use crate::columns::Columns;
+use crate::csv_cell;
 
 /// What a model predicts for a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,9 +213,9 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Segment>, SegmentsTableError> {
         let record = record?;
         let row = Row { places: &places, record: &record };
         let this = FlightIdentity {
-            tail: row.text("tail")?.to_owned(),
+            tail: csv_cell::read(row.text("tail")?).into_owned(),
             start: row.parse("start", "an instant")?,
-            flight: row.text("flight")?.to_owned(),
+            flight: csv_cell::read(row.text("flight")?).into_owned(),
         };
         let shared = match &identity {
             Some(last) if **last == this => Arc::clone(last),

@@ -1,6 +1,6 @@
 //! `summary.json` and the table that a person reads.
 
-use std::fmt::Write;
+use core::fmt::Write as _;
 
 use serde::{Deserialize, Serialize};
 
@@ -10,9 +10,10 @@ use crate::statistics::ErrorStatistics;
 pub const SCHEMA: &str = "cruisefit.summary/1";
 
 /// What a run over reports came to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Name and version of this layout.
+    #[serde(skip_deserializing, default = "schema")]
     pub schema: &'static str,
     /// What became of the files.
     pub reports: ReportsSummary,
@@ -20,8 +21,12 @@ pub struct Summary {
     pub tails: Vec<TailSummary>,
 }
 
+const fn schema() -> &'static str {
+    SCHEMA
+}
+
 /// What became of the files.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReportsSummary {
     /// Reports used.
     pub read: usize,
@@ -32,7 +37,7 @@ pub struct ReportsSummary {
 }
 
 /// A refused report.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefusedSummary {
     /// File.
     pub path: String,
@@ -87,6 +92,14 @@ pub struct ErrorsSummary {
 }
 
 impl Summary {
+    /// Reads a summary back.
+    ///
+    /// # Errors
+    /// What is not a summary's, with line and column.
+    pub fn from_json(text: &str) -> Result<Self, serde_json::Error> {
+        serde_json::from_str(text)
+    }
+
     /// As JSON, with a final line end.
     pub fn to_json(&self) -> Vec<u8> {
         let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
@@ -94,83 +107,102 @@ impl Summary {
         text.into_bytes()
     }
 
-    /// As a table for a person.
+    /// As tables for a person, 80 columns wide but for long tails.
     pub fn to_text(&self) -> String {
-        let adapted = self.tails.iter().any(|tail| tail.fuel_flow_error_percent.after.is_some());
-        let mut rows: Vec<Vec<String>> = Vec::new();
-        let mut head = vec!["tail", "flights", "samples", "segments", "outside"];
-        if adapted {
-            head.extend(["nodes", "refits"]);
-        }
-        if adapted {
-            head.extend(["before: mean", "std", "max", "after: mean", "std", "max"]);
-        } else {
-            head.extend(["error: mean", "std", "max"]);
-        }
-        rows.push(head.into_iter().map(str::to_owned).collect());
-        for tail in &self.tails {
-            rows.push(row_of(tail, adapted));
-        }
-        let mut text = String::new();
-        text.push_str("Error of predicted fuel flow, %\n");
-        text.push_str(&aligned(&rows));
-        for tail in &self.tails {
-            if let Some(coverage) = tail.interval95_coverage {
-                let _ = writeln!(
-                    text,
-                    "{}: {:.1} % of the segments lie within the stated 95 % interval.",
-                    tail.tail,
-                    100.0 * coverage
-                );
-            }
-            if let Some(within) = tail.mean_error_within_percent {
-                let _ = writeln!(
-                    text,
-                    "{}: the 95 % interval of the mean error of such flights is ±{within:.2} %.",
-                    tail.tail
-                );
-            }
-        }
+        let mut text = aligned(&self.counts());
+        text.push_str("\nError of predicted fuel flow, %\n");
+        text.push_str(&aligned(&self.errors()));
         if self.tails.iter().all(|tail| tail.segments == 0) {
             text.push_str(NO_SEGMENT);
         }
-        let _ = write!(
-            text,
+        text.push_str(
             "Error = 100 (recorded − predicted)/recorded fuel flow, %: positive, the aircraft burns more than the model \
-             says.\n\
-             {} read, {} already known, {} refused.\n",
+             says.\n",
+        );
+        if self.tails.iter().any(|tail| tail.interval95_coverage.is_some()) {
+            text.push_str(
+                "Inside 95 %: share of the segments within the stated 95 % interval; mean within: half the 95 % interval \
+                 of the mean error of such flights.\n",
+            );
+        }
+        let _ = writeln!(
+            text,
+            "{} read, {} already known, {} refused.",
             counted(self.reports.read, "report"),
             self.reports.already_known,
             self.reports.refused.len()
         );
         text
     }
+
+    /// What was there to learn from, or to compare with.
+    fn counts(&self) -> Vec<Vec<String>> {
+        let adapted = self.tails.iter().any(|tail| tail.informed_nodes.is_some());
+        let refitted = self.tails.iter().any(|tail| tail.refits.is_some());
+        let mut head = vec!["tail", "flights", "samples", "segments", "outside"];
+        head.extend(adapted.then_some("nodes informed"));
+        head.extend(refitted.then_some("refits"));
+        let mut rows = vec![texts(&head)];
+        for tail in &self.tails {
+            let flights = if tail.flights_new == tail.flights {
+                tail.flights.to_string()
+            } else {
+                format!("{} ({} new)", tail.flights, tail.flights_new)
+            };
+            let mut row = vec![
+                tail.tail.clone(),
+                flights,
+                tail.samples.to_string(),
+                tail.segments.to_string(),
+                tail.outside_table.to_string(),
+            ];
+            if adapted {
+                let share = tail.informed_nodes.map(|share| format!("{:.0} %", 100.0 * share));
+                row.push(share.unwrap_or_default());
+            }
+            if refitted {
+                row.push(tail.refits.map_or_else(String::new, |refits| refits.to_string()));
+            }
+            rows.push(row);
+        }
+        rows
+    }
+
+    fn errors(&self) -> Vec<Vec<String>> {
+        let adapted = self.tails.iter().any(|tail| tail.fuel_flow_error_percent.after.is_some());
+        let covered = self.tails.iter().any(|tail| tail.interval95_coverage.is_some());
+        let bounded = self.tails.iter().any(|tail| tail.mean_error_within_percent.is_some());
+        let mut head = if adapted {
+            vec!["tail", "before: mean", "std", "max", "after: mean", "std", "max"]
+        } else {
+            vec!["tail", "mean", "std", "max"]
+        };
+        head.extend(covered.then_some("inside 95 %"));
+        head.extend(bounded.then_some("mean within"));
+        let mut rows = vec![texts(&head)];
+        for tail in &self.tails {
+            let errors = &tail.fuel_flow_error_percent;
+            let mut row = vec![tail.tail.clone()];
+            push_statistics(&mut row, Some(&errors.before));
+            if adapted {
+                push_statistics(&mut row, errors.after.as_ref());
+            }
+            if covered {
+                let share = tail.interval95_coverage.map(|share| format!("{:.1} %", 100.0 * share));
+                row.push(share.unwrap_or_else(|| "–".to_owned()));
+            }
+            if bounded {
+                let within = tail.mean_error_within_percent.map(|within| format!("±{within:.2}"));
+                row.push(within.unwrap_or_else(|| "–".to_owned()));
+            }
+            rows.push(row);
+        }
+        rows
+    }
 }
 
-fn row_of(tail: &TailSummary, adapted: bool) -> Vec<String> {
-    let mut row = vec![
-        tail.tail.clone(),
-        if tail.flights_new == tail.flights {
-            tail.flights.to_string()
-        } else {
-            format!("{} ({} new)", tail.flights, tail.flights_new)
-        },
-        tail.samples.to_string(),
-        tail.segments.to_string(),
-        tail.outside_table.to_string(),
-    ];
-    if adapted {
-        row.push(
-            tail.informed_nodes.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share)),
-        );
-        row.push(tail.refits.map_or_else(String::new, |refits| refits.to_string()));
-    }
-    let errors = &tail.fuel_flow_error_percent;
-    push_statistics(&mut row, Some(&errors.before));
-    if adapted {
-        push_statistics(&mut row, errors.after.as_ref());
-    }
-    row
+fn texts(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| (*name).to_owned()).collect()
 }
 
 fn push_statistics(row: &mut Vec<String>, statistics: Option<&ErrorStatistics>) {
@@ -187,10 +219,15 @@ pub const NO_SEGMENT: &str = "No stabilised segment was found: `cruisefit segmen
 
 /// A number and its noun.
 pub fn counted(number: usize, noun: &str) -> String {
-    if number == 1 { format!("1 {noun}") } else { format!("{number} {noun}s") }
+    let ending = if noun.ends_with('s') { "es" } else { "s" };
+    if number == 1 { format!("1 {noun}") } else { format!("{number} {noun}{ending}") }
 }
 
-/// Columns aligned: the first to the left, numbers to the right.
+/// Columns of a terminal: no table is wider, but for a first column that is.
+const WIDTH: usize = 80;
+
+/// Columns aligned: the first to the left, numbers to the right. What does not fit a terminal's 80 columns follows below, with
+/// the first column again.
 pub fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
@@ -202,23 +239,57 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
     };
     let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut text = String::new();
-    for row in rows {
-        let mut line = String::new();
-        for (column, cell) in row.iter().enumerate() {
-            if column > 0 {
-                line.push_str("  ");
-            }
-            let pad = " ".repeat(widths[column].saturating_sub(cell.chars().count()));
-            if column == 0 {
-                line.push_str(cell);
-                line.push_str(&pad);
-            } else {
-                line.push_str(&pad);
-                line.push_str(cell);
-            }
+    let mut next = 1;
+    loop {
+        let first = next;
+        let mut used = widths.first().copied().unwrap_or(0);
+        while next < columns && (next == first || used + 2 + widths[next] <= WIDTH) {
+            used += 2 + widths[next];
+            next += 1;
         }
-        text.push_str(line.trim_end());
+        for row in rows {
+            push_row(row, &widths, first..next, &mut text);
+        }
+        if next >= columns {
+            return text;
+        }
         text.push('\n');
     }
-    text
+}
+
+/// The first cell and some of the others.
+fn push_row(row: &[String], widths: &[usize], columns: core::ops::Range<usize>, text: &mut String) {
+    let mut line = String::new();
+    for column in core::iter::once(0).chain(columns) {
+        let Some(cell) = row.get(column) else { continue };
+        let pad = " ".repeat(widths[column].saturating_sub(cell.chars().count()));
+        if column == 0 {
+            line.push_str(cell);
+            line.push_str(&pad);
+        } else {
+            line.push_str("  ");
+            line.push_str(&pad);
+            line.push_str(cell);
+        }
+    }
+    text.push_str(line.trim_end());
+    text.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wide_table_is_continued_below() {
+        let row = |first: &str, cell: &str| {
+            core::iter::once(first.to_owned()).chain((0..9).map(|_| cell.to_owned())).collect()
+        };
+        let text = aligned(&[row("CL", "0.1"), row("0.150", "123.4±12.3*")]);
+        assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+        assert_eq!(text.lines().filter(|line| line.starts_with("CL")).count(), 2, "{text}");
+        assert_eq!(text.matches("123.4").count(), 9, "{text}");
+        assert_eq!(aligned(&[vec!["a".to_owned(), "1".to_owned()]]), "a  1\n");
+        assert_eq!(aligned(&[]), "");
+    }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{ModelArgs, ReportsArgs};
+use super::{JsonFlag, ModelArgs, ReportsArgs};
 
 /// `diagnose`
 #[derive(Debug, Args)]
@@ -45,4 +45,7 @@ pub(crate) struct DiagnoseArgs {
     /// dates too
     #[arg(long, value_name = "EVENTS.csv")]
     pub(crate) events: Option<PathBuf>,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::JsonFlag;
+
 /// `monitor`
 #[derive(Debug, Args)]
 pub(crate) struct MonitorArgs {
@@ -19,9 +21,9 @@ pub(crate) struct MonitorArgs {
     /// Folder to write to: monitor.html, monitor.json, and tails, months, flights, changes, events, fleet, alerts as .csv
     #[arg(long, short, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
-    /// Print the JSON document instead of the table
-    #[arg(long)]
-    pub(crate) json: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
     /// Exit with status 3 where a rule fires; may be given several times. deviation=PCT: present level; trend=PCT: per
     /// year; change=PCT or change=PCT/DAYSd: a step (in the last DAYS days). Either sign, and only where the 95 %
     /// interval does not hold 0

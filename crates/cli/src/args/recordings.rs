@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::JsonFlag;
+
 /// `mapping`
 #[derive(Debug, Args)]
 pub(crate) struct MappingArgs {
@@ -19,6 +21,9 @@ pub(crate) struct MappingArgs {
     /// Replace a file that holds something else
     #[arg(long)]
     pub(crate) force: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `convert`
@@ -42,4 +47,7 @@ pub(crate) struct ConvertArgs {
     /// Stop before anything is written if a recording is refused
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }

@@ -60,6 +60,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     }
     let mut all: BTreeSet<String> = folder.tails();
     all.extend(tails.keys().cloned());
+    crate::folder::names::check(&arguments.output, &all)?;
     let run = Run {
         arguments,
         folder: &folder,
@@ -94,7 +95,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
         summary.to_text(),
         show(&arguments.output)
     );
-    Ok(Outcome { text, refused })
+    Ok(Outcome { text, refused, json: Some(summary.to_json()) })
 }
 
 type Chosen<'a> = BTreeMap<String, (Start<'a>, Vec<Head>)>;

@@ -7,7 +7,6 @@ use pipeline::plausibility;
 use crate::args::CheckArgs;
 use crate::commands::{Outcome, check_refused, read_reports};
 use crate::failure::Failure;
-use crate::files::write_atomically;
 use crate::models::read_models;
 use crate::progress::Progress;
 
@@ -24,8 +23,9 @@ pub(crate) fn run(arguments: &CheckArgs, progress: Progress) -> Result<Outcome, 
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;
     let now_s = SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs_f64());
     let document = plausibility::check_document(&reading, models.as_ref(), now_s);
-    if let Some(path) = &arguments.json {
-        write_atomically(path, &document.to_json())?;
-    }
-    Ok(Outcome { text: document.to_text(), refused: reading.refused })
+    Ok(Outcome {
+        text: document.to_text(),
+        refused: reading.refused,
+        json: Some(document.to_json()),
+    })
 }

@@ -1,14 +1,13 @@
 //! `cruisefit completions`: what a shell completes after `cruisefit`, made from the grammar of the command line.
 
-use clap::CommandFactory;
-
-use crate::args::{Cli, CompletionsArgs};
+use crate::args::CompletionsArgs;
+use crate::args::help::command;
 use crate::commands::Outcome;
 
 /// The script for standard output.
 pub(crate) fn run(arguments: &CompletionsArgs) -> Outcome {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), "cruisefit", &mut script);
+    clap_complete::generate(arguments.shell, &mut command(), "cruisefit", &mut script);
     Outcome::text(String::from_utf8_lossy(&script))
 }
 
@@ -23,7 +22,7 @@ mod tests {
     fn every_shell_completes_every_command() {
         for shell in Shell::value_variants() {
             let script = run(&CompletionsArgs { shell: *shell }).text;
-            for command in Cli::command().get_subcommands() {
+            for command in command().get_subcommands() {
                 assert!(script.contains(command.get_name()), "{shell}: {}", command.get_name());
             }
         }

@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &ConvertArgs, progress: Progress) -> Result<Outcome
         }
         Output::Nowhere => String::new(),
     };
-    Ok(Outcome { text, refused })
+    Ok(Outcome { refused, ..Outcome::text(text) })
 }
 
 /// Where flights go, one after the other: a month of a fleet does not fit into memory.

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
-    AdaptArgs, DemoArgs, DiagnoseArgs, EvaluateArgs, InitArgs, LawName, ModelArgs, PredictArgs,
-    ReportsArgs,
+    AdaptArgs, DemoArgs, DiagnoseArgs, EvaluateArgs, InitArgs, JsonFlag, JsonOutput, LawName,
+    ModelArgs, PredictArgs, ReportsArgs,
 };
 use crate::commands::{Outcome, adapt, diagnose, evaluate, init, predict};
 use crate::failure::{Failure, show};
@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
     );
     let model = folder.join("MODEL.ron");
     let initial = init::run(&InitArgs {
+        json: JsonFlag::default(),
         sensors: None,
         accept: false,
         aircraft: folder.join("AIRCRAFT.ron"),
@@ -80,6 +81,7 @@ fn adapt_by_both_laws(
         let adapted = folder.join(format!("adapted-{name}"));
         let learnt = adapt::run(
             &AdaptArgs {
+                json: JsonFlag::default(),
                 accept: false,
                 reports: reports_arguments(teaching),
                 models: ModelArgs { models: vec![folder.join("MODEL.ron")] },
@@ -122,6 +124,7 @@ fn judge(
     for (name, path) in judged {
         let predicted = folder.join(format!("static-{}.csv", name.replace(' ', "-")));
         let outcome = predict::run(&PredictArgs {
+            json: JsonFlag::default(),
             mapping: None,
             model: path.clone(),
             points: folder.join("static.csv"),
@@ -185,6 +188,7 @@ fn diagnose_later(
 ) -> Result<(), Failure> {
     let found = diagnose::run(
         &DiagnoseArgs {
+            json: JsonFlag::default(),
             events: None,
             accept: false,
             reports: reports_arguments(&[folder.join(flights).join("N750CF")]),
@@ -231,7 +235,7 @@ fn unseen_errors(
     let arguments = EvaluateArgs {
         reports: reports_arguments(reports),
         models: ModelArgs { models: vec![model.to_owned()] },
-        json: None,
+        json: JsonOutput::default(),
         output: None,
         fuel_factors: None,
         table_only: false,

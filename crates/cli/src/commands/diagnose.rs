@@ -15,9 +15,11 @@ use crate::files::{make_folder, write_atomically};
 use crate::models::read_models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
+use crate::terminal::neutral;
 use pipeline::diagnosed_tail::{DiagnosedTail, RunOptions};
 use pipeline::diagnosis_document::DiagnosisDocument;
-use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
+use pipeline::diagnosis_figures::DiagnosisFigures;
+use pipeline::diagnosis_groups::{Group, NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::plausibility::{self, Absurd};
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
@@ -57,15 +59,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     });
     make_folder(&arguments.output)?;
     let read = groups.iter().map(|group| group.flights.len()).sum();
-    let diagnoses = groups
-        .par_iter()
-        .map(|group| {
-            group.diagnose(&options, &asked).map_err(|error| Failure::BadArgument {
-                argument: "--model",
-                reason: error.to_string(),
-            })
-        })
-        .collect::<Result<Vec<_>, Failure>>()?;
+    let diagnoses = diagnose_all(&groups, (&options, &asked), progress)?;
     let (diagnoses, figures): (Vec<_>, Vec<_>) = diagnoses.into_iter().unzip();
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
     let reports = ReportsSummary {
@@ -84,7 +78,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         &figures,
         &asked.in_words(&arguments.reports.criteria.name),
     );
-    write_atomically(&arguments.output.join("diagnosis.html"), html.as_bytes())?;
+    write_atomically(&arguments.output.join("diagnosis.html"), neutral(&html).as_bytes())?;
     let mut text = String::new();
     for diagnosed in &diagnoses {
         append_lines(diagnosed, &mut text);
@@ -102,7 +96,30 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         refused_reports,
         show(&arguments.output)
     );
-    Ok(Outcome { text, refused: reading.refused })
+    Ok(Outcome { text, refused: reading.refused, json: Some(json.into()) })
+}
+
+/// One diagnosis for each group, side by side, with the charts' figures.
+fn diagnose_all(
+    groups: &[Group<'_>],
+    (options, asked): (&Options, &RunOptions),
+    progress: Progress,
+) -> Result<Vec<(DiagnosedTail, DiagnosisFigures)>, Failure> {
+    let flights = groups.iter().map(|group| group.flights.len()).sum();
+    let bar = progress.bar(flights, "diagnosing flights");
+    let diagnoses = groups
+        .par_iter()
+        .map(|group| {
+            let diagnosed = group.diagnose(options, asked).map_err(|error| Failure::BadArgument {
+                argument: "--model",
+                reason: error.to_string(),
+            });
+            bar.advance(group.flights.len());
+            diagnosed
+        })
+        .collect();
+    bar.finish();
+    diagnoses
 }
 
 fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Failure> {

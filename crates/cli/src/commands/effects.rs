@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use flight::effect::{EffectEntry, EffectGroup, EffectId, EffectSign, TypicalSize};
 
-use crate::args::EffectsArgs;
 use crate::commands::Outcome;
 use crate::failure::Failure;
 use pipeline::summary::aligned;
@@ -22,10 +21,7 @@ const GROUPS: [(EffectGroup, &str); 6] = [
 ///
 /// # Errors
 /// What JSON refuses to write; nothing that is known.
-pub(crate) fn run(arguments: &EffectsArgs) -> Result<Outcome, Failure> {
-    if arguments.json {
-        return as_json().map(Outcome::text);
-    }
+pub(crate) fn run() -> Result<Outcome, Failure> {
     let mut text = String::new();
     for (group, name) in GROUPS {
         let mut rows = vec![["effect", "unit", "typical", "needs"].map(str::to_owned).to_vec()];
@@ -44,7 +40,7 @@ pub(crate) fn run(arguments: &EffectsArgs) -> Result<Outcome, Failure> {
         let _ = writeln!(text, "{name}\n{}", aligned(&rows));
     }
     text.push_str("{k} is an engine's number, from 1. cruisefit explain EFFECT says more.\n");
-    Ok(Outcome::text(text))
+    Ok(Outcome::with_json(text, as_json()?))
 }
 
 /// Usual size of an effect in its unit.

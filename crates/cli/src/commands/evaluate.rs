@@ -10,7 +10,6 @@ use crate::args::EvaluateArgs;
 use crate::columns;
 use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, RefusedReport};
-use crate::files::write_atomically;
 use crate::models::read_models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
@@ -28,9 +27,6 @@ use pipeline::whole_model::Predicts;
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcome, Failure> {
     let Evaluation { summary, refused, tails } = evaluate(arguments, progress)?;
-    if let Some(path) = &arguments.json {
-        write_atomically(path, &summary.to_json())?;
-    }
     if let Some(path) = &arguments.output {
         let segments: Vec<Vec<Segment>> = tails.iter().map(EvaluatedTail::segments).collect();
         let mut flights = Vec::new();
@@ -45,7 +41,7 @@ pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcom
         let factors: Vec<FuelFactor> = tails.iter().flat_map(EvaluatedTail::fuel_factors).collect();
         columns::write(&fuel_factor::columns(&factors), Some(path))?;
     }
-    Ok(Outcome { text: summary.to_text(), refused })
+    Ok(Outcome { text: summary.to_text(), refused, json: Some(summary.to_json()) })
 }
 
 /// What an evaluation came to.

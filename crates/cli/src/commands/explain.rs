@@ -33,16 +33,16 @@ const VERDICTS: [(&str, &str); 4] = [
         "Too little to say anything: too few flights or segments, or all at one condition.",
     ),
 ];
-/// Names that are farther from the one that was asked for are not offered, in single edits.
-const FARTHEST: usize = 3;
-
 /// Runs the command.
 ///
 /// # Errors
 /// A topic that is not known; the nearest ones are named.
 pub(crate) fn run(arguments: &ExplainArgs) -> Result<Outcome, Failure> {
+    if arguments.book {
+        return Ok(Outcome::text(book()));
+    }
     let Some(topic) = arguments.topic.as_deref() else {
-        return Ok(Outcome::text(overview()));
+        return Ok(Outcome::with_json(overview(), document(&topics().join("\n"), &overview())));
     };
     let text = EffectId::from_name(topic)
         .or_else(|| EffectId::ALL.iter().copied().find(|id| id.entry().name == topic))
@@ -50,8 +50,42 @@ pub(crate) fn run(arguments: &ExplainArgs) -> Result<Outcome, Failure> {
         .or_else(|| column_of(topic).map(column))
         .or_else(|| TrimCriteria::preset(topic).map(|found| criteria(topic, &found)))
         .or_else(|| verdict(topic));
-    text.map(Outcome::text)
+    text.map(|text| Outcome::with_json(&*text, document(topic, &text)))
         .ok_or_else(|| Failure::BadArgument { argument: "TOPIC", reason: unknown(topic) })
+}
+
+fn document(topic: &str, text: &str) -> String {
+    let topics: Vec<&str> = topic.lines().collect();
+    let document =
+        serde_json::json!({ "schema": "cruisefit.topic/1", "topics": topics, "text": text });
+    format!("{document:#}\n")
+}
+
+/// The page of the book: every topic as it is printed for one, so that book and program have one text.
+fn book() -> String {
+    let mut text = String::from(
+        "# Topics\n\nWhat `cruisefit explain TOPIC` prints, made by `cruisefit explain --book`.\n",
+    );
+    let effects = EffectId::ALL.iter().map(|id| (id.entry().name.to_owned(), effect(*id)));
+    let columns = Column::ALL.into_iter().map(|one| (one.name(), column(one)));
+    let sets = TrimCriteria::PRESETS.into_iter().filter_map(|name| {
+        TrimCriteria::preset(name).map(|found| (name.to_owned(), criteria(name, &found)))
+    });
+    let verdicts = VERDICTS
+        .into_iter()
+        .filter_map(|(name, _)| verdict(name).map(|text| (name.to_owned(), text)));
+    append_part("Effects", effects, &mut text);
+    append_part("Columns of a report", columns, &mut text);
+    append_part("Trim criteria", sets, &mut text);
+    append_part("Verdicts", verdicts, &mut text);
+    text
+}
+
+fn append_part(name: &str, topics: impl Iterator<Item = (String, String)>, text: &mut String) {
+    let _ = writeln!(text, "\n## {name}");
+    for (topic, explained) in topics {
+        let _ = write!(text, "\n### `{topic}`\n\n```text\n{explained}```\n");
+    }
 }
 
 fn effect(id: EffectId) -> String {
@@ -166,58 +200,31 @@ fn overview() -> String {
 }
 
 fn unknown(topic: &str) -> String {
-    let asked = topic.to_lowercase();
-    let mut near: Vec<(usize, String)> = topics()
-        .into_iter()
-        .map(|name| (edits(&asked, &name.to_lowercase()), name))
-        .filter(|(distance, _)| *distance <= FARTHEST)
-        .collect();
-    near.sort();
-    let near: Vec<String> = near.into_iter().take(3).map(|(_, name)| name).collect();
-    if near.is_empty() {
-        format!("{topic:?} is no effect, column, criteria or verdict; cruisefit explain lists them")
-    } else {
-        format!(
-            "{topic:?} is no effect, column, criteria or verdict; did you mean {}?",
-            near.join(" or ")
-        )
-    }
-}
-
-/// Single letters to insert, delete or replace that lead from one word to another (Levenshtein 1966).
-fn edits(one: &str, other: &str) -> usize {
-    let other: Vec<char> = other.chars().collect();
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (i, letter) in one.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, same) in other.iter().enumerate() {
-            let replaced = diagonal + usize::from(letter != *same);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[other.len()]
+    let topics = topics();
+    let meant = report::nearest(topic, topics.iter().map(String::as_str)).map_or_else(
+        || "; cruisefit explain lists them".to_owned(),
+        |name| format!("; did you mean {name}?"),
+    );
+    format!("{topic:?} is no effect, column, criteria or verdict{meant}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::args::JsonFlag;
 
     #[test]
     fn every_topic_is_explained() {
         for topic in topics() {
-            let arguments = ExplainArgs { topic: Some(topic.clone()) };
+            let arguments =
+                ExplainArgs { topic: Some(topic.clone()), book: false, json: JsonFlag::default() };
             let text = run(&arguments).unwrap().text;
             assert!(text.starts_with(&topic) && text.lines().count() > 2, "{topic}: {text}");
         }
     }
 
     #[test]
-    fn edits_by_hand() {
-        // The usual example: kitten, sitten, sittin, sitting.
-        assert_eq!(edits("kitten", "sitting"), 3);
-        assert_eq!(edits("", "abc"), 3);
+    fn a_topic_that_was_meant() {
         assert!(unknown("tsfc_engine2").contains("tsfc_engine_2"));
         assert!(unknown("zzzzzzzzzzzz").contains("lists them"));
     }

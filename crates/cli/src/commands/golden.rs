@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::args::{AdaptArgs, GoldenCommand, InitArgs, LawName, ModelArgs, ReportsArgs};
+use crate::args::{AdaptArgs, GoldenCommand, InitArgs, JsonFlag, LawName, ModelArgs, ReportsArgs};
 use crate::commands::{Outcome, adapt, init};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, read_text, write_atomically};
@@ -123,6 +123,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
         tempfile::tempdir().map_err(|error| Failure::unwritable(&std::env::temp_dir(), error))?;
     let model_path = scratch.path().join("MODEL.ron");
     let _ = init::run(&InitArgs {
+        json: JsonFlag::default(),
         sensors: None,
         accept: true,
         aircraft: folder.join(&golden.aircraft),
@@ -133,6 +134,7 @@ fn produce(folder: &Path) -> Result<Produced, Failure> {
     let output = scratch.path().join("adapted");
     let outcome = adapt::run(
         &AdaptArgs {
+            json: JsonFlag::default(),
             accept: true,
             reports: ReportsArgs {
                 reports: golden.reports.iter().map(|report| folder.join(report)).collect(),
@@ -193,5 +195,5 @@ fn text_of(bytes: &[u8]) -> String {
 }
 
 fn print_now(text: &str) {
-    print!("{text}");
+    crate::terminal::print(text);
 }

@@ -23,7 +23,10 @@ pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
     let Some(parameters) = poll_schumann::find(code) else {
         return Err(Failure::BadArgument {
             argument: "--type",
-            reason: format!("no public model of {code}; `cruisefit guide --list` shows the types"),
+            reason: format!(
+                "no public model of {code}{}; `cruisefit guide --list` shows the types",
+                meant(code)
+            ),
         });
     };
     let bad = |reason: String| Failure::BadArgument { argument: "--type", reason };
@@ -55,6 +58,12 @@ fn text(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> String {
         folder = show(folder)
     );
     text
+}
+
+fn meant(code: &str) -> String {
+    let types = poll_schumann::types();
+    report::nearest(code, types.iter().map(|one| one.type_code.as_str()))
+        .map_or_else(String::new, |name| format!("; did you mean {name}?"))
 }
 
 fn list() -> String {

@@ -1,8 +1,6 @@
 //! `cruisefit man`: a manual page of the program and of each command, made from the grammar of the command line.
 
-use clap::CommandFactory;
-
-use crate::args::{Cli, ManArgs};
+use crate::args::ManArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
@@ -14,7 +12,8 @@ use crate::files::{make_folder, write_atomically};
 pub(crate) fn run(arguments: &ManArgs) -> Result<Outcome, Failure> {
     let folder = &arguments.folder;
     make_folder(folder)?;
-    let pages = pages(Cli::command()).map_err(|error| Failure::unwritable(folder, error))?;
+    let pages =
+        pages(crate::args::help::command()).map_err(|error| Failure::unwritable(folder, error))?;
     for (name, page) in &pages {
         write_atomically(&folder.join(name), page)?;
     }
@@ -41,11 +40,12 @@ fn page(command: clap::Command) -> std::io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::args::help::command;
 
     #[test]
     fn every_command_has_a_page() {
-        let pages = pages(Cli::command()).unwrap();
-        assert_eq!(pages.len(), 1 + Cli::command().get_subcommands().count());
+        let pages = pages(command()).unwrap();
+        assert_eq!(pages.len(), 1 + command().get_subcommands().count());
         for (name, page) in pages {
             let page = String::from_utf8(page).unwrap();
             assert!(page.contains(".TH") && page.contains(".SH SYNOPSIS"), "{name}");

@@ -63,7 +63,7 @@ fn first_mapping_of(path: &Path) -> Result<String, Failure> {
             Failure::bad_file(path, RefusedReport::at(path.to_owned(), &refusal).reason)
         })?;
     // What comes of it is said beside it: standard output may be the mapping file.
-    eprint!("{}", tried(&text, path));
+    crate::terminal::tell(&tried(&text, path));
     Ok(text)
 }
 

@@ -19,6 +19,7 @@ use crate::commands::{Outcome, events_of, warn_of_events};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::progress::Progress;
+use crate::terminal::neutral;
 
 use causes::Causes;
 
@@ -73,32 +74,25 @@ pub(crate) fn run(
         }
     }
     let document = MonitorDocument::new(documents, alerts);
-    let mut printed = print(arguments, &document)?;
+    let mut printed = text(&document, if arguments.month { Rows::Months } else { Rows::Tails });
     if let Some(folder) = &arguments.output {
         write(folder, &document)?;
-        if !arguments.json {
-            let _ = writeln!(
-                printed,
-                "Written to {}: monitor.html, monitor.json, tables (.csv)",
-                show(folder)
-            );
-        }
+        let _ = writeln!(
+            printed,
+            "Written to {}: monitor.html, monitor.json, tables (.csv)",
+            show(folder)
+        );
     }
-    Ok((Outcome::text(printed), document.alerts.len()))
-}
-
-fn print(arguments: &MonitorArgs, document: &MonitorDocument) -> Result<String, Failure> {
-    if arguments.json {
-        return String::from_utf8(document.to_json())
-            .map_err(|error| Failure::unwritable(Path::new("standard output"), error));
-    }
-    Ok(text(document, if arguments.month { Rows::Months } else { Rows::Tails }))
+    Ok((Outcome::with_json(printed, document.to_json()), document.alerts.len()))
 }
 
 fn write(folder: &Path, document: &MonitorDocument) -> Result<(), Failure> {
     make_folder(folder)?;
     write_atomically(&folder.join("monitor.json"), &document.to_json())?;
-    write_atomically(&folder.join("monitor.html"), page::monitoring(document).as_bytes())?;
+    write_atomically(
+        &folder.join("monitor.html"),
+        neutral(&page::monitoring(document)).as_bytes(),
+    )?;
     for table in tables(document) {
         columns::write(&table.columns, Some(&folder.join(format!("{}.csv", table.name))))?;
     }

@@ -12,6 +12,7 @@ use crate::columns;
 use crate::commands::{Outcome, check_refused, read_mapping};
 use crate::criteria::NamedCriteria;
 use crate::failure::{Failure, RefusedReport, show};
+use crate::files::standard_input;
 use crate::models::read_model;
 use crate::reading::{Buffers, FlightRead, Source, is_parquet};
 use crate::{parquet_batches, parquet_numbers};
@@ -50,14 +51,20 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let mut predicted = predictor.at_points(&flights, any_measured.then_some(&measured[..]));
     let refused = std::mem::take(&mut predicted.refused);
     predicted.append_to(&mut columns);
-    columns::write(&columns, arguments.output.as_deref())?;
+    let json = deliver(arguments, &columns)?;
     tell_references(&model, points.rows());
-    Ok(outcome(
-        arguments,
-        &predictor,
-        points.rows().len(),
-        refused.into_iter().map(|(place, reason)| (points.rows()[place].line, reason)),
-    ))
+    let lines = refused.into_iter().map(|(place, reason)| (points.rows()[place].line, reason));
+    let outcome = outcome(arguments, &predictor, points.rows().len(), lines);
+    Ok(Outcome { json, ..outcome })
+}
+
+/// Writes the table, or makes the document that is asked for in its place.
+fn deliver(arguments: &PredictArgs, columns: &Columns) -> Result<Option<Vec<u8>>, Failure> {
+    if let (true, None) = (arguments.json.json, &arguments.output) {
+        return Ok(Some(columns.to_json()));
+    }
+    columns::write(columns, arguments.output.as_deref())?;
+    Ok(arguments.json.json.then(|| columns.to_json()))
 }
 
 /// What the command says; `refused`: lines and reasons. The rows stay, without values: a planner's table keeps its lines.
@@ -83,7 +90,7 @@ fn outcome(
             show(path)
         )
     });
-    Outcome { text, refused }
+    Outcome { refused, ..Outcome::text(text) }
 }
 
 /// The command for a Parquet file of plain numbers, of which there may be millions: column by column. `None` for a file that
@@ -96,16 +103,15 @@ fn predict_numbers(
     let bad =
         |error: &dyn std::fmt::Display| Failure::bad_file(&arguments.points, error.to_string());
     let mut beginning = [0; 4];
-    let is_parquet = std::fs::File::open(&arguments.points)
-        .and_then(|mut file| file.read_exact(&mut beginning))
-        .is_ok()
-        && is_parquet(&beginning);
+    let is_parquet =
+        opened(&arguments.points).and_then(|mut file| file.read_exact(&mut beginning)).is_ok()
+            && is_parquet(&beginning);
     // What applied effects lack at a point is said of points one by one.
     if !is_parquet || model.initial.effects().is_some() {
         return Ok(None);
     }
     let Some(input) =
-        parquet_numbers::columns_of_file(&arguments.points).map_err(|error| bad(&error))?
+        parquet_numbers::columns_of_file(&kept(&arguments.points)?).map_err(|error| bad(&error))?
     else {
         return Ok(None);
     };
@@ -129,16 +135,25 @@ fn predict_numbers(
         columns.dense(name, values);
     }
     predicted.append_to(&mut columns);
-    columns::write(&columns, arguments.output.as_deref())?;
+    let json = deliver(arguments, &columns)?;
     // As in a text, line 1 has the names.
     let lines = refused.into_iter().map(|(place, reason)| (place as u64 + 2, reason));
-    Ok(Some(outcome(arguments, predictor, flights.count(), lines)))
+    Ok(Some(Outcome { json, ..outcome(arguments, predictor, flights.count(), lines) }))
+}
+
+/// The file behind a path, which may be `-`.
+fn kept(path: &Path) -> Result<Cow<'_, Path>, Failure> {
+    standard_input::file(path).map_err(|error| Failure::unreadable(path, error))
+}
+
+fn opened(path: &Path) -> std::io::Result<std::fs::File> {
+    standard_input::file(path).and_then(std::fs::File::open)
 }
 
 /// Whether a file is a table of segments in text.
 fn is_segments(path: &Path) -> bool {
     let mut beginning = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut beginning));
+    let read = opened(path).and_then(|file| file.take(64).read_to_end(&mut beginning));
     read.is_ok() && segments_table::is_table(&beginning)
 }
 
@@ -164,7 +179,7 @@ fn predict_segments(
     let mut predicted = predictor.at_points(&points, Some(&measured));
     let unpredicted = std::mem::take(&mut predicted.refused);
     predicted.append_to(&mut columns);
-    columns::write(&columns, arguments.output.as_deref())?;
+    let json = deliver(arguments, &columns)?;
     let place = |place: usize| {
         let means = &segments[place];
         format!(
@@ -179,7 +194,7 @@ fn predict_segments(
         one.line = None;
     }
     refused.append(&mut outcome.refused);
-    Ok(Outcome { refused, ..outcome })
+    Ok(Outcome { refused, json, ..outcome })
 }
 
 /// Warns once about each applied effect that is held at its reference because an input is missing.
@@ -196,10 +211,10 @@ fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
 
 /// Flight points as CSV text; a Parquet file's rows are written as such first.
 fn points_text(path: &Path) -> Result<Vec<u8>, Failure> {
-    let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
+    let bytes = std::fs::read(kept(path)?).map_err(|error| Failure::unreadable(path, error))?;
     if !is_parquet(&bytes) {
         return Ok(bytes);
     }
-    parquet_batches::csv_of_file(path, MAXIMUM_TEXT_BYTES)
+    parquet_batches::csv_of_file(&kept(path)?, MAXIMUM_TEXT_BYTES)
         .map_err(|error| Failure::bad_file(path, error))
 }

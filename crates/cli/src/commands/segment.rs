@@ -10,6 +10,7 @@ use crate::commands::{Outcome, check_refused, prepare};
 use crate::failure::{Failure, show};
 use crate::progress::Progress;
 use crate::reading::FlightRead;
+use crate::terminal;
 use pipeline::segments_table::{self, SegmentRow};
 use pipeline::summary::{NO_SEGMENT, aligned, counted};
 
@@ -38,6 +39,7 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
         .collect();
     let table = segments_table::table(&rows, segments_table::engines_of(&rows));
     let mut text = String::new();
+    let json = arguments.json.json.then(|| table.to_json());
     if let Some(path) = &arguments.output {
         columns::write(&table, Some(path))?;
         text.push_str(&explained);
@@ -53,10 +55,12 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
         }
     } else {
         // Standard output carries the table, so the explanation goes to standard error.
-        eprint!("{explained}");
-        columns::write(&table, None)?;
+        terminal::tell(&explained);
+        if json.is_none() {
+            columns::write(&table, None)?;
+        }
     }
-    Ok(Outcome { text, refused: reading.refused })
+    Ok(Outcome { text, refused: reading.refused, json })
 }
 
 /// The limit that is tried for the criterion that costs most, times its own.

@@ -1,31 +1,125 @@
-//! `cruisefit show`: the contents of a model file, in readable form.
+//! `cruisefit show`: the contents of a model file, a report, a diagnosis, or a folder of results, in readable form.
+
+mod diagnosis;
+mod report;
 
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 use lut::surface::Basis;
 
 use crate::args::ShowArgs;
 use crate::commands::Outcome;
-use crate::failure::Failure;
-use crate::models::read_model;
+use crate::failure::{Failure, RefusedReport};
+use crate::files::standard_input;
+use crate::models::model_of_bytes;
 use pipeline::model_file::{LawState, Learnt, ModelFile};
-use pipeline::summary::aligned;
+use pipeline::summary::{SCHEMA as SUMMARY, Summary, aligned};
+
+/// What a gzip file begins with (RFC 1952, section 2.3.1).
+const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// Runs the command.
 ///
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
-    let model = read_model(&arguments.model)?;
+    let path = file_of(&arguments.file);
+    let bytes = bytes_of(&path)?;
+    if bytes.starts_with(b"CRUISE-REPORT") || bytes.starts_with(&GZIP) {
+        return match ::report::Reader::new().read(&bytes) {
+            Ok(parsed) => Ok(report::outcome(&parsed)),
+            Err(refusal) => {
+                let reason = RefusedReport::at(path.clone(), &refusal).reason;
+                let place = format!("line {}, column {}", refusal.line, refusal.column);
+                Err(Failure::bad_file(&path, format!("{place}: {reason}")))
+            }
+        };
+    }
+    let text = String::from_utf8(bytes)
+        .map_err(|_| Failure::bad_file(&path, "not a text file (invalid UTF-8)"))?;
+    let beginning = text.trim_start_matches('\u{feff}').trim_start();
+    if beginning.starts_with('{') {
+        return document(&path, &text);
+    }
+    let model = model_of_bytes(&path, text.as_bytes())?;
+    Ok(Outcome::with_json(words(&model), format!("{:#}\n", figures(&model))))
+}
+
+/// The file of a folder that is shown: what a diagnosis, an adaptation or a run of trials left there.
+fn file_of(path: &Path) -> PathBuf {
+    let inside = ["diagnosis.json", "summary.json", "trials.json"].map(|name| path.join(name));
+    inside.into_iter().find(|file| file.is_file()).unwrap_or_else(|| path.to_owned())
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, Failure> {
+    if path.is_dir() {
+        return Err(Failure::bad_file(
+            path,
+            "a folder without diagnosis.json, summary.json or trials.json",
+        ));
+    }
+    standard_input::file(path)
+        .and_then(std::fs::read)
+        .map_err(|error| Failure::unreadable(path, error))
+}
+
+/// A document of this program.
+fn document(path: &Path, text: &str) -> Result<Outcome, Failure> {
+    let document: serde_json::Value = serde_json::from_str(text)
+        .map_err(|error| Failure::bad_file(path, format!("not JSON: {error}")))?;
+    let words = match document["schema"].as_str() {
+        Some("cruisefit.diagnosis/1") => diagnosis::text(&document),
+        Some(SUMMARY) => {
+            Summary::from_json(text).map_err(|error| Failure::bad_file(path, error))?.to_text()
+        }
+        Some(other) => format!("A document of schema {other}, as it is:\n{document:#}\n"),
+        None => {
+            return Err(Failure::bad_file(path, "JSON without `schema`: not made by this program"));
+        }
+    };
+    Ok(Outcome::with_json(words, text))
+}
+
+/// The figures of a model without its tables; `export --format json` has these.
+fn figures(model: &ModelFile) -> serde_json::Value {
+    let aircraft = model.initial.aircraft();
+    serde_json::json!({
+        "schema": "cruisefit.model-summary/1",
+        "aircraft": aircraft.name(),
+        "type": aircraft.type_code(),
+        "engines": aircraft.engines(),
+        "guide": {
+            "points": model.guide.points,
+            "lift_coefficient": model.guide.lift_coefficient,
+            "mach": model.guide.mach,
+            "residual_counts_rms": 1e4 * model.guide.residual_rms,
+        },
+        "nodes": model.grid().nodes(),
+        "informed_nodes": model.informed_nodes(),
+        "learnt": model.learnt.as_ref().map(|learnt| serde_json::json!({
+            "tail": learnt.tail,
+            "flights": learnt.ledger.len(),
+            "segments": learnt.ledger.iter().map(|entry| entry.segments).sum::<u64>(),
+            "first_flight": learnt.ledger.iter().map(|entry| &entry.start).min(),
+            "last_flight": learnt.ledger.iter().map(|entry| &entry.start).max(),
+            "law": learnt.law.told(),
+            "criteria": learnt.criteria,
+        })),
+        "applied": model.applied.iter().map(|record| record.told().to_string()).collect::<Vec<_>>(),
+    })
+}
+
+fn words(model: &ModelFile) -> String {
     let mut text = String::new();
-    describe_initial(&model, &mut text);
+    describe_initial(model, &mut text);
     match &model.learnt {
-        Some(learnt) => describe_learnt(&model, learnt, &mut text),
+        Some(learnt) => describe_learnt(model, learnt, &mut text),
         None => text.push_str("It has learnt nothing yet.\n"),
     }
-    describe_effects(&model, &mut text);
-    describe_table(&model, &mut text);
-    Ok(Outcome::text(text))
+    describe_effects(model, &mut text);
+    describe_table(model, &mut text);
+    text
 }
 
 fn describe_initial(model: &ModelFile, text: &mut String) {

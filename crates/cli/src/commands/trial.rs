@@ -72,7 +72,7 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
         .iter()
         .map(|(case, reason)| RefusedReport::whole(format!("case {case}").into(), reason))
         .collect();
-    Ok(Outcome { text, refused })
+    Ok(Outcome { refused, ..Outcome::text(text) })
 }
 
 fn read_plan(arguments: &TrialArgs) -> Result<TrialPlan, Failure> {
@@ -157,8 +157,8 @@ fn check(plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
     let missed = floors_missed(plan, trials);
     for one in &missed {
         let floor = &one.floor;
-        eprintln!(
-            "floor missed: {:?} model, {:?}, {} x typical, {:?}: {}, allowed {}{}",
+        crate::terminal::tell(&format!(
+            "floor missed: {:?} model, {:?}, {} x typical, {:?}: {}, allowed {}{}\n",
             floor.reference_model,
             floor.background,
             floor.times,
@@ -166,7 +166,7 @@ fn check(plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
             one.reached.map_or_else(|| "no case".to_owned(), |value| format!("{value:.3}")),
             floor.least.map_or_else(String::new, |least| format!(">= {least} ")),
             floor.most.map_or_else(String::new, |most| format!("<= {most}")),
-        );
+        ));
     }
     if missed.is_empty() && trials.failed.is_empty() {
         Ok(())

@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
     write_model(&model, &arguments.output)?;
     let _ = writeln!(text, "Settings: {:#?}", model.settings.bayes.values());
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
-    Ok(Outcome { text, refused: reading.refused })
+    Ok(Outcome { refused: reading.refused, ..Outcome::text(text) })
 }
 
 /// Finds the settings and puts them into the model, a line of text for each step.

@@ -7,6 +7,8 @@ use std::time::Duration;
 
 use report::MAXIMUM_TEXT_BYTES;
 
+use crate::files::standard_input;
+
 /// How often a file is tried again when the system has no file handle left, and how long after each time.
 const TRIES: u32 = 100;
 const BETWEEN_TRIES: Duration = Duration::from_millis(20);
@@ -43,6 +45,7 @@ pub(super) fn read_beginning(path: &Path, length: u64, bytes: &mut Vec<u8>) -> R
 /// # Errors
 /// Why it is not read.
 pub(super) fn open(path: &Path) -> Result<File, String> {
+    let path = &*standard_input::file(path).map_err(|error| error.to_string())?;
     let mut tries = 0;
     loop {
         let file = match open_without_waiting(path) {

@@ -32,4 +32,5 @@ mod residuals;
 mod same_bytes;
 mod state;
 mod support;
+mod terminal;
 mod trial;

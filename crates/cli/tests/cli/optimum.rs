@@ -20,7 +20,7 @@ fn optima_as_table_csv_and_json() {
     let files = [csv.to_str().unwrap(), json.to_str().unwrap()];
     let asked = ["--mass-kg", "28000,32000", "--cost-index", "5", "-o", files[0], "-o", files[1]];
     let ran = cruisefit(&arguments(&asked)).expect(0);
-    assert_eq!(ran.stdout.lines().filter(|line| line.starts_with("maximum range")).count(), 2);
+    assert_eq!(ran.stdout.lines().filter(|line| line.starts_with("max range")).count(), 2);
     let first = std::fs::read(&json).unwrap();
     cruisefit(&arguments(&asked)).expect(0);
     assert_eq!(std::fs::read(&json).unwrap(), first, "same input, same bytes");

@@ -7,6 +7,7 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 use super::Run;
 use super::tail::{TailOutcome, page_file};
 use crate::failure::{Failure, RefusedReport};
+use crate::terminal::neutral;
 
 /// Writes both to the folder's waiting room.
 ///
@@ -45,7 +46,7 @@ pub(super) fn write(
             .collect();
         page::fleet_report(&summary, &links, title)
     };
-    run.folder.stage("report.html", page.as_bytes())?;
+    run.folder.stage("report.html", neutral(&page).as_bytes())?;
     Ok(summary)
 }
 

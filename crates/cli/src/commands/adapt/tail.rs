@@ -23,6 +23,7 @@ use crate::folder::Folder;
 use crate::folder::state::TailState;
 use crate::reading::heads::Head;
 use crate::reading::{Buffers, FlightRead, Reading, Source};
+use crate::terminal::neutral;
 
 /// So many reports of a tail are read before the first of them is learnt.
 pub(super) const READ_AT_A_TIME: usize = 64;
@@ -226,7 +227,8 @@ impl Run<'_> {
         if self.on_one_page {
             return Ok(Some(section));
         }
-        self.folder.stage(&page_file(&result.tail), page::tail_page(&section).as_bytes())?;
+        self.folder
+            .stage(&page_file(&result.tail), neutral(&page::tail_page(&section)).as_bytes())?;
         Ok(None)
     }
 }

@@ -1,0 +1,142 @@
+//! What a `diagnosis.json` holds, tail by tail: the figures that decide, from the document alone.
+
+use std::fmt::Write;
+
+use pipeline::summary::{aligned, counted};
+use serde_json::Value;
+
+/// Causes that are listed; the others are in the document.
+const CAUSES: usize = 6;
+/// Regions that are listed.
+const REGIONS: usize = 3;
+
+/// The text of every diagnosis of a document.
+pub(super) fn text(document: &Value) -> String {
+    let mut text = String::new();
+    let diagnoses = document["diagnoses"].as_array().map_or(&[][..], Vec::as_slice);
+    for diagnosis in diagnoses {
+        append(diagnosis, &mut text);
+        text.push('\n');
+    }
+    let _ = writeln!(
+        text,
+        "{} by {}",
+        if diagnoses.len() == 1 {
+            "1 diagnosis".to_owned()
+        } else {
+            format!("{} diagnoses", diagnoses.len())
+        },
+        document["program"].as_str().unwrap_or("an unknown program")
+    );
+    text
+}
+
+fn append(diagnosis: &Value, text: &mut String) {
+    let compared = &diagnosis["compared"];
+    let count =
+        |value: &Value| value.as_u64().and_then(|count| usize::try_from(count).ok()).unwrap_or(0);
+    let _ = writeln!(
+        text,
+        "{}: {} from {} to {}, {}; model {}, {}, {} learnt",
+        words(&diagnosis["tail"]),
+        counted(count(&diagnosis["flights"]), "flight"),
+        date(&compared["first_flight"]),
+        date(&compared["last_flight"]),
+        counted(count(&diagnosis["segments"]), "segment"),
+        words(&compared["aircraft"]),
+        words(&compared["law"]),
+        counted(count(&compared["flights_learnt"]), "flight"),
+    );
+    let gap = &diagnosis["gap"];
+    let _ = writeln!(
+        text,
+        "  Gap {} % in the mean, {} % rms{}; noise alone makes {} %",
+        signed(&gap["mean_percent"], 2),
+        plain(&gap["rms_percent"], 2),
+        interval(&gap["rms_ci95"], 2),
+        plain(&gap["noise_floor_rms_percent"], 2)
+    );
+    let regions = diagnosis["where"].as_array().map_or(&[][..], Vec::as_slice);
+    for region in regions.iter().take(REGIONS) {
+        let _ = writeln!(
+            text,
+            "  Region: {}, {} %{}, p {}",
+            words(&region["slice"]),
+            signed(&region["mean_gap_percent"], 2),
+            interval(&region["ci95"], 2),
+            plain(&region["p_value"], 3)
+        );
+    }
+    let verdict = &diagnosis["verdict"];
+    let effects = listed(&verdict["effects"]);
+    let named = if effects.is_empty() { String::new() } else { format!(", {effects}") };
+    let _ = writeln!(text, "  Verdict: {}{named}", words(&verdict["kind"]));
+    if let Some(advice) = verdict["advice"].as_str().filter(|advice| !advice.is_empty()) {
+        let _ = writeln!(text, "  To do: {advice}");
+    }
+    append_causes(diagnosis, text);
+}
+
+fn append_causes(diagnosis: &Value, text: &mut String) {
+    let causes = diagnosis["causes"].as_array().map_or(&[][..], Vec::as_slice);
+    if causes.is_empty() {
+        return;
+    }
+    let head = ["  cause", "probability", "size", "unit", "left, % rms"];
+    let mut rows = vec![head.map(str::to_owned).to_vec()];
+    for cause in causes.iter().take(CAUSES) {
+        let size = &cause["magnitude"];
+        rows.push(vec![
+            format!("  {}", words(&cause["effect"])),
+            plain(&cause["probability"], 2),
+            format!("{}{}", signed(&size["value"], 2), interval(&size["ci95"], 2)),
+            words(&size["unit"]),
+            plain(&cause["rms_after_percent"], 2),
+        ]);
+    }
+    text.push_str(&aligned(&rows));
+    if causes.len() > CAUSES {
+        let _ = writeln!(text, "  and {} less probable", causes.len() - CAUSES);
+    }
+}
+
+fn words(value: &Value) -> String {
+    value.as_str().unwrap_or("–").to_owned()
+}
+
+fn date(value: &Value) -> String {
+    words(value).split('T').next().unwrap_or_default().to_owned()
+}
+
+fn plain(value: &Value, decimals: usize) -> String {
+    value.as_f64().map_or_else(|| "–".to_owned(), |number| format!("{number:.decimals$}"))
+}
+
+fn signed(value: &Value, decimals: usize) -> String {
+    value.as_f64().map_or_else(|| "–".to_owned(), |number| format!("{number:+.decimals$}"))
+}
+
+fn interval(value: &Value, decimals: usize) -> String {
+    match (value[0].as_f64(), value[1].as_f64()) {
+        (Some(low), Some(high)) => format!(" ({low:.decimals$} to {high:.decimals$})"),
+        _ => String::new(),
+    }
+}
+
+fn listed(value: &Value) -> String {
+    let names = value.as_array().map_or(&[][..], Vec::as_slice);
+    names.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_document_lacks_is_a_dash() {
+        let shown = text(&serde_json::json!({ "diagnoses": [{ "tail": "T-1", "flights": 1 }] }));
+        assert!(shown.starts_with("T-1: 1 flight from – to –, 0 segments"), "{shown}");
+        assert!(shown.contains("Verdict: –"), "{shown}");
+        assert!(text(&serde_json::json!({})).starts_with("0 diagnoses"));
+    }
+}

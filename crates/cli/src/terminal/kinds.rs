@@ -1,0 +1,87 @@
+//! Messages of one kind: those that differ in numbers and quoted words alone.
+
+/// A message without what differs from case to case.
+pub(crate) fn kind_of(message: &str) -> String {
+    let mut kind = String::with_capacity(message.len());
+    let mut quoted = false;
+    for letter in message.chars() {
+        if letter == '"' {
+            quoted = !quoted;
+        }
+        let is_blank = quoted || letter.is_ascii_digit();
+        match (is_blank, kind.ends_with('#')) {
+            (true, true) => {}
+            (true, false) => kind.push('#'),
+            (false, _) => kind.push(letter),
+        }
+    }
+    kind
+}
+
+/// What was told of each kind.
+#[derive(Debug)]
+pub(crate) struct Told {
+    /// So many of a kind are told, the others counted.
+    most: usize,
+    kinds: Vec<Kind>,
+}
+
+#[derive(Debug)]
+struct Kind {
+    name: String,
+    first: String,
+    count: usize,
+}
+
+impl Told {
+    /// Nothing yet.
+    pub(crate) const fn new(most: usize) -> Self {
+        Self { most, kinds: Vec::new() }
+    }
+
+    /// Counts a message, and decides whether it is told.
+    pub(crate) fn is_told(&mut self, message: &str) -> bool {
+        let name = kind_of(message);
+        if let Some(kind) = self.kinds.iter_mut().find(|kind| kind.name == name) {
+            kind.count += 1;
+            return kind.count <= self.most;
+        }
+        self.kinds.push(Kind { name, first: message.to_owned(), count: 1 });
+        self.most > 0
+    }
+
+    /// How many of this message's kind there were.
+    pub(crate) fn count(&self, message: &str) -> usize {
+        let name = kind_of(message);
+        self.kinds.iter().find(|kind| kind.name == name).map_or(0, |kind| kind.count)
+    }
+
+    /// The first message of each kind of which not all were told, and how many were not.
+    pub(crate) fn untold(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.kinds.iter().filter_map(|kind| {
+            let more = kind.count.saturating_sub(self.most);
+            (more > 0).then_some((kind.first.as_str(), more))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_names_make_no_kind() {
+        assert_eq!(kind_of("found \"abc\", line 12"), kind_of("found \"x\", line 7"));
+        assert_ne!(kind_of("12 rows lack a number"), kind_of("12 rows lack a mass"));
+    }
+
+    #[test]
+    fn thirty_of_a_kind_are_one_and_a_count() {
+        let mut told = Told::new(1);
+        let lines: Vec<usize> =
+            (0..30).filter(|row| told.is_told(&format!("{row} rows lack a number"))).collect();
+        assert_eq!(lines, [0]);
+        assert!(told.is_told("another kind"));
+        assert_eq!(told.untold().collect::<Vec<_>>(), [("0 rows lack a number", 29)]);
+    }
+}

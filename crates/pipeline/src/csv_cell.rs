@@ -1,0 +1,133 @@
+//! Texts as cells of CSV: a table that somebody opens in a spreadsheet or prints on a terminal must not act there.
+//!
+//! A cell that a spreadsheet takes for a formula (`=`, `+`, `-`, `@` in front, or a tabulator or carriage return, behind
+//! which some look for one) gets an apostrophe in front; numbers are none. A control character, or one that turns the
+//! direction of writing, is written as `\u{1b}`. [`read`] gives back what [`written`] was given.
+//!
+//! # Source
+//! OWASP, CSV injection; Boucher and Anderson, Trojan Source, 2021 (arXiv:2111.00169).
+
+use std::borrow::Cow;
+
+/// What a formula begins with.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+/// In front of a formula that is text.
+const TEXT_MARK: char = '\'';
+
+/// A text as a cell, before it is quoted.
+pub fn written(text: &str) -> Cow<'_, str> {
+    let escaped = if text.contains("\\u{") {
+        Cow::Owned(without_controls(&text.replace("\\u{", "\\u{5c}u{"), stays_in_cell).into_owned())
+    } else {
+        without_controls(text, stays_in_cell)
+    };
+    if is_formula(&escaped) { Cow::Owned(format!("{TEXT_MARK}{escaped}")) } else { escaped }
+}
+
+/// The text of a cell that [`written`] made.
+pub fn read(cell: &str) -> Cow<'_, str> {
+    let text = match cell.strip_prefix(TEXT_MARK) {
+        Some(rest) if is_formula(rest) => rest,
+        _ => cell,
+    };
+    if !text.contains("\\u{") {
+        return Cow::Borrowed(text);
+    }
+    let mut plain = String::with_capacity(text.len());
+    let mut parts = text.split("\\u{");
+    plain.push_str(parts.next().unwrap_or_default());
+    for part in parts {
+        let decoded = part.split_once('}').and_then(|(digits, rest)| {
+            let letter = char::from_u32(u32::from_str_radix(digits, 16).ok()?)?;
+            Some((letter, rest))
+        });
+        match decoded {
+            Some((letter, rest)) => {
+                plain.push(letter);
+                plain.push_str(rest);
+            }
+            // Nothing that was written here: it stays as it is.
+            None => {
+                plain.push_str("\\u{");
+                plain.push_str(part);
+            }
+        }
+    }
+    Cow::Owned(plain)
+}
+
+/// Marks in front count as nothing, so that a text that begins with one reads back as it was.
+fn is_formula(text: &str) -> bool {
+    text.trim_start_matches(TEXT_MARK).starts_with(FORMULA) && text.parse::<f64>().is_err()
+}
+
+/// Tabulators and line ends are quoted, as in any table.
+const fn stays_in_cell(letter: char) -> bool {
+    matches!(letter, '\n' | '\r' | '\t')
+}
+
+/// A text in which control characters, and those that turn the direction of writing, are written as `\u{1b}`, except those
+/// that stay.
+pub fn without_controls(text: &str, stays: impl Fn(char) -> bool) -> Cow<'_, str> {
+    without_controls_as(text, stays, |code| format!("\\u{{{code:x}}}"))
+}
+
+/// The same with another way to write the number of a character.
+pub fn without_controls_as(
+    text: &str,
+    stays: impl Fn(char) -> bool,
+    write: impl Fn(u32) -> String,
+) -> Cow<'_, str> {
+    let acts = |letter: char| {
+        let turns = matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        (letter.is_control() || turns) && !stays(letter)
+    };
+    if !text.contains(&acts) {
+        return Cow::Borrowed(text);
+    }
+    let mut plain = String::with_capacity(text.len() + 8);
+    for letter in text.chars() {
+        if acts(letter) {
+            plain.push_str(&write(u32::from(letter)));
+        } else {
+            plain.push(letter);
+        }
+    }
+    Cow::Owned(plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_become_text_and_numbers_stay() {
+        for (text, cell) in [
+            ("=HYPERLINK(\"x\")", "'=HYPERLINK(\"x\")"),
+            ("+1+1", "'+1+1"),
+            ("-A1", "'-A1"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("\t=1", "'\t=1"),
+            ("'=1", "''=1"),
+            ("-5.25", "-5.25"),
+            ("+3", "+3"),
+            ("D-ABCD", "D-ABCD"),
+            ("", ""),
+            ("T\u{1b}[2J", "T\\u{1b}[2J"),
+            ("a\\u{1b}", "a\\u{5c}u{1b}"),
+        ] {
+            assert_eq!(written(text), cell);
+            assert_eq!(read(cell), text);
+        }
+        assert_eq!(read("'quoted'"), "'quoted'");
+        assert_eq!(read("a\\u{zz}b"), "a\\u{zz}b");
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn every_text_reads_back(text in "['=+@0-9\\\\u{}\t\r\u{1b}\u{202e}a-]{0,8}") {
+            let cell = written(&text);
+            proptest::prop_assert_eq!(read(&cell), text.as_str());
+        }
+    }
+}
