@@ -208,6 +208,7 @@ fn demo_does_the_whole_chain_on_embedded_data() {
     ] {
         assert!(folder.join(file).exists(), "{file}");
     }
+    crate::pages::check_numbers(&folder);
     // Once more into the same folder: the same output.
     let again = cruisefit(&["demo".as_ref(), "-o".as_ref(), folder.as_os_str()]).expect(0);
     assert_eq!(again.stdout, ran.stdout);

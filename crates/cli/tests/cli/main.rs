@@ -10,6 +10,7 @@ mod applied;
 mod architecture;
 mod bad_input;
 mod browser;
+mod by_hand;
 mod check;
 mod check_findings;
 mod commands;

@@ -12,8 +12,27 @@ fn numbers_of_the_verdict() {
     check_numbers(scratch.path());
 }
 
-/// Every figure of the verdict stands on the page as in the document.
-fn check_numbers(folder: &Path) {
+/// Every figure of the verdict stands on the page as in the document, and errors before and after as in the summary.
+pub(crate) fn check_numbers(folder: &Path) {
+    for adapted in ["adapted-bayes", "adapted-paper"] {
+        let json = fs::read_to_string(folder.join(adapted).join("summary.json")).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let html = fs::read_to_string(folder.join(adapted).join("report.html")).unwrap();
+        for tail in json["tails"].as_array().unwrap() {
+            let of = |when: &str| {
+                let errors = &tail["fuel_flow_error_percent"][when];
+                let number = |name: &str| errors[name].as_f64().unwrap();
+                format!(
+                    "mean {:+.2} %, std {:.2} %, n {}",
+                    number("mean"),
+                    number("std"),
+                    errors["n"]
+                )
+            };
+            let words = format!("before: {}. after: {}.", of("before"), of("after"));
+            assert!(html.contains(&words), "{adapted}: {words}");
+        }
+    }
     let json = fs::read_to_string(folder.join("diagnosis/diagnosis.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let html = fs::read_to_string(folder.join("diagnosis/diagnosis.html")).unwrap();

@@ -35,6 +35,27 @@ fn threads_and_order(law: &str) {
     assert_eq!(bytes_below(&folder), expected, "a folder instead of files");
 }
 
+/// Flights are learnt in the order of START, whatever their files are called: names in the opposite order give the same state.
+#[test]
+fn the_order_of_flying_counts_not_that_of_names() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let turned = scratch.path().join("turned");
+    std::fs::create_dir(&turned).unwrap();
+    for (place, report) in reports().iter().rev().enumerate() {
+        std::fs::copy(report, turned.join(format!("{place:04}.txt"))).unwrap();
+    }
+    for law in ["bayes", "paper"] {
+        let (one, other) = (scratch.path().join(law), scratch.path().join(format!("{law}-turned")));
+        adapt(&model, &one, &[fixture("reports")], &["--law", law]).expect(0);
+        adapt(&model, &other, std::slice::from_ref(&turned), &["--law", law]).expect(0);
+        let (one, other) = (bytes_below(&one), bytes_below(&other));
+        for name in ["models/SIM-01.ron", "segments/SIM-01.csv", "flights/SIM-01.csv"] {
+            assert_eq!(one[name], other[name], "law {law}, {name}");
+        }
+    }
+}
+
 #[test]
 fn two_runs_learn_what_one_learns() {
     for law in ["bayes", "paper"] {

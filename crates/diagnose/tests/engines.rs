@@ -1,0 +1,152 @@
+//! What the other tests' virtual twin does not have: three and four engines, tank gauges, outliers.
+#![expect(clippy::unwrap_used, reason = "a test")]
+
+use std::sync::Arc;
+
+use diagnose::{Diagnosis, FlightRecord, GaugeBurn, Input, Options, Region, Verdict, diagnose};
+use effects::ExtendedModel;
+use flight::Segment;
+use flight::effect::EffectId;
+use lut::surface::{Basis, Surface};
+use perf_model::{Aircraft, PerformanceModel};
+use test_support::Random;
+use test_support::fleet::{Background, Planted, Setup, exact_model, fly};
+
+/// Relative standard deviation of the virtual fleet's total fuel flow: its two meters have 0.7071 % each.
+const TOTAL_DEVIATION: f64 = 0.005;
+
+/// The virtual aircraft with another number of engines, whose meters together are as exact as the twin's.
+fn model_with(engines: u32) -> ExtendedModel {
+    let percent = 100.0 * TOTAL_DEVIATION * f64::from(engines).sqrt();
+    let text = format!(
+        r#"(
+            name: "virtual", type_code: "VIRT", engines: {engines}, wing_area_m2: 48.96,
+            tsfc: (static_lb_per_lbf_h: 0.48, mach_exponent: 0.8),
+            table: (lift_coefficient: (0.08, 0.72, 0.005), mach: (0.50, 0.95, 0.005)),
+            sensors: (
+                fuel_flow_percent: {percent}, mass: Percent(0.6),
+                flight_bias: (mach: 0, static_air_temperature_k: 0, n2_percent: 0, pressure_altitude_m: 0),
+            ),
+        )"#
+    );
+    let aircraft = Aircraft::from_ron(&text).unwrap();
+    let grid = Arc::clone(aircraft.grid());
+    let values = exact_model().drag_table().values().to_vec();
+    let (marks, table) = (vec![false; values.len()], lut::Table::new(grid, values).unwrap());
+    let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
+    PerformanceModel::new(aircraft, polynomial, table, marks).unwrap().into()
+}
+
+/// Flights of that aircraft: what the twin burnt, shared by all engines, each with its own meter; the last burns more.
+fn flights_with(engines: u32, more_percent: f64) -> Vec<Vec<Segment>> {
+    let mut flights = fly(501, &Setup::default(), &[], &Background::default()).flights;
+    let count = engines as usize;
+    let deviation = TOTAL_DEVIATION * f64::from(engines).sqrt();
+    let mut random = Random::new(502, 0);
+    for means in flights.iter_mut().flatten().map(|segment| &mut segment.means) {
+        let noise: Vec<f64> = (0..count).map(|_| random.normal(0.0, deviation)).collect();
+        let mean = noise.iter().sum::<f64>() / f64::from(engines);
+        let share = means.fuel_flow_total_kg_s / f64::from(engines);
+        let mut flows: Vec<f64> = noise.iter().map(|e| share * (1.0 + e - mean)).collect();
+        flows[count - 1] *= 1.0 + more_percent / 100.0;
+        means.fuel_flow_total_kg_s = flows.iter().sum();
+        means.fuel_flow_engine_kg_s = flows;
+        means.n2_percent.clear();
+    }
+    flights
+}
+
+fn diagnosed(
+    model: &ExtendedModel,
+    flights: &[Vec<Segment>],
+    gauges: impl Fn(usize) -> Option<GaugeBurn>,
+) -> Diagnosis {
+    let records: Vec<FlightRecord<'_>> = flights
+        .iter()
+        .enumerate()
+        .map(|(flight, segments)| FlightRecord { segments, gauges: gauges(flight) })
+        .collect();
+    let input = Input::against(model, &records);
+    diagnose(&input, &Options { skip_closure: true, ..Options::default() }).unwrap()
+}
+
+/// The last engine burns 3 % more: all of them together 3/n %.
+#[test]
+fn one_engine_of_three_and_of_four() {
+    for engines in [3, 4] {
+        let model = model_with(engines);
+        let last = u8::try_from(engines).unwrap();
+        let found = diagnosed(&model, &flights_with(engines, 3.0), |_| None);
+        let first = &found.causes[0];
+        assert_eq!(first.effect, EffectId::TsfcEngine(last), "{:?}", found.verdict);
+        assert!(first.probability > 0.9, "{engines} engines: {first:?}");
+        let [low, high] = first.magnitude.ci95;
+        assert!(low < 3.0 && 3.0 < high && high - low < 1.5, "{engines} engines: {first:?}");
+        let place = &found.r#where[0];
+        assert_eq!(place.region, Region { engine: Some(last), conditions: vec![] });
+        assert!(place.ci95[0] < 3.0 && 3.0 < place.ci95[1], "{engines} engines: {place:?}");
+        let mean = found.gap.mean_percent;
+        assert!((mean - 3.0 / f64::from(engines)).abs() < 0.2, "{engines} engines: {mean} %");
+        // With nothing wrong nothing is found.
+        let silent = diagnosed(&model, &flights_with(engines, 0.0), |_| None);
+        assert_eq!(silent.verdict, Verdict::NoGap, "{engines} engines");
+    }
+}
+
+/// Engines burn 2 % more, or meters read 2 % high: the same flights but for the tank gauges, which show what was burnt.
+#[test]
+fn gauges_distinguish_meters_from_engines() {
+    const METERED_KG: f64 = 4000.0;
+    let planted = Planted { id: EffectId::FuelFlowGain, size: 2.0 };
+    let flights = fly(503, &Setup::default(), &[planted], &Background::default()).flights;
+    let burn = |burnt_kg: f64| {
+        move |flight: usize| {
+            // Errors of half the gauges' standard deviation, up and down.
+            let error_kg = if flight.is_multiple_of(2) { 8.0 } else { -8.0 };
+            Some(GaugeBurn {
+                gauged_kg: burnt_kg + error_kg,
+                metered_kg: METERED_KG,
+                deviation_kg: 16.0,
+            })
+        }
+    };
+    let model = exact_model();
+    let probability = |found: &Diagnosis, effect: EffectId| {
+        let cause = found.causes.iter().find(|cause| cause.effect == effect);
+        cause.map_or(0.0, |cause| cause.probability)
+    };
+    let meters = diagnosed(&model, &flights, burn(METERED_KG / 1.02));
+    assert_eq!(meters.causes[0].effect, EffectId::FuelFlowGain, "{:?}", meters.verdict);
+    assert!(probability(&meters, EffectId::FuelFlowGain) > 0.9, "{:?}", meters.causes);
+    let [low, high] = meters.causes[0].magnitude.ci95;
+    assert!(low < 2.0 && 2.0 < high, "{:?}", meters.causes[0]);
+    let engines = diagnosed(&model, &flights, burn(METERED_KG));
+    assert!(probability(&engines, EffectId::FuelFlowGain) < 0.02, "{:?}", engines.causes);
+}
+
+/// Two segments in a hundred with absurd fuel flow neither hide an effect nor name one, and the interval of its size holds the
+/// truth as often as it states: of ten at 95 % fewer than seven have a probability of 0.1 %.
+#[test]
+fn outliers_hide_no_effect_and_name_none() {
+    let setup = Setup { outliers: 0.02, ..Setup::default() };
+    let model = exact_model();
+    let planted = Planted { id: EffectId::TsfcEngine(2), size: 3.0 };
+    let mut held = 0;
+    for seed in 510..520 {
+        let worn = fly(seed, &setup, &[planted], &Background::default());
+        let found = diagnosed(&model, &worn.flights, |_| None);
+        let first = &found.causes[0];
+        // Without gauges its meter looks the same.
+        assert!(first.class.contains(&EffectId::TsfcEngine(2)), "{:?}", found.verdict);
+        let [low, high] = first.magnitude.ci95;
+        held += usize::from(low < 3.0 && 3.0 < high);
+    }
+    assert!(held >= 7, "{held} of 10 intervals hold the truth");
+    // A gap "outside the library" is reported in some of these fleets, which is wrong (the book's page on reliability has the
+    // figures); no effect is.
+    for seed in 520..523 {
+        let silent = fly(seed, &setup, &[], &Background::default());
+        let found = diagnosed(&model, &silent.flights, |_| None);
+        assert!(found.verdict.effects().is_empty(), "{seed}: {:?}", found.verdict);
+    }
+}
