@@ -5,7 +5,6 @@
 //! done, with the reason on stderr; 3 done, and a rule of `monitor --alert` fired.
 
 #![expect(
-    clippy::print_stdout,
     clippy::print_stderr,
     clippy::disallowed_methods,
     reason = "the command line talks to the world"

@@ -41,16 +41,13 @@ pub fn read(cell: &str) -> Cow<'_, str> {
             let letter = char::from_u32(u32::from_str_radix(digits, 16).ok()?)?;
             Some((letter, rest))
         });
-        match decoded {
-            Some((letter, rest)) => {
-                plain.push(letter);
-                plain.push_str(rest);
-            }
+        if let Some((letter, rest)) = decoded {
+            plain.push(letter);
+            plain.push_str(rest);
+        } else {
             // Nothing that was written here: it stays as it is.
-            None => {
-                plain.push_str("\\u{");
-                plain.push_str(part);
-            }
+            plain.push_str("\\u{");
+            plain.push_str(part);
         }
     }
     Cow::Owned(plain)
@@ -82,7 +79,7 @@ pub fn without_controls_as(
         let turns = matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
         (letter.is_control() || turns) && !stays(letter)
     };
-    if !text.contains(&acts) {
+    if !text.contains(acts) {
         return Cow::Borrowed(text);
     }
     let mut plain = String::with_capacity(text.len() + 8);

@@ -18,7 +18,7 @@ pub(crate) struct Common {
     /// Print errors, refusals and results that were asked for; no progress, warnings or account of what was written
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
-    /// When to use colours; NO_COLOR in the environment turns them off as well
+    /// When to use colours; `NO_COLOR` in the environment turns them off as well
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = When::Auto)]
     pub(crate) color: When,
     /// Project file with options of every command [default: cruisefit.toml of the working folder, if there is one]; what the
@@ -91,8 +91,12 @@ impl Command {
             return true;
         }
         match self {
-            Self::Check(_) | Self::Show(_) | Self::Effects(_) | Self::Explain(_) => true,
-            Self::Completions(_) | Self::Golden(_) => true,
+            Self::Check(_)
+            | Self::Show(_)
+            | Self::Effects(_)
+            | Self::Explain(_)
+            | Self::Completions(_)
+            | Self::Golden(_) => true,
             Self::Evaluate(arguments) => {
                 arguments.json.json.is_none() && arguments.output.is_none()
             }
@@ -130,8 +134,12 @@ impl Command {
             Self::Explain(arguments) => arguments.json.into(),
             Self::Simulate(arguments) => arguments.json.into(),
             Self::Trial(arguments) => arguments.json.into(),
-            Self::Export(_) | Self::Plot(_) | Self::Completions(_) | Self::Man(_) => JsonWanted::No,
-            Self::Golden(_) | Self::Demo(_) => JsonWanted::No,
+            Self::Export(_)
+            | Self::Plot(_)
+            | Self::Completions(_)
+            | Self::Man(_)
+            | Self::Golden(_)
+            | Self::Demo(_) => JsonWanted::No,
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport};
 use crate::files::standard_input;
 use crate::models::model_of_bytes;
-use pipeline::model_file::{LawState, Learnt, ModelFile};
+use pipeline::model_file::{AppliedRecord, LawState, Learnt, ModelFile};
 use pipeline::summary::{SCHEMA as SUMMARY, Summary, aligned};
 
 /// What a gzip file begins with (RFC 1952, section 2.3.1).
@@ -106,7 +106,7 @@ fn figures(model: &ModelFile) -> serde_json::Value {
             "law": learnt.law.told(),
             "criteria": learnt.criteria,
         })),
-        "applied": model.applied.iter().map(|record| record.told().to_string()).collect::<Vec<_>>(),
+        "applied": model.applied.iter().map(AppliedRecord::told).collect::<Vec<_>>(),
     })
 }
 
