@@ -23,6 +23,7 @@ fn tail(name: &str, errors_percent: &[f64]) -> TailSummary {
             before: ErrorStatistics::from_errors(errors_percent),
             after: None,
         },
+        mean_error_half_width95_percent: None,
         interval95_coverage: None,
         mean_error_within_percent: None,
     }

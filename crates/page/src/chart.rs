@@ -44,6 +44,9 @@ pub(crate) struct Chart {
     pub(crate) y_label: String,
 }
 
+/// Two values of each scale.
+pub(crate) type Rectangle = ((f64, f64), (f64, f64));
+
 /// Shape of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mark {
@@ -170,6 +173,17 @@ impl Chart {
         }
     }
 
+    /// Rectangles as one path.
+    pub(crate) fn rectangles(&self, cells: &[Rectangle], class: &str) -> Markup {
+        let mut d = String::new();
+        for ((left, right), (bottom, top)) in cells {
+            push_point(&mut d, 'M', (self.x_at(*left), self.y_at(*bottom)));
+            let _ = write!(d, "V{}H{}", coordinate(self.y_at(*top)), coordinate(self.x_at(*right)));
+            let _ = write!(d, "V{}Z", coordinate(self.y_at(*bottom)));
+        }
+        path(class, &d)
+    }
+
     /// An upright line with words for the pointer; cut off at the frame.
     pub(crate) fn interval(&self, x: f64, y: (f64, f64), class: &str, tip: &str) -> Markup {
         let clamped = |value: f64| self.y_at(value.clamp(self.y.first(), self.y.last()));
@@ -177,6 +191,17 @@ impl Chart {
             path class=(class) data-tip=[(!tip.is_empty()).then_some(tip)]
                 d=(format!("M{} {}V{}", coordinate(self.x_at(x)), coordinate(clamped(y.0)), coordinate(clamped(y.1)))) {}
         }
+    }
+
+    /// Upright lines, cut off at the frame, as one path.
+    pub(crate) fn intervals(&self, intervals: &[(f64, (f64, f64))], class: &str) -> Markup {
+        let mut d = String::new();
+        let clamped = |value: f64| self.y_at(value.clamp(self.y.first(), self.y.last()));
+        for (x, (low, high)) in intervals.iter().filter(|(x, _)| self.x.holds(*x)) {
+            push_point(&mut d, 'M', (self.x_at(*x), clamped(*low)));
+            let _ = write!(d, "V{}", coordinate(clamped(*high)));
+        }
+        path(class, &d)
     }
 
     fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {

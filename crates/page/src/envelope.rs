@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::shade;
 use crate::text::{breakpoint, counted, signed_tenths};
 use crate::view::{Point, TailView};
 
@@ -12,8 +13,6 @@ const MOST_ROWS: usize = 24;
 const SNAP: f64 = lut::SNAP;
 /// Mean error of full color, %.
 const FULL_COLOR_PERCENT: f64 = 5.0;
-/// Shades on each side of zero.
-const SHADES: f64 = 5.0;
 
 /// The content of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -90,21 +89,9 @@ fn cell(cell: &Cell) -> Markup {
     }
     let mean = cell.sum_percent / cell.segments as f64;
     html! {
-        td class=(shade(mean)) {
+        td class=(shade::class(mean, FULL_COLOR_PERCENT)) {
             b { (signed_tenths(mean)) } " " span { "n\u{a0}" (cell.segments) }
         }
-    }
-}
-
-/// Class of a mean error: `more1` … `more5`, `less1` … `less5`, or `even` within half a shade.
-fn shade(mean_percent: f64) -> String {
-    let shade = (mean_percent / FULL_COLOR_PERCENT * SHADES).clamp(-SHADES, SHADES).round();
-    if shade > 0.0 {
-        format!("more{shade}")
-    } else if shade < 0.0 {
-        format!("less{}", -shade)
-    } else {
-        "even".to_owned()
     }
 }
 
@@ -216,14 +203,6 @@ mod tests {
         let breakpoints = [0.3, 0.4, 0.5];
         let cells = [0.3, 0.35, 0.4 - 1e-10, 0.4, 0.5].map(|value| between(&breakpoints, value));
         assert_eq!(cells, [0, 0, 1, 1, 1]);
-    }
-
-    #[test]
-    fn shades_follow_the_sign() {
-        assert_eq!(
-            [-9.0, -1.2, 0.4, 0.6, 5.0].map(shade),
-            ["less5", "less1", "even", "more1", "more5"]
-        );
     }
 
     #[test]

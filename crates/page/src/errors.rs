@@ -158,6 +158,58 @@ pub(crate) fn over_time(view: &TailView, bins: &Bins, place: &Place<'_>) -> Mark
     }
 }
 
+/// Mean error of each flight by the model before it learnt the flight: what it would have predicted.
+pub(crate) fn before_learning(view: &TailView, place: &Place<'_>) -> Markup {
+    let shown = thinned(view.flights.len(), place.most_points);
+    let of = |of: fn(&Flight) -> Option<f64>| -> Vec<(f64, f64)> {
+        let flights = shown.iter().map(|k| &view.flights[*k]);
+        flights.filter_map(|flight| Some((flight.start_s, of(flight)?))).collect()
+    };
+    let forecast = of(|flight| flight.before_learning.mean);
+    let (Some(first), Some(last)) = (forecast.first(), forecast.last()) else { return html! {} };
+    let initial = of(|flight| flight.before.mean);
+    let values = || forecast.iter().chain(&initial).map(|point| point.1);
+    let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
+    let means: Vec<ErrorStatistics> =
+        view.flights.iter().map(|flight| flight.before_learning).collect();
+    let told: Vec<f64> = means.iter().filter_map(|statistics| statistics.mean).collect();
+    let later = ErrorStatistics::from_errors(&told[told.len() / 2..]);
+    let chart = Chart {
+        id: place.id("forecast"),
+        title: format!("{}: error of each flight before it was learnt", place.tail),
+        description: format!(
+            "Mean error of {} by the initial model and by the model before it learnt the flight.",
+            counted(told.len(), "flight")
+        ),
+        width: WIDTH,
+        height: HEIGHT,
+        x: dates::axis(first.0, last.0, 5),
+        y: Axis::around(low, high, 6),
+        x_label: "START of the flight, UTC".to_owned(),
+        y_label: "mean error of the flight, %".to_owned(),
+    };
+    let marks = html! {
+        (chart.horizontal(0.0, "zero"))
+        (chart.marks(&initial, Mark::Ring, BEFORE))
+        (chart.polyline(&forecast, "final thin"))
+        (chart.marks(&forecast, Mark::Disc, "after"))
+    };
+    html! {
+        figure {
+            figcaption {
+                b { "Each flight before it was learnt." }
+                " What the model would have predicted on the day; over the later half of the flights " (signed(later.mean))
+                " % in the mean, " (plain(later.std)) " % of scatter between flights."
+            }
+            (legend(&[
+                (Key::Mark(Mark::Ring), BEFORE, "initial model"),
+                (Key::Mark(Mark::Disc), "after", "model before it learnt the flight"),
+            ]))
+            (chart.draw(&marks))
+        }
+    }
+}
+
 /// The flights whose mean error is farthest from the others': where to look for a wrong load sheet.
 pub(crate) fn flights_apart(view: &TailView) -> Markup {
     let (median, flights) = apart(view);

@@ -19,8 +19,6 @@ pub(crate) struct FleetRow<'a> {
     pub(crate) summary: &'a TailSummary,
     /// Where its section or page is, if it has one.
     pub(crate) link: Option<String>,
-    /// Half width of the 95 % interval of its mean error before, %.
-    pub(crate) half_width95: Option<f64>,
 }
 
 impl FleetRow<'_> {
@@ -29,9 +27,14 @@ impl FleetRow<'_> {
         self.summary.fuel_flow_error_percent.before.mean
     }
 
+    /// Half width of its 95 % interval, %.
+    fn half_width95(&self) -> Option<f64> {
+        self.summary.mean_error_half_width95_percent
+    }
+
     /// Ends of its interval, the mean itself without one.
     fn interval(&self) -> Option<(f64, f64)> {
-        let (mean, half) = (self.deviation()?, self.half_width95.unwrap_or(0.0));
+        let (mean, half) = (self.deviation()?, self.half_width95().unwrap_or(0.0));
         Some((mean - half, mean + half))
     }
 }
@@ -98,7 +101,7 @@ fn chart(rows: &[FleetRow<'_>]) -> Markup {
 
 fn tip(row: &FleetRow<'_>) -> String {
     let mut tip = format!("{}: {} %", row.summary.tail, signed(row.deviation()));
-    if let Some(half) = row.half_width95 {
+    if let Some(half) = row.half_width95() {
         let _ = write!(tip, " ± {half:.2} %");
     }
     if let Some(mean) = row.deviation() {
@@ -114,10 +117,11 @@ fn table(rows: &[FleetRow<'_>]) -> Markup {
     let refits = rows.iter().any(|row| row.summary.refits.is_some());
     let scale = scale(rows);
     html! {
+        // Not a caption: it would be as wide as the table, beyond the edge of a phone.
+        p.note { "Deviations and errors are in % of total fuel flow; ± is half a 95 % interval of the mean; std with n − 1; max without \
+                  its sign. Fuel factor: what predicted fuel flow has to be raised by, %." }
         div.scroll tabindex="0" role="region" aria-label="All tails" {
             table.fleet.sort.data data-name="fleet" {
-                caption { "Deviations and errors are in % of total fuel flow; ± is half a 95 % interval of the mean; std with n − 1; \
-                           max without its sign. Fuel factor: what predicted fuel flow has to be raised by, %." }
                 thead { tr {
                     th scope="col" { "tail" }
                     th scope="col" { "deviation" } th scope="col" { "±" } th.drawn scope="col" { "interval" }
@@ -150,7 +154,7 @@ fn table_row(row: &FleetRow<'_>, adapted: bool, refits: bool, scale: (f64, f64))
                 }
             }
             (number(before.mean, signed(before.mean)))
-            (number(row.half_width95, plain(row.half_width95)))
+            (number(row.half_width95(), plain(row.half_width95())))
             td.drawn { (spark(row, scale)) }
             @let factor = before.mean.map(fuel_factor_percent);
             (number(factor, signed(factor)))

@@ -23,19 +23,23 @@
 //! ```
 
 mod chart;
+mod criteria;
 mod diagnosis;
 mod envelope;
 mod errors;
 mod fleet;
 mod frame;
 mod monitoring;
+mod performance;
 mod place;
 mod plot;
 mod polars;
 mod report;
 #[cfg(test)]
 mod samples;
+mod shade;
 mod style;
+mod surface;
 mod tail;
 #[cfg(test)]
 mod tests;

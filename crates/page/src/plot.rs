@@ -5,7 +5,7 @@ use std::fmt::Write;
 use maud::html;
 use pipeline::evaluation::TailResult;
 
-use crate::place::Place;
+use crate::place::{Detail, Place};
 use crate::style::STYLE;
 use crate::tail;
 use crate::view::TailView;
@@ -29,7 +29,12 @@ struct Drawing<'a> {
 #[must_use]
 pub fn plot(result: &TailResult) -> String {
     let view = TailView::new(result);
-    let place = Place { tail: &result.tail, id: "plot".to_owned(), most_points: MOST_POINTS };
+    let place = Place {
+        tail: &result.tail,
+        id: "plot".to_owned(),
+        most_points: MOST_POINTS,
+        detail: Detail::Brief,
+    };
     let page = tail::figures(&view, &place).into_string();
     let empty = view.points.is_empty();
     let drawings: Vec<Drawing<'_>> =

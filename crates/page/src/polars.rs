@@ -50,7 +50,9 @@ pub(crate) fn polars(view: &TailView, place: &Place<'_>) -> Markup {
         figure.wide {
             figcaption {
                 b { "Drag polars." }
-                " Drag coefficient over lift coefficient at the Mach numbers of the table nearest to most segments. Each \
+                " Drag coefficient over lift coefficient"
+                @if view.polars.half_width95.is_some() { ", nodes with their 95 % interval," }
+                " at the Mach numbers of the table nearest to most segments. Each \
                  segment is drawn at the Mach number nearest to its own, up to half a step away: points lie off a curve \
                  for that reason too."
             }
@@ -106,6 +108,7 @@ fn panel(
             .map(|(k, node)| (polars.lift_coefficient[k], polars.current[node]))
             .collect::<Vec<_>>()
     };
+    let uncertain = intervals(view, frame, mach);
     let heading =
         format!("Mach {}: {}", breakpoint(polars.mach[mach]), counted(segments, "segment"));
     let informed = nodes(|informed, _| informed);
@@ -129,6 +132,7 @@ fn panel(
     let beyond = chart.beyond(&observed);
     let marks = html! {
         (chart.marks(&observed, Mark::Dot, "observed"))
+        (chart.intervals(&uncertain, "span"))
         (chart.polyline(&initial, "initial"))
         @if polars.learnt { (chart.polyline(&current, "final")) }
         (chart.marks(&nodes(|informed, extrapolated| !informed && !extrapolated), Mark::Ring, "final"))
@@ -146,11 +150,25 @@ fn panel(
     }
 }
 
+/// 95 % intervals of the drawn nodes at a Mach number, over lift coefficient; the law states them relative to the initial table.
+fn intervals(view: &TailView, frame: &Frame, mach: usize) -> Vec<(f64, (f64, f64))> {
+    let polars = &view.polars;
+    let Some(half) = &polars.half_width95 else { return Vec::new() };
+    (frame.first_node..=frame.last_node)
+        .map(|k| {
+            let node = polars.node(k, mach);
+            let (at, half) = (polars.current[node], half[node] * polars.initial[node]);
+            (polars.lift_coefficient[k], (at - half, at + half))
+        })
+        .collect()
+}
+
 impl Frame {
     fn around(view: &TailView, machs: &[usize]) -> Self {
         let polars = &view.polars;
         let grid = &polars.lift_coefficient;
-        let (first_node, last_node) = nodes_near(grid, &view.points);
+        let (first_node, last_node) =
+            nodes_near(grid, view.points.iter().map(|point| point.lift_coefficient));
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for node in
             machs.iter().flat_map(|mach| (first_node..=last_node).map(|k| polars.node(k, *mach)))
@@ -198,10 +216,8 @@ fn mach_numbers(view: &TailView) -> Vec<usize> {
 }
 
 /// First and last node to draw: those about the segments and two more at each side; all without segments.
-fn nodes_near(grid: &[f64], points: &[Point]) -> (usize, usize) {
-    let inside = points.iter().map(|point| point.lift_coefficient).filter(|lift_coefficient| {
-        grid[0] <= *lift_coefficient && *lift_coefficient <= grid[grid.len() - 1]
-    });
+pub(crate) fn nodes_near(grid: &[f64], flown: impl Iterator<Item = f64> + Clone) -> (usize, usize) {
+    let inside = flown.filter(|value| grid[0] <= *value && *value <= grid[grid.len() - 1]);
     let low = inside.clone().fold(f64::INFINITY, f64::min);
     let high = inside.fold(f64::NEG_INFINITY, f64::max);
     if low > high {

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, PreEscaped, html};
+use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::model_file::Learnt;
 use pipeline::summary::{Summary, TailSummary};
@@ -10,7 +11,7 @@ use pipeline::summary::{Summary, TailSummary};
 use crate::chart::dates;
 use crate::fleet::FleetRow;
 use crate::frame::framed;
-use crate::place::Place;
+use crate::place::{Detail, Place};
 use crate::text::{counted, signed};
 use crate::view::TailView;
 use crate::{fleet, tail};
@@ -32,17 +33,24 @@ pub struct Section {
     type_code: String,
     /// START of the first and of the last flight, s since 1970.
     period_s: Option<(f64, f64)>,
-    /// Half width of the 95 % interval of its mean error before, %.
-    half_width95: Option<f64>,
     adapted: bool,
     body: String,
 }
 
-/// The section of a tail.
+/// The section of a tail, with what the trim criteria cost where that is known.
 #[must_use]
-pub fn section(result: &TailResult, anchors: &Anchors) -> Section {
+pub fn section(result: &TailResult, costs: Option<&CriteriaCosts>, anchors: &Anchors) -> Section {
+    section_with(result, costs, anchors, Detail::Full)
+}
+
+fn section_with(
+    result: &TailResult,
+    costs: Option<&CriteriaCosts>,
+    anchors: &Anchors,
+    detail: Detail,
+) -> Section {
     let id = anchors.0.get(&result.tail).cloned().unwrap_or_default();
-    let place = Place { tail: &result.tail, id: id.clone(), most_points: MOST_POINTS };
+    let place = Place { tail: &result.tail, id: id.clone(), most_points: MOST_POINTS, detail };
     let view = TailView::new(result);
     let starts = || view.flights.iter().map(|flight| flight.start_s);
     Section {
@@ -51,9 +59,8 @@ pub fn section(result: &TailResult, anchors: &Anchors) -> Section {
         law: law_of(result),
         type_code: result.model.initial.aircraft().type_code().to_owned(),
         period_s: starts().min_by(f64::total_cmp).zip(starts().max_by(f64::total_cmp)),
-        half_width95: view.half_width95_before(),
         adapted: result.summary.fuel_flow_error_percent.after.is_some(),
-        body: tail::body(result, &view, &place).into_string(),
+        body: tail::body(result, &view, costs, &place).into_string(),
         id,
     }
 }
@@ -62,7 +69,9 @@ pub fn section(result: &TailResult, anchors: &Anchors) -> Section {
 #[must_use]
 pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
     let anchors = Anchors::new(tails.iter().map(|tail| tail.tail.as_str()));
-    let sections: Vec<Section> = tails.iter().map(|tail| section(tail, &anchors)).collect();
+    let detail = if tails.len() > TAILS_ON_ONE_PAGE { Detail::Brief } else { Detail::Full };
+    let sections: Vec<Section> =
+        tails.iter().map(|tail| section_with(tail, None, &anchors, detail)).collect();
     report_of_sections(summary, &sections.iter().collect::<Vec<_>>(), title)
 }
 
@@ -73,11 +82,7 @@ pub fn report_of_sections(summary: &Summary, sections: &[&Section], title: &str)
         sections.iter().map(|section| (section.tail.as_str(), *section)).collect();
     let rows = fleet_rows(summary, |summary| {
         let section = by_tail.get(summary.tail.as_str());
-        FleetRow {
-            summary,
-            link: section.map(|section| format!("#{}", section.id)),
-            half_width95: section.and_then(|section| section.half_width95),
-        }
+        FleetRow { summary, link: section.map(|section| format!("#{}", section.id)) }
     });
     let body = html! {
         p.run { (what_was_run(summary, sections)) }
@@ -102,12 +107,11 @@ pub fn fleet_report(summary: &Summary, links: &BTreeMap<&str, String>, title: &s
     let rows = fleet_rows(summary, |summary| FleetRow {
         summary,
         link: links.get(summary.tail.as_str()).cloned(),
-        half_width95: None,
     });
     let body = html! {
         p.run { (what_was_run(summary, &[])) }
         (fleet_section(&rows))
-        p.note { "The name of a tail leads to its own page, which has the interval of its deviation." }
+        p.note { "The name of a tail leads to its own page." }
         (how_to_read(adapted))
         (fleet::refused(&summary.reports))
     };

@@ -2,7 +2,7 @@
 
 use flight::Timestamp;
 
-use crate::view::{Flight, Point, Polars, TailView};
+use crate::view::{Cruise, Flight, Point, Polars, TailView};
 use pipeline::statistics::ErrorStatistics;
 
 /// Ordinary, with wild values, all alike, a single segment, nothing at all; each adapted and not.
@@ -52,13 +52,17 @@ fn view(points: Vec<Point>, adapted: bool) -> TailView {
         #[expect(clippy::cast_possible_truncation, reason = "whole seconds")]
         let start = Timestamp::from_second(start_s as i64).unwrap();
         let (before, after) = (of(|point| point.before), of(|point| point.after));
-        flights.push(Flight { name: format!("F{}", flights.len()), start, start_s, before, after });
+        let (name, engines) = (format!("F{}", flights.len()), vec![-0.5, 0.5]);
+        let before_learning = after;
+        flights.push(Flight { name, start, start_s, before, after, before_learning, engines });
     }
     TailView {
         points,
         outside: vec![(0.45, 0.96), (0.83, 0.81)],
         not_observed: Vec::new(),
         flights,
+        cruise: vec![Cruise { mass_t: 60.0, specific_range: 180.0, predicted: 182.0 }; 3],
+        engines: 2,
         polars: polars(),
         adapted,
     }
@@ -76,5 +80,16 @@ fn polars() -> Polars {
     let current =
         initial.iter().zip(&informed).map(|(cd, i)| if *i { 1.04 * cd } else { *cd }).collect();
     let extrapolated = nodes.iter().map(|(cl, m)| !(0.3..0.6).contains(cl) || *m < 0.7).collect();
-    Polars { lift_coefficient, mach, initial, current, learnt: true, informed, extrapolated }
+    let half_width95 = Some(vec![0.01; initial.len()]);
+    let learnt = true;
+    Polars {
+        lift_coefficient,
+        mach,
+        initial,
+        current,
+        learnt,
+        half_width95,
+        informed,
+        extrapolated,
+    }
 }

@@ -61,7 +61,15 @@ svg .cell { stroke: var(--paper); stroke-width: 1; fill: var(--card); }
 svg .less1 { fill: #d3e7f4; } svg .less2 { fill: #a9cfe9; } svg .less3 { fill: #75b1da; } svg .less4 { fill: #3f8fc5; } svg .less5 { fill: #0072b2; }
 svg .more1 { fill: #fbe3cb; } svg .more2 { fill: #f7c493; } svg .more3 { fill: #f0a05a; } svg .more4 { fill: #e57d28; } svg .more5 { fill: #d55e00; }
 svg .even { fill: #e4e4e4; }
+@media screen and (prefers-color-scheme: dark) {
+  svg .less1 { fill: #1a2f3d; } svg .less2 { fill: #1f465c; } svg .less3 { fill: #28637f; } svg .less4 { fill: #3787b3; } svg .less5 { fill: #58b0ec; }
+  svg .more1 { fill: #3a2a1c; } svg .more2 { fill: #5d3d20; } svg .more3 { fill: #8c5524; } svg .more4 { fill: #bd6d2a; } svg .more5 { fill: #f0883e; }
+  svg .even { fill: #2b3036; }
+}
 svg .cell.hit { fill: transparent; stroke: none; } svg .cell.hit:hover { fill: var(--soft); fill-opacity: .15; }
+svg .cell.faint { fill-opacity: .35; }
+.disc.small { stroke-width: 5; }
+.line.thin { stroke-width: 1; }
 svg .within { stroke: var(--ink); stroke-width: 2.2; }
 .verdict { background: var(--card); border-left: 5px solid var(--after); border-radius: 4px; padding: .5rem 1rem; margin: .6rem 0; }
 .verdict.gap { border-left-color: var(--before); }
@@ -82,8 +90,8 @@ details.more > summary { cursor: pointer; color: var(--link); }
 details.more > summary:focus-visible, details.tail > summary:focus-visible, a:focus-visible, button:focus-visible, svg:focus-visible
   { outline: 2px solid var(--after); outline-offset: 2px; }
 th button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer; text-align: inherit; }
-th button::after { content: " ↕"; color: var(--soft); font-weight: normal; }
-th[aria-sort=ascending] button::after { content: " ↑"; } th[aria-sort=descending] button::after { content: " ↓"; }
+th button::after { content: "\00a0↕"; color: var(--soft); font-weight: normal; }
+th[aria-sort=ascending] button::after { content: "\00a0↑"; } th[aria-sort=descending] button::after { content: "\00a0↓"; }
 input[type=search] { font: inherit; padding: .25rem .5rem; margin: .3rem 0; max-width: 100%; color: var(--ink); background: var(--paper);
   border: 1px solid var(--soft); border-radius: 4px; }
 button.save { font: inherit; font-size: .82rem; color: var(--link); background: none; border: 1px solid var(--line); border-radius: 4px;

@@ -5,7 +5,8 @@ use maud::{Markup, html};
 use crate::place::Place;
 use crate::text::{counted, plain, signed};
 use crate::view::TailView;
-use crate::{envelope, errors, polars};
+use crate::{criteria, envelope, errors, performance, polars, surface};
+use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
 
@@ -13,11 +14,17 @@ use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
 const RARELY_THE_AIRCRAFT_PERCENT: f64 = 15.0;
 
 /// What is in a tail's section.
-pub(crate) fn body(result: &TailResult, view: &TailView, place: &Place<'_>) -> Markup {
+pub(crate) fn body(
+    result: &TailResult,
+    view: &TailView,
+    costs: Option<&CriteriaCosts>,
+    place: &Place<'_>,
+) -> Markup {
     html! {
         (verdict(result, view))
         p.run { (about(result)) }
         (figures(view, place))
+        @if let Some(costs) = costs { (criteria::costs(costs)) }
         (notes(result, view))
     }
 }
@@ -29,6 +36,10 @@ pub(crate) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
         div.figures {
             (errors::histogram(view, &bins, place))
             (errors::over_time(view, &bins, place))
+            (errors::before_learning(view, place))
+            (surface::surface(view, place))
+            (performance::specific_range(view, place))
+            (performance::engines(view, place))
         }
         (polars::polars(view, place))
         div.row {
@@ -66,7 +77,7 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
     let Some(mean) = errors.before.mean else {
         return html! { p.verdict { "No segment lies inside the table: nothing can be said about this tail." } };
     };
-    let half = view.half_width95_before();
+    let half = result.summary.mean_error_half_width95_percent;
     let within = half.is_some_and(|half| mean.abs() <= half);
     let model = if view.adapted { "the model that it began with" } else { "its model" };
     html! {

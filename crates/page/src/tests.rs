@@ -7,7 +7,7 @@ use pipeline::model_file::ModelFile;
 use pipeline::segments_table;
 use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
 
-use crate::place::Place;
+use crate::place::{Detail, Place};
 use crate::{plot, report, samples, tail as section};
 
 const MODEL: &str = include_str!("../../../fixtures/global5000/expected/SIM-01.ron");
@@ -134,7 +134,8 @@ fn nothing_sent_is_markup() {
 #[test]
 fn odd_tails_are_drawn_too() {
     for (k, view) in samples::views().iter().enumerate() {
-        let place = Place { tail: "T", id: format!("t{k}"), most_points: 100 };
+        let place =
+            Place { tail: "T", id: format!("t{k}"), most_points: 100, detail: Detail::Full };
         let figures = section::figures(view, &place).into_string();
         check(&figures);
         let thinned = view.points.len() > 100;

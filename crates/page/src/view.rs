@@ -7,7 +7,10 @@ use flight::Timestamp;
 
 use pipeline::evaluation::TailResult;
 use pipeline::model_file::ModelFile;
-use pipeline::statistics::{ErrorStatistics, mean_half_width95_by_flight};
+use pipeline::residuals::errors_before_learning;
+use pipeline::segments_table::SegmentRow;
+use pipeline::statistics::{ErrorStatistics, NORMAL_95};
+use units::convert::METERS_PER_NAUTICAL_MILE;
 
 use crate::chart::dates;
 
@@ -22,6 +25,10 @@ pub(crate) struct TailView {
     pub(crate) not_observed: Vec<String>,
     /// Flights with segments, by START.
     pub(crate) flights: Vec<Flight>,
+    /// Cruise performance at every segment inside the table.
+    pub(crate) cruise: Vec<Cruise>,
+    /// Number of engines that are recorded separately.
+    pub(crate) engines: usize,
     /// Its drag tables.
     pub(crate) polars: Polars,
     /// Whether there is an "after".
@@ -43,6 +50,17 @@ pub(crate) struct Point {
     pub(crate) after: Option<f64>,
 }
 
+/// What a segment says of cruise performance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cruise {
+    /// Gross mass, t.
+    pub(crate) mass_t: f64,
+    /// Recorded specific range, nautical air miles per tonne of fuel.
+    pub(crate) specific_range: f64,
+    /// The same with the fuel flow that the present model predicts.
+    pub(crate) predicted: f64,
+}
+
 /// A flight's errors.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Flight {
@@ -55,6 +73,10 @@ pub(crate) struct Flight {
     pub(crate) before: ErrorStatistics,
     /// Of its segments inside the table.
     pub(crate) after: ErrorStatistics,
+    /// The same by the model before it learnt this flight; no errors where that is not known.
+    pub(crate) before_learning: ErrorStatistics,
+    /// Mean fuel flow of each engine against the mean of all engines, %; empty where they are not recorded separately.
+    pub(crate) engines: Vec<f64>,
 }
 
 /// The drag tables, lift coefficient outer and Mach number inner.
@@ -68,6 +90,9 @@ pub(crate) struct Polars {
     pub(crate) current: Vec<f64>,
     /// Whether anything was learnt; if not, both are the same.
     pub(crate) learnt: bool,
+    /// Half width of the 95 % interval of each node's drag coefficient, relative to the initial one; `None` where the law has
+    /// none.
+    pub(crate) half_width95: Option<Vec<f64>>,
     /// Nodes that a segment ever adapted.
     pub(crate) informed: Vec<bool>,
     /// Nodes outside the range of the guide.
@@ -78,11 +103,16 @@ impl TailView {
     pub(crate) fn new(result: &TailResult) -> Self {
         let adapted = result.summary.fuel_flow_error_percent.after.is_some();
         let after = result.errors_after();
+        // A state that was learnt once can be learnt again; if not, this one figure is missing.
+        let earlier = errors_before_learning(result).ok().flatten().unwrap_or_default();
         let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
+        let mut cruise = Vec::new();
         let mut flights: BTreeMap<(Timestamp, &str), Errors> = BTreeMap::new();
         for (k, row) in result.rows.iter().enumerate() {
             let identity = &row.segment.identity;
             let errors = flights.entry((identity.start, &identity.flight)).or_default();
+            errors.before_learning.extend(earlier.get(k).copied().flatten());
+            errors.add_engines(&row.segment.means.fuel_flow_engine_kg_s);
             if row.evaluated.is_none_or(|evaluated| evaluated.error_percent.is_none()) {
                 match result.model.initial.observe(&row.segment) {
                     Err(ObserveError::Model(perf_model::ObserveError::OutsideTable(at))) => {
@@ -101,22 +131,22 @@ impl TailView {
                 before: evaluated.error_percent,
                 after: after.get(k).copied().flatten(),
             };
+            cruise.extend(cruise_of(result, k));
             errors.before.extend(point.before);
             errors.after.extend(point.after);
             points.push(point);
         }
-        let flights = flights.into_iter().map(|((start, flight), errors)| Flight {
-            name: flight.to_owned(),
-            start,
-            start_s: start.as_second() as f64,
-            before: ErrorStatistics::from_errors(&errors.before),
-            after: ErrorStatistics::from_errors(&errors.after),
-        });
+        let flights: Vec<Flight> = flights
+            .into_iter()
+            .map(|((start, flight), errors)| errors.of_flight(start, flight))
+            .collect();
         Self {
             points,
             outside,
             not_observed,
-            flights: flights.collect(),
+            engines: flights.iter().map(|flight| flight.engines.len()).max().unwrap_or(0),
+            flights,
+            cruise,
             polars: Polars::from_model(&result.model),
             adapted,
         }
@@ -125,13 +155,6 @@ impl TailView {
     /// The label of "before": there is one only where there is an "after".
     pub(crate) fn before_label(&self) -> &'static str {
         if self.adapted { "before" } else { "model as given" }
-    }
-
-    /// Half width of the 95 % interval of the mean error before, %; flights count, not segments.
-    pub(crate) fn half_width95_before(&self) -> Option<f64> {
-        let flights: Vec<ErrorStatistics> =
-            self.flights.iter().map(|flight| flight.before).collect();
-        mean_half_width95_by_flight(&flights)
     }
 
     /// Days of the first and the last flight.
@@ -155,6 +178,51 @@ impl TailView {
 struct Errors {
     before: Vec<f64>,
     after: Vec<f64>,
+    before_learning: Vec<f64>,
+    /// Sums of the fuel flow of each engine, kg/s.
+    engines_kg_s: Vec<f64>,
+}
+
+impl Errors {
+    /// Adds a segment's engines; segments with another number of engines than the first are left out.
+    fn add_engines(&mut self, fuel_flow_kg_s: &[f64]) {
+        if self.engines_kg_s.is_empty() {
+            self.engines_kg_s = fuel_flow_kg_s.to_vec();
+        } else if self.engines_kg_s.len() == fuel_flow_kg_s.len() {
+            for (sum, one) in self.engines_kg_s.iter_mut().zip(fuel_flow_kg_s) {
+                *sum += one;
+            }
+        }
+    }
+
+    fn of_flight(self, start: Timestamp, name: &str) -> Flight {
+        let engines = &self.engines_kg_s;
+        let mean = engines.iter().sum::<f64>() / engines.len() as f64;
+        Flight {
+            name: name.to_owned(),
+            start,
+            start_s: start.as_second() as f64,
+            before: ErrorStatistics::from_errors(&self.before),
+            after: ErrorStatistics::from_errors(&self.after),
+            before_learning: ErrorStatistics::from_errors(&self.before_learning),
+            engines: engines.iter().map(|one| 100.0 * (one / mean - 1.0)).collect(),
+        }
+    }
+}
+
+/// Cruise performance at a segment that the present model predicts.
+fn cruise_of(result: &TailResult, k: usize) -> Option<Cruise> {
+    let SegmentRow { segment, evaluated } = &result.rows[k];
+    let means = &segment.means;
+    let present = if result.after.is_empty() { *evaluated } else { result.after[k] };
+    let predicted_kg_s = present?.predicted_fuel_flow_kg_s?;
+    let miles_per_tonne =
+        |fuel_kg_s: f64| 1000.0 * means.true_airspeed_m_s / fuel_kg_s / METERS_PER_NAUTICAL_MILE;
+    Some(Cruise {
+        mass_t: means.mass_kg / 1000.0,
+        specific_range: miles_per_tonne(means.fuel_flow_total_kg_s),
+        predicted: miles_per_tonne(predicted_kg_s),
+    })
 }
 
 impl Polars {
@@ -171,6 +239,9 @@ impl Polars {
             initial,
             current: model.drag_coefficient().values().to_vec(),
             learnt: model.learnt.is_some(),
+            half_width95: model.posterior().map(|posterior| {
+                posterior.standard_deviation().iter().map(|sd| NORMAL_95 * sd).collect()
+            }),
             informed,
             extrapolated: model.initial.extrapolated().to_vec(),
         }

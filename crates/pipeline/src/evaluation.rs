@@ -1,15 +1,17 @@
 //! What a table predicts for segments, and the results of each tail at the end of a run: the material of summary, tables, pages.
 
+use std::collections::BTreeMap;
+
 use adapt::paper;
 use diagnose::{WholeModel, WholePrediction};
 use effects::ExtendedModel;
-use flight::{Observation, Segment};
+use flight::{Observation, Segment, Timestamp};
 use lut::{Outside, Table};
 
 use crate::model_file::ModelFile;
 use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
-use crate::statistics::{ErrorStatistics, NORMAL_95};
+use crate::statistics::{ErrorStatistics, NORMAL_95, mean_half_width95_by_flight};
 use crate::summary::{ErrorsSummary, TailSummary};
 use crate::whole_model::{Predicts, SegmentHeld, error_percent_of};
 
@@ -224,7 +226,18 @@ fn summary_of(data: &TailData, before: &[Option<Evaluated>]) -> TailSummary {
         interval95_coverage: None,
         mean_error_within_percent: None,
         fuel_flow_error_percent: ErrorsSummary { before: statistics(before), after: None },
+        mean_error_half_width95_percent: mean_half_width95_by_flight(&by_flight(data, before)),
     }
+}
+
+/// Errors of each flight, in the order of flying.
+fn by_flight(data: &TailData, evaluated: &[Option<Evaluated>]) -> Vec<ErrorStatistics> {
+    let mut flights: BTreeMap<(Timestamp, &str), Vec<f64>> = BTreeMap::new();
+    for (segment, error) in data.segments.iter().zip(errors(evaluated)) {
+        let identity = &segment.identity;
+        flights.entry((identity.start, &identity.flight)).or_default().extend(error);
+    }
+    flights.values().map(|errors| ErrorStatistics::from_errors(errors)).collect()
 }
 
 fn state_without_errors(

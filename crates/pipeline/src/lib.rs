@@ -47,6 +47,7 @@ pub mod checksum;
 pub mod columns;
 pub mod condition_means;
 pub mod csv_cell;
+pub mod criteria_costs;
 pub mod dates;
 pub mod diagnosed_tail;
 pub mod diagnosis_document;

@@ -72,6 +72,10 @@ pub struct TailSummary {
     pub refits: Option<u32>,
     /// The error, in per cent.
     pub fuel_flow_error_percent: ErrorsSummary,
+    /// Half width of the 95 % interval of the mean error before, %: flights count, not segments; absent for fewer than two flights
+    /// with errors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_error_half_width95_percent: Option<f64>,
     /// Share of errors within the stated 95 % interval of a segment; absent where the law states none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval95_coverage: Option<f64>,

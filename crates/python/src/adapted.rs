@@ -284,7 +284,7 @@ impl Adapted {
         let names = self.tails.iter().map(|tail| tail.result.tail.as_str());
         let anchors = page::Anchors::new(names);
         let sections: Vec<page::Section> =
-            self.tails.par_iter().map(|tail| page::section(&tail.result, &anchors)).collect();
+            self.tails.par_iter().map(|tail| page::section(&tail.result, None, &anchors)).collect();
         if self.tails.len() <= page::TAILS_ON_ONE_PAGE {
             let sections: Vec<&page::Section> = sections.iter().collect();
             let report = page::report_of_sections(&self.summary, &sections, title);

@@ -5,13 +5,13 @@ use maud::{Markup, html};
 
 use super::Tail;
 use crate::chart::{Axis, Chart};
+use crate::shade;
 use crate::text::{counted, signed};
 
 /// Cells along Mach number and lift coefficient, about.
 const COLUMNS: usize = 9;
 const ROWS: usize = 7;
-/// Shades on each side of zero, and the least gap of the strongest one, %.
-const SHADES: f64 = 5.0;
+/// The least gap of full colour, %.
 const LEAST_FULL_PERCENT: f64 = 1.0;
 
 /// Segments of a cell.
@@ -75,7 +75,7 @@ pub(super) fn map(tail: &Tail<'_>) -> Markup {
             (chart.cell(
                 edge(&chart.x, column),
                 edge(&chart.y, row),
-                &format!("{}{}", shade(mean(cell), full), if within { " within" } else { "" }),
+                &format!("{}{}", shade::class(mean(cell), full), if within { " within" } else { "" }),
                 &format!(
                     "Mach {}, CL {}\ngap {} %, {}",
                     label(&chart.x, column),
@@ -109,15 +109,4 @@ fn place(axis: &Axis, value: f64) -> Option<usize> {
     let above = axis.ticks().partition_point(|tick| tick.at <= value);
     // The last tick belongs to the last cell.
     axis.holds(value).then(|| above.clamp(1, axis.ticks().len() - 1) - 1)
-}
-
-fn shade(mean_percent: f64, full_percent: f64) -> String {
-    let shade = (mean_percent / full_percent * SHADES).round().clamp(-SHADES, SHADES);
-    if shade > 0.0 {
-        format!("more{shade}")
-    } else if shade < 0.0 {
-        format!("less{}", -shade)
-    } else {
-        "even".to_owned()
-    }
 }

@@ -127,22 +127,23 @@ fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
 
-/// All tails in a table: the largest gaps first.
+/// All tails in a table: those with a gap first, of each the largest first.
 pub(super) fn index(tails: &[Tail<'_>]) -> Markup {
     let mut order: Vec<&Tail<'_>> = tails.iter().collect();
     order.sort_by(|one, other| {
-        let gap = |tail: &Tail<'_>| tail.diagnosed.diagnosis.gap.rms_percent;
-        gap(other).total_cmp(&gap(one))
+        let (one, other) = (&one.diagnosed.diagnosis.gap, &other.diagnosed.diagnosis.gap);
+        let by_size = other.rms_percent.total_cmp(&one.rms_percent);
+        other.detected.cmp(&one.detected).then(by_size)
     });
     html! {
         section {
             h2 { "All tails" }
             p { (in_short(tails)) }
+            p.note { "Tails with a gap beyond what model and sensors leave uncertain first, then the largest. A click on a heading sorts." }
             div.scroll tabindex="0" role="region" aria-label="Verdict of every tail" {
                 table.sort.data.fleet data-name="diagnosis" {
-                    caption { "Largest gap first. A click on a heading sorts." }
                     thead { tr {
-                        th scope="col" { "tail" } th scope="col" { "verdict" } th scope="col" { "probability" }
+                        th scope="col" { "tail" } th scope="col" style="text-align:left" { "verdict" } th scope="col" { "probability" }
                         th scope="col" { "gap, mean %" } th scope="col" { "rms %" } th scope="col" { "noise %" }
                         th scope="col" { "closes" }
                     } }

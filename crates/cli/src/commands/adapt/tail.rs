@@ -6,6 +6,7 @@ use pipeline::adaptation::{
     self, Contradictions, OlderFlights, RemainderChoice, Sorting, Start, StoredTail,
     refuse_impossible, result_of,
 };
+use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::known_flights::KnownFlights;
 use pipeline::learning::LearningError;
@@ -14,6 +15,7 @@ use pipeline::models::check_engines;
 use pipeline::plausibility::{self, Absurd};
 use pipeline::segments_table;
 use rayon::prelude::*;
+use segmenter::Tally;
 
 use super::Run;
 use crate::commands::tell_serious;
@@ -42,6 +44,8 @@ pub(super) struct TailOutcome {
     pub(super) flights_new: usize,
     pub(super) already_known: usize,
     pub(super) copies: usize,
+    /// What became of the samples of the flights that this run read.
+    pub(super) costs: Option<CriteriaCosts>,
     /// The first copy, and what it is a copy of.
     pub(super) first_copy: Option<(String, String)>,
 }
@@ -96,6 +100,7 @@ impl Run<'_> {
         let reading = self.plausible(tail, start, &new, buffers, side_by_side);
         sorting.refused.extend(reading.refused);
         let usable = already_known + reading.flights.len();
+        let costs = costs_of(&reading.flights);
         for flight in reading.flights {
             sorting.sort(flight);
         }
@@ -105,6 +110,7 @@ impl Run<'_> {
             already_known: sorting.already_known,
             copies: sorting.copies,
             first_copy: sorting.first_copy.take(),
+            costs,
             ..TailOutcome::default()
         };
         self.learn_sorted(start, sorting, stored, outcome)
@@ -195,7 +201,7 @@ impl Run<'_> {
             return self.store(&begun, stored, Vec::new(), outcome);
         }
         let result = result_of(stored, 0, Vec::new());
-        let section = self.page_of(&result)?;
+        let section = self.page_of(&result, None)?;
         Ok(TailOutcome { section, ..self.untouched(tail) })
     }
 
@@ -216,14 +222,18 @@ impl Run<'_> {
     ) -> Result<TailOutcome, Failure> {
         let flights = learnt_flights::to_csv(&learnt.flights);
         let result = result_of(learnt, outcome.flights_new, notes);
-        let section = self.page_of(&result)?;
+        let section = self.page_of(&result, outcome.costs.as_ref())?;
         let state = stage(self.folder, begun, &result, &flights)?;
         Ok(TailOutcome { state: Some(state), section, ..outcome })
     }
 
     /// The tail's part of the page, or its own page.
-    fn page_of(&self, result: &TailResult) -> Result<Option<page::Section>, Failure> {
-        let section = page::section(result, &self.anchors);
+    fn page_of(
+        &self,
+        result: &TailResult,
+        costs: Option<&CriteriaCosts>,
+    ) -> Result<Option<page::Section>, Failure> {
+        let section = page::section(result, costs, &self.anchors);
         if self.on_one_page {
             return Ok(Some(section));
         }
@@ -231,6 +241,15 @@ impl Run<'_> {
             .stage(&page_file(&result.tail), neutral(&page::tail_page(&section)).as_bytes())?;
         Ok(None)
     }
+}
+
+/// What the trim criteria cost in the flights that were read; `None` without flights.
+fn costs_of(flights: &[FlightRead]) -> Option<CriteriaCosts> {
+    let total = flights.iter().fold(Tally::NOTHING, |mut total, flight| {
+        total += flight.reduced.tally;
+        total
+    });
+    (total.flights > 0).then(|| CriteriaCosts::from(&total))
 }
 
 /// Reports of flights that are not known, or known with other content; and how many are known.

@@ -1,0 +1,145 @@
+//! The drag surface: how far learning has moved it, how sure that is, and where it was flown.
+
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+
+use crate::chart::{Axis, Chart, Mark, Rectangle, thinned};
+use crate::place::{Detail, Place};
+use crate::polars::nodes_near;
+use crate::shade;
+use crate::text::breakpoint;
+use crate::view::TailView;
+
+/// Flown points at most. Our choice: they show where, not how many.
+const MOST_POINTS: usize = 300;
+/// Nodes along each axis at most, so that a fine table does not make a large page; of a finer one every second, third, … is drawn.
+const MOST_NODES: usize = 16;
+/// Least change of full colour, %.
+const LEAST_FULL_PERCENT: f64 = 2.0;
+
+/// Nodes that are drawn along an axis, with the edges between them.
+struct Nodes {
+    chosen: Vec<usize>,
+    edges: Vec<f64>,
+}
+
+impl Nodes {
+    fn about(grid: &[f64], flown: &[f64]) -> Self {
+        let (first, last) = nodes_near(grid, flown.iter().copied());
+        let step = (last - first + 1).div_ceil(MOST_NODES);
+        let chosen: Vec<usize> = (first..=last).step_by(step).collect();
+        let at: Vec<f64> = chosen.iter().map(|k| grid[*k]).collect();
+        let mut edges: Vec<f64> =
+            at.windows(2).map(|pair| f64::midpoint(pair[0], pair[1])).collect();
+        if let ([one, two, ..], [.., before, end]) = (at.as_slice(), at.as_slice()) {
+            edges.insert(0, one - (two - one) / 2.0);
+            edges.push(end + (end - before) / 2.0);
+        }
+        Self { chosen, edges }
+    }
+}
+
+/// The map; nothing where nothing was learnt.
+pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
+    let polars = &view.polars;
+    let along =
+        |of: fn(&crate::view::Point) -> f64| -> Vec<f64> { view.points.iter().map(of).collect() };
+    let rows = Nodes::about(&polars.lift_coefficient, &along(|point| point.lift_coefficient));
+    let columns = Nodes::about(&polars.mach, &along(|point| point.mach));
+    if !polars.learnt || rows.edges.is_empty() || columns.edges.is_empty() {
+        return html! {};
+    }
+    let nodes = || {
+        rows.chosen
+            .iter()
+            .flat_map(|row| columns.chosen.iter().map(|column| polars.node(*row, *column)))
+    };
+    let full = nodes().map(|node| change(view, node).abs()).fold(LEAST_FULL_PERCENT, f64::max);
+    let ends = |edges: &[f64]| Axis::within(edges[0], edges[edges.len() - 1], 6);
+    let chart = Chart {
+        id: place.id("surface"),
+        title: format!("{}: change of the drag surface", place.tail),
+        description: format!(
+            "Drag coefficient of the present table against the initial one at {} nodes of Mach number and lift coefficient, and where \
+             segments were flown.",
+            rows.chosen.len() * columns.chosen.len()
+        ),
+        width: 500.0,
+        height: 290.0,
+        x: ends(&columns.edges),
+        y: ends(&rows.edges),
+        x_label: "Mach number".to_owned(),
+        y_label: "lift coefficient CL".to_owned(),
+    };
+    let flown: Vec<(f64, f64)> = thinned(view.points.len(), place.cloud(MOST_POINTS))
+        .into_iter()
+        .map(|k| (view.points[k].mach, view.points[k].lift_coefficient))
+        .collect();
+    html! {
+        figure {
+            figcaption {
+                b { "Change of the drag surface." }
+                " Orange: more drag than in the initial table, blue: less; full colour from " (format!("{full:.1}"))
+                " %. Pale: nodes that no segment has adapted. Points: where it was flown."
+            }
+            (chart.draw(&html! {
+                @if place.detail == Detail::Brief { (brief(view, (&rows, &columns), full, &chart)) }
+                @else { @for (i, row) in rows.chosen.iter().enumerate() {
+                    @for (j, column) in columns.chosen.iter().enumerate() {
+                        (chart.cell(
+                            (columns.edges[j], columns.edges[j + 1]),
+                            (rows.edges[i], rows.edges[i + 1]),
+                            &look(view, polars.node(*row, *column), full),
+                            &tip(view, *row, *column),
+                        ))
+                    }
+                } }
+                (chart.marks(&flown, Mark::Dot, "observed"))
+            }))
+        }
+    }
+}
+
+/// The cells of each shade as one path.
+fn brief(view: &TailView, (rows, columns): (&Nodes, &Nodes), full: f64, chart: &Chart) -> Markup {
+    let mut shades: BTreeMap<String, Vec<Rectangle>> = BTreeMap::new();
+    for (i, row) in rows.chosen.iter().enumerate() {
+        for (j, column) in columns.chosen.iter().enumerate() {
+            let edges =
+                ((columns.edges[j], columns.edges[j + 1]), (rows.edges[i], rows.edges[i + 1]));
+            shades
+                .entry(look(view, view.polars.node(*row, *column), full))
+                .or_default()
+                .push(edges);
+        }
+    }
+    html! { @for (class, cells) in &shades { (chart.rectangles(cells, &format!("cell {class}"))) } }
+}
+
+/// Class of a node's cell.
+fn look(view: &TailView, node: usize, full: f64) -> String {
+    let faint = if view.polars.informed[node] { "" } else { " faint" };
+    format!("{}{faint}", shade::class(change(view, node), full))
+}
+
+/// By how much learning has moved a node, %.
+fn change(view: &TailView, node: usize) -> f64 {
+    100.0 * (view.polars.current[node] / view.polars.initial[node] - 1.0)
+}
+
+fn tip(view: &TailView, row: usize, column: usize) -> String {
+    let polars = &view.polars;
+    let node = polars.node(row, column);
+    let (initial, current) = (polars.initial[node], polars.current[node]);
+    let within = polars
+        .half_width95
+        .as_ref()
+        .map_or_else(String::new, |half| format!(" ± {:.1}", 100.0 * half[node]));
+    format!(
+        "Mach {}, CL {}\nCD {initial:.4} to {current:.4}: {:+.1}{within} %",
+        breakpoint(polars.mach[column]),
+        breakpoint(polars.lift_coefficient[row]),
+        change(view, node)
+    )
+}
