@@ -71,7 +71,7 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Maximum-range, long-range and cost-index Mach numbers and best levels by a model, compared with the book's
     Optimum(OptimumArgs),
-    /// Draw a model, or a tail of an adapted folder, as SVG
+    /// Draw a model, a tail of an adapted folder, a diagnosis, months or trials as SVG
     Plot(PlotArgs),
     /// The library of effects: name, unit, usual size, what has to be recorded
     Effects(EffectsArgs),
@@ -482,12 +482,15 @@ fn cost_index(text: &str) -> Result<f64, String> {
 /// `plot`
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
-    /// Model file, or folder that `adapt` wrote
-    #[arg(value_name = "MODEL.ron|DIR")]
+    /// Model file, folder that `adapt` wrote, or `diagnosis.json`, `monitor.json`, `trials.json`
+    #[arg(value_name = "MODEL.ron|DIR|FILE.json")]
     pub(crate) source: PathBuf,
-    /// Tail of the folder [default: the only one]
+    /// Tail of the folder or file [default: the only one of a folder, all of a file]
     #[arg(long, value_name = "TAIL")]
     pub(crate) tail: Option<String>,
+    /// Charts of a model or tail [default: all]
+    #[arg(long = "chart", value_name = "NAME", value_delimiter = ',', value_parser = page::TAIL_CHARTS)]
+    pub(crate) charts: Vec<String>,
     /// SVG file to write
     #[arg(long, short, value_name = "FIG.svg")]
     pub(crate) output: PathBuf,

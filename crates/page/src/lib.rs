@@ -29,6 +29,7 @@ mod envelope;
 mod errors;
 mod fleet;
 mod frame;
+mod matrix;
 mod monitoring;
 mod performance;
 mod place;
@@ -45,10 +46,11 @@ mod tail;
 mod tests;
 mod text;
 mod view;
+mod waterfall;
 
 pub use diagnosis::diagnosis;
 pub use monitoring::monitoring;
-pub use plot::plot;
+pub use plot::{Confusion, TAIL_CHARTS, plot, plot_confusions, plot_diagnoses, plot_months};
 pub use report::{
     Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
     tail_page,

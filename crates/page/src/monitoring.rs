@@ -132,7 +132,7 @@ fn table(tails: &[(usize, &TailDocument)]) -> Markup {
 }
 
 /// Deviations over time, the level through them, changes and events.
-fn chart(tail: &TailDocument, id: usize, most: usize) -> Markup {
+pub(crate) fn chart(tail: &TailDocument, id: usize, most: usize) -> Markup {
     let seconds = |time: &str| time.parse::<Timestamp>().ok().map(|time| time.as_second() as f64);
     let flights = &tail.flights;
     let points: Vec<(f64, f64)> = thinned(flights.len(), most)

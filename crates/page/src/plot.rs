@@ -1,14 +1,18 @@
-//! The charts of one tail as a single SVG file, for a report or a slide.
+//! Charts as a single SVG file, for a report or a slide: of one tail, of a diagnosis, of months, of blind trials.
 
 use std::fmt::Write;
 
-use maud::html;
+use maud::{Markup, html};
+use pipeline::diagnosis_document::TailDiagnosis;
 use pipeline::evaluation::TailResult;
+use pipeline::monitoring::TailDocument;
 
 use crate::place::{Detail, Place};
 use crate::style::STYLE;
-use crate::tail;
 use crate::view::TailView;
+use crate::{matrix, monitoring, tail, waterfall};
+
+pub use crate::matrix::Confusion;
 
 /// Points of a chart at most; a figure of one tail may be large.
 const MOST_POINTS: usize = 5000;
@@ -17,17 +21,23 @@ const HEADING: f64 = 24.0;
 const GAP: f64 = 16.0;
 const COLUMNS: usize = 2;
 
-/// A chart cut out of the page: what is drawn, its size and its title.
+/// Names of the charts of a tail; `polars` are several.
+pub const TAIL_CHARTS: [&str; 7] =
+    ["histogram", "time", "forecast", "surface", "specific-range", "engines", "polar"];
+
+/// A chart cut out of a page: what is drawn, its size and its title.
 struct Drawing<'a> {
+    id: &'a str,
     width: f64,
     height: f64,
     title: &'a str,
     marks: &'a str,
 }
 
-/// Histogram of errors, errors over time and drag polars of one tail as a file of its own; without segments, the polars alone.
+/// Charts of one tail as a file of its own, those of these names ([`TAIL_CHARTS`]) or all; without segments, what there is of
+/// the table alone. `None` where nothing is left to draw.
 #[must_use]
-pub fn plot(result: &TailResult) -> String {
+pub fn plot(result: &TailResult, charts: &[&str]) -> Option<String> {
     let view = TailView::new(result);
     let place = Place {
         tail: &result.tail,
@@ -36,22 +46,66 @@ pub fn plot(result: &TailResult) -> String {
         detail: Detail::Brief,
     };
     let page = tail::figures(&view, &place).into_string();
+    let named = |one: &Drawing<'_>| {
+        let id = one.id.trim_start_matches("plot-");
+        charts.is_empty() || charts.iter().any(|chart| id.starts_with(chart))
+    };
+    let of_table =
+        |one: &Drawing<'_>| ["plot-polar", "plot-surface"].iter().any(|id| one.id.starts_with(id));
     let empty = view.points.is_empty();
-    let drawings: Vec<Drawing<'_>> =
-        drawings(&page).filter(|one| !empty || one.title.contains("polar")).collect();
+    let drawn: Vec<Drawing<'_>> =
+        drawings(&page).filter(|one| named(one) && (!empty || of_table(one))).collect();
+    sheet(&result.tail, &drawn)
+}
+
+/// From the gap to the noise, of each diagnosis of a file.
+#[must_use]
+pub fn plot_diagnoses(diagnoses: &[TailDiagnosis]) -> Option<String> {
+    let page =
+        html! { @for (k, one) in diagnoses.iter().enumerate() { (waterfall::waterfall(one, k)) } };
+    let page = page.into_string();
+    sheet("Diagnoses", &drawings(&page).collect::<Vec<_>>())
+}
+
+/// Deviation over time of tails as `monitor.json` has them.
+#[must_use]
+pub fn plot_months(tails: &[TailDocument]) -> Option<String> {
+    let page = html! {
+        @for (k, tail) in tails.iter().enumerate() { (monitoring::chart(tail, k, MOST_POINTS)) }
+    };
+    let page = page.into_string();
+    sheet("Deviation over time", &drawings(&page).collect::<Vec<_>>())
+}
+
+/// What was planted against what was found, a matrix for each group of blind trials.
+#[must_use]
+pub fn plot_confusions(groups: &[(String, Confusion)]) -> Option<String> {
+    let page: Markup = html! {
+        @for (k, (name, confusion)) in groups.iter().enumerate() { (matrix::matrix(name, confusion, k)) }
+    };
+    let page = page.into_string();
+    sheet("Planted and found", &drawings(&page).collect::<Vec<_>>())
+}
+
+/// Charts on one sheet; `None` without charts.
+fn sheet(title: &str, drawings: &[Drawing<'_>]) -> Option<String> {
+    if drawings.is_empty() {
+        return None;
+    }
+    let columns = COLUMNS.min(drawings.len());
     let cell_width = drawings.iter().map(|one| one.width).fold(0.0, f64::max) + GAP;
     let cell_height = drawings.iter().map(|one| one.height).fold(0.0, f64::max) + HEADING + GAP;
-    let rows = drawings.len().div_ceil(COLUMNS);
-    let (width, height) = (cell_width * COLUMNS as f64 + GAP, cell_height * rows as f64 + GAP);
+    let rows = drawings.len().div_ceil(columns);
+    let (width, height) = (cell_width * columns as f64 + GAP, cell_height * rows as f64 + GAP);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          font-family=\"sans-serif\">\n<title>{}</title>\n<style><![CDATA[{STYLE}]]></style>\n\
          <rect width=\"100%\" height=\"100%\" style=\"fill:var(--paper)\"/>\n",
-        html! { (result.tail) }.into_string()
+        html! { (title) }.into_string()
     );
     for (k, one) in drawings.iter().enumerate() {
         let (left, top) =
-            (GAP + cell_width * (k % COLUMNS) as f64, GAP + cell_height * (k / COLUMNS) as f64);
+            (GAP + cell_width * (k % columns) as f64, GAP + cell_height * (k / columns) as f64);
         let _ = writeln!(
             svg,
             "<g transform=\"translate({left} {top})\"><text x=\"64\" y=\"14\" style=\"font-weight:600\">{}</text>\
@@ -60,7 +114,7 @@ pub fn plot(result: &TailResult) -> String {
         );
     }
     svg.push_str("</svg>\n");
-    svg
+    Some(svg)
 }
 
 /// The charts of a piece of a page, in order; the keys of legends are not among them.
@@ -70,7 +124,8 @@ fn drawings(page: &str) -> impl Iterator<Item = Drawing<'_>> {
         let size = head.strip_prefix("viewBox=\"0 0 ").filter(|_| head.contains("role=\"img\""))?;
         let (width, height) = size.split_once('"')?.0.split_once(' ')?;
         let marks = rest.split("</svg>").next()?;
-        let title = marks.split_once("<title")?.1.split_once('>')?.1.split("</title>").next()?;
-        Some(Drawing { width: width.parse().ok()?, height: height.parse().ok()?, title, marks })
+        let (id, after) = marks.split_once("<title id=\"")?.1.split_once("-title\"")?;
+        let title = after.split_once('>')?.1.split("</title>").next()?;
+        Some(Drawing { id, width: width.parse().ok()?, height: height.parse().ok()?, title, marks })
     })
 }

@@ -99,12 +99,14 @@ fn numbers_are_those_of_the_document() {
 
 #[test]
 fn a_plot_is_one_drawing() {
-    let svg = plot(&tail("<T>&", true));
+    let svg = plot(&tail("<T>&", true), &[]).unwrap();
     assert_eq!(svg.matches("<svg").count(), 1);
     assert!(svg.contains("<title>&lt;T&gt;&amp;</title>") && !svg.contains("<T>"));
     assert!(svg.contains("drag polar at Mach") && svg.contains("error over time"));
     assert!(!svg.contains("NaN"));
     assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count());
+    let one = plot(&tail("T", true), &["surface"]).unwrap();
+    assert!(one.contains("change of the drag surface") && !one.contains("drag polar"));
 }
 
 #[test]

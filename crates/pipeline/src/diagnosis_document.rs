@@ -8,8 +8,9 @@ use crate::summary::{RefusedSummary, ReportsSummary};
 mod tail;
 
 pub use tail::{
-    BesideRecord, CauseRecord, DetectableRecord, GapRecord, MagnitudeRecord, NotTestableRecord,
-    OutsideLibraryRecord, SeparationRecord, SliceRecord, TailDiagnosis, VerdictKind, VerdictRecord,
+    BesideRecord, CauseRecord, DetectableRecord, GapRecord, HeldOutRecord, MagnitudeRecord,
+    NotTestableRecord, OutsideLibraryRecord, SeparationRecord, SliceRecord, TailDiagnosis,
+    VerdictKind, VerdictRecord,
 };
 
 /// Schema of [`DiagnosisDocument`].

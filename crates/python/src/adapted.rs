@@ -146,7 +146,7 @@ impl Adapted {
 
     /// The charts of a tail as SVG.
     fn plot(&self, tail: &str) -> PyResult<String> {
-        Ok(page::plot(&self.tail(tail)?.result))
+        Ok(page::plot(&self.tail(tail)?.result, &[]).unwrap_or_default())
     }
 
     /// Path below the folder and bytes of every file that `cruisefit adapt` writes into a new folder.

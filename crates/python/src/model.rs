@@ -108,7 +108,7 @@ impl Model {
             counts: TailCounts::default(),
             notes: Vec::new(),
         };
-        page::plot(&TailResult::as_given(data, Predicts::WholeModel))
+        page::plot(&TailResult::as_given(data, Predicts::WholeModel), &[]).unwrap_or_default()
     }
 
     /// One row per node of the drag table.

@@ -1,4 +1,4 @@
-//! `cruisefit plot`: the charts of a model, or of one tail of an adapted folder, as an SVG file.
+//! `cruisefit plot`: the charts of a model, of a tail of an adapted folder, of a diagnosis, of months or trials, as an SVG file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,12 +6,15 @@ use std::path::{Path, PathBuf};
 use crate::args::PlotArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
-use crate::files::{file_stem_of_tail, write_atomically};
+use crate::files::{file_stem_of_tail, read_text, write_atomically};
 use crate::models::read_model;
+use pipeline::diagnosis_document::TailDiagnosis;
 use pipeline::evaluation::{TailCounts, TailData, TailResult};
 use pipeline::model_file::ModelFile;
+use pipeline::monitoring::TailDocument;
 use pipeline::segments_table;
 use pipeline::whole_model::Predicts;
+use serde::Deserialize;
 
 /// Runs the command.
 ///
@@ -22,18 +25,82 @@ pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
         return Err(Failure::BadArgument {
             argument: "--output",
             reason: format!(
-                "{}: only SVG is drawn; name the file FIG.svg",
+                "{}: only SVG is drawn; name the file FIG.svg. rsvg-convert, Inkscape or a browser make PNG and PDF of it",
                 show(&arguments.output)
             ),
         });
     }
-    let result = if arguments.source.is_dir() {
-        of_folder(&arguments.source, arguments.tail.as_deref())?
+    let source = &arguments.source;
+    let charts: Vec<&str> = arguments.charts.iter().map(String::as_str).collect();
+    let drawn = if source.is_dir() {
+        page::plot(&of_folder(source, arguments.tail.as_deref())?, &charts)
+    } else if source.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
+        of_document(source, arguments.tail.as_deref())?
     } else {
-        of_model(read_model(&arguments.source)?)
+        page::plot(&of_model(read_model(source)?), &charts)
     };
-    write_atomically(&arguments.output, page::plot(&result).as_bytes())?;
+    let drawn = drawn.ok_or_else(|| Failure::BadArgument {
+        argument: "MODEL.ron|DIR|FILE.json",
+        reason: format!("{} holds nothing of what was asked for", show(source)),
+    })?;
+    write_atomically(&arguments.output, drawn.as_bytes())?;
     Ok(Outcome::text(format!("Written to {}\n", show(&arguments.output))))
+}
+
+/// What this command reads of the documents of others.
+#[derive(Deserialize)]
+#[serde(tag = "schema")]
+enum Document {
+    #[serde(rename = "cruisefit.diagnosis/1")]
+    Diagnosis { diagnoses: Vec<TailDiagnosis> },
+    #[serde(rename = "cruisefit.monitor/1")]
+    Monitor { tails: Vec<TailDocument> },
+    #[serde(rename = "cruisefit.trials/1")]
+    Trials { groups: Vec<TrialGroup> },
+}
+
+#[derive(Deserialize)]
+struct TrialGroup {
+    denied: serde_json::Value,
+    background: serde_json::Value,
+    times: f64,
+    scores: TrialScores,
+}
+
+#[derive(Deserialize)]
+struct TrialScores {
+    confusion: page::Confusion,
+}
+
+fn of_document(path: &Path, tail: Option<&str>) -> Result<Option<String>, Failure> {
+    let document: Document =
+        serde_json::from_str(&read_text(path)?).map_err(|error| Failure::bad_file(path, error))?;
+    let asked = |name: &str| tail.is_none_or(|tail| tail == name);
+    Ok(match document {
+        Document::Diagnosis { mut diagnoses } => {
+            diagnoses.retain(|one| asked(&one.tail));
+            page::plot_diagnoses(&diagnoses)
+        }
+        Document::Monitor { mut tails } => {
+            tails.retain(|one| asked(&one.tail));
+            page::plot_months(&tails)
+        }
+        Document::Trials { groups } => {
+            let words = |value: &serde_json::Value| {
+                value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+            };
+            let named = groups.into_iter().map(|group| {
+                let name = format!(
+                    "model {}, background {}, {} times the typical size",
+                    words(&group.denied),
+                    words(&group.background),
+                    group.times
+                );
+                (name, group.scores.confusion)
+            });
+            page::plot_confusions(&named.collect::<Vec<_>>())
+        }
+    })
 }
 
 /// A model without flights.

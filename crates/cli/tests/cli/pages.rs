@@ -10,6 +10,33 @@ fn numbers_of_the_verdict() {
     let scratch = tempfile::tempdir().unwrap();
     cruisefit(&["demo".as_ref(), "-o".as_ref(), scratch.path().as_os_str()]).expect(0);
     check_numbers(scratch.path());
+    check_plots(scratch.path());
+}
+
+/// The charts of documents: of a diagnosis, of months, of blind trials.
+fn check_plots(demo: &Path) {
+    let (adapted, months) = (demo.join("adapted-bayes"), demo.join("monitor"));
+    cruisefit(&["monitor".as_ref(), adapted.as_os_str(), "-o".as_ref(), months.as_os_str()])
+        .expect(0);
+    let trials = demo.join("trials.json");
+    let group = r#"{"denied": "exact", "background": "clean", "times": 1.0,
+        "scores": {"confusion": {"tsfc_level": {"tsfc_level": 3, "no_gap": 1}}}}"#;
+    fs::write(&trials, format!(r#"{{"schema": "cruisefit.trials/1", "groups": [{group}]}}"#))
+        .unwrap();
+    let figure = demo.join("figure.svg");
+    for (source, words) in [
+        (demo.join("diagnosis/diagnosis.json"), "N750CF: from the gap to the noise"),
+        (months.join("monitor.json"), "N750CF: deviation of fuel flow over time"),
+        (trials.clone(), ">tsfc_level</text>"),
+    ] {
+        let arguments = ["plot".as_ref(), source.as_os_str(), "-o".as_ref(), figure.as_os_str()];
+        cruisefit(&arguments).expect(0);
+        let svg = fs::read_to_string(&figure).unwrap();
+        assert!(svg.contains(words) && !svg.contains("NaN"), "{}", source.display());
+    }
+    fs::write(&trials, r#"{"schema": "cruisefit.other/1"}"#).unwrap();
+    let ran = cruisefit(&["plot".as_ref(), trials.as_os_str(), "-o".as_ref(), figure.as_os_str()]);
+    ran.expect(2).says("unknown variant `cruisefit.other/1`");
 }
 
 /// Every figure of the verdict stands on the page as in the document, and errors before and after as in the summary.

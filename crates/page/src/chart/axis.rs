@@ -60,6 +60,14 @@ impl Axis {
         Self::around(0.0, largest.max(ticks) as f64, ticks)
     }
 
+    /// A scale of names: the k-th from k to k + 1, its tick in the middle.
+    pub(crate) fn of_names(names: &[String]) -> Self {
+        let ticks = names.iter().enumerate();
+        let ticks = ticks.map(|(k, name)| Tick { at: k as f64 + 0.5, label: name.clone() });
+        let (first, last) = of_some_length(0.0, names.len() as f64);
+        Self { first, last, ticks: ticks.collect(), values: Values::Numbers }
+    }
+
     /// A scale of instants with given ticks; those beyond the ends are left out.
     pub(crate) fn of_dates(low: f64, high: f64, ticks: Vec<Tick>) -> Self {
         let (first, last) = of_some_length(low, high);

@@ -1,13 +1,13 @@
 //! What `monitor` found, as types that become JSON, tables and text.
 
 use monitor::{Estimate, FleetMean, fleet_mean};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Name and version of the JSON.
 pub const SCHEMA: &str = "cruisefit.monitor/1";
 
 /// A value with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// The value.
     pub value: f64,
@@ -51,7 +51,7 @@ pub struct MonitorDocument {
 }
 
 /// A tail.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TailDocument {
     /// Tail.
     pub tail: String,
@@ -90,7 +90,7 @@ pub struct TailDocument {
 }
 
 /// Conditions that deviations are normalised to.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "quantities with their units")]
 pub struct ReferenceDocument {
     pub pressure_altitude_m: f64,
@@ -103,7 +103,7 @@ pub struct ReferenceDocument {
 }
 
 /// Airbus' terms.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AirbusTerms {
     /// DSR, mean over all flights: negative, worse than the book.
     pub specific_range_deviation_percent: f64,
@@ -120,7 +120,7 @@ pub struct AirbusTerms {
 }
 
 /// What a deviation costs.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CostDocument {
     /// Flights a year that are counted with.
     pub flights_per_year: Option<f64>,
@@ -135,7 +135,7 @@ pub struct CostDocument {
 }
 
 /// A change.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChangeDocument {
     /// Engine, from 1; absent for all together.
     pub engine: Option<usize>,
@@ -152,7 +152,7 @@ pub struct ChangeDocument {
 }
 
 /// An event.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EventDocument {
     /// When.
     pub time: String,
@@ -167,7 +167,7 @@ pub struct EventDocument {
 }
 
 /// A month.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MonthDocument {
     /// Year and month.
     pub month: String,
@@ -194,7 +194,7 @@ pub struct MonthDocument {
 }
 
 /// A flight.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlightDocument {
     /// Its name.
     pub flight: String,
