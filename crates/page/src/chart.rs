@@ -44,9 +44,6 @@ pub(crate) struct Chart {
     pub(crate) y_label: String,
 }
 
-/// Two values of each scale.
-pub(crate) type Rectangle = ((f64, f64), (f64, f64));
-
 /// Shape of a mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mark {
@@ -171,17 +168,6 @@ impl Chart {
                 width=(coordinate((right - left).max(0.0))) height=(coordinate((bottom - top).max(0.0)))
                 data-tip=(tip) {}
         }
-    }
-
-    /// Rectangles as one path.
-    pub(crate) fn rectangles(&self, cells: &[Rectangle], class: &str) -> Markup {
-        let mut d = String::new();
-        for ((left, right), (bottom, top)) in cells {
-            push_point(&mut d, 'M', (self.x_at(*left), self.y_at(*bottom)));
-            let _ = write!(d, "V{}H{}", coordinate(self.y_at(*top)), coordinate(self.x_at(*right)));
-            let _ = write!(d, "V{}Z", coordinate(self.y_at(*bottom)));
-        }
-        path(class, &d)
     }
 
     /// An upright line with words for the pointer; cut off at the frame.

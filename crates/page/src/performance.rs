@@ -17,7 +17,7 @@ const ENGINES: [(Mark, &str); 4] =
 
 /// Recorded and predicted specific range over gross mass.
 pub(crate) fn specific_range(view: &TailView, place: &Place<'_>) -> Markup {
-    let shown = thinned(view.cruise.len(), place.cloud(MOST_POINTS));
+    let shown = thinned(view.cruise.len(), MOST_POINTS.min(place.most_points));
     let points = |of: fn(&Cruise) -> f64| -> Vec<(f64, f64)> {
         shown.iter().map(|k| (view.cruise[*k].mass_t, of(&view.cruise[*k]))).collect()
     };
@@ -73,7 +73,7 @@ pub(crate) fn engines(view: &TailView, place: &Place<'_>) -> Markup {
         .filter(|flight| flight.engines.len() == view.engines && view.engines > 1)
         .collect();
     let (Some(first), Some(last)) = (flights.first(), flights.last()) else { return html! {} };
-    let shown = thinned(flights.len(), place.cloud(MOST_POINTS));
+    let shown = thinned(flights.len(), MOST_POINTS.min(place.most_points));
     let values = || flights.iter().flat_map(|flight| flight.engines.iter().copied());
     let low = values().fold(0.0, f64::min);
     let chart = Chart {

@@ -11,16 +11,16 @@ pub(crate) struct Place<'a> {
     pub(crate) id: String,
     /// Largest number of points of a chart.
     pub(crate) most_points: usize,
-    /// How much a drawing holds beside what is seen.
+    /// Which charts a tail has.
     pub(crate) detail: Detail,
 }
 
-/// How much a drawing holds beside what is seen.
+/// Which charts a tail has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Detail {
-    /// Words under the pointer for every cell.
+    /// All.
     Full,
-    /// None: the page holds very many tails.
+    /// Those of errors and polars: 200 tails on one page must stay below 6 MB.
     Brief,
 }
 
@@ -28,12 +28,6 @@ impl Place<'_> {
     /// An id for an element of this section.
     pub(crate) fn id(&self, what: &str) -> String {
         format!("{}-{what}", self.id)
-    }
-
-    /// Points of a cloud that has at most so many: a third of them on a page of very many tails.
-    pub(crate) fn cloud(&self, most: usize) -> usize {
-        let most = if self.detail == Detail::Brief { most / 3 } else { most };
-        most.min(self.most_points)
     }
 
     /// The note that not everything is drawn.

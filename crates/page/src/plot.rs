@@ -43,7 +43,7 @@ pub fn plot(result: &TailResult, charts: &[&str]) -> Option<String> {
         tail: &result.tail,
         id: "plot".to_owned(),
         most_points: MOST_POINTS,
-        detail: Detail::Brief,
+        detail: Detail::Full,
     };
     let page = tail::figures(&view, &place).into_string();
     let named = |one: &Drawing<'_>| {

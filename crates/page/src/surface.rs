@@ -1,11 +1,9 @@
 //! The drag surface: how far learning has moved it, how sure that is, and where it was flown.
 
-use std::collections::BTreeMap;
-
 use maud::{Markup, html};
 
-use crate::chart::{Axis, Chart, Mark, Rectangle, thinned};
-use crate::place::{Detail, Place};
+use crate::chart::{Axis, Chart, Mark, thinned};
+use crate::place::Place;
 use crate::polars::nodes_near;
 use crate::shade;
 use crate::text::breakpoint;
@@ -72,7 +70,7 @@ pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
         x_label: "Mach number".to_owned(),
         y_label: "lift coefficient CL".to_owned(),
     };
-    let flown: Vec<(f64, f64)> = thinned(view.points.len(), place.cloud(MOST_POINTS))
+    let flown: Vec<(f64, f64)> = thinned(view.points.len(), MOST_POINTS.min(place.most_points))
         .into_iter()
         .map(|k| (view.points[k].mach, view.points[k].lift_coefficient))
         .collect();
@@ -84,8 +82,7 @@ pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
                 " %. Pale: nodes that no segment has adapted. Points: where it was flown."
             }
             (chart.draw(&html! {
-                @if place.detail == Detail::Brief { (brief(view, (&rows, &columns), full, &chart)) }
-                @else { @for (i, row) in rows.chosen.iter().enumerate() {
+                @for (i, row) in rows.chosen.iter().enumerate() {
                     @for (j, column) in columns.chosen.iter().enumerate() {
                         (chart.cell(
                             (columns.edges[j], columns.edges[j + 1]),
@@ -94,27 +91,11 @@ pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
                             &tip(view, *row, *column),
                         ))
                     }
-                } }
+                }
                 (chart.marks(&flown, Mark::Dot, "observed"))
             }))
         }
     }
-}
-
-/// The cells of each shade as one path.
-fn brief(view: &TailView, (rows, columns): (&Nodes, &Nodes), full: f64, chart: &Chart) -> Markup {
-    let mut shades: BTreeMap<String, Vec<Rectangle>> = BTreeMap::new();
-    for (i, row) in rows.chosen.iter().enumerate() {
-        for (j, column) in columns.chosen.iter().enumerate() {
-            let edges =
-                ((columns.edges[j], columns.edges[j + 1]), (rows.edges[i], rows.edges[i + 1]));
-            shades
-                .entry(look(view, view.polars.node(*row, *column), full))
-                .or_default()
-                .push(edges);
-        }
-    }
-    html! { @for (class, cells) in &shades { (chart.rectangles(cells, &format!("cell {class}"))) } }
 }
 
 /// Class of a node's cell.

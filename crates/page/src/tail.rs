@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::place::Place;
+use crate::place::{Detail, Place};
 use crate::text::{counted, plain, signed};
 use crate::view::TailView;
 use crate::{criteria, envelope, errors, performance, polars, surface};
@@ -37,9 +37,14 @@ pub(crate) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
             (errors::histogram(view, &bins, place))
             (errors::over_time(view, &bins, place))
             (errors::before_learning(view, place))
-            (surface::surface(view, place))
-            (performance::specific_range(view, place))
-            (performance::engines(view, place))
+            @if place.detail == Detail::Full {
+                (surface::surface(view, place))
+                (performance::specific_range(view, place))
+                (performance::engines(view, place))
+            }
+        }
+        @if place.detail == Detail::Brief {
+            p.note { "The page of so many tails leaves out the drag surface, specific range and engines." }
         }
         (polars::polars(view, place))
         div.row {
