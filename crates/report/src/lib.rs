@@ -53,7 +53,6 @@ pub mod cruise_text;
 mod decode;
 mod line;
 pub mod mapping;
-mod name;
 mod number;
 mod refusal;
 mod text_layout;

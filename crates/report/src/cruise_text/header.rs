@@ -6,7 +6,6 @@ use flight::{
 use units::Mass;
 
 use crate::line::{Line, Lines, Word};
-use crate::name;
 use crate::number;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
@@ -156,9 +155,6 @@ impl<'a> Entry<'a> {
 fn free_text(entry: &Entry<'_>) -> Result<String, Refusal> {
     if entry.value.text.is_empty() {
         return Err(entry.malformed(TEXT_FORM));
-    }
-    if !name::is_harmless(entry.value.text) {
-        return Err(entry.malformed(name::FORM));
     }
     Ok(entry.value.text.to_owned())
 }

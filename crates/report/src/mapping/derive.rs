@@ -17,7 +17,6 @@ use super::file::OutOfRange;
 use super::plan::{Conversion, MachSource, MassPlan, Plan, TemperatureSource, TrueAirspeedSource};
 use super::table::{Layout, Recording};
 use crate::Parsed;
-use crate::name;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
 /// A limit is widened by this share of itself: a number exactly on it must not fail because of a conversion's rounding.
@@ -42,12 +41,6 @@ pub(super) fn report(
     if rows.len() < fewest {
         let error = ReportDataError::TooFewSamples { found: rows.len() };
         return Err(refuse_inconsistent(error));
-    }
-    for (key, text) in ["AIRCRAFT", "TAIL", "FLIGHT"].into_iter().zip(recording.texts.iter()) {
-        if !name::is_harmless(text) {
-            let kind = RefusalKind::HeaderValueMalformed { key, form: name::FORM };
-            return Err(layout.refuse(recording, (first, 0), Found::text(text), kind));
-        }
     }
     let part = Part { plan, layout, recording, rows, level_rows, level_parts: parts.len() };
     let air = part.air_data()?;
