@@ -114,6 +114,8 @@ mod residuals;
 mod hypotheses;
 mod search;
 
+mod fleet;
+
 mod advice;
 mod place;
 
@@ -127,6 +129,9 @@ mod oracles;
 pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;
+pub use fleet::found::{FleetDiagnosis, FleetFinding, FleetLevel};
+pub use fleet::frame::{FleetFrame, FleetTail, ModelOf};
+pub use fleet::infer::diagnose_fleet;
 pub use input::{Input, Options};
 pub use numbers::numbers_that_decide;
 pub use output::addition::{AddedEffect, Addition};

@@ -156,7 +156,7 @@ impl Library {
 
 /// Whether an effect is one that the equations of a model may lack for every aircraft at all times, and not one of a single
 /// aircraft: its sensors, its loading, one of its engines, its age, an event.
-const fn acts_at_all_times(id: EffectId) -> bool {
+pub(crate) const fn acts_at_all_times(id: EffectId) -> bool {
     match id.entry().group {
         EffectGroup::Airframe => {
             !matches!(id, EffectId::AirframeAgeing | EffectId::AirframeHistory)

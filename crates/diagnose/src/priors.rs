@@ -209,4 +209,27 @@ deciding_numbers! {
             "the factor that stands for none of it, where only a level is off",
             OurChoice "0.01 % of drag: not zero, so that matrices stay definite.";
     }
+    "A fleet" {
+        FLEET_FREE: f64 = 3.0, "of typical size",
+            "prior standard deviation of an effect that was found, in the type or on a tail, where its size is given",
+            OurChoice "The middle one of the prior sizes: what was found is hardly shrunk, what is not stays small.";
+        FLEET_OTHER_LEVEL: f64 = 0.1, "",
+            "prior of an effect at a level that is not its own (a sensor in all of a type, a law of physics on one tail) over the others'",
+            OurChoice "It happens, as with a batch of probes or a retrofit, but one cause in ten at most.";
+        FLEET_PRIOR_TAILS: f64 = 4.0, "tails",
+            "how many tails the prior shares of tails with none, one and two effects count as much as",
+            OurChoice "Few: the tails at hand decide how common an effect on one tail is.";
+        FLEET_FLIGHT_SHARES: [f64; 3] = [0.0, 0.1, 0.3], "of typical size",
+            "what a flight's probes and load sheet may be off by, beside the scatter that a model learnt",
+            OurChoice "None, a tenth as industrial tolerances from flight to flight, or three of it; the most probable is taken.";
+        FLEET_TAIL_NUISANCE: f64 = 0.1, "of its standard deviation",
+            "how much of what the model of a type is uncertain about differs from tail to tail",
+            OurChoice "Tails of a type have one table and one deck; a tenth is left for how each was built.";
+        FLEET_TAIL_SMOOTH: f64 = 0.0015, "of fuel flow",
+            "smooth discrepancy of each tail",
+            OurChoice "The smallest amplitude of the smooth discrepancy of a model.";
+        FLEET_MODEL_SMOOTH: f64 = 0.004, "of fuel flow",
+            "the same, in addition, of tails that each have learnt a model of their own",
+            OurChoice "The middle amplitude: what one tail's model lacks no other tail tells.";
+    }
 }

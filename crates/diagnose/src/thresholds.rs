@@ -280,4 +280,33 @@ deciding_numbers! {
             "what measuring an N2 deck leaves of its uncertainty",
             Source "Arithmetic: from the prior's 2 % to 0.1 %.";
     }
+    "A fleet" {
+        FALSE_DISCOVERIES: f64 = 0.05, "of the findings",
+            "expected share of false ones among what is found in a type and on its tails",
+            OurChoice "The usual one in twenty, over all tails and effects together.";
+        FLEET_FRAME_FLIGHTS: usize = 400, "flights",
+            "flights, evenly from all tails, from which channels, N2 deck, means and quantiles of a fleet are taken",
+            OurChoice "Quantiles of some thousand segments stand still; more only cost time.";
+        FLEET_BASIS_FLIGHTS: usize = 100, "flights",
+            "flights among them from which it is found what the tails' flights tell of all that they share",
+            OurChoice "Far more rows than combinations that matter; more only cost time.";
+        FLEET_TOLD: f64 = 1e-3, "",
+            "how much flights must divide the prior variance of a combination by, above 1, for it to be kept",
+            OurChoice "A thousandth of a variance: what is left out moves no figure that is printed.";
+        FEWEST_TAILS_OF_A_FLEET: usize = 3, "tails",
+            "fewest tails that are diagnosed as a fleet",
+            Source "Arithmetic: of two that differ nothing says which one is unlike its type.";
+        FLEET_ACTS: f64 = 0.5, "",
+            "probability that some effect acts from which the leading one is looked at as a finding",
+            OurChoice "More probable than not; whether it is reported is decided over all findings together.";
+        FLEET_CLASS: f64 = 90.0, "",
+            "factor below the probability of an effect within which others are in its class",
+            Source "Arithmetic: exp(9/2), three standard deviations, as between the members of a class of one tail.";
+        FLEET_MOST_EFFECTS: usize = 6, "effects",
+            "most effects in a type, and on a tail",
+            OurChoice "Three pairs; what needs more is not a list of effects.";
+        FLEET_SWEEPS: usize = 8, "",
+            "turns of looking at the type and at the tails",
+            OurChoice "Two or three settle what is found; more only guard against two answers in turn.";
+    }
 }

@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Floors from the ground up.
-const FLOORS: [&str; 20] = [
+const FLOORS: [&str; 21] = [
     "deciding",
     "priors",
     "thresholds",
@@ -26,6 +26,7 @@ const FLOORS: [&str; 20] = [
     "learning",
     "hypotheses",
     "search",
+    "fleet",
     "place",
     "advice",
     "judge",

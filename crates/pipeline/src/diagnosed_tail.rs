@@ -47,6 +47,9 @@ pub struct RunOptions {
     pub without: Vec<String>,
     /// All tails of a type together.
     pub pool: bool,
+    /// All tails of a type compared with each other.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub fleet: bool,
     /// Against the table alone, whatever else the model has learnt.
     pub table_only: bool,
     /// Flights that the model has learnt were diagnosed too.
@@ -89,6 +92,7 @@ impl RunOptions {
         }
         let modes = [
             (self.pool, "all tails of a type together (--pool)"),
+            (self.fleet, "tails of a type compared with each other (--fleet)"),
             (self.table_only, "against the table alone (--table-only)"),
             (self.allow_learnt, "flights that the model has learnt included (--allow-learnt)"),
         ];

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::diagnosed_tail::{DiagnosedTail, RunOptions};
+use crate::fleet_diagnosis::{DiagnosedFleet, FleetRecord};
 use crate::summary::{RefusedSummary, ReportsSummary};
 
 mod tail;
@@ -27,6 +28,8 @@ pub struct DiagnosisDocument<'a> {
     options: &'a RunOptions,
     reports: DiagnosedReports<'a>,
     diagnoses: Vec<TailDiagnosis>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    fleets: Vec<FleetRecord>,
 }
 
 #[derive(Debug, Serialize)]
@@ -49,7 +52,29 @@ impl<'a> DiagnosisDocument<'a> {
             options,
             reports,
             diagnoses: diagnoses.iter().map(TailDiagnosis::from).collect(),
+            fleets: Vec::new(),
         }
+    }
+
+    /// With the fleets that the tails belong to: each cause that was found of its type or its tail has its level.
+    #[must_use]
+    pub fn with_fleets(mut self, fleets: &[DiagnosedFleet]) -> Self {
+        self.fleets = fleets.iter().map(FleetRecord::from).collect();
+        for diagnosis in &mut self.diagnoses {
+            let is_member = |fleet: &&FleetRecord| {
+                fleet.tails.iter().any(|member| member.tail == diagnosis.tail)
+            };
+            let fleet = self.fleets.iter().find(is_member);
+            for cause in &mut diagnosis.causes {
+                let found = fleet.iter().flat_map(|fleet| &fleet.findings);
+                let same: Vec<_> = found.filter(|found| found.effect == cause.effect).collect();
+                let of =
+                    |tail: Option<&str>| same.iter().find(|found| found.tail.as_deref() == tail);
+                let found = of(Some(&diagnosis.tail)).or_else(|| of(None));
+                cause.level = found.map(|found| found.level.clone());
+            }
+        }
+        self
     }
 
     /// As JSON, with a final line end.

@@ -129,15 +129,7 @@ impl Group<'_> {
         asked: &RunOptions,
     ) -> Result<(DiagnosedTail, DiagnosisFigures), GroupError> {
         let wrong = |reason| GroupError { name: self.name.clone(), reason };
-        let records: Vec<FlightRecord<'_>> = self
-            .flights
-            .iter()
-            .filter(|flight| !flight.reduced.segments.is_empty())
-            .map(|flight| FlightRecord {
-                segments: &flight.reduced.segments,
-                gauges: flight.reduced.gauges,
-            })
-            .collect();
+        let records = self.records();
         let predicts = Predicts::table_only(asked.table_only);
         let table = table_uncertainty::of_model(self.model, predicts, &records)
             .map_err(|error| wrong(error.into()))?;
@@ -165,6 +157,18 @@ impl Group<'_> {
             run_notes: self.run_notes(asked),
         };
         Ok((diagnosed, figures))
+    }
+
+    /// Flights with segments, as a diagnosis takes them.
+    pub(crate) fn records(&self) -> Vec<FlightRecord<'_>> {
+        self.flights
+            .iter()
+            .filter(|flight| !flight.reduced.segments.is_empty())
+            .map(|flight| FlightRecord {
+                segments: &flight.reduced.segments,
+                gauges: flight.reduced.gauges,
+            })
+            .collect()
     }
 
     /// What was done to the tails of this group.

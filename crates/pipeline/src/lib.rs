@@ -60,6 +60,7 @@ pub mod distinct;
 pub mod evaluation;
 pub mod export;
 pub mod file_names;
+pub mod fleet_diagnosis;
 pub mod flights_table;
 pub mod folder_state;
 pub mod fuel_factor;

@@ -198,6 +198,7 @@ fn diagnose_later(
             without: vec![],
             apply: None,
             pool: false,
+            fleet: false,
             table_only: false,
             allow_learnt: false,
         },

@@ -1,6 +1,7 @@
 //! `cruisefit diagnose`: where a model differs from flight and which effect it lacks.
 
 mod apply;
+mod fleet;
 
 use std::fmt::Write;
 
@@ -34,14 +35,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         without: effects("--without", &arguments.without)?,
         ..Options::default()
     };
-    let asked = RunOptions {
-        effects: arguments.effects.clone(),
-        without: arguments.without.clone(),
-        pool: arguments.pool,
-        table_only: arguments.table_only,
-        allow_learnt: arguments.allow_learnt,
-        events: arguments.events.as_deref().map_or_else(|| Ok(Vec::new()), events_of)?,
-    };
+    let asked = asked(arguments)?;
     let models = read_models(&arguments.models.models)?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
@@ -61,6 +55,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let read = groups.iter().map(|group| group.flights.len()).sum();
     let diagnoses = diagnose_all(&groups, (&options, &asked), progress)?;
     let (diagnoses, figures): (Vec<_>, Vec<_>) = diagnoses.into_iter().unzip();
+    let fleets = fleet::diagnose(&groups, &options, &asked)?;
     reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
     let reports = ReportsSummary {
         read,
@@ -69,6 +64,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     };
     let path = arguments.output.join("diagnosis.json");
     let json = DiagnosisDocument::new(&asked, &reports, &diagnoses)
+        .with_fleets(&fleets)
         .to_json()
         .map_err(|error| Failure::unwritable(&path, error))?;
     write_atomically(&path, json.as_bytes())?;
@@ -84,17 +80,23 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         append_lines(diagnosed, &mut text);
     }
     let refused_reports = reading.refused.len();
+    text.push_str(&fleet::write(&fleets, &arguments.output)?);
     if let Some(folder) = &arguments.apply {
-        let applied = apply::apply(folder, &groups, &diagnoses)?;
+        let applied = if arguments.fleet {
+            fleet::apply(folder, &groups, &fleets)?
+        } else {
+            apply::apply(folder, &groups, &diagnoses)?
+        };
         text.push_str(&applied.text);
         reading.refused.extend(applied.refused);
     }
     let _ = writeln!(
         text,
-        "{} read, {} refused. Written to {}: diagnosis.json, diagnosis.html",
+        "{} read, {} refused. Written to {}: diagnosis.json, diagnosis.html{}",
         counted(read, "report"),
         refused_reports,
-        show(&arguments.output)
+        show(&arguments.output),
+        if arguments.fleet { ", fleet.csv" } else { "" }
     );
     Ok(Outcome { text, refused: reading.refused, json: Some(json.into()) })
 }
@@ -120,6 +122,19 @@ fn diagnose_all(
         .collect();
     bar.finish();
     diagnoses
+}
+
+/// What the run is asked for.
+fn asked(arguments: &DiagnoseArgs) -> Result<RunOptions, Failure> {
+    Ok(RunOptions {
+        effects: arguments.effects.clone(),
+        without: arguments.without.clone(),
+        pool: arguments.pool,
+        fleet: arguments.fleet,
+        table_only: arguments.table_only,
+        allow_learnt: arguments.allow_learnt,
+        events: arguments.events.as_deref().map_or_else(|| Ok(Vec::new()), events_of)?,
+    })
 }
 
 fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Failure> {

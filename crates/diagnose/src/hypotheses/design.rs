@@ -187,6 +187,11 @@ impl<'a> Design<'a> {
         self.columns - 1
     }
 
+    /// The same without the functions of one variable that stand for what is outside the library.
+    pub(crate) fn without_blocks(&self) -> Self {
+        Self { blocks: vec![], columns: self.smooth.end + 1, ..self.clone() }
+    }
+
     /// The same nuisance with fewer columns of effects, without smooth background and smooth terms.
     pub(crate) fn of_nuisance(&self, effects: usize) -> Self {
         let nuisance = effects..effects + self.nuisance.len();

@@ -41,6 +41,13 @@ pub(crate) struct PreparedFlights<'a> {
     pub(crate) left_out: BTreeMap<LeftOutReason, usize>,
 }
 
+/// What several sets of flights have in common: recorded channels and N2 deck.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame {
+    channels: Channels,
+    deck: Deck,
+}
+
 /// A segment that the model can predict, before signatures.
 pub(crate) struct Inside<'a> {
     /// Corrected by what the model contains.
@@ -61,12 +68,24 @@ impl Inside<'_> {
     }
 }
 
+/// A flight's segments that the model can predict, and its gauges.
+type FlightInside<'a> = (Vec<Inside<'a>>, Option<GaugeBurn>);
+
+/// Looks up the thrust that belongs to every recorded N2.
+fn look_up_n2(inside: &mut [FlightInside<'_>], channels: Channels, deck: &Deck) {
+    if channels.n2 {
+        for kept in inside.iter_mut().flat_map(|(segments, _)| segments) {
+            kept.look_up_n2(deck);
+        }
+    }
+}
+
 /// Collects what the model can predict, flight by flight.
 fn inside<'a>(
     model: &EffectModel<'_>,
     flights: &[FlightRecord<'a>],
     left_out: &mut BTreeMap<LeftOutReason, usize>,
-) -> Vec<(Vec<Inside<'a>>, Option<GaugeBurn>)> {
+) -> Vec<FlightInside<'a>> {
     let engines = model.aircraft().engines();
     let mut all = Vec::with_capacity(flights.len());
     for flight in flights {
@@ -113,33 +132,64 @@ impl<'a> PreparedFlights<'a> {
         let mut left_out = BTreeMap::new();
         let mut inside = inside(model, flights, &mut left_out);
         let channels = channels_of(model, &inside);
-        let baseline = reference.baseline();
-        let deck = deck_of(&inside, channels, baseline);
-        if channels.n2 {
-            for kept in inside.iter_mut().flat_map(|(segments, _)| segments) {
-                kept.look_up_n2(&deck);
-            }
-        }
+        let deck = deck_of(&inside, channels, reference.baseline());
+        look_up_n2(&mut inside, channels, &deck);
         let points: Vec<EffectPoint> =
             inside.iter().flat_map(|(segments, _)| segments).map(|kept| kept.point).collect();
         let starts: Vec<f64> =
             inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
         let library = library_of(&points, channels.contrasts > 0, &starts);
-        let statistics = reference.statistics(model);
+        let data = Self::of_inside(
+            model,
+            (inside, left_out),
+            reference,
+            Frame { channels, deck },
+            &library,
+        );
+        (data, library)
+    }
 
+    /// Prepares flights in the frame and with the library of others.
+    pub(crate) fn prepare_in(
+        model: &EffectModel<'_>,
+        flights: &[FlightRecord<'_>],
+        reference: Reference<'a>,
+        frame: &Frame,
+        library: &Library,
+    ) -> Self {
+        let mut left_out = BTreeMap::new();
+        let mut inside = inside(model, flights, &mut left_out);
+        look_up_n2(&mut inside, frame.channels, &frame.deck);
+        Self::of_inside(model, (inside, left_out), reference, frame.clone(), library)
+    }
+
+    /// Channels and deck, for [`prepare_in`](Self::prepare_in).
+    pub(crate) fn frame(&self) -> Frame {
+        Frame { channels: self.channels, deck: self.predictor.deck.clone() }
+    }
+
+    fn of_inside(
+        model: &EffectModel<'_>,
+        (inside, left_out): (Vec<FlightInside<'_>>, BTreeMap<LeftOutReason, usize>),
+        reference: Reference<'a>,
+        Frame { channels, deck }: Frame,
+        library: &Library,
+    ) -> Self {
+        let baseline = reference.baseline();
+        let statistics = reference.statistics(model);
         let mut data = Self {
             channels,
             predictor: Predictor { channels, deck, baseline },
             flights: Vec::with_capacity(inside.len()),
-            segments: Vec::with_capacity(points.len()),
+            segments: Vec::new(),
             left_out,
         };
-        let differences = Differences::new(model, &library, baseline);
+        let differences = Differences::new(model, library, baseline);
         for (segments, gauges) in inside {
             let first = data.segments.len();
             let start_s = segments[0].point.date_s;
             for segment in segments {
-                match data.row(model, &segment, &library, &differences, &statistics) {
+                match data.row(model, &segment, library, &differences, &statistics) {
                     Ok(row) => data.segments.push(row),
                     Err(error) => {
                         *data.left_out.entry(reason(&error)).or_default() += 1;
@@ -149,12 +199,12 @@ impl<'a> PreparedFlights<'a> {
             add_wander_to(&mut data.segments[first..], &statistics, model);
             if data.segments.len() > first {
                 let gauge =
-                    gauges.map(|burn| gauge_row(burn, model, &library, &data.segments[first..]));
+                    gauges.map(|burn| gauge_row(burn, model, library, &data.segments[first..]));
                 let segments = first..data.segments.len();
                 data.flights.push(FlightRows { segments, gauge, start_s, share: 1.0 });
             }
         }
-        (data, library)
+        data
     }
 
     pub(crate) fn row(
@@ -298,10 +348,7 @@ pub(crate) fn add_wander_to(
     add_wander(&mut noises, &times_s, statistics.fuel_flow_drift, engines);
 }
 
-fn channels_of(
-    model: &EffectModel<'_>,
-    inside: &[(Vec<Inside<'_>>, Option<GaugeBurn>)],
-) -> Channels {
+fn channels_of(model: &EffectModel<'_>, inside: &[FlightInside<'_>]) -> Channels {
     let engines = model.aircraft().engines();
     let segments = || inside.iter().flat_map(|(segments, _)| segments);
     let total = segments().count();
@@ -312,11 +359,7 @@ fn channels_of(
 }
 
 /// The deck that a baseline learnt, else least squares over the data at hand.
-fn deck_of(
-    inside: &[(Vec<Inside<'_>>, Option<GaugeBurn>)],
-    channels: Channels,
-    baseline: Option<&Baseline>,
-) -> Deck {
+fn deck_of(inside: &[FlightInside<'_>], channels: Channels, baseline: Option<&Baseline>) -> Deck {
     if let Some(deck) = baseline.and_then(Baseline::deck) {
         return deck;
     }

@@ -20,6 +20,16 @@ pub enum DiagnoseError {
         /// Flights needed.
         needed: usize,
     },
+    /// Too few tails to tell a type from its tails.
+    #[error(
+        "{found} tails with flights inside the drag table, at least {needed} are needed for a fleet"
+    )]
+    TooFewTails {
+        /// Tails found.
+        found: usize,
+        /// Tails needed.
+        needed: usize,
+    },
     /// A matrix that is not positive definite: columns beyond what doubles hold.
     #[error("the linear model is degenerate")]
     Degenerate,

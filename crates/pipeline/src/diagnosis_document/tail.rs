@@ -132,6 +132,9 @@ pub struct CauseRecord {
     pub closure_ci95: Option<[f64; 2]>,
     /// Hidden parameters in words ("from 2019-06-02 on fuel flow"); empty for most effects.
     pub hidden: String,
+    /// With `--fleet` whose it is: `type`, `tail` or `sensor`; absent where the fleet has no such finding.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<String>,
 }
 
 /// Size with unit and interval.
@@ -423,6 +426,7 @@ impl From<&Cause> for CauseRecord {
             closure: cause.closure.map(|closure| closure.share),
             closure_ci95: cause.closure.map(|closure| closure.ci95),
             hidden: cause.hidden.to_string(),
+            level: None,
         }
     }
 }
