@@ -204,7 +204,8 @@ pub struct TailPlan {
     /// TSFC of each engine above new, %.
     #[serde(default)]
     pub engine_deterioration_percent: Vec<f64>,
-    /// Conditions at which effects are zero; the means over the tail's flights when left out.
+    /// Conditions at which effects are zero; when left out, the means over the tail's flights, over those of all tails in a plan
+    /// with effects of all.
     #[serde(default)]
     pub references: Option<References>,
     /// Its flights.

@@ -3,7 +3,7 @@
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
 use crate::aircraft::{AircraftTruth, TruthPhysics};
-use crate::plan::legs;
+use crate::plan::{FleetDesign, Plan, TailPlan, legs};
 use crate::route::{FlightPlan, Loading};
 use crate::terms::{References, Terms};
 use crate::trim::{TrimPoint, Trimmed, trim_with};
@@ -51,10 +51,48 @@ pub(crate) fn references_of(
             mass_kg -= length_s * trimmed.fuel_flow_kg_s;
         }
     }
-    let date_s = dates_s.iter().sum::<f64>() / dates_s.len() as f64;
-    let first_date_s = dates_s.iter().copied().fold(f64::INFINITY, f64::min);
-    let last_date_s = dates_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [date_s, first_date_s, last_date_s] = mean_first_last(&dates_s);
     Ok(sums.means(date_s, first_date_s, last_date_s))
+}
+
+/// The references of every tail: those of its plan, else the means over its own flights. Effects that all tails share are
+/// zero at the means over all flights, or each tail would have another effect; dates are the tail's own.
+pub(crate) fn references_of_tails(
+    plan: &Plan,
+    aircraft: &AircraftTruth,
+    flown: &[(Vec<FlightPlan>, Option<FleetDesign>)],
+) -> Result<Vec<References>, OutOfDomain> {
+    let of = |flights: &[FlightPlan]| references_of(aircraft, plan.physics, &plan.weather, flights);
+    let shared = if plan.effects.is_empty() || flown.len() < 2 {
+        None
+    } else {
+        let all: Vec<FlightPlan> = flown.iter().flat_map(|(flights, _)| flights).cloned().collect();
+        Some(of(&all)?)
+    };
+    let of_tail = |(tail, (flights, _)): (&TailPlan, &(Vec<FlightPlan>, _))| match (
+        tail.references,
+        shared,
+    ) {
+        (Some(given), _) => Ok(given),
+        (None, None) => of(flights),
+        (None, Some(shared)) => Ok(dated_by(shared, flights)),
+    };
+    plan.tails.iter().zip(flown).map(of_tail).collect()
+}
+
+/// These conditions with the dates of these flights.
+fn dated_by(references: References, flights: &[FlightPlan]) -> References {
+    let dates_s: Vec<f64> =
+        flights.iter().map(|flight| flight::seconds_since_1970(flight.start)).collect();
+    let [date_s, first_date_s, last_date_s] = mean_first_last(&dates_s);
+    References { date_s, first_date_s, last_date_s, ..references }
+}
+
+fn mean_first_last(dates_s: &[f64]) -> [f64; 3] {
+    let mean = dates_s.iter().sum::<f64>() / dates_s.len() as f64;
+    let first = dates_s.iter().copied().fold(f64::INFINITY, f64::min);
+    let last = dates_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    [mean, first, last]
 }
 
 #[derive(Default)]

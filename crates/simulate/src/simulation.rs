@@ -4,6 +4,8 @@ mod check;
 mod draw;
 mod ranges;
 
+use std::collections::BTreeSet;
+
 use flight::column::Column;
 use flight::effect::{EffectId, TypicalSize};
 use flight::{Report, ReportDataError};
@@ -14,7 +16,7 @@ use crate::effect::{PlannedEffect, TruthEffect};
 use crate::fly::{FlightError, fly};
 use crate::plan::{AircraftChoice, FleetDesign, Flights, Plan, PlanError};
 use crate::random::{Purpose, Streams};
-use crate::references::references_of;
+use crate::references::references_of_tails;
 use crate::route::FlightPlan;
 use crate::sensor::{BankSetup, SensorBank, Sensors};
 use crate::smooth::SmoothErrors;
@@ -131,22 +133,12 @@ impl Simulation {
             }
         };
         check_plan(&plan)?;
+        let flown = drawn_flights(&plan, &aircraft)?;
+        let references = references_of_tails(&plan, &aircraft, &flown)?;
         let mut tails: Vec<Tail> = Vec::with_capacity(plan.tails.len());
-        for tail_plan in &plan.tails {
-            if tails.iter().any(|tail| tail.name == tail_plan.tail) {
-                return Err(PlanError::DoubledTail { tail: tail_plan.tail.clone() });
-            }
-            let (flights, design) = match &tail_plan.flights {
-                Flights::Listed(flights) => (flights.clone(), None),
-                Flights::Designed(design) => {
-                    (design.draw(&aircraft, plan.seed, &tail_plan.tail)?, Some((**design).clone()))
-                }
-            };
-            check_flights(&tail_plan.tail, &flights)?;
-            let references = match tail_plan.references {
-                Some(references) => references,
-                None => references_of(&aircraft, plan.physics, &plan.weather, &flights)?,
-            };
+        for ((tail_plan, (flights, design)), references) in
+            plan.tails.iter().zip(flown).zip(references)
+        {
             let effects = plan
                 .effects
                 .iter()
@@ -340,6 +332,30 @@ impl Simulation {
             tails,
         }
     }
+}
+
+/// The flights of every tail, and the design they were drawn from.
+type PlannedFlights = (Vec<FlightPlan>, Option<FleetDesign>);
+
+fn drawn_flights(plan: &Plan, aircraft: &AircraftTruth) -> Result<Vec<PlannedFlights>, PlanError> {
+    let mut names = BTreeSet::new();
+    plan.tails
+        .iter()
+        .map(|tail_plan| {
+            let tail = &tail_plan.tail;
+            if !names.insert(tail) {
+                return Err(PlanError::DoubledTail { tail: tail.clone() });
+            }
+            let (flights, design) = match &tail_plan.flights {
+                Flights::Listed(flights) => (flights.clone(), None),
+                Flights::Designed(design) => {
+                    (design.draw(aircraft, plan.seed, tail)?, Some((**design).clone()))
+                }
+            };
+            check_flights(tail, &flights)?;
+            Ok((flights, design))
+        })
+        .collect()
 }
 
 fn sized(
