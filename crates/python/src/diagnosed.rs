@@ -10,6 +10,7 @@ use pipeline::diagnosis_document::DiagnosisDocument;
 use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
+use pipeline::fleet_diagnosis::{DiagnosedFleet, diagnose_fleets, fleet_text};
 use pipeline::plausibility;
 use pipeline::reading::FlightRead;
 use pipeline::summary::{RefusedSummary, ReportsSummary};
@@ -30,6 +31,7 @@ use crate::work::run;
 pub(crate) struct Diagnosed {
     diagnoses: Arc<Vec<DiagnosedTail>>,
     figures: Arc<Vec<DiagnosisFigures>>,
+    fleets: Arc<Vec<DiagnosedFleet>>,
     reports: Arc<ReportsSummary>,
     asked: RunOptions,
     criteria: String,
@@ -44,6 +46,7 @@ pub(crate) struct Asked {
     effects: Vec<String>,
     without: Vec<String>,
     pool: bool,
+    fleet: bool,
     table_only: bool,
     allow_learnt: bool,
     events: Option<PyBackedBytes>,
@@ -70,6 +73,7 @@ pub(crate) fn diagnose(
         effects: asked.effects,
         without: asked.without,
         pool: asked.pool,
+        fleet: asked.fleet,
         table_only: asked.table_only,
         allow_learnt: asked.allow_learnt,
         events: asked.events.as_ref().map_or_else(|| Ok(Vec::new()), |bytes| events_of(bytes))?,
@@ -92,6 +96,15 @@ pub(crate) fn diagnose(
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let (diagnoses, figures): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        caller.still_waits()?;
+        let fleets = if asked.fleet {
+            diagnose_fleets(&groups, &options, &asked, &|tails, reduce| {
+                (0..tails).into_par_iter().map(reduce).collect()
+            })
+            .map_err(Failure::input)?
+        } else {
+            Vec::new()
+        };
         reading.refused.sort_by(|one, other| one.path.cmp(&other.path));
         let reports = ReportsSummary {
             read: groups.iter().map(|group| group.flights.len()).sum(),
@@ -102,6 +115,7 @@ pub(crate) fn diagnose(
         Ok(Diagnosed {
             diagnoses: Arc::new(diagnoses),
             figures: Arc::new(figures),
+            fleets: Arc::new(fleets),
             reports: Arc::new(reports),
             asked,
             criteria: flights.criteria.clone(),
@@ -126,7 +140,8 @@ pub(crate) fn effects(engines: usize) -> Vec<(String, String, String)> {
 impl Diagnosed {
     /// `diagnosis.json`.
     fn json(&self) -> PyResult<String> {
-        let document = DiagnosisDocument::new(&self.asked, &self.reports, &self.diagnoses);
+        let document = DiagnosisDocument::new(&self.asked, &self.reports, &self.diagnoses)
+            .with_fleets(&self.fleets);
         Ok(document.to_json().map_err(Failure::internal)?)
     }
 
@@ -139,6 +154,11 @@ impl Diagnosed {
     /// The lines that the command line prints, tail by tail.
     fn lines(&self) -> Vec<(String, Vec<String>)> {
         self.diagnoses.iter().map(|one| (one.tail.clone(), diagnosis_text::lines(one))).collect()
+    }
+
+    /// What the command line prints of each fleet.
+    fn fleet_texts(&self) -> Vec<String> {
+        self.fleets.iter().map(fleet_text).collect()
     }
 
     /// Serious findings in the data, in words; empty where there are none.

@@ -172,6 +172,13 @@ class Diagnosis:
         return len(self._diagnoses)
 
     @property
+    def fleets(self) -> list[dict[str, Any]]:
+        """With ``fleet=True`` all tails of a type compared: what was found of the type, of single tails and of their sensors
+        (``findings``), and the sizes of all effects of type and tails."""
+        fleets: list[dict[str, Any]] = self._document.get("fleets", [])
+        return fleets
+
+    @property
     def refused(self) -> list[Refused]:
         """Reports that were refused, among them flights that the model has learnt."""
         refused = self._document["reports"]["refused"]
@@ -199,7 +206,8 @@ class Diagnosis:
         return framed(self.page())
 
     def __repr__(self) -> str:
-        return "\n\n".join("\n  ".join(one.lines) for one in self._diagnoses)
+        texts = ["\n  ".join(one.lines) for one in self._diagnoses] + self._native.fleet_texts()
+        return "\n\n".join(texts)
 
 
 def diagnose(
@@ -209,6 +217,7 @@ def diagnose(
     effects: Sequence[str] = (),
     without: Sequence[str] = (),
     pool: bool = False,
+    fleet: bool = False,
     table_only: bool = False,
     allow_learnt: bool = False,
     accept: bool = False,
@@ -224,6 +233,7 @@ def diagnose(
         effects: Look for these effects only (names: :func:`effects`).
         without: Leave these effects out.
         pool: One diagnosis for all tails of a type together.
+        fleet: Also compare all tails of a type: what all share, what one tail has, what its sensors have.
         table_only: Count as gap what the model has learnt beyond its drag table.
         allow_learnt: Also diagnose flights that the model has learnt, whose gap it hides.
         accept: Also diagnose tails that are more than 15 % off the book, which are refused otherwise.
@@ -238,6 +248,7 @@ def diagnose(
         "effects": list(effects),
         "without": list(without),
         "pool": pool,
+        "fleet": fleet,
         "table_only": table_only,
         "allow_learnt": allow_learnt,
         "events": events if events is None or isinstance(events, bytes) else Path(events).read_bytes(),
