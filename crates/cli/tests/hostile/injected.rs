@@ -75,7 +75,7 @@ fn control_characters_and_formulas_in_a_name_are_text() {
             "x\u{1b}[2J\u{1b}]0;owned\u{7}",
             "a\u{9b}2J",
             "=1+1",
-            "+1",
+            "+1+1",
             "@SUM(A1)",
             "-2+3|' /C calc'!A0",
         ] {
