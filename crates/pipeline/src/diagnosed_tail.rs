@@ -39,6 +39,10 @@ pub struct Compared {
 }
 
 /// What a run was asked for, beside reports and models.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is an option of the command line and a key of diagnosis.json"
+)]
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunOptions {
     /// Only these effects were looked for; empty for all.

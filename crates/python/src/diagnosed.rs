@@ -40,6 +40,7 @@ pub(crate) struct Diagnosed {
 }
 
 /// How flights are diagnosed, in the words of the Python files.
+#[expect(clippy::struct_excessive_bools, reason = "each is a keyword of the Python function")]
 #[derive(Debug, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Asked {
