@@ -38,7 +38,7 @@ fn gram(rows: &DMatrix<f64>) -> TailGram {
     TailGram { matrix, rows: ROWS as f64 }
 }
 
-/// Mean and covariance of (u, η_1, …, η_T) given every row of these tails, and ln of the density of those rows.
+/// Mean and covariance of `(u, η_1, …, η_T)` given every row of these tails, and ln of the density of those rows.
 fn dense(of: &Dense, tails: &[usize]) -> (DVector<f64>, DMatrix<f64>, f64) {
     let unknowns = COLUMNS + EFFECTS * TAILS;
     let mut prior = DMatrix::zeros(unknowns, unknowns);
@@ -103,8 +103,8 @@ fn a_tail_together_with_its_type_is_that_of_the_joint_distribution() {
     let made_up = made_up();
     let (total, added) = summed(&made_up);
     let (mean, covariance, _) = dense(&made_up, &[0, 1, 2, 3]);
-    for tail in 0..TAILS {
-        let others = total.without(&added[tail], &made_up.shared).unwrap();
+    for (tail, of_tail) in added.iter().enumerate() {
+        let others = total.without(of_tail, &made_up.shared).unwrap();
         let own = &made_up.own[tail];
         let (found, spread) = gram(&made_up.rows[tail]).together(&others, own).unwrap();
         let of_own = (0..EFFECTS).filter(|&k| own[k] > 0.0);
