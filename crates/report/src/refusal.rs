@@ -430,44 +430,29 @@ fn write_units(f: &mut fmt::Formatter<'_>, column: Column) -> fmt::Result {
     write!(f, " for {}", column.name())
 }
 
-/// The candidate nearest to a name: at most a third of its letters differ, upper and lower case aside.
+/// The candidate nearest to a name: at most a third of its letters are inserted, left out, replaced or exchanged with the next,
+/// upper and lower case aside.
 #[must_use]
 pub fn nearest<'c>(name: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     let lower = name.to_lowercase();
     candidates
         .into_iter()
-        .map(|candidate| (distance(&lower, &candidate.to_lowercase()), candidate))
+        .map(|candidate| (strsim::osa_distance(&lower, &candidate.to_lowercase()), candidate))
         .filter(|(distance, candidate)| 3 * distance <= candidate.len().max(name.len()))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
 }
 
-/// Letters to insert, delete or replace (Levenshtein).
-fn distance(one: &str, other: &str) -> usize {
-    let other: Vec<char> = other.chars().collect();
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (index, letter) in one.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = index + 1;
-        for (column, second) in other.iter().enumerate() {
-            let replaced = diagonal + usize::from(letter != *second);
-            diagonal = row[column + 1];
-            row[column + 1] = replaced.min(row[column] + 1).min(diagonal + 1);
-        }
-    }
-    row[other.len()]
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{distance, nearest};
+    use super::nearest;
 
     #[test]
-    fn distances_and_what_is_near() {
-        // Levenshtein's textbook example.
-        assert_eq!(distance("kitten", "sitting"), 3);
+    fn what_is_near() {
         assert_eq!(nearest("kts", ["kt", "m/s"]), Some("kt"));
         assert_eq!(nearest("altitud_ft", ["time", "altitude_ft"]), Some("altitude_ft"));
+        // Letters that changed places are one slip.
+        assert_eq!(nearest("mahc", ["mass", "mach"]), Some("mach"));
         assert_eq!(nearest("x", ["altitude_ft"]), None);
     }
 }

@@ -5,8 +5,9 @@ use std::process::{Command, Stdio};
 
 use crate::support::{Ran, adapt, bytes_below, cruisefit, fixture, init, initial_model, root};
 
-/// A tail that turns the direction of writing, and that a browser would obey. Worse ones are refused where they are read.
-const HOSTILE: &str = "T\u{202e}<b>";
+/// A tail that a spreadsheet takes for a formula, a terminal for two escapes, a reader for the other direction of writing and a
+/// browser for markup.
+const HOSTILE: &str = "=1+2\u{1b}[31m\u{9b}5m\u{202e}<b>";
 
 fn hostile_report(folder: &Path) -> PathBuf {
     let text = std::fs::read_to_string(fixture("reports/0001.txt")).unwrap();
@@ -110,7 +111,7 @@ fn errors_are_sentences() {
     let bad = scratch.path().join("bad.ron");
     std::fs::write(&bad, "(\n    name: \"x\",\n    wing_area: 3,\n)\n").unwrap();
     let bad_guide = scratch.path().join("bad.csv");
-    std::fs::write(&bad_guide, "weight_lb,pressure_altitude_ft,machh,fuel_flow_lb_h\n1,2,3,4\n")
+    std::fs::write(&bad_guide, "weight_lb,pressure_altitude_ft,mahc,fuel_flow_lb_h\n1,2,3,4\n")
         .unwrap();
     let out = scratch.path().join("out");
     let plain = |path: &Path| path.to_str().unwrap().to_owned();
