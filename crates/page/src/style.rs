@@ -57,6 +57,11 @@ th[scope=colgroup] { text-align: center; }
 .more1 { background: #fdf0dc; } .more2 { background: #fbe0b8; } .more3 { background: #f8cd8e; }
 .more4 { background: #f4ba63; } .more5 { background: #eda73a; }
 .heat td[class^=less], .heat td[class^=more] { color: var(--shade-ink); }
+@media screen and (prefers-color-scheme: dark) {
+  .less1 { background: #1a2f3d; } .less2 { background: #1f465c; } .less3 { background: #285a73; } .less4 { background: #2b6c90; } .less5 { background: #58b0ec; }
+  .more1 { background: #3a2a1c; } .more2 { background: #5d3d20; } .more3 { background: #784820; } .more4 { background: #935420; } .more5 { background: #f0883e; }
+  .heat td[class^=less]:not(.less5), .heat td[class^=more]:not(.more5) { color: var(--ink); }
+}
 svg .cell { stroke: var(--paper); stroke-width: 1; fill: var(--card); }
 svg .less1 { fill: #d3e7f4; } svg .less2 { fill: #a9cfe9; } svg .less3 { fill: #75b1da; } svg .less4 { fill: #3f8fc5; } svg .less5 { fill: #0072b2; }
 svg .more1 { fill: #fbe3cb; } svg .more2 { fill: #f7c493; } svg .more3 { fill: #f0a05a; } svg .more4 { fill: #e57d28; } svg .more5 { fill: #d55e00; }
