@@ -9,7 +9,7 @@ use crate::fleet::false_discoveries::kept;
 use crate::fleet::found::{FleetDiagnosis, FleetFinding, FleetLevel};
 use crate::fleet::frame::{FleetTail, SharedColumns};
 use crate::fleet::joint::{TailGram, TypeGram};
-use crate::fleet::levels::{Acting, At, Beliefs, LevelPosterior, Weighed};
+use crate::fleet::levels::{Acting, At, Beliefs, LevelPosterior, Weighed, all_acting};
 use crate::fleet::sizes::{Sizes, sizes};
 use crate::library::Testable;
 use crate::math::eliminate::integrate_out;
@@ -18,9 +18,7 @@ use crate::priors::{
     SMOOTH_AMPLITUDES,
 };
 use crate::signals::references::DiagnoseError;
-use crate::thresholds::{
-    FALSE_DISCOVERIES, FEWEST_TAILS_OF_A_FLEET, FLEET_MOST_EFFECTS, FLEET_SWEEPS,
-};
+use crate::thresholds::{FALSE_DISCOVERIES, FEWEST_TAILS_OF_A_FLEET, FLEET_SWEEPS};
 
 /// Diagnoses all tails of a type together. Takes their Gram matrices, which are most of the memory of a large fleet.
 ///
@@ -152,30 +150,24 @@ impl Fleet {
             let ln_weight = -0.5 * left.ln_determinant;
             grams.push((amplitude, Weighed { matrix: left.matrix, ln_weight }));
         }
-        let mut free: Vec<usize> = Vec::new();
-        let mut acting: Vec<Acting> = Vec::new();
-        loop {
-            let mut best: Option<(LevelPosterior, usize, f64)> = None;
-            for (place, (_, gram)) in grams.iter().enumerate() {
+        let mut chosen = None;
+        let acting = all_acting(|free| {
+            let mut best: Option<(LevelPosterior, f64, f64)> = None;
+            for (amplitude, gram) in &grams {
                 for small in BACKGROUND_SPIKES {
-                    let found = self.of_type.posterior(gram, total.rows, small, &free)?;
+                    let found = self.of_type.posterior(gram, total.rows, small, free)?;
                     if best.as_ref().is_none_or(|(known, ..)| found.ln > known.ln) {
-                        best = Some((found, place, small));
+                        best = Some((found, *amplitude, small));
                     }
                 }
             }
-            let (posterior, place, small) = best?;
-            self.state.smooth_amplitude = grams[place].0;
-            self.state.type_small = small;
-            let more = posterior.acting();
-            free.extend(more.iter().map(|one| one.effect));
-            let is_last = more.len() < 2 || free.len() >= FLEET_MOST_EFFECTS;
-            acting.extend(more);
-            if is_last {
-                self.state.type_free = free;
-                return Some(OfType { total, acting });
-            }
-        }
+            let (posterior, amplitude, small) = best?;
+            chosen = Some((amplitude, small));
+            Some(posterior)
+        })?;
+        (self.state.smooth_amplitude, self.state.type_small) = chosen?;
+        self.state.type_free = acting.iter().map(|one| one.effect).collect();
+        Some(OfType { total, acting })
     }
 
     /// Each tail against the others; returns what acts on each.
@@ -205,26 +197,13 @@ impl Fleet {
         self.of_tail.by_size = by_size(none, self.tails.len());
         let mut acting = Vec::with_capacity(self.tails.len());
         for (place, gram) in grams.iter_mut().enumerate() {
-            let on_tail = self.acting_on_tail(gram, self.tails[place].rows)?;
+            let rows = self.tails[place].rows;
+            let on_tail = all_acting(|free| self.of_tail.posterior(gram, rows, small, free))?;
             self.state.free[place] = on_tail.iter().map(|one| one.effect).collect();
             self.rescale(place, gram)?;
             acting.push(on_tail);
         }
         Some(acting)
-    }
-
-    fn acting_on_tail(&self, gram: &Weighed, rows: f64) -> Option<Vec<Acting>> {
-        let mut acting: Vec<Acting> = Vec::new();
-        loop {
-            let free: Vec<usize> = acting.iter().map(|one| one.effect).collect();
-            let found = self.of_tail.posterior(gram, rows, self.state.tail_small, &free)?;
-            let more = found.acting();
-            let is_last = more.len() < 2 || free.len() + more.len() >= FLEET_MOST_EFFECTS;
-            acting.extend(more);
-            if is_last {
-                return Some(acting);
-            }
-        }
     }
 
     /// Divides the noise of a tail out, as what is left beside its effects has it.

@@ -10,8 +10,8 @@ use crate::hypotheses::evidence::{Prior, Scorer};
 use crate::library::{Testable, acts_at_all_times};
 use crate::math::eliminate::integrate_out;
 use crate::math::mixture::ln_sum;
-use crate::priors::{FLEET_FREE, FLEET_OTHER_LEVEL, PRIOR_BY_SIZE, PRIOR_SCALES};
-use crate::thresholds::{CONFUSED, FLEET_ACTS, FLEET_CLASS};
+use crate::priors::{FLEET_FREE, FLEET_OTHER_LEVEL, PRIOR_BY_SIZE};
+use crate::thresholds::{CONFUSED, FLEET_ACTS, FLEET_CLASS, FLEET_MOST_EFFECTS};
 
 /// Where an effect acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,16 +62,6 @@ pub(crate) struct Acting {
 
 impl Beliefs {
     pub(crate) fn new(effects: &[Testable], at: At) -> Self {
-        let prior = |effect: &Testable| Prior {
-            mean: effect.prior_mean,
-            scales: if effect.has_known_size {
-                [(effect.prior_deviation, 0.0); PRIOR_SCALES.len()]
-            } else {
-                PRIOR_SCALES.map(|(scale, share)| (scale * effect.prior_deviation, share.ln()))
-            },
-            count: if effect.has_known_size { 1 } else { PRIOR_SCALES.len() },
-            sign: effect.sign,
-        };
         let may_act: Vec<bool> =
             effects.iter().map(|effect| at == At::Type || !effect.has_known_size).collect();
         let share = |effect: &Testable| if usual(effect.id, at) { 1.0 } else { FLEET_OTHER_LEVEL };
@@ -79,7 +69,7 @@ impl Beliefs {
         let count = effects.len();
         Self {
             scorer: Scorer {
-                priors: effects.iter().map(prior).collect(),
+                priors: effects.iter().map(Prior::of).collect(),
                 effect_of: (0..count).collect(),
                 ln_choices: vec![0.0; count],
                 effects: count,
@@ -144,6 +134,22 @@ impl Beliefs {
             *value = (*value - ln).exp();
         }
         Some(LevelPosterior { hypotheses: found, ln })
+    }
+}
+
+/// All that acts at one level: one effect, or two and what is found beside them. `posterior` is that beside the effects given.
+pub(crate) fn all_acting(
+    mut posterior: impl FnMut(&[usize]) -> Option<LevelPosterior>,
+) -> Option<Vec<Acting>> {
+    let mut acting: Vec<Acting> = Vec::new();
+    loop {
+        let free: Vec<usize> = acting.iter().map(|one| one.effect).collect();
+        let more = posterior(&free)?.acting();
+        let is_last = more.len() < 2 || free.len() + more.len() >= FLEET_MOST_EFFECTS;
+        acting.extend(more);
+        if is_last {
+            return Some(acting);
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use flight::effect::EffectSign;
 use statrs::function::erf::erfc;
 
 use crate::hypotheses::backgrounds::Background;
-use crate::library::Library;
+use crate::library::{Library, Testable};
 use crate::math::mixture::{Evidence, Factored, Mixture, ln_sum};
 use crate::priors::{
     EXPECTED_SIGN, FLIGHT_SCATTER_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
@@ -72,6 +72,18 @@ pub(crate) struct Scorer {
 }
 
 impl Prior {
+    /// That of the size of an effect: a known one, or as large as such effects usually are.
+    pub(crate) fn of(effect: &Testable) -> Self {
+        let deviation = effect.prior_deviation;
+        let (scales, count) = if effect.has_known_size {
+            ([(deviation, 0.0); PRIOR_SCALES.len()], 1)
+        } else {
+            let free = PRIOR_SCALES.map(|(scale, share)| (scale * deviation, share.ln()));
+            (free, PRIOR_SCALES.len())
+        };
+        Self { mean: effect.prior_mean, scales, count, sign: effect.sign }
+    }
+
     /// ln of its density at a size, sign included.
     pub(crate) fn ln_density(&self, size: f64) -> f64 {
         let own = self.scales[..self.count].iter().map(|&(deviation, ln_share)| {
@@ -92,21 +104,7 @@ impl Scorer {
         let priors = library
             .columns
             .iter()
-            .map(|column| {
-                let effect = &library.effects[column.effect];
-                let free =
-                    PRIOR_SCALES.map(|(scale, share)| (scale * effect.prior_deviation, share.ln()));
-                Prior {
-                    mean: effect.prior_mean,
-                    scales: if effect.has_known_size {
-                        [(effect.prior_deviation, 0.0); PRIOR_SCALES.len()]
-                    } else {
-                        free
-                    },
-                    count: if effect.has_known_size { 1 } else { PRIOR_SCALES.len() },
-                    sign: effect.sign,
-                }
-            })
+            .map(|column| Prior::of(&library.effects[column.effect]))
             .collect();
         Self {
             priors,

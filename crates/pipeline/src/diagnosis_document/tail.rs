@@ -410,6 +410,13 @@ fn bounds(region: &Region) -> BTreeMap<String, [Option<f64>; 2]> {
     engine.into_iter().chain(conditions).collect()
 }
 
+impl MagnitudeRecord {
+    /// The size of an effect.
+    pub(crate) fn of(effect: EffectId, magnitude: diagnose::Magnitude) -> Self {
+        Self { value: magnitude.value, unit: effect.entry().unit.to_owned(), ci95: magnitude.ci95 }
+    }
+}
+
 impl From<&Cause> for CauseRecord {
     fn from(cause: &Cause) -> Self {
         Self {
@@ -417,11 +424,7 @@ impl From<&Cause> for CauseRecord {
             probability: cause.probability,
             probability_flat: cause.probability_flat,
             class: names(&cause.class),
-            magnitude: MagnitudeRecord {
-                value: cause.magnitude.value,
-                unit: cause.effect.entry().unit.to_owned(),
-                ci95: cause.magnitude.ci95,
-            },
+            magnitude: MagnitudeRecord::of(cause.effect, cause.magnitude),
             rms_after_percent: cause.rms_after_percent,
             closure: cause.closure.map(|closure| closure.share),
             closure_ci95: cause.closure.map(|closure| closure.ci95),

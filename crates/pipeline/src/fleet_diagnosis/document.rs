@@ -79,11 +79,7 @@ impl From<&DiagnosedFleet> for FleetRecord {
         let diagnosis = &fleet.diagnosis;
         let effect = |place: usize, magnitude: &diagnose::Magnitude| FleetEffectRecord {
             effect: diagnosis.effects[place].to_string(),
-            magnitude: MagnitudeRecord {
-                value: magnitude.value,
-                unit: diagnosis.effects[place].entry().unit.to_owned(),
-                ci95: magnitude.ci95,
-            },
+            magnitude: MagnitudeRecord::of(diagnosis.effects[place], *magnitude),
         };
         let found = fleet.found_effects();
         let tails = fleet.tails.iter().enumerate().map(|(tail, member)| FleetTailRecord {
@@ -119,10 +115,6 @@ fn finding(fleet: &DiagnosedFleet, found: &FleetFinding) -> FleetFindingRecord {
         class: found.class.iter().map(ToString::to_string).collect(),
         probability: found.probability,
         effect_probability: found.effect_probability,
-        magnitude: MagnitudeRecord {
-            value: found.magnitude.value,
-            unit: found.effect.entry().unit.to_owned(),
-            ci95: found.magnitude.ci95,
-        },
+        magnitude: MagnitudeRecord::of(found.effect, found.magnitude),
     }
 }
