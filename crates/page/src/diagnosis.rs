@@ -39,7 +39,7 @@ pub fn diagnosis(
         .zip(figures)
         .enumerate()
         .map(|(number, (diagnosed, figures))| Tail {
-            id: format!("tail-{}", number + 1),
+            id: anchor(number),
             diagnosed,
             figures,
             most_points: (POINTS_OF_PAGE / diagnoses.len()).clamp(FEWEST_POINTS, MOST_POINTS),
@@ -66,6 +66,11 @@ pub fn diagnosis(
         }
     };
     framed("Diagnosis of performance models", &body)
+}
+
+/// Where the page has the diagnosis of this place in the order given.
+pub(crate) fn anchor(number: usize) -> String {
+    format!("tail-{}", number + 1)
 }
 
 /// So many tails lie open below each other; of more each is folded to a line. Our choice: a few screens.

@@ -1,8 +1,8 @@
 //! The result of a run as one self-contained page for a performance engineer to read, print and forward.
 //!
 //! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis()`]
-//! that of diagnoses (what, where, how sure, what to do, and the charts behind it), [`plot()`] the charts of one tail as SVG,
-//! [`monitoring()`] the page of months and fleets. All are strings with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
+//! that of diagnoses (what, where, how sure, what to do, and the charts behind it), [`fleet_diagnosis()`] that of all tails of a
+//! type compared, [`plot()`] the charts of one tail as SVG, [`monitoring()`] the page of months and fleets. All are strings with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
 //! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures
 //! are taken from the results unchanged.
 //!
@@ -28,6 +28,7 @@ mod diagnosis;
 mod envelope;
 mod errors;
 mod fleet;
+mod fleet_diagnosis;
 mod frame;
 mod matrix;
 mod monitoring;
@@ -49,6 +50,7 @@ mod view;
 mod waterfall;
 
 pub use diagnosis::diagnosis;
+pub use fleet_diagnosis::{FleetRun, fleet_diagnosis};
 pub use monitoring::monitoring;
 pub use plot::{Confusion, TAIL_CHARTS, plot, plot_confusions, plot_diagnoses, plot_months};
 pub use report::{

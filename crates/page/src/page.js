@@ -54,15 +54,20 @@
       if (best) show(words(svg, best), event.clientX, event.clientY); else hide();
     });
     svg.addEventListener('pointerleave', hide);
-    if (!svg.querySelector('.dot,.disc')) continue;
+    // Columns that are named (tails, trials) are told by their names, else the points by their values.
+    const hits = all('.hit[data-tip]', svg);
+    if (!hits.length && !svg.querySelector('.dot,.disc')) continue;
     svg.setAttribute('tabindex', '0');
     let at = -1;
     svg.addEventListener('keydown', (event) => {
       const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-      if (!step || !points(svg).length) return;
+      const last = (hits.length || points(svg).length) - 1;
+      if (!step || last < 0) return;
       event.preventDefault();
-      at = Math.max(0, Math.min(points(svg).length - 1, at + step));
-      show(words(svg, points(svg)[at]), ...place(svg, points(svg)[at]));
+      at = Math.max(0, Math.min(last, at + step));
+      if (!hits.length) return show(words(svg, points(svg)[at]), ...place(svg, points(svg)[at]));
+      const { left, top, width, height } = hits[at].getBoundingClientRect();
+      show(hits[at].dataset.tip, left + width / 2, top + height / 2);
     });
     svg.addEventListener('blur', hide);
   }

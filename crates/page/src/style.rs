@@ -148,6 +148,7 @@ svg .diamond { fill: var(--paper); stroke: var(--after); stroke-width: 1.4; }
   body { padding-inline: .7rem; }
   dl { grid-template-columns: 1fr; gap: 0; } dd { margin-bottom: .45rem; }
   svg text, svg .label { font-size: 12.5px; }
+  .wide .scroll > svg { min-width: 640px; }
   .bars td.bar { width: 22%; min-width: 3.5rem; }
   details.tail > div { padding-inline: .5rem; }
 }

@@ -77,6 +77,16 @@ impl<'a> DiagnosisDocument<'a> {
         self
     }
 
+    /// The diagnosis of each tail.
+    pub fn diagnoses(&self) -> &[TailDiagnosis] {
+        &self.diagnoses
+    }
+
+    /// The fleets.
+    pub fn fleets(&self) -> &[FleetRecord] {
+        &self.fleets
+    }
+
     /// As JSON, with a final line end.
     ///
     /// # Errors

@@ -21,7 +21,7 @@ mod text;
 
 pub use document::{FleetEffectRecord, FleetFindingRecord, FleetRecord, FleetTailRecord};
 pub use tables::fleet_table;
-pub use text::fleet_text;
+pub use text::{fleet_text, size_words};
 
 /// The diagnosis of all tails of a type.
 #[derive(Clone, Debug)]

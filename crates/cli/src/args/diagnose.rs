@@ -33,7 +33,7 @@ pub(crate) struct DiagnoseArgs {
     #[arg(long, conflicts_with = "fleet")]
     pub(crate) pool: bool,
     /// Also compare all tails of a type with each other: what all share is the model's, what one has is the aircraft's or its
-    /// sensors'. Adds fleet.csv; with --apply writes TYPE.ron with what all share, and TAIL.ron with each tail's own
+    /// sensors'. Adds fleet.html and fleet.csv; with --apply writes TYPE.ron with what all share, and TAIL.ron with each tail's own
     #[arg(long)]
     pub(crate) fleet: bool,
     /// Count what the model's remainder explains as gap

@@ -7,6 +7,7 @@ use std::fmt::Write;
 
 use diagnose::Options;
 use flight::effect::EffectId;
+use page::FleetRun;
 use rayon::prelude::*;
 
 use crate::args::DiagnoseArgs;
@@ -63,24 +64,25 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         refused: reading.refused.iter().map(RefusedSummary::from).collect(),
     };
     let path = arguments.output.join("diagnosis.json");
-    let json = DiagnosisDocument::new(&asked, &reports, &diagnoses)
-        .with_fleets(&fleets)
-        .to_json()
-        .map_err(|error| Failure::unwritable(&path, error))?;
+    let document = DiagnosisDocument::new(&asked, &reports, &diagnoses).with_fleets(&fleets);
+    let json = document.to_json().map_err(|error| Failure::unwritable(&path, error))?;
     write_atomically(&path, json.as_bytes())?;
-    let html = page::diagnosis(
-        &reports,
-        &diagnoses,
-        &figures,
-        &asked.in_words(&arguments.reports.criteria.name),
-    );
+    let options = asked.in_words(&arguments.reports.criteria.name);
+    let html = page::diagnosis(&reports, &diagnoses, &figures, &options);
     write_atomically(&arguments.output.join("diagnosis.html"), neutral(&html).as_bytes())?;
     let mut text = String::new();
     for diagnosed in &diagnoses {
         append_lines(diagnosed, &mut text);
     }
     let refused_reports = reading.refused.len();
-    text.push_str(&fleet::write(&fleets, &arguments.output)?);
+    let run = FleetRun {
+        reports: &reports,
+        fleets: document.fleets(),
+        diagnoses: document.diagnoses(),
+        figures: &figures,
+        options: &options,
+    };
+    text.push_str(&fleet::write(&fleets, &run, &arguments.output)?);
     if let Some(folder) = &arguments.apply {
         let applied = if arguments.fleet {
             fleet::apply(folder, &groups, &fleets)?
@@ -96,7 +98,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         counted(read, "report"),
         refused_reports,
         show(&arguments.output),
-        if arguments.fleet { ", fleet.csv" } else { "" }
+        if arguments.fleet { ", fleet.html, fleet.csv" } else { "" }
     );
     Ok(Outcome { text, refused: reading.refused, json: Some(json.into()) })
 }

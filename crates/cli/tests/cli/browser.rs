@@ -2,6 +2,7 @@
 //! keys, phone, print, and the numbers of the documents.
 
 mod driver;
+mod made_up;
 mod probes;
 
 use std::fs;
@@ -57,23 +58,28 @@ fn pages_of_the_demo() {
 #[test]
 fn pages_have_no_barrier() {
     let Some(browser) = Browser::start() else { return };
-    let Some(axe) = axe() else { return };
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path();
     cruisefit(&["demo".as_ref(), "-o".as_ref(), folder.as_os_str()]).expect(0);
     monitor(folder);
     for name in PAGES {
-        for scheme in ["light", "dark"] {
-            probes::color_scheme(&browser, scheme);
-            browser.open(&folder.join(name));
-            let found = browser.run_waiting(
-                "(0, eval)(given); for (const fold of document.querySelectorAll('details')) fold.open = true;
-                 const { violations } = await axe.run();
-                 return violations.map((one) => `${one.id}: ${one.nodes[0].html.slice(0, 200)} ${one.nodes[0].failureSummary}`);",
-                &axe,
-            );
-            assert_eq!(found, serde_json::json!([]), "{name}, {scheme}");
-        }
+        check_no_barrier(&browser, &folder.join(name));
+    }
+}
+
+/// No violation by axe-core, light or dark, with everything unfolded.
+fn check_no_barrier(browser: &Browser, page: &Path) {
+    let Some(axe) = axe() else { return };
+    for scheme in ["light", "dark"] {
+        probes::color_scheme(browser, scheme);
+        browser.open(page);
+        let found = browser.run_waiting(
+            "(0, eval)(given); for (const fold of document.querySelectorAll('details')) fold.open = true;
+             const { violations } = await axe.run();
+             return violations.map((one) => `${one.id}: ${one.nodes[0].html.slice(0, 200)} ${one.nodes[0].failureSummary}`);",
+            &axe,
+        );
+        assert_eq!(found, serde_json::json!([]), "{}, {scheme}", page.display());
     }
 }
 
@@ -125,6 +131,62 @@ fn a_page_of_200_tails() {
     assert_eq!(shown, serde_json::json!([true, true]));
     // Its PDF takes the browser longer than the driver waits: what is laid out for print has to do.
     check_laid_out_for_print(&browser, "200 tails");
+}
+
+/// Two hundred tails compared with each other.
+#[test]
+fn a_fleet_of_200_tails() {
+    let Some(browser) = Browser::start() else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let page = scratch.path().join("fleet.html");
+    let fleet = made_up::fleet(&page);
+    assert!(fs::metadata(&page).unwrap().len() < 6_000_000, "a page that can be mailed");
+    browser.open(&page);
+    check_loaded(&browser, &page);
+    check_drawn(&browser, "fleet.html");
+    check_phone(&browser, "fleet.html");
+    check_saved(&browser, "fleet.html");
+    check_print(&browser, "fleet.html");
+    browser.open(&page);
+    check_sizes(&browser, &fleet);
+    browser.run("document.querySelector('svg[tabindex]').focus();");
+    browser.press(&[ARROW_RIGHT]);
+    let told = browser.run(
+        "return [document.getElementById('tip').innerText, document.querySelector('table.heat tbody th').innerText]",
+    );
+    let (tip, first) = (told[0].as_str().unwrap(), told[1].as_str().unwrap());
+    assert!(tip.starts_with(&format!("{first}: ")), "the first tail has a name: {told}");
+    browser.run("document.querySelector('input[type=search]').focus();");
+    browser.press(&['T', '-', '1', '7', '3']);
+    let left = browser.run(
+        "return [...document.querySelectorAll('table.heat tbody tr:not([hidden]) th')].map((cell) => cell.innerText);",
+    );
+    assert_eq!(left, serde_json::json!(["T-173"]));
+    check_no_barrier(&browser, &page);
+}
+
+/// The table of tails has every size of the document, number by number.
+fn check_sizes(browser: &Browser, fleet: &Value) {
+    let rows = browser.run(
+        "return [...document.querySelectorAll('table.heat tbody tr')].map((row) => [row.cells[0].innerText,
+           [...row.cells].slice(1).map((cell) => +cell.dataset.v)]);",
+    );
+    let rows = rows.as_array().unwrap();
+    let tails = fleet["tails"].as_array().unwrap();
+    assert_eq!(rows.len(), tails.len());
+    for tail in tails {
+        let row = rows.iter().find(|row| row[0] == tail["tail"]).unwrap();
+        let shown: Vec<f64> = row[1].as_array().unwrap().iter().filter_map(Value::as_f64).collect();
+        let effects = tail["effects"].as_array().unwrap();
+        let sizes = effects.iter().map(|effect| &effect["magnitude"]["value"]);
+        for number in sizes.chain(["flights", "segments", "noise"].map(|name| &tail[name])) {
+            let number = number.as_f64().unwrap();
+            assert!(
+                shown.iter().any(|one| (one - number).abs() <= 1e-12 * number.abs()),
+                "{number} in {shown:?}"
+            );
+        }
+    }
 }
 
 /// Writes a page of 200 tails with the flights of the fixture, whose errors differ by tail, and returns its document.

@@ -103,10 +103,52 @@ fn what_all_share_is_the_models_and_what_one_has_is_its_own() {
     assert_eq!(table["tail"].len(), 7 * effects);
     assert_eq!(table["tail"].iter().filter(|tail| *tail == "*").count(), effects);
 
+    check_page(&at("found/fleet.html"), fleet);
+
     // The order of reports and the number of threads change no byte.
     diagnose("again", ["F-4", "F-6", "F-5", "F-3", "F-2", "F-1"], "1");
     assert_eq!(bytes_below(&at("found")), bytes_below(&at("again")));
     assert_eq!(bytes_below(&at("found-applied")), bytes_below(&at("again-applied")));
+}
+
+/// Every size, count and probability of the document is on the page, and every tail leads to its diagnosis.
+fn check_page(page: &Path, fleet: &serde_json::Value) {
+    let diagnoses = std::fs::read_to_string(page.with_file_name("diagnosis.html")).unwrap();
+    let page = std::fs::read_to_string(page).unwrap();
+    let shown: Vec<f64> = page
+        .split("data-v=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next()?.parse().ok())
+        .collect();
+    let has = |value: &serde_json::Value| {
+        let number = value.as_f64().unwrap();
+        // A number read from JSON may differ in its last bit.
+        let is_shown = shown.iter().any(|one| (one - number).abs() <= 1e-12 * number.abs());
+        assert!(is_shown, "{number}");
+    };
+    let list = |value: &serde_json::Value| value.as_array().unwrap().clone();
+    for found in list(&fleet["findings"]) {
+        has(&found["magnitude"]["value"]);
+        list(&found["magnitude"]["ci95"]).iter().for_each(has);
+        has(&found["probability"]);
+    }
+    for effect in list(&fleet["effects"]) {
+        has(&effect["magnitude"]["value"]);
+    }
+    for tail in list(&fleet["tails"]) {
+        for name in ["flights", "segments", "noise"] {
+            has(&tail[name]);
+        }
+        for effect in list(&tail["effects"]) {
+            has(&effect["magnitude"]["value"]);
+        }
+        let name = tail["tail"].as_str().unwrap();
+        let (before, _) = page.split_once(&format!("\">{name}</a>")).unwrap();
+        let (_, anchor) = before.rsplit_once("diagnosis.html#").unwrap();
+        let section = diagnoses.split(&format!("id=\"{anchor}\"")).nth(1).unwrap();
+        // The section's heading, or the charts under it, have the tail's name.
+        assert!(section[..4000].contains(name), "{name} is not at {anchor}");
+    }
 }
 
 #[test]

@@ -114,10 +114,16 @@ fn table(fleet: &DiagnosedFleet) -> String {
 }
 
 fn size(magnitude: &Magnitude) -> String {
-    let half = 0.5 * (magnitude.ci95[1] - magnitude.ci95[0]);
+    size_words(magnitude.value, magnitude.ci95)
+}
+
+/// A size with half of its 95 % interval: "+7.9 ± 1.2".
+#[must_use]
+pub fn size_words(value: f64, ci95: [f64; 2]) -> String {
+    let half = 0.5 * (ci95[1] - ci95[0]);
     // Two digits of the interval.
     let decimals = if half > 0.0 { (1.0 - half.log10().floor()).clamp(0.0, 6.0) } else { 2.0 };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 6")]
     let decimals = decimals as usize;
-    format!("{:+.decimals$} ± {half:.decimals$}", magnitude.value)
+    format!("{value:+.decimals$} ± {half:.decimals$}")
 }

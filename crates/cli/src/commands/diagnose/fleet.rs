@@ -4,13 +4,15 @@ use std::fmt::Write;
 use std::path::Path;
 
 use diagnose::{ModelOf, Options};
+use page::FleetRun;
 use rayon::prelude::*;
 
 use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
-use crate::files::{file_stem_of_tail, make_folder};
+use crate::files::{file_stem_of_tail, make_folder, write_atomically};
 use crate::models::write_model;
+use crate::terminal::neutral;
 use pipeline::diagnosed_tail::RunOptions;
 use pipeline::diagnosis_groups::Group;
 use pipeline::fleet_diagnosis::{DiagnosedFleet, diagnose_fleets, fleet_table, fleet_text};
@@ -34,15 +36,21 @@ pub(super) fn diagnose(
     .map_err(|error| Failure::BadArgument { argument: "--fleet", reason: error.to_string() })
 }
 
-/// Writes `fleet.csv`; returns what to print.
+/// Writes `fleet.csv` and `fleet.html`; returns what to print.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub(super) fn write(fleets: &[DiagnosedFleet], folder: &Path) -> Result<String, Failure> {
+pub(super) fn write(
+    fleets: &[DiagnosedFleet],
+    run: &FleetRun<'_>,
+    folder: &Path,
+) -> Result<String, Failure> {
     if fleets.is_empty() {
         return Ok(String::new());
     }
     columns::write(&fleet_table(fleets), Some(&folder.join("fleet.csv")))?;
+    let html = page::fleet_diagnosis(run);
+    write_atomically(&folder.join("fleet.html"), neutral(&html).as_bytes())?;
     let texts: Vec<String> = fleets.iter().map(fleet_text).collect();
     Ok(format!("{}\n", texts.join("\n")))
 }

@@ -27,6 +27,8 @@ pub(super) fn check_drawn(browser: &Browser, name: &str) {
            .map((svg) => svg.querySelector('title').textContent);",
     );
     assert_eq!(empty, json!([]), "{name}: charts without marks");
+    // A picture shows what is in the window, and the driver is content with an edge of it.
+    browser.run("document.querySelector('svg[data-frame]').scrollIntoView({ block: 'center' });");
     let picture = browser.picture("svg[data-frame]");
     let page = browser.run("return location.href");
     // The page's own policy forbids every picture: it is looked at on an empty page.
