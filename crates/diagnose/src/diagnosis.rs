@@ -21,13 +21,14 @@ use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::output::addition::Addition;
 use crate::output::form::{ActsOn, FoundForm};
-use crate::output::note::Note;
+use crate::output::note::{LeftOutReason, Note};
 use crate::output::verdict::{Insufficient, Verdict};
 use crate::output::{Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
 use crate::place::find::find;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
+use crate::search::outliers::outliers;
 use crate::search::outside::{Outside, compete};
 use crate::search::robust::outlier_weights;
 use crate::search::system::{Problem, WhitenedSystem};
@@ -63,7 +64,7 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     let is_dated = input.references.is_some() || input.baseline.is_some();
     let right_at_s = is_dated.then_some(references.date_s);
     let run = Run { input, options, model: &model, references: &references };
-    let (mut dates, mut weights) = (None, None);
+    let (mut dates, mut judged) = (None, JudgedSegments::default());
     for attempt in 0..=CLOSER_DATES {
         let kept = dates.take();
         let reference = Reference::from_baseline(input.baseline);
@@ -80,9 +81,9 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
         if input.table.map(TableUncertainty::origin) == Some(TableOrigin::Book) {
             library.believe_book();
         }
-        match run.once(data, &library, weights.take(), attempt < CLOSER_DATES)? {
+        match run.once(data, &library, &mut judged, attempt < CLOSER_DATES)? {
             Attempt::Done(found) => return Ok(*found),
-            Attempt::Closer(closer, robust) => (dates, weights) = (Some(*closer), robust),
+            Attempt::Closer(closer) => dates = Some(*closer),
         }
     }
     Err(DiagnoseError::Degenerate)
@@ -91,8 +92,17 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
 /// What one pass over the dates that are tried comes to.
 enum Attempt {
     Done(Box<Diagnosis>),
-    /// A dated effect leads: these dates are to be tried, with these robust weights of segments.
-    Closer(Box<DateGrid>, Option<Vec<f64>>),
+    /// A dated effect leads: these dates are to be tried.
+    Closer(Box<DateGrid>),
+}
+
+/// What is found out about the segments once, whatever dates are tried.
+#[derive(Default)]
+struct JudgedSegments {
+    /// Which of them are outliers.
+    refused: Option<Vec<bool>>,
+    /// Weights of the others, where their residuals have heavy tails.
+    weights: Option<Vec<f64>>,
 }
 
 /// What stays the same whatever dates are tried.
@@ -107,55 +117,85 @@ struct Run<'a> {
 impl Run<'_> {
     fn once(
         self,
-        data: PreparedFlights<'_>,
+        mut data: PreparedFlights<'_>,
         library: &Library,
-        weights: Option<Vec<f64>>,
+        judged: &mut JudgedSegments,
         may_go_closer: bool,
     ) -> Result<Attempt, DiagnoseError> {
         let Self { input, options, model, references } = self;
-        let not_testable = library
+        let not_testable: Vec<NotTestable> = library
             .not_testable
             .iter()
             .map(|(id, needs)| NotTestable { effect: *id, needs: needs.clone() })
             .collect();
-        if let Some(reason) = too_little(&data, library) {
-            let mut found = insufficient(data.flights.len(), data.segments.len(), reason);
-            found.not_testable = not_testable;
-            found.left_out = data.left_out;
-            return Ok(Attempt::Done(Box::new(found)));
-        }
-        let design = Design::new(&data, references, input.baseline, input.table);
         let mut notes = Vec::new();
+        let too_few = |data: &PreparedFlights<'_>| {
+            let reason = too_little(data, library)?;
+            let mut found = insufficient(data.flights.len(), data.segments.len(), reason);
+            found.not_testable.clone_from(&not_testable);
+            found.left_out.clone_from(&data.left_out);
+            Some(Attempt::Done(Box::new(found)))
+        };
+        if let Some(done) = too_few(&data) {
+            return Ok(done);
+        }
         notes.extend(data.thrust_by_n2_note(library));
+        let design = |data: &_| Design::new(data, references, input.baseline, input.table);
+        let of_all = design(&data);
+        let refused = &*judged.refused.get_or_insert_with(|| outliers(&data, &of_all, library));
+        let design = if refused.contains(&true) {
+            notes.push(leave_out(&mut data, refused));
+            if let Some(done) = too_few(&data) {
+                return Ok(done);
+            }
+            design(&data)
+        } else {
+            of_all
+        };
         notes.extend(input.table.and_then(table_in_columns));
         if input.references.is_none() && input.baseline.is_none() {
             notes.push(Note::ReferencesAreMeans);
         }
-        let weights = weights.filter(|weights| weights.len() == data.segments.len());
-        let mut system = WhitenedSystem::new(&data, &design, weights);
+        if let Some(weights) = &judged.weights {
+            data.weigh(weights);
+        }
+        let mut system = WhitenedSystem::new(&data, &design);
         let problem = Problem { system: &system, model, library };
         let mut analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
         // Heavy tails show only beside the best model; then everything is done again with weights.
-        if system.weights().is_none()
+        if judged.weights.is_none()
             && let Some(weights) = outlier_weights(&system, &analysis, library)
         {
-            drop(analysis);
-            system = WhitenedSystem::new(&data, &design, Some(weights));
+            drop((analysis, system));
+            data.weigh(judged.weights.insert(weights));
+            system = WhitenedSystem::new(&data, &design);
             let problem = Problem { system: &system, model, library };
             analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
         }
         if let Some(closer) = closer_dates(&analysis, library).filter(|_| may_go_closer) {
-            return Ok(Attempt::Closer(Box::new(closer), system.weights().map(<[f64]>::to_vec)));
+            return Ok(Attempt::Closer(Box::new(closer)));
         }
-        if system.weights().is_some() {
+        if judged.weights.is_some() {
             notes.push(Note::HeavyTails);
         }
         let problem = Problem { system: &system, model, library };
         let mut diagnosis = conclude(problem, &analysis, options, &mut notes)?;
         diagnosis.not_testable = not_testable;
         diagnosis.left_out.clone_from(&data.left_out);
+        diagnosis.outliers = (0..refused.len()).filter(|&place| refused[place]).collect();
         diagnosis.notes = notes;
         Ok(Attempt::Done(Box::new(diagnosis)))
+    }
+}
+
+/// Leaves outliers out.
+fn leave_out(data: &mut PreparedFlights<'_>, refused: &[bool]) -> Note {
+    let (of_segments, of_flights) = (data.segments.len(), data.flights.len());
+    data.leave_out(refused, LeftOutReason::Outlier);
+    Note::Outliers {
+        segments: of_segments - data.segments.len(),
+        of_segments,
+        flights: of_flights - data.flights.len(),
     }
 }
 
@@ -245,6 +285,7 @@ fn conclude(
         outside: outside_library(&outside, found_forms),
         held_out: unseen.as_ref().map_or_else(Vec::new, Shrinkage::by_flight),
         left_out: BTreeMap::new(),
+        outliers: vec![],
         notes: vec![],
     })
 }

@@ -50,6 +50,8 @@ pub struct Diagnosis {
     pub held_out: Vec<HeldOutFlight>,
     /// Segments left out, by reason.
     pub left_out: BTreeMap<LeftOutReason, usize>,
+    /// Outliers among them: their places among all segments that the model can predict, in the order of the input.
+    pub outliers: Vec<usize>,
     /// What was assumed, in the order in which it was.
     pub notes: Vec<Note>,
 }

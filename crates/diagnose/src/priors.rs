@@ -137,11 +137,14 @@ deciding_numbers! {
             "degrees of freedom of the Student distribution behind the weights of segments",
             OurChoice "As law bayes has: an error of ten standard deviations keeps a twentieth of its weight.";
         ROBUST_EFFECT: f64 = 3.0, "of typical size",
-            "prior standard deviation of the effects in the fit that weights come from",
+            "prior standard deviation of the effects in the fits that outliers and weights come from",
             OurChoice "The larger of the two prior scales: what an effect explains is no outlier.";
         ROBUST_SMOOTH: f64 = 0.0015, "of fuel flow",
-            "prior standard deviation of the smooth terms in that fit",
+            "prior standard deviation of the smooth terms in the fit that weights come from",
             OurChoice "The smallest amplitude of the smooth discrepancy, so that it explains no outlier.";
+        OUTLIER_SMOOTH: f64 = 0.010, "of fuel flow",
+            "amplitude of the smooth discrepancy in the fit that outliers are judged by",
+            OurChoice "The largest: what depends on conditions is no outlier.";
         FLIGHT_SPLIT_DEVIATION: f64 = 0.01, "",
             "standard deviation from flight to flight of ln(Wf1/Wf2)",
             OurChoice "Engines of one aircraft are not set exactly alike; how far apart is a guess.";

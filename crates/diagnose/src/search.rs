@@ -2,6 +2,7 @@
 
 pub(crate) mod analyse;
 pub(crate) mod folds;
+pub(crate) mod outliers;
 pub(crate) mod outside;
 pub(crate) mod pairs;
 pub(crate) mod refine;

@@ -112,11 +112,20 @@ deciding_numbers! {
             OurChoice "One in a thousand is not worth a line.";
     }
     "Search" {
+        OUTLIER_DISTANCE: f64 = 4.5, "standard deviations",
+            "distance from all other segments, or flights, beyond which one is an outlier",
+            OurChoice "Of normal errors seven in a million lie beyond: clean flights lose nothing.";
+        OUTLIER_NEIGHBORS: usize = 10, "segments",
+            "nearest segments of other flights, in each variable, that an outlier is compared with",
+            OurChoice "About a flight's worth: in date, half of the flight before and half of the one after.";
+        ALIKE_NEIGHBORS: f64 = 0.5, "of these",
+            "share of them from which a segment that is off as they are is no outlier",
+            OurChoice "Half: a gap of a range that was flown, not of a recording. Of a tenth that is off at random, one in 600 has as many.";
         HEAVY_KURTOSIS: f64 = 4.0, "",
             "kurtosis of the whitened residuals above which segments are weighted",
             OurChoice "A normal distribution has 3. Weights cost information, so that they need a reason.";
         LEAST_ROBUST_SCALE: f64 = 0.3, "standard deviations",
-            "least scale of the residuals that weights are taken from",
+            "least scale of the residuals that outliers and weights are taken from",
             OurChoice "Residuals that are far quieter than stated must not turn ordinary segments into outliers.";
         REFINED: usize = 5, "hypotheses",
             "leading hypotheses that are simulated again at their estimates",

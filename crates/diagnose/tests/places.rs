@@ -87,6 +87,7 @@ fn gaps_of_segments_are_those_of_the_diagnosis() {
     let found = diagnose(&input, &options()).unwrap();
     let addition = found.addition.as_ref().unwrap();
     let shown = Shown {
+        outliers: &found.outliers,
         addition: Some(addition),
         region: Some(&found.r#where[0].region),
         driver: Some(Variable::Mach),

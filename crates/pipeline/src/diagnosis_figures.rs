@@ -39,6 +39,7 @@ impl DiagnosisFigures {
             addition: diagnosis.addition.as_ref(),
             region: diagnosis.r#where.first().map(|place| &place.region),
             driver,
+            outliers: &diagnosis.outliers,
         };
         let segments = match &diagnosis.verdict {
             Verdict::InsufficientData(_) => Vec::new(),

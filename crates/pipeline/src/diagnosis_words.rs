@@ -8,6 +8,8 @@ use diagnose::{
 };
 use flight::effect::EffectId;
 
+use crate::summary::counted;
+
 mod form;
 mod region;
 
@@ -201,6 +203,14 @@ pub fn note_words(note: &Note) -> String {
             "N2 of {silent} of {recorded} segments stands for no thrust near the predicted one: \
              tsfc_throttle is over corrected thrust there"
         ),
+        Note::HeavyTails => "whitened residuals have heavy tails: segments are weighed".to_owned(),
+        Note::Outliers { segments, of_segments, flights } => {
+            let whole = match flights {
+                0 => String::new(),
+                flights => format!(", among them all of {}", counted(flights, "flight")),
+            };
+            format!("unlike all others and left out: {segments} of {of_segments} segments{whole}")
+        }
         Note::ReferencesAreMeans => {
             "references of effects are the means of these flights".to_owned()
         }
@@ -209,7 +219,6 @@ pub fn note_words(note: &Note) -> String {
              (up to {:.2} % of a node's variance left out), and advice on flights elsewhere counts the rest as known",
             100.0 * missing_share
         ),
-        Note::HeavyTails => "whitened residuals have heavy tails: segments are weighed".to_owned(),
         Note::LikeALevel(id) => format!(
             "these flights differ from the model's reference in what {id} depends on by more than they vary: nothing \
              distinguishes it from a level"
@@ -232,6 +241,7 @@ pub const fn left_out_words(reason: LeftOutReason) -> &'static str {
         LeftOutReason::OutOfDomain => "a mean outside its domain",
         LeftOutReason::NoThrust => "no thrust left",
         LeftOutReason::NotPredictable => "not predictable",
+        LeftOutReason::Outlier => "unlike all other segments",
     }
 }
 

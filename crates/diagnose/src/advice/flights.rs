@@ -96,14 +96,13 @@ impl Conditions {
             agnostic_spikes: library.agnostic_spikes,
             spikes_of_right_table: library.spikes_of_right_table,
         };
-        let weight = system.mean_weight();
+        let weight = system.data.mean_weight();
         let mut steady: Vec<FlightInformation> = Vec::new();
         let mut sweeps: Vec<(Sweep, FlightInformation)> = Vec::new();
         for flight in test_flights(&envelope, model) {
             let planned = system.data.planned(model, &few, &flight.points, envelope.recorded);
             let Some(planned) = planned else { continue };
-            let rows = design.whitened(&planned, &planned.flights[0], None);
-            let rows = faer::Scale(weight) * rows;
+            let rows = faer::Scale(weight) * design.whitened(&planned, &planned.flights[0]);
             let information = known.flight(&rows);
             match flight.sweep {
                 Some(sweep) => sweeps.push((sweep, information)),

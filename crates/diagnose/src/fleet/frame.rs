@@ -10,7 +10,7 @@ use crate::fleet::basis::{Layout, SharedBasis};
 use crate::fleet::joint::TailGram;
 use crate::hypotheses::design::Design;
 use crate::input::{Input, Options};
-use crate::library::dates::DateGrid;
+use crate::library::dates::{DateGrid, is_dated};
 use crate::library::{Library, Testable};
 use crate::math::cholesky::Cholesky;
 use crate::math::eliminate::{Reduced, integrate_out};
@@ -96,6 +96,7 @@ impl<'a> FleetFrame<'a> {
         let chosen = |id: EffectId| {
             (options.effects.is_empty() || options.effects.contains(&id))
                 && !options.without.contains(&id)
+                // `monitor` looks for what has dates of its own on every tail.
                 && !is_dated(id)
         };
         let reference = Reference::from_baseline(input.baseline);
@@ -144,13 +145,13 @@ impl<'a> FleetFrame<'a> {
         let mut sum = Sum::new(columns);
         let mut products = Vec::with_capacity(data.flights.len());
         for flight in &data.flights {
-            let rows = self.design.whitened(&data, flight, None);
+            let rows = self.design.whitened(&data, flight);
             let own = Mat::from_fn(rows.nrows(), own_columns.len(), |row, place| {
                 rows[(row, own_columns[place].0)]
             });
             let rows = self.basis.project(&rows);
             products.push((rows.transpose() * &own, own.transpose() * &own));
-            sum.add(&rows, data.recorded_values(flight, None));
+            sum.add(&rows, data.recorded_values(flight));
         }
         let gram = sum.finish();
         // What is uncertain is the tail's alone, or mostly its type's.
@@ -324,8 +325,8 @@ fn basis_of(
     let mut sum = Sum::new(design.columns);
     let mut taken = 0;
     for flight in data.flights.iter().step_by(every) {
-        let rows = design.whitened(data, flight, None);
-        sum.add(&rows, data.recorded_values(flight, None));
+        let rows = design.whitened(data, flight);
+        sum.add(&rows, data.recorded_values(flight));
         taken += 1;
     }
     let most = SMOOTH_AMPLITUDES.into_iter().fold(0.0, f64::max);
@@ -376,11 +377,6 @@ fn without_scatter(
     subtract_gram(&mut matrix, &all);
     symmetrize(&mut matrix);
     Some((matrix, ln_determinant))
-}
-
-/// Whether an effect has dates of its own on every tail: `monitor` looks for those.
-fn is_dated(id: EffectId) -> bool {
-    matches!(id.entry().hidden, HiddenParameter::Step { .. } | HiddenParameter::History(_))
 }
 
 #[cfg(test)]

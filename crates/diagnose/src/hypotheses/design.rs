@@ -49,7 +49,7 @@ const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
     (Variable::Mach, Variable::Date),
 ];
 /// Without acceleration: its own error is in the residual, which depends on it in every recording.
-const AGNOSTIC_VARIABLES: [Variable; 18] = [
+pub(crate) const AGNOSTIC_VARIABLES: [Variable; 18] = [
     Variable::Mach,
     Variable::LiftCoefficient,
     Variable::PressureAltitude,
@@ -230,12 +230,18 @@ impl<'a> Design<'a> {
         rows
     }
 
-    /// Whitened rows of a flight, all columns. `weights` of the segments are 1 where not robust.
-    pub(crate) fn whitened(
+    /// Whitened rows of a flight, all columns.
+    pub(crate) fn whitened(&self, data: &PreparedFlights<'_>, flight: &FlightRows) -> Mat<f64> {
+        let mut matrix = self.within_segments(data, flight);
+        whiten_flight(data, &data.segments[flight.segments.clone()], &mut matrix);
+        matrix
+    }
+
+    /// The same, each segment whitened by its own noise alone.
+    pub(crate) fn within_segments(
         &self,
         data: &PreparedFlights<'_>,
         flight: &FlightRows,
-        weights: Option<&[f64]>,
     ) -> Mat<f64> {
         let channels = data.channels.count();
         let segments = &data.segments[flight.segments.clone()];
@@ -252,16 +258,6 @@ impl<'a> Design<'a> {
             matrix[(rows - 1, self.columns - 1)] = gauge.residual / gauge.deviation;
         }
         self.scale_nuisance(&mut matrix);
-        whiten_flight(data, segments, &mut matrix);
-        if let Some(weights) = weights {
-            for (index, weight) in weights[flight.segments.clone()].iter().enumerate() {
-                for row in index * channels..(index + 1) * channels {
-                    for column in 0..self.columns {
-                        matrix[(row, column)] *= weight;
-                    }
-                }
-            }
-        }
         matrix
     }
 

@@ -43,22 +43,24 @@ impl Shrinkage {
             seed,
         };
         for (index, flight) in data.flights.iter().enumerate() {
-            let (mut before, mut after, mut floor) = (0.0, 0.0, 0.0);
+            let (mut before, mut after, mut floor, mut count) = (0.0, 0.0, 0.0, 0.0);
             for segment in flight.segments.clone() {
                 let row = &data.segments[segment];
                 let gap = row.residual[0];
                 let left = gap - change(index, segment);
-                before += gap * gap;
-                after += left * left;
+                let weight = row.weight * row.weight;
+                count += weight;
+                before += weight * gap * gap;
+                after += weight * left * left;
                 found.left.push(left);
                 let own = row.noise.factor[0][0] * row.noise.factor[0][0];
                 let common: f64 = row.noise.common.iter().map(|u| u[0] * u[0]).sum();
-                floor += noise_scale * (own + common);
+                floor += weight * noise_scale * (own + common);
             }
             found.before.push(before);
             found.after.push(after);
             found.floor.push(floor);
-            found.segments.push(flight.segments.len() as f64);
+            found.segments.push(count);
         }
         found
     }

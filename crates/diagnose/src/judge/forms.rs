@@ -302,7 +302,6 @@ impl Columns<'_> {
             }
         }
         whiten_flight(data, segments, &mut rows);
-        system.weigh(index, &mut rows);
         rows
     }
 }

@@ -65,6 +65,7 @@ pub(crate) const fn insufficient(
         outside: OutsideLibrary { probability: 0.0, variable: None, acts_on: None, forms: vec![] },
         held_out: vec![],
         left_out: BTreeMap::new(),
+        outliers: vec![],
         notes: vec![],
     }
 }

@@ -8,6 +8,11 @@ use crate::priors::{HISTORY_DATES, RECOVERED_COARSE, RECOVERED_FINE, STEP_DATES}
 /// Dates on either side of a leading one that are tried next.
 const NEIGHBOURS: usize = 4;
 
+/// Whether an effect begins, or is taken back, at dates.
+pub(crate) fn is_dated(id: EffectId) -> bool {
+    matches!(id.entry().hidden, HiddenParameter::Step { .. } | HiddenParameter::History(_))
+}
+
 /// Hidden parameters of the dated effects, and between how many they choose.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DateGrid {

@@ -18,6 +18,15 @@ pub enum Note {
     ReferencesAreMeans,
     /// Whitened residuals have heavy tails: segments are weighed.
     HeavyTails,
+    /// Segments are unlike all others: they were left out before anything was searched.
+    Outliers {
+        /// Outliers.
+        segments: usize,
+        /// Segments that the model can predict, outliers among them.
+        of_segments: usize,
+        /// Flights of which every segment is an outlier.
+        flights: usize,
+    },
     /// The uncertainty of a large drag table is kept for the nodes that these flights visit; elsewhere the table counts as
     /// known.
     TableInColumns {
@@ -48,4 +57,6 @@ pub enum LeftOutReason {
     NoThrust,
     /// It cannot be predicted for another reason.
     NotPredictable,
+    /// It is an outlier: far from what all other segments show, and unlike its neighbors in every variable.
+    Outlier,
 }

@@ -192,7 +192,7 @@ fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
 }
 
 /// Takes out of fuel flow what the error of the recorded acceleration makes of it, as far as the recording itself tells;
-/// and weighs outliers down, where heavy tails were found.
+/// and weighs segments down, where heavy tails were found.
 ///
 /// A recorded acceleration that is far from the mean is partly in error, and the error is in the residual: without this,
 /// slices over acceleration would stand out in every recording.
@@ -208,13 +208,13 @@ fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
         segments.iter().map(|row| (row.point.acceleration_m_s2 - mean).powi(2)).sum::<f64>()
             / count;
     let mut left = gaps.clone();
-    for (index, (row, gap)) in segments.iter().zip(&mut left.total).enumerate() {
+    for (row, gap) in segments.iter().zip(&mut left.total) {
         if variance > 0.0 {
             let share = error_share(row.acceleration_deviation_m_s2, variance);
             let slope = row.point.mass_kg / row.response.net_thrust_n;
             *gap += slope * share * (row.point.acceleration_m_s2 - mean);
         }
-        *gap *= system.weights.as_ref().map_or(1.0, |weights| weights[index]);
+        *gap *= row.weight;
     }
     left
 }

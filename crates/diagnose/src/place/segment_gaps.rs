@@ -6,6 +6,7 @@ use crate::input::Input;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::output::addition::Addition;
+use crate::output::note::LeftOutReason;
 use crate::output::region::Region;
 use crate::residuals::reference::Reference;
 use crate::residuals::rows::SegmentRow;
@@ -43,6 +44,8 @@ pub struct Shown<'a> {
     pub region: Option<&'a Region>,
     /// The variable over which the gap is drawn.
     pub driver: Option<Variable>,
+    /// Outliers that the diagnosis left out, and charts do too.
+    pub outliers: &'a [usize],
 }
 
 /// The gap at every segment that a diagnosis of the same input uses, in its order. The sizes of the addition were fitted to
@@ -60,10 +63,13 @@ pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGa
     let model = EffectModel::new(input.model, input.drag_table, references)?
         .between_nodes(reference.between_nodes());
     // No column of the library is needed: residuals do not depend on what is searched.
-    let (data, _) =
+    let (mut data, _) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
             Library::new(&model, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
         });
+    let is_outlier = |place: usize| shown.outliers.binary_search(&place).is_ok();
+    let refused: Vec<bool> = (0..data.segments.len()).map(is_outlier).collect();
+    data.leave_out(&refused, LeftOutReason::Outlier);
     let value = |row: &SegmentRow, variable: Variable| match variable {
         Variable::N2 => row.n2_percent,
         Variable::Date => Some(row.point.date_s),

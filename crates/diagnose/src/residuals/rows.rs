@@ -33,6 +33,8 @@ pub(crate) struct SegmentRow {
     pub(crate) n2_percent: Option<f64>,
     /// Standard deviation of the recorded acceleration, m/s².
     pub(crate) acceleration_deviation_m_s2: f64,
+    /// Factor on its whitened rows: below 1 where residuals have heavy tails and its own are large.
+    pub(crate) weight: f64,
     /// Samples that its means are of.
     pub(crate) samples: usize,
     /// Chord errors of the drag table along lift coefficient and Mach number, relative to drag.

@@ -251,6 +251,7 @@ impl<'a> PreparedFlights<'a> {
                     model.aircraft().sensors().acceleration_m_s2,
                     kept.rows.len(),
                 ),
+            weight: 1.0,
             samples: kept.rows.len(),
             chords: chord_errors(model, &kept.response),
         };
@@ -320,14 +321,42 @@ impl<'a> PreparedFlights<'a> {
     }
 
     /// Values that were recorded in a flight: channels of its segments, and gauges. A channel that is not recorded in a
-    /// segment has a row of zeros, which is no value. Values of a segment count by the square of its weight.
-    pub(crate) fn recorded_values(&self, flight: &FlightRows, weights: Option<&[f64]>) -> f64 {
+    /// segment has a row of zeros, which is no value. Values of a segment count by the square of its weight: that much of
+    /// their squares is left, and the noise would seem smaller than it is if they counted whole.
+    pub(crate) fn recorded_values(&self, flight: &FlightRows) -> f64 {
         let segments = &self.segments[flight.segments.clone()];
-        let recorded = |row: &SegmentRow| row.is_recorded.iter().filter(|&&is| is).count() as f64;
-        let weight = |place: usize| weights.map_or(1.0, |weights| weights[place]);
-        let values = segments.iter().enumerate();
+        let recorded = |row: &SegmentRow| {
+            row.weight.powi(2) * row.is_recorded.iter().filter(|&&is| is).count() as f64
+        };
         let gauge = if flight.gauge.is_some() { 1.0 } else { 0.0 };
-        values.map(|(place, row)| weight(place).powi(2) * recorded(row)).sum::<f64>() + gauge
+        segments.iter().map(recorded).sum::<f64>() + gauge
+    }
+
+    /// Root mean square of the segments' weights.
+    pub(crate) fn mean_weight(&self) -> f64 {
+        let square: f64 = self.segments.iter().map(|row| row.weight * row.weight).sum();
+        (square / self.segments.len().max(1) as f64).sqrt()
+    }
+
+    /// Weighs the segments.
+    pub(crate) fn weigh(&mut self, weights: &[f64]) {
+        for (row, weight) in self.segments.iter_mut().zip(weights) {
+            row.weight = *weight;
+        }
+    }
+
+    /// Leaves segments out, and flights of which none is left.
+    pub(crate) fn leave_out(&mut self, refused: &[bool], reason: LeftOutReason) {
+        let mut kept = 0;
+        for flight in &mut self.flights {
+            let own = refused[flight.segments.clone()].iter().filter(|refused| !**refused).count();
+            flight.segments = kept..kept + own;
+            kept += own;
+        }
+        self.flights.retain(|flight| !flight.segments.is_empty());
+        *self.left_out.entry(reason).or_default() += self.segments.len() - kept;
+        let mut refused = refused.iter();
+        self.segments.retain(|_| refused.next() == Some(&false));
     }
 
     pub(crate) fn columns(&self) -> usize {

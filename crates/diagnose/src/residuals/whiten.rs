@@ -20,7 +20,39 @@ pub(crate) fn whiten_within_segment(
     solve_small_lower(&row.noise.factor, values, channels)
 }
 
-/// Whitens what the segments of a flight have in common: rows ← (1 + UUᵀ)^(−1/2)·rows.
+/// Loadings on what the segments of a flight have in common, each segment whitened by its own noise: U, in so many rows.
+pub(crate) fn common_loadings(
+    data: &PreparedFlights<'_>,
+    segments: &[SegmentRow],
+    rows: usize,
+) -> Mat<f64> {
+    let channels = data.channels.count();
+    let rank = segments.first().map_or(0, |row| row.noise.common.len());
+    let mut common = Mat::<f64>::zeros(rows, rank);
+    for (index, row) in segments.iter().enumerate() {
+        for (column, loading) in row.noise.common.iter().enumerate() {
+            let white = whiten_within_segment(row, loading, channels);
+            for channel in 0..channels {
+                common[(index * channels + channel, column)] = white[channel];
+            }
+        }
+    }
+    common
+}
+
+/// Multiplies the rows of every segment by its weight.
+fn weigh(data: &PreparedFlights<'_>, segments: &[SegmentRow], rows: &mut Mat<f64>) {
+    let channels = data.channels.count();
+    for (index, row) in segments.iter().enumerate().filter(|(_, row)| row.weight < 1.0) {
+        for place in index * channels..(index + 1) * channels {
+            for column in 0..rows.ncols() {
+                rows[(place, column)] *= row.weight;
+            }
+        }
+    }
+}
+
+/// Whitens what the segments of a flight have in common, rows ← (1 + UUᵀ)^(−1/2)·rows, and weighs them.
 ///
 /// ```text
 /// UᵀU = QΛQᵀ,  V = UQΛ^(−1/2),  (1 + UUᵀ)^(−1/2) = 1 − V·diag(1 − (1 + λ)^(−1/2))·Vᵀ        [diagnosis.16]
@@ -32,17 +64,8 @@ pub(crate) fn whiten_flight(
     segments: &[SegmentRow],
     matrix: &mut Mat<f64>,
 ) -> f64 {
-    let channels = data.channels.count();
-    let Some(rank) = segments.first().map(|row| row.noise.common.len()) else { return 0.0 };
-    let mut common = Mat::<f64>::zeros(matrix.nrows(), rank);
-    for (index, row) in segments.iter().enumerate() {
-        for (column, loading) in row.noise.common.iter().enumerate() {
-            let white = whiten_within_segment(row, loading, channels);
-            for channel in 0..channels {
-                common[(index * channels + channel, column)] = white[channel];
-            }
-        }
-    }
+    let common = common_loadings(data, segments, matrix.nrows());
+    let rank = common.ncols();
     let inner = common.transpose() * &common;
     let Ok(eigen) = inner.self_adjoint_eigen(Side::Lower) else { return 0.0 };
     let rotated = &common * eigen.U();
@@ -71,5 +94,6 @@ pub(crate) fn whiten_flight(
         -1.0,
         faer::Par::Seq,
     );
+    weigh(data, segments, matrix);
     ln_determinant
 }

@@ -256,7 +256,7 @@ impl RelinearisedRows {
         };
         for (index, flight) in flights.iter().enumerate() {
             let kept = (Some(fold_of(index)) != without)
-                .then(|| fresh.rows(system, model, linear, index, flight));
+                .then(|| fresh.rows(system, model, linear, flight));
             fresh.flights.push(kept);
         }
         fresh
@@ -268,7 +268,6 @@ impl RelinearisedRows {
         system: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         linear: &[Linear],
-        index: usize,
         flight: &FlightRows,
     ) -> Mat<f64> {
         let data = system.data;
@@ -315,7 +314,6 @@ impl RelinearisedRows {
             }
         }
         whiten_flight(data, segments, &mut fresh);
-        system.weigh(index, &mut fresh);
         fresh
     }
 

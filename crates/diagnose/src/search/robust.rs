@@ -1,4 +1,4 @@
-//! Outliers: whitened residuals with heavy tails weigh segments down.
+//! Heavy tails: where the residuals that outliers left have them, segments are weighed.
 
 use crate::library::Library;
 use crate::math::quantile::{QuantileType, quantile};
@@ -13,7 +13,7 @@ const MEDIAN_TO_DEVIATION: f64 = 1.4826;
 /// Weights of segments, where the residuals of the best model have heavy tails.
 ///
 /// ```text
-/// w = min(1, √(5/(4 + e²/s²))),  e the largest whitened residual of the segment, s their robust scale   [diagnosis.21]
+/// w = min(1, √(5/(4 + e²/s²))),  e the largest whitened residual of the segment, s their robust scale   [diagnosis.50]
 /// ```
 pub(crate) fn outlier_weights(
     system: &WhitenedSystem<'_>,
@@ -71,96 +71,4 @@ pub(crate) fn outlier_weights(
 /// Weight of a segment whose largest residual is z scales: that of Student's distribution.
 pub(crate) fn student_weight(z: f64) -> f64 {
     ((STUDENT_FREEDOM + 1.0) / (STUDENT_FREEDOM + z * z)).sqrt().min(1.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use effects::EffectModel;
-
-    use super::*;
-    use crate::hypotheses::design::Design;
-    use crate::library::dates::DateGrid;
-    use crate::residuals::reference::Reference;
-    use crate::residuals::segments::PreparedFlights;
-    use crate::search::analyse::analyse;
-    use crate::search::system::Problem;
-    use crate::signals::record::FlightRecord;
-    use crate::signals::references::references_of;
-    use flight::Segment;
-    use test_support::fleet::{Background, Setup, exact_model, fly};
-
-    /// Rows, sum of squares of whitened residuals, and whether outlier weights are used.
-    fn noise_of(flights: &[Vec<Segment>]) -> (f64, f64, bool) {
-        noise_with(flights, None)
-    }
-
-    /// The same where every segment has this weight.
-    fn noise_with(flights: &[Vec<Segment>], weight: Option<f64>) -> (f64, f64, bool) {
-        let model = exact_model();
-        let records: Vec<FlightRecord<'_>> =
-            flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-        let references = references_of(&model, model.drag_table(), &records).unwrap();
-        let effects = EffectModel::new(&model, model.drag_table(), references).unwrap();
-        let (data, library) = PreparedFlights::prepare(
-            &effects,
-            &records,
-            Reference::Table,
-            |points, engines, starts| {
-                Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| {
-                    true
-                })
-            },
-        );
-        let design = Design::new(&data, &references, None, None);
-        let weights = weight.map(|weight| vec![weight; data.segments.len()]);
-        let system = WhitenedSystem::new(&data, &design, weights);
-        let gram = system.gram(None);
-        let square = gram.matrix[(design.residual(), design.residual())];
-        let problem = Problem { system: &system, model: &effects, library: &library };
-        let analysis = analyse(problem, None).unwrap();
-        (gram.rows, square, outlier_weights(&system, &analysis, &library).is_some())
-    }
-
-    /// By hand: rows and squares of flights with N2 and of flights without are those of each kind alone, added. A channel
-    /// that is not recorded is no perfect residual of zero.
-    #[test]
-    fn what_is_not_recorded_is_not_counted() {
-        let setup = Setup { flights: 24, ..Setup::default() };
-        let mut flights = fly(5, &setup, &[], &Background::default()).flights;
-        let with_n2 = 13;
-        for segment in flights[with_n2..].iter_mut().flatten() {
-            segment.means.n2_percent.clear();
-        }
-        let (rows, square, _) = noise_of(&flights);
-        let (rows_with, square_with, _) = noise_of(&flights[..with_n2]);
-        let (rows_without, square_without, _) = noise_of(&flights[with_n2..]);
-        let (found, by_hand) =
-            (square / rows, (square_with + square_without) / (rows_with + rows_without));
-        assert!((square / (square_with + square_without) - 1.0).abs() < 1e-9);
-        assert!((found / by_hand - 1.0).abs() < 1e-9, "{rows} rows: {found}, by hand {by_hand}");
-    }
-
-    /// By hand: with a weight of a half everywhere squares and values are a quarter, and the noise between them is as before.
-    #[test]
-    fn weights_do_not_make_the_noise_smaller() {
-        let setup = Setup { flights: 8, ..Setup::default() };
-        let flights = fly(6, &setup, &[], &Background::default()).flights;
-        let (rows, square, _) = noise_of(&flights);
-        let (weighted_rows, weighted_square, _) = noise_with(&flights, Some(0.5));
-        assert!((weighted_square / square - 0.25).abs() < 1e-12);
-        assert!((weighted_rows / rows - 0.25).abs() < 1e-12, "{rows} {weighted_rows}");
-    }
-
-    /// Zeros of channels that are not recorded make normal residuals look as if they had heavy tails.
-    #[test]
-    fn what_is_not_recorded_is_no_heavy_tail() {
-        let setup = Setup { flights: 24, ..Setup::default() };
-        let mut flights = fly(5, &setup, &[], &Background::default()).flights;
-        assert!(!noise_of(&flights).2);
-        for segment in flights[13..].iter_mut().flatten() {
-            segment.means.n2_percent.clear();
-            segment.means.fuel_flow_engine_kg_s.clear();
-        }
-        assert!(!noise_of(&flights).2);
-    }
 }

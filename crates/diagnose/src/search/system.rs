@@ -27,7 +27,6 @@ pub(crate) struct WhitenedSystem<'a> {
     pub(crate) design: &'a Design<'a>,
     gram: Gram,
     folds: Folds,
-    pub(crate) weights: Option<Vec<f64>>,
     kept: Option<Vec<Mat<f64>>>,
     /// What is assumed of all flights at once, integrated over.
     pub(crate) levels: Vec<Level>,
@@ -51,25 +50,17 @@ pub(crate) enum SmoothTerms {
 }
 
 impl<'a> WhitenedSystem<'a> {
-    pub(crate) fn new(
-        data: &'a PreparedFlights<'a>,
-        design: &'a Design<'a>,
-        weights: Option<Vec<f64>>,
-    ) -> Self {
+    pub(crate) fn new(data: &'a PreparedFlights<'a>, design: &'a Design<'a>) -> Self {
         let rows = data.segments.len() * data.channels.count() + data.flights.len();
         let keep = rows * design.columns <= KEPT_NUMBERS;
         let kept = keep.then(|| {
-            data.flights
-                .iter()
-                .map(|flight| design.whitened(data, flight, weights.as_deref()))
-                .collect::<Vec<_>>()
+            data.flights.iter().map(|flight| design.whitened(data, flight)).collect::<Vec<_>>()
         });
         let mut system = Self {
             data,
             design,
             gram: Gram { matrix: Mat::zeros(0, 0), rows: 0.0 },
             folds: Folds::default(),
-            weights,
             kept,
             levels: levels(data, design),
             flight_levels: Vec::with_capacity(data.flights.len()),
@@ -147,47 +138,15 @@ impl<'a> WhitenedSystem<'a> {
     pub(crate) fn whitened(&self, flight: usize) -> std::borrow::Cow<'_, Mat<f64>> {
         match &self.kept {
             Some(kept) => std::borrow::Cow::Borrowed(&kept[flight]),
-            None => std::borrow::Cow::Owned(self.design.whitened(
-                self.data,
-                &self.data.flights[flight],
-                self.weights.as_deref(),
-            )),
-        }
-    }
-
-    /// Values that were recorded in a flight. One with a robust weight w counts as w² of one: that much of its square is left,
-    /// and the noise would seem smaller than it is if it counted whole.
-    fn recorded_values(&self, flight: usize) -> f64 {
-        let rows = &self.data.flights[flight];
-        let of_weights = self.weights.as_ref().map(|weights| &weights[rows.segments.clone()]);
-        self.data.recorded_values(rows, of_weights)
-    }
-
-    /// Robust weights of the segments, where some count less.
-    pub(crate) fn weights(&self) -> Option<&[f64]> {
-        self.weights.as_deref()
-    }
-
-    /// Root mean square of the robust weights; 1 without.
-    pub(crate) fn mean_weight(&self) -> f64 {
-        self.weights.as_ref().map_or(1.0, |weights| {
-            let square: f64 = weights.iter().map(|weight| weight * weight).sum();
-            (square / weights.len().max(1) as f64).sqrt()
-        })
-    }
-
-    /// Applies the robust weights to rows of a flight.
-    pub(crate) fn weigh(&self, flight: usize, rows: &mut Mat<f64>) {
-        let Some(weights) = &self.weights else { return };
-        let channels = self.data.channels.count();
-        let range = self.data.flights[flight].segments.clone();
-        for (place, weight) in weights[range].iter().enumerate() {
-            for row in place * channels..(place + 1) * channels {
-                for column in 0..rows.ncols() {
-                    rows[(row, column)] *= weight;
-                }
+            None => {
+                std::borrow::Cow::Owned(self.design.whitened(self.data, &self.data.flights[flight]))
             }
         }
+    }
+
+    /// Values that were recorded in a flight.
+    fn recorded_values(&self, flight: usize) -> f64 {
+        self.data.recorded_values(&self.data.flights[flight])
     }
 
     /// Products of some columns with each flight's fuel-flow level, scaled to what `relative` more of scatter between flights

@@ -330,6 +330,7 @@ impl From<&DiagnosedTail> for TailDiagnosis {
             outside,
             held_out,
             left_out,
+            outliers: _,
             notes: _,
         } = &diagnosed.diagnosis;
         let left_out = left_out.iter().map(|(reason, count)| (left_out_words(*reason), *count));

@@ -35,7 +35,7 @@ fn with<R>(
         },
     );
     let design = Design::new(&data, &references, None, None);
-    let system = WhitenedSystem::new(&data, &design, None);
+    let system = WhitenedSystem::new(&data, &design);
     let leading = library.effects.iter().map(|effect| effect.representative).collect();
     let distances = Distances::from_gram(system.gram(None), &design, leading).unwrap();
     then(&system, &effects, &library, &distances)
@@ -119,8 +119,8 @@ fn a_planned_flight_has_the_rows_of_a_flown_one() {
         let recorded = envelope::Envelope::from_flights(data, effects).unwrap().recorded;
         let planned = data.planned(effects, &few, &points, recorded).unwrap();
         let design = system.design.of_nuisance(columns.len());
-        let rows = design.whitened(&planned, &planned.flights[0], None);
-        let expected = system.design.whitened(data, flown, None);
+        let rows = design.whitened(&planned, &planned.flights[0]);
+        let expected = system.design.whitened(data, flown);
         assert_eq!(rows.nrows(), expected.nrows());
         for row in 0..rows.nrows() {
             for (k, &column) in columns.iter().enumerate() {
