@@ -107,6 +107,7 @@ impl PerformanceModel {
         mut each: impl FnMut(usize, &LevelPrediction),
     ) {
         let functions = Functions::of(self);
+        let vectors = pulp::Arch::new();
         let columns =
             [points.mass_kg, points.pressure_altitude_m, points.mach, points.isa_deviation_k];
         let count = points.count();
@@ -120,42 +121,17 @@ impl PerformanceModel {
         };
         for from in (0..count).step_by(BLOCK) {
             let columns = columns.map(|column| &column[from..count.min(from + BLOCK)]);
-            self.fill(&mut block, &functions, columns);
+            vectors.dispatch(Fill {
+                model: self,
+                functions: &functions,
+                columns,
+                block: &mut block,
+            });
             for place in 0..columns[0].len() {
                 if let Some(predicted) = self.ask_table(&block, columns, place) {
                     each(from + place, &predicted);
                 }
             }
-        }
-    }
-
-    /// Every quantity of a block that the table does not decide. Points outside a domain get numbers without meaning.
-    fn fill(&self, block: &mut Block, functions: &Functions, columns: [&[f64]; 4]) {
-        let [masses_kg, altitudes_m, machs, deviations_k] = columns;
-        let area = self.aircraft().wing_area();
-        let points = masses_kg.iter().zip(altitudes_m).zip(machs).zip(deviations_k);
-        for (place, (((mass_kg, altitude_m), mach), deviation_k)) in points.enumerate() {
-            let is_low = *altitude_m <= TROPOPAUSE_PRESSURE_ALTITUDE_M;
-            let (low_pa, high_pa) = (
-                functions.low_pressure_pa.at(*altitude_m),
-                functions.high_pressure_pa.at(*altitude_m),
-            );
-            let pressure = Pressure::pascals(if is_low { low_pa } else { high_pa });
-            let standard_k =
-                functions.low_temperature_k.at(altitude_m.min(TROPOPAUSE_PRESSURE_ALTITUDE_M));
-            let sat = Temperature::kelvin(standard_k + deviation_k);
-            let airspeed = airspeed::mach_to_true_airspeed(Mach::new(*mach), sat);
-            let dynamic_pressure =
-                airspeed::dynamic_pressure(isa::density(pressure, sat), airspeed);
-            let tsfc = functions.tsfc_at_sea_level.at(*mach) * isa::temperature_ratio(sat).sqrt();
-            block.standard_temperature_k[place] = standard_k;
-            block.static_air_temperature_k[place] = sat.to_kelvin();
-            block.true_airspeed_m_s[place] = airspeed.to_meters_per_second();
-            block.lift_coefficient[place] =
-                forces::lift_coefficient(Mass::kilograms(*mass_kg), dynamic_pressure, area);
-            let dynamic_force_n = dynamic_pressure.to_pascals() * area.to_square_meters();
-            block.dynamic_force_n[place] = dynamic_force_n;
-            block.fuel_flow_per_drag_coefficient_kg_s[place] = dynamic_force_n * tsfc;
         }
     }
 
@@ -227,6 +203,53 @@ impl PerformanceModel {
     }
 }
 
+/// Every quantity of a block that the table does not decide. Points outside a domain get numbers without meaning.
+///
+/// Compiled for the widest vectors that a processor may have, which are chosen when it runs. Nothing is contracted or summed
+/// in another order: the bits are the same on all of them.
+struct Fill<'a> {
+    model: &'a PerformanceModel,
+    functions: &'a Functions,
+    columns: [&'a [f64]; 4],
+    block: &'a mut Block,
+}
+
+impl pulp::NullaryFnOnce for Fill<'_> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for the vectors of its caller, which a call of its own would not be"
+    )]
+    #[inline(always)]
+    fn call(self) {
+        let Self { model, functions, columns, block } = self;
+        let [masses_kg, altitudes_m, machs, deviations_k] = columns;
+        let area = model.aircraft().wing_area();
+        let mut pressures_pa = [0.0; BLOCK];
+        functions.write_pressures_pa(altitudes_m, &mut pressures_pa);
+        let points = masses_kg.iter().zip(altitudes_m).zip(machs).zip(deviations_k);
+        for (place, (((mass_kg, altitude_m), mach), deviation_k)) in points.enumerate() {
+            let pressure = Pressure::pascals(pressures_pa[place]);
+            let standard_k =
+                functions.low_temperature_k.at(altitude_m.min(TROPOPAUSE_PRESSURE_ALTITUDE_M));
+            let sat = Temperature::kelvin(standard_k + deviation_k);
+            let airspeed = airspeed::mach_to_true_airspeed(Mach::new(*mach), sat);
+            let dynamic_pressure =
+                airspeed::dynamic_pressure(isa::density(pressure, sat), airspeed);
+            let tsfc = functions.tsfc_at_sea_level.at(*mach) * isa::temperature_ratio(sat).sqrt();
+            block.standard_temperature_k[place] = standard_k;
+            block.static_air_temperature_k[place] = sat.to_kelvin();
+            block.true_airspeed_m_s[place] = airspeed.to_meters_per_second();
+            block.lift_coefficient[place] =
+                forces::lift_coefficient(Mass::kilograms(*mass_kg), dynamic_pressure, area);
+            let dynamic_force_n = dynamic_pressure.to_pascals() * area.to_square_meters();
+            block.dynamic_force_n[place] = dynamic_force_n;
+            block.fuel_flow_per_drag_coefficient_kg_s[place] = dynamic_force_n * tsfc;
+        }
+    }
+}
+
 impl LevelFlights<'_> {
     /// Number of points that all columns have.
     #[must_use]
@@ -266,6 +289,28 @@ impl Functions {
             tsfc_at_sea_level: Polynomial::of((machs.first(), machs.last()), |mach| {
                 tsfc(law, 1.0, Mach::new(mach)).to_kilograms_per_newton_second()
             }),
+        }
+    }
+}
+
+impl Functions {
+    /// Pressures at altitudes. Most blocks are on one side of the tropopause: the other side is not computed for them.
+    #[expect(clippy::inline_always, reason = "as its caller")]
+    #[inline(always)]
+    fn write_pressures_pa(&self, altitudes_m: &[f64], pressures_pa: &mut [f64; BLOCK]) {
+        let is_low = |altitude_m: &f64| *altitude_m <= TROPOPAUSE_PRESSURE_ALTITUDE_M;
+        let (low, high) = (&self.low_pressure_pa, &self.high_pressure_pa);
+        let count = altitudes_m.iter().filter(|altitude_m| is_low(altitude_m)).count();
+        let points = pressures_pa.iter_mut().zip(altitudes_m);
+        if count == altitudes_m.len() {
+            points.for_each(|(pressure_pa, altitude_m)| *pressure_pa = low.at(*altitude_m));
+        } else if count == 0 {
+            points.for_each(|(pressure_pa, altitude_m)| *pressure_pa = high.at(*altitude_m));
+        } else {
+            points.for_each(|(pressure_pa, altitude_m)| {
+                let (of_low, of_high) = (low.at(*altitude_m), high.at(*altitude_m));
+                *pressure_pa = if is_low(altitude_m) { of_low } else { of_high };
+            });
         }
     }
 }
