@@ -257,6 +257,12 @@ impl Baseline {
         left * self.smooth_variance()
     }
 
+    /// Whether a variable of the remainder lies beyond what was flown.
+    pub(crate) fn is_beyond_flights(&self, response: &Response) -> bool {
+        let of = |one: &Smooth| one.variable().flown(response, &self.parts.references);
+        self.parts.smooth.iter().any(|one| one.is_beyond(of(one)))
+    }
+
     /// Prior variance of one smooth function.
     pub(crate) fn smooth_variance(&self) -> f64 {
         (REMAINDER_SMOOTH_DEVIATION * self.parts.scales[0]).powi(2)

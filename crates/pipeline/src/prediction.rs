@@ -41,8 +41,17 @@ pub struct PointPrediction {
     pub prediction: Prediction,
     /// Standard deviation of the fuel flow of all engines, kg/s; `None` by a law that states none.
     pub fuel_flow_std_kg_s: Option<f64>,
-    /// ln of the fuel flow over that of the learnt table; `None` where the table alone predicts.
-    pub beyond_table: Option<f64>,
+    /// What the rest of what was learnt makes of it; `None` where the table alone predicts.
+    pub beside_table: Option<BesideTable>,
+}
+
+/// What is said of a flight point by all that was learnt, beside the learnt table.
+#[derive(Clone, Copy, Debug)]
+pub struct BesideTable {
+    /// ln of the fuel flow over that of the learnt table.
+    pub ln_fuel_flow: f64,
+    /// Whether the point lies beyond what was flown.
+    pub beyond_flights: bool,
 }
 
 impl<'a> Predictor<'a> {
@@ -78,7 +87,7 @@ impl<'a> Predictor<'a> {
             return Ok(PointPrediction {
                 prediction: by_table,
                 fuel_flow_std_kg_s: self.deviation(point, &by_table, None),
-                beyond_table: None,
+                beside_table: None,
             });
         };
         let found = whole.of_point(point).map_err(|error| error.to_string())?;
@@ -88,7 +97,10 @@ impl<'a> Predictor<'a> {
         Ok(PointPrediction {
             prediction,
             fuel_flow_std_kg_s: self.deviation(point, &prediction, Some(&found)),
-            beyond_table: Some(beyond),
+            beside_table: Some(BesideTable {
+                ln_fuel_flow: beyond,
+                beyond_flights: found.beyond_flights,
+            }),
         })
     }
 

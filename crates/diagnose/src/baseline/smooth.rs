@@ -15,6 +15,9 @@ const JITTER: f64 = 1e-6;
 /// variance beyond the last value is q·distance³/3.
 const GROWTH_BEYOND: f64 = 2.0 / 3.0;
 
+/// Lengths beyond the last flown value that are still that value: it is computed on several ways.
+const BEYOND_BY_ROUNDING: f64 = 1e-9;
+
 /// A smooth function of one variable: a slope, and a Gaussian process with a squared exponential kernel on equally distant
 /// knots over what was flown. Beyond the knots the process fades to 0 and the slope goes on; what is not known there grows as
 /// beyond the data of a cubic smoothing spline, with the cube of the distance.
@@ -64,11 +67,15 @@ impl SmoothText {
         (last - first) / (self.count - 1) as f64
     }
 
-    /// Share of the process' variance that terms which hold so much of it do not hold: more beyond the last value that was
-    /// flown, one knot inside the last.
-    fn left_of_variance(&self, z: f64, held: f64) -> f64 {
+    /// How far a value lies beyond the values that were flown, which end one knot inside the last; lengths.
+    fn beyond(&self, z: f64) -> f64 {
         let ((first, last), distance) = (self.knots, self.distance());
-        let beyond = (first + distance - z).max(z - last + distance).max(0.0);
+        (first + distance - z).max(z - last + distance).max(0.0)
+    }
+
+    /// Share of the process' variance that terms which hold so much of it do not hold: more beyond what was flown.
+    fn left_of_variance(&self, z: f64, held: f64) -> f64 {
+        let beyond = self.beyond(z);
         (1.0 - held).max(GROWTH_BEYOND * beyond * beyond * beyond).max(0.0)
     }
 }
@@ -128,6 +135,11 @@ impl Smooth {
     /// Lengths from the middle.
     pub(crate) fn at(&self, value: f64) -> f64 {
         self.text.at(value)
+    }
+
+    /// Whether a value lies beyond those that were flown.
+    pub(crate) fn is_beyond(&self, value: f64) -> bool {
+        self.text.beyond(self.at(value)) > BEYOND_BY_ROUNDING
     }
 
     /// Writes the terms at a value; returns the share of the process' variance that they do not hold.
@@ -208,6 +220,11 @@ impl Prepared {
     /// Lengths from the middle.
     pub(crate) fn at(&self, value: f64) -> f64 {
         self.text.at(value)
+    }
+
+    /// As [`Smooth::is_beyond`], of a place in lengths.
+    pub(crate) fn is_beyond(&self, z: f64) -> bool {
+        self.text.beyond(z) > BEYOND_BY_ROUNDING
     }
 
     /// Hands the kernel at each knot to `each`.
@@ -301,6 +318,9 @@ mod tests {
         // ⅔·5.15³ = 91.06.
         assert!((smooth.write(0.95, &mut one) - 91.06).abs() < 0.01);
         assert!((one[0] - (0.95 - 0.7735) / 0.02).abs() < 1e-9);
+        // Flown from 0.70 to 0.847, both ends included.
+        let beyond = [0.6999, 0.70, 0.78, 0.847, 0.8471].map(|value| smooth.is_beyond(value));
+        assert_eq!(beyond, [true, false, false, false, true]);
     }
 
     /// The oracle is the function asked term by term.

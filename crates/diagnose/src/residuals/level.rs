@@ -55,6 +55,8 @@ pub struct LevelCorrection {
     pub ln_correction: f64,
     /// Variance of ln fuel flow that a new segment of a new flight would show.
     pub variance: f64,
+    /// As of [`WholePrediction`](super::whole::WholePrediction).
+    pub beyond_flights: bool,
 }
 
 /// What was learnt of the drag table: its mean at the nodes, and what the loadings leave out.
@@ -186,6 +188,7 @@ impl WholeModelOfLevels {
             ln_correction: at.over_bilinear.ln() + learnt + at.values.sum + standing,
             variance: stated * (unflown + self.covariance.variance(scratch) + noise)
                 + self.standing_variance,
+            beyond_flights: self.functions.is_beyond_flights(&at.state),
         };
         correction.variance.is_finite().then_some(correction)
     }

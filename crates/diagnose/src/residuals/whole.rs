@@ -44,6 +44,9 @@ pub struct WholePrediction {
     pub of_flight: f64,
     /// Variance of what a segment has of its own.
     pub of_segment: f64,
+    /// Whether Mach number, lift coefficient, pressure altitude, corrected thrust, deviation from the ISA or mass lies beyond all
+    /// that the flights which taught the model flew: what it says there continues what they showed, with a variance that grows.
+    pub beyond_flights: bool,
 }
 
 impl WholePrediction {
@@ -232,6 +235,7 @@ impl<'a> WholeModel<'a> {
             of_flight: stated * stated * noise.common.iter().map(square).sum::<f64>()
                 + carried.unknown,
             of_segment: stated * stated * square(&noise.factor[0]),
+            beyond_flights: baseline.is_beyond_flights(&response),
         })
     }
 }

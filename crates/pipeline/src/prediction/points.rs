@@ -13,7 +13,7 @@ use crate::columns::Columns;
 pub struct PredictedPoints {
     /// Names and values, NaN where there is none: `fuel_flow_kg_s`, `fuel_flow_std_kg_s` (none by law `paper`),
     /// `specific_range_m_kg`, `lift_coefficient`, `drag_coefficient`, `extrapolated` (1 or 0), with measured fuel flows
-    /// `error_percent`, and where more than the table predicts `remainder_percent`.
+    /// `error_percent`, and where more than the table predicts `remainder_percent` and `beyond_flights` (1 or 0).
     pub columns: Vec<(&'static str, Vec<f64>)>,
     /// Points (from 0) without a prediction, and why.
     pub refused: Vec<(usize, String)>,
@@ -31,7 +31,9 @@ struct Figures {
     lift_coefficient: Vec<f64>,
     drag_coefficient: Vec<f64>,
     extrapolated: Vec<f64>,
+    /// Of more than the table; empty where that alone predicts.
     remainder_percent: Vec<f64>,
+    beyond_flights: Vec<f64>,
 }
 
 impl Predictor<'_> {
@@ -144,7 +146,7 @@ impl Predictor<'_> {
     ) -> (Figures, Refused) {
         let (initial, current) = (self.model.initial.base(), self.current.base());
         let mut figures = Figures::none(flights.count());
-        figures.remainder_percent = vec![f64::NAN; flights.count()];
+        figures.predict_beside_table();
         let (mut refused, mut scratch) = (Vec::new(), Vec::new());
         let mut next = 0;
         initial.predict_level(flights, |place, predicted| {
@@ -166,6 +168,7 @@ impl Predictor<'_> {
             figures.drag_coefficient[place] = drag_coefficient;
             figures.extrapolated[place] = flag(current.uses_extrapolated(&predicted.cell));
             figures.remainder_percent[place] = 100.0 * (total_kg_s / by_table_kg_s - 1.0);
+            figures.beyond_flights[place] = flag(found.beyond_flights);
         });
         self.one_by_one(flights, next..flights.count(), &mut figures, &mut refused);
         (figures, refused)
@@ -199,13 +202,21 @@ impl Figures {
             drag_coefficient: none(),
             extrapolated: none(),
             remainder_percent: Vec::new(),
+            beyond_flights: Vec::new(),
         }
+    }
+
+    /// More than the table predicts: there are columns for it.
+    fn predict_beside_table(&mut self) {
+        let count = self.fuel_flow_kg_s.len();
+        self.remainder_percent.resize(count, f64::NAN);
+        self.beyond_flights.resize(count, f64::NAN);
     }
 
     /// The figures of some points, at their places.
     fn set_all(&mut self, places: &[usize], found: &Self) {
         if !found.remainder_percent.is_empty() {
-            self.remainder_percent.resize(self.fuel_flow_kg_s.len(), f64::NAN);
+            self.predict_beside_table();
         }
         for (into, from) in [
             (&mut self.fuel_flow_kg_s, &found.fuel_flow_kg_s),
@@ -215,6 +226,7 @@ impl Figures {
             (&mut self.drag_coefficient, &found.drag_coefficient),
             (&mut self.extrapolated, &found.extrapolated),
             (&mut self.remainder_percent, &found.remainder_percent),
+            (&mut self.beyond_flights, &found.beyond_flights),
         ] {
             for (place, value) in places.iter().zip(from) {
                 into[*place] = *value;
@@ -230,9 +242,10 @@ impl Figures {
         self.lift_coefficient[place] = prediction.lift_coefficient;
         self.drag_coefficient[place] = prediction.drag_coefficient;
         self.extrapolated[place] = flag(prediction.extrapolated);
-        if let Some(beyond) = found.beyond_table {
-            self.remainder_percent.resize(self.fuel_flow_kg_s.len(), f64::NAN);
-            self.remainder_percent[place] = 100.0 * beyond.exp_m1();
+        if let Some(beside) = found.beside_table {
+            self.predict_beside_table();
+            self.remainder_percent[place] = 100.0 * beside.ln_fuel_flow.exp_m1();
+            self.beyond_flights[place] = flag(beside.beyond_flights);
         }
     }
 
@@ -246,7 +259,7 @@ impl Figures {
             let flows = measured.iter().zip(&self.fuel_flow_kg_s);
             flows.map(|(measured, predicted)| error_percent(*measured, *predicted)).collect()
         });
-        self.remainder_percent.resize(self.fuel_flow_kg_s.len(), f64::NAN);
+        self.predict_beside_table();
         let mut columns = vec![
             ("fuel_flow_kg_s", self.fuel_flow_kg_s),
             ("fuel_flow_std_kg_s", self.fuel_flow_std_kg_s),
@@ -258,6 +271,7 @@ impl Figures {
         columns.extend(error_percent.map(|values| ("error_percent", values)));
         if predictor.is_whole() {
             columns.push(("remainder_percent", self.remainder_percent));
+            columns.push(("beyond_flights", self.beyond_flights));
         }
         PredictedPoints { columns, refused }
     }

@@ -27,8 +27,12 @@ fn points() -> Vec<FlightPoint> {
 }
 
 /// The model of law `bayes` with what its flights show beyond its table.
-#[expect(clippy::disallowed_methods, reason = "a test reads the repository's fixture")]
 fn whole() -> ModelFile {
+    whole_and_segments().0
+}
+
+#[expect(clippy::disallowed_methods, reason = "a test reads the repository's fixture")]
+fn whole_and_segments() -> (ModelFile, Vec<Segment>) {
     let mut file = ModelFile::from_text(BAYES).unwrap();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/global5000/reports");
     let mut paths: Vec<_> =
@@ -44,7 +48,7 @@ fn whole() -> ModelFile {
     let learnt = file.learnt.as_mut().unwrap();
     crate::learning::remember_remainder(&file.initial, learnt, &segments);
     assert!(learnt.baseline.is_some());
-    file
+    (file, segments)
 }
 
 /// The oracle is each prediction on its own.
@@ -87,8 +91,11 @@ fn columns_are_single_predictions(file: &ModelFile, predicts: Predicts) {
         near("error_percent", place, single.as_ref().and_then(|one| one.prediction.error_percent));
         near("fuel_flow_std_kg_s", place, single.as_ref().and_then(|one| one.fuel_flow_std_kg_s));
         if predictor.is_whole() {
-            let remainder = single.and_then(|one| one.beyond_table).map(f64::exp_m1);
-            near("remainder_percent", place, remainder.map(|share| 100.0 * share));
+            let beside = single.and_then(|one| one.beside_table);
+            let remainder = beside.map(|beside| 100.0 * beside.ln_fuel_flow.exp_m1());
+            near("remainder_percent", place, remainder);
+            let beyond = beside.map(|beside| f64::from(u8::from(beside.beyond_flights)));
+            near("beyond_flights", place, beyond);
         } else {
             assert_eq!(column("remainder_percent"), None);
         }
@@ -126,6 +133,39 @@ fn points_of_which_more_is_known_are_predicted_one_by_one_among_the_others() {
         }
     }
     assert!(all.refused.is_sorted_by_key(|(place, _)| *place));
+}
+
+/// By the ranges of what was flown, found in the segments.
+#[test]
+fn points_beyond_the_flights_are_marked_and_less_sure() {
+    let (file, segments) = whole_and_segments();
+    let predictor = Predictor::new(&file, Predicts::WholeModel).unwrap();
+    let at = |segment: &Segment, heavier: f64| {
+        let means = &segment.means;
+        let altitude = PressureAltitude::meters(means.pressure_altitude_m);
+        let isa_k = atmos::isa::temperature(altitude).unwrap().to_kelvin();
+        let deviation = means.static_air_temperature_k - isa_k;
+        let point = FlightPoint {
+            isa_deviation: TemperatureDifference::kelvin(deviation),
+            ..FlightPoint::new(
+                Mass::kilograms(heavier * means.mass_kg),
+                altitude,
+                Mach::new(means.mach),
+            )
+        };
+        let found = predictor.at(&point).unwrap();
+        let total_kg_s = found.prediction.fuel_flow_total.to_kilograms_per_second();
+        let relative = found.fuel_flow_std_kg_s.unwrap() / total_kg_s;
+        (found.beside_table.unwrap().beyond_flights, relative)
+    };
+    let heaviest = segments.iter().map(|one| one.means.mass_kg).fold(0.0, f64::max);
+    // What was flown with acceleration can lie beyond level flight's thrust by a little: most of it does not.
+    let marked = segments.iter().filter(|one| at(one, 1.0).0).count();
+    assert!(marked * 10 < segments.len(), "{marked} of {}", segments.len());
+    let middle = &segments[segments.len() / 2];
+    let beyond = 1.02 * heaviest / middle.means.mass_kg;
+    let ((flown, flown_std), (far, far_std)) = (at(middle, 1.0), at(middle, beyond));
+    assert!(!flown && far && far_std > flown_std, "{flown_std} {far_std}");
 }
 
 #[test]

@@ -111,8 +111,8 @@ class Model:
             The same rows and columns (not copied) and ``fuel_flow_kg_s`` (all engines), ``fuel_flow_std_kg_s`` (null by law
             ``paper``), ``specific_range_m_kg``, ``lift_coefficient``, ``drag_coefficient``, ``extrapolated`` (1 outside the
             guide's range), with measured fuel flow ``error_percent`` = 100 (measured − predicted)/measured, and where more
-            than the table was learnt ``remainder_percent``. Results are null where the point is outside the model's table, and a
-            :class:`PredictionWarning` says how many are.
+            than the table was learnt ``remainder_percent`` and ``beyond_flights`` (1 beyond what was flown). Results are null
+            where the point is outside the model's table, and a :class:`PredictionWarning` says how many are.
 
         Raises:
             InputError: A column is missing or unknown, or a value is outside its limits, with row and column.

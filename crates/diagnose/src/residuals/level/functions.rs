@@ -139,6 +139,12 @@ impl Functions {
         sum
     }
 
+    /// Whether a variable lies beyond what was flown.
+    pub(super) fn is_beyond_flights(&self, state: &State) -> bool {
+        let z = |one: &Prepared| one.at(self.variable(one.variable(), state));
+        self.smooth.iter().any(|one| one.is_beyond(z(one)))
+    }
+
     /// Writes the terms; returns the variance of what they do not hold.
     pub(super) fn write(&self, state: &State, into: &mut [f64]) -> f64 {
         let mut factors = [0.0; MOST];
