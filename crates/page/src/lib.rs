@@ -2,7 +2,8 @@
 //!
 //! What it is: [`report`] makes the page of an adaptation (fleet, errors over time, polars, envelope), [`diagnosis()`]
 //! that of diagnoses (what, where, how sure, what to do, and the charts behind it), [`fleet_diagnosis()`] that of all tails of a
-//! type compared, [`plot()`] the charts of one tail as SVG, [`monitoring()`] the page of months and fleets. All are strings with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
+//! type compared, [`plot()`] the charts of one tail as SVG, [`monitoring()`] the page of months and fleets,
+//! [`trials()`] that of blind trials. All are strings with charts drawn as SVG; the module `chart` knows axes, bins and dates, and nothing of aviation.
 //! What it is not: a file, or a program in the browser. It computes nothing but counts and means for drawing; figures
 //! are taken from the results unchanged.
 //!
@@ -46,6 +47,7 @@ mod tail;
 #[cfg(test)]
 mod tests;
 mod text;
+mod trials;
 mod view;
 mod waterfall;
 
@@ -57,3 +59,4 @@ pub use report::{
     Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
     tail_page,
 };
+pub use trials::{TrialCalibration, TrialGoal, TrialGroup, TrialScore, TrialsPage, trials};

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use flight::effect::EffectId;
 use maud::{Markup, html};
 
 use crate::chart::{Axis, Chart};
@@ -14,14 +15,34 @@ const CELL: f64 = 18.0;
 /// Room for the names at the left and below.
 const NAMES: f64 = 190.0;
 
-/// The drawing: a row for each thing planted, a column for each thing found; full colour is all cases of the row.
-pub(crate) fn matrix(name: &str, confusion: &Confusion, number: usize) -> Markup {
+/// Width of the drawing.
+pub(crate) fn width(confusion: &Confusion) -> f64 {
+    NAMES + CELL * columns(confusion).len() as f64 + 40.0
+}
+
+/// Whether that is what should have been found: the effect itself, no gap where nothing was planted, outside the library where
+/// the library does not have it.
+pub(crate) fn is_right(planted: &str, found: &str) -> bool {
+    match planted {
+        "nothing" => found == "no_gap",
+        _ if EffectId::from_name(planted).is_none() => found == "outside_library",
+        _ => planted == found,
+    }
+}
+
+/// What was found, that of an effect planted first, in the order of the rows.
+fn columns(confusion: &Confusion) -> Vec<&str> {
     let found: BTreeSet<&str> =
         confusion.values().flat_map(|row| row.keys()).map(String::as_str).collect();
-    // What can be right comes first, in the order of the rows.
     let mut columns: Vec<&str> =
         confusion.keys().map(String::as_str).filter(|name| found.contains(name)).collect();
     columns.extend(found.iter().filter(|name| !confusion.contains_key(**name)));
+    columns
+}
+
+/// The drawing: a row for each thing planted, a column for each thing found; full colour is all cases of the row.
+pub(crate) fn matrix(name: &str, confusion: &Confusion, number: usize) -> Markup {
+    let columns = columns(confusion);
     let (width, height) = (columns.len() as f64, confusion.len() as f64);
     let chart = Chart {
         id: format!("confusion-{number}"),
@@ -50,7 +71,7 @@ pub(crate) fn matrix(name: &str, confusion: &Confusion, number: usize) -> Markup
                 @for (place, column) in columns.iter().enumerate() {
                     @let count = row.get(*column).copied().unwrap_or(0);
                     @let x = NAMES + CELL * place as f64;
-                    @let right = planted == column;
+                    @let right = is_right(planted, column);
                     rect class=(cell_class(count, cases, right)) x=(x) y=(y) width=(CELL) height=(CELL) {}
                     @if count > 0 {
                         text class="tick" text-anchor="middle" x=(x + CELL / 2.0) y=(y + 13.0) { (count) }
@@ -69,5 +90,27 @@ fn cell_class(count: usize, cases: usize, right: bool) -> String {
         "cell".to_owned()
     } else {
         format!("cell {}", crate::shade::class(shade, 1.25))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_should_have_been_found() {
+        let right = [
+            ("drag_factor", "drag_factor"),
+            ("nothing", "no_gap"),
+            ("outside_mach_bump", "outside_library"),
+        ];
+        assert!(right.iter().all(|(planted, found)| is_right(planted, found)));
+        let wrong = [
+            ("drag_factor", "no_gap"),
+            ("nothing", "drag_factor"),
+            ("drag_factor", "outside_library"),
+            ("outside_mach_bump", "outside_mach_bump"),
+        ];
+        assert!(!wrong.iter().any(|(planted, found)| is_right(planted, found)));
     }
 }

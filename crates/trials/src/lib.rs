@@ -29,6 +29,7 @@
 //! # Ok::<(), trials::TrialPlanError>(())
 //! ```
 
+mod calibration;
 mod case;
 mod diagnosis_inputs;
 mod draw;
@@ -46,11 +47,12 @@ mod share;
 mod stated_sensors;
 mod summary;
 
+pub use calibration::CalibrationBin;
 pub use case::{CaseResult, DiagnosedCase};
 pub use diagnosis_inputs::DiagnosisInputs;
 pub use draw::DrawnCase;
 pub use failure::CaseFailure;
-pub use markdown::{markdown, terminal};
+pub use markdown::{group_words, markdown, terminal};
 pub use plan::{
     Background, CaseSpec, Floor, Kind, Part, ReferenceModel, TrialPlan, TrialPlanError,
 };

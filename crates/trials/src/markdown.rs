@@ -77,18 +77,27 @@ pub fn terminal(trials: &Trials) -> String {
     text
 }
 
-fn group_table(group: &Group, text: &mut String) {
+/// Which group it is, and its cases by kind.
+#[must_use]
+pub fn group_words(group: &Group) -> (String, String) {
     let [single, null, struck, outside, pair] = group.cases;
-    let _ = writeln!(
-        text,
-        "\n## {} model, {}, {} × typical\n\n{single} single effects, {null} without effect, {struck} struck, {outside} \
-         outside the library, {pair} pairs; {:.0} segments a case, noise floor {:.2} %.\n\n| score | |\n|---|---|",
+    let name = format!(
+        "{} model, {}, {} × typical",
         denied(group.reference_model),
         background(group.background),
-        group.times,
-        group.segments_mean,
-        group.noise_floor_rms_percent
+        group.times
     );
+    let cases = format!(
+        "{single} single effects, {null} without effect, {struck} struck, {outside} outside the library, {pair} pairs; {:.0} \
+         segments a case, noise floor {:.2} %",
+        group.segments_mean, group.noise_floor_rms_percent
+    );
+    (name, cases)
+}
+
+fn group_table(group: &Group, text: &mut String) {
+    let (name, cases) = group_words(group);
+    let _ = writeln!(text, "\n## {name}\n\n{cases}.\n\n| score | |\n|---|---|");
     let mut rows: Vec<&Score> = SCORES.iter().filter(|score| score.row.is_some()).collect();
     rows.sort_by_key(|score| score.row);
     for score in rows {

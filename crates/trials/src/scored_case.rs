@@ -1,6 +1,6 @@
 //! What counts of one case: what was planted against what was diagnosed.
 
-use diagnose::{Detectable, Diagnosis};
+use diagnose::{Detectable, Diagnosis, Magnitude};
 use flight::effect::EffectId;
 use pipeline::diagnosis_document::VerdictKind;
 use serde::{Deserialize, Serialize};
@@ -41,6 +41,10 @@ pub struct Case {
     pub size_error: Option<f64>,
     /// Whether the 95 % interval holds the true size.
     pub interval_holds: Option<bool>,
+    /// Planted less estimated size over the half of the 95 % interval on that side, where it is on top: within ±1 the
+    /// interval holds it. `None` in results of older programs too.
+    #[serde(default)]
+    pub size_position: Option<f64>,
     /// Closure of the whole explainable gap on unseen flights.
     pub closure: Option<f64>,
     /// Share of the planted effect's own gap that the named effects remove, where the caller knows it: it takes the same
@@ -120,6 +124,7 @@ impl Case {
             size_error: magnitude.map(|(size, found)| found.value / size - 1.0),
             interval_holds: magnitude
                 .map(|(size, found)| found.ci95[0] <= size && size <= found.ci95[1]),
+            size_position: magnitude.and_then(|(size, found)| position(size, found)),
             closure: found.verdict.closure().map(|closure| closure.share),
             gap_rms_percent: found.gap.rms_percent,
             nearest: detectable.map(|d| (d.nearest_other, d.nearest_pair)),
@@ -204,6 +209,13 @@ impl Case {
             VerdictKind::Effects => self.top.as_ref().map_or_else(String::new, |t| t.0.clone()),
         }
     }
+}
+
+/// Where a size lies in an interval around an estimate: 0 at the estimate, ±1 at the ends; `None` where it has no length.
+fn position(size: f64, found: &Magnitude) -> Option<f64> {
+    let away = size - found.value;
+    let half = if away < 0.0 { found.value - found.ci95[0] } else { found.ci95[1] - found.value };
+    (half > 0.0).then(|| away / half)
 }
 
 fn names(effects: &[EffectId]) -> Vec<String> {

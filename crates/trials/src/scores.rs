@@ -7,6 +7,7 @@ use pipeline::diagnosis_document::VerdictKind;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Serialize, Serializer};
 
+use crate::calibration::{self, CalibrationBin};
 use crate::scored_case::{Case, Located};
 use crate::share::Share;
 
@@ -18,8 +19,6 @@ const SEPARABLE: f64 = 4.0;
 const CLOSABLE: f64 = 0.5;
 /// Standard deviation of the planted gap within the data above which the gap has a place, %. Our choice.
 const PLACED: f64 = 0.35;
-/// Bins of stated probability for the calibration error.
-const BINS: usize = 10;
 
 /// One score, as it is reported.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +114,7 @@ scores! {
             share(&on_top, |c| c.interval_holds == Some(true))
         };
     CalibrationError, Some(8), "Expected calibration error",
-        |s| Reached::Mean { value: calibration_error(&s.reported), of: s.reported.len() };
+        |s| Reached::Mean { value: calibration::error(&s.reported), of: s.reported.len() };
     ClosureMedian, Some(11), "Closure on unseen flights, median over gaps above 0.5 %",
         |s| Reached::Figure(median(closable(&s.reported).filter_map(|c| c.closure).collect()));
     PlantedClosureMedian, Some(12),
@@ -184,11 +183,15 @@ impl Serialize for Reached {
     }
 }
 
-/// Scores over cases: in JSON a field for every score of [`SCORES`], and the confusions.
+/// Scores over cases: in JSON a field for every score of [`SCORES`], calibration and confusions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scores {
     /// In the order of [`SCORES`].
     reached: Vec<Reached>,
+    /// Stated probabilities against what is right, of all reported.
+    pub calibration: Vec<CalibrationBin>,
+    /// Cases by the tenth of its stated distribution in which the planted size lies, where the planted effect is on top.
+    pub size_tenths: [usize; 10],
     /// Planted → on top (`no_gap`, `outside_library` where nothing is named) → count.
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
 }
@@ -206,7 +209,12 @@ impl Scores {
                 .entry(case.said())
                 .or_default() += 1;
         }
-        Self { reached: SCORES.iter().map(|score| (score.of)(&sorted)).collect(), confusion }
+        Self {
+            reached: SCORES.iter().map(|score| (score.of)(&sorted)).collect(),
+            calibration: calibration::bins(&sorted.reported),
+            size_tenths: calibration::size_tenths(&sorted.reported),
+            confusion,
+        }
     }
 
     /// What one score came to.
@@ -218,10 +226,12 @@ impl Scores {
 
 impl Serialize for Scores {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(SCORES.len() + 1))?;
+        let mut map = serializer.serialize_map(Some(SCORES.len() + 3))?;
         for (score, reached) in SCORES.iter().zip(&self.reached) {
             map.serialize_entry(&score.name, reached)?;
         }
+        map.serialize_entry("calibration", &self.calibration)?;
+        map.serialize_entry("size_tenths", &self.size_tenths)?;
         map.serialize_entry("confusion", &self.confusion)?;
         map.end()
     }
@@ -298,26 +308,6 @@ fn closable<'a>(cases: &'a [&'a Case]) -> impl Iterator<Item = &'a Case> {
     cases.iter().copied().filter(|c| c.gap_rms_percent > CLOSABLE)
 }
 
-/// Σ over bins of stated probability: share of the cases × |mean stated − observed|.
-fn calibration_error(cases: &[&Case]) -> f64 {
-    let mut bins = [(0.0, 0.0, 0.0); BINS];
-    let mut total = 0.0;
-    for case in cases {
-        let Some((_, probability)) = &case.top else { continue };
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a probability times the number of bins"
-        )]
-        let bin = ((probability * BINS as f64) as usize).min(BINS - 1);
-        bins[bin].0 += 1.0;
-        bins[bin].1 += probability;
-        bins[bin].2 += f64::from(u8::from(case.on_top()));
-        total += 1.0;
-    }
-    bins.iter().filter(|bin| bin.0 > 0.0).map(|bin| (bin.1 - bin.2).abs() / total).sum()
-}
-
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
@@ -347,6 +337,7 @@ mod tests {
             located: None,
             size_error: None,
             interval_holds: None,
+            size_position: None,
             closure: Some(0.9),
             gap_rms_percent: 1.0,
             nearest: Some((10.0, 10.0)),
@@ -364,8 +355,22 @@ mod tests {
         // Bins: 0.9…1.0 states 1.9 for one right of two, 0.5…0.6 states 0.55 for one right: (0.9 + 0.45)/3.
         let calibration = scores.reached(ScoreName::CalibrationError).value().unwrap();
         assert!((calibration - 0.45).abs() < 1e-12);
+        let bins: Vec<_> =
+            scores.calibration.iter().map(|bin| (bin.right.count, bin.right.of)).collect();
+        assert_eq!(bins, [(1, 1), (1, 2)]);
         assert_eq!(scores.confusion[a][b], 1);
         assert_eq!(scores.reached(ScoreName::ClosureMedian).value(), Some(0.9));
+    }
+
+    #[test]
+    fn planted_sizes_by_tenths() {
+        // 1.96 times: −1.96 is in the first tenth, −0.02 in the fifth, 0.59 in the eighth, 3.9 in the last.
+        let cases = [-1.0, -0.01, 0.3, 2.0].map(|position| Case {
+            size_position: Some(position),
+            ..case("drag_factor", "drag_factor", 0.95)
+        });
+        let tenths = Scores::from_cases(&cases).size_tenths;
+        assert_eq!(tenths, [1, 0, 0, 0, 1, 0, 0, 1, 0, 1]);
     }
 
     #[test]

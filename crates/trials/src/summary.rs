@@ -261,6 +261,7 @@ mod tests {
                 named: vec!["drag_factor".to_owned()],
                 size_error: None,
                 interval_holds: None,
+                size_position: None,
                 closure: None,
                 planted_closure: None,
                 located: None,

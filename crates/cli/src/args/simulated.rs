@@ -33,7 +33,7 @@ pub(crate) struct TrialArgs {
     /// Plan of the trials (RON) [default: a short one built into the program]
     #[arg(value_name = "PLAN.ron")]
     pub(crate) plan: Option<PathBuf>,
-    /// Folder to write to: trials.json, trials.md, truth/, cases/; a folder started with the same plan is continued
+    /// Folder to write to: trials.html, trials.json, trials.md, truth/, cases/; a folder started with the same plan is continued
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
     /// The long plan built into the program; takes hours

@@ -16,8 +16,10 @@ use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{make_folder, read_text, write_atomically};
 use crate::folder::keep_aside;
 use crate::progress::Progress;
+use crate::terminal::neutral;
 
 mod folder;
+mod shown;
 
 use folder::TruthFolder;
 
@@ -55,14 +57,14 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
         }
     }
     let trials = summarize(&plan, truths.seal().hash(), done, failed);
-    write(&arguments.output, &trials)?;
+    write(&arguments.output, &plan, &trials)?;
     if arguments.check {
         check(&plan, &trials)?;
     }
     let mut text = terminal(&trials);
     let _ = writeln!(
         text,
-        "{} cases in {:.0} s. Written to {}: trials.json, trials.md, truth/, cases/",
+        "{} cases in {:.0} s. Written to {}: trials.html, trials.json, trials.md, truth/, cases/",
         trials.cases.len(),
         begun.elapsed().as_secs_f64(),
         show(&arguments.output)
@@ -144,12 +146,14 @@ fn seal(
     TruthFolder::write(folder, &truths)
 }
 
-fn write(folder: &Path, trials: &Trials) -> Result<(), Failure> {
+fn write(folder: &Path, plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
     let path = folder.join("trials.json");
     let mut json =
         serde_json::to_string_pretty(trials).map_err(|error| Failure::unwritable(&path, error))?;
     json.push('\n');
     write_atomically(&path, json.as_bytes())?;
+    let html = page::trials(&shown::page_of(plan, trials));
+    write_atomically(&folder.join("trials.html"), neutral(&html).as_bytes())?;
     write_atomically(&folder.join("trials.md"), markdown(trials).as_bytes())
 }
 

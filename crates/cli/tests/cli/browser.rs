@@ -165,6 +165,22 @@ fn a_fleet_of_200_tails() {
     check_no_barrier(&browser, &page);
 }
 
+/// The page of blind trials with thirty effects.
+#[test]
+fn a_page_of_trials() {
+    let Some(browser) = Browser::start() else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let page = scratch.path().join("trials.html");
+    made_up::trials(&page);
+    browser.open(&page);
+    check_loaded(&browser, &page);
+    check_drawn(&browser, "trials.html");
+    check_phone(&browser, "trials.html");
+    check_saved(&browser, "trials.html");
+    check_print(&browser, "trials.html");
+    check_no_barrier(&browser, &page);
+}
+
 /// The table of tails has every size of the document, number by number.
 fn check_sizes(browser: &Browser, fleet: &Value) {
     let rows = browser.run(

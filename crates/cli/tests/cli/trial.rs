@@ -39,6 +39,7 @@ fn a_trial_is_sealed_scored_and_gone_on_from() {
     // The hash that was printed at the start is the one in the results.
     ran.says(trials["seal_sha256"].as_str().unwrap());
     assert_eq!(trials["cases"].as_array().unwrap().len(), 3);
+    check_page(std::str::from_utf8(&expected["trials.html"]).unwrap(), &trials);
     let truth: serde_json::Value = serde_json::from_slice(&expected["truth/00001.json"]).unwrap();
     assert_eq!(truth["effects"][0]["id"], "drag_factor");
     // Twice the typical 2 %, of either sign; every other effect is there too, but for those that are known.
@@ -61,4 +62,36 @@ fn a_trial_is_sealed_scored_and_gone_on_from() {
     let path = output.join("truth/00001.json");
     std::fs::write(&path, std::fs::read_to_string(&path).unwrap().replace("4.0", "5.0")).unwrap();
     run("2", &[]).expect(2).says("was started with another truth");
+}
+
+/// Every score, calibration and count of confusions of the document is on the page.
+fn check_page(page: &str, trials: &serde_json::Value) {
+    let shown: Vec<f64> = page
+        .split("data-v=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next()?.parse().ok())
+        .collect();
+    let has = |value: &serde_json::Value| {
+        let number = value.as_f64().unwrap();
+        // A number read from JSON may differ in its last bit.
+        assert!(shown.iter().any(|one| (one - number).abs() <= 1e-12 * number.abs()), "{number}");
+    };
+    assert!(page.contains(trials["seal_sha256"].as_str().unwrap()) && page.contains("seed 3"));
+    for group in trials["groups"].as_array().unwrap() {
+        for name in ["reported", "top_one", "silent", "intervals"] {
+            let score = &group["scores"][name];
+            if score["of"].as_u64() > Some(0) {
+                for part in ["share", "of"] {
+                    has(&score[part]);
+                }
+                score["ci95"].as_array().unwrap().iter().for_each(has);
+            }
+        }
+        for bin in group["scores"]["calibration"].as_array().unwrap() {
+            has(&bin["stated"]);
+            has(&bin["right"]["share"]);
+        }
+        let confusion = group["scores"]["confusion"].as_object().unwrap();
+        confusion.values().flat_map(|row| row.as_object().unwrap().values()).for_each(has);
+    }
 }

@@ -3,7 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use page::{FleetRun, fleet_diagnosis};
+use flight::effect::EffectId;
+use page::{
+    FleetRun, TrialCalibration, TrialGoal, TrialGroup, TrialScore, TrialsPage, fleet_diagnosis,
+};
 use pipeline::fleet_diagnosis::FleetRecord;
 use pipeline::summary::ReportsSummary;
 use serde_json::{Value, json};
@@ -65,4 +68,49 @@ pub(super) fn fleet(page: &Path) -> Value {
     };
     fs::write(page, fleet_diagnosis(&run)).unwrap();
     document
+}
+
+/// Writes the page of trials in which every effect of two engines was planted eight times and found six times.
+pub(super) fn trials(page: &Path) {
+    let names: Vec<String> = EffectId::library(2).iter().map(ToString::to_string).collect();
+    let confusion = names.iter().enumerate().map(|(k, name)| {
+        let other = names[(k + 3) % names.len()].clone();
+        (name.clone(), [(name.clone(), 6), (other, 1), ("no_gap".to_owned(), 1)].into())
+    });
+    let score = |words: &str, value| TrialScore {
+        words: words.to_owned(),
+        value: Some(value),
+        ci95: Some([value - 0.05, value + 0.02]),
+        of: Some(240),
+    };
+    let bin = |tenth: u32| {
+        let stated = 0.1 * f64::from(tenth) + 0.05;
+        let range = [stated - 0.05, stated + 0.05];
+        let right = stated - 0.04;
+        TrialCalibration { range, stated, right, ci95: [right - 0.04, right + 0.04], of: 24 }
+    };
+    let group = TrialGroup {
+        name: "exact model, clean, 1 × typical".to_owned(),
+        cases: "240 single effects".to_owned(),
+        scores: vec![score("The planted effect is on top", 0.75), score("Silent", 0.98)],
+        confusion: confusion.collect(),
+        calibration: (1..10).map(bin).collect(),
+        size_tenths: [24, 17, 14, 19, 16, 20, 15, 18, 17, 22],
+    };
+    let other =
+        TrialGroup { name: "adapted model, clean, 1 × typical".to_owned(), ..group.clone() };
+    let document = TrialsPage {
+        plan: vec!["seed 17".to_owned(), "60 flights of 2 h diagnosed".to_owned()],
+        seal_sha256: "6f1ed002ab5595859014ebf0951522d9".to_owned(),
+        cases: 240,
+        failed: Vec::new(),
+        goals: vec![TrialGoal {
+            group: group.name.clone(),
+            goal: "≥ 0.97".to_owned(),
+            reached: score("The planted effect is on top", 0.75),
+            met: Some(false),
+        }],
+        groups: vec![group, other],
+    };
+    fs::write(page, page::trials(&document)).unwrap();
 }
