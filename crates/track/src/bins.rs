@@ -172,3 +172,29 @@ fn directions(column: &OptionalColumn, bins: &[Range<usize>]) -> OptionalColumn 
         .map(|bin| mean_direction_deg(column[bin.clone()].iter().flatten().copied()))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand, one sample a second: a full minute, half a minute, a hole of 40 s (longer than half a bin), a full minute. Bins
+    /// begin anew behind the hole, and nothing follows anything over it.
+    #[test]
+    fn bins_begin_anew_behind_a_hole_of_half_a_bin() {
+        let time_s: Vec<f64> = (0..90).chain(129..189).map(f64::from).collect();
+        let found = layout(&time_s, 1.0);
+        assert_eq!(found.bins, [0..60, 60..90, 90..150]);
+        assert_eq!(found.runs, [0..2, 2..3]);
+        assert_eq!(found.incomplete_bins, 0);
+    }
+
+    /// Ten seconds are no bin: where a recording begins or ends with them, there is no run without bins.
+    #[test]
+    fn incomplete_bins_end_runs_and_are_none() {
+        let time_s: Vec<f64> = (0..10).chain(200..270).chain(400..410).map(f64::from).collect();
+        let found = layout(&time_s, 1.0);
+        assert_eq!(found.bins, [10..70]);
+        assert!(found.runs.iter().eq([&(0..1)]), "{:?}", found.runs);
+        assert_eq!(found.incomplete_bins, 3);
+    }
+}

@@ -59,6 +59,15 @@ fn close(found: &[f64], expected: &[f64]) {
 }
 
 #[test]
+fn each_averaged_point_is_a_run_of_its_own() {
+    let report = Report::new(header(), columns(every(600.0, 4))).unwrap();
+    let track = track::of_averaged_points(report, 60.0).unwrap();
+    let samples: Vec<_> = track.runs().iter().map(|run| run.samples.clone()).collect();
+    assert_eq!(samples, [0..1, 1..2, 2..3, 3..4]);
+    close(&[track.sample_interval_s()], &[60.0]);
+}
+
+#[test]
 fn one_minute_recordings_stay_as_sent() {
     let mut sent = columns(every(60.0, 4));
     // 230, 230.6, 231.8, 234.2 m/s: rates 0.01, 0.02, 0.04, and −2/3·0.01 + 1/3·0.02 + 4/3·0.04 = 4/75.
