@@ -3,6 +3,8 @@
 #
 #     release/build.sh                     # all: linux windows wheel
 #     release/build.sh linux               # cruisefit-VERSION-x86_64-linux-musl.tar.gz: one static binary
+#     release/build.sh static              # cruisefit-VERSION-x86_64-linux-static.tar.gz: the same with the C library of GNU linked
+#                                          # in, where the musl target is not at hand
 #     release/build.sh windows             # cruisefit-VERSION-x86_64-windows.zip
 #     release/build.sh wheel               # cruisefit-VERSION-cp310-abi3-….whl
 #     release/build.sh --check             # what is missing on this machine; nothing is built
@@ -44,6 +46,9 @@ missing_for() {
 missing() {
   case "$1" in
     linux) missing_for x86_64-unknown-linux-musl musl-gcc musl-tools ;;
+    static)
+      [ -f "$(cc -print-file-name=libc.a 2>/dev/null)" ] || echo "cc and libc.a (apt-get install gcc libc6-dev)"
+      ;;
     windows)
       missing_for x86_64-pc-windows-gnu x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64
       ;;
@@ -62,7 +67,8 @@ check_tag() {
 
 # Binary, licences, README and CHANGELOG as an archive without times, owners or an order of its own.
 pack() {
-  python3 release/archive.py "$1" "$2" README.md CHANGELOG.md LICENSE-APACHE LICENSE-MIT
+  python3 release/archive.py "$1" "$2" README.md CHANGELOG.md LICENSE-APACHE LICENSE-MIT \
+    crates/page/fonts/OFL.txt
   echo "$1: $(wc -c <"$1") bytes, sha256 $(sha256sum "$1" | cut -d' ' -f1)"
 }
 
@@ -77,8 +83,8 @@ for argument in "$@"; do
   case "$argument" in
     --check) check=yes ;;
     --tag) tag=yes ;;
-    linux | windows | wheel) parts+=("$argument") ;;
-    *) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 64 ;;
+    linux | static | windows | wheel) parts+=("$argument") ;;
+    *) sed -n '2,12s/^# \{0,1\}//p' "$0" >&2; exit 64 ;;
   esac
 done
 [ "${#parts[@]}" -gt 0 ] || parts=(linux windows wheel)
@@ -92,7 +98,7 @@ done
 if [ -n "$lacking" ]; then
   fail "this machine lacks
 ${lacking%$'\n'}
-name the other parts to build them alone: release/build.sh linux|windows|wheel"
+name the other parts to build them alone: release/build.sh linux|static|windows|wheel"
 fi
 [ "$tag" = no ] || check_tag
 if [ "$check" = yes ]; then
@@ -106,6 +112,10 @@ for part in "${parts[@]}"; do
     linux)
       CC_x86_64_unknown_linux_musl=musl-gcc \
       build x86_64-unknown-linux-musl cruisefit "cruisefit-$version-x86_64-linux-musl.tar.gz"
+      ;;
+    static)
+      RUSTFLAGS="$RUSTFLAGS -C target-feature=+crt-static" \
+      build x86_64-unknown-linux-gnu cruisefit "cruisefit-$version-x86_64-linux-static.tar.gz"
       ;;
     windows)
       # The linker of mingw writes the time into the file unless it is told not to.

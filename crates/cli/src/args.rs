@@ -10,6 +10,7 @@ mod simulated;
 use std::path::PathBuf;
 
 use crate::criteria::NamedCriteria;
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 pub(crate) use common::{Common, JsonFlag, JsonOutput, JsonWanted, When};
@@ -71,7 +72,7 @@ pub(crate) enum Command {
     Export(ExportArgs),
     /// Maximum-range, long-range and cost-index Mach numbers and best levels by a model, compared with the book's
     Optimum(OptimumArgs),
-    /// Draw a model, a tail of an adapted folder, a diagnosis, months or trials as SVG
+    /// Draw a model, a tail of an adapted folder, a diagnosis, months or trials as SVG, PNG or PDF
     Plot(PlotArgs),
     /// The library of effects: name, unit, usual size, what has to be recorded
     Effects(EffectsArgs),
@@ -482,18 +483,25 @@ fn cost_index(text: &str) -> Result<f64, String> {
 /// `plot`
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
-    /// Model file, folder that `adapt` wrote, or `diagnosis.json`, `monitor.json`, `trials.json`
+    /// Model file, folder that `adapt` or `diagnose` wrote, or `diagnosis.json`, `monitor.json`, `trials.json`
     #[arg(value_name = "MODEL.ron|DIR|FILE.json")]
     pub(crate) source: PathBuf,
     /// Tail of the folder or file [default: the only one of a folder, all of a file]
     #[arg(long, value_name = "TAIL")]
     pub(crate) tail: Option<String>,
-    /// Charts of a model or tail [default: all]
-    #[arg(long = "chart", value_name = "NAME", value_delimiter = ',', value_parser = page::TAIL_CHARTS)]
+    /// Charts of a model, tail or diagnosis [default: all]
+    #[arg(long = "chart", value_name = "NAME", value_delimiter = ',', value_parser = chart_names())]
     pub(crate) charts: Vec<String>,
-    /// SVG file to write
-    #[arg(long, short, value_name = "FIG.svg")]
+    /// Picture to write, .svg, .png or .pdf
+    #[arg(long, short, value_name = "FIG.svg|png|pdf")]
     pub(crate) output: PathBuf,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
+}
+
+fn chart_names() -> PossibleValuesParser {
+    PossibleValuesParser::new(page::TAIL_CHARTS.into_iter().chain(page::DIAGNOSIS_CHARTS))
 }
 
 /// `effects`

@@ -50,12 +50,19 @@ pub(crate) struct Outcome {
     pub(crate) refused: Vec<RefusedReport>,
     /// The result as a document, where the command has one.
     pub(crate) json: Option<Vec<u8>>,
+    /// The figures of the text by name and unit, for the document of a command that has no other.
+    pub(crate) figures: serde_json::Value,
 }
 
 impl Outcome {
     /// Done, with this text for standard output.
     pub(crate) fn text(text: impl Into<String>) -> Self {
-        Self { text: text.into(), refused: Vec::new(), json: None }
+        Self { text: text.into(), ..Self::default() }
+    }
+
+    /// Done, with this text, and its figures by name and unit.
+    pub(crate) fn with_figures(text: impl Into<String>, figures: serde_json::Value) -> Self {
+        Self { figures, ..Self::text(text) }
     }
 
     /// Done, with this text, and this document for `--json`.

@@ -48,11 +48,14 @@ pub(crate) fn deliver(wanted: JsonWanted<'_>, outcome: &Outcome) -> Result<(), F
     }
 }
 
-/// What a command without figures did: its lines, and what was refused.
+/// What a command without a document of its own did: its lines, its figures, and what was refused.
 fn of_text(outcome: &Outcome) -> Vec<u8> {
     let refused: Vec<RefusedSummary> = outcome.refused.iter().map(RefusedSummary::from).collect();
     let lines: Vec<&str> = outcome.text.lines().collect();
-    let document = serde_json::json!({ "schema": SCHEMA, "text": lines, "refused": refused });
+    let mut document = serde_json::json!({ "schema": SCHEMA, "text": lines, "refused": refused });
+    if !outcome.figures.is_null() {
+        document["figures"] = outcome.figures.clone();
+    }
     let mut bytes = serde_json::to_vec_pretty(&document).unwrap_or_default();
     bytes.push(b'\n');
     bytes

@@ -14,7 +14,7 @@ use crate::frame::framed;
 
 mod causes;
 mod figures;
-mod map;
+pub(crate) mod map;
 mod tables;
 mod unseen;
 mod verdict;

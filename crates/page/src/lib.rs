@@ -34,6 +34,7 @@ mod frame;
 mod matrix;
 mod monitoring;
 mod performance;
+mod picture;
 mod place;
 mod plot;
 mod polars;
@@ -54,7 +55,10 @@ mod waterfall;
 pub use diagnosis::diagnosis;
 pub use fleet_diagnosis::{FleetRun, fleet_diagnosis};
 pub use monitoring::monitoring;
-pub use plot::{Confusion, TAIL_CHARTS, plot, plot_confusions, plot_diagnoses, plot_months};
+pub use picture::{Picture, PictureError, pdf, png};
+pub use plot::{
+    Confusion, DIAGNOSIS_CHARTS, TAIL_CHARTS, plot, plot_confusions, plot_diagnoses, plot_months,
+};
 pub use report::{
     Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,
     tail_page,

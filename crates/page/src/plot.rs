@@ -1,12 +1,15 @@
 //! Charts as a single SVG file, for a report or a slide: of one tail, of a diagnosis, of months, of blind trials.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use diagnose::SegmentGap;
 use maud::{Markup, html};
 use pipeline::diagnosis_document::TailDiagnosis;
 use pipeline::evaluation::TailResult;
 use pipeline::monitoring::TailDocument;
 
+use crate::diagnosis::map::gap_map;
 use crate::place::{Detail, Place};
 use crate::style::STYLE;
 use crate::view::TailView;
@@ -24,6 +27,9 @@ const COLUMNS: usize = 2;
 /// Names of the charts of a tail; `polars` are several.
 pub const TAIL_CHARTS: [&str; 7] =
     ["histogram", "time", "forecast", "surface", "specific-range", "engines", "polar"];
+
+/// Names of the charts of a diagnosis.
+pub const DIAGNOSIS_CHARTS: [&str; 2] = ["waterfall", "gap-map"];
 
 /// A chart cut out of a page: what is drawn, its size and its title.
 struct Drawing<'a> {
@@ -58,11 +64,25 @@ pub fn plot(result: &TailResult, charts: &[&str]) -> Option<String> {
     sheet(&result.tail, &drawn)
 }
 
-/// From the gap to the noise, of each diagnosis of a file.
+/// From the gap to the noise, of each diagnosis of a file, and where the gap is, of those whose segments are given by tail;
+/// the charts of these names ([`DIAGNOSIS_CHARTS`]) or all.
 #[must_use]
-pub fn plot_diagnoses(diagnoses: &[TailDiagnosis]) -> Option<String> {
-    let page =
-        html! { @for (k, one) in diagnoses.iter().enumerate() { (waterfall::waterfall(one, k)) } };
+pub fn plot_diagnoses(
+    diagnoses: &[TailDiagnosis],
+    gaps: &BTreeMap<String, Vec<SegmentGap>>,
+    charts: &[&str],
+) -> Option<String> {
+    let asked = |name: &str| charts.is_empty() || charts.contains(&name);
+    let page = html! {
+        @for (k, one) in diagnoses.iter().enumerate() {
+            @if asked("waterfall") { (waterfall::waterfall(one, k)) }
+            @if let Some(segments) = gaps.get(&one.tail).filter(|_| asked("gap-map")) {
+                // A region that holds every segment marks nothing.
+                @let marked = segments.iter().any(|segment| !segment.in_region);
+                (gap_map(&format!("gap-{k}"), &one.tail, segments, marked))
+            }
+        }
+    };
     let page = page.into_string();
     sheet("Diagnoses", &drawings(&page).collect::<Vec<_>>())
 }

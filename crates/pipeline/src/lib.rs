@@ -64,6 +64,7 @@ pub mod fleet_diagnosis;
 pub mod flights_table;
 pub mod folder_state;
 pub mod fuel_factor;
+pub mod gaps_table;
 pub mod known_flights;
 pub mod learning;
 pub mod learnt_flights;

@@ -134,12 +134,11 @@ impl Command {
             Self::Explain(arguments) => arguments.json.into(),
             Self::Simulate(arguments) => arguments.json.into(),
             Self::Trial(arguments) => arguments.json.into(),
-            Self::Export(_)
-            | Self::Plot(_)
-            | Self::Completions(_)
-            | Self::Man(_)
-            | Self::Golden(_)
-            | Self::Demo(_) => JsonWanted::No,
+            Self::Plot(arguments) => arguments.json.into(),
+            Self::Demo(arguments) => arguments.json.into(),
+            Self::Export(_) | Self::Completions(_) | Self::Man(_) | Self::Golden(_) => {
+                JsonWanted::No
+            }
         }
     }
 }

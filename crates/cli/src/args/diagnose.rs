@@ -16,7 +16,7 @@ pub(crate) struct DiagnoseArgs {
     /// Models.
     #[command(flatten)]
     pub(crate) models: ModelArgs,
-    /// Folder to write to: diagnosis.json, diagnosis.html
+    /// Folder to write to: diagnosis.json, diagnosis.html, gaps.csv
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
     /// Look for these effects only

@@ -59,4 +59,7 @@ pub(crate) struct DemoArgs {
     /// Folder to write to
     #[arg(long, short, value_name = "DIR", default_value = "cruisefit-demo")]
     pub(crate) output: PathBuf,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }

@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
         summary.to_text(),
         show(&arguments.output)
     );
-    Ok(Outcome { text, refused, json: Some(summary.to_json()) })
+    Ok(Outcome { refused, ..Outcome::with_json(text, summary.to_json()) })
 }
 
 type Chosen<'a> = BTreeMap<String, (Start<'a>, Vec<Head>)>;

@@ -24,8 +24,7 @@ pub(crate) fn run(arguments: &CheckArgs, progress: Progress) -> Result<Outcome, 
     let now_s = SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs_f64());
     let document = plausibility::check_document(&reading, models.as_ref(), now_s);
     Ok(Outcome {
-        text: document.to_text(),
         refused: reading.refused,
-        json: Some(document.to_json()),
+        ..Outcome::with_json(document.to_text(), document.to_json())
     })
 }

@@ -59,7 +59,8 @@ pub(crate) fn run(arguments: &ConvertArgs, progress: Progress) -> Result<Outcome
         }
         Output::Nowhere => String::new(),
     };
-    Ok(Outcome { refused, ..Outcome::text(text) })
+    let figures = serde_json::json!({ "flights": flights, "reports_written": conversion.written });
+    Ok(Outcome { refused, ..Outcome::with_figures(text, figures) })
 }
 
 /// Where flights go, one after the other: a month of a fleet does not fit into memory.

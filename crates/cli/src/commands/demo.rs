@@ -62,7 +62,10 @@ pub(crate) fn run(arguments: &DemoArgs, progress: Progress) -> Result<Outcome, F
         show(&folder.join("diagnosis/diagnosis.html")),
         show(folder)
     );
-    Ok(Outcome::text(text))
+    let figures = serde_json::json!({
+        "flights": flights, "teaching_flights": TEACHING_FLIGHTS, "written": [show(folder)],
+    });
+    Ok(Outcome::with_figures(text, figures))
 }
 
 /// The initial model adapted by each law: its name and where its model is.

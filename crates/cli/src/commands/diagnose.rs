@@ -23,6 +23,7 @@ use pipeline::diagnosis_document::DiagnosisDocument;
 use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::diagnosis_groups::{Group, NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
+use pipeline::gaps_table;
 use pipeline::plausibility::{self, Absurd};
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 
@@ -70,6 +71,10 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let options = asked.in_words(&arguments.reports.criteria.name);
     let html = page::diagnosis(&reports, &diagnoses, &figures, &options);
     write_atomically(&arguments.output.join("diagnosis.html"), neutral(&html).as_bytes())?;
+    crate::columns::write(
+        &gaps_table::table(&diagnoses, &figures),
+        Some(&arguments.output.join("gaps.csv")),
+    )?;
     let mut text = String::new();
     for diagnosed in &diagnoses {
         append_lines(diagnosed, &mut text);
@@ -94,13 +99,13 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     }
     let _ = writeln!(
         text,
-        "{} read, {} refused. Written to {}: diagnosis.json, diagnosis.html{}",
+        "{} read, {} refused. Written to {}: diagnosis.json, diagnosis.html, gaps.csv{}",
         counted(read, "report"),
         refused_reports,
         show(&arguments.output),
         if arguments.fleet { ", fleet.html, fleet.csv" } else { "" }
     );
-    Ok(Outcome { text, refused: reading.refused, json: Some(json.into()) })
+    Ok(Outcome { refused: reading.refused, ..Outcome::with_json(text, json) })
 }
 
 /// One diagnosis for each group, side by side, with the charts' figures.

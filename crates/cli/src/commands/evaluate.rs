@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &EvaluateArgs, progress: Progress) -> Result<Outcom
         let factors: Vec<FuelFactor> = tails.iter().flat_map(EvaluatedTail::fuel_factors).collect();
         columns::write(&fuel_factor::columns(&factors), Some(path))?;
     }
-    Ok(Outcome { text: summary.to_text(), refused, json: Some(summary.to_json()) })
+    Ok(Outcome { refused, ..Outcome::with_json(summary.to_text(), summary.to_json()) })
 }
 
 /// What an evaluation came to.

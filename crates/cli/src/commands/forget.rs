@@ -66,13 +66,20 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
         states.insert(tail.clone(), stage(&folder, &begun, &result, &csv)?);
     }
     folder.commit(states)?;
-    Ok(Outcome::text(format!(
+    let text = format!(
         "Flight {} of {} forgotten; tail {tail} in {} has learnt {left} others. summary.json and report.html are those of \
          the last run of `adapt`.\n",
         forgotten.entry.flight,
         forgotten.entry.start,
         show(&arguments.folder)
-    )))
+    );
+    let figures = serde_json::json!({
+        "tail": tail,
+        "flight": forgotten.entry.flight,
+        "start": forgotten.entry.start,
+        "flights_left": left,
+    });
+    Ok(Outcome::with_figures(text, figures))
 }
 
 /// The place of the flight among those that the tail has learnt.

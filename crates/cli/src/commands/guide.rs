@@ -18,7 +18,7 @@ use crate::files::{make_folder, write_atomically};
 /// A type without a public model, or a folder that cannot be written.
 pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
     let (Some(code), Some(folder)) = (&arguments.type_code, &arguments.output) else {
-        return Ok(Outcome::text(list()));
+        return Ok(Outcome::with_figures(list(), types()));
     };
     let Some(parameters) = poll_schumann::find(code) else {
         return Err(Failure::BadArgument {
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
     make_folder(folder)?;
     write_atomically(&folder.join("AIRCRAFT.ron"), aircraft.as_bytes())?;
     write_atomically(&folder.join("guide.csv"), guide.to_csv().as_bytes())?;
-    Ok(Outcome::text(text(&guide, parameters, folder)))
+    Ok(Outcome::with_figures(text(&guide, parameters, folder), figures(&guide, parameters, folder)))
 }
 
 fn text(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> String {
@@ -60,6 +60,44 @@ fn text(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> String {
     text
 }
 
+fn figures(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> serde_json::Value {
+    serde_json::json!({
+        "aircraft": guide.aircraft.name,
+        "type": guide.aircraft.type_code,
+        "represented_by": parameters.type_code,
+        "guide_points": guide.points.len(),
+        "stated_accuracy_percent": STATED_ACCURACY_PERCENT,
+        "tsfc_residual_rms_percent": guide.tsfc_residual_percent,
+        "written": [show(&folder.join("AIRCRAFT.ron")), show(&folder.join("guide.csv"))],
+    })
+}
+
+/// The types of the list.
+fn types() -> serde_json::Value {
+    let represented = represented();
+    let types: Vec<serde_json::Value> = poll_schumann::types()
+        .iter()
+        .map(|one| {
+            serde_json::json!({
+                "type": one.type_code,
+                "manufacturer": one.manufacturer,
+                "variant": one.variant,
+                "also": represented.get(one.type_code.as_str()).cloned().unwrap_or_default(),
+            })
+        })
+        .collect();
+    serde_json::json!({ "types": types })
+}
+
+/// The types that each type stands for.
+fn represented() -> BTreeMap<&'static str, Vec<&'static str>> {
+    let mut represented: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (synonym, by) in poll_schumann::synonyms() {
+        represented.entry(by).or_default().push(synonym);
+    }
+    represented
+}
+
 fn meant(code: &str) -> String {
     let types = poll_schumann::types();
     report::nearest(code, types.iter().map(|one| one.type_code.as_str()))
@@ -67,10 +105,7 @@ fn meant(code: &str) -> String {
 }
 
 fn list() -> String {
-    let mut represented: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for (synonym, by) in poll_schumann::synonyms() {
-        represented.entry(by).or_default().push(synonym);
-    }
+    let represented = represented();
     let mut text = String::new();
     for parameters in poll_schumann::types() {
         let _ = write!(

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use flight::{Finding, Severity};
-use perf_model::{Aircraft, Guide};
+use perf_model::{Aircraft, Guide, InitialModel};
 
 use crate::args::InitArgs;
 use crate::commands::Outcome;
@@ -68,16 +68,49 @@ pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
         grid.nodes()
     );
     for finding in &initial.findings {
-        let word = match finding.severity {
-            Severity::Serious => "SERIOUS",
-            Severity::Warning => "Warning",
-            Severity::Note => "Note",
-        };
+        let word = severity(finding);
         let line = finding.line.map_or_else(String::new, |line| format!("line {line}: "));
         let _ = writeln!(text, "{word}: {line}{}.", finding.message.trim_end_matches('?'));
     }
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
-    Ok(Outcome::text(text))
+    Ok(Outcome::with_figures(text, figures(&model, &initial, arguments)))
+}
+
+/// The figures of the text.
+fn figures(model: &ModelFile, initial: &InitialModel, arguments: &InitArgs) -> serde_json::Value {
+    let aircraft = model.initial.aircraft();
+    let range = |(low, high): (f64, f64)| serde_json::json!([low, high]);
+    let findings: Vec<serde_json::Value> = initial
+        .findings
+        .iter()
+        .map(|finding| {
+            serde_json::json!({
+                "severity": severity(finding).to_lowercase(), "line": finding.line, "message": finding.message,
+            })
+        })
+        .collect();
+    serde_json::json!({
+        "aircraft": aircraft.name(),
+        "type": aircraft.type_code(),
+        "guide_points": model.guide.points,
+        "lift_coefficient": range(model.guide.lift_coefficient),
+        "mach": range(model.guide.mach),
+        "fit_residual_rms_drag_coefficient": model.guide.residual_rms,
+        "fit_residual_rms_percent": initial.fit.residual_rms_percent,
+        "condition_number": model.guide.condition_number,
+        "table_lift_coefficients": model.grid().x().len(),
+        "table_mach_numbers": model.grid().y().len(),
+        "findings": findings,
+        "written": [show(&arguments.output)],
+    })
+}
+
+const fn severity(finding: &Finding) -> &'static str {
+    match finding.severity {
+        Severity::Serious => "SERIOUS",
+        Severity::Warning => "Warning",
+        Severity::Note => "Note",
+    }
 }
 
 /// A guide in other units than its columns say gives a model that nothing can be compared with.

@@ -17,6 +17,8 @@ use pipeline::summary::counted;
 
 /// What marks a guess in a mapping file.
 const GUESS: &str = "// ?";
+/// Rows of a table of averaged points, in the document.
+const POINTS: &str = "averaged_points";
 /// So much of a recording is looked at: the cruise of a first flight of hundreds of columns each second.
 const LOOKED_AT_BYTES: usize = 16 << 20;
 
@@ -25,20 +27,24 @@ const LOOKED_AT_BYTES: usize = 16 << 20;
 /// # Errors
 /// A recording that cannot be read as a table, or a mapping file that would be lost.
 pub(crate) fn run(arguments: &MappingArgs) -> Result<Outcome, Failure> {
-    let text = match (&arguments.presets, &arguments.recording) {
+    let (text, tried) = match (&arguments.presets, &arguments.recording) {
         (None, Some(path)) => first_mapping_of(path)?,
         (presets, _) => return presets_as_text(presets.as_deref().unwrap_or_default()),
     };
-    let Some(output) = &arguments.output else { return Ok(Outcome::text(text)) };
+    let mut figures = serde_json::json!({
+        "guesses": tried.guesses, "flights": tried.flights, tried.of_rows: tried.rows, "refused": tried.refused,
+    });
+    let Some(output) = &arguments.output else { return Ok(Outcome::with_figures(text, figures)) };
     check_replaceable(output, arguments.force, text.as_bytes(), |_| false)?;
     write_atomically(output, text.as_bytes())?;
-    Ok(Outcome::text(format!("Mapping file written to {}.\n", show(output))))
+    figures["written"] = serde_json::json!([show(output)]);
+    Ok(Outcome::with_figures(format!("Mapping file written to {}.\n", show(output)), figures))
 }
 
 /// The built-in mappings with what they are for, or the text of one.
 fn presets_as_text(name: &str) -> Result<Outcome, Failure> {
     if let Some((_, text)) = PRESETS.iter().find(|(known, _)| *known == name) {
-        return Ok(Outcome::text(*text));
+        return Ok(Outcome::with_figures(*text, serde_json::json!({ "preset": name })));
     }
     if !name.is_empty() {
         return Err(no_such_mapping("--presets", name));
@@ -51,10 +57,11 @@ fn presets_as_text(name: &str) -> Result<Outcome, Failure> {
         }
     }
     listed.push_str("Tables of segments that this program wrote need no mapping.\n");
-    Ok(Outcome::text(listed))
+    let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+    Ok(Outcome::with_figures(listed, serde_json::json!({ "presets": names })))
 }
 
-fn first_mapping_of(path: &Path) -> Result<String, Failure> {
+fn first_mapping_of(path: &Path) -> Result<(String, Tried), Failure> {
     let recording = open(path).map_err(|reason| Failure::unreadable(path, reason))?;
     let text = recording
         .beginning(LOOKED_AT_BYTES)
@@ -63,16 +70,47 @@ fn first_mapping_of(path: &Path) -> Result<String, Failure> {
             Failure::bad_file(path, RefusedReport::at(path.to_owned(), &refusal).reason)
         })?;
     // What comes of it is said beside it: standard output may be the mapping file.
-    crate::terminal::tell(&tried(&text, path));
-    Ok(text)
+    let tried = tried(&text, path);
+    crate::terminal::tell(&tried.words());
+    Ok((text, tried))
+}
+
+/// What a mapping makes of the recording it was written for.
+struct Tried {
+    /// Lines marked as guesses.
+    guesses: usize,
+    flights: usize,
+    rows: usize,
+    /// What a row is, for the document.
+    of_rows: &'static str,
+    /// Why the recording is not read as it is.
+    refused: Option<String>,
+}
+
+impl Tried {
+    fn words(&self) -> String {
+        let guesses = counted(self.guesses, "guess");
+        let of = if self.of_rows == POINTS { "averaged point" } else { "sample" };
+        match &self.refused {
+            None => format!(
+                "{guesses} marked `{GUESS}`: check them.\nAs it is, it reads {} with {}.\n",
+                counted(self.flights, "flight"),
+                counted(self.rows, of)
+            ),
+            Some(reason) => {
+                format!(
+                    "{guesses} marked `{GUESS}`: check them.\nAs it is, the recording is not read: {reason}\n"
+                )
+            }
+        }
+    }
 }
 
 /// How many lines are guesses, and what the mapping makes of the recording as it is.
-fn tried(text: &str, path: &Path) -> String {
+fn tried(text: &str, path: &Path) -> Tried {
     let guesses = text.lines().filter(|line| line.contains(GUESS)).count() - 1;
-    let mut said = format!("{} marked `{GUESS}`: check them.\n", counted(guesses, "guess"));
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let (mut flights, mut rows, mut of) = (0, 0, "sample");
+    let (mut flights, mut rows, mut of_rows) = (0, 0, "samples");
     let read = Mapping::from_ron(text).map_err(|error| error.to_string()).and_then(|mapping| {
         if mapping.is_of_points() {
             let criteria = NamedCriteria::default().limits;
@@ -80,7 +118,7 @@ fn tried(text: &str, path: &Path) -> String {
             let (read, refused) = source.read_file(path, &mut Buffers::default());
             flights = read.len();
             rows = read.iter().map(|flight| flight.reduced.samples).sum();
-            of = "averaged point";
+            of_rows = POINTS;
             return refused.into_iter().next().map_or(Ok(()), |refused| Err(refused.reason));
         }
         let read = mapping.each(&mut open(path)?, Some(&name), |parsed| {
@@ -89,14 +127,5 @@ fn tried(text: &str, path: &Path) -> String {
         });
         read.map(|_| ()).map_err(|error| error.to_string())
     });
-    let _ = match read {
-        Ok(()) => writeln!(
-            said,
-            "As it is, it reads {} with {}.",
-            counted(flights, "flight"),
-            counted(rows, of)
-        ),
-        Err(reason) => writeln!(said, "As it is, the recording is not read: {reason}"),
-    };
-    said
+    Tried { guesses, flights, rows, of_rows, refused: read.err() }
 }

@@ -43,9 +43,13 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         sum(known) == sum(&merged) && known.difference_of_initial(&merged).is_none()
     })?;
     write_model(&merged, &arguments.output)?;
-    Ok(Outcome::text(format!(
+    let text = format!(
         "{flights} flights of {} models merged, written to {}\n",
         arguments.models.len(),
         show(&arguments.output)
-    )))
+    );
+    let figures = serde_json::json!({
+        "models": arguments.models.len(), "flights": flights, "written": [show(&arguments.output)],
+    });
+    Ok(Outcome::with_figures(text, figures))
 }

@@ -1,6 +1,8 @@
-//! `cruisefit plot`: the charts of a model, of a tail of an adapted folder, of a diagnosis, of months or trials, as an SVG file.
+//! `cruisefit plot`: the charts of a model, of a tail of an adapted folder, of a diagnosis, of months or trials, as SVG, PNG or PDF.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::args::PlotArgs;
@@ -8,34 +10,35 @@ use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::{file_stem_of_tail, read_text, write_atomically};
 use crate::models::read_model;
+use diagnose::SegmentGap;
+use page::{Picture, PictureError};
 use pipeline::diagnosis_document::TailDiagnosis;
 use pipeline::evaluation::{TailCounts, TailData, TailResult};
+use pipeline::gaps_table;
 use pipeline::model_file::ModelFile;
 use pipeline::monitoring::TailDocument;
 use pipeline::segments_table;
 use pipeline::whole_model::Predicts;
 use serde::Deserialize;
 
+/// What `diagnose` writes into its folder.
+const DIAGNOSIS: &str = "diagnosis.json";
+
 /// Runs the command.
 ///
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
-    if arguments.output.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("svg")) {
-        return Err(Failure::BadArgument {
-            argument: "--output",
-            reason: format!(
-                "{}: only SVG is drawn; name the file FIG.svg. rsvg-convert, Inkscape or a browser make PNG and PDF of it",
-                show(&arguments.output)
-            ),
-        });
-    }
+    let format = Format::of(&arguments.output)?;
     let source = &arguments.source;
     let charts: Vec<&str> = arguments.charts.iter().map(String::as_str).collect();
-    let drawn = if source.is_dir() {
+    let diagnosis = source.join(DIAGNOSIS);
+    let drawn = if diagnosis.is_file() {
+        of_document(&diagnosis, arguments.tail.as_deref(), &charts)?
+    } else if source.is_dir() {
         page::plot(&of_folder(source, arguments.tail.as_deref())?, &charts)
     } else if source.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {
-        of_document(source, arguments.tail.as_deref())?
+        of_document(source, arguments.tail.as_deref(), &charts)?
     } else {
         page::plot(&of_model(read_model(source)?), &charts)
     };
@@ -43,8 +46,64 @@ pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
         argument: "MODEL.ron|DIR|FILE.json",
         reason: format!("{} holds nothing of what was asked for", show(source)),
     })?;
-    write_atomically(&arguments.output, drawn.as_bytes())?;
-    Ok(Outcome::text(format!("Written to {}\n", show(&arguments.output))))
+    let picture =
+        format.draw(drawn).map_err(|error| Failure::unwritable(&arguments.output, error))?;
+    write_atomically(&arguments.output, &picture.bytes)?;
+    let unknown: String = picture.unknown_characters.iter().collect();
+    if !unknown.is_empty() {
+        tracing::warn!(
+            "the font of PNG and PDF does not have {unknown:?}: boxes in {}; an SVG has them",
+            show(&arguments.output)
+        );
+    }
+    let figures = serde_json::json!({
+        "format": format.ending(), "unknown_characters": unknown, "written": [show(&arguments.output)],
+    });
+    Ok(Outcome::with_figures(format!("Written to {}\n", show(&arguments.output)), figures))
+}
+
+/// What is written, by the ending of the file's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+    Pdf,
+}
+
+impl Format {
+    const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Pdf];
+
+    fn of(output: &Path) -> Result<Self, Failure> {
+        let ending = output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        Self::ALL
+            .into_iter()
+            .find(|format| ending.eq_ignore_ascii_case(format.ending()))
+            .ok_or_else(|| Failure::BadArgument {
+                argument: "--output",
+                reason: format!(
+                    "{}: found {ending:?}, expected a name that ends in .svg, .png or .pdf",
+                    show(output)
+                ),
+            })
+    }
+
+    const fn ending(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+            Self::Pdf => "pdf",
+        }
+    }
+
+    fn draw(self, sheet: String) -> Result<Picture, PictureError> {
+        match self {
+            Self::Svg => {
+                Ok(Picture { bytes: sheet.into_bytes(), unknown_characters: BTreeSet::new() })
+            }
+            Self::Png => page::png(&sheet),
+            Self::Pdf => page::pdf(&sheet),
+        }
+    }
 }
 
 /// What this command reads of the documents of others.
@@ -72,14 +131,18 @@ struct TrialScores {
     confusion: page::Confusion,
 }
 
-fn of_document(path: &Path, tail: Option<&str>) -> Result<Option<String>, Failure> {
+fn of_document(
+    path: &Path,
+    tail: Option<&str>,
+    charts: &[&str],
+) -> Result<Option<String>, Failure> {
     let document: Document =
         serde_json::from_str(&read_text(path)?).map_err(|error| Failure::bad_file(path, error))?;
     let asked = |name: &str| tail.is_none_or(|tail| tail == name);
     Ok(match document {
         Document::Diagnosis { mut diagnoses } => {
             diagnoses.retain(|one| asked(&one.tail));
-            page::plot_diagnoses(&diagnoses)
+            page::plot_diagnoses(&diagnoses, &gaps_beside(path)?, charts)
         }
         Document::Monitor { mut tails } => {
             tails.retain(|one| asked(&one.tail));
@@ -101,6 +164,16 @@ fn of_document(path: &Path, tail: Option<&str>) -> Result<Option<String>, Failur
             page::plot_confusions(&named.collect::<Vec<_>>())
         }
     })
+}
+
+/// The gap at every segment, where `diagnose` left it beside its document.
+fn gaps_beside(document: &Path) -> Result<BTreeMap<String, Vec<SegmentGap>>, Failure> {
+    let path = document.with_file_name("gaps.csv");
+    match fs::read(&path) {
+        Ok(bytes) => gaps_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(BTreeMap::new()),
+        Err(error) => Err(Failure::unreadable(&path, error)),
+    }
 }
 
 /// A model without flights.

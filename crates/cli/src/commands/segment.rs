@@ -60,7 +60,7 @@ pub(crate) fn run(arguments: &SegmentArgs, progress: Progress) -> Result<Outcome
             columns::write(&table, None)?;
         }
     }
-    Ok(Outcome { text, refused: reading.refused, json })
+    Ok(Outcome { refused: reading.refused, json, ..Outcome::text(text) })
 }
 
 /// The limit that is tried for the criterion that costs most, times its own.

@@ -16,11 +16,12 @@ use crate::simulated_reports::{self, Written};
 pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcome, Failure> {
     if arguments.plan.as_os_str() == "ghazi-2020" {
         let written = simulated_reports::ghazi_2020()?.write(&arguments.output, progress)?;
-        return Ok(Outcome::text(format!(
+        let text = format!(
             "the study of Ghazi et al. 2020 written to {}: {} flights, AIRCRAFT.ron, guide.csv, static.csv\n",
             show(&arguments.output),
             written.flights
-        )));
+        );
+        return Ok(Outcome::with_figures(text, figures(written, arguments)));
     }
     let mut plan = Plan::from_ron(&read_text(&arguments.plan)?)
         .map_err(|error| Failure::bad_file(&arguments.plan, error))?;
@@ -30,15 +31,24 @@ pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcom
     let simulation =
         Simulation::new(plan).map_err(|error| Failure::bad_file(&arguments.plan, error))?;
     simulated_reports::check_folder(&simulation, &arguments.output, arguments.force)?;
-    let Written { flights, drawn_again } =
-        simulated_reports::write(&simulation, &arguments.output, progress)?;
+    let written = simulated_reports::write(&simulation, &arguments.output, progress)?;
+    let Written { flights, drawn_again } = written;
     let again = match drawn_again {
         0 => String::new(),
         1 => " (1 was drawn again)".to_owned(),
         n => format!(" ({n} were drawn again)"),
     };
-    Ok(Outcome::text(format!(
+    let text = format!(
         "{flights} flights{again} written to {}: one folder per tail, TRUTH.json\n",
         show(&arguments.output)
-    )))
+    );
+    Ok(Outcome::with_figures(text, figures(written, arguments)))
+}
+
+fn figures(written: Written, arguments: &SimulateArgs) -> serde_json::Value {
+    serde_json::json!({
+        "flights": written.flights,
+        "drawn_again": written.drawn_again,
+        "written": [show(&arguments.output)],
+    })
 }

@@ -65,20 +65,28 @@ pub(crate) fn run(arguments: &TuneArgs, progress: Progress) -> Result<Outcome, F
         .collect();
     let segments: usize = flights.iter().map(Vec::len).sum();
     let mut text = format!("{} flights, {segments} segments\n", flights.len());
-    search(arguments, &mut model, &flights, &mut text)?;
+    let steps = search(arguments, &mut model, &flights, &mut text)?;
     write_model(&model, &arguments.output)?;
+    let figures = serde_json::json!({
+        "flights": flights.len(),
+        "segments": segments,
+        "search": steps,
+        "settings": model.settings.bayes.values(),
+        "written": [show(&arguments.output)],
+    });
     let _ = writeln!(text, "Settings: {:#?}", model.settings.bayes.values());
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
-    Ok(Outcome { refused: reading.refused, ..Outcome::text(text) })
+    Ok(Outcome { refused: reading.refused, ..Outcome::with_figures(text, figures) })
 }
 
-/// Finds the settings and puts them into the model, a line of text for each step.
+/// Finds the settings and puts them into the model: a line of text and an entry of the document for each step.
 fn search(
     arguments: &TuneArgs,
     model: &mut ModelFile,
     flights: &[Vec<Observation>],
     text: &mut String,
-) -> Result<(), Failure> {
+) -> Result<Vec<serde_json::Value>, Failure> {
+    let mut steps = Vec::new();
     let initial = model.initial.drag_table();
     let start = model.settings.bayes;
     let of_model = |error| Failure::bad_file(&arguments.model, error);
@@ -89,6 +97,8 @@ fn search(
         Some(HalfLifeChoice::Search) => {
             let found = search_half_life(initial, start, flights).map_err(of_model)?;
             for (days, log_density) in &found.tried {
+                steps
+                    .push(serde_json::json!({ "half_life_days": days, "ln_density": log_density }));
                 let days = days.map_or_else(|| "none".to_owned(), |days| format!("{days} days"));
                 let _ = writeln!(text, "  ln density {log_density:.2}  half-life {days}");
             }
@@ -103,6 +113,7 @@ fn search(
         let tuned = tune(initial, aged, flights, &Search::standard()).map_err(of_model)?;
         for step in &tuned.path {
             let _ = writeln!(text, "  ln evidence {:.2}  {}", step.log_evidence, step.changed);
+            steps.push(serde_json::json!({ "ln_evidence": step.log_evidence, "changed": step.changed.to_string() }));
         }
         model.settings.bayes = tuned.settings;
         let span_days = span_days(flights);
@@ -113,7 +124,7 @@ fn search(
             );
         }
     }
-    Ok(())
+    Ok(steps)
 }
 
 /// Over half a year an aircraft's engines lose about what a flight's own errors amount to, 1 %, at 2 % a year.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::support::{adapt, cruisefit, fixture, initial_model};
+use crate::support::{adapt, cruisefit, csv_columns, fixture, initial_model};
 
 #[test]
 fn numbers_of_the_verdict() {
@@ -26,6 +26,7 @@ fn check_plots(demo: &Path) {
     let figure = demo.join("figure.svg");
     for (source, words) in [
         (demo.join("diagnosis/diagnosis.json"), "N750CF: from the gap to the noise"),
+        (demo.join("diagnosis"), "N750CF: gap over Mach number and lift coefficient"),
         (months.join("monitor.json"), "N750CF: deviation of fuel flow over time"),
         (trials.clone(), ">tsfc_level</text>"),
     ] {
@@ -34,9 +35,39 @@ fn check_plots(demo: &Path) {
         let svg = fs::read_to_string(&figure).unwrap();
         assert!(svg.contains(words) && !svg.contains("NaN"), "{}", source.display());
     }
+    let maps = demo.join("diagnosis");
+    let chosen: [&std::ffi::OsStr; 6] = [
+        "plot".as_ref(),
+        maps.as_os_str(),
+        "--chart".as_ref(),
+        "gap-map".as_ref(),
+        "-o".as_ref(),
+        figure.as_os_str(),
+    ];
+    cruisefit(&chosen).expect(0);
+    let svg = fs::read_to_string(&figure).unwrap();
+    assert!(svg.contains("gap over Mach number") && !svg.contains("from the gap to the noise"));
+    check_gaps(&maps);
     fs::write(&trials, r#"{"schema": "cruisefit.other/1"}"#).unwrap();
     let ran = cruisefit(&["plot".as_ref(), trials.as_os_str(), "-o".as_ref(), figure.as_os_str()]);
     ran.expect(2).says("unknown variant `cruisefit.other/1`");
+}
+
+/// The table of gaps has the segments, the mean and the root mean square of the document.
+fn check_gaps(diagnosis: &Path) {
+    let columns = csv_columns(&diagnosis.join("gaps.csv"));
+    let gaps: Vec<f64> =
+        columns["gap_before_percent"].iter().map(|cell| cell.parse().unwrap()).collect();
+    let json = fs::read_to_string(diagnosis.join("diagnosis.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let one = &json["diagnoses"][0];
+    assert_eq!(Some(gaps.len() as u64), one["segments"].as_u64());
+    let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
+    let rms = (gaps.iter().map(|gap| gap * gap).sum::<f64>() / gaps.len() as f64).sqrt();
+    for (found, name) in [(mean, "mean_percent"), (rms, "rms_percent")] {
+        let expected = one["gap"][name].as_f64().unwrap();
+        assert!((found - expected).abs() < 1e-9, "{name}: {found}, document {expected}");
+    }
 }
 
 /// Every figure of the verdict stands on the page as in the document, and errors before and after as in the summary.
@@ -81,7 +112,7 @@ pub(crate) fn check_numbers(folder: &Path) {
 }
 
 #[test]
-fn a_plot_is_svg_and_nothing_else() {
+fn a_plot_is_what_the_ending_of_its_name_says() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());
     let plot = |source: &Path, name: &str| {
@@ -92,8 +123,16 @@ fn a_plot_is_svg_and_nothing_else() {
     let (ran, figure) = plot(&model, "model.svg");
     ran.expect(0);
     assert!(fs::read_to_string(figure).unwrap().starts_with("<svg xmlns="));
-    let (ran, figure) = plot(&model, "model.png");
-    ran.expect(2).says("only SVG is drawn");
+    for (name, begins) in [("model.png", "\u{fffd}PNG"), ("model.pdf", "%PDF-")] {
+        let (ran, figure) = plot(&model, name);
+        ran.expect(0);
+        let first = fs::read(&figure).unwrap();
+        assert!(String::from_utf8_lossy(&first[..8]).starts_with(begins), "{name}");
+        plot(&model, name).0.expect(0);
+        assert_eq!(fs::read(&figure).unwrap(), first, "{name}: same model, same bytes");
+    }
+    let (ran, figure) = plot(&model, "model.jpeg");
+    ran.expect(2).says("found \"jpeg\", expected a name that ends in .svg, .png or .pdf");
     assert!(!figure.exists());
     let folder = scratch.path().join("adapted");
     adapt(&model, &folder, &[fixture("reports")], &[]).expect(0);

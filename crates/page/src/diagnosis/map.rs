@@ -22,9 +22,15 @@ struct Cell {
     in_region: usize,
 }
 
-/// The map; cells mostly of the region have an outline.
+/// The map of a page's tail.
 pub(super) fn map(tail: &Tail<'_>) -> Markup {
-    let segments = &tail.figures.segments;
+    let place = tail.diagnosed.diagnosis.r#where.first();
+    let marked = place.is_some_and(|place| !place.region.conditions.is_empty());
+    gap_map(&tail.id, tail.diagnosed.name(), &tail.figures.segments, marked)
+}
+
+/// The map of these segments; where a region is marked, cells mostly of it have an outline.
+pub(crate) fn gap_map(id: &str, name: &str, segments: &[SegmentGap], marked: bool) -> Markup {
     let (x, y) = (
         scale(segments, |one| one.mach, COLUMNS),
         scale(segments, |one| one.lift_coefficient, ROWS),
@@ -49,14 +55,12 @@ pub(super) fn map(tail: &Tail<'_>) -> Markup {
         .map(|cell| mean(cell).abs())
         .fold(0.0, f64::max);
     let full = largest.max(LEAST_FULL_PERCENT);
-    let place = tail.diagnosed.diagnosis.r#where.first();
-    let marked = place.is_some_and(|place| !place.region.conditions.is_empty());
     let edge = |axis: &Axis, k: usize| (axis.ticks()[k].at, axis.ticks()[k + 1].at);
     let label =
         |axis: &Axis, k: usize| format!("{}–{}", axis.ticks()[k].label, axis.ticks()[k + 1].label);
     let chart = Chart {
-        id: format!("{}-map", tail.id),
-        title: format!("{}: gap over Mach number and lift coefficient", tail.diagnosed.name()),
+        id: format!("{id}-map"),
+        title: format!("{name}: gap over Mach number and lift coefficient"),
         description: format!(
             "Mean gap before anything is added, in cells, of {}.",
             counted(segments.len(), "segment")

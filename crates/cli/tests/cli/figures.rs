@@ -1,0 +1,108 @@
+//! The figures of commands that have no schema of their own: `--json` has those of the text.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::{adapt, bytes_below, cruisefit, fixture, initial_model, root};
+
+/// The figures that a command prints with `--json`; its document has what every such document has.
+fn figures(arguments: &[&str]) -> Value {
+    let with_json = [arguments, &["--json"]].concat();
+    let document: Value = serde_json::from_str(&cruisefit(&with_json).expect(0).stdout).unwrap();
+    assert_eq!(document["schema"], "cruisefit.done/1", "{arguments:?}");
+    assert!(document["text"].is_array() && document["refused"].is_array(), "{arguments:?}");
+    document["figures"].clone()
+}
+
+fn text(path: &Path) -> String {
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn init_has_the_figures_of_its_text() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = text(&scratch.path().join("MODEL.ron"));
+    let (aircraft, guide) = (text(&fixture("AIRCRAFT.ron")), text(&fixture("guide.csv")));
+    let arguments = ["init", "--aircraft", &aircraft, "--guide", &guide, "-o", &model];
+    let found = figures(&arguments);
+    // Counted in the guide by hand: its rows without the heading.
+    let rows = std::fs::read_to_string(&guide)
+        .unwrap()
+        .lines()
+        .filter(|line| line.starts_with(|letter: char| letter.is_ascii_digit()))
+        .count();
+    assert_eq!(found["guide_points"], rows);
+    assert_eq!(found["written"][0], model);
+    let said = cruisefit(&[&arguments[..], &["--force"]].concat()).expect(0).stdout;
+    let nodes = found["table_lift_coefficients"].as_u64().unwrap()
+        * found["table_mach_numbers"].as_u64().unwrap();
+    assert!(said.contains(&format!("{nodes} nodes")), "{said}");
+    let percent = found["fit_residual_rms_percent"].as_f64().unwrap();
+    assert!(said.contains(&format!("{percent:.2} % of drag")), "{said}");
+}
+
+#[test]
+fn merge_tune_and_forget_count_flights() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let reports: Vec<_> = (1..=4).map(|k| fixture("reports").join(format!("{k:04}.txt"))).collect();
+    let halves = [scratch.path().join("one"), scratch.path().join("other")];
+    for (folder, half) in halves.iter().zip(reports.chunks(2)) {
+        adapt(&model, folder, half, &[]).expect(0);
+    }
+    let learnt = |folder: &Path| text(&folder.join("models/SIM-01.ron"));
+    let merged = text(&scratch.path().join("merged.ron"));
+    let found = figures(&["merge", &learnt(&halves[0]), &learnt(&halves[1]), "-o", &merged]);
+    assert_eq!((&found["models"], &found["flights"]), (&Value::from(2), &Value::from(4)));
+
+    let shown = cruisefit(&["show", &text(&halves[0]), "--json"]).expect(0).stdout;
+    assert!(shown.contains("SIM-01"), "{shown}");
+    let flights = std::fs::read_to_string(halves[0].join("flights/SIM-01.csv")).unwrap();
+    let first = flights.lines().nth(1).unwrap().split(',').next().unwrap().to_owned();
+    let found = figures(&["forget", &text(&halves[0]), "--tail", "SIM-01", "--flight", &first]);
+    assert_eq!((&found["flight"], &found["flights_left"]), (&Value::from(first), &Value::from(1)));
+
+    let tuned = text(&scratch.path().join("tuned.ron"));
+    let reports: Vec<String> = reports.iter().map(|path| text(path)).collect();
+    let mut arguments: Vec<&str> = vec!["tune", "--model"];
+    let model = text(&model);
+    arguments.extend([model.as_str(), "-o", &tuned]);
+    arguments.extend(reports.iter().map(String::as_str));
+    let found = figures(&arguments);
+    assert_eq!(found["flights"], 4);
+    assert!(found["search"][0]["ln_evidence"].is_number(), "{found}");
+    assert!(found["settings"].is_object(), "{found}");
+}
+
+#[test]
+fn files_of_others_are_counted() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = |name: &str| text(&scratch.path().join(name));
+    let types = figures(&["guide", "--list"]);
+    assert!(types["types"].as_array().unwrap().iter().any(|one| one["type"] == "A320"));
+    let found = figures(&["guide", "--type", "A320", "-o", &out("a320")]);
+    assert_eq!((&found["type"], &found["represented_by"]), (&"A320".into(), &"A320".into()));
+    assert_eq!(found["written"].as_array().unwrap().len(), 2);
+
+    let recording = text(&root().join("fixtures/layouts/01_named_units.csv"));
+    let mapping = out("mapping.ron");
+    let found = figures(&["mapping", &recording, "-o", &mapping]);
+    let said = cruisefit(&["mapping", recording.as_str()]).expect(0);
+    let (flights, samples) = (&found["flights"], &found["samples"]);
+    assert_eq!(flights, 1);
+    said.says(&format!("it reads {flights} flight with {samples} samples"));
+    said.says(&format!("{} guess", found["guesses"]));
+    let arguments = ["convert", &recording, "--mapping", &mapping, "-o", &out("reports")];
+    assert_eq!(figures(&arguments)["reports_written"], 1);
+
+    let study = figures(&["simulate", "ghazi-2020", "-o", &out("study")]);
+    let reports = bytes_below(&scratch.path().join("study"));
+    let written = reports.keys().filter(|name| name.ends_with(".txt")).count();
+    assert_eq!((&study["flights"], &study["drawn_again"]), (&Value::from(written), &0.into()));
+
+    let found = figures(&["mapping", "--presets"]);
+    assert!(found["presets"].as_array().unwrap().len() > 5, "{found}");
+    let found = figures(&["plot", &text(&initial_model(scratch.path())), "-o", &out("m.pdf")]);
+    assert_eq!((&found["format"], &found["unknown_characters"]), (&"pdf".into(), &"".into()));
+}
