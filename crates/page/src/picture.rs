@@ -103,7 +103,8 @@ fn flat(sheet: &str) -> String {
     for (name, value) in variables() {
         flat = flat.replace(&format!("var({name})"), value);
     }
-    flat
+    // A dot is a line of no length with round ends; readers of PDF draw none where a path has but one.
+    flat.replace("h0M", "h.01M").replace("h0\"", "h.01\"")
 }
 
 /// Names and values of the style sheet's variables: its first rule.
@@ -207,6 +208,11 @@ mod tests {
         // 40 by 20 CSS pixels at 96 dpi are 30 by 15 points.
         assert!(text.contains("/MediaBox [0 0 30 15]"), "{text}");
         assert_eq!(first, pdf(&sheet("drag")).expect("drawn"));
+    }
+
+    #[test]
+    fn a_dot_alone_has_a_length() {
+        assert!(flat(&sheet("")).contains("d=\"M10 10h.01\""));
     }
 
     #[test]

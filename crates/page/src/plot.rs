@@ -23,6 +23,11 @@ const MOST_POINTS: usize = 5000;
 const HEADING: f64 = 24.0;
 const GAP: f64 = 16.0;
 const COLUMNS: usize = 2;
+/// A line of a legend, below its chart, and where its words begin.
+const LEGEND_LINE: f64 = 17.0;
+const LEGEND_WORDS: f64 = 34.0;
+/// Left edge of the frame of a chart, under which its title and legend stand.
+const FRAME: f64 = 64.0;
 
 /// Names of the charts of a tail; `polars` are several.
 pub const TAIL_CHARTS: [&str; 7] =
@@ -31,13 +36,21 @@ pub const TAIL_CHARTS: [&str; 7] =
 /// Names of the charts of a diagnosis.
 pub const DIAGNOSIS_CHARTS: [&str; 2] = ["waterfall", "gap-map"];
 
-/// A chart cut out of a page: what is drawn, its size and its title.
+/// A chart cut out of a page: what is drawn, its size, its title, and what its legend says.
 struct Drawing<'a> {
     id: &'a str,
     width: f64,
     height: f64,
     title: &'a str,
     marks: &'a str,
+    /// The mark and the words of each line of the legend.
+    legend: Vec<(&'a str, &'a str)>,
+}
+
+impl Drawing<'_> {
+    fn height_with_legend(&self) -> f64 {
+        self.height + LEGEND_LINE * self.legend.len() as f64
+    }
 }
 
 /// Charts of one tail as a file of its own, those of these names ([`TAIL_CHARTS`]) or all; without segments, what there is of
@@ -60,7 +73,7 @@ pub fn plot(result: &TailResult, charts: &[&str]) -> Option<String> {
         |one: &Drawing<'_>| ["plot-polar", "plot-surface"].iter().any(|id| one.id.starts_with(id));
     let empty = view.points.is_empty();
     let drawn: Vec<Drawing<'_>> =
-        drawings(&page).filter(|one| named(one) && (!empty || of_table(one))).collect();
+        drawings(&page).into_iter().filter(|one| named(one) && (!empty || of_table(one))).collect();
     sheet(&result.tail, &drawn)
 }
 
@@ -84,7 +97,7 @@ pub fn plot_diagnoses(
         }
     };
     let page = page.into_string();
-    sheet("Diagnoses", &drawings(&page).collect::<Vec<_>>())
+    sheet("Diagnoses", &drawings(&page))
 }
 
 /// Deviation over time of tails as `monitor.json` has them.
@@ -94,7 +107,7 @@ pub fn plot_months(tails: &[TailDocument]) -> Option<String> {
         @for (k, tail) in tails.iter().enumerate() { (monitoring::chart(tail, k, MOST_POINTS)) }
     };
     let page = page.into_string();
-    sheet("Deviation over time", &drawings(&page).collect::<Vec<_>>())
+    sheet("Deviation over time", &drawings(&page))
 }
 
 /// What was planted against what was found, a matrix for each group of blind trials.
@@ -104,7 +117,7 @@ pub fn plot_confusions(groups: &[(String, Confusion)]) -> Option<String> {
         @for (k, (name, confusion)) in groups.iter().enumerate() { (matrix::matrix(name, confusion, k)) }
     };
     let page = page.into_string();
-    sheet("Planted and found", &drawings(&page).collect::<Vec<_>>())
+    sheet("Planted and found", &drawings(&page))
 }
 
 /// Charts on one sheet; `None` without charts.
@@ -113,39 +126,76 @@ fn sheet(title: &str, drawings: &[Drawing<'_>]) -> Option<String> {
         return None;
     }
     let columns = COLUMNS.min(drawings.len());
-    let cell_width = drawings.iter().map(|one| one.width).fold(0.0, f64::max) + GAP;
-    let cell_height = drawings.iter().map(|one| one.height).fold(0.0, f64::max) + HEADING + GAP;
-    let rows = drawings.len().div_ceil(columns);
-    let (width, height) = (cell_width * columns as f64 + GAP, cell_height * rows as f64 + GAP);
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
-         font-family=\"sans-serif\">\n<title>{}</title>\n<style><![CDATA[{STYLE}]]></style>\n\
-         <rect width=\"100%\" height=\"100%\" style=\"fill:var(--paper)\"/>\n",
-        html! { (title) }.into_string()
-    );
-    for (k, one) in drawings.iter().enumerate() {
-        let (left, top) =
-            (GAP + cell_width * (k % columns) as f64, GAP + cell_height * (k / columns) as f64);
-        let _ = writeln!(
-            svg,
-            "<g transform=\"translate({left} {top})\"><text x=\"64\" y=\"14\" style=\"font-weight:600\">{}</text>\
-             <g transform=\"translate(0 {HEADING})\">{}</g></g>",
-            one.title, one.marks
-        );
+    let width_of = |column: usize| {
+        let of_column = drawings.iter().skip(column).step_by(columns);
+        of_column.map(|one| one.width).fold(0.0, f64::max) + GAP
+    };
+    let lefts: Vec<f64> = (0..columns)
+        .scan(GAP, |left, column| Some(std::mem::replace(left, *left + width_of(column))))
+        .collect();
+    let width = GAP + (0..columns).map(width_of).sum::<f64>();
+    let mut top = GAP;
+    let mut rows = String::new();
+    for row in drawings.chunks(columns) {
+        for (one, left) in row.iter().zip(&lefts) {
+            draw(one, (*left, top), &mut rows);
+        }
+        top += row.iter().map(Drawing::height_with_legend).fold(0.0, f64::max) + HEADING + GAP;
     }
-    svg.push_str("</svg>\n");
-    Some(svg)
+    Some(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {top}\" width=\"{width}\" height=\"{top}\" \
+         font-family=\"sans-serif\">\n<title>{}</title>\n<style><![CDATA[{STYLE}]]></style>\n\
+         <rect width=\"100%\" height=\"100%\" style=\"fill:var(--paper)\"/>\n{rows}</svg>\n",
+        html! { (title) }.into_string()
+    ))
 }
 
-/// The charts of a piece of a page, in order; the keys of legends are not among them.
-fn drawings(page: &str) -> impl Iterator<Item = Drawing<'_>> {
-    page.split("<svg ").skip(1).filter_map(|drawing| {
-        let (head, rest) = drawing.split_once('>')?;
-        let size = head.strip_prefix("viewBox=\"0 0 ").filter(|_| head.contains("role=\"img\""))?;
-        let (width, height) = size.split_once('"')?.0.split_once(' ')?;
-        let marks = rest.split("</svg>").next()?;
-        let (id, after) = marks.split_once("<title id=\"")?.1.split_once("-title\"")?;
-        let title = after.split_once('>')?.1.split("</title>").next()?;
-        Some(Drawing { id, width: width.parse().ok()?, height: height.parse().ok()?, title, marks })
-    })
+/// A chart with its title and its legend.
+fn draw(one: &Drawing<'_>, (left, top): (f64, f64), svg: &mut String) {
+    let _ = write!(
+        svg,
+        "<g transform=\"translate({left} {top})\"><text x=\"{FRAME}\" y=\"14\" style=\"font-weight:600\">{}</text>\
+         <g transform=\"translate(0 {HEADING})\">{}</g>",
+        one.title, one.marks
+    );
+    for (line, (mark, words)) in one.legend.iter().enumerate() {
+        let down = HEADING + one.height + LEGEND_LINE * line as f64;
+        let _ = write!(
+            svg,
+            "<g transform=\"translate({FRAME} {down})\">{mark}<text x=\"{LEGEND_WORDS}\" y=\"10\">{words}</text></g>"
+        );
+    }
+    svg.push_str("</g>\n");
+}
+
+/// The charts of a piece of a page, in order, each with the legend before it.
+fn drawings(page: &str) -> Vec<Drawing<'_>> {
+    let mut drawings = Vec::new();
+    let mut legend = Vec::new();
+    for drawing in page.split("<svg ").skip(1) {
+        if let Some(line) = legend_line(drawing) {
+            legend.push(line);
+        } else if let Some(chart) = chart(drawing) {
+            drawings.push(Drawing { legend: std::mem::take(&mut legend), ..chart });
+        }
+    }
+    drawings
+}
+
+/// The mark and the words of a line of a legend.
+fn legend_line(drawing: &str) -> Option<(&str, &str)> {
+    let (mark, after) =
+        drawing.strip_prefix("class=\"key\"")?.split_once('>')?.1.split_once("</svg>")?;
+    Some((mark, after.split("</li>").next()?))
+}
+
+fn chart(drawing: &str) -> Option<Drawing<'_>> {
+    let (head, rest) = drawing.split_once('>')?;
+    let size = head.strip_prefix("viewBox=\"0 0 ").filter(|_| head.contains("role=\"img\""))?;
+    let (width, height) = size.split_once('"')?.0.split_once(' ')?;
+    let marks = rest.split("</svg>").next()?;
+    let (id, after) = marks.split_once("<title id=\"")?.1.split_once("-title\"")?;
+    let title = after.split_once('>')?.1.split("</title>").next()?;
+    let (width, height) = (width.parse().ok()?, height.parse().ok()?);
+    Some(Drawing { id, width, height, title, marks, legend: Vec::new() })
 }

@@ -105,6 +105,9 @@ fn a_plot_is_one_drawing() {
     assert!(svg.contains("drag polar at Mach") && svg.contains("error over time"));
     assert!(!svg.contains("NaN"));
     assert_eq!(svg.matches("<g ").count(), svg.matches("</g>").count());
+    let one = plot(&tail("T", true), &["histogram"]).unwrap();
+    // A figure on a slide tells its colours: the lines of the legend stand under the chart.
+    assert!(one.contains("<text x=\"34\" y=\"10\">") && !one.contains("<li>"));
     let one = plot(&tail("T", true), &["surface"]).unwrap();
     assert!(one.contains("change of the drag surface") && !one.contains("drag polar"));
 }

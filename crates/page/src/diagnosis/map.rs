@@ -4,7 +4,7 @@ use diagnose::SegmentGap;
 use maud::{Markup, html};
 
 use super::Tail;
-use crate::chart::{Axis, Chart};
+use crate::chart::{Axis, Chart, Key, legend};
 use crate::shade;
 use crate::text::{counted, signed};
 
@@ -93,10 +93,13 @@ pub(crate) fn gap_map(id: &str, name: &str, segments: &[SegmentGap], marked: boo
     html! {
         figure {
             figcaption {
-                b { "Where the gap is." } " Mean gap of the segments in each cell. Orange burns more than predicted, blue less; \
-                full colour from " (format!("{full:.1}")) " %."
+                b { "Where the gap is." } " Mean gap of the segments in each cell."
                 @if marked { " Outlined: the place named above." }
             }
+            (legend(&[
+                (Key::Area, "more5", &format!("burns more than predicted, full colour from {full:.1} %")),
+                (Key::Area, "less5", "burns less than predicted"),
+            ]))
             (chart.draw(&marks))
         }
     }
