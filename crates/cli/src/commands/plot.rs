@@ -44,7 +44,18 @@ pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
     };
     let drawn = drawn.ok_or_else(|| Failure::BadArgument {
         argument: "MODEL.ron|DIR|FILE.json",
-        reason: format!("{} holds nothing of what was asked for", show(source)),
+        reason: format!(
+            "{} holds {} of {}; a model or tail has {}, a diagnosis {}",
+            show(source),
+            if charts.is_empty() {
+                "no chart".to_owned()
+            } else {
+                format!("no {}", charts.join(", "))
+            },
+            arguments.tail.as_deref().unwrap_or("any tail"),
+            page::TAIL_CHARTS.join(", "),
+            page::DIAGNOSIS_CHARTS.join(", ")
+        ),
     })?;
     let picture =
         format.draw(drawn).map_err(|error| Failure::unwritable(&arguments.output, error))?;

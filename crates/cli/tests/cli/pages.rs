@@ -47,6 +47,8 @@ fn check_plots(demo: &Path) {
     cruisefit(&chosen).expect(0);
     let svg = fs::read_to_string(&figure).unwrap();
     assert!(svg.contains("gap over Mach number") && !svg.contains("from the gap to the noise"));
+    let polar = chosen.map(|one| if one == "gap-map" { "polar".as_ref() } else { one });
+    cruisefit(&polar).expect(2).says("holds no polar of any tail");
     check_gaps(&maps);
     fs::write(&trials, r#"{"schema": "cruisefit.other/1"}"#).unwrap();
     let ran = cruisefit(&["plot".as_ref(), trials.as_os_str(), "-o".as_ref(), figure.as_os_str()]);
