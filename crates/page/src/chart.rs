@@ -14,6 +14,7 @@ pub(crate) mod dates;
 
 pub(crate) use axis::{Axis, Tick};
 pub(crate) use bins::{Bins, Histogram, thinned};
+
 use coordinate::{coordinate, push_point};
 
 /// Room for labels around the frame.
@@ -82,12 +83,12 @@ impl Chart {
                 ))
                 data-x=(format!("{} {}", self.x.first(), self.x.last()))
                 data-y=(format!("{} {}", self.y.first(), self.y.last()))
-                data-dates=[self.x.is_of_dates().then_some("")]
+                data-x-of=[self.x.of()] data-y-of=[self.y.of()]
                 role="img" aria-labelledby=(format!("{0}-title {0}-desc", self.id)) {
                 title id=(format!("{}-title", self.id)) { (self.title) }
                 desc id=(format!("{}-desc", self.id)) { (self.description) }
                 path class="grid" d=(self.grid_lines()) {}
-                (marks)
+                g class="marks" { (marks) }
                 path class="frame" d=(format!(
                     "M{} {}V{}H{}", coordinate(left), coordinate(top), coordinate(bottom), coordinate(right)
                 )) {}

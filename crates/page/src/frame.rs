@@ -4,8 +4,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style;
 
-/// What a page does beyond being read.
-const SCRIPT: &str = include_str!("page.js");
+/// What a page does beyond being read: values, tables and links; zoom.
+const SCRIPTS: [&str; 2] = [include_str!("script/page.js"), include_str!("script/zoom.js")];
 /// The page may run what it holds and load nothing, whatever a name in it says.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 
@@ -27,11 +27,23 @@ pub(crate) fn framed(title: &str, body: &Markup) -> String {
                     h1 { (title) }
                     (body)
                 }
-                script { (PreEscaped(SCRIPT)) }
+                script { (PreEscaped(scripts())) }
             }
         }
     };
     let mut page = page.into_string();
     page.push('\n');
     page
+}
+
+/// The scripts without comments and indentation: every page holds them.
+fn scripts() -> String {
+    let mut text = String::new();
+    for line in SCRIPTS.iter().flat_map(|script| script.lines()).map(str::trim_start) {
+        if !line.is_empty() && !line.starts_with("//") {
+            text.push_str(line);
+            text.push('\n');
+        }
+    }
+    text
 }

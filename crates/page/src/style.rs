@@ -101,6 +101,13 @@ input[type=search] { font: inherit; padding: .25rem .5rem; margin: .3rem 0; max-
   border: 1px solid var(--soft); border-radius: 4px; }
 button.save { font: inherit; font-size: .82rem; color: var(--link); background: none; border: 1px solid var(--line); border-radius: 4px;
   padding: .1rem .5rem; margin: .3rem 0; cursor: pointer; }
+svg:focus:not(:focus-visible) { outline: none; }
+svg[data-frame] { cursor: crosshair; user-select: none; -webkit-user-select: none; }
+svg .margin { fill: var(--paper); } svg .chosen { fill: var(--after); fill-opacity: .15; stroke: var(--after); }
+.zoom { color: var(--soft); font-size: .78rem; margin: 0 0 .3rem 2rem; }
+.zoom button { font: inherit; color: var(--link); background: none; border: 1px solid var(--line); border-radius: 4px; padding: .05rem .45rem;
+  cursor: pointer; }
+.zoom button[aria-pressed=true] { border-color: var(--after); background: var(--card); }
 #tip { display: none; position: fixed; z-index: 9; max-width: 22rem; padding: .3rem .55rem; white-space: pre-line; pointer-events: none;
   background: var(--ink); color: var(--paper); border-radius: 4px; font-size: .85rem; }
 svg .span { stroke: var(--soft); stroke-width: 1.2; }
@@ -169,7 +176,7 @@ svg .diamond { fill: var(--paper); stroke: var(--after); stroke-width: 1.4; }
   .heat { font-size: 7pt; } .heat td { min-width: 0; height: auto; padding: .12rem .15rem; }
   details.tail { border: 0; } details.tail + details.tail { break-before: page; }
   details::details-content { content-visibility: visible; block-size: auto; }
-  input, button.save, #tip { display: none !important; }
+  input, button.save, .zoom, #tip { display: none !important; }
   th button::after { content: ""; }
   .verdict, .bars tr { break-inside: avoid; }
   a { color: inherit; text-decoration: none; }

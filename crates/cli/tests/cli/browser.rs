@@ -1,6 +1,7 @@
 //! The pages as a browser shows them: nothing loaded, nothing on the console, charts drawn, tables that sort and filter, links,
 //! keys, phone, print, and the numbers of the documents.
 
+mod charts;
 mod driver;
 mod made_up;
 mod probes;
@@ -53,6 +54,9 @@ fn pages_of_the_demo() {
     check_keys_and_pointer(&browser);
     browser.open(&adapted.join("report.html"));
     check_numbers_of_rows(&browser, &document(&adapted.join("summary.json")));
+    charts::check_zoom(&browser);
+    charts::check_zoom_by_keys(&browser);
+    charts::check_whole_in_print(&browser);
 }
 
 #[test]
@@ -274,7 +278,7 @@ fn check_causes(browser: &Browser, document: &Value) {
 /// A value appears at the pointer and at the arrow keys, and goes with Escape.
 fn check_keys_and_pointer(browser: &Browser) {
     let tip = "const tip = document.getElementById('tip'); return tip.style.display === 'block' ? tip.innerText : '';";
-    browser.run("document.querySelector('svg[tabindex]').focus();");
+    browser.run("document.querySelector('svg[tabindex]:has(.dot)').focus();");
     browser.press(&[ARROW_RIGHT, ARROW_RIGHT]);
     let told = browser.run(tip);
     assert!(told.as_str().unwrap().contains(": "), "{told}");

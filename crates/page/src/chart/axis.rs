@@ -13,6 +13,10 @@ pub(crate) struct Axis {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Values {
     Numbers,
+    /// Whole numbers.
+    Counts,
+    /// The k-th name from k to k + 1.
+    Names,
     /// s since 1970.
     Dates,
 }
@@ -57,7 +61,7 @@ impl Axis {
 
     /// From 0, for counts: ticks are whole numbers.
     pub(crate) fn of_counts(largest: usize, ticks: usize) -> Self {
-        Self::around(0.0, largest.max(ticks) as f64, ticks)
+        Self { values: Values::Counts, ..Self::around(0.0, largest.max(ticks) as f64, ticks) }
     }
 
     /// A scale of names: the k-th from k to k + 1, its tick in the middle.
@@ -65,7 +69,7 @@ impl Axis {
         let ticks = names.iter().enumerate();
         let ticks = ticks.map(|(k, name)| Tick { at: k as f64 + 0.5, label: name.clone() });
         let (first, last) = of_some_length(0.0, names.len() as f64);
-        Self { first, last, ticks: ticks.collect(), values: Values::Numbers }
+        Self { first, last, ticks: ticks.collect(), values: Values::Names }
     }
 
     /// A scale of instants with given ticks; those beyond the ends are left out.
@@ -75,9 +79,14 @@ impl Axis {
         Self { first, last, ticks, values: Values::Dates }
     }
 
-    /// Whether its values are instants, s since 1970.
-    pub(crate) const fn is_of_dates(&self) -> bool {
-        matches!(self.values, Values::Dates)
+    /// What its values are where they are not plain numbers, for the script that draws ticks of a part of it.
+    pub(crate) const fn of(&self) -> Option<&'static str> {
+        match self.values {
+            Values::Numbers => None,
+            Values::Counts => Some("counts"),
+            Values::Names => Some("names"),
+            Values::Dates => Some("dates"),
+        }
     }
 
     pub(crate) fn first(&self) -> f64 {

@@ -105,10 +105,25 @@ impl Browser {
 
     /// Moves the pointer to a place of the window.
     pub(super) fn point(&self, x: f64, y: f64) {
-        let there = json!({ "type": "pointerMove", "duration": 0, "x": x.round(), "y": y.round() });
+        self.mouse(&[move_to((x, y))]);
+    }
+
+    /// Drags from one place of the window to another.
+    pub(super) fn drag(&self, from: (f64, f64), to: (f64, f64)) {
+        let halfway = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        self.mouse(&[move_to(from), button("Down"), move_to(halfway), move_to(to), button("Up")]);
+    }
+
+    /// A double click at a place of the window.
+    pub(super) fn double_click(&self, at: (f64, f64)) {
+        let click = || [button("Down"), button("Up")];
+        self.mouse(&[&[move_to(at)][..], &click(), &click()].concat());
+    }
+
+    fn mouse(&self, steps: &[Value]) {
         self.send(
             "/actions",
-            &json!({ "actions": [{ "type": "pointer", "id": "mouse", "actions": [there] }] }),
+            &json!({ "actions": [{ "type": "pointer", "id": "mouse", "actions": steps }] }),
         );
     }
 
@@ -145,6 +160,14 @@ impl Browser {
         assert!(value.get("error").is_none_or(Value::is_null), "{path}: {value}");
         value
     }
+}
+
+fn move_to((x, y): (f64, f64)) -> Value {
+    json!({ "type": "pointerMove", "duration": 0, "x": x.round(), "y": y.round() })
+}
+
+fn button(way: &str) -> Value {
+    json!({ "type": format!("pointer{way}"), "button": 0 })
 }
 
 impl Drop for Browser {

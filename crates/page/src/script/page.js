@@ -21,8 +21,10 @@
   };
 
   // The points of a chart are read back from its paths: "M64 108h0" is a dot, the frame and the scales are attributes.
+  // A zoom moves them and leaves what was written beside it.
+  const written = (element, name) => element.written?.[name] ?? element.getAttribute(name);
   const points = (svg) => svg.points ??= all('.dot,.disc', svg).flatMap((path) =>
-    [...path.getAttribute('d').matchAll(/M([-\d.]+) ([-\d.]+)h0/g)].map((match) => [+match[1], +match[2]])
+    [...written(path, 'd').matchAll(/M([-\d.]+) ([-\d.]+)h0/g)].map((match) => [+match[1], +match[2]])
   ).sort((one, other) => one[0] - other[0]);
   const words = (svg, [x, y]) => {
     const numbers = (name) => svg.dataset[name].split(' ').map(Number);
@@ -33,43 +35,69 @@
     const up = y0 + (bottom - y) / (bottom - top) * (y1 - y0);
     const [acrossName, upName] = all('.label', svg).map((label) => label.textContent);
     const day = new Date(across * 1000);
-    return `${acrossName}: ${'dates' in svg.dataset ? day.toISOString().slice(0, 10) : value(across)}\n${upName}: ${value(up)}`;
+    return `${acrossName}: ${svg.dataset.xOf === 'dates' ? day.toISOString().slice(0, 10) : value(across)}\n${upName}: ${value(up)}`;
   };
-  const place = (svg, [x, y]) => {
+  // Where a place of the whole chart is drawn, which zoom may have moved (`svg.placed`), and whether it is inside the frame.
+  // A column has no height: it is told in the middle.
+  const frameOf = (svg) => svg.dataset.frame.split(' ').map(Number);
+  const drawnAt = (svg, [x, y]) => {
+    const [, , top, bottom] = frameOf(svg);
+    const [across, up] = svg.placed ? svg.placed([x, y]) : [x, y];
+    return [across, y === null ? (top + bottom) / 2 : up];
+  };
+  const isShown = (svg, point) => {
+    const [left, right, top, bottom] = frameOf(svg);
+    const [x, y] = drawnAt(svg, point);
+    return left <= x && x <= right && top <= y && y <= bottom;
+  };
+  const place = (svg, point) => {
+    const [x, y] = drawnAt(svg, point);
     const drawn = svg.getBoundingClientRect();
     const scale = drawn.width / svg.viewBox.baseVal.width;
     return [drawn.left + x * scale, drawn.top + y * scale, scale];
   };
-  for (const svg of all('svg[data-frame]')) {
+  for (const svg of all('svg[data-frame],svg[data-turn]')) {
     svg.addEventListener('pointermove', (event) => {
+      if (svg.dragging) return hide();
       const named = event.target.closest('[data-tip]');
       if (named) return show(named.dataset.tip, event.clientX, event.clientY);
       let best = null;
       let nearest = 14;
-      for (const point of points(svg)) {
+      if (svg.dataset.frame) for (const point of points(svg)) {
         const [x, y] = place(svg, point);
         const distance = Math.hypot(x - event.clientX, y - event.clientY);
-        if (distance < nearest) [nearest, best] = [distance, point];
+        if (distance < nearest && isShown(svg, point)) [nearest, best] = [distance, point];
       }
       if (best) show(words(svg, best), event.clientX, event.clientY); else hide();
     });
     svg.addEventListener('pointerleave', hide);
-    // Columns that are named (tails, trials) are told by their names, else the points by their values.
-    const hits = all('.hit[data-tip]', svg);
-    if (!hits.length && !svg.querySelector('.dot,.disc')) continue;
-    svg.setAttribute('tabindex', '0');
-    let at = -1;
-    svg.addEventListener('keydown', (event) => {
-      const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-      const last = (hits.length || points(svg).length) - 1;
-      if (!step || last < 0) return;
-      event.preventDefault();
-      at = Math.max(0, Math.min(last, at + step));
-      if (!hits.length) return show(words(svg, points(svg)[at]), ...place(svg, points(svg)[at]));
-      const { left, top, width, height } = hits[at].getBoundingClientRect();
-      show(hits[at].dataset.tip, left + width / 2, top + height / 2);
-    });
     svg.addEventListener('blur', hide);
+    svg.setAttribute('tabindex', '0');
+  }
+  // What the arrow keys step through: columns that are named (tails, trials) with their names, else points with their values.
+  const stopsOf = (svg) => svg.stops ??= all('.hit[data-tip]', svg).map((hit) =>
+    ({ point: [+written(hit, 'x') + +written(hit, 'width') / 2, null], told: hit.dataset.tip })
+  );
+  const step = (svg, by) => {
+    const stops = stopsOf(svg).length ? stopsOf(svg) : svg.stops = points(svg).map((point) => ({ point, told: words(svg, point) }));
+    const shown = stops.filter((stop) => isShown(svg, stop.point));
+    const next = shown.indexOf(svg.stop) + by;
+    // From outside the part that is shown the keys lead to its first or last one.
+    svg.stop = shown.includes(svg.stop) ? shown[next] ?? svg.stop : shown.at(by > 0 ? 0 : -1);
+    tellStop(svg);
+  };
+  const tellStop = (svg) => {
+    if (!svg.stop || !isShown(svg, svg.stop.point)) return hide();
+    show(svg.stop.told, ...place(svg, svg.stop.point));
+  };
+  for (const svg of all('svg[data-frame]')) {
+    svg.addEventListener('keydown', (event) => {
+      const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      if (!by || event.shiftKey) return;
+      event.preventDefault();
+      step(svg, by);
+    });
+    svg.addEventListener('zoomed', () => { if (document.activeElement === svg) tellStop(svg); else hide(); });
   }
   for (const element of all('[data-tip]:not(svg *)')) {
     element.addEventListener('pointermove', (event) => show(element.dataset.tip, event.clientX, event.clientY));
