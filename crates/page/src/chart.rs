@@ -14,8 +14,8 @@ pub(crate) mod dates;
 
 pub(crate) use axis::{Axis, Tick};
 pub(crate) use bins::{Bins, Histogram, thinned};
-
-use coordinate::{coordinate, push_point};
+pub(crate) use coordinate::coordinate;
+use coordinate::push_point;
 
 /// Room for labels around the frame.
 const LEFT: f64 = 64.0;

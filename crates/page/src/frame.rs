@@ -4,8 +4,12 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style;
 
-/// What a page does beyond being read: values, tables and links; zoom.
-const SCRIPTS: [&str; 2] = [include_str!("script/page.js"), include_str!("script/zoom.js")];
+/// What a page does beyond being read: values, tables and links; zoom; surfaces that turn.
+const SCRIPTS: [&str; 3] = [
+    include_str!("script/page.js"),
+    include_str!("script/zoom.js"),
+    include_str!("script/turn.js"),
+];
 /// The page may run what it holds and load nothing, whatever a name in it says.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 

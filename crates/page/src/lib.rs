@@ -9,7 +9,7 @@
 //!
 //! The one design decision: one string that loads nothing and does not know the time, so that the same results give the same
 //! bytes and a page that was mailed is read in ten years as it is today. All is drawn before the small script of the page
-//! runs; it adds values under the pointer, zoom, sorting, filtering and CSV.
+//! runs; it adds values under the pointer, zoom, a surface that turns, sorting, filtering and CSV.
 //!
 //! Limits:
 //! - The page of a large fleet draws a share of the segments, and states so; figures and tables cover all.
@@ -38,10 +38,12 @@ mod picture;
 mod place;
 mod plot;
 mod polars;
+mod relief;
 mod report;
 #[cfg(test)]
 mod samples;
 mod shade;
+mod solid;
 mod style;
 mod surface;
 mod tail;

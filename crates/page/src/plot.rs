@@ -30,8 +30,8 @@ const LEGEND_WORDS: f64 = 34.0;
 const FRAME: f64 = 64.0;
 
 /// Names of the charts of a tail; `polars` are several.
-pub const TAIL_CHARTS: [&str; 7] =
-    ["histogram", "time", "forecast", "surface", "specific-range", "engines", "polar"];
+pub const TAIL_CHARTS: [&str; 8] =
+    ["histogram", "time", "forecast", "surface", "relief", "specific-range", "engines", "polar"];
 
 /// Names of the charts of a diagnosis.
 pub const DIAGNOSIS_CHARTS: [&str; 2] = ["waterfall", "gap-map"];
@@ -69,8 +69,9 @@ pub fn plot(result: &TailResult, charts: &[&str]) -> Option<String> {
         let id = one.id.trim_start_matches("plot-");
         charts.is_empty() || charts.iter().any(|chart| id.starts_with(chart))
     };
-    let of_table =
-        |one: &Drawing<'_>| ["plot-polar", "plot-surface"].iter().any(|id| one.id.starts_with(id));
+    let of_table = |one: &Drawing<'_>| {
+        ["plot-polar", "plot-surface", "plot-relief"].iter().any(|id| one.id.starts_with(id))
+    };
     let empty = view.points.is_empty();
     let drawn: Vec<Drawing<'_>> =
         drawings(&page).into_iter().filter(|one| named(one) && (!empty || of_table(one))).collect();

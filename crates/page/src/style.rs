@@ -103,6 +103,8 @@ button.save { font: inherit; font-size: .82rem; color: var(--link); background: 
   padding: .1rem .5rem; margin: .3rem 0; cursor: pointer; }
 svg:focus:not(:focus-visible) { outline: none; }
 svg[data-frame] { cursor: crosshair; user-select: none; -webkit-user-select: none; }
+svg[data-turn] { cursor: grab; touch-action: pan-y; user-select: none; -webkit-user-select: none; }
+svg .facet { stroke: var(--soft); stroke-width: .6; stroke-linejoin: round; } .line.within { stroke: var(--ink); stroke-width: 1.3; }
 svg .margin { fill: var(--paper); } svg .chosen { fill: var(--after); fill-opacity: .15; stroke: var(--after); }
 .zoom { color: var(--soft); font-size: .78rem; margin: 0 0 .3rem 2rem; }
 .zoom button { font: inherit; color: var(--link); background: none; border: 1px solid var(--line); border-radius: 4px; padding: .05rem .45rem;

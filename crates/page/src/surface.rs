@@ -17,15 +17,16 @@ const MOST_NODES: usize = 16;
 const LEAST_FULL_PERCENT: f64 = 2.0;
 
 /// Nodes that are drawn along an axis, with the edges between them.
-struct Nodes {
-    chosen: Vec<usize>,
+pub(crate) struct Nodes {
+    pub(crate) chosen: Vec<usize>,
     edges: Vec<f64>,
 }
 
 impl Nodes {
-    fn about(grid: &[f64], flown: &[f64]) -> Self {
+    /// Those about what was flown, evenly chosen where they are more than `most`.
+    pub(crate) fn about(grid: &[f64], flown: &[f64], most: usize) -> Self {
         let (first, last) = nodes_near(grid, flown.iter().copied());
-        let step = (last - first + 1).div_ceil(MOST_NODES);
+        let step = (last - first + 1).div_ceil(most);
         let chosen: Vec<usize> = (first..=last).step_by(step).collect();
         let at: Vec<f64> = chosen.iter().map(|k| grid[*k]).collect();
         let mut edges: Vec<f64> =
@@ -43,17 +44,13 @@ pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
     let polars = &view.polars;
     let along =
         |of: fn(&crate::view::Point) -> f64| -> Vec<f64> { view.points.iter().map(of).collect() };
-    let rows = Nodes::about(&polars.lift_coefficient, &along(|point| point.lift_coefficient));
-    let columns = Nodes::about(&polars.mach, &along(|point| point.mach));
+    let rows =
+        Nodes::about(&polars.lift_coefficient, &along(|point| point.lift_coefficient), MOST_NODES);
+    let columns = Nodes::about(&polars.mach, &along(|point| point.mach), MOST_NODES);
     if !polars.learnt || rows.edges.is_empty() || columns.edges.is_empty() {
         return html! {};
     }
-    let nodes = || {
-        rows.chosen
-            .iter()
-            .flat_map(|row| columns.chosen.iter().map(|column| polars.node(*row, *column)))
-    };
-    let full = nodes().map(|node| change(view, node).abs()).fold(LEAST_FULL_PERCENT, f64::max);
+    let full = full_percent(view, &rows, &columns);
     let ends = |edges: &[f64]| Axis::within(edges[0], edges[edges.len() - 1], 6);
     let chart = Chart {
         id: place.id("surface"),
@@ -104,8 +101,15 @@ fn look(view: &TailView, node: usize, full: f64) -> String {
     format!("{}{faint}", shade::class(change(view, node), full))
 }
 
+/// The change of full colour, %.
+pub(crate) fn full_percent(view: &TailView, rows: &Nodes, columns: &Nodes) -> f64 {
+    let node = |row: &usize, column: &usize| view.polars.node(*row, *column);
+    let nodes = rows.chosen.iter().flat_map(|row| columns.chosen.iter().map(|c| node(row, c)));
+    nodes.map(|node| change(view, node).abs()).fold(LEAST_FULL_PERCENT, f64::max)
+}
+
 /// By how much learning has moved a node, %.
-fn change(view: &TailView, node: usize) -> f64 {
+pub(crate) fn change(view: &TailView, node: usize) -> f64 {
     100.0 * (view.polars.current[node] / view.polars.initial[node] - 1.0)
 }
 

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use crate::place::{Detail, Place};
 use crate::text::{counted, plain, signed};
 use crate::view::TailView;
-use crate::{criteria, envelope, errors, performance, polars, surface};
+use crate::{criteria, envelope, errors, performance, polars, relief, surface};
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::statistics::{ErrorStatistics, fuel_factor_percent};
@@ -39,12 +39,13 @@ pub(crate) fn figures(view: &TailView, place: &Place<'_>) -> Markup {
             (errors::before_learning(view, place))
             @if place.detail == Detail::Full {
                 (surface::surface(view, place))
+                (relief::relief(view, place))
                 (performance::specific_range(view, place))
                 (performance::engines(view, place))
             }
         }
         @if place.detail == Detail::Brief {
-            p.note { "The page of so many tails leaves out the drag surface, specific range and engines." }
+            p.note { "The page of so many tails leaves out the drag surface (map and three dimensions), specific range and engines." }
         }
         (polars::polars(view, place))
         div.row {

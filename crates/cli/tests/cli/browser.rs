@@ -57,6 +57,7 @@ fn pages_of_the_demo() {
     charts::check_zoom(&browser);
     charts::check_zoom_by_keys(&browser);
     charts::check_whole_in_print(&browser);
+    charts::check_turn(&browser);
 }
 
 #[test]

@@ -9,7 +9,7 @@ pub(super) fn push_point(d: &mut String, letter: char, (x, y): (f64, f64)) {
 }
 
 /// A tenth of a pixel is enough.
-pub(super) fn coordinate(value: f64) -> String {
+pub(crate) fn coordinate(value: f64) -> String {
     let mut text = String::new();
     push_coordinate(&mut text, value);
     text

@@ -1,4 +1,4 @@
-//! What the scripts of a page add to charts: zoom.
+//! What the scripts of a page add to charts: zoom, and surfaces that turn.
 
 use serde_json::{Value, json};
 
@@ -85,7 +85,7 @@ pub(super) fn check_zoom(browser: &Browser) {
 fn value(browser: &Browser, name: &str, at: f64) -> f64 {
     let ends =
         ask(browser, &format!("return [...svg.dataset.{name}.split(' ').map(Number), ...frame];"));
-    let [first, last, left, right, top, bottom] = numbers(&ends)[..] else { panic!("{ends}") };
+    let [first, last, left, right, top, bottom] = [0, 1, 2, 3, 4, 5].map(|k| numbers(&ends)[k]);
     let (from, to) = if name == "x" { (left, right) } else { (bottom, top) };
     first + (at - from) / (to - from) * (last - first)
 }
@@ -144,4 +144,64 @@ pub(super) fn check_whole_in_print(browser: &Browser) {
     browser.print();
     assert_eq!(ask(browser, "return [window.printed, ticks()];"), json!([whole, part]));
     browser.press(&['0']);
+}
+
+/// The surface in three dimensions turns by dragging and by keys, what is nearest is painted last, and it goes back.
+pub(super) fn check_turn(browser: &Browser) {
+    const SOLID: &str = "const svg = document.querySelector('svg[data-turn]');
+         const pieces = () => [...svg.querySelectorAll('[data-p]')];
+         const drawn = () => pieces().map((one) => [one.getAttribute('d'), one.getAttribute('x'), one.getAttribute('y')].join());";
+    let asked = |question: &str| browser.run(&format!("{SOLID} {question}"));
+    let place = asked(
+        "for (const fold of document.querySelectorAll('details')) fold.open = true;
+         svg.scrollIntoView({ block: 'center' });
+         const { x, y, width, height } = svg.getBoundingClientRect(); return [x + width / 2, y + height / 2];",
+    );
+    let at = numbers(&place);
+    let home = asked("return drawn();");
+    assert!(home.as_array().unwrap().len() > 100, "facets, bars, lines and labels: {home}");
+
+    // Half a degree to a pixel: 120 pixels to the right turn it by 60°.
+    browser.drag((at[0], at[1]), (at[0] + 120.0, at[1]));
+    assert_ne!(asked("return drawn();"), home);
+    let corners = asked(
+        "const [azimuth, elevation, x0, y0, scale] = svg.dataset.turn.split(' ').map(Number);
+         const corners = svg.dataset.at.split(',').map((corner) => corner.split(' ').map((one) => one / 1000));
+         const facets = [...svg.querySelectorAll('.facet')].map((one) => [one.dataset.p.split(' ').map(Number), one.getAttribute('d')]);
+         return [(azimuth + 60) * Math.PI / 180, elevation * Math.PI / 180, x0, y0, scale, corners, facets];",
+    );
+    let [azimuth, elevation, x0, y0, scale] =
+        [0, 1, 2, 3, 4].map(|k: usize| corners[k].as_f64().unwrap());
+    let mut last_away = f64::INFINITY;
+    for facet in corners[6].as_array().unwrap() {
+        let of = |k: usize| {
+            numbers(&corners[5][usize::try_from(facet[0][k].as_u64().unwrap()).unwrap()])
+        };
+        let away = |corner: &[f64]| corner[0] * azimuth.sin() + corner[1] * azimuth.cos();
+        let first = of(0);
+        let x = x0 + scale * (first[0] * azimuth.cos() - first[1] * azimuth.sin());
+        let y = y0 - scale * (first[2] * elevation.cos() + away(&first) * elevation.sin());
+        let d = facet[1].as_str().unwrap();
+        let begin: Vec<f64> =
+            d[1..].split('L').next().unwrap().split(' ').map(|one| one.parse().unwrap()).collect();
+        assert!((begin[0] - x).hypot(begin[1] - y) < 0.2, "{d}: expected {x} {y}");
+        let middle = (0..4).map(|k| away(&of(k))).sum::<f64>() / 4.0;
+        assert!(middle < last_away + 1e-9, "what is behind is painted first");
+        last_away = middle;
+    }
+
+    // Of equally far pieces the order is free.
+    let sorted = |drawn: &Value| {
+        let mut drawn = drawn.as_array().unwrap().clone();
+        drawn.sort_by_key(ToString::to_string);
+        drawn
+    };
+    browser.double_click((at[0], at[1]));
+    let is_home = || sorted(&asked("return drawn();")) == sorted(&home);
+    assert!(is_home(), "a double click goes back");
+    asked("svg.focus();");
+    browser.press(&[ARROW_RIGHT]);
+    assert!(!is_home(), "a key turns it");
+    browser.press(&['0']);
+    assert!(is_home(), "0 goes back");
 }
