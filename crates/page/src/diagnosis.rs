@@ -11,6 +11,8 @@ use pipeline::summary::{ReportsSummary, counted};
 use crate::chart::dates;
 use crate::fleet;
 use crate::frame::framed;
+use crate::place::Detail;
+use crate::report::TAILS_ON_ONE_PAGE;
 
 mod causes;
 mod figures;
@@ -23,7 +25,7 @@ mod verdict;
 /// tails must stay below 6 MB.
 const MOST_POINTS: usize = 600;
 const FEWEST_POINTS: usize = 100;
-const POINTS_OF_PAGE: usize = 60_000;
+const POINTS_OF_PAGE: usize = 20_000;
 
 /// The page of diagnoses: the counts of the reports behind them, each diagnosis with what its charts are drawn from (in the
 /// same order), and the options of the run in words.
@@ -42,6 +44,7 @@ pub fn diagnosis(
             id: anchor(number),
             diagnosed,
             figures,
+            detail: if diagnoses.len() > TAILS_ON_ONE_PAGE { Detail::Brief } else { Detail::Full },
             most_points: (POINTS_OF_PAGE / diagnoses.len()).clamp(FEWEST_POINTS, MOST_POINTS),
         })
         .collect();
@@ -57,6 +60,7 @@ pub fn diagnosis(
             section {
                 h2 { "Tails" }
                 p.note { "Each tail unfolds at a click on its line, or on its name in the table above. All are printed." }
+                @if let Some(tail) = tails.first().filter(|tail| tail.detail == Detail::Brief) { (left_out(tail)) }
                 @for tail in &tails { (folded(tail)) }
             }
         } @else {
@@ -82,6 +86,8 @@ struct Tail<'a> {
     id: String,
     diagnosed: &'a DiagnosedTail,
     figures: &'a DiagnosisFigures,
+    /// Whether it has all charts and tables.
+    detail: Detail,
     /// Segments drawn in a chart at most.
     most_points: usize,
 }
@@ -129,6 +135,16 @@ fn head(reports: &ReportsSummary, tails: &[Tail<'_>], options: &[String]) -> Str
     format!("{}.", told.join("; "))
 }
 
+/// What the page of a large fleet leaves out to stay small.
+fn left_out(tail: &Tail<'_>) -> Markup {
+    html! {
+        p.note {
+            "The page of so many tails leaves out the gap of unseen flights, the table of all causes and the smallest effects that \
+             flights would show (" code { "diagnosis.json" } " has them), and draws at most " (tail.most_points) " segments of a tail."
+        }
+    }
+}
+
 fn folded(tail: &Tail<'_>) -> Markup {
     html! {
         details.tail {
@@ -155,6 +171,6 @@ fn section(tail: &Tail<'_>) -> Markup {
                 (causes::left(diagnosis, &figures.segments))
             }
             (causes::apart(diagnosis))
-            (tables::tables(diagnosed))
+            (tables::tables(diagnosed, tail.detail))
     }
 }

@@ -20,7 +20,7 @@ pub(crate) struct Place<'a> {
 pub(crate) enum Detail {
     /// All.
     Full,
-    /// Those of errors and polars: 200 tails on one page must stay below 6 MB.
+    /// The most important: 200 tails on one page must stay below 6 MB.
     Brief,
 }
 

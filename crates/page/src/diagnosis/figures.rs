@@ -9,6 +9,7 @@ use pipeline::diagnosis_words::variable_words;
 
 use super::{Tail, map, unseen};
 use crate::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
+use crate::place::Detail;
 use crate::text::{capitalised, counted, signed};
 
 /// Width of a bin where 60 of them suffice, %.
@@ -31,7 +32,7 @@ pub(super) fn figures(tail: &Tail<'_>) -> Markup {
             (histograms(tail, &bins, &before, &after))
             (map::map(tail))
             (over_time(tail, &bins))
-            (unseen::unseen(tail))
+            @if tail.detail == Detail::Full { (unseen::unseen(tail)) }
             @if let Some(driver) = tail.figures.driver { (over_driver(tail, &bins, driver)) }
         }
     }

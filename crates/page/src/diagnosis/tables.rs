@@ -9,20 +9,22 @@ use pipeline::diagnosis_text;
 use pipeline::diagnosis_words::{left_out_words, measurement_words, region_words};
 
 use super::causes::named;
+use crate::place::Detail;
 use crate::text::{capitalised, signed, three_digits};
 
 /// The folded part of a tail's section.
-pub(super) fn tables(diagnosed: &DiagnosedTail) -> Markup {
+pub(super) fn tables(diagnosed: &DiagnosedTail, detail: Detail) -> Markup {
     let diagnosis = &diagnosed.diagnosis;
     let notes = diagnosed.notes();
+    let full = detail == Detail::Full;
     html! {
         details.more {
             summary { "In full sentences" }
             @for line in diagnosis_text::lines(diagnosed).iter().skip(1) { p { (line) } }
         }
         @if !diagnosis.r#where.is_empty() { details.more { summary { "Places" } (places(diagnosis)) } }
-        @if !diagnosis.causes.is_empty() { details.more { summary { "All causes" } (causes(diagnosis)) } }
-        @if !diagnosis.detectable.is_empty() {
+        @if full && !diagnosis.causes.is_empty() { details.more { summary { "All causes" } (causes(diagnosis)) } }
+        @if full && !diagnosis.detectable.is_empty() {
             details.more { summary { "How small an effect these flights would show" } (detectable(diagnosis)) }
         }
         (beforehand(diagnosis))
