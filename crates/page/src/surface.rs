@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::chart::{Axis, Chart, Mark, thinned};
+use crate::chart::{Axis, Chart, Key, Mark, legend, thinned};
 use crate::place::Place;
 use crate::polars::nodes_near;
 use crate::shade;
@@ -75,9 +75,13 @@ pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
         figure {
             figcaption {
                 b { "Change of the drag surface." }
-                " Orange: more drag than in the initial table, blue: less; full colour from " (format!("{full:.1}"))
-                " %. Pale: nodes that no segment has adapted. Points: where it was flown."
+                " Pale: nodes that no segment has adapted."
             }
+            (legend(&[
+                (Key::Area, "more5", &format!("more drag than in the initial table, full colour from {full:.1} %")),
+                (Key::Area, "less5", "less drag"),
+                (Key::Mark(Mark::Dot), "observed", "flown"),
+            ]))
             (chart.draw(&html! {
                 @for (i, row) in rows.chosen.iter().enumerate() {
                     @for (j, column) in columns.chosen.iter().enumerate() {
