@@ -124,7 +124,7 @@ for part in "${parts[@]}"; do
       build x86_64-pc-windows-gnu cruisefit.exe "cruisefit-$version-x86_64-windows.zip"
       ;;
     wheel)
-      maturin build --locked --profile "$profile" --manifest-path crates/python/Cargo.toml --out "$out"
+      maturin build --locked --profile "${profile/release/wheel}" --manifest-path crates/python/Cargo.toml --out "$out"
       sha256sum "$out"/cruisefit-"$version"-*.whl
       ;;
   esac

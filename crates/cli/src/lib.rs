@@ -35,7 +35,8 @@ use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use clap::FromArgMatches;
-use tracing_subscriber::EnvFilter;
+use tracing_subscriber::Layer;
+use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt;
 
 use args::{Cli, Command, JsonWanted};
@@ -128,24 +129,26 @@ fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize)
 fn start_logging(common: &args::Common) -> Warnings {
     let warnings = Warnings::default();
     let level = match common.verbose {
-        0 => "warn",
-        1 => "info",
-        _ => "debug",
+        0 => LevelFilter::WARN,
+        1 => LevelFilter::INFO,
+        _ => LevelFilter::DEBUG,
     };
-    let asked = EnvFilter::try_from_default_env().ok();
+    let asked: Option<Targets> =
+        std::env::var("RUST_LOG").ok().and_then(|directives| directives.parse().ok());
     // Setting a logger fails only where a program that embeds this one has already set one, which then serves.
     if asked.is_none() && common.verbose == 0 {
         let subscriber = tracing_subscriber::registry().with(warnings.clone());
         let _ = tracing::subscriber::set_global_default(subscriber);
         return warnings;
     }
-    let _ = tracing_subscriber::fmt()
-        .with_env_filter(asked.unwrap_or_else(|| EnvFilter::new(level)))
+    let printed = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
         .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
-        .try_init();
+        .with_filter(asked.unwrap_or_else(|| Targets::new().with_default(level)));
+    let subscriber = tracing_subscriber::registry().with(printed);
+    let _ = tracing::subscriber::set_global_default(subscriber);
     warnings
 }
 

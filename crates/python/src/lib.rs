@@ -17,6 +17,9 @@
     reason = "with the command line, the package is what opens files"
 )]
 
+#[cfg(panic = "abort")]
+compile_error!("a panic must become an exception of Python: build the wheel with --profile wheel");
+
 mod adapted;
 mod adapting;
 mod checked;
