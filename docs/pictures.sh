@@ -17,7 +17,9 @@ cd "$scratch"
 "$program" simulate "$OLDPWD/docs/pictures.ron" -o fleet --quiet
 "$program" adapt fleet --model demo/MODEL.ron -o adapted --quiet
 "$program" monitor adapted -o monitor --quiet
-"$program" plot demo/adapted-bayes -o "$pictures/tail.svg" --quiet
+"$program" diagnose fleet --model demo/MODEL.ron --fleet -o compared --quiet
+"$program" plot demo/adapted-bayes --chart histogram,time,surface,relief -o "$pictures/tail.svg" --quiet
+"$program" plot demo/diagnosis -o "$pictures/gap.svg" --quiet
 
 chromium=$(command -v chromium || command -v chromium-browser || true)
 if [ -z "$chromium" ]; then
@@ -33,6 +35,7 @@ shot demo/adapted-bayes/report.html report 900 760
 shot demo/diagnosis/diagnosis.html diagnosis 900 760
 shot adapted/report.html fleet 900 620
 shot monitor/monitor.html monitor 900 620
+shot compared/fleet.html compared 900 600
 for picture in "$pictures"/*.png; do
   [ "$(wc -c <"$picture")" -le 150000 ] || { echo "$picture is larger than 150 kB" >&2; exit 1; }
 done
