@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use crate::failure::Failure;
 use crate::flights::{python_table, refused_rows};
 use crate::model::Model;
+use crate::plots::{chosen, drawn};
 use crate::work::run;
 
 /// A tail with what it has learnt.
@@ -144,9 +145,10 @@ impl Adapted {
         page::report(&self.summary, &results, title)
     }
 
-    /// The charts of a tail as SVG.
-    fn plot(&self, tail: &str) -> PyResult<String> {
-        Ok(page::plot(&self.tail(tail)?.result, &[]).unwrap_or_default())
+    /// Charts of a tail as SVG, of these names or all.
+    fn plot(&self, tail: &str, charts: Vec<String>) -> PyResult<String> {
+        let charts = chosen(&charts, &page::TAIL_CHARTS)?;
+        Ok(drawn(page::plot(&self.tail(tail)?.result, &charts))?)
     }
 
     /// Path below the folder and bytes of every file that `cruisefit adapt` writes into a new folder.

@@ -19,6 +19,7 @@ use crate::adapted::{Adapted, Tail};
 use crate::failure::Failure;
 use crate::flights::{Flights, python_table};
 use crate::model::{Model, models_of};
+use crate::plots::drawn;
 use crate::work::run;
 
 /// JSON and text of `cruisefit check`.
@@ -131,6 +132,13 @@ impl Monitored {
     /// `monitor.html`.
     fn page(&self) -> String {
         page::monitoring(&self.document)
+    }
+
+    /// Deviations over time of these tails as SVG; of all without any.
+    fn plot(&self, tails: Vec<String>) -> PyResult<String> {
+        let mut documents = self.document.tails.clone();
+        documents.retain(|one| tails.is_empty() || tails.contains(&one.tail));
+        Ok(drawn(page::plot_months(&documents))?)
     }
 
     /// The tables of `cruisefit monitor`, by the names of their files.

@@ -6,11 +6,12 @@ use std::sync::Arc;
 use ::diagnose::Options;
 use flight::effect::EffectId;
 use pipeline::diagnosed_tail::{DiagnosedTail, RunOptions};
-use pipeline::diagnosis_document::DiagnosisDocument;
+use pipeline::diagnosis_document::{DiagnosisDocument, TailDiagnosis};
 use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::fleet_diagnosis::{DiagnosedFleet, diagnose_fleets, fleet_text};
+use pipeline::gaps_table;
 use pipeline::plausibility;
 use pipeline::reading::FlightRead;
 use pipeline::summary::{RefusedSummary, ReportsSummary};
@@ -23,6 +24,7 @@ use crate::checked::events_of;
 use crate::failure::Failure;
 use crate::flights::Flights;
 use crate::model::{Model, models_of};
+use crate::plots::{chosen, drawn};
 use crate::work::run;
 
 /// The diagnoses of a call.
@@ -150,6 +152,18 @@ impl Diagnosed {
     fn page(&self) -> String {
         let words = self.asked.in_words(&self.criteria);
         page::diagnosis(&self.reports, &self.diagnoses, &self.figures, &words)
+    }
+
+    /// Charts of these tails' diagnoses as SVG, of these names or all; of all tails without any.
+    fn plot(&self, tails: Vec<String>, charts: Vec<String>) -> PyResult<String> {
+        let charts = chosen(&charts, &page::DIAGNOSIS_CHARTS)?;
+        // As the command has them, which reads them from its table: to as many digits.
+        let table = gaps_table::table(&self.diagnoses, &self.figures).to_csv();
+        let gaps = gaps_table::read(&table).map_err(Failure::internal)?;
+        let asked = |one: &&DiagnosedTail| tails.is_empty() || tails.contains(&one.tail);
+        let diagnoses: Vec<TailDiagnosis> =
+            self.diagnoses.iter().filter(asked).map(TailDiagnosis::from).collect();
+        Ok(drawn(page::plot_diagnoses(&diagnoses, &gaps, &charts))?)
     }
 
     /// The lines that the command line prints, tail by tail.

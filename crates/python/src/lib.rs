@@ -27,6 +27,7 @@ mod diagnosed;
 mod failure;
 mod flights;
 mod model;
+mod plots;
 mod points;
 mod recorded_rows;
 mod simulated;
@@ -50,6 +51,8 @@ mod _native {
     use crate::flights::{Flights, Source};
     #[pymodule_export]
     use crate::model::Model;
+    #[pymodule_export]
+    use crate::plots::picture;
     #[pymodule_export]
     use crate::simulated::{Simulated, simulate};
     #[pymodule_export]

@@ -17,6 +17,7 @@ use pyo3_arrow::input::AnyRecordBatch;
 
 use crate::failure::{Failure, chain};
 use crate::flights::{batches_of, python_table};
+use crate::plots::{chosen, drawn};
 use crate::points;
 use crate::tables::plain;
 use crate::work::run;
@@ -97,8 +98,9 @@ impl Model {
         Ok((PyTable::try_new(batches, schema)?, refused))
     }
 
-    /// The charts of the model as SVG.
-    fn plot(&self) -> String {
+    /// Charts of the model as SVG, of these names or all.
+    fn plot(&self, charts: Vec<String>) -> PyResult<String> {
+        let charts = chosen(&charts, &page::TAIL_CHARTS)?;
         let file = self.file.as_ref().clone();
         let tail = file.tail().unwrap_or_else(|| file.initial.aircraft().name()).to_owned();
         let data = TailData {
@@ -108,7 +110,7 @@ impl Model {
             counts: TailCounts::default(),
             notes: Vec::new(),
         };
-        page::plot(&TailResult::as_given(data, Predicts::WholeModel), &[]).unwrap_or_default()
+        Ok(drawn(page::plot(&TailResult::as_given(data, Predicts::WholeModel), &charts))?)
     }
 
     /// One row per node of the drag table.

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 import pyarrow.csv
 import pytest
 
 import cruisefit
+from cruisefit._pages import DiagnosisChart, TailChart
 
 
 @pytest.fixture(scope="module")
@@ -116,6 +119,8 @@ def test_monitor(run, fixture, models, tmp_path):
     assert found.to_json() == (tmp_path / "monitor" / "monitor.json").read_bytes()
     assert found.page() == (tmp_path / "monitor" / "monitor.html").read_text()
     assert found.table("tails").num_rows == 1
+    run("plot", tmp_path / "monitor" / "monitor.json", "-o", tmp_path / "months.svg")
+    assert found.plot().svg == (tmp_path / "months.svg").read_text()
     with pytest.raises(cruisefit.InputError):
         adapted.monitor(alert=["height=3"])
 
@@ -167,6 +172,14 @@ def test_diagnose(run, fixture, models, tmp_path):
     diagnosis = model.diagnose(cruisefit.segment(fixture / "reports"))
     assert diagnosis.to_json() == (tmp_path / "diagnosis.json").read_text()
     assert diagnosis.page() == (tmp_path / "diagnosis.html").read_text()
+    run("plot", tmp_path, "-o", tmp_path / "both.svg")
+    assert diagnosis.plot().svg == (tmp_path / "both.svg").read_text()
+    run("plot", tmp_path, "--chart", "gap-map", "-o", tmp_path / "map.svg")
+    tail = diagnosis.diagnoses[0].tail
+    assert diagnosis.plot("gap-map", tails=tail).svg == (tmp_path / "map.svg").read_text()
+    with pytest.raises(cruisefit.InputError) as refused:
+        diagnosis.plot("map")
+    assert refused.value.expected == "one of " + ", ".join(get_args(DiagnosisChart))
 
 
 def test_merge(run, fixture, models, tmp_path):
@@ -225,6 +238,23 @@ def test_charts_and_public_models(run, fixture, models, tmp_path):
     adapted.write(tmp_path / "folder")
     run("plot", tmp_path / "folder", "-o", tmp_path / "tail.svg")
     assert adapted.plot(adapted.tails[0])._repr_svg_() == (tmp_path / "tail.svg").read_text()
+
+    run("plot", tmp_path / "folder", "--chart", "surface,relief", "-o", tmp_path / "two.svg")
+    two = adapted.plot(adapted.tails[0], charts=["surface", "relief"])
+    assert two.svg == (tmp_path / "two.svg").read_text()
+    run("plot", models / "initial.ron", "--chart", "polar", "-o", tmp_path / "polar.png")
+    model.plot("polar").save(tmp_path / "here.png")
+    assert (tmp_path / "here.png").read_bytes() == (tmp_path / "polar.png").read_bytes()
+    model.plot("polar").save(tmp_path / "here.pdf")
+    assert (tmp_path / "here.pdf").read_bytes().startswith(b"%PDF-")
+    with pytest.raises(cruisefit.InputError, match=r"ends in \.svg, \.png or \.pdf"):
+        two.save(tmp_path / "two.jpg")
+    with pytest.raises(cruisefit.InputError, match="nothing of what was asked for"):
+        model.plot("histogram")
+    with pytest.raises(cruisefit.InputError) as refused:
+        model.plot("surfaces")
+    # The names that types know are those of the library.
+    assert refused.value.expected == "one of " + ", ".join(get_args(TailChart))
 
     run("guide", "--type", "b738", "-o", tmp_path)
     run("init", "--aircraft", tmp_path / "AIRCRAFT.ron", "--guide", tmp_path / "guide.csv", "-o", tmp_path / "B738.ron")

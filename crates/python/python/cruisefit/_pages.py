@@ -6,9 +6,23 @@ import contextlib
 import html
 import os
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal
 
-__all__ = ["Chart", "framed", "read_text", "write_bytes"]
+from . import _native
+from .errors import warn
+
+__all__ = ["Chart", "DiagnosisChart", "TailChart", "framed", "names_of", "read_text", "write_bytes"]
+
+
+TailChart = Literal[
+    "histogram", "time", "forecast", "surface", "relief", "specific-range", "engines", "polar"
+]
+"""A chart of a model or of a tail: ``cruisefit plot --chart``."""
+
+DiagnosisChart = Literal["waterfall", "gap-map"]
+"""A chart of a diagnosis."""
 
 
 class Chart:
@@ -18,11 +32,30 @@ class Chart:
         self.svg = svg
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the SVG file: the bytes of ``cruisefit plot``."""
-        write_bytes(path, self.svg.encode())
+        """Writes SVG, PNG or PDF, by the ending of the path: the bytes of ``cruisefit plot``.
+
+        Raises:
+            InputError: The path has another ending.
+
+        Warns:
+            DataWarning: The font of PNG and PDF does not have a character of a name; an SVG has it.
+        """
+        ending = Path(path).suffix.lower().removeprefix(".")
+        if ending == "svg":
+            write_bytes(path, self.svg.encode())
+            return
+        content, unknown = _native.picture(self.svg, ending)
+        write_bytes(path, content)
+        if unknown:
+            warn([f"the font of PNG and PDF does not have {unknown!r}: boxes in {path}; an SVG has them"])
 
     def _repr_svg_(self) -> str:
         return self.svg
+
+
+def names_of(asked: str | Sequence[str]) -> list[str]:
+    """One name, or several, as a list."""
+    return [asked] if isinstance(asked, str) else list(asked)
 
 
 def framed(page: str, height_px: int = 600) -> str:

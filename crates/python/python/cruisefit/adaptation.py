@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from . import _native
 from ._folder import folder_lock
-from ._pages import Chart, framed, read_text, write_bytes
+from ._pages import Chart, TailChart, framed, names_of, read_text, write_bytes
 from ._tables import Table, like
 from .errors import InputError, warn
 from .model import Model
@@ -73,13 +73,18 @@ class _Run:
         """The result as one HTML page with charts."""
         return self._native.page(self._title)
 
-    def plot(self, tail: str) -> Chart:
+    def plot(self, tail: str, charts: TailChart | Sequence[TailChart] = ()) -> Chart:
         """A tail's charts, its segments among them: ``cruisefit plot DIR --tail TAIL``.
 
+        Args:
+            tail: Tail.
+            charts: Names of the charts to draw: ``histogram``, ``time``, ``forecast``, ``surface``, ``relief``,
+                ``specific-range``, ``engines``, ``polar``; all without any.
+
         Raises:
-            InputError: There is no such tail.
+            InputError: There is no such tail or chart, or nothing is left to draw.
         """
-        return Chart(self._native.plot(tail))
+        return Chart(self._native.plot(tail, names_of(charts)))
 
     def _repr_html_(self) -> str:
         return framed(self.page())
@@ -249,6 +254,17 @@ class Monitoring:
     def page(self) -> str:
         """``monitor.html``."""
         return self._native.page()
+
+    def plot(self, tails: str | Sequence[str] = ()) -> Chart:
+        """Deviations over time: ``cruisefit plot monitor.json``.
+
+        Args:
+            tails: Tails to draw; all without any.
+
+        Raises:
+            InputError: There are no such tails.
+        """
+        return Chart(self._native.plot(names_of(tails)))
 
     def _repr_html_(self) -> str:
         return framed(self.page())

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from . import _native
-from ._pages import framed
+from ._pages import Chart, DiagnosisChart, framed, names_of
 from .adaptation import warn_of_findings
 from .model import Model
 from .segments import Refused, Segments
@@ -201,6 +201,20 @@ class Diagnosis:
     def page(self) -> str:
         """``diagnosis.html``."""
         return self._native.page()
+
+    def plot(
+        self, charts: DiagnosisChart | Sequence[DiagnosisChart] = (), *, tails: str | Sequence[str] = ()
+    ) -> Chart:
+        """From the gap to the noise, and where the gap is: ``cruisefit plot diagnosis.json``.
+
+        Args:
+            charts: ``waterfall``, ``gap-map``; both without any.
+            tails: Tails to draw; all without any.
+
+        Raises:
+            InputError: There are no such charts or tails.
+        """
+        return Chart(self._native.plot(names_of(tails), names_of(charts)))
 
     def _repr_html_(self) -> str:
         return framed(self.page())

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._pages import Chart, read_text, write_bytes
+from ._pages import Chart, TailChart, names_of, read_text, write_bytes
 from ._tables import Table, as_stream, like
 from .errors import InputError, PredictionWarning, warn
 from .segments import Segments
@@ -201,9 +201,16 @@ class Model:
         """The six-coefficient polynomial nearest to the drag table, with its covariance by law ``bayes``."""
         return like(self._native.polynomial(), library)
 
-    def plot(self) -> Chart:
-        """The model's charts: ``cruisefit plot MODEL.ron``."""
-        return Chart(self._native.plot())
+    def plot(self, charts: TailChart | Sequence[TailChart] = ()) -> Chart:
+        """The model's charts: ``cruisefit plot MODEL.ron``.
+
+        Args:
+            charts: Names of the charts to draw (``polar``, ``surface``, ``relief``); all that there are without any.
+
+        Raises:
+            InputError: There is no such chart, or nothing is left to draw: a model alone has no errors.
+        """
+        return Chart(self._native.plot(names_of(charts)))
 
     @property
     def name(self) -> str:
