@@ -285,6 +285,14 @@ fn check_keys_and_pointer(browser: &Browser) {
     assert!(told.as_str().unwrap().contains(": "), "{told}");
     browser.press(&['\u{e00c}']);
     assert_eq!(browser.run(tip), "");
+    // A map without points is stepped through cell by cell.
+    browser.run(
+        "[...document.querySelectorAll('svg[tabindex]:has(.cell)')].find((one) => !one.querySelector('.dot,.disc')).focus();",
+    );
+    browser.press(&[ARROW_RIGHT]);
+    let told = browser.run(tip);
+    assert!(told.as_str().unwrap().starts_with("Mach "), "{told}");
+    browser.press(&['\u{e00c}']);
     let place = browser.run(
         "const cell = document.querySelector('svg .cell'); cell.scrollIntoView({ block: 'center' });
          const { x, y, width, height } = cell.getBoundingClientRect(); return [x + width / 2, y + height / 2];",

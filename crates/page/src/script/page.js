@@ -74,12 +74,18 @@
     svg.addEventListener('blur', hide);
     svg.setAttribute('tabindex', '0');
   }
-  // What the arrow keys step through: columns that are named (tails, trials) with their names, else points with their values.
-  const stopsOf = (svg) => svg.stops ??= all('.hit[data-tip]', svg).map((hit) =>
-    ({ point: [+written(hit, 'x') + +written(hit, 'width') / 2, null], told: hit.dataset.tip })
-  );
+  // What the arrow keys step through: columns that are named (tails, trials), points with their values, else cells (of a map).
+  const stopsOf = (svg) => {
+    if (svg.stops) return svg.stops;
+    const middle = (cell, at, length) => +written(cell, at) + +written(cell, length) / 2;
+    const named = (selector, isColumn) => all(selector, svg).map((cell) =>
+      ({ point: [middle(cell, 'x', 'width'), isColumn ? null : middle(cell, 'y', 'height')], told: cell.dataset.tip }));
+    const found = [named('.hit[data-tip]', true), points(svg).map((point) => ({ point, told: words(svg, point) })), named('.cell[data-tip]', false)];
+    svg.stops = found.find((stops) => stops.length) ?? [];
+    return svg.stops;
+  };
   const step = (svg, by) => {
-    const stops = stopsOf(svg).length ? stopsOf(svg) : svg.stops = points(svg).map((point) => ({ point, told: words(svg, point) }));
+    const stops = stopsOf(svg);
     const shown = stops.filter((stop) => isShown(svg, stop.point));
     const next = shown.indexOf(svg.stop) + by;
     // From outside the part that is shown the keys lead to its first or last one.
