@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree, fontdb};
+use resvg::usvg::{Options, Tree, WriteOptions, fontdb};
 use svg2pdf::{ConversionOptions, PageOptions};
 use ttf_parser::Face;
 
@@ -74,12 +74,14 @@ pub fn png(sheet: &str) -> Result<Picture, PictureError> {
     Ok(Picture { bytes, unknown_characters: unknown_characters(sheet) })
 }
 
-/// A sheet of charts as PDF of one page of its size; text stays text.
+/// A sheet of charts as PDF of one page of its size; letters are outlines.
 ///
 /// # Errors
 /// Where the sheet is no SVG of this crate.
 pub fn pdf(sheet: &str) -> Result<Picture, PictureError> {
-    let tree = tree(sheet)?;
+    // Written again, letters become outlines: embedding the font would take three more libraries.
+    let outlines = tree(sheet)?.to_string(&WriteOptions::default());
+    let tree = Tree::from_str(&outlines, &Options::default())?;
     let page = PageOptions { dpi: 96.0 };
     let bytes = svg2pdf::to_pdf(&tree, ConversionOptions::default(), page)
         .map_err(|error| PictureError::Pdf(error.to_string()))?;
