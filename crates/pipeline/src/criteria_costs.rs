@@ -2,6 +2,8 @@
 
 use segmenter::{Criterion, Tally};
 
+use crate::reading::FlightRead;
+
 /// What became of the samples of some flights.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CriteriaCosts {
@@ -34,6 +36,18 @@ pub struct OneCriterion {
     pub unsteady_alone: usize,
     /// Samples that the filter discards in its channel.
     pub outliers: usize,
+}
+
+impl CriteriaCosts {
+    /// Of flights that were read; `None` without flights.
+    #[must_use]
+    pub fn of_flights(flights: &[FlightRead]) -> Option<Self> {
+        let total = flights.iter().fold(Tally::NOTHING, |mut total, flight| {
+            total += flight.reduced.tally;
+            total
+        });
+        (total.flights > 0).then(|| Self::from(&total))
+    }
 }
 
 impl From<&Tally> for CriteriaCosts {

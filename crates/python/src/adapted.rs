@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pipeline::adaptation::{self, StoredTail};
+use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::file_names::file_stem_of_tail;
 use pipeline::folder_state::{self, FileState, State, TailState};
@@ -31,6 +32,8 @@ pub(crate) struct Tail {
     pub(crate) flights: Vec<KnownFlight>,
     /// SHA-256 of what it was begun with; empty where that is not known.
     pub(crate) begun: String,
+    /// What the trim criteria cost in the flights of this call.
+    pub(crate) costs: Option<CriteriaCosts>,
 }
 
 impl Tail {
@@ -42,7 +45,8 @@ impl Tail {
         notes: Vec<String>,
     ) -> Self {
         let flights = stored.flights.clone();
-        Self { result: adaptation::result_of(stored, flights_new, notes), flights, begun }
+        let result = adaptation::result_of(stored, flights_new, notes);
+        Self { result, flights, begun, costs: None }
     }
 
     /// What is learnt on.
@@ -285,8 +289,11 @@ impl Adapted {
         const REPORT: &str = "report.html";
         let names = self.tails.iter().map(|tail| tail.result.tail.as_str());
         let anchors = page::Anchors::new(names);
-        let sections: Vec<page::Section> =
-            self.tails.par_iter().map(|tail| page::section(&tail.result, None, &anchors)).collect();
+        let sections: Vec<page::Section> = self
+            .tails
+            .par_iter()
+            .map(|tail| page::section(&tail.result, tail.costs.as_ref(), &anchors))
+            .collect();
         if self.tails.len() <= page::TAILS_ON_ONE_PAGE {
             let sections: Vec<&page::Section> = sections.iter().collect();
             let report = page::report_of_sections(&self.summary, &sections, title);

@@ -10,6 +10,7 @@ use pipeline::adaptation::{
     self, Contradictions, LawAsked, OlderFlights, RemainderChoice, Sorting, Start, Starts,
     StoredTail, refuse_impossible,
 };
+use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::known_flights::KnownFlights;
 use pipeline::model_file::ModelFile;
@@ -87,7 +88,7 @@ pub(crate) fn evaluate(
             .map(|(tail, (model, flights))| {
                 caller.still_waits()?;
                 let result = TailResult::of_flights(tail, model.clone(), flights, predicts);
-                Ok(Tail { result, flights: Vec::new(), begun: String::new() })
+                Ok(Tail { result, flights: Vec::new(), begun: String::new(), costs: None })
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let already_known = reading.copies;
@@ -295,6 +296,7 @@ fn learn(job: Job<'_>, how: &How) -> Result<Outcome, Failure> {
     sorting.older = how.older;
     sorting.already_known = known_already.len();
     sorting.refused = reading.refused;
+    let costs = CriteriaCosts::of_flights(&reading.flights);
     for flight in reading.flights {
         sorting.sort(flight);
     }
@@ -308,7 +310,8 @@ fn learn(job: Job<'_>, how: &How) -> Result<Outcome, Failure> {
         adaptation::learn(&start, &tail, sorting, stored, how.remainder).map_err(Failure::input)?;
     let tail = match found.learnt {
         Some(learnt) => {
-            Some(Tail::learnt(learnt, start.begun.clone(), found.flights_new, found.notes))
+            let tail = Tail::learnt(learnt, start.begun.clone(), found.flights_new, found.notes);
+            Some(Tail { costs, ..tail })
         }
         None => before.map(|stored| Tail::learnt(stored, begun, 0, Vec::new())),
     };

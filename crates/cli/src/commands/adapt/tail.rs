@@ -15,7 +15,6 @@ use pipeline::models::check_engines;
 use pipeline::plausibility::{self, Absurd};
 use pipeline::segments_table;
 use rayon::prelude::*;
-use segmenter::Tally;
 
 use super::Run;
 use crate::commands::tell_serious;
@@ -100,7 +99,7 @@ impl Run<'_> {
         let reading = self.plausible(tail, start, &new, buffers, side_by_side);
         sorting.refused.extend(reading.refused);
         let usable = already_known + reading.flights.len();
-        let costs = costs_of(&reading.flights);
+        let costs = CriteriaCosts::of_flights(&reading.flights);
         for flight in reading.flights {
             sorting.sort(flight);
         }
@@ -241,15 +240,6 @@ impl Run<'_> {
             .stage(&page_file(&result.tail), neutral(&page::tail_page(&section)).as_bytes())?;
         Ok(None)
     }
-}
-
-/// What the trim criteria cost in the flights that were read; `None` without flights.
-fn costs_of(flights: &[FlightRead]) -> Option<CriteriaCosts> {
-    let total = flights.iter().fold(Tally::NOTHING, |mut total, flight| {
-        total += flight.reduced.tally;
-        total
-    });
-    (total.flights > 0).then(|| CriteriaCosts::from(&total))
 }
 
 /// Reports of flights that are not known, or known with other content; and how many are known.
