@@ -98,7 +98,8 @@ fn files_of_others_are_counted() {
 
     let study = figures(&["simulate", "ghazi-2020", "-o", &out("study")]);
     let reports = bytes_below(&scratch.path().join("study"));
-    let written = reports.keys().filter(|name| name.ends_with(".txt")).count();
+    let is_report = |name: &&String| Path::new(name).extension().is_some_and(|end| end == "txt");
+    let written = reports.keys().filter(is_report).count();
     assert_eq!((&study["flights"], &study["drawn_again"]), (&Value::from(written), &0.into()));
 
     let found = figures(&["mapping", "--presets"]);
