@@ -85,7 +85,28 @@ pub fn pdf(sheet: &str) -> Result<Picture, PictureError> {
     let page = PageOptions { dpi: 96.0 };
     let bytes = svg2pdf::to_pdf(&tree, ConversionOptions::default(), page)
         .map_err(|error| PictureError::Pdf(error.to_string()))?;
+    let bytes = with_resources_in_order(&bytes);
     Ok(Picture { bytes, unknown_characters: unknown_characters(sheet) })
+}
+
+/// A PDF whose lists of resources are sorted: `svg2pdf` writes them in the order of a hash map, another one at each call. Lines
+/// change places with lines beside them, so that every offset in the file stays right.
+fn with_resources_in_order(pdf: &[u8]) -> Vec<u8> {
+    let mut lines: Vec<&[u8]> = pdf.split_inclusive(|byte| *byte == b'\n').collect();
+    for neighbours in lines.chunk_by_mut(|one, other| is_resource(one) && is_resource(other)) {
+        neighbours.sort_unstable();
+    }
+    lines.concat()
+}
+
+/// Whether a line of a PDF is like `      /gs12 20 0 R`: the name of a resource, two letters and a number, and where it is.
+fn is_resource(line: &[u8]) -> bool {
+    let Some(name) = line.trim_ascii_start().strip_prefix(b"/") else { return false };
+    let kinds: [&[u8]; 6] = [b"gs", b"xo", b"po", b"sh", b"fo", b"cs"];
+    name.len() > 2
+        && kinds.contains(&&name[..2])
+        && name[2].is_ascii_digit()
+        && name.ends_with(b"\n")
 }
 
 fn tree(sheet: &str) -> Result<Tree, PictureError> {
@@ -210,6 +231,20 @@ mod tests {
         // 40 by 20 CSS pixels at 96 dpi are 30 by 15 points.
         assert!(text.contains("/MediaBox [0 0 30 15]"), "{text}");
         assert_eq!(first, pdf(&sheet("drag")).expect("drawn"));
+    }
+
+    #[test]
+    fn a_pdf_with_many_resources_has_the_same_bytes_each_time() {
+        // Each opacity is a resource; `svg2pdf` alone has one order of six in 720.
+        let areas: String = (1..=6)
+            .map(|k| format!("<path d=\"M1 1H9V9Z\" style=\"fill:red;fill-opacity:.{k}\"/>"))
+            .collect();
+        let sheet = sheet("drag").replace("<text", &format!("{areas}<text"));
+        let first = pdf(&sheet).expect("drawn");
+        assert!(String::from_utf8_lossy(&first.bytes).contains("/gs5 "), "six resources");
+        for _ in 0..4 {
+            assert!(first == pdf(&sheet).expect("drawn"), "another order");
+        }
     }
 
     #[test]
