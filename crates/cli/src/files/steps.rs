@@ -71,7 +71,13 @@ pub(crate) fn sync_below(path: &Path) -> io::Result<()> {
 fn sync_each(path: &Path) -> io::Result<()> {
     for entry in std::fs::read_dir(path)? {
         let path = entry?.path();
-        if path.is_dir() { sync_each(&path)? } else { std::fs::File::open(&path)?.sync_all()? }
+        if path.is_dir() {
+            sync_each(&path)?;
+        } else {
+            // Windows flushes only what is open for writing.
+            let mut options = std::fs::OpenOptions::new();
+            options.read(true).write(cfg!(windows)).open(&path)?.sync_all()?;
+        }
     }
     sync_folder(path)
 }
