@@ -65,14 +65,7 @@ struct Surface<'a> {
 
 /// The drawing; nothing where nothing was learnt.
 pub(crate) fn relief(view: &TailView, place: &Place<'_>) -> Markup {
-    let along = |of: fn(&Point) -> f64| -> Vec<f64> { view.points.iter().map(of).collect() };
-    let polars = &view.polars;
-    let rows =
-        Nodes::about(&polars.lift_coefficient, &along(|point| point.lift_coefficient), MOST_NODES);
-    let columns = Nodes::about(&polars.mach, &along(|point| point.mach), MOST_NODES);
-    if !polars.learnt || rows.chosen.len() < 2 || columns.chosen.len() < 2 {
-        return html! {};
-    }
+    let Some((rows, columns)) = Nodes::of_surface(view, MOST_NODES) else { return html! {} };
     let nodes: Vec<Vec<Node>> = rows
         .chosen
         .iter()

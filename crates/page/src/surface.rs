@@ -24,8 +24,8 @@ pub(crate) struct Nodes {
 
 impl Nodes {
     /// Those about what was flown, evenly chosen where they are more than `most`.
-    pub(crate) fn about(grid: &[f64], flown: &[f64], most: usize) -> Self {
-        let (first, last) = nodes_near(grid, flown.iter().copied());
+    fn about(grid: &[f64], flown: impl Iterator<Item = f64> + Clone, most: usize) -> Self {
+        let (first, last) = nodes_near(grid, flown);
         let step = (last - first + 1).div_ceil(most);
         let chosen: Vec<usize> = (first..=last).step_by(step).collect();
         let at: Vec<f64> = chosen.iter().map(|k| grid[*k]).collect();
@@ -37,19 +37,22 @@ impl Nodes {
         }
         Self { chosen, edges }
     }
+
+    /// Lift coefficients and Mach numbers that are drawn; `None` where nothing was learnt, or where they are no surface.
+    pub(crate) fn of_surface(view: &TailView, most: usize) -> Option<(Self, Self)> {
+        let (polars, points) = (&view.polars, &view.points);
+        let lift_coefficients = points.iter().map(|point| point.lift_coefficient);
+        let rows = Self::about(&polars.lift_coefficient, lift_coefficients, most);
+        let columns = Self::about(&polars.mach, points.iter().map(|point| point.mach), most);
+        let is_drawn = polars.learnt && rows.chosen.len() > 1 && columns.chosen.len() > 1;
+        is_drawn.then_some((rows, columns))
+    }
 }
 
 /// The map; nothing where nothing was learnt.
 pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
     let polars = &view.polars;
-    let along =
-        |of: fn(&crate::view::Point) -> f64| -> Vec<f64> { view.points.iter().map(of).collect() };
-    let rows =
-        Nodes::about(&polars.lift_coefficient, &along(|point| point.lift_coefficient), MOST_NODES);
-    let columns = Nodes::about(&polars.mach, &along(|point| point.mach), MOST_NODES);
-    if !polars.learnt || rows.edges.is_empty() || columns.edges.is_empty() {
-        return html! {};
-    }
+    let Some((rows, columns)) = Nodes::of_surface(view, MOST_NODES) else { return html! {} };
     let full = full_percent(view, &rows, &columns);
     let ends = |edges: &[f64]| Axis::within(edges[0], edges[edges.len() - 1], 6);
     let chart = Chart {
