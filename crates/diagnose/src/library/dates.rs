@@ -154,8 +154,28 @@ impl DateGrid {
             _ => return None,
         };
         let mut grid = self.clone();
+        if let HiddenParameter::Step { from_s, target } = leading {
+            grid.bring_history_along(from_s, target, next.spacing);
+        }
         *grid.course_mut(id) = next;
         Some(grid)
+    }
+
+    /// The history that falls where a step leads, from dates as close: a steady deterioration beside a step back is a history
+    /// in other words, and would win by its closer date alone.
+    fn bring_history_along(&mut self, from_s: f64, target: StepTarget, spacing: usize) {
+        let id = match target {
+            StepTarget::FuelFlow => EffectId::EngineHistory,
+            StepTarget::Drag => EffectId::AirframeHistory,
+        };
+        let course = self.course(id);
+        let is_behind = matches!(course.stage, Stage::Coarse | Stage::Closer);
+        if !is_behind || course.spacing <= spacing {
+            return;
+        }
+        let Ok(one_fall) = History::new(self.since_s, RECOVERED_FINE[0], &[from_s]) else { return };
+        let tried = self.histories_about(&one_fall, spacing);
+        *self.course_mut(id) = Course { tried, spacing, stage: Stage::Closer };
     }
 
     const fn course(&self, id: EffectId) -> &Course {
