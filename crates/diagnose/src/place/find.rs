@@ -41,8 +41,11 @@ struct Gaps {
 /// Places where the gap lies, most striking first; `everywhere` where it is real and has none.
 ///
 /// ```text
-/// T = |Σ_{i in place} (y_i − ȳ)| / sd0,  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
+/// T = |Σ_{i in place} u_i| / sd0,  u = C⁻¹(y − ŷ);  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
 /// ```
+///
+/// C is the noise of fuel flow within and between flights, ŷ the level that it fits best: the step over a place whose
+/// likelihood is asked for (score test). Of single engines u = y_k.
 ///
 /// # Errors of method
 /// Sizes are those of the place that stands out most, which is a little more than it is (winner's curse).
@@ -56,19 +59,19 @@ pub(crate) fn find(
     let data = system.data;
     let places = places(&data.segments, system.design.references());
     let engines = if data.channels.contrasts > 0 { data.channels.contrasts + 1 } else { 0 };
-    let search = Search::new(&places, data.segments.len(), engines);
     let mut source = RandomStream::new(seed, NOISE_STREAM);
     let level = level(system, analysis, noise_scale);
-    let (null, variances) = null_of(system, &search, level, &mut source);
+    let noise = Noise::new(system, level);
+    let search = Search::new(&places, &noise.weighed(&vec![1.0; data.segments.len()]), engines);
+    let (null, variances) = null_of(&search, &noise, level, &mut source);
 
     let as_recorded = gaps(system);
-    let noise = Noise::new(system, level);
     let mut left = expected_errors_removed(system, &as_recorded);
     let told = Told { system, places: &places, gaps: &as_recorded, variances: &variances };
     let mut found = Vec::new();
     let mut everywhere = (1.0, None);
     while found.len() < MOST_REGIONS {
-        let statistics = statistics(&search, &null, &left);
+        let statistics = statistics(&search, &null, &noise, &left);
         if found.is_empty() {
             let level = search.regions.iter().position(BinnedRegion::is_everywhere);
             everywhere = (level.map_or(1.0, |k| null.p_value_everywhere(statistics[k])), level);
@@ -107,11 +110,12 @@ fn level(system: &WhitenedSystem<'_>, analysis: &Analysis, noise_scale: f64) -> 
 
 /// What noise alone does to every place; and the variance that it gives each segment's fuel flow.
 fn null_of(
-    system: &WhitenedSystem<'_>,
     search: &Search<'_>,
+    noise: &Noise<'_>,
     level: NoiseLevel,
     source: &mut RandomStream,
 ) -> (Null, Vec<f64>) {
+    let system = noise.system();
     let engines = system.data.channels.contrasts + 1;
     let chords = chords(system);
     let mut squares = vec![0.0; search.regions.len()];
@@ -119,27 +123,28 @@ fn null_of(
     let mut values = vec![vec![0.0; GROUP]; search.series().len()];
     let mut group = |source: &mut RandomStream| {
         let mut sums = search.sums(GROUP);
-        draw(
-            system,
-            &Drawing { level, chords: &chords, width: GROUP },
-            source,
-            |segment, channels| {
-                values[0].copy_from_slice(&channels[0]);
+        let drawing = Drawing { level, chords: &chords, width: GROUP };
+        draw(system, &drawing, source, |flight, channels| {
+            let segments = system.data.flights[flight].segments.clone();
+            for (variance, drawn) in variances[segments.clone()].iter_mut().zip(&channels[0]) {
+                *variance += drawn.iter().map(|v| v * v).sum::<f64>() / REGION_DRAWS as f64;
+            }
+            noise.weigh(flight, &mut channels[0]);
+            for (place, segment) in segments.enumerate() {
+                values[0].copy_from_slice(&channels[0][place]);
                 for draw in 0..if search.series().len() > 1 { GROUP } else { 0 } {
                     let mut contrasts = [0.0; MAXIMUM_CHANNELS];
                     for (slot, channel) in contrasts.iter_mut().zip(&channels[1..]) {
-                        *slot = channel[draw];
+                        *slot = channel[place][draw];
                     }
                     let apart = engines_apart(&contrasts[..engines - 1]);
                     for (values, value) in values[1..].iter_mut().zip(apart) {
                         values[draw] = value;
                     }
                 }
-                variances[segment] +=
-                    channels[0].iter().map(|v| v * v).sum::<f64>() / REGION_DRAWS as f64;
                 search.add(&mut sums, segment, &values);
-            },
-        );
+            }
+        });
         sums
     };
     for _ in 0..REGION_DRAWS / 2 / GROUP {
@@ -219,13 +224,14 @@ fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
     left
 }
 
-fn statistics(search: &Search<'_>, null: &Null, gaps: &Gaps) -> Vec<f64> {
+fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) -> Vec<f64> {
+    let total = noise.weighed(&gaps.total);
     let mut sums = search.sums(1);
     let mut values = vec![vec![0.0]; search.series().len()];
     for segment in 0..gaps.total.len() {
         for (values, series) in values.iter_mut().zip(search.series()) {
             values[0] = match series {
-                Series::FuelFlow => gaps.total[segment],
+                Series::FuelFlow => total[segment],
                 Series::Engine(engine) => gaps.apart[*engine][segment],
             };
         }

@@ -62,6 +62,47 @@ impl<'a> Noise<'a> {
         Self { flights, system }
     }
 
+    pub(crate) const fn system(&self) -> &'a WhitenedSystem<'a> {
+        self.system
+    }
+
+    /// C⁻¹ times the values of one flight's segments, any number of draws side by side.
+    pub(crate) fn weigh(&self, flight: usize, values: &mut [Vec<f64>]) {
+        let OfFlight { weights, loadings, inner } = &self.flights[flight];
+        let rank = loadings.first().map_or(0, Vec::len);
+        let width = values.first().map_or(0, Vec::len);
+        let mut common = Mat::<f64>::zeros(rank, width);
+        for (loading, values) in loadings.iter().zip(&*values) {
+            for (k, u) in loading.iter().enumerate() {
+                for (draw, value) in values.iter().enumerate() {
+                    common[(k, draw)] += u * value;
+                }
+            }
+        }
+        if let Some(inner) = inner {
+            inner.solve(&mut common);
+        }
+        for ((loading, weight), values) in loadings.iter().zip(weights).zip(values) {
+            for (draw, value) in values.iter_mut().enumerate() {
+                *value *= weight;
+                for (k, u) in loading.iter().enumerate() {
+                    *value -= u * common[(k, draw)];
+                }
+            }
+        }
+    }
+
+    /// C⁻¹ times the values of all segments.
+    pub(crate) fn weighed(&self, values: &[f64]) -> Vec<f64> {
+        let ranges = self.system.data.flights.iter().map(|flight| flight.segments.clone());
+        let of_flights = ranges.enumerate().flat_map(|(index, range)| {
+            let mut own: Vec<Vec<f64>> = values[range].iter().map(|value| vec![*value]).collect();
+            self.weigh(index, &mut own);
+            own
+        });
+        of_flights.flatten().collect()
+    }
+
     fn projected(&self, values: &[f64]) -> Projected {
         let ranges = self.system.data.flights.iter().map(|flight| flight.segments.clone());
         let common = self

@@ -17,6 +17,7 @@ pub(crate) struct BinnedRegion {
     /// Index of the variable, and its bins.
     pub(crate) ranges: [Option<(usize, usize, usize)>; 2],
     table: usize,
+    /// Of the level of all segments.
     share: f64,
 }
 
@@ -61,7 +62,6 @@ pub(crate) struct Search<'a> {
     cells: usize,
     /// Ordered by table.
     pub(crate) regions: Vec<BinnedRegion>,
-    segments: usize,
     series: Vec<Series>,
 }
 
@@ -74,29 +74,29 @@ pub(crate) struct Sums {
 }
 
 impl<'a> Search<'a> {
-    /// `engines` that are looked at one by one (none where fuel flow is not recorded by engine).
-    pub(crate) fn new(places: &'a [BinnedVariable], segments: usize, engines: usize) -> Self {
+    /// `weights` say how much of the level of all segments each one is; `engines` are looked at one by one (none where fuel
+    /// flow is not recorded by engine).
+    pub(crate) fn new(places: &'a [BinnedVariable], weights: &[f64], engines: usize) -> Self {
         // Of two engines one series says all: the other's is its negative.
         let apart = if engines == 2 { 1 } else { engines };
         let series: Vec<Series> =
             core::iter::once(Series::FuelFlow).chain((0..apart).map(Series::Engine)).collect();
-        let mut search =
-            Self { places, tables: vec![], cells: 0, regions: vec![], segments, series };
+        let mut search = Self { places, tables: vec![], cells: 0, regions: vec![], series };
         for k in 0..search.series.len() {
-            search.table(k, [None; 2]);
+            search.table(weights, k, [None; 2]);
             for first in 0..places.len() {
-                search.table(k, [Some(first), None]);
+                search.table(weights, k, [Some(first), None]);
             }
         }
         for first in 0..places.len() {
             for second in first + 1..places.len() {
-                search.table(0, [Some(first), Some(second)]);
+                search.table(weights, 0, [Some(first), Some(second)]);
             }
         }
         search
     }
 
-    fn table(&mut self, series: usize, variables: [Option<usize>; 2]) {
+    fn table(&mut self, weights: &[f64], series: usize, variables: [Option<usize>; 2]) {
         let [rows, columns] = variables.map(|v| v.map_or(1, |place| self.places[place].count()));
         let table = self.tables.len();
         self.tables.push(Table { series, variables, offset: self.cells });
@@ -107,22 +107,26 @@ impl<'a> Search<'a> {
         } else {
             1
         };
-        let mut counts = vec![0_usize; rows * columns];
-        for segment in 0..self.segments {
-            counts[self.bin(variables[0], segment) * columns + self.bin(variables[1], segment)] +=
-                1;
+        // Of each cell: segments, and their weight.
+        let mut cells = vec![(0.0, 0.0); rows * columns];
+        for (segment, weight) in weights.iter().enumerate() {
+            let cell = self.bin(variables[0], segment) * columns + self.bin(variables[1], segment);
+            let (segments, weights) = &mut cells[cell];
+            *segments += 1.0;
+            *weights += weight;
         }
+        let whole: f64 = weights.iter().sum();
         for (low, high) in intervals(rows, variables[0].is_some()) {
             for (left, right) in intervals(columns, variables[1].is_some()) {
-                let count: usize = (low..high)
+                let (count, weight) = (low..high)
                     .flat_map(|row| (left..right).map(move |column| row * columns + column))
-                    .map(|cell| counts[cell])
-                    .sum();
-                let share = count as f64 / self.segments as f64;
-                if variables[0].is_some() && !(REGION_SHARES[0]..=REGION_SHARES[1]).contains(&share)
-                {
+                    .fold((0.0, 0.0), |sum, cell| (sum.0 + cells[cell].0, sum.1 + cells[cell].1));
+                let of_segments = count / weights.len() as f64;
+                let usual = REGION_SHARES[0]..=REGION_SHARES[1];
+                if variables[0].is_some() && !usual.contains(&of_segments) {
                     continue;
                 }
+                let share = weight / whole;
                 let ranges = [
                     variables[0].map(|place| (place, low, high)),
                     variables[1].map(|place| (place, left, right)),
@@ -167,10 +171,11 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Hands over the sum over every place, about the mean where fuel flow is looked at, in the order of regions.
+    /// Hands over the sum over every place, about the level of all segments where fuel flow is looked at, in the order of
+    /// regions.
     ///
     /// ```text
-    /// S = Σ_{i in place} (y_i − ȳ)
+    /// S = Σ_{i in place} u_i − Σ_{i in place} w_i/Σ w·Σ u,   w the weights
     /// ```
     pub(crate) fn for_each(&self, sums: &Sums, mut each: impl FnMut(usize, &[f64])) {
         let width = sums.width;
