@@ -205,8 +205,7 @@ pub(crate) struct Drawing<'a> {
     pub(crate) width: usize,
 }
 
-/// Draws `width` times the residuals of every segment, and hands them over flight by flight: channel by channel, segment by
-/// segment.
+/// Draws `width` times the residuals of every segment, channel by channel, and hands them over segment by segment.
 ///
 /// ```text
 /// e = k·(L z_segment + Σ_r u_r z_flight,r) + s·z_flight + N z,   every z of N(0, 1)                [diagnosis.24]
@@ -217,21 +216,19 @@ pub(crate) fn draw(
     system: &WhitenedSystem<'_>,
     drawing: &Drawing<'_>,
     source: &mut RandomStream,
-    mut each: impl FnMut(usize, &mut [Vec<Vec<f64>>]),
+    mut each: impl FnMut(usize, &[Vec<f64>]),
 ) {
     let Drawing { level, chords, width } = *drawing;
     let data = system.data;
     let channels = 1 + data.channels.contrasts;
     let model = ModelErrorDraws::draw(system, source, width);
+    let mut values = vec![vec![0.0; width]; channels];
     let mut own = vec![vec![0.0; width]; channels];
     let mut terms = Vec::new();
-    for (flight, of) in data.flights.iter().enumerate() {
-        let rank = data.segments[of.segments.start].noise.common.len();
+    for flight in &data.flights {
+        let rank = data.segments[flight.segments.start].noise.common.len();
         let common = Rows::normal(source, rank + 1, width);
-        // Channel by channel, segment by segment, one number a draw.
-        let mut drawn = vec![vec![vec![0.0; width]; of.segments.len()]; channels];
-        let mut values = vec![vec![0.0; width]; channels];
-        for (place, index) in of.segments.clone().enumerate() {
+        for index in flight.segments.clone() {
             let row = &data.segments[index];
             for channel in 0..channels {
                 source.fill(&mut own[channel]);
@@ -254,10 +251,7 @@ pub(crate) fn draw(
             }
             add(&mut values[0], common.row(rank), level.scatter);
             model.add_at(system, row, chords[index], &mut terms, &mut values);
-            for (drawn, values) in drawn.iter_mut().zip(&values) {
-                drawn[place].copy_from_slice(values);
-            }
+            each(index, &values);
         }
-        each(flight, &mut drawn);
     }
 }

@@ -4,6 +4,8 @@
 //! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
 //! is linear in segments.
 
+use faer::Mat;
+
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::output::Slice;
@@ -44,8 +46,8 @@ struct Gaps {
 /// T = |Σ_{i in place} u_i| / sd0,  u = C⁻¹(y − ŷ);  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
 /// ```
 ///
-/// C is the noise of fuel flow within and between flights, ŷ the level that it fits best: the step over a place whose
-/// likelihood is asked for (score test). Of single engines u = y_k.
+/// C is the noise within and between flights, ŷ the level that fits best: the score test of a step over the place.
+/// Of single engines u is what the engine does apart from the others.
 ///
 /// # Errors of method
 /// Sizes are those of the place that stands out most, which is a little more than it is (winner's curse).
@@ -61,9 +63,10 @@ pub(crate) fn find(
     let engines = if data.channels.contrasts > 0 { data.channels.contrasts + 1 } else { 0 };
     let mut source = RandomStream::new(seed, NOISE_STREAM);
     let level = level(system, analysis, noise_scale);
+    let chords = chords(system);
     let noise = Noise::new(system, level);
     let search = Search::new(&places, &noise.weighed(&vec![1.0; data.segments.len()]), engines);
-    let (null, variances) = null_of(&search, &noise, level, &mut source);
+    let (null, variances) = null_of(&search, &noise, (level, &chords), &mut source);
 
     let as_recorded = gaps(system);
     let mut left = expected_errors_removed(system, &as_recorded);
@@ -112,39 +115,41 @@ fn level(system: &WhitenedSystem<'_>, analysis: &Analysis, noise_scale: f64) -> 
 fn null_of(
     search: &Search<'_>,
     noise: &Noise<'_>,
-    level: NoiseLevel,
+    (level, chords): (NoiseLevel, &[[f64; 2]]),
     source: &mut RandomStream,
 ) -> (Null, Vec<f64>) {
     let system = noise.system();
-    let engines = system.data.channels.contrasts + 1;
-    let chords = chords(system);
+    let segments = system.data.segments.len();
     let mut squares = vec![0.0; search.regions.len()];
-    let mut variances = vec![0.0; system.data.segments.len()];
-    let mut values = vec![vec![0.0; GROUP]; search.series().len()];
+    let mut variances = vec![0.0; segments];
     let mut group = |source: &mut RandomStream| {
-        let mut sums = search.sums(GROUP);
-        let drawing = Drawing { level, chords: &chords, width: GROUP };
-        draw(system, &drawing, source, |flight, channels| {
-            let segments = system.data.flights[flight].segments.clone();
-            for (variance, drawn) in variances[segments.clone()].iter_mut().zip(&channels[0]) {
-                *variance += drawn.iter().map(|v| v * v).sum::<f64>() / REGION_DRAWS as f64;
+        // One matrix a series, one row a segment, one column a draw.
+        let mut drawn = vec![Mat::<f64>::zeros(segments, GROUP); search.series().len()];
+        draw(system, &Drawing { level, chords, width: GROUP }, source, |segment, channels| {
+            for (draw, value) in channels[0].iter().enumerate() {
+                variances[segment] += value * value / REGION_DRAWS as f64;
+                drawn[0][(segment, draw)] = *value;
             }
-            noise.weigh(flight, &mut channels[0]);
-            for (place, segment) in segments.enumerate() {
-                values[0].copy_from_slice(&channels[0][place]);
-                for draw in 0..if search.series().len() > 1 { GROUP } else { 0 } {
-                    let mut contrasts = [0.0; MAXIMUM_CHANNELS];
-                    for (slot, channel) in contrasts.iter_mut().zip(&channels[1..]) {
-                        *slot = channel[place][draw];
-                    }
-                    let apart = engines_apart(&contrasts[..engines - 1]);
-                    for (values, value) in values[1..].iter_mut().zip(apart) {
-                        values[draw] = value;
-                    }
+            for draw in 0..if drawn.len() > 1 { GROUP } else { 0 } {
+                let mut contrasts = [0.0; MAXIMUM_CHANNELS];
+                for (slot, channel) in contrasts.iter_mut().zip(&channels[1..]) {
+                    *slot = channel[draw];
                 }
-                search.add(&mut sums, segment, &values);
+                let apart = engines_apart(&contrasts[..channels.len() - 1]);
+                for (drawn, value) in drawn[1..].iter_mut().zip(apart) {
+                    drawn[(segment, draw)] = value;
+                }
             }
         });
+        noise.weigh(&mut drawn[0]);
+        let mut sums = search.sums(GROUP);
+        let mut values = vec![vec![0.0; GROUP]; drawn.len()];
+        for segment in 0..segments {
+            for (values, drawn) in values.iter_mut().zip(&drawn) {
+                values.iter_mut().enumerate().for_each(|(draw, v)| *v = drawn[(segment, draw)]);
+            }
+            search.add(&mut sums, segment, &values);
+        }
         sums
     };
     for _ in 0..REGION_DRAWS / 2 / GROUP {
@@ -272,14 +277,8 @@ fn best(
         .filter(enough)
         .take(MOST_COMPARED)
         .collect();
-    let steps = compared.iter().map(|index| {
-        let mut step = vec![0.0; left.total.len()];
-        for segment in members(index) {
-            step[segment] = 1.0;
-        }
-        step
-    });
-    let falls = noise.falls(&left.total, steps);
+    let regions: Vec<Vec<usize>> = compared.iter().map(members).collect();
+    let falls = noise.falls(&left.total, &regions);
     let weighed: Vec<f64> = compared
         .iter()
         .zip(&falls)

@@ -6,7 +6,11 @@ use crate::math::cholesky::Cholesky;
 use crate::place::draws::NoiseLevel;
 use crate::search::system::WhitenedSystem;
 
-/// Products aᵀC⁻¹b over all flights, C the noise of fuel flow: a segment's own, and what its flight has in common.
+/// Regions that are weighed together.
+const TOGETHER: usize = 40;
+
+/// C⁻¹, C the noise of fuel flow: a segment's own, and what its flight has in common. Not what the model does not know:
+/// a gap that resembles it would be looked for in what differs from it, at places that have nothing to do with the gap.
 pub(crate) struct Noise<'a> {
     flights: Vec<OfFlight>,
     system: &'a WhitenedSystem<'a>,
@@ -19,12 +23,6 @@ struct OfFlight {
     loadings: Vec<Vec<f64>>,
     /// Of 1 + UᵀD⁻¹U.
     inner: Option<Cholesky>,
-}
-
-/// A vector ready for products: C⁻¹·v needs its loadings only once.
-struct Projected {
-    /// Of each flight: L⁻¹·UᵀD⁻¹v.
-    common: Vec<Vec<f64>>,
 }
 
 impl<'a> Noise<'a> {
@@ -62,106 +60,77 @@ impl<'a> Noise<'a> {
         Self { flights, system }
     }
 
+    /// The flights it is the noise of.
     pub(crate) const fn system(&self) -> &'a WhitenedSystem<'a> {
         self.system
     }
 
-    /// C⁻¹ times the values of one flight's segments, any number of draws side by side.
-    pub(crate) fn weigh(&self, flight: usize, values: &mut [Vec<f64>]) {
-        let OfFlight { weights, loadings, inner } = &self.flights[flight];
-        let rank = loadings.first().map_or(0, Vec::len);
-        let width = values.first().map_or(0, Vec::len);
-        let mut common = Mat::<f64>::zeros(rank, width);
-        for (loading, values) in loadings.iter().zip(&*values) {
-            for (k, u) in loading.iter().enumerate() {
-                for (draw, value) in values.iter().enumerate() {
-                    common[(k, draw)] += u * value;
-                }
-            }
-        }
-        if let Some(inner) = inner {
-            inner.solve(&mut common);
-        }
-        for ((loading, weight), values) in loadings.iter().zip(weights).zip(values) {
-            for (draw, value) in values.iter_mut().enumerate() {
-                *value *= weight;
-                for (k, u) in loading.iter().enumerate() {
-                    *value -= u * common[(k, draw)];
-                }
-            }
-        }
-    }
-
-    /// C⁻¹ times the values of all segments.
-    pub(crate) fn weighed(&self, values: &[f64]) -> Vec<f64> {
-        let ranges = self.system.data.flights.iter().map(|flight| flight.segments.clone());
-        let of_flights = ranges.enumerate().flat_map(|(index, range)| {
-            let mut own: Vec<Vec<f64>> = values[range].iter().map(|value| vec![*value]).collect();
-            self.weigh(index, &mut own);
-            own
-        });
-        of_flights.flatten().collect()
-    }
-
-    fn projected(&self, values: &[f64]) -> Projected {
-        let ranges = self.system.data.flights.iter().map(|flight| flight.segments.clone());
-        let common = self
-            .flights
-            .iter()
-            .zip(ranges)
-            .map(|(flight, range)| {
-                let rank = flight.loadings.first().map_or(0, Vec::len);
-                let mut sums = Mat::<f64>::zeros(rank, 1);
-                for (loading, value) in flight.loadings.iter().zip(&values[range]) {
+    /// C⁻¹ times values of all segments, one column a draw.
+    ///
+    /// ```text
+    /// C⁻¹ = D⁻¹ − D⁻¹U(1 + UᵀD⁻¹U)⁻¹UᵀD⁻¹,   flight by flight
+    /// ```
+    pub(crate) fn weigh(&self, values: &mut Mat<f64>) {
+        let width = values.ncols();
+        for (flight, of) in self.flights.iter().zip(&self.system.data.flights) {
+            let rank = flight.loadings.first().map_or(0, Vec::len);
+            let start = of.segments.start;
+            let mut common = Mat::<f64>::zeros(rank, width);
+            for draw in 0..width {
+                for (place, loading) in flight.loadings.iter().enumerate() {
+                    let value = values[(start + place, draw)];
                     for (k, u) in loading.iter().enumerate() {
-                        sums[(k, 0)] += u * value;
+                        common[(k, draw)] += u * value;
                     }
                 }
-                if let Some(inner) = &flight.inner {
-                    inner.solve_lower(&mut sums);
+            }
+            if let Some(inner) = &flight.inner {
+                inner.solve(&mut common);
+            }
+            for draw in 0..width {
+                for (place, (loading, weight)) in
+                    flight.loadings.iter().zip(&flight.weights).enumerate()
+                {
+                    let shared: f64 =
+                        loading.iter().enumerate().map(|(k, u)| u * common[(k, draw)]).sum();
+                    let value = &mut values[(start + place, draw)];
+                    *value = *value * weight - shared;
                 }
-                (0..rank).map(|k| sums[(k, 0)]).collect()
-            })
-            .collect();
-        Projected { common }
-    }
-
-    fn product(&self, a: (&[f64], &Projected), b: (&[f64], &Projected)) -> f64 {
-        let mut sum = 0.0;
-        for (index, flight) in self.flights.iter().enumerate() {
-            let range = self.system.data.flights[index].segments.clone();
-            let own: f64 = flight
-                .weights
-                .iter()
-                .zip(a.0[range.clone()].iter().zip(&b.0[range]))
-                .map(|(w, (a, b))| w * a * b)
-                .sum();
-            let shared: f64 =
-                a.1.common[index].iter().zip(&b.1.common[index]).map(|(a, b)| a * b).sum();
-            sum += own - shared;
+            }
         }
-        sum
     }
 
-    /// Fall of χ² by a step over a region, of any size, beside a level of any size.
+    /// C⁻¹ times one value a segment.
+    pub(crate) fn weighed(&self, values: &[f64]) -> Vec<f64> {
+        let mut column = Mat::from_fn(values.len(), 1, |segment, _| values[segment]);
+        self.weigh(&mut column);
+        (0..values.len()).map(|segment| column[(segment, 0)]).collect()
+    }
+
+    /// Fall of χ² by a step over each region (a list of segments), of any size, beside a level of any size.
     ///
     /// ```text
     /// (xᵀC⁻¹y)²/xᵀC⁻¹x,  x the place less its projection on the level, products with C⁻¹             [diagnosis.29]
     /// ```
-    pub(crate) fn falls(&self, gap: &[f64], places: impl Iterator<Item = Vec<f64>>) -> Vec<f64> {
-        let ones = vec![1.0; gap.len()];
-        let (level, gaps) = (self.projected(&ones), self.projected(gap));
-        let of_level = self.product((&ones, &level), (&ones, &level));
-        let level_of_gap = self.product((&ones, &level), (gap, &gaps));
-        places
-            .map(|place| {
-                let own = self.projected(&place);
-                let x = (&*place, &own);
-                let with_level = self.product(x, (&ones, &level));
-                let square = self.product(x, x) - with_level * with_level / of_level;
-                let slope = self.product(x, (gap, &gaps)) - with_level * level_of_gap / of_level;
+    pub(crate) fn falls(&self, gap: &[f64], regions: &[Vec<usize>]) -> Vec<f64> {
+        let (gap, level) = (self.weighed(gap), self.weighed(&vec![1.0; gap.len()]));
+        let sum = |of: &[f64], region: &[usize]| region.iter().map(|&k| of[k]).sum::<f64>();
+        let (of_level, level_of_gap) = (level.iter().sum::<f64>(), gap.iter().sum::<f64>());
+        let mut falls = Vec::with_capacity(regions.len());
+        for regions in regions.chunks(TOGETHER) {
+            let mut steps = Mat::<f64>::zeros(gap.len(), regions.len());
+            for (column, region) in regions.iter().enumerate() {
+                region.iter().for_each(|&segment| steps[(segment, column)] = 1.0);
+            }
+            self.weigh(&mut steps);
+            falls.extend(regions.iter().enumerate().map(|(column, region)| {
+                let own: f64 = region.iter().map(|&segment| steps[(segment, column)]).sum();
+                let with_level = sum(&level, region);
+                let square = own - with_level * with_level / of_level;
+                let slope = sum(&gap, region) - with_level * level_of_gap / of_level;
                 if square > 0.0 { slope * slope / square } else { 0.0 }
-            })
-            .collect()
+            }));
+        }
+        falls
     }
 }
