@@ -7,6 +7,7 @@ pub(crate) mod forms;
 pub(crate) mod gap;
 pub(crate) mod noise_floors;
 pub(crate) mod posterior;
+pub(crate) mod size;
 pub(crate) mod sufficiency;
 pub(crate) mod table;
 pub(crate) mod verdict;

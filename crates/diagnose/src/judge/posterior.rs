@@ -5,8 +5,9 @@ use flight::effect::{EffectId, HiddenParameter};
 use crate::advice::distances::Distances;
 use crate::hypotheses::evidence::ScoredHypothesis;
 use crate::judge::closure::Shrinkage;
+use crate::judge::size::{SizeBelief, magnitude, open_by_law};
 use crate::judge::table::TableFinding;
-use crate::library::Library;
+use crate::library::{Column, Library};
 use crate::math::mixture::ln_sum;
 use crate::output::verdict::Closure;
 use crate::output::{Cause, Magnitude};
@@ -14,9 +15,7 @@ use crate::priors::FLAT_RANGE;
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
 use crate::search::system::WhitenedSystem;
-use crate::thresholds::{
-    FEWEST_CAUSES, LEAST_LISTED, LISTED_PROBABILITY, NORMAL_95, SCATTER_INTERVAL,
-};
+use crate::thresholds::{FEWEST_CAUSES, LEAST_LISTED, LISTED_PROBABILITY, SCATTER_INTERVAL};
 
 /// An effect with its posterior.
 #[derive(Clone, Debug)]
@@ -30,6 +29,8 @@ pub(crate) struct Posterior {
     pub(crate) scored: ScoredHypothesis,
     /// Its place in that model.
     pub(crate) place: usize,
+    /// What every model in which it is the larger effect believes of its size.
+    pub(crate) beliefs: Vec<SizeBelief>,
 }
 
 impl Posterior {
@@ -80,10 +81,16 @@ pub(crate) fn dominant(
             continue;
         };
         let slot = &mut found[effect.unwrap_or(library.effects.len())];
+        let belief = effect.map(|_| SizeBelief {
+            probability: *probability,
+            size: scored.sizes[place],
+            deviation: scored.deviations[place],
+        });
         match slot {
             Some(posterior) => {
                 posterior.probability += probability;
                 posterior.flat += flat;
+                posterior.beliefs.extend(belief);
             }
             None => {
                 *slot = Some(Posterior {
@@ -92,6 +99,7 @@ pub(crate) fn dominant(
                     flat,
                     scored: scored.clone(),
                     place,
+                    beliefs: belief.into_iter().collect(),
                 });
             }
         }
@@ -170,7 +178,7 @@ pub(crate) fn causes(evidence: &CauseEvidence<'_>, posteriors: &[Posterior]) -> 
             probability: posterior.probability * inside,
             probability_flat: posterior.flat * inside,
             class: class_of(distances, library, posterior),
-            magnitude: magnitude(posterior),
+            magnitude: size_of(library, posterior),
             rms_after_percent: unseen.filter(|_| is_best).map(|s| 100.0 * s.after().sqrt()),
             closure: closed_unseen(unseen.filter(|_| is_best)),
             hidden: hidden_of(library, posterior),
@@ -204,14 +212,14 @@ pub(crate) fn closed_unseen(unseen: Option<&Shrinkage>) -> Option<Closure> {
     Some(Closure { share, ci95 })
 }
 
-fn magnitude(posterior: &Posterior) -> Magnitude {
-    if posterior.effect.is_none() {
+/// Its size with the 95 % interval.
+fn size_of(library: &Library, posterior: &Posterior) -> Magnitude {
+    let Some((column, value)) = posterior.column_and_size() else {
         let percent = posterior.scored.hypothesis.flight_scatter_percent.unwrap_or(0.0);
         return Magnitude { value: percent, ci95: SCATTER_INTERVAL.map(|factor| factor * percent) };
-    }
-    let value = posterior.scored.sizes[posterior.place];
-    let half = NORMAL_95 * posterior.scored.deviations[posterior.place];
-    Magnitude { value, ci95: [value - half, value + half] }
+    };
+    let Column { effect, hidden, .. } = library.columns[column];
+    magnitude(value, &posterior.beliefs, open_by_law(library.effects[effect].id, hidden))
 }
 
 pub(crate) fn class_of(

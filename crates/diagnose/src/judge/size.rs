@@ -1,0 +1,114 @@
+//! The size of an effect with its interval, over all hypotheses that name it.
+
+use flight::effect::{EffectGroup, EffectId, HiddenParameter, StepTarget};
+use statrs::function::erf::erfc;
+
+use crate::output::Magnitude;
+use crate::priors::FORM_ERROR;
+
+/// Steps of bisection: 2⁻⁶⁰ of the bracket is below rounding.
+const HALVINGS: usize = 60;
+
+/// What one hypothesis believes of a size: a normal with the hypothesis's probability.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SizeBelief {
+    pub(crate) probability: f64,
+    pub(crate) size: f64,
+    pub(crate) deviation: f64,
+}
+
+/// The size that the most probable hypothesis has, with the 95 % interval of all of them.
+///
+/// ```text
+/// Σ p_h Φ((x − θ_h)/√(σ_h² + (φ θ_h)²)) / Σ p_h = 0.025, 0.975                                    [diagnosis.51]
+/// ```
+///
+/// φ is what the law of the effect leaves open ([`open_by_law`]).
+pub(crate) fn magnitude(value: f64, beliefs: &[SizeBelief], open_by_law: f64) -> Magnitude {
+    let widened: Vec<SizeBelief> = beliefs
+        .iter()
+        .map(|of| SizeBelief { deviation: of.deviation.hypot(open_by_law * of.size), ..*of })
+        .collect();
+    Magnitude { value, ci95: [0.025, 0.975].map(|share| quantile(&widened, share)) }
+}
+
+/// Standard deviation, over the size, of what an effect's law leaves open about it: its form, and how strongly it acts where
+/// the model stands (the share of the drag without lift, how TSFC depends on thrust). None where the size is a factor on what
+/// burns or on what is recorded, or physics states it.
+pub(crate) fn open_by_law(id: EffectId, hidden: HiddenParameter) -> f64 {
+    let on_drag = matches!(hidden, HiddenParameter::Step { target: StepTarget::Drag, .. });
+    match (id, id.entry().group) {
+        (EffectId::TsfcFactor | EffectId::TsfcEngine(_), _) => 0.0,
+        (EffectId::StepChange, _) if !on_drag => 0.0,
+        (_, EffectGroup::Airframe | EffectGroup::Engine | EffectGroup::Event) => FORM_ERROR,
+        (_, EffectGroup::Mass | EffectGroup::Sensor | EffectGroup::Environment) => 0.0,
+    }
+}
+
+/// Where a mixture of normals has a share below it, by bisection.
+fn quantile(beliefs: &[SizeBelief], share: f64) -> f64 {
+    let total: f64 = beliefs.iter().map(|of| of.probability).sum();
+    let below = |x: f64| -> f64 {
+        let normal =
+            |of: &SizeBelief| 0.5 * erfc((of.size - x) / (of.deviation * core::f64::consts::SQRT_2));
+        beliefs.iter().map(|of| of.probability * normal(of)).sum::<f64>() / total
+    };
+    // Eight standard deviations leave 1e-15 outside.
+    let ends = |by: f64| beliefs.iter().map(move |of| of.size + by * of.deviation);
+    let mut low = ends(-8.0).fold(f64::INFINITY, f64::min);
+    let mut high = ends(8.0).fold(f64::NEG_INFINITY, f64::max);
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(low, high);
+        if below(middle) < share {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    f64::midpoint(low, high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn belief(probability: f64, size: f64, deviation: f64) -> SizeBelief {
+        SizeBelief { probability, size, deviation }
+    }
+
+    /// The normal distribution's table: 1.959964 standard deviations. 0.15·2 = 0.3 beside 0.4 are 0.5.
+    #[test]
+    fn one_hypothesis_has_the_interval_of_a_normal() {
+        let of = magnitude(2.0, &[belief(0.3, 2.0, 0.4)], 0.0);
+        assert!((of.ci95[0] - (2.0 - 0.4 * 1.959_964)).abs() < 1e-6, "{of:?}");
+        assert!((of.ci95[1] - (2.0 + 0.4 * 1.959_964)).abs() < 1e-6, "{of:?}");
+        let of = magnitude(2.0, &[belief(0.3, 2.0, 0.4)], 0.15);
+        assert!((of.ci95[1] - (2.0 + 0.5 * 1.959_964)).abs() < 1e-6, "{of:?}");
+    }
+
+    /// By hand: of two narrow normals far apart with 1 % and 99 %, 2.5 % lie below where the second has 1.5/99 below it, at
+    /// −2.1661 standard deviations, and 97.5 % where it has 96.5/99, at +1.9557 (the normal distribution's table).
+    #[test]
+    fn an_unlikely_other_size_moves_the_interval() {
+        let of = magnitude(10.0, &[belief(0.01, 1.0, 0.1), belief(0.99, 10.0, 1.0)], 0.0);
+        assert!((of.ci95[0] - (10.0 - 2.1661)).abs() < 2e-3, "{of:?}");
+        assert!((of.ci95[1] - (10.0 + 1.9557)).abs() < 2e-3, "{of:?}");
+    }
+
+    #[test]
+    fn what_is_a_factor_has_no_law_of_its_own() {
+        let step = |target| HiddenParameter::Step { from_s: 0.0, target };
+        let none = HiddenParameter::None;
+        for (id, hidden, expected) in [
+            (EffectId::TsfcEngine(2), none, 0.0),
+            (EffectId::FuelFlowGain, none, 0.0),
+            (EffectId::StepChange, step(StepTarget::FuelFlow), 0.0),
+            (EffectId::StepChange, step(StepTarget::Drag), FORM_ERROR),
+            (EffectId::ReynoldsNumber, none, FORM_ERROR),
+            (EffectId::AntiIceBleed, none, FORM_ERROR),
+            (EffectId::LocalGravity, none, 0.0),
+        ] {
+            assert!((open_by_law(id, hidden) - expected).abs() < 1e-15, "{id}");
+        }
+    }
+}
