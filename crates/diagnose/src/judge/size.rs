@@ -49,8 +49,9 @@ pub(crate) fn open_by_law(id: EffectId, hidden: HiddenParameter) -> f64 {
 fn quantile(beliefs: &[SizeBelief], share: f64) -> f64 {
     let total: f64 = beliefs.iter().map(|of| of.probability).sum();
     let below = |x: f64| -> f64 {
-        let normal =
-            |of: &SizeBelief| 0.5 * erfc((of.size - x) / (of.deviation * core::f64::consts::SQRT_2));
+        let normal = |of: &SizeBelief| {
+            0.5 * erfc((of.size - x) / (of.deviation * core::f64::consts::SQRT_2))
+        };
         beliefs.iter().map(|of| of.probability * normal(of)).sum::<f64>() / total
     };
     // Eight standard deviations leave 1e-15 outside.

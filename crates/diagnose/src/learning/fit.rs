@@ -1,11 +1,13 @@
 //! The channels learnt one after the other, and put together into one baseline.
 
+use core::ops::Range;
+
 use faer::Mat;
 
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::channel::{LearntChannel, learn_channel};
-use crate::learning::rows::{ChannelRows, fuel_flow_columns};
+use crate::learning::rows::{ChannelRows, GivenThrust, fuel_flow_columns};
 use crate::learning::sums::ChannelSums;
 use crate::learning::unseen::factor_by_unseen;
 use crate::math::cholesky::Cholesky;
@@ -14,6 +16,8 @@ use crate::signals::references::DiagnoseError;
 
 /// Share of a variance that is added to it: a covariance that was computed may miss definiteness by rounding.
 const ROUNDING: f64 = 1e-9;
+/// Times that the deck is learnt: what effects do to N2 is taken by the slopes of the deck before.
+const DECK_PASSES: usize = 2;
 
 /// Mean and covariance of all coefficients, in their prior standard deviations.
 struct Joint {
@@ -75,16 +79,27 @@ impl Baseline {
         let terms = layout.deck.len();
         let given: Vec<usize> =
             layout.standing_effects.clone().chain(layout.drag.clone()).collect();
-        let all = ChannelRows::of_n2(self, data);
-        let mut rows = all.only(&(0..terms).collect::<Vec<_>>());
-        for (k, &column) in given.iter().enumerate() {
-            let by = joint.mean[column];
-            let slopes = all.columns.col_as_slice(terms + k);
-            for (value, slope) in rows.residual_mut().iter_mut().zip(slopes) {
-                *value -= by * slope;
+        let deviations = |columns: &Range<usize>| -> Vec<f64> {
+            columns
+                .clone()
+                .map(|column| joint.mean[column] * self.prior_deviation(column))
+                .collect()
+        };
+        let (drag, standing) = (deviations(&layout.drag), deviations(&layout.standing_effects));
+        let mut at = data.predictor.deck.clone();
+        let mut learnt = None;
+        for _ in 0..DECK_PASSES {
+            let given = GivenThrust { drag: &drag, standing_effects: &standing, deck: &at };
+            let all = ChannelRows::of_n2(self, data, &given);
+            let rows = all.only(&(0..terms).collect::<Vec<_>>());
+            let deck = learn_channel(&rows, &vec![0; terms]).ok_or(DiagnoseError::Degenerate)?;
+            for (k, column) in layout.deck.clone().enumerate() {
+                at.coefficients[k] = data.predictor.deck.coefficients[k]
+                    + deck.posterior.mean[k] * self.prior_deviation(column);
             }
+            learnt = Some((all, deck));
         }
-        let deck = learn_channel(&rows, &vec![0; terms]).ok_or(DiagnoseError::Degenerate)?;
+        let (all, deck) = learnt.ok_or(DiagnoseError::Degenerate)?;
         self.set_noise(2, &deck);
         let dials = deck.posterior.dials;
         let (gram, _) = ChannelSums::new(&all, &deck.weights).gram(dials.ratio());

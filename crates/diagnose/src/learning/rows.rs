@@ -9,8 +9,10 @@ use faer::{Mat, MatRef};
 
 use crate::baseline::Baseline;
 use crate::baseline::layout::NuisanceLayout;
+use crate::residuals::predictor::with_thrust;
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::PreparedFlights;
+use crate::signals::n2_deck::Deck;
 
 /// Rows of one kind of channel. Columns are in prior standard deviations; noise is that of factors of 1.
 pub(super) struct ChannelRows {
@@ -33,6 +35,14 @@ pub(super) struct Unheld {
     pub(super) smooth: f64,
     /// Of the drag table.
     pub(super) drag: f64,
+}
+
+/// What N2 is learnt at: means of what fuel flow has said, each in its own unit, and the deck whose slopes hold.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct GivenThrust<'a> {
+    pub(super) drag: &'a [f64],
+    pub(super) standing_effects: &'a [f64],
+    pub(super) deck: &'a Deck,
 }
 
 impl ChannelRows {
@@ -92,27 +102,46 @@ impl ChannelRows {
         Self::of_channel(data, at, 1, |_, into| into[0] = deviation)
     }
 
-    /// N2: the deck, then, not to be learnt, what effects and drag change in it.
-    pub(super) fn of_n2(baseline: &Baseline, data: &PreparedFlights<'_>) -> Self {
+    /// N2: the deck, then, not to be learnt, what effects and drag change in it. The residual is what the deck at hand leaves
+    /// at the thrust that is given. A deck bends, so that its slope is another at another thrust, and so is what effects do.
+    pub(super) fn of_n2(
+        baseline: &Baseline,
+        data: &PreparedFlights<'_>,
+        given: &GivenThrust<'_>,
+    ) -> Self {
         let layout = baseline.layout();
         let (deck, standing) = (layout.deck.len(), layout.standing_effects.len());
         let channel = data.channels.n2_row();
         let columns = layout.deck.clone().chain(layout.standing_effects.clone());
         let deviations: Vec<f64> =
             columns.chain(layout.drag.clone()).map(|k| baseline.prior_deviation(k)).collect();
-        Self::of_channel(data, channel, deviations.len(), |row, into| {
-            into[..deck].copy_from_slice(&row.deck);
-            for (slot, slope) in into[deck..].iter_mut().zip(&row.standing_effects) {
-                *slot = slope[channel];
+        let at_hand = &data.predictor.deck;
+        let mut loadings = vec![0.0; layout.drag.len()];
+        let mut residuals = Vec::with_capacity(data.segments.len());
+        let mut rows = Self::of_channel(data, channel, deviations.len(), |row, into| {
+            baseline.write_drag(&row.response, &mut loadings);
+            let drag: f64 = loadings.iter().zip(given.drag).map(|(l, mean)| l * mean).sum();
+            let response = with_thrust(&row.response, row.drag_over_thrust * drag);
+            let (before, slope) = (row.n2_slope, given.deck.slope(&response));
+            let by = if before == 0.0 { 0.0 } else { slope / before };
+            into[..deck].copy_from_slice(&at_hand.terms(&response));
+            let mut residual =
+                row.residual[channel] + at_hand.value(&row.response) - at_hand.value(&response);
+            let effects = row.standing_effects.iter().zip(given.standing_effects);
+            for (slot, (of, size)) in into[deck..].iter_mut().zip(effects) {
+                *slot = by * of[channel];
+                residual -= size * *slot;
             }
-            baseline.write_drag(&row.response, &mut into[deck + standing..]);
-            for slot in &mut into[deck + standing..] {
-                *slot *= row.n2_slope * row.drag_over_thrust;
+            residuals.push(residual);
+            for (slot, loading) in into[deck + standing..].iter_mut().zip(&loadings) {
+                *slot = loading * slope * row.drag_over_thrust;
             }
             for (slot, deviation) in into.iter_mut().zip(&deviations) {
                 *slot *= deviation;
             }
-        })
+        });
+        rows.residual_mut().copy_from_slice(&residuals);
+        rows
     }
 
     /// Rows of the segments in which a channel is recorded.

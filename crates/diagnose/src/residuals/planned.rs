@@ -41,7 +41,7 @@ impl PreparedFlights<'_> {
             let (known, response) = model.known_point(&point).ok()?;
             let means = Cow::Owned(self.means(&point, &response));
             let mut kept = Inside { means, rows: &samples, point, known, response };
-            kept.look_up_n2(&self.predictor.deck);
+            kept.look_up_n2(&self.predictor);
             segments.push(self.row(model, &kept, library, &differences, &statistics).ok()?);
         }
         add_wander_to(&mut segments, &statistics, model);

@@ -21,16 +21,35 @@ impl Predictor<'_> {
         Self { baseline: None, ..self.clone() }
     }
 
+    /// The response with the thrust that a baseline has learnt, at which the deck holds.
+    pub(crate) fn at_learnt_thrust(&self, response: &Response) -> Response {
+        with_thrust(response, self.learnt_drag(response))
+    }
+
+    /// The corrected thrust that a recorded N2 stands for, N, as the table alone would have it: less what a baseline has learnt
+    /// of drag, like everything that thrusts are compared with.
+    pub(crate) fn corrected_thrust_by_n2_n(
+        &self,
+        n2_percent: f64,
+        response: &Response,
+    ) -> Option<f64> {
+        let drag = self.learnt_drag(response);
+        let found = self.deck.corrected_thrust_n(n2_percent, &with_thrust(response, drag))?;
+        Some(found * (-drag).exp())
+    }
+
+    fn learnt_drag(&self, response: &Response) -> f64 {
+        self.baseline.map_or(0.0, |baseline| baseline.drag_at(response))
+    }
+
     pub(crate) fn predict(&self, response: &Response) -> ByChannel {
         let channels = self.channels;
         let mut predicted = [0.0; MAXIMUM_CHANNELS];
         predicted[0] = response.ln_fuel_flow_total;
         contrasts(&response.ln_fuel_flow_engine, &mut predicted[1..=channels.contrasts]);
-        let drag = self.baseline.map_or(0.0, |baseline| baseline.drag_at(response));
+        let drag = self.learnt_drag(response);
         if channels.n2 {
-            let ln_thrust = response.ln_corrected_thrust + drag;
-            predicted[channels.n2_row()] =
-                self.deck.value(&Response { ln_corrected_thrust: ln_thrust, ..*response });
+            predicted[channels.n2_row()] = self.deck.value(&with_thrust(response, drag));
         }
         if let Some(baseline) = self.baseline {
             predicted[0] += drag + baseline.mean_at(response);
@@ -44,4 +63,9 @@ impl Predictor<'_> {
         }
         predicted
     }
+}
+
+/// The same with another thrust: ln of the ratio.
+pub(crate) fn with_thrust(response: &Response, ln_ratio: f64) -> Response {
+    Response { ln_corrected_thrust: response.ln_corrected_thrust + ln_ratio, ..*response }
 }

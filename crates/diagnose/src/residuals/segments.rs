@@ -60,9 +60,9 @@ pub(crate) struct Inside<'a> {
 
 impl Inside<'_> {
     /// Looks up the thrust that belongs to the recorded N2.
-    pub(crate) fn look_up_n2(&mut self, deck: &Deck) {
+    pub(crate) fn look_up_n2(&mut self, predictor: &Predictor<'_>) {
         let by_n2_n = mean_n2_percent(&self.means)
-            .and_then(|percent| deck.corrected_thrust_n(percent, &self.response));
+            .and_then(|percent| predictor.corrected_thrust_by_n2_n(percent, &self.response));
         self.point.corrected_thrust_by_n2_n = by_n2_n;
         self.known = self.known.with_corrected_thrust_by_n2(by_n2_n);
     }
@@ -72,10 +72,10 @@ impl Inside<'_> {
 type FlightInside<'a> = (Vec<Inside<'a>>, Option<GaugeBurn>);
 
 /// Looks up the thrust that belongs to every recorded N2.
-fn look_up_n2(inside: &mut [FlightInside<'_>], channels: Channels, deck: &Deck) {
-    if channels.n2 {
+fn look_up_n2(inside: &mut [FlightInside<'_>], predictor: &Predictor<'_>) {
+    if predictor.channels.n2 {
         for kept in inside.iter_mut().flat_map(|(segments, _)| segments) {
-            kept.look_up_n2(deck);
+            kept.look_up_n2(predictor);
         }
     }
 }
@@ -133,19 +133,14 @@ impl<'a> PreparedFlights<'a> {
         let mut inside = inside(model, flights, &mut left_out);
         let channels = channels_of(model, &inside);
         let deck = deck_of(&inside, channels, reference.baseline());
-        look_up_n2(&mut inside, channels, &deck);
+        let predictor = Predictor { channels, deck, baseline: reference.baseline() };
+        look_up_n2(&mut inside, &predictor);
         let points: Vec<EffectPoint> =
             inside.iter().flat_map(|(segments, _)| segments).map(|kept| kept.point).collect();
         let starts: Vec<f64> =
             inside.iter().map(|(segments, _)| segments[0].point.date_s).collect();
         let library = library_of(&points, channels.contrasts > 0, &starts);
-        let data = Self::of_inside(
-            model,
-            (inside, left_out),
-            reference,
-            Frame { channels, deck },
-            &library,
-        );
+        let data = Self::of_inside(model, (inside, left_out), reference, predictor, &library);
         (data, library)
     }
 
@@ -159,8 +154,10 @@ impl<'a> PreparedFlights<'a> {
     ) -> Self {
         let mut left_out = BTreeMap::new();
         let mut inside = inside(model, flights, &mut left_out);
-        look_up_n2(&mut inside, frame.channels, &frame.deck);
-        Self::of_inside(model, (inside, left_out), reference, frame.clone(), library)
+        let Frame { channels, deck } = frame.clone();
+        let predictor = Predictor { channels, deck, baseline: reference.baseline() };
+        look_up_n2(&mut inside, &predictor);
+        Self::of_inside(model, (inside, left_out), reference, predictor, library)
     }
 
     /// Channels and deck, for [`prepare_in`](Self::prepare_in).
@@ -172,19 +169,18 @@ impl<'a> PreparedFlights<'a> {
         model: &EffectModel<'_>,
         (inside, left_out): (Vec<FlightInside<'_>>, BTreeMap<LeftOutReason, usize>),
         reference: Reference<'a>,
-        Frame { channels, deck }: Frame,
+        predictor: Predictor<'a>,
         library: &Library,
     ) -> Self {
-        let baseline = reference.baseline();
         let statistics = reference.statistics(model);
+        let differences = Differences::new(model, library, predictor.baseline);
         let mut data = Self {
-            channels,
-            predictor: Predictor { channels, deck, baseline },
+            channels: predictor.channels,
+            predictor,
             flights: Vec::with_capacity(inside.len()),
             segments: Vec::new(),
             left_out,
         };
-        let differences = Differences::new(model, library, baseline);
         for (segments, gauges) in inside {
             let first = data.segments.len();
             let start_s = segments[0].point.date_s;
@@ -217,6 +213,7 @@ impl<'a> PreparedFlights<'a> {
     ) -> Result<SegmentRow, effects::EffectError> {
         let channels = self.channels;
         let deck = &self.predictor.deck;
+        let at_thrust = self.predictor.at_learnt_thrust(&kept.response);
         let predict = |response: &Response| self.predictor.predict(response);
         let (recorded, is_recorded) = recorded_channels(&kept.means, channels);
         let predicted = predict(&kept.response);
@@ -242,8 +239,8 @@ impl<'a> PreparedFlights<'a> {
             residual,
             signatures: vec![],
             noise,
-            deck: deck.terms(&kept.response),
-            n2_slope: if channels.n2 { deck.slope(&kept.response) } else { 0.0 },
+            deck: deck.terms(&at_thrust),
+            n2_slope: if channels.n2 { deck.slope(&at_thrust) } else { 0.0 },
             drag_over_thrust: kept.response.drag_over_thrust,
             n2_percent: mean_n2_percent(&kept.means),
             acceleration_deviation_m_s2: statistics.factors.within[0]
