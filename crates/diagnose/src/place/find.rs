@@ -43,11 +43,11 @@ struct Gaps {
 /// Places where the gap lies, most striking first; `everywhere` where it is real and has none.
 ///
 /// ```text
-/// T = |Σ_{i in place} u_i| / sd0,  u = C⁻¹(y − ŷ);  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
+/// T = |Σ_{i in place} (y_i − ȳ)| / sd0,  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
 /// ```
 ///
-/// C is the noise within and between flights, ŷ the level that fits best: the score test of a step over the place.
-/// Of single engines u is what the engine does apart from the others.
+/// Of places of one condition also with u = C⁻¹(y − ŷ) for y − ȳ, C the noise within and between flights, ŷ the level that
+/// fits best: the score test of a step over the place, which sees what differs within flights.
 ///
 /// # Errors of method
 /// Sizes are those of the place that stands out most, which is a little more than it is (winner's curse).
@@ -130,18 +130,20 @@ fn null_of(
                 variances[segment] += value * value / REGION_DRAWS as f64;
                 drawn[0][(segment, draw)] = *value;
             }
-            for draw in 0..if drawn.len() > 1 { GROUP } else { 0 } {
+            for draw in 0..if drawn.len() > 2 { GROUP } else { 0 } {
                 let mut contrasts = [0.0; MAXIMUM_CHANNELS];
                 for (slot, channel) in contrasts.iter_mut().zip(&channels[1..]) {
                     *slot = channel[draw];
                 }
                 let apart = engines_apart(&contrasts[..channels.len() - 1]);
-                for (drawn, value) in drawn[1..].iter_mut().zip(apart) {
+                for (drawn, value) in drawn[2..].iter_mut().zip(apart) {
                     drawn[(segment, draw)] = value;
                 }
             }
         });
-        noise.weigh(&mut drawn[0]);
+        let mut weighed = drawn[0].clone();
+        noise.weigh(&mut weighed);
+        drawn[1] = weighed;
         let mut sums = search.sums(GROUP);
         let mut values = vec![vec![0.0; GROUP]; drawn.len()];
         for segment in 0..segments {
@@ -230,13 +232,14 @@ fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
 }
 
 fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) -> Vec<f64> {
-    let total = noise.weighed(&gaps.total);
+    let weighed = noise.weighed(&gaps.total);
     let mut sums = search.sums(1);
     let mut values = vec![vec![0.0]; search.series().len()];
     for segment in 0..gaps.total.len() {
         for (values, series) in values.iter_mut().zip(search.series()) {
             values[0] = match series {
-                Series::FuelFlow => total[segment],
+                Series::FuelFlow => gaps.total[segment],
+                Series::WithinFlights => weighed[segment],
                 Series::Engine(engine) => gaps.apart[*engine][segment],
             };
         }
@@ -266,14 +269,14 @@ fn best(
     };
     let enough = |index: &usize| told.flights_of(&members(index)) >= FEWEST_FLIGHTS_OF_A_REGION;
     let first = order.iter().copied().find(enough)?;
-    if search.regions[first].series != Series::FuelFlow {
+    if search.regions[first].series.is_engine() {
         return Some((first, members(&first)));
     }
     let compared: Vec<usize> = order
         .into_iter()
         .skip_while(|&index| index != first)
         .take_while(|&index| statistics[index] >= NEARLY_AS_LARGE * statistics[first])
-        .filter(|&index| search.regions[index].series == Series::FuelFlow)
+        .filter(|&index| !search.regions[index].series.is_engine())
         .filter(enough)
         .take(MOST_COMPARED)
         .collect();
@@ -303,7 +306,7 @@ fn take_out(left: &mut Gaps, candidate: &BinnedRegion, members: &[usize], engine
     let count = members.len() as f64;
     let mean_of = |values: &[f64]| members.iter().map(|&k| values[k]).sum::<f64>() / count;
     match candidate.series {
-        Series::FuelFlow => {
+        Series::FuelFlow | Series::WithinFlights => {
             let inside = mean_of(&left.total);
             let all: f64 = left.total.iter().sum();
             let outside = (all - inside * count) / (left.total.len() as f64 - count).max(1.0);

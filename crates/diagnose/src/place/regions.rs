@@ -3,11 +3,22 @@
 use crate::place::binned_variable::BinnedVariable;
 use crate::thresholds::{BINS, REGION_SHARES, SECOND_CONDITION};
 
-/// What is summed: fuel flow about its mean, or one engine's difference from the mean of all, as it is.
+/// What is summed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Series {
+    /// Fuel flow about its mean.
     FuelFlow,
+    /// The same weighed by the noise that flights have in common: what differs within flights counts more.
+    WithinFlights,
+    /// One engine's difference from the mean of all, as it is.
     Engine(usize),
+}
+
+impl Series {
+    /// Whether it is one engine alone.
+    pub(crate) const fn is_engine(self) -> bool {
+        matches!(self, Self::Engine(_))
+    }
 }
 
 /// A place: bins `low..high` of one or two variables, of all engines or of one.
@@ -36,7 +47,7 @@ impl BinnedRegion {
 
     /// Of the statistic: less with a second condition.
     pub(crate) fn weight(&self) -> f64 {
-        let engine = usize::from(self.series != Series::FuelFlow);
+        let engine = usize::from(self.series.is_engine());
         let conditions = engine + self.ranges.iter().flatten().count();
         if conditions > 1 { 1.0 / SECOND_CONDITION } else { 1.0 }
     }
@@ -74,23 +85,30 @@ pub(crate) struct Sums {
 }
 
 impl<'a> Search<'a> {
-    /// `weights` say how much of the level of all segments each one is; `engines` are looked at one by one (none where fuel
-    /// flow is not recorded by engine).
+    /// `weights` say how much of the level of all segments each one is where segments are weighed; `engines` are looked at one
+    /// by one (none where fuel flow is not recorded by engine).
     pub(crate) fn new(places: &'a [BinnedVariable], weights: &[f64], engines: usize) -> Self {
         // Of two engines one series says all: the other's is its negative.
         let apart = if engines == 2 { 1 } else { engines };
-        let series: Vec<Series> =
-            core::iter::once(Series::FuelFlow).chain((0..apart).map(Series::Engine)).collect();
+        let series: Vec<Series> = [Series::FuelFlow, Series::WithinFlights]
+            .into_iter()
+            .chain((0..apart).map(Series::Engine))
+            .collect();
         let mut search = Self { places, tables: vec![], cells: 0, regions: vec![], series };
+        let alike = vec![1.0; weights.len()];
         for k in 0..search.series.len() {
-            search.table(weights, k, [None; 2]);
+            let within = search.series[k] == Series::WithinFlights;
+            let weights = if within { weights } else { &alike };
+            if !within {
+                search.table(weights, k, [None; 2]);
+            }
             for first in 0..places.len() {
                 search.table(weights, k, [Some(first), None]);
             }
         }
         for first in 0..places.len() {
             for second in first + 1..places.len() {
-                search.table(weights, 0, [Some(first), Some(second)]);
+                search.table(&alike, 0, [Some(first), Some(second)]);
             }
         }
         search
@@ -175,7 +193,7 @@ impl<'a> Search<'a> {
     /// regions.
     ///
     /// ```text
-    /// S = Σ_{i in place} u_i − Σ_{i in place} w_i/Σ w·Σ u,   w the weights
+    /// S = Σ_{i in place} u_i − Σ_{i in place} w_i/Σ w·Σ u,   w the weights, 1 where segments are not weighed
     /// ```
     pub(crate) fn for_each(&self, sums: &Sums, mut each: impl FnMut(usize, &[f64])) {
         let width = sums.width;
@@ -193,7 +211,7 @@ impl<'a> Search<'a> {
                 &prefix[start..start + width]
             };
             let corners = [at(high, right), at(low, right), at(high, left), at(low, left)];
-            let is_level = candidate.series != Series::FuelFlow || candidate.is_everywhere();
+            let is_level = candidate.series.is_engine() || candidate.is_everywhere();
             let share = if is_level { 0.0 } else { candidate.share };
             let total = &sums.totals[self.tables[made].series];
             for (k, slot) in out.iter_mut().enumerate() {
