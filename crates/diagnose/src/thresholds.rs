@@ -188,11 +188,8 @@ deciding_numbers! {
         SECOND_CONDITION: f64 = 1.15, "",
             "factor by which a second condition must raise the statistic",
             OurChoice "A simpler region is easier to use.";
-        NEARLY_AS_LARGE: f64 = 0.9, "of the largest",
-            "statistic of the regions that compete by likelihood",
-            OurChoice "Variables are correlated. With the competition 0.98 of the variables were named right, 0.88 before.";
         MOST_COMPARED: usize = 200, "regions",
-            "regions that compete by likelihood at most",
+            "regions that are not by chance and compete by likelihood, at most",
             OurChoice "A bound on time.";
         REGION_DRAWS: usize = 400, "draws",
             "draws of noise, half for standard deviations and half for p-values",

@@ -100,6 +100,11 @@ impl BinnedVariable {
         Some(Self { variable, edges, before, bins })
     }
 
+    /// On or off, and nothing between.
+    pub(crate) const fn is_switch(&self) -> bool {
+        matches!(self.variable, Variable::AntiIce)
+    }
+
     pub(crate) fn count(&self) -> usize {
         self.edges.len() + 1
     }

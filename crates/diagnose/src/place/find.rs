@@ -19,8 +19,7 @@ use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
 use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::thresholds::{
-    FEWEST_FLIGHTS_OF_A_REGION, MOST_COMPARED, MOST_REGIONS, NEARLY_AS_LARGE, REGION_DRAWS,
-    REGION_P_VALUE,
+    FEWEST_FLIGHTS_OF_A_REGION, MOST_COMPARED, MOST_REGIONS, REGION_DRAWS, REGION_P_VALUE,
 };
 
 /// Draws that are summed together.
@@ -79,7 +78,8 @@ pub(crate) fn find(
             let level = search.regions.iter().position(BinnedRegion::is_everywhere);
             everywhere = (level.map_or(1.0, |k| null.p_value_everywhere(statistics[k])), level);
         }
-        let Some((index, members)) = best(&search, &statistics, &told, &left, &noise) else {
+        let Some((index, members)) = best((&search, &null), &statistics, &told, &left, &noise)
+        else {
             break;
         };
         let p_value = null.p_value(statistics[index]);
@@ -88,7 +88,7 @@ pub(crate) fn find(
         }
         let candidate = &search.regions[index];
         found.push(told.slice(candidate, &members, p_value, seed));
-        take_out(&mut left, candidate, &members, engines);
+        take_out(&mut left, candidate, members, &noise);
     }
     if let (p_value, Some(index)) = everywhere
         && found.is_empty()
@@ -250,11 +250,11 @@ fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) 
     statistics
 }
 
-/// The place that stands out most, with its segments. Variables are correlated, so that several regions are nearly
-/// alike: of those a step over the place decides, which fits best by likelihood; of a place and its complement, which fit
-/// alike, the larger gap.
+/// The place to say, with its segments. Variables are correlated, so that many regions are not by chance where one has a gap: of
+/// those a step over the place decides, which fits best by likelihood; of a place and its complement, which fit alike, the
+/// larger gap. Where none is, the one that stands out most.
 fn best(
-    search: &Search<'_>,
+    (search, null): (&Search<'_>, &Null),
     statistics: &[f64],
     told: &Told<'_>,
     left: &Gaps,
@@ -275,17 +275,17 @@ fn best(
     let compared: Vec<usize> = order
         .into_iter()
         .skip_while(|&index| index != first)
-        .take_while(|&index| statistics[index] >= NEARLY_AS_LARGE * statistics[first])
+        .take_while(|&index| null.p_value(statistics[index]) <= REGION_P_VALUE)
         .filter(|&index| !search.regions[index].series.is_engine())
         .filter(enough)
         .take(MOST_COMPARED)
         .collect();
     let regions: Vec<Vec<usize>> = compared.iter().map(members).collect();
-    let falls = noise.falls(&left.total, &regions);
+    let steps = noise.steps(&left.total, &regions);
     let weighed: Vec<f64> = compared
         .iter()
-        .zip(&falls)
-        .map(|(&index, fall)| fall * search.regions[index].weight().powi(2))
+        .zip(&steps)
+        .map(|(&index, step)| step.fall * search.regions[index].weight().powi(2))
         .collect();
     let largest = weighed.iter().copied().fold(0.0, f64::max);
     compared
@@ -302,23 +302,30 @@ fn best(
 }
 
 /// Removes what distinguishes a region: its excess over the rest, or what its engine does apart from the others.
-fn take_out(left: &mut Gaps, candidate: &BinnedRegion, members: &[usize], engines: usize) {
+fn take_out(left: &mut Gaps, candidate: &BinnedRegion, members: Vec<usize>, noise: &Noise<'_>) {
     let count = members.len() as f64;
     let mean_of = |values: &[f64]| members.iter().map(|&k| values[k]).sum::<f64>() / count;
     match candidate.series {
-        Series::FuelFlow | Series::WithinFlights => {
+        Series::FuelFlow => {
             let inside = mean_of(&left.total);
             let all: f64 = left.total.iter().sum();
             let outside = (all - inside * count) / (left.total.len() as f64 - count).max(1.0);
-            for &segment in members {
+            for &segment in &members {
                 left.total[segment] -= inside - outside;
+            }
+        }
+        Series::WithinFlights => {
+            let regions = [members];
+            let step = noise.steps(&left.total, &regions)[0];
+            for &segment in &regions[0] {
+                left.total[segment] -= step.size;
             }
         }
         Series::Engine(engine) => {
             // An engine alone that is off by θ shows θ/n in all fuel flow, θ(1 − 1/n) apart, and −θ/n at the others.
             let own = mean_of(&left.apart[engine]);
-            let others = own / (engines as f64 - 1.0);
-            for &segment in members {
+            let others = own / (left.apart.len() as f64 - 1.0);
+            for &segment in &members {
                 left.total[segment] -= others;
                 for (index, series) in left.apart.iter_mut().enumerate() {
                     series[segment] -= if index == engine { own } else { -others };

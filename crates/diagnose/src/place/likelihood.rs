@@ -16,6 +16,15 @@ pub(crate) struct Noise<'a> {
     system: &'a WhitenedSystem<'a>,
 }
 
+/// A step over a region.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    /// ln of fuel flow.
+    pub(crate) size: f64,
+    /// Fall of χ² by it.
+    pub(crate) fall: f64,
+}
+
 struct OfFlight {
     /// 1/σ² of each segment.
     weights: Vec<f64>,
@@ -107,30 +116,35 @@ impl<'a> Noise<'a> {
         (0..values.len()).map(|segment| column[(segment, 0)]).collect()
     }
 
-    /// Fall of χ² by a step over each region (a list of segments), of any size, beside a level of any size.
+    /// Steps over regions (lists of segments), of any size, beside a level of any size: the best size of each, and the fall of χ²
+    /// by it.
     ///
     /// ```text
-    /// (xᵀC⁻¹y)²/xᵀC⁻¹x,  x the place less its projection on the level, products with C⁻¹             [diagnosis.29]
+    /// xᵀC⁻¹y/xᵀC⁻¹x,   (xᵀC⁻¹y)²/xᵀC⁻¹x,  x the place less its projection on the level, products with C⁻¹   [diagnosis.29]
     /// ```
-    pub(crate) fn falls(&self, gap: &[f64], regions: &[Vec<usize>]) -> Vec<f64> {
+    pub(crate) fn steps(&self, gap: &[f64], regions: &[Vec<usize>]) -> Vec<Step> {
         let (gap, level) = (self.weighed(gap), self.weighed(&vec![1.0; gap.len()]));
         let sum = |of: &[f64], region: &[usize]| region.iter().map(|&k| of[k]).sum::<f64>();
         let (of_level, level_of_gap) = (level.iter().sum::<f64>(), gap.iter().sum::<f64>());
-        let mut falls = Vec::with_capacity(regions.len());
+        let mut found = Vec::with_capacity(regions.len());
         for regions in regions.chunks(TOGETHER) {
             let mut steps = Mat::<f64>::zeros(gap.len(), regions.len());
             for (column, region) in regions.iter().enumerate() {
                 region.iter().for_each(|&segment| steps[(segment, column)] = 1.0);
             }
             self.weigh(&mut steps);
-            falls.extend(regions.iter().enumerate().map(|(column, region)| {
+            found.extend(regions.iter().enumerate().map(|(column, region)| {
                 let own: f64 = region.iter().map(|&segment| steps[(segment, column)]).sum();
                 let with_level = sum(&level, region);
                 let square = own - with_level * with_level / of_level;
                 let slope = sum(&gap, region) - with_level * level_of_gap / of_level;
-                if square > 0.0 { slope * slope / square } else { 0.0 }
+                if square > 0.0 {
+                    Step { size: slope / square, fall: slope * slope / square }
+                } else {
+                    Step { size: 0.0, fall: 0.0 }
+                }
             }));
         }
-        falls
+        found
     }
 }

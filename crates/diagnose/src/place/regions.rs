@@ -106,9 +106,11 @@ impl<'a> Search<'a> {
                 search.table(weights, k, [Some(first), None]);
             }
         }
-        for first in 0..places.len() {
-            for second in first + 1..places.len() {
-                search.table(&alike, 0, [Some(first), Some(second)]);
+        for (k, weights) in [&alike[..], weights].into_iter().enumerate() {
+            for first in 0..places.len() {
+                for second in first + 1..places.len() {
+                    search.table(weights, k, [Some(first), Some(second)]);
+                }
             }
         }
         search
@@ -140,7 +142,11 @@ impl<'a> Search<'a> {
                     .flat_map(|row| (left..right).map(move |column| row * columns + column))
                     .fold((0.0, 0.0), |sum, cell| (sum.0 + cells[cell].0, sum.1 + cells[cell].1));
                 let of_segments = count / weights.len() as f64;
-                let usual = REGION_SHARES[0]..=REGION_SHARES[1];
+                let mut usual = REGION_SHARES[0]..=REGION_SHARES[1];
+                // A switch that is on is a place however seldom it is.
+                if variables[1].is_none() && low > 0 && self.is_switch(variables[0]) {
+                    usual = f64::MIN_POSITIVE..=REGION_SHARES[1];
+                }
                 if variables[0].is_some() && !usual.contains(&of_segments) {
                     continue;
                 }
@@ -153,6 +159,10 @@ impl<'a> Search<'a> {
                 self.regions.push(BinnedRegion { series, ranges, table, share });
             }
         }
+    }
+
+    fn is_switch(&self, place: Option<usize>) -> bool {
+        place.is_some_and(|place| self.places[place].is_switch())
     }
 
     fn bin(&self, place: Option<usize>, segment: usize) -> usize {
