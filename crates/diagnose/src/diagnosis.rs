@@ -24,7 +24,7 @@ use crate::output::form::{ActsOn, FoundForm};
 use crate::output::note::{LeftOutReason, Note};
 use crate::output::verdict::{Insufficient, Verdict};
 use crate::output::{Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
-use crate::place::find::find;
+use crate::place::find::{FoundPlaces, find};
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
@@ -228,6 +228,7 @@ fn conclude(
     let exceeds = exceeds_uncertainty(&gap, unknown_square(system));
     let real = exceeds || is_real(analysis, &outside);
     let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
+    let places = (!options.skip_where).then(|| find(system, analysis, scale, options.seed));
     let detection_input = DetectionInput {
         analysis,
         distances: &distances,
@@ -238,6 +239,7 @@ fn conclude(
         noise_scale: scale,
         is_real: real,
         exceeds_uncertainty: exceeds,
+        lies_at_an_engine: places.as_ref().is_some_and(FoundPlaces::name_an_engine),
     };
     let Detection { detected, table, smooth_term } =
         detect(problem, &detection_input, &mut outside);
@@ -246,8 +248,7 @@ fn conclude(
     if unseen.is_some() {
         add_floors(&mut gap, problem, &own, scale);
     }
-    let find = || find(system, analysis, scale, detected, options.seed);
-    let places = if options.skip_where { vec![] } else { find() };
+    let places = places.map_or_else(Vec::new, |places| places.of_gap(detected));
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {

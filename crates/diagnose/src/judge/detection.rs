@@ -30,6 +30,8 @@ pub(crate) struct DetectionInput<'a> {
     /// Whether no effect at all is improbable, or the size exceeds noise and uncertainty; the latter alone.
     pub(crate) is_real: bool,
     pub(crate) exceeds_uncertainty: bool,
+    /// Whether one engine is apart from the others, beyond what the model does not know and what a search finds by chance.
+    pub(crate) lies_at_an_engine: bool,
 }
 
 /// What was decided.
@@ -77,7 +79,7 @@ pub(crate) fn detect(
     let beyond_table = top.filter(|top| !DRAG_OF_A_TABLE.contains(&id_of(library, top.effect)));
     let is_named = beyond_table
         .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
-    let announced = taught && !input.exceeds_uncertainty;
+    let announced = taught && !input.exceeds_uncertainty && !input.lies_at_an_engine;
     let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
     let stands_out = something
         && !own_error

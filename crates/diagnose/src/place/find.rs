@@ -39,7 +39,32 @@ struct Gaps {
     apart: Vec<Vec<f64>>,
 }
 
-/// Places where the gap lies, most striking first; `everywhere` where it is real and has none.
+/// Places that are not by chance, most striking first; and everywhere, where the level of all is not.
+#[derive(Clone, Debug)]
+pub(crate) struct FoundPlaces {
+    regions: Vec<Slice>,
+    everywhere: Option<Slice>,
+}
+
+impl FoundPlaces {
+    /// What is said of a gap: its places, everywhere where it has none. Nothing is said of what is no gap.
+    pub(crate) fn of_gap(self, is_gap: bool) -> Vec<Slice> {
+        if !is_gap {
+            vec![]
+        } else if self.regions.is_empty() {
+            self.everywhere.into_iter().collect()
+        } else {
+            self.regions
+        }
+    }
+
+    /// Whether one engine is apart from the others.
+    pub(crate) fn name_an_engine(&self) -> bool {
+        self.regions.iter().any(|slice| slice.region.engine.is_some())
+    }
+}
+
+/// Looks for the places where the gap lies.
 ///
 /// ```text
 /// T = |Σ_{i in place} (y_i − ȳ)| / sd0,  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
@@ -54,9 +79,8 @@ pub(crate) fn find(
     system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     noise_scale: f64,
-    is_real: bool,
     seed: u64,
-) -> Vec<Slice> {
+) -> FoundPlaces {
     let data = system.data;
     let places = places(&data.segments, system.design.references());
     let engines = if data.channels.contrasts > 0 { data.channels.contrasts + 1 } else { 0 };
@@ -90,15 +114,14 @@ pub(crate) fn find(
         found.push(told.slice(candidate, &members, p_value, seed));
         take_out(&mut left, candidate, members, &noise);
     }
-    if let (p_value, Some(index)) = everywhere
-        && found.is_empty()
-        && is_real
-        && p_value <= REGION_P_VALUE
-    {
-        let members: Vec<usize> = (0..data.segments.len()).collect();
-        found.push(told.slice(&search.regions[index], &members, p_value, seed));
-    }
-    found
+    let everywhere = match everywhere {
+        (p_value, Some(index)) if p_value <= REGION_P_VALUE => {
+            let members: Vec<usize> = (0..data.segments.len()).collect();
+            Some(told.slice(&search.regions[index], &members, p_value, seed))
+        }
+        _ => None,
+    };
+    FoundPlaces { regions: found, everywhere }
 }
 
 /// Noise as the best model finds it, never less than announced.
