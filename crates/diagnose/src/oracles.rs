@@ -14,8 +14,10 @@ use crate::judge::verdict::credit;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::math::random::RandomStream;
+use crate::place::binned_variable::places;
 use crate::place::draws::{Drawing, NoiseLevel, chords, draw};
 use crate::place::likelihood::Noise;
+use crate::place::regions::{Search, Series};
 use crate::residuals::chords::chord_errors;
 use crate::residuals::reference::Reference;
 use crate::residuals::rows::FlightRows;
@@ -254,45 +256,101 @@ fn draws_have_their_covariance() {
     });
 }
 
-/// `[diagnosis.29]`: the fall of χ² is that between two generalised least-squares fits, written out densely.
+/// Noise of fuel flow between all segments, at a level.
+fn dense_noise(data: &PreparedFlights<'_>, level: NoiseLevel) -> DMatrix<f64> {
+    let (size, channels) = (data.segments.len(), data.channels.count());
+    let mut whole = DMatrix::<f64>::zeros(size, size);
+    for flight in &data.flights {
+        let dense = covariance(data, flight);
+        let from = flight.segments.start;
+        for i in flight.segments.clone() {
+            for j in flight.segments.clone() {
+                let own = dense[((i - from) * channels, (j - from) * channels)];
+                whole[(i, j)] = level.factor.powi(2) * own + level.scatter.powi(2);
+            }
+        }
+    }
+    whole
+}
+
+/// A gap without meaning.
+fn any_gap(size: usize) -> DVector<f64> {
+    DVector::from_fn(size, |i, _| 0.01 * (((13 * i) % 17) as f64 / 17.0 - 0.4))
+}
+
+/// `[diagnosis.29]`: step and fall of χ² are those of two generalised least-squares fits, written out densely.
 #[test]
-fn falls_of_chi_square_are_of_two_fits() {
+fn steps_over_regions_are_of_two_fits() {
     let level = NoiseLevel { factor: 1.2, scatter: 0.003 };
     with_system(&fleet(76, 4), |problem| {
         let (system, data) = (problem.system, problem.system.data);
-        let (size, channels) = (data.segments.len(), data.channels.count());
-        let mut whole = DMatrix::<f64>::zeros(size, size);
-        for flight in &data.flights {
-            let dense = covariance(data, flight);
-            let from = flight.segments.start;
-            for i in flight.segments.clone() {
-                for j in flight.segments.clone() {
-                    let own = dense[((i - from) * channels, (j - from) * channels)];
-                    whole[(i, j)] = level.factor.powi(2) * own + level.scatter.powi(2);
-                }
-            }
-        }
-        let inverse = whole.try_inverse().unwrap();
-        let gap = DVector::from_fn(size, |i, _| 0.01 * (((13 * i) % 17) as f64 / 17.0 - 0.4));
-        let chi_square = |x: &DMatrix<f64>| {
+        let size = data.segments.len();
+        let inverse = dense_noise(data, level).try_inverse().unwrap();
+        let gap = any_gap(size);
+        let fit = |x: &DMatrix<f64>| {
             let normal = x.transpose() * &inverse * x;
             let right = x.transpose() * &inverse * &gap;
-            let fitted = x * normal.try_inverse().unwrap() * right;
-            let left = &gap - fitted;
-            (left.transpose() * &inverse * &left)[(0, 0)]
+            let sizes = normal.try_inverse().unwrap() * right;
+            let left = &gap - x * &sizes;
+            ((left.transpose() * &inverse * &left)[(0, 0)], sizes)
         };
-        let places: Vec<Vec<f64>> = [3, 4, 7]
-            .map(|n| (0..size).map(|i| if i % n == 1 { 1.0 } else { 0.0 }).collect())
-            .to_vec();
+        let places: Vec<Vec<usize>> =
+            [3, 4, 7].map(|n| (0..size).filter(|i| i % n == 1).collect()).to_vec();
         let noise = Noise::new(system, level);
-        let falls = noise.falls(gap.as_slice(), places.iter().cloned());
+        let steps = noise.steps(gap.as_slice(), &places);
         let ones = DVector::from_element(size, 1.0);
-        for (fall, place) in falls.iter().zip(&places) {
-            let both = DMatrix::from_columns(&[ones.clone(), DVector::from_column_slice(place)]);
-            let expected = chi_square(&DMatrix::from_columns(core::slice::from_ref(&ones)))
-                - chi_square(&both);
-            assert!((fall / expected - 1.0).abs() < 1e-7, "{fall} {expected}");
+        for (step, place) in steps.iter().zip(&places) {
+            let inside = DVector::from_fn(size, |i, _| if place.contains(&i) { 1.0 } else { 0.0 });
+            let both = DMatrix::from_columns(&[ones.clone(), inside]);
+            let (of_level, _) = fit(&DMatrix::from_columns(core::slice::from_ref(&ones)));
+            let (of_both, sizes) = fit(&both);
+            assert!((step.fall / (of_level - of_both) - 1.0).abs() < 1e-7, "{step:?} {of_both}");
+            assert!((step.size / sizes[1] - 1.0).abs() < 1e-7, "{step:?} {sizes}");
         }
+    });
+}
+
+/// `[diagnosis.25]`: the sums over all places, by prefix sums over bins, are those that are written out segment by segment, with
+/// C⁻¹ inverted densely.
+#[test]
+fn sums_over_places_are_of_their_segments() {
+    let level = NoiseLevel { factor: 1.2, scatter: 0.003 };
+    with_system(&fleet(78, 12), |problem| {
+        let (system, data) = (problem.system, problem.system.data);
+        let size = data.segments.len();
+        let inverse = dense_noise(data, level).try_inverse().unwrap();
+        let (gap, ones) = (any_gap(size), DVector::from_element(size, 1.0));
+        let noise = Noise::new(system, level);
+        let weighed = noise.weighed(gap.as_slice());
+        let of_ones = &inverse * &ones;
+        let best_level = gap.dot(&of_ones) / ones.dot(&of_ones);
+        let within = &inverse * (&gap - &ones * best_level);
+        let about_mean = gap.add_scalar(-gap.mean());
+
+        let places = places(&data.segments, system.design.references());
+        let search = Search::new(&places, &noise.weighed(ones.as_slice()), 0);
+        assert_eq!(search.series(), [Series::FuelFlow, Series::WithinFlights]);
+        let mut sums = search.sums(1);
+        for segment in 0..size {
+            search.add(&mut sums, segment, &[vec![gap[segment]], vec![weighed[segment]]]);
+        }
+        let mut seen = [0, 0];
+        search.for_each(&sums, |index, sum| {
+            let region = &search.regions[index];
+            if region.is_everywhere() {
+                return;
+            }
+            let of = match region.series {
+                Series::WithinFlights => &within,
+                _ => &about_mean,
+            };
+            seen[usize::from(region.series == Series::WithinFlights)] += 1;
+            let expected: f64 =
+                (0..size).filter(|&k| region.holds(&places, k)).map(|k| of[k]).sum();
+            let scale: f64 = of.iter().map(|value| value.abs()).sum();
+            assert!((sum[0] - expected).abs() < 1e-9 * scale, "{region:?}: {} {expected}", sum[0]);
+        });
+        assert!(seen.iter().all(|count| *count > 200), "{seen:?}");
     });
 }
 

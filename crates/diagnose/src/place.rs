@@ -6,5 +6,5 @@ pub(crate) mod find;
 pub(crate) mod likelihood;
 pub(crate) mod members;
 mod null;
-mod regions;
+pub(crate) mod regions;
 pub(crate) mod segment_gaps;
