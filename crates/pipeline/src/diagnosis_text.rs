@@ -3,14 +3,14 @@
 //! Limits are stated where they hold: what cannot be distinguished, what was not testable, how much is left. An effect is named
 //! by what it does *and* by its id, so that a reader without the library's table knows what is meant.
 
-use diagnose::{Closure, Diagnosis, Found, Verdict};
+use diagnose::{Closure, Diagnosis, Found, Magnitude, Verdict};
 use flight::effect::{EffectGroup, EffectId};
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_words::{
-    acts_on_words, advice, form_words, joined, measurement_words, region_words, variable_words,
+    acts_on_words, advice, distances_words, form_words, joined, measurement_words, region_words,
+    told_size, variable_words,
 };
-use crate::statistics::NORMAL_95;
 use crate::summary::counted;
 
 /// Effects whose smallest visible size is printed where nothing was found: one of each kind that a person would think of.
@@ -27,6 +27,8 @@ const OTHERS_TOLD: usize = 3;
 const LEAST_TOLD: f64 = 0.02;
 /// Measurements or flights that are printed. Our choice: the best two.
 const SEPARATIONS_TOLD: usize = 2;
+/// Distance, in standard deviations, that the second of them brings about at least. Our choice: below it two effects are of one class.
+const TOLD_APART: f64 = 3.0;
 /// Probability below which no cause is printed as one. Our choice: more probable than not.
 const PROBABLE: f64 = 0.5;
 
@@ -155,7 +157,7 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
         .iter()
         .filter_map(|id| {
             let entry = diagnosis.detectable.iter().find(|entry| entry.effect == *id)?;
-            Some(format!("{id} {} {}", figure(entry.smallest?), id.entry().unit))
+            Some(format!("{id} {} {}", digits(entry.smallest?), id.entry().unit))
         })
         .collect();
     let mut lines = vec!["Nothing beyond the noise: the model fits these flights.".to_owned()];
@@ -214,6 +216,9 @@ fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         return table_off(diagnosis, found);
     }
     let open = found.probability < PROBABLE;
+    let others: Vec<EffectId> =
+        found.class.iter().copied().filter(|id| !found.effects.contains(id)).collect();
+    let few = !others.is_empty() && others.len() <= OTHERS_TOLD;
     let mut lines = Vec::new();
     for (place, id) in found.effects.iter().enumerate() {
         let what = effect_told(diagnosis, *id);
@@ -221,6 +226,13 @@ fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
             format!(
                 "No cause stands out. The most probable is {what}, probability {:.2}: do not act on it.",
                 found.probability
+            )
+        } else if place == 0 && few {
+            format!(
+                "Cause: one of {}, which these flights cannot tell apart: {what}, probability {:.2}; or {}.",
+                others.len() + 1,
+                found.probability,
+                others.iter().map(|id| with_probability(diagnosis, *id)).collect::<Vec<_>>().join(", ")
             )
         } else if place == 0 {
             format!("Cause: {what}, probability {:.2}.", found.probability)
@@ -232,14 +244,22 @@ fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         lines.extend(follows(found));
     }
     lines.push(closes(diagnosis, found));
-    let others: Vec<EffectId> =
-        found.class.iter().copied().filter(|id| !found.effects.contains(id)).collect();
-    if !others.is_empty() {
+    if !others.is_empty() && (open || !few) {
         lines.push(format!("These flights cannot tell it from: {}.", joined(&others, ", ")));
     }
     lines.extend(to_be_sure(found));
-    lines.extend(rivals(diagnosis, found));
+    let told = if few && !open { &others[..] } else { &[] };
+    lines.extend(rivals(diagnosis, found, told));
     lines
+}
+
+/// "`tsfc_engine_2` 0.09", without the backticks; where it is not worth a number the name alone.
+fn with_probability(diagnosis: &Diagnosis, id: EffectId) -> String {
+    let cause = diagnosis.causes.iter().find(|cause| cause.effect == id);
+    match cause.filter(|cause| cause.probability >= LEAST_TOLD) {
+        Some(cause) => format!("{id} {:.2}", cause.probability),
+        None => id.to_string(),
+    }
 }
 
 /// How far the gap shrinks.
@@ -273,18 +293,11 @@ fn to_be_sure(found: &Found) -> Vec<String> {
         if told.len() == SEPARATIONS_TOLD {
             break;
         }
-        if told.contains(&measurement) {
+        let is_weak = separation.distance_then < TOLD_APART && !told.is_empty();
+        if told.contains(&measurement) || is_weak {
             continue;
         }
-        lines.push(format!(
-            "To be sure: {measurement} (distinguishes it from {}: {:.1} to {:.1} standard deviations{}).",
-            separation.from,
-            separation.distance_now,
-            separation.distance_then,
-            separation.distance_ordinary_flights.map_or_else(String::new, |distance| format!(
-                "; six ordinary flights {distance:.1}"
-            ))
-        ));
+        lines.push(format!("To be sure: {measurement} ({}).", distances_words(separation)));
         told.push(measurement);
     }
     lines
@@ -334,12 +347,13 @@ fn follows(found: &Found) -> Option<String> {
     )
 }
 
-/// Other causes that the data leave open.
-fn rivals(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
+/// Other causes that the data leave open, besides those that were told.
+fn rivals(diagnosis: &Diagnosis, found: &Found, told_before: &[EffectId]) -> Vec<String> {
     let mut told: Vec<String> = diagnosis
         .causes
         .iter()
         .filter(|cause| !found.effects.contains(&cause.effect) && cause.probability >= LEAST_TOLD)
+        .filter(|cause| !told_before.contains(&cause.effect))
         .take(OTHERS_TOLD)
         .map(|cause| format!("{} {:.2}", cause.effect, cause.probability))
         .collect();
@@ -359,43 +373,41 @@ fn rivals(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
     }
 }
 
-/// "earlier drag rise with Mach number, `wave_drag` +0.0080 ± 0.0010 Mach", without the backticks.
+/// "earlier drag rise with Mach number, `wave_drag` +0.0080 Mach (0.0060 to 0.0100)", without the backticks; the interval is of 95 %.
 fn effect_told(diagnosis: &Diagnosis, id: EffectId) -> String {
+    let Some(Magnitude { value, ci95: [low, high] }) = told_size(diagnosis, id) else {
+        return id.to_string();
+    };
     let cause = diagnosis.causes.iter().find(|cause| cause.effect == id);
-    let added = diagnosis
-        .addition
-        .as_ref()
-        .and_then(|addition| addition.effects.iter().find(|added| added.effect == id));
-    let size = added.map(|added| (added.size, added.standard_deviation)).or_else(|| {
-        let [low, high] = cause?.magnitude.ci95;
-        Some((cause?.magnitude.value, (high - low) / (2.0 * NORMAL_95)))
-    });
-    let Some((size, deviation)) = size else { return id.to_string() };
     let hidden = cause.map_or_else(String::new, |cause| cause.hidden.to_string());
     format!(
-        "{}, {id} {}{} ± {} {}{}",
-        id.phrase(size),
-        if size < 0.0 { "−" } else { "+" },
-        figure(size.abs()),
-        figure(deviation),
+        "{}, {id} {} {} ({} to {}){}",
+        id.phrase(value),
+        figure(value),
         id.entry().unit,
-        if hidden.is_empty() { String::new() } else { format!(" ({hidden})") }
+        figure(low),
+        figure(high),
+        if hidden.is_empty() { String::new() } else { format!(", {hidden}") }
     )
 }
 
-/// Three digits, as a person writes them.
+/// With its sign, and three digits.
 fn figure(value: f64) -> String {
-    let size = value.abs();
+    format!("{}{}", if value < 0.0 { "−" } else { "+" }, digits(value.abs()))
+}
+
+/// Three digits, as a person writes them.
+fn digits(size: f64) -> String {
     if size >= 100.0 {
-        format!("{value:.0}")
+        format!("{size:.0}")
     } else if size >= 10.0 {
-        format!("{value:.1}")
+        format!("{size:.1}")
     } else if size >= 1.0 {
-        format!("{value:.2}")
+        format!("{size:.2}")
     } else if size >= 0.1 {
-        format!("{value:.3}")
+        format!("{size:.3}")
     } else {
-        format!("{value:.4}")
+        format!("{size:.4}")
     }
 }
 
@@ -417,10 +429,11 @@ mod tests {
 
     #[test]
     fn figures_have_three_digits() {
-        assert_eq!(figure(199.5), "200");
-        assert_eq!(figure(12.34), "12.3");
-        assert_eq!(figure(5.246), "5.25");
-        assert_eq!(figure(0.336), "0.336");
-        assert_eq!(figure(0.004), "0.0040");
+        assert_eq!(digits(199.5), "200");
+        assert_eq!(digits(12.34), "12.3");
+        assert_eq!(digits(5.246), "5.25");
+        assert_eq!(digits(0.336), "0.336");
+        assert_eq!(digits(0.004), "0.0040");
+        assert_eq!(figure(-0.336), "−0.336");
     }
 }

@@ -3,11 +3,13 @@
 use std::fmt::Write as _;
 
 use diagnose::{
-    ActsOn, FlightsOnPurpose, Found, Insufficient, LeftOutReason, LoadingKind, Measurement, Note,
-    Rest, RestKind, Separation, Sweep, SweepLoading, Unexplained, Variable, Verdict,
+    ActsOn, Diagnosis, FlightsOnPurpose, Found, Insufficient, LeftOutReason, LoadingKind,
+    Magnitude, Measurement, Note, Rest, RestKind, Separation, Sweep, SweepLoading, Unexplained,
+    Variable, Verdict,
 };
 use flight::effect::EffectId;
 
+use crate::statistics::NORMAL_95;
 use crate::summary::counted;
 
 mod form;
@@ -97,6 +99,22 @@ fn table_words(found: &Found) -> String {
     words
 }
 
+/// The size of an effect that is named, with its 95 % interval: as it was found together with the other effects of the verdict,
+/// else alone.
+pub fn told_size(diagnosis: &Diagnosis, id: EffectId) -> Option<Magnitude> {
+    let cause = diagnosis.causes.iter().find(|cause| cause.effect == id).map(|c| c.magnitude);
+    let mut added = diagnosis.addition.iter().flat_map(|addition| &addition.effects);
+    let added = added.find(|added| added.effect == id).map(|added| {
+        let half = NORMAL_95 * added.standard_deviation;
+        Magnitude { value: added.size, ci95: [added.size - half, added.size + half] }
+    });
+    // Of one hypothesis both are the same number, and the cause's interval covers the other hypotheses too.
+    match (added, cause) {
+        (Some(added), Some(cause)) if added.value.total_cmp(&cause.value).is_ne() => Some(added),
+        (added, cause) => cause.or(added),
+    }
+}
+
 /// Names of effects, one after the other.
 pub fn joined(effects: &[EffectId], between: &str) -> String {
     effects.iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
@@ -128,10 +146,10 @@ pub fn insufficient_words(reason: Insufficient) -> String {
 pub fn distances_words(separation: &Separation) -> String {
     let ordinary = separation
         .distance_ordinary_flights
-        .map_or_else(String::new, |distance| format!("; six ordinary flights {distance:.1}"));
+        .map_or_else(String::new, |distance| format!("; with six ordinary flights {distance:.1}"));
     format!(
-        "{:.1} to {:.1} standard deviations from {}{ordinary}",
-        separation.distance_now, separation.distance_then, separation.from
+        "{} is then {:.1} standard deviations away, now {:.1}{ordinary}",
+        separation.from, separation.distance_then, separation.distance_now
     )
 }
 

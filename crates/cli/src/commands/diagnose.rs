@@ -17,6 +17,7 @@ use crate::files::{make_folder, write_atomically};
 use crate::models::read_models;
 use crate::progress::Progress;
 use crate::reading::FlightRead;
+use crate::terminal::kinds::Told;
 use crate::terminal::neutral;
 use pipeline::diagnosed_tail::{DiagnosedTail, RunOptions};
 use pipeline::diagnosis_document::DiagnosisDocument;
@@ -156,8 +157,14 @@ fn append_lines(diagnosed: &DiagnosedTail, text: &mut String) {
     for (place, line) in diagnosis_text::lines(diagnosed).into_iter().enumerate() {
         let _ = writeln!(text, "{}{line}", if place == 0 { "" } else { "  " });
     }
-    for note in diagnosed.notes() {
-        let _ = writeln!(text, "  Note: {note}.");
+    let mut told = Told::new(1);
+    let notes = diagnosed.notes();
+    let first: Vec<&String> = notes.iter().filter(|note| told.is_told(note)).collect();
+    for note in first {
+        let _ = match told.count(note) {
+            1 => writeln!(text, "  Note: {note}."),
+            count => writeln!(text, "  Note: {note} (and {} more of this kind).", count - 1),
+        };
     }
     text.push('\n');
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use flight::MissingColumn;
 use flight::column::Column;
 use flight::effect::{EffectId, EffectSign, HiddenParameter};
 use segmenter::TrimCriteria;
@@ -139,7 +140,16 @@ fn column(column: Column) -> String {
         column.meaning(),
         units.join(", "),
         column.range().words,
-        if column.is_optional() { "no" } else { "yes; MISSING states that it is not recorded" }
+        if column.is_optional() {
+            "no"
+        } else if MissingColumn::ALL
+            .iter()
+            .any(|missing| column.name().split('(').next() == Some(missing.name()))
+        {
+            "yes; MISSING states that it is not recorded"
+        } else {
+            "yes"
+        }
     )
 }
 
@@ -148,14 +158,18 @@ fn criteria(name: &str, found: &TrimCriteria) -> String {
         "{name}: largest changes within a stabilised segment\n\n\
          pressure altitude       {} ft\nvertical speed          {} ft/min\nMach number             {}\n\
          ground speed            {} kt\nstatic air temperature  {} °C\nN2                      {} %\n\
-         drift                   {}°\nroll                    {}°\nlongest piece           {} s\nshortest segment        {} s\n",
+         drift                   {}\nroll                    {}°\nlongest piece           {} s\nshortest segment        {} s\n",
         found.pressure_altitude_ft,
         found.vertical_speed_ft_min,
         found.mach,
         found.ground_speed_kt,
         found.static_air_temperature_c,
         found.n2_percent,
-        found.drift_deg,
+        if found.drift_deg.is_finite() {
+            format!("{}°", found.drift_deg)
+        } else {
+            "no limit".to_owned()
+        },
         found.roll_deg,
         found.piece_maximum_s,
         found.segment_minimum_s

@@ -2,30 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::{Diagnosis, Verdict};
+use diagnose::{Diagnosis, Magnitude, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
-use pipeline::diagnosis_words::{acts_on_words, advice, form_words, region_words, variable_words};
+use pipeline::diagnosis_words::{
+    acts_on_words, advice, form_words, region_words, told_size, variable_words,
+};
 
 use super::Tail;
 use crate::text::{capitalised, signed, three_digits};
 
-/// The size of an effect with its standard deviation or interval: the one found together with the verdict's other effects,
-/// else the one found alone.
+/// The size of an effect with its 95 % interval.
 fn size_words(diagnosis: &Diagnosis, id: EffectId) -> Option<(f64, String)> {
+    let Magnitude { value, ci95: [low, high] } = told_size(diagnosis, id)?;
     let unit = id.entry().unit;
-    let mut added = diagnosis.addition.iter().flat_map(|addition| &addition.effects);
-    if let Some(added) = added.find(|added| added.effect == id) {
-        let words = format!(
-            "{} ± {} {unit}",
-            three_digits(added.size),
-            three_digits(added.standard_deviation).trim_start_matches('+')
-        );
-        return Some((added.size, words));
-    }
-    let cause = diagnosis.causes.iter().find(|cause| cause.effect == id)?;
-    let [low, high] = cause.magnitude.ci95;
-    let value = cause.magnitude.value;
     let words =
         format!("{} {unit} ({} to {})", three_digits(value), three_digits(low), three_digits(high));
     Some((value, words))

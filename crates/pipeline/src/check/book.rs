@@ -20,8 +20,13 @@ const LOWEST_CRUISE_LIFT_COEFFICIENT: f64 = 0.22;
 /// What the segments of a tail say against the table of its book.
 #[must_use]
 pub fn against_book(tail: &str, evaluated: &[Option<Evaluated>]) -> Vec<DataFinding> {
-    let errors: Vec<f64> =
-        evaluated.iter().flatten().filter_map(|segment| segment.error_percent).collect();
+    // Of the book's flow: errors of predictions are shares of what was recorded, and a flow that is halved would be −100 %.
+    let errors: Vec<f64> = evaluated
+        .iter()
+        .flatten()
+        .filter_map(|segment| segment.error_percent)
+        .map(|error| error / (1.0 - error / 100.0))
+        .collect();
     let lift = mean(evaluated.iter().flatten().map(|segment| segment.lift_coefficient));
     [deviation(tail, &errors, lift), outside(tail, errors.len(), evaluated.len(), lift)]
         .into_iter()
@@ -67,7 +72,7 @@ fn causes(percent: f64, lift: Option<f64>) -> (&'static str, &'static str) {
         );
     }
     // Predicted over recorded flow: 2 for one engine of two, 2.2 for kg read as lb.
-    let ratio = 1.0 - percent / 100.0;
+    let ratio = 1.0 / (1.0 + percent / 100.0);
     if ratio > 1.6 {
         ("WF: flow of one engine as total, or kg/h declared as lb/h", "scale 2 or unit kg/h for WF")
     } else if ratio < 0.65 {

@@ -6,7 +6,7 @@ mod names;
 use core::fmt::Write;
 
 use columns::Columns;
-use names::{Name, engine_of};
+use names::engine_of;
 
 use super::{MappedReport, Mapping, Source};
 use crate::decode;
@@ -39,6 +39,9 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
         time = columns.time(),
         mass = columns.mass(),
     );
+    let left_over = columns.left_over(&mapping);
+    let mapping =
+        mapping.replacen("    },\n    mass:", &format!("    }},\n{left_over}    mass:"), 1);
     let of_points = mapping.replace(LEVEL_CRUISE, AVERAGED_POINTS);
     Ok(if is_of_points(&of_points, &text) { of_points } else { mapping })
 }
@@ -109,6 +112,9 @@ const ORDINARY: [Rule; 13] = [
         "ALT",
         &[
             "pressurealtitude",
+            "pressurealt",
+            "pressalt",
+            "palt",
             "altitudestd",
             "altstd",
             "altistd",
@@ -129,10 +135,14 @@ const ORDINARY: [Rule; 13] = [
     rule("TAT", &["totalairtemperature", "tat"], Kind::Temperature),
     rule("MACH", &["machnumber", "mach", "machno", "m"], Kind::Mach),
     rule("VTAS", &["trueairspeed", "trueairspd", "tas", "vtas", "airspeedtrue"], Kind::Speed),
-    rule("GSPD", &["groundspeed", "grndspd", "gspd", "gs"], Kind::Speed),
+    rule("GSPD", &["groundspeed", "groundspd", "grndspd", "gndspd", "gspd", "gs"], Kind::Speed),
     rule("ROLL", &["rollangle", "roll", "bank", "bankangle"], Kind::Angle),
     rule("DRIFT", &["driftangle", "drift"], Kind::Angle),
-    rule("HDG", &["headingtrue", "trueheading", "hdgtrue", "heading", "hdg"], Kind::Angle),
+    rule(
+        "HDG",
+        &["headingtrue", "trueheading", "hdgtrue", "truehdg", "heading", "hdg"],
+        Kind::Angle,
+    ),
     rule("LAT", &["latitude", "lat"], Kind::Angle),
     rule("LON", &["longitude", "lon", "long"], Kind::Angle),
     rule("CG", &["centreofgravity", "centerofgravity", "cg", "cgpercentmac"], Kind::Percent),
@@ -140,7 +150,11 @@ const ORDINARY: [Rule; 13] = [
 ];
 const CALIBRATED: Rule =
     rule("", &["calibratedairspeed", "computedairspeed", "cas", "ias"], Kind::CalibratedSpeed);
-const TRACK: Rule = rule("", &["trackangletrue", "tracktrue", "track", "trk"], Kind::Angle);
+const TRACK: Rule = rule(
+    "",
+    &["trackangletrue", "tracktrue", "truetrack", "truetrk", "trktrue", "track", "trk"],
+    Kind::Angle,
+);
 const GROSS: Rule = rule(
     "",
     &["grossweight", "grossweightsmoothed", "gw", "weight", "mass", "grossmass", "aircraftmass"],
@@ -299,7 +313,16 @@ impl Columns {
             ),
             (
                 "flight",
-                &["flight", "flightnumber", "flightid", "flt", "callsign", "systtrajid"][..],
+                &[
+                    "flight",
+                    "flightnumber",
+                    "flightno",
+                    "flightid",
+                    "flt",
+                    "fltno",
+                    "callsign",
+                    "systtrajid",
+                ][..],
                 "FileName,",
             ),
         ] {
@@ -331,7 +354,7 @@ impl Columns {
             return "Seconds(column: \"TIME\", start: \"2000-01-01T00:00:00Z\"),   // ?".to_owned();
         };
         let name = &self.names[column].sent;
-        let date = self.names.iter().find(|name| name.is("date") || name.is("utcdate"));
+        let date = self.names.iter().position(|name| name.is("date") || name.is("utcdate"));
         let sample = self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default();
         let with_zone = sample.ends_with('Z') || sample.contains('+');
         match sample.parse::<f64>() {
@@ -344,14 +367,15 @@ impl Columns {
                 let mark = if with_zone { "" } else { "   // ?" };
                 format!("Timestamp(column: {name:?}, utc_offset: \"Z\"),{mark}")
             }
-            Err(_) if sample.contains('/') => format!(
-                "Timestamp(column: {name:?}, format: \"%d/%m/%Y %H:%M:%S\", utc_offset: \"Z\"),   // ?"
+            Err(_) if self.date_form(column).is_some() => format!(
+                "Timestamp(column: {name:?}, format: {:?}, utc_offset: \"Z\"),   // ?",
+                self.date_form(column).unwrap_or_default()
             ),
             Err(_) => match date {
                 Some(date) => format!(
                     "Timestamp(column: {name:?}, date: {:?}, format: {:?}, utc_offset: \"Z\"),   // ?",
-                    date.sent,
-                    self.date_form(date)
+                    self.names[date].sent,
+                    self.date_form(date).unwrap_or("%Y-%m-%d %H:%M:%S")
                 ),
                 None => format!(
                     "TimeOfDay(column: {name:?}, date: \"2000-01-01\", utc_offset: \"Z\"),   // ?"
@@ -360,13 +384,43 @@ impl Columns {
         }
     }
 
-    fn date_form(&self, date: &Name) -> &'static str {
-        let column = self.names.iter().position(|name| name.sent == date.sent).unwrap_or(0);
-        match self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default() {
-            text if text.contains('/') => "%d/%m/%Y %H:%M:%S",
-            text if text.contains('.') => "%d.%m.%Y %H:%M:%S",
-            _ => "%Y-%m-%d %H:%M:%S",
+    /// The form of dates with slashes or points: day first unless a number says otherwise. `None` of other texts.
+    fn date_form(&self, column: usize) -> Option<&'static str> {
+        let first = self.texts_of(column).find(|text| !text.is_empty())?;
+        let mark = ['/', '.'].into_iter().find(|mark| numbers_of_date(first, *mark).is_some())?;
+        let month_first = self
+            .texts_of(column)
+            .filter_map(|text| numbers_of_date(text, mark))
+            .any(|[_, second]| second > 12);
+        Some(match (mark, month_first) {
+            ('/', false) => "%d/%m/%Y %H:%M:%S",
+            ('/', true) => "%m/%d/%Y %H:%M:%S",
+            (_, false) => "%d.%m.%Y %H:%M:%S",
+            (_, true) => "%m.%d.%Y %H:%M:%S",
+        })
+    }
+
+    /// What no line of the mapping takes, with a value of each, and what is missing: as comments.
+    fn left_over(&self, mapping: &str) -> String {
+        let mut text = String::new();
+        let missing: Vec<&str> = ["ALT", "GSPD", "WF"]
+            .into_iter()
+            .filter(|quantity| !mapping.contains(&format!("        \"{quantity}")))
+            .collect();
+        if !missing.is_empty() {
+            let _ = writeln!(text, "    // No column found for: {}.", missing.join(", "));
         }
+        let unused: Vec<String> = (0..self.names.len())
+            .filter(|&column| !mapping.contains(&format!("{:?}", self.names[column].sent)))
+            .map(|column| {
+                let value = self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default();
+                format!("{:?} ({})", self.names[column].sent, one_line(value))
+            })
+            .collect();
+        if !unused.is_empty() {
+            let _ = writeln!(text, "    // Columns that are not used: {}.", unused.join(", "));
+        }
+        text
     }
 
     fn mass(&self) -> String {
@@ -403,6 +457,21 @@ impl Columns {
             _ => "StartMass(gross_weight: Value(60000, \"kg\")),   // ?".to_owned(),
         }
     }
+}
+
+/// The first two numbers of a date whose three numbers have a mark between them.
+fn numbers_of_date(text: &str, mark: char) -> Option<[u32; 2]> {
+    let date = text.split([' ', 'T']).next()?;
+    let numbers: Result<Vec<u32>, _> = date.split(mark).map(str::parse).collect();
+    match numbers.ok()?[..] {
+        [first, second, _] => Some([first, second]),
+        _ => None,
+    }
+}
+
+/// Without what would end a comment.
+fn one_line(value: &str) -> String {
+    value.chars().filter(|letter| !letter.is_control()).take(24).collect()
 }
 
 fn line(text: &mut String, quantity: &str, source: &str, is_guess: bool) {

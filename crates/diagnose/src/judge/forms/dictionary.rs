@@ -97,7 +97,12 @@ impl Candidate {
 pub(crate) fn candidates(values: &[Values]) -> Vec<Candidate> {
     let mut all = Vec::new();
     for (variable, of) in values.iter().enumerate() {
+        // An offset is over no variable: one of each kind that acts is all there is.
+        let again = values[..variable].iter().any(|before| before.acts == of.acts);
         for forms in forms_of(of) {
+            if again && forms == [Form::Offset] {
+                continue;
+            }
             let ln_prior = -(forms.len() as f64).ln();
             let one = |form| Candidate { form, variable, other: variable, ln_prior };
             all.extend(forms.into_iter().map(one));
