@@ -418,6 +418,12 @@ const WORDS: &[Row] = &[
         Certainty::OurChoice("The best two; `diagnosis.json` has the rest."),
     ),
     (
+        "TOLD_APART",
+        "standard deviations",
+        "distance that the second measurement brings about at least",
+        Certainty::OurChoice("Below it two effects are of one class."),
+    ),
+    (
         "PROBABLE",
         "",
         "probability below which no cause is told as one",

@@ -255,14 +255,13 @@ fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
 }
 
 fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) -> Vec<f64> {
-    let weighed = noise.weighed(&gaps.total);
     let mut sums = search.sums(1);
     let mut values = vec![vec![0.0]; search.series().len()];
-    for segment in 0..gaps.total.len() {
+    for (segment, weighed) in noise.weighed(&gaps.total).into_iter().enumerate() {
         for (values, series) in values.iter_mut().zip(search.series()) {
             values[0] = match series {
                 Series::FuelFlow => gaps.total[segment],
-                Series::WithinFlights => weighed[segment],
+                Series::WithinFlights => weighed,
                 Series::Engine(engine) => gaps.apart[*engine][segment],
             };
         }

@@ -130,7 +130,9 @@ impl<'a> Noise<'a> {
         for regions in regions.chunks(TOGETHER) {
             let mut steps = Mat::<f64>::zeros(gap.len(), regions.len());
             for (column, region) in regions.iter().enumerate() {
-                region.iter().for_each(|&segment| steps[(segment, column)] = 1.0);
+                for &segment in region {
+                    steps[(segment, column)] = 1.0;
+                }
             }
             self.weigh(&mut steps);
             found.extend(regions.iter().enumerate().map(|(column, region)| {
