@@ -9,14 +9,16 @@
 #     release/build.sh wheel               # cruisefit-VERSION-cp310-abi3-….whl
 #     release/build.sh --check             # what is missing on this machine; nothing is built
 #     release/build.sh --tag               # also demands that CHANGELOG.md has the version and git a tag of it
+#     STD_FROM_SOURCE=1 release/build.sh linux windows
+#                                          # where the targets cannot be fetched: the standard library is built from source, by a
+#                                          # nightly toolchain (NIGHTLY, as `nightly`) with its component rust-src
 #
 # Needs rustup's targets x86_64-unknown-linux-musl and x86_64-pc-windows-gnu, musl-gcc (Debian: musl-tools),
 # x86_64-w64-mingw32-gcc (Debian: gcc-mingw-w64-x86-64), maturin 1.9.4 or later, python3. A part whose tools are missing
 # is refused before anything is built. RELEASE_PROFILE=dev builds faster, for a trial of this script.
 #
 # Tested (release/test.sh): archives have the same bytes twice; a machine without the tools is told what it lacks. Measured:
-# the part `static`, built twice in different folders, has the same bytes, and runs in an empty root. A Windows binary (with a
-# standard library built from source, not by this script) runs the demo and `adapt` under Wine.
+# the part `static`, built twice in different folders, has the same bytes.
 #
 # Same bytes: times are those of the commit (SOURCE_DATE_EPOCH), paths of this machine are mapped away, archives have
 # neither owners nor times nor an order of their own.
@@ -37,10 +39,24 @@ export CFLAGS="-ffile-prefix-map=$PWD=/cruisefit -ffile-prefix-map=$registry=/ca
 
 fail() { printf 'release: %s\n' "$*" >&2; exit 2; }
 
+# The toolchain of cross-built parts, and what it has to build beside the program.
+nightly=${NIGHTLY:-nightly}
+cross=(cargo)
+library=()
+if [ -n "${STD_FROM_SOURCE:-}" ]; then
+  cross=(cargo "+$nightly")
+  library=(-Z build-std=std,panic_abort)
+  RUSTFLAGS="--remap-path-prefix=$(rustc "+$nightly" --print sysroot)=/rust $RUSTFLAGS"
+fi
+
 # One line for each tool that is missing, with what brings it.
 missing_for() {
   local triple=$1 compiler=$2 package=$3
   command -v "$compiler" >/dev/null 2>&1 || echo "$compiler (apt-get install $package)"
+  if [ -n "${STD_FROM_SOURCE:-}" ]; then
+    cargo "+$nightly" --version >/dev/null 2>&1 || echo "the toolchain $nightly (rustup toolchain install $nightly -c rust-src)"
+    return
+  fi
   [ -d "$(rustc --print sysroot 2>/dev/null)/lib/rustlib/$triple" ] ||
     echo "the Rust target $triple (rustup target add $triple)"
 }
@@ -75,7 +91,7 @@ pack() {
 
 build() {
   local triple=$1 binary=$2 archive=$3
-  cargo build --locked --profile "$profile" --package cruisefit --target "$triple"
+  "${cross[@]}" build "${library[@]}" --locked --profile "$profile" --package cruisefit --target "$triple"
   pack "$out/$archive" "$target/$triple/$folder/$binary"
 }
 
@@ -111,6 +127,14 @@ mkdir -p "$out"
 for part in "${parts[@]}"; do
   case "$part" in
     linux)
+      if [ -n "${STD_FROM_SOURCE:-}" ]; then
+        # What a fetched target brings: the C library's start files come from musl-gcc, the unwinder from the compiler.
+        unwinder=$target/unwinder
+        mkdir -p "$unwinder"
+        cp "$(cc -print-file-name=libgcc_eh.a)" "$unwinder/libunwind.a"
+        linking=" -C linker=musl-gcc -C link-self-contained=no -L native=$PWD/$unwinder"
+      fi
+      RUSTFLAGS="$RUSTFLAGS${linking:-}" \
       CC_x86_64_unknown_linux_musl=musl-gcc \
       build x86_64-unknown-linux-musl cruisefit "cruisefit-$version-x86_64-linux-musl.tar.gz"
       ;;
