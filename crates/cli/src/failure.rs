@@ -49,7 +49,7 @@ pub(crate) enum Failure {
     /// No report among the inputs.
     #[error("no cruise report in {inputs}{skipped}")]
     #[diagnostic(help(
-        "reports end in .txt, .rpt or .gz; recordings of another layout need --mapping"
+        "reports end in .txt, .rpt or .gz; with --mapping, recordings in .csv, .gz, .zst, .parquet, .arrow, .feather too"
     ))]
     NoReports {
         /// The value given.

@@ -14,7 +14,8 @@ fn steps(diagnosis: &TailDiagnosis) -> Vec<(String, f64, &'static str)> {
     let gap = &diagnosis.gap;
     let mut steps = vec![("gap".to_owned(), gap.rms_percent, "more4")];
     let first = diagnosis.causes.iter().find_map(|cause| Some((cause, cause.rms_after_percent?)));
-    steps.extend(first.map(|(cause, left)| (format!("without {}", cause.effect), left, "less5")));
+    steps
+        .extend(first.map(|(cause, left)| (format!("with {} added", cause.effect), left, "less5")));
     steps.push(("noise of the sensors".to_owned(), gap.noise_floor_rms_percent, "even"));
     let floors = [
         ("noise of like segments", gap.floor_by_replicates_rms_percent),
