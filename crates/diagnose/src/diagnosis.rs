@@ -266,10 +266,7 @@ fn conclude(
     };
     let verdict = verdict(&findings, notes);
     let found_forms = match &verdict {
-        Verdict::OutsideLibrary(_) => {
-            let variables = &outside.leading[..outside.leading.len().min(FORM_VARIABLES)];
-            forms(system, &analysis.scorer, variables, scale, options.seed)
-        }
+        Verdict::OutsideLibrary(_) => forms_of(problem, analysis, &outside, scale, options.seed),
         _ => vec![],
     };
     Ok(Diagnosis {
@@ -289,6 +286,18 @@ fn conclude(
         outliers: vec![],
         notes: vec![],
     })
+}
+
+/// The forms that the leading variables of a cause outside the library may have.
+fn forms_of(
+    problem: Problem<'_>,
+    analysis: &Analysis,
+    outside: &Outside,
+    noise_scale: f64,
+    seed: u64,
+) -> Vec<FoundForm> {
+    let variables = &outside.leading[..outside.leading.len().min(FORM_VARIABLES)];
+    forms(problem.system, &analysis.scorer, variables, noise_scale, seed)
 }
 
 /// Adds the two estimates of the noise floor that need no sensor's standard deviation.

@@ -8,8 +8,8 @@ use flight::effect::{EffectGroup, EffectId};
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_words::{
-    acts_on_words, advice, distances_words, form_words, joined, measurement_words, region_words,
-    told_size, variable_words,
+    acts_on_words, advice, are_few, distances_words, form_words, joined, measurement_words,
+    others_of_class, region_words, told_size, variable_words,
 };
 use crate::summary::counted;
 
@@ -216,9 +216,8 @@ fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         return table_off(diagnosis, found);
     }
     let open = found.probability < PROBABLE;
-    let others: Vec<EffectId> =
-        found.class.iter().copied().filter(|id| !found.effects.contains(id)).collect();
-    let few = !others.is_empty() && others.len() <= OTHERS_TOLD;
+    let others = others_of_class(found);
+    let few = are_few(&others);
     let mut lines = Vec::new();
     for (place, id) in found.effects.iter().enumerate() {
         let what = effect_told(diagnosis, *id);

@@ -99,6 +99,16 @@ fn table_words(found: &Found) -> String {
     words
 }
 
+/// The other effects of a verdict's class, which its flights cannot tell from those that it names.
+pub fn others_of_class(found: &Found) -> Vec<EffectId> {
+    found.class.iter().copied().filter(|id| !found.effects.contains(id)).collect()
+}
+
+/// Whether so many others are named in the sentence of the cause itself: a longer list hides it.
+pub fn are_few(others: &[EffectId]) -> bool {
+    (1..=3).contains(&others.len())
+}
+
 /// The size of an effect that is named, with its 95 % interval: as it was found together with the other effects of the verdict,
 /// else alone.
 pub fn told_size(diagnosis: &Diagnosis, id: EffectId) -> Option<Magnitude> {

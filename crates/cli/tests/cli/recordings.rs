@@ -146,7 +146,8 @@ fn arrow_is_read_as_the_text_it_was_made_of() {
         ["14_none.arrow", "14_lz4.arrow", "14_zstd.arrow", "14_stream.arrows", "14_views.arrow"]
     {
         assert_eq!(read(&layout(name)), expected, "{name}");
-        mapping_of(&layout(name), &folder.path().join("first.ron"));
+        // Columns that are not used are listed, and not every file has the same.
+        mapping_of(&layout(name), &folder.path().join(format!("{name}.ron")));
     }
     // A column that is not read is named where it is asked for; a file that breaks off says so.
     let lists = folder.path().join("lists.ron");

@@ -6,7 +6,8 @@ use diagnose::{Diagnosis, Magnitude, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_words::{
-    acts_on_words, advice, form_words, region_words, told_size, variable_words,
+    acts_on_words, advice, are_few, form_words, others_of_class, region_words, told_size,
+    variable_words,
 };
 
 use super::Tail;
@@ -74,6 +75,10 @@ fn what(diagnosis: &Diagnosis) -> Markup {
                 " " span.id { "(" (id) ")" }
                 @if let Some((_, words)) = size { ": " (words) }
             }
+            @let others = others_of_class(found);
+            @if are_few(&others) {
+                @for id in others { ", or " (effect(diagnosis, id)) }
+            }
             "."
         },
     }
@@ -85,13 +90,16 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
     html! {
         @match &diagnosis.verdict {
             Verdict::Effects(found) => {
-                "Probability " (format!("{:.2}", found.probability))
+                @let others = others_of_class(found);
+                @let few = are_few(&others);
+                "Probability " (format!("{:.2}", found.probability)) @if few { " of the first" }
                 @if found.probability < 0.5 { ": no cause stands out, do not act on it" }
                 ". "
-                @let others: Vec<_> = found.class.iter().filter(|id| !found.effects.contains(id)).collect();
-                @if !others.is_empty() {
+                @if few {
+                    "These flights cannot tell them apart: which is likelier rests on what is usual. "
+                } @else if !others.is_empty() {
                     "These flights cannot tell it from: "
-                    @for (place, id) in others.iter().enumerate() { @if place > 0 { "; " } (effect(diagnosis, **id)) }
+                    @for (place, id) in others.iter().enumerate() { @if place > 0 { "; " } (effect(diagnosis, *id)) }
                     ". "
                 }
             }

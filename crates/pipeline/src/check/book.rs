@@ -20,13 +20,8 @@ const LOWEST_CRUISE_LIFT_COEFFICIENT: f64 = 0.22;
 /// What the segments of a tail say against the table of its book.
 #[must_use]
 pub fn against_book(tail: &str, evaluated: &[Option<Evaluated>]) -> Vec<DataFinding> {
-    // Of the book's flow: errors of predictions are shares of what was recorded, and a flow that is halved would be −100 %.
-    let errors: Vec<f64> = evaluated
-        .iter()
-        .flatten()
-        .filter_map(|segment| segment.error_percent)
-        .map(|error| error / (1.0 - error / 100.0))
-        .collect();
+    let errors: Vec<f64> =
+        evaluated.iter().flatten().filter_map(|segment| segment.error_percent).collect();
     let lift = mean(evaluated.iter().flatten().map(|segment| segment.lift_coefficient));
     [deviation(tail, &errors, lift), outside(tail, errors.len(), evaluated.len(), lift)]
         .into_iter()
@@ -35,7 +30,9 @@ pub fn against_book(tail: &str, evaluated: &[Option<Evaluated>]) -> Vec<DataFind
 }
 
 fn deviation(tail: &str, errors: &[f64], lift: Option<f64>) -> Option<DataFinding> {
-    let percent = mean(errors.iter().copied())?;
+    // Errors of predictions are shares of what was recorded, which no single segment makes large; the book is the whole here, or
+    // a flow that is halved would be −100 %.
+    let percent = 100.0 * (1.0 / (1.0 - mean(errors.iter().copied())? / 100.0) - 1.0);
     if percent.abs() <= PLAUSIBLE_PERCENT {
         return None;
     }
