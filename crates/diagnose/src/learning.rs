@@ -10,3 +10,6 @@ mod posterior;
 mod rows;
 mod sums;
 mod unseen;
+
+#[cfg(test)]
+mod tests;

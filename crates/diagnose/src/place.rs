@@ -8,3 +8,4 @@ pub(crate) mod members;
 mod null;
 pub(crate) mod regions;
 pub(crate) mod segment_gaps;
+mod told;

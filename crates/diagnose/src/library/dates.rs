@@ -327,6 +327,27 @@ mod tests {
         assert_eq!(lead(grid, EffectId::AirframeHistory, &[120.5, 700.5]), [120.5, 700.5]);
     }
 
+    /// A deterioration with a step back is a history: where a step has been found to the flight, the history that falls there has
+    /// too, and the other has not.
+    #[test]
+    fn a_history_is_tried_as_closely_as_a_step() {
+        let mut grid = DateGrid::coarse(&days(1000), &[], None);
+        let step = |grid: &DateGrid| {
+            let tried = grid.hidden(EffectId::StepChange).iter();
+            let on_drag = tried.filter(|hidden| {
+                matches!(hidden, HiddenParameter::Step { target: StepTarget::Drag, .. })
+            });
+            let off = |hidden: &HiddenParameter| (falls(hidden)[0] - 616.5).abs();
+            *on_drag.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
+        };
+        while let Some(closer) = grid.closer(EffectId::StepChange, step(&grid)) {
+            grid = closer;
+        }
+        let finds = |id| grid.hidden(id).iter().any(|hidden| falls(hidden) == [616.5]);
+        assert!(finds(EffectId::AirframeHistory));
+        assert!(!finds(EffectId::EngineHistory));
+    }
+
     #[test]
     fn a_known_event_is_tried_at_its_very_instant() {
         let event_s = 17.2 * DAY_S;

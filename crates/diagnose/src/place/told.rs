@@ -1,0 +1,165 @@
+//! What is told of a region: its engine, mean, interval and share of the gap.
+
+use crate::math::bootstrap::interval_95;
+use crate::math::random::RandomStream;
+use crate::output::Slice;
+use crate::output::region::Region;
+use crate::place::binned_variable::BinnedVariable;
+use crate::place::regions::{BinnedRegion, Series};
+use crate::search::system::WhitenedSystem;
+
+/// Stream of random numbers: resamples of flights behind intervals.
+const INTERVAL_STREAM: u64 = 2;
+
+/// The gap, segment by segment, as the search sees and changes it.
+#[derive(Clone, Debug)]
+pub(crate) struct Gaps {
+    /// Of fuel flow.
+    pub(crate) total: Vec<f64>,
+    /// Of each engine, less the mean of all engines.
+    pub(crate) apart: Vec<Vec<f64>>,
+}
+
+/// What describes a region.
+pub(crate) struct Told<'a> {
+    pub(crate) system: &'a WhitenedSystem<'a>,
+    pub(crate) places: &'a [BinnedVariable],
+    pub(crate) gaps: &'a Gaps,
+    pub(crate) variances: &'a [f64],
+}
+
+impl Told<'_> {
+    pub(crate) fn flights_of(&self, members: &[usize]) -> usize {
+        self.by_flight(members, |_| 1.0).len()
+    }
+
+    /// Sums and counts of the flights that have segments in a place.
+    fn by_flight(&self, members: &[usize], value: impl Fn(usize) -> f64) -> Vec<(f64, f64)> {
+        let mut sums = Vec::new();
+        let mut members = members.iter().copied().peekable();
+        for flight in &self.system.data.flights {
+            let (mut sum, mut count) = (0.0, 0.0);
+            while let Some(segment) = members.next_if(|segment| *segment < flight.segments.end) {
+                sum += value(segment);
+                count += 1.0;
+            }
+            if count > 0.0 {
+                sums.push((sum, count));
+            }
+        }
+        sums
+    }
+
+    /// The engine that a region is reported for. Two engines share one series (their contrast), so the one whose own gap is
+    /// larger is named.
+    fn engine(&self, candidate: &BinnedRegion, members: &[usize]) -> Option<usize> {
+        let Series::Engine(engine) = candidate.series else { return None };
+        if self.gaps.apart.len() != 2 {
+            return Some(engine);
+        }
+        let size = |engine| members.iter().map(|&k| self.value(Some(engine), k)).sum::<f64>().abs();
+        Some(usize::from(size(1) > size(0)))
+    }
+
+    fn value(&self, engine: Option<usize>, segment: usize) -> f64 {
+        self.gaps.value(engine, segment)
+    }
+
+    pub(crate) fn mean(&self, candidate: &BinnedRegion, members: &[usize]) -> f64 {
+        let engine = self.engine(candidate, members);
+        members.iter().map(|&k| self.value(engine, k)).sum::<f64>() / members.len() as f64
+    }
+
+    pub(crate) fn slice(
+        &self,
+        candidate: &BinnedRegion,
+        members: &[usize],
+        p_value: f64,
+        seed: u64,
+    ) -> Slice {
+        let engine = self.engine(candidate, members);
+        let by_flight = self.by_flight(members, |segment| self.value(engine, segment));
+        let conditions = candidate.ranges.iter().flatten();
+        #[expect(clippy::cast_possible_truncation, reason = "four engines at most")]
+        let region = Region {
+            engine: engine.map(|engine| (engine + 1) as u8),
+            conditions: conditions
+                .map(|&(place, low, high)| self.places[place].condition(low, high))
+                .collect(),
+        };
+        Slice {
+            region,
+            segments: members.len(),
+            mean_gap_percent: 100.0 * self.mean(candidate, members),
+            ci95: bootstrap_mean(&by_flight, seed).map(|end| 100.0 * end),
+            share_of_gap: self.share(engine, members),
+            p_value,
+        }
+    }
+
+    /// Share of the explainable gap; an engine's is what it has in it. 0 where there is no more than noise.
+    ///
+    /// ```text
+    /// Σ_place (y² − σ²)/Σ (y² − σ²);   of engine k of n  Σ_place (y·y_k − σ²)/n / Σ (y² − σ²)         [diagnosis.28]
+    /// ```
+    fn share(&self, engine: Option<usize>, members: &[usize]) -> f64 {
+        self.gaps.share(engine, members, self.variances)
+    }
+}
+
+impl Gaps {
+    /// Of fuel flow, or of an engine, at a segment.
+    fn value(&self, engine: Option<usize>, segment: usize) -> f64 {
+        self.total[segment] + engine.map_or(0.0, |engine| self.apart[engine][segment])
+    }
+
+    /// Share of the explainable gap.
+    fn share(&self, engine: Option<usize>, members: &[usize], variances: &[f64]) -> f64 {
+        let of = |segment: usize, engine: Option<usize>| {
+            self.total[segment] * self.value(engine, segment) - variances[segment]
+        };
+        let whole: f64 = (0..self.total.len()).map(|segment| of(segment, None)).sum();
+        let inside: f64 = members.iter().map(|&segment| of(segment, engine)).sum();
+        let engines = engine.map_or(1.0, |_| self.apart.len() as f64);
+        if whole > 0.0 { inside / engines / whole } else { 0.0 }
+    }
+}
+
+/// 95 % interval of a mean, whole flights drawn with replacement.
+fn bootstrap_mean(by_flight: &[(f64, f64)], seed: u64) -> [f64; 2] {
+    let mut stream = RandomStream::new(seed, INTERVAL_STREAM);
+    interval_95(by_flight, &mut stream, |sum, count| sum / count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: 9 and 1 of 10⁻⁴, each with noise of 10⁻⁴ in it, are 8 and 0 of 8: all of it lies in the first segment. Of two
+    /// engines the first has 3·5 − 1 = 14 there and the second 3·1 − 1 = 2, each half: 14/16 and 2/16 of what both make.
+    #[test]
+    fn share_by_hand() {
+        let gaps = Gaps { total: vec![0.03, 0.01], apart: vec![vec![0.02, 0.0], vec![-0.02, 0.0]] };
+        let variances = [1e-4; 2];
+        let share = |engine, members: &[usize]| gaps.share(engine, members, &variances);
+        for (found, expected) in [
+            (share(None, &[0]), 1.0),
+            (share(None, &[1]), 0.0),
+            (share(Some(0), &[0]), 14.0 / 16.0),
+            (share(Some(1), &[0]), 2.0 / 16.0),
+        ] {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+        // Nothing but noise has no shares.
+        assert!(gaps.share(None, &[0], &[1.0; 2]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn bootstrap_of_many_equal_flights() {
+        // 400 flights whose means are ±1 alternately: standard error 1/√400 = 0.05, interval ±0.098.
+        let flights: Vec<(f64, f64)> =
+            (0..400).map(|k| (if k % 2 == 0 { 10.0 } else { -10.0 }, 10.0)).collect();
+        let [low, high] = bootstrap_mean(&flights, 3);
+        assert!((low + 0.098).abs() < 0.012 && (high - 0.098).abs() < 0.012, "{low} {high}");
+    }
+}
