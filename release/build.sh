@@ -18,7 +18,8 @@
 # is refused before anything is built. RELEASE_PROFILE=dev builds faster, for a trial of this script.
 #
 # Tested (release/test.sh): archives have the same bytes twice; a machine without the tools is told what it lacks. Measured:
-# the part `static`, built twice in different folders, has the same bytes.
+# the part `static`, built twice in different folders, has the same bytes; the part `linux` with the library from source is
+# one static file, which runs the demo in an empty root.
 #
 # Same bytes: times are those of the commit (SOURCE_DATE_EPOCH), paths of this machine are mapped away, archives have
 # neither owners nor times nor an order of their own.
@@ -128,11 +129,16 @@ for part in "${parts[@]}"; do
   case "$part" in
     linux)
       if [ -n "${STD_FROM_SOURCE:-}" ]; then
-        # What a fetched target brings: the C library's start files come from musl-gcc, the unwinder from the compiler.
+        # What a fetched target brings: the C library's start files come from musl-gcc, the unwinder from the compiler. That
+        # one may ask a newer C library of GNU where frames are; here nobody knows, and a panic has no backtrace.
         unwinder=$target/unwinder
         mkdir -p "$unwinder"
         cp "$(cc -print-file-name=libgcc_eh.a)" "$unwinder/libunwind.a"
-        linking=" -C linker=musl-gcc -C link-self-contained=no -L native=$PWD/$unwinder"
+        echo 'int _dl_find_object(void *address, void *found) { return -1; }' |
+          musl-gcc -c -x c - -o "$unwinder/frames.o"
+        ar qD "$unwinder/libunwind.a" "$unwinder/frames.o"
+        # Of a static program at a place of its own choice (PIE) musl-gcc may not know how it is linked.
+        linking=" -C linker=musl-gcc -C link-self-contained=no -C relocation-model=static -L native=$PWD/$unwinder"
       fi
       RUSTFLAGS="$RUSTFLAGS${linking:-}" \
       CC_x86_64_unknown_linux_musl=musl-gcc \
