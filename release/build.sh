@@ -18,9 +18,8 @@
 # is refused before anything is built. RELEASE_PROFILE=dev builds faster, for a trial of this script.
 #
 # Tested (release/test.sh): archives have the same bytes twice; a machine without the tools is told what it lacks. Measured:
-# the part `static`, built twice in different folders, has the same bytes; the parts `linux`
-# and `windows` with the library from source run the demo as the README shows it, the one in an empty root, the other under
-# Wine.
+# the parts `static` and `linux`, built twice in different folders, have the same bytes; `linux` and `windows` with the library
+# from source run the demo as the README shows it, the one in an empty root, the other under Wine.
 #
 # Same bytes: times are those of the commit (SOURCE_DATE_EPOCH), paths of this machine are mapped away, archives have
 # neither owners nor times nor an order of their own.
