@@ -47,7 +47,8 @@ library=()
 if [ -n "${STD_FROM_SOURCE:-}" ]; then
   cross=(cargo "+$nightly")
   library=(-Z build-std=std,panic_abort)
-  RUSTFLAGS="--remap-path-prefix=$(rustc "+$nightly" --print sysroot)=/rust $RUSTFLAGS"
+  # Where there is no such toolchain, that is said with everything else that is missing.
+  RUSTFLAGS="--remap-path-prefix=$(rustc "+$nightly" --print sysroot 2>/dev/null || true)=/rust $RUSTFLAGS"
 fi
 
 # One line for each tool that is missing, with what brings it.
@@ -131,14 +132,14 @@ for part in "${parts[@]}"; do
       if [ -n "${STD_FROM_SOURCE:-}" ]; then
         # What a fetched target brings: the C library's start files come from musl-gcc, the unwinder from the compiler. That
         # one may ask a newer C library of GNU where frames are; here nobody knows, and a panic has no backtrace.
-        unwinder=$target/unwinder
-        mkdir -p "$unwinder"
+        mkdir -p "$target/unwinder"
+        unwinder=$(cd "$target/unwinder" && pwd)
         cp "$(cc -print-file-name=libgcc_eh.a)" "$unwinder/libunwind.a"
         echo 'int _dl_find_object(void *address, void *found) { return -1; }' |
           musl-gcc -c -x c - -o "$unwinder/frames.o"
         ar qD "$unwinder/libunwind.a" "$unwinder/frames.o"
         # Of a static program at a place of its own choice (PIE) musl-gcc may not know how it is linked.
-        linking=" -C linker=musl-gcc -C link-self-contained=no -C relocation-model=static -L native=$PWD/$unwinder"
+        linking=" -C linker=musl-gcc -C link-self-contained=no -C relocation-model=static -L native=$unwinder"
       fi
       RUSTFLAGS="$RUSTFLAGS${linking:-}" \
       CC_x86_64_unknown_linux_musl=musl-gcc \

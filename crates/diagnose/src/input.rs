@@ -52,7 +52,7 @@ pub struct Options {
     pub without: Vec<EffectId>,
     /// Leave closure out: choice and fit on folds cost as much again as the search.
     pub skip_closure: bool,
-    /// Leave out where the gap lies.
+    /// Leave out where the gap lies; the verdict then does not know of a gap at one engine.
     pub skip_where: bool,
     /// Seed of the draws of noise and the resamples of flights behind intervals and `where`.
     pub seed: u64,

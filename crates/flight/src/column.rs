@@ -6,6 +6,7 @@ use units::convert::{
 };
 
 use crate::MAXIMUM_ENGINES;
+use crate::header::MissingColumn;
 
 /// Makes the enum, the list and everything that is known of a column from one list.
 macro_rules! columns {
@@ -310,6 +311,18 @@ impl Column {
     #[must_use]
     pub const fn is_optional(self) -> bool {
         self.entry().is_optional
+    }
+
+    /// What a header declares missing where the column is not recorded; `None` where it cannot be missing.
+    #[must_use]
+    pub const fn missing(self) -> Option<MissingColumn> {
+        match self {
+            Self::StaticAirTemperature => Some(MissingColumn::StaticAirTemperature),
+            Self::N2(_) => Some(MissingColumn::N2),
+            Self::Roll => Some(MissingColumn::Roll),
+            Self::Drift => Some(MissingColumn::Drift),
+            _ => None,
+        }
     }
 
     /// Whether its values are angles around the circle, of which 359° and 1° have the mean 0°.

@@ -104,9 +104,12 @@ pub fn others_of_class(found: &Found) -> Vec<EffectId> {
     found.class.iter().copied().filter(|id| !found.effects.contains(id)).collect()
 }
 
-/// Whether so many others are named in the sentence of the cause itself: a longer list hides it.
+/// Other effects that are named in the sentence of the cause itself, at most. Our choice: a longer list hides it.
+const FEW_OTHERS: usize = 3;
+
+/// Whether so many others are named in the sentence of the cause itself.
 pub fn are_few(others: &[EffectId]) -> bool {
-    (1..=3).contains(&others.len())
+    (1..=FEW_OTHERS).contains(&others.len())
 }
 
 /// The size of an effect that is named, with its 95 % interval: as it was found together with the other effects of the verdict,

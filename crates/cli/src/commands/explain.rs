@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use flight::MissingColumn;
 use flight::column::Column;
 use flight::effect::{EffectId, EffectSign, HiddenParameter};
 use segmenter::TrimCriteria;
@@ -142,10 +141,7 @@ fn column(column: Column) -> String {
         column.range().words,
         if column.is_optional() {
             "no"
-        } else if MissingColumn::ALL
-            .iter()
-            .any(|missing| column.name().split('(').next() == Some(missing.name()))
-        {
+        } else if column.missing().is_some() {
             "yes; MISSING states that it is not recorded"
         } else {
             "yes"

@@ -59,7 +59,7 @@ impl FoundPlaces {
 /// T = |Σ_{i in place} (y_i − ȳ)| / sd0,  sd0 over draws of noise; /1.15 with a second condition    [diagnosis.25]
 /// ```
 ///
-/// Of places of one condition also with u = C⁻¹(y − ŷ) for y − ȳ, C the noise within and between flights, ŷ the level that
+/// The same with u = C⁻¹(y − ŷ) for y − ȳ, C the noise within and between flights, ŷ the level that
 /// fits best: the score test of a step over the place, which sees what differs within flights.
 ///
 /// # Errors of method
@@ -153,9 +153,8 @@ fn null_of(
                 }
             }
         });
-        let mut weighed = drawn[0].clone();
-        noise.weigh(&mut weighed);
-        drawn[1] = weighed;
+        drawn[1] = drawn[0].clone();
+        noise.weigh(&mut drawn[1]);
         let mut sums = search.sums(GROUP);
         let mut values = vec![vec![0.0; GROUP]; drawn.len()];
         for segment in 0..segments {

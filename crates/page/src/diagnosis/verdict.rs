@@ -96,7 +96,7 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
                 @if found.probability < 0.5 { ": no cause stands out, do not act on it" }
                 ". "
                 @if few {
-                    "These flights cannot tell them apart: which is likelier rests on what is usual. "
+                    "These flights cannot tell them apart. "
                 } @else if !others.is_empty() {
                     "These flights cannot tell it from: "
                     @for (place, id) in others.iter().enumerate() { @if place > 0 { "; " } (effect(diagnosis, *id)) }

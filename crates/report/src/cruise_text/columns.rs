@@ -199,14 +199,7 @@ fn refuse_found(line: Line<'_>, word: Option<Word<'_>>, kind: RefusalKind) -> Re
 }
 
 fn is_declared_missing(column: Column, header: &ReportHeader) -> bool {
-    let missing = match column {
-        Column::StaticAirTemperature => MissingColumn::StaticAirTemperature,
-        Column::N2(_) => MissingColumn::N2,
-        Column::Roll => MissingColumn::Roll,
-        Column::Drift => MissingColumn::Drift,
-        _ => return false,
-    };
-    header.missing.contains(&missing)
+    column.missing().is_some_and(|missing| header.missing.contains(&missing))
 }
 
 /// A column that the header declares missing is not used, and an assumption for a recorded one is not needed.

@@ -25,23 +25,19 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
         ORDINARY.iter().filter_map(|rule| columns.ordinary(rule, &mut quantities)).collect();
     columns.engines(&mut quantities);
     columns.air_data(&known, &mut quantities);
+    let (texts, time, mass) = (columns.texts(), columns.time(), columns.mass());
+    let left_over = columns.left_over(&quantities, &[&texts, &time, &quantities, &mass]);
     let mapping = format!(
         "// Made from the names and values of a recording. Lines with `// ?` are guesses.\n\
          (\n    format: 1,\n{separator}{decimal}{units_row}    bad_rows: LeaveRowOut,\n    out_of_range: LeaveRowOut,\n\
-         {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n    mass: {mass}\n{LEVEL_CRUISE})\n",
+         {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n{left_over}    mass: {mass}\n{LEVEL_CRUISE})\n",
         separator = match columns.form.separator {
             b',' => String::new(),
             other => format!("    separator: {:?},\n", char::from(other)),
         },
         decimal = if columns.decimal == ',' { "    decimal: ',',\n" } else { "" },
         units_row = if columns.units_row { "    units_row: true,\n" } else { "" },
-        texts = columns.texts(),
-        time = columns.time(),
-        mass = columns.mass(),
     );
-    let left_over = columns.left_over(&mapping);
-    let mapping =
-        mapping.replacen("    },\n    mass:", &format!("    }},\n{left_over}    mass:"), 1);
     let of_points = mapping.replace(LEVEL_CRUISE, AVERAGED_POINTS);
     Ok(if is_of_points(&of_points, &text) { of_points } else { mapping })
 }
@@ -356,6 +352,7 @@ impl Columns {
         let name = &self.names[column].sent;
         let date = self.names.iter().position(|name| name.is("date") || name.is("utcdate"));
         let sample = self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default();
+        let form = self.date_form(column);
         let with_zone = sample.ends_with('Z') || sample.contains('+');
         match sample.parse::<f64>() {
             Ok(number) if number > 1e17 => format!("Epoch(column: {name:?}, unit: \"ns\"),"),
@@ -367,17 +364,16 @@ impl Columns {
                 let mark = if with_zone { "" } else { "   // ?" };
                 format!("Timestamp(column: {name:?}, utc_offset: \"Z\"),{mark}")
             }
-            Err(_) if self.date_form(column).is_some() => format!(
-                "Timestamp(column: {name:?}, format: {:?}, utc_offset: \"Z\"),   // ?",
-                self.date_form(column).unwrap_or_default()
-            ),
-            Err(_) => match date {
-                Some(date) => format!(
+            Err(_) => match (form, date) {
+                (Some(form), _) => format!(
+                    "Timestamp(column: {name:?}, format: {form:?}, utc_offset: \"Z\"),   // ?"
+                ),
+                (None, Some(date)) => format!(
                     "Timestamp(column: {name:?}, date: {:?}, format: {:?}, utc_offset: \"Z\"),   // ?",
                     self.names[date].sent,
                     self.date_form(date).unwrap_or("%Y-%m-%d %H:%M:%S")
                 ),
-                None => format!(
+                (None, None) => format!(
                     "TimeOfDay(column: {name:?}, date: \"2000-01-01\", utc_offset: \"Z\"),   // ?"
                 ),
             },
@@ -400,18 +396,21 @@ impl Columns {
         })
     }
 
-    /// What no line of the mapping takes, with a value of each, and what is missing: as comments.
-    fn left_over(&self, mapping: &str) -> String {
+    /// Columns that no part of the mapping takes, with a value of each, and quantities that are missing: as comments.
+    fn left_over(&self, quantities: &str, parts: &[&str]) -> String {
         let mut text = String::new();
         let missing: Vec<&str> = ["ALT", "GSPD", "WF"]
             .into_iter()
-            .filter(|quantity| !mapping.contains(&format!("        \"{quantity}")))
+            .filter(|quantity| !quantities.contains(&format!("        \"{quantity}")))
             .collect();
         if !missing.is_empty() {
             let _ = writeln!(text, "    // No column found for: {}.", missing.join(", "));
         }
         let unused: Vec<String> = (0..self.names.len())
-            .filter(|&column| !mapping.contains(&format!("{:?}", self.names[column].sent)))
+            .filter(|&column| {
+                let name = format!("{:?}", self.names[column].sent);
+                !parts.iter().any(|part| part.contains(&name))
+            })
             .map(|column| {
                 let value = self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default();
                 format!("{:?} ({})", self.names[column].sent, one_line(value))
