@@ -405,15 +405,18 @@ pub(crate) struct ExportArgs {
     /// File to write [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// What to write
-    #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
-    pub(crate) format: ExportFormat,
+    /// What to write [default: csv; json where --json prints it]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<ExportFormat>,
     /// Mach number of OpenAP's drag polar [default: the mean one of the learnt flights, or the guide's middle]
     #[arg(long, value_name = "MACH")]
     pub(crate) mach: Option<f64>,
     /// The same as --format polynomial
     #[arg(long, conflicts_with = "format")]
     pub(crate) polynomial: bool,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// What `export` writes.
@@ -532,6 +535,9 @@ pub(crate) struct CompletionsArgs {
     /// Shell
     #[arg(value_enum)]
     pub(crate) shell: clap_complete::Shell,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `man`
@@ -540,6 +546,9 @@ pub(crate) struct ManArgs {
     /// Folder to write to
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
+    /// Document.
+    #[command(flatten)]
+    pub(crate) json: JsonFlag,
 }
 
 /// `golden`
@@ -550,11 +559,17 @@ pub(crate) enum GoldenCommand {
         /// Folder with golden.ron and expected files
         #[arg(required = true, value_name = "DIR")]
         folders: Vec<PathBuf>,
+        /// Document.
+        #[command(flatten)]
+        json: JsonFlag,
     },
     /// Run what DIR/golden.ron describes and write the result as the expected files
     Bless {
         /// Folder with golden.ron
         #[arg(required = true, value_name = "DIR")]
         folders: Vec<PathBuf>,
+        /// Document.
+        #[command(flatten)]
+        json: JsonFlag,
     },
 }

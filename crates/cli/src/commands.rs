@@ -42,7 +42,7 @@ use crate::reading::{Reading, Source};
 use crate::terminal;
 
 /// The result of a command that did something.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default)]
 pub(crate) struct Outcome {
     /// For standard output.
     pub(crate) text: String,
@@ -52,6 +52,20 @@ pub(crate) struct Outcome {
     pub(crate) json: Option<Vec<u8>>,
     /// The figures of the text by name and unit, for the document of a command that has no other.
     pub(crate) figures: serde_json::Value,
+    /// What the exit status tells beside refusals.
+    pub(crate) ending: Ending,
+}
+
+/// How a command ended that did what it was asked to.
+#[derive(Debug, Default)]
+pub(crate) enum Ending {
+    /// Nothing more to tell.
+    #[default]
+    Done,
+    /// A rule of `monitor --alert` fired.
+    Alerts,
+    /// What was checked did not pass.
+    NotPassed(Failure),
 }
 
 impl Outcome {

@@ -40,7 +40,7 @@ use tracing_subscriber::filter::{LevelFilter, Targets};
 use tracing_subscriber::layer::SubscriberExt;
 
 use args::{Cli, Command, JsonWanted};
-use commands::Outcome;
+use commands::{Ending, Outcome};
 use failure::{ALERTS_RAISED, DONE, Failure, NOTHING_DONE, SOME_REFUSED};
 use progress::Progress;
 use terminal::Terminal;
@@ -67,9 +67,9 @@ pub fn run() -> ExitCode {
     let wanted = cli.command.json_wanted();
     let result = threads::in_pool(cli.common.threads, || {
         json::check(wanted)?;
-        let (outcome, alerts) = run_command(&cli.command, progress)?;
+        let outcome = run_command(&cli.command, progress)?;
         json::deliver(wanted, &outcome)?;
-        Ok((outcome, alerts))
+        Ok(outcome)
     });
     files::standard_input::forget();
     let told = match (cli.common.quiet, cli.command.prints_results()) {
@@ -92,9 +92,8 @@ enum Told {
     RefusalsOnly,
 }
 
-/// The outcome of a command, and how many alerts it raised.
-fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize), Failure> {
-    let outcome = match command {
+fn run_command(command: &Command, progress: Progress) -> Result<Outcome, Failure> {
+    match command {
         Command::Init(arguments) => commands::init::run(arguments),
         Command::Guide(arguments) => commands::guide::run(arguments),
         Command::Adapt(arguments) => commands::adapt::run(arguments, progress),
@@ -108,7 +107,7 @@ fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize)
         Command::Predict(arguments) => commands::predict::run(arguments),
         Command::Evaluate(arguments) => commands::evaluate::run(arguments, progress),
         Command::Diagnose(arguments) => commands::diagnose::run(arguments, progress),
-        Command::Monitor(arguments) => return commands::monitor::run(arguments, progress),
+        Command::Monitor(arguments) => commands::monitor::run(arguments, progress),
         Command::Show(arguments) => commands::show::run(arguments),
         Command::Export(arguments) => commands::export::run(arguments),
         Command::Optimum(arguments) => commands::optimum::run(arguments),
@@ -121,8 +120,7 @@ fn run_command(command: &Command, progress: Progress) -> Result<(Outcome, usize)
         Command::Simulate(arguments) => commands::simulate::run(arguments, progress),
         Command::Trial(arguments) => commands::trial::run(arguments, progress),
         Command::Demo(arguments) => commands::demo::run(arguments, progress),
-    };
-    outcome.map(|outcome| (outcome, 0))
+    }
 }
 
 /// Events of the library on standard error: warnings at the end, grouped; with `-v` or `RUST_LOG` all as they come.
@@ -153,23 +151,22 @@ fn start_logging(common: &args::Common) -> Warnings {
 }
 
 /// Results to standard output, refusals and reasons to standard error; returns the exit status.
-fn print_result(result: Result<(Outcome, usize), Failure>, told: Told) -> u8 {
-    match result {
-        Ok((Outcome { text, refused, .. }, alerts)) => {
+fn print_result(result: Result<Outcome, Failure>, told: Told) -> u8 {
+    let failure = match result {
+        Ok(Outcome { text, refused, ending, .. }) => {
             if told == Told::All {
                 terminal::print(&text);
             }
             terminal::tell_refused(&refused);
-            match (refused.is_empty(), alerts) {
-                (true, 0) => DONE,
-                (false, 0) => SOME_REFUSED,
-                _ => ALERTS_RAISED,
+            match ending {
+                Ending::Done if refused.is_empty() => return DONE,
+                Ending::Done => return SOME_REFUSED,
+                Ending::Alerts => return ALERTS_RAISED,
+                Ending::NotPassed(failure) => failure,
             }
         }
-        Err(failure) => {
-            let shown = terminal::errors::shown(&failure, Terminal::of_run().err);
-            eprint!("{shown}");
-            NOTHING_DONE
-        }
-    }
+        Err(failure) => failure,
+    };
+    eprint!("{}", terminal::errors::shown(&failure, Terminal::of_run().err));
+    NOTHING_DONE
 }

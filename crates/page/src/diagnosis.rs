@@ -15,6 +15,7 @@ use crate::place::Detail;
 use crate::report::TAILS_ON_ONE_PAGE;
 
 mod causes;
+mod engines;
 mod figures;
 pub(crate) mod map;
 mod tables;

@@ -15,6 +15,11 @@ const MOST_POINTS: usize = 300;
 const ENGINES: [(Mark, &str); 4] =
     [(Mark::Disc, "before"), (Mark::Ring, "after"), (Mark::Disc, "after"), (Mark::Ring, "before")];
 
+/// How the marks of an engine look, numbered from 0.
+pub(crate) const fn engine_look(engine: usize) -> (Mark, &'static str) {
+    ENGINES[engine % ENGINES.len()]
+}
+
 /// Recorded and predicted specific range over gross mass.
 pub(crate) fn specific_range(view: &TailView, place: &Place<'_>) -> Markup {
     let shown = thinned(view.cruise.len(), MOST_POINTS.min(place.most_points));
@@ -97,11 +102,13 @@ pub(crate) fn engines(view: &TailView, place: &Place<'_>) -> Markup {
     let words: Vec<String> = (0..view.engines)
         .map(|engine| format!("engine {}: mean {} %", engine + 1, signed(Some(mean(engine)))))
         .collect();
-    let look = |engine: usize| ENGINES[engine % ENGINES.len()];
     let entries: Vec<(Key, &str, &str)> = words
         .iter()
         .enumerate()
-        .map(|(engine, words)| (Key::Mark(look(engine).0), look(engine).1, words.as_str()))
+        .map(|(engine, words)| {
+            let (mark, class) = engine_look(engine);
+            (Key::Mark(mark), class, words.as_str())
+        })
         .collect();
     let points = |engine: usize| -> Vec<(f64, f64)> {
         shown.iter().map(|k| (flights[*k].start_s, flights[*k].engines[engine])).collect()
@@ -115,7 +122,10 @@ pub(crate) fn engines(view: &TailView, place: &Place<'_>) -> Markup {
             (legend(&entries))
             (chart.draw(&html! {
                 (chart.horizontal(0.0, "zero"))
-                @for engine in 0..view.engines { (chart.marks(&points(engine), look(engine).0, look(engine).1)) }
+                @for engine in 0..view.engines {
+                    @let (mark, class) = engine_look(engine);
+                    (chart.marks(&points(engine), mark, class))
+                }
             }))
         }
     }

@@ -11,7 +11,7 @@ pub struct Tolerance {
 }
 
 /// A place where two texts differ.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Difference {
     /// Line from 1.
     pub line: usize,

@@ -66,6 +66,7 @@ pub fn read(bytes: &[u8]) -> Result<BTreeMap<String, Vec<SegmentGap>>, GapsTable
                 "" => Vec::new(),
                 _ => vec![row.number("gap_after_percent")?],
             },
+            engines_apart_percent: Vec::new(),
         };
         tails.entry(csv_cell::read(row.text("tail")?).into_owned()).or_default().push(segment);
     }

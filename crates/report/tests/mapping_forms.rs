@@ -232,6 +232,32 @@ fn bad_rows_cost_themselves() {
     );
 }
 
+/// A recording that is read while it is copied would count as a flight, and its whole version as a copy.
+#[test]
+fn a_recording_that_breaks_off_in_a_row_is_not_whole() {
+    let lenient = mapping(&[
+        ("format: 1,", "format: 1, bad_rows: LeaveRowOut,"),
+        ("Text(\"1\")", "Column(\"flt\")"),
+    ]);
+    let of = |flight: &str| {
+        let rows = plain() + "2024-03-01 10:03:00,37000,-56.5,0.78,447,450,2400,64880\n";
+        let rows = rows.lines().skip(1).map(|row| format!("{row},{flight}\n"));
+        rows.collect::<String>()
+    };
+    let whole = format!("{NAMES},flt\n{}{}", of("1"), of("2"));
+    assert_eq!(read(&lenient, &whole).len(), 2);
+    // Without its last line end it is whole all the same.
+    assert_eq!(read(&lenient, whole.trim_end()).len(), 2);
+    let cut = whole.trim_end().strip_suffix("450,2400,64880,2").unwrap();
+    let mut given = 0;
+    let mut source = report::mapping::Source::text(cut.as_bytes()).unwrap();
+    let refusal = lenient.each(&mut source, None, |_| given += 1).unwrap_err();
+    assert_eq!(refusal.kind.code(), "last-row-unfinished");
+    assert_eq!((refusal.line, given), (9, 1), "the flight before is given");
+    // With a line end it is a row that costs itself.
+    assert_eq!(read(&lenient, &format!("{cut}\n")).len(), 2);
+}
+
 #[test]
 fn decimal_commas_units_rows_and_encodings() {
     let rows = plain()

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::Command;
+use super::{Command, GoldenCommand};
 
 /// Options of every command.
 #[derive(Clone, Debug, Args)]
@@ -136,8 +136,11 @@ impl Command {
             Self::Trial(arguments) => arguments.json.into(),
             Self::Plot(arguments) => arguments.json.into(),
             Self::Demo(arguments) => arguments.json.into(),
-            Self::Export(_) | Self::Completions(_) | Self::Man(_) | Self::Golden(_) => {
-                JsonWanted::No
+            Self::Export(arguments) => arguments.json.into(),
+            Self::Completions(arguments) => arguments.json.into(),
+            Self::Man(arguments) => arguments.json.into(),
+            Self::Golden(GoldenCommand::Check { json, .. } | GoldenCommand::Bless { json, .. }) => {
+                (*json).into()
             }
         }
     }

@@ -1,11 +1,11 @@
 //! `cruisefit export`: a model's drag for other programs.
 
-use std::path::Path;
+use clap::ValueEnum;
 
 use crate::args::{ExportArgs, ExportFormat};
 use crate::columns;
 use crate::commands::Outcome;
-use crate::failure::Failure;
+use crate::failure::{Failure, show};
 use crate::files::write_atomically;
 use crate::models::read_model;
 use pipeline::{export, model_table};
@@ -25,35 +25,61 @@ pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
     let of_model =
         |error: &dyn std::fmt::Display| Failure::bad_file(&arguments.model, error.to_string());
     let output = arguments.output.as_deref();
-    let format = if arguments.polynomial { ExportFormat::Polynomial } else { arguments.format };
+    let format = format(arguments)?;
     if arguments.mach.is_some() && format != ExportFormat::Openap {
         return Err(Failure::BadArgument {
             argument: "--mach",
             reason: "only --format openap has one Mach number".to_owned(),
         });
     }
-    match format {
-        ExportFormat::Csv => columns::write(&model_table::table(&model), output)?,
+    let text = match format {
+        ExportFormat::Csv => {
+            columns::write(&model_table::table(&model), output)?;
+            None
+        }
         ExportFormat::Polynomial => {
             let polynomial = model_table::polynomial(&model).map_err(|error| of_model(&error))?;
             columns::write(&polynomial, output)?;
+            None
         }
         ExportFormat::Openap => {
             let polar = export::openap(&model, arguments.mach).map_err(|error| of_model(&error))?;
-            return text(polar.to_yaml(), output);
+            Some(polar.to_yaml())
         }
-        ExportFormat::Jsbsim => return text(export::jsbsim(&model), output),
-        ExportFormat::Json => {
-            return text(export::json(&model).map_err(|error| of_model(&error))?, output);
+        ExportFormat::Jsbsim => Some(export::jsbsim(&model)),
+        ExportFormat::Json => Some(export::json(&model).map_err(|error| of_model(&error))?),
+    };
+    match (output, text) {
+        (None, Some(text)) if format == ExportFormat::Json => {
+            Ok(Outcome::with_json(text.clone(), text))
+        }
+        (None, text) => Ok(Outcome::text(text.unwrap_or_default())),
+        (Some(path), text) => {
+            if let Some(text) = text {
+                write_atomically(path, text.as_bytes())?;
+            }
+            let name = format.to_possible_value().map(|value| value.get_name().to_owned());
+            Ok(Outcome {
+                figures: serde_json::json!({ "format": name, "written": [show(path)] }),
+                ..Outcome::default()
+            })
         }
     }
-    Ok(Outcome::default())
 }
 
-/// To a file, or to standard output.
-fn text(text: String, output: Option<&Path>) -> Result<Outcome, Failure> {
-    match output {
-        None => Ok(Outcome::text(text)),
-        Some(path) => write_atomically(path, text.as_bytes()).map(|()| Outcome::default()),
+/// The format that was asked for. With `--json` and no file the model itself is the document.
+fn format(arguments: &ExportArgs) -> Result<ExportFormat, Failure> {
+    let asked =
+        if arguments.polynomial { Some(ExportFormat::Polynomial) } else { arguments.format };
+    let on_standard_output = arguments.output.is_none() && arguments.json.json;
+    match (asked, on_standard_output) {
+        (None | Some(ExportFormat::Json), true) => Ok(ExportFormat::Json),
+        (Some(_), true) => Err(Failure::BadArgument {
+            argument: "--json",
+            reason:
+                "standard output has room for the document alone; give the table a file with -o"
+                    .to_owned(),
+        }),
+        (asked, false) => Ok(asked.unwrap_or(ExportFormat::Csv)),
     }
 }

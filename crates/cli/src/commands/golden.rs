@@ -3,15 +3,15 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::args::{AdaptArgs, GoldenCommand, InitArgs, JsonFlag, LawName, ModelArgs, ReportsArgs};
-use crate::commands::{Outcome, adapt, init};
+use crate::commands::{Ending, Outcome, adapt, init};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, read_text, write_atomically};
 use crate::models::read_model;
 use crate::progress::Progress;
-use pipeline::difference::{Tolerance, differences};
+use pipeline::difference::{Difference, Tolerance, differences};
 use pipeline::model_table;
 
 /// `golden.ron`: a run, and how exactly its results must be reproduced.
@@ -45,63 +45,82 @@ enum Law {
     },
 }
 
+/// A value out of tolerance, as the document of `golden check` has it.
+#[derive(Debug, Serialize)]
+struct OutOfTolerance {
+    file: String,
+    #[serde(flatten)]
+    difference: Difference,
+}
+
 /// Runs the command.
 ///
 /// # Errors
-/// A folder that cannot be run, or, for `check`, values out of tolerance.
+/// A folder that cannot be run.
 pub(crate) fn run(command: &GoldenCommand) -> Result<Outcome, Failure> {
     match command {
-        GoldenCommand::Check { folders } => check_all(folders),
-        GoldenCommand::Bless { folders } => bless_all(folders),
+        GoldenCommand::Check { folders, .. } => check_all(folders),
+        GoldenCommand::Bless { folders, .. } => bless_all(folders),
     }
 }
 
 fn check_all(folders: &[PathBuf]) -> Result<Outcome, Failure> {
     let mut text = String::new();
-    let mut count = 0;
+    let mut all = Vec::new();
     for folder in folders {
         let result = produce(folder)?;
-        let before = count;
-        for (name, found) in &result.files {
-            let path = folder.join("expected").join(name);
-            let expected = read_text(&path)?;
-            let (expected, found) = (without_checksum(&expected), without_checksum(found));
-            for difference in differences(&expected, &found, result.tolerances) {
-                count += 1;
-                let _ = writeln!(
-                    text,
-                    "{}:{}: value {}: expected {}, found {}",
-                    show(&path),
-                    difference.line,
-                    difference.token,
-                    difference.expected,
-                    difference.found
-                );
-            }
-        }
-        if count == before {
+        let found = check_one(folder, &result)?;
+        if found.is_empty() {
             let _ = writeln!(text, "{}: {} files as expected", show(folder), result.files.len());
         }
+        all.extend(found);
     }
-    if count > 0 {
-        print_now(&text);
-        return Err(Failure::GoldenDiffers { count });
+    for one in &all {
+        let Difference { line, token, expected, found } = &one.difference;
+        let _ = writeln!(
+            text,
+            "{}:{line}: value {token}: expected {expected}, found {found}",
+            one.file
+        );
     }
-    Ok(Outcome::text(text))
+    let figures = serde_json::json!({ "folders": folders.len(), "differences": all });
+    let ending = match all.len() {
+        0 => Ending::Done,
+        count => Ending::NotPassed(Failure::GoldenDiffers { count }),
+    };
+    Ok(Outcome { ending, ..Outcome::with_figures(text, figures) })
+}
+
+fn check_one(folder: &Path, result: &Produced) -> Result<Vec<OutOfTolerance>, Failure> {
+    let mut all = Vec::new();
+    for (name, found) in &result.files {
+        let path = folder.join("expected").join(name);
+        let expected = read_text(&path)?;
+        let (expected, found) = (without_checksum(&expected), without_checksum(found));
+        let found = differences(&expected, &found, result.tolerances);
+        all.extend(
+            found.into_iter().map(|difference| OutOfTolerance { file: show(&path), difference }),
+        );
+    }
+    Ok(all)
 }
 
 fn bless_all(folders: &[PathBuf]) -> Result<Outcome, Failure> {
     let mut text = String::new();
+    let mut written = Vec::new();
     for folder in folders {
         let result = produce(folder)?;
         let expected = folder.join("expected");
         make_folder(&expected)?;
         for (name, content) in &result.files {
-            write_atomically(&expected.join(name), content.as_bytes())?;
+            let path = expected.join(name);
+            write_atomically(&path, content.as_bytes())?;
+            written.push(show(&path));
         }
         let _ = writeln!(text, "{}: {} files written", show(&expected), result.files.len());
     }
-    Ok(Outcome::text(text))
+    let figures = serde_json::json!({ "folders": folders.len(), "written": written });
+    Ok(Outcome::with_figures(text, figures))
 }
 
 struct Produced {
@@ -192,8 +211,4 @@ fn without_checksum(text: &str) -> String {
 
 fn text_of(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
-}
-
-fn print_now(text: &str) {
-    crate::terminal::print(text);
 }

@@ -17,7 +17,9 @@ pub(crate) fn run(arguments: &ManArgs) -> Result<Outcome, Failure> {
     for (name, page) in &pages {
         write_atomically(&folder.join(name), page)?;
     }
-    Ok(Outcome::text(format!("{} pages written to {}\n", pages.len(), show(folder))))
+    let text = format!("{} pages written to {}\n", pages.len(), show(folder));
+    let written: Vec<String> = pages.iter().map(|(name, _)| show(&folder.join(name))).collect();
+    Ok(Outcome::with_figures(text, serde_json::json!({ "pages": pages.len(), "written": written })))
 }
 
 /// Every page with its file name: of the program, then of its commands in the order of the help.

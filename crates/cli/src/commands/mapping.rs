@@ -34,7 +34,9 @@ pub(crate) fn run(arguments: &MappingArgs) -> Result<Outcome, Failure> {
     let mut figures = serde_json::json!({
         "guesses": tried.guesses, "flights": tried.flights, tried.of_rows: tried.rows, "refused": tried.refused,
     });
-    let Some(output) = &arguments.output else { return Ok(Outcome::with_figures(text, figures)) };
+    // To `-` the mapping alone, so that it can be read from there.
+    let output = arguments.output.as_ref().filter(|output| output.as_os_str() != "-");
+    let Some(output) = output else { return Ok(Outcome::with_figures(text, figures)) };
     check_replaceable(output, arguments.force, text.as_bytes(), |_| false)?;
     write_atomically(output, text.as_bytes())?;
     figures["written"] = serde_json::json!([show(output)]);

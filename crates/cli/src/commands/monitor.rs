@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use crate::args::MonitorArgs;
 use crate::columns;
-use crate::commands::{Outcome, events_of, warn_of_events};
+use crate::commands::{Ending, Outcome, events_of, warn_of_events};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::progress::Progress;
@@ -23,14 +23,11 @@ use crate::terminal::neutral;
 
 use causes::Causes;
 
-/// Runs the command; also returns how many rules fired.
+/// Runs the command.
 ///
 /// # Errors
 /// A reason for which nothing was done.
-pub(crate) fn run(
-    arguments: &MonitorArgs,
-    progress: Progress,
-) -> Result<(Outcome, usize), Failure> {
+pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome, Failure> {
     let options = MonitorOptions {
         cost: CostFactors {
             co2_kg_per_kg: arguments.co2_factor,
@@ -83,7 +80,8 @@ pub(crate) fn run(
             show(folder)
         );
     }
-    Ok((Outcome::with_json(printed, document.to_json()), document.alerts.len()))
+    let ending = if document.alerts.is_empty() { Ending::Done } else { Ending::Alerts };
+    Ok(Outcome { ending, ..Outcome::with_json(printed, document.to_json()) })
 }
 
 fn write(folder: &Path, document: &MonitorDocument) -> Result<(), Failure> {

@@ -11,7 +11,7 @@ use trials::{
 };
 
 use crate::args::TrialArgs;
-use crate::commands::Outcome;
+use crate::commands::{Ending, Outcome};
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{make_folder, read_text, write_atomically};
 use crate::folder::keep_aside;
@@ -26,7 +26,7 @@ use folder::TruthFolder;
 /// Runs the command.
 ///
 /// # Errors
-/// A reason for which nothing was done; with `--check`, a score below its floor.
+/// A reason for which nothing was done.
 pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, Failure> {
     let plan = read_plan(arguments)?;
     let begun = Instant::now();
@@ -57,10 +57,8 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
         }
     }
     let trials = summarize(&plan, truths.seal().hash(), done, failed);
-    write(&arguments.output, &plan, &trials)?;
-    if arguments.check {
-        check(&plan, &trials)?;
-    }
+    let json = write(&arguments.output, &plan, &trials)?;
+    let ending = if arguments.check { check(&plan, &trials) } else { Ending::Done };
     let mut text = terminal(&trials);
     let _ = writeln!(
         text,
@@ -74,7 +72,7 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
         .iter()
         .map(|(case, reason)| RefusedReport::whole(format!("case {case}").into(), reason))
         .collect();
-    Ok(Outcome { refused, ..Outcome::text(text) })
+    Ok(Outcome { refused, ending, ..Outcome::with_json(text, json) })
 }
 
 fn read_plan(arguments: &TrialArgs) -> Result<TrialPlan, Failure> {
@@ -146,7 +144,8 @@ fn seal(
     TruthFolder::write(folder, &truths)
 }
 
-fn write(folder: &Path, plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
+/// Writes what a folder of trials holds, and returns `trials.json`.
+fn write(folder: &Path, plan: &TrialPlan, trials: &Trials) -> Result<String, Failure> {
     let path = folder.join("trials.json");
     let mut json =
         serde_json::to_string_pretty(trials).map_err(|error| Failure::unwritable(&path, error))?;
@@ -154,10 +153,11 @@ fn write(folder: &Path, plan: &TrialPlan, trials: &Trials) -> Result<(), Failure
     write_atomically(&path, json.as_bytes())?;
     let html = page::trials(&shown::page_of(plan, trials));
     write_atomically(&folder.join("trials.html"), neutral(&html).as_bytes())?;
-    write_atomically(&folder.join("trials.md"), markdown(trials).as_bytes())
+    write_atomically(&folder.join("trials.md"), markdown(trials).as_bytes())?;
+    Ok(json)
 }
 
-fn check(plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
+fn check(plan: &TrialPlan, trials: &Trials) -> Ending {
     let missed = floors_missed(plan, trials);
     for one in &missed {
         let floor = &one.floor;
@@ -173,9 +173,12 @@ fn check(plan: &TrialPlan, trials: &Trials) -> Result<(), Failure> {
         ));
     }
     if missed.is_empty() && trials.failed.is_empty() {
-        Ok(())
+        Ending::Done
     } else {
-        Err(Failure::TrialFloors { missed: missed.len(), failed: trials.failed.len() })
+        Ending::NotPassed(Failure::TrialFloors {
+            missed: missed.len(),
+            failed: trials.failed.len(),
+        })
     }
 }
 

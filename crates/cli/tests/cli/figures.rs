@@ -107,3 +107,53 @@ fn files_of_others_are_counted() {
     let found = figures(&["plot", &text(&initial_model(scratch.path())), "-o", &out("m.pdf")]);
     assert_eq!((&found["format"], &found["unknown_characters"]), (&"pdf".into(), &"".into()));
 }
+
+#[test]
+fn what_is_for_programs_as_it_is_has_figures_too() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = |name: &str| text(&scratch.path().join(name));
+    assert_eq!(figures(&["completions", "bash"])["shell"], "bash");
+    let pages = figures(&["man", &out("man")]);
+    let written = pages["written"].as_array().unwrap();
+    assert_eq!(pages["pages"], written.len());
+    assert!(written.iter().all(|page| Path::new(page.as_str().unwrap()).is_file()), "{pages}");
+
+    let model = text(&initial_model(scratch.path()));
+    let csv = out("table.csv");
+    let found = figures(&["export", &model, "-o", &csv]);
+    assert_eq!((&found["format"], &found["written"][0]), (&"csv".into(), &csv.into()));
+    // Without a file the model itself is the document; a table beside it has no place there.
+    let document = cruisefit(&["export", &model, "--json"]).expect(0).stdout;
+    let as_format = cruisefit(&["export", &model, "--format", "json"]).expect(0).stdout;
+    assert_eq!(document, as_format);
+    assert_eq!(serde_json::from_str::<Value>(&document).unwrap()["schema"], "cruisefit.model/1");
+    cruisefit(&["export", &model, "--json", "--format", "csv"]).expect(2).says("--json");
+}
+
+#[test]
+fn values_out_of_tolerance_are_in_the_document() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("golden");
+    for (name, bytes) in bytes_below(&root().join("fixtures/global5000")) {
+        let path = folder.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    let golden = text(&folder);
+    let found = figures(&["golden", "check", &golden]);
+    assert_eq!((&found["folders"], &found["differences"]), (&1.into(), &Value::Array(vec![])));
+    let table = folder.join("expected/SIM-01_table.csv");
+    let before = std::fs::read_to_string(&table).unwrap();
+    let line = before.lines().nth(40).unwrap();
+    std::fs::write(&table, before.replace(line, &line.replacen("0.0", "0.1", 1))).unwrap();
+    let ran = cruisefit(&["golden", "check", &golden, "--json"]).expect(2);
+    ran.says("1 values out of tolerance");
+    let document: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let difference = &document["figures"]["differences"][0];
+    assert_eq!(difference["file"], text(&table));
+    assert_eq!(difference["line"], 41);
+    assert_ne!(difference["expected"], difference["found"]);
+    let blessed = figures(&["golden", "bless", &golden]);
+    assert!(blessed["written"].as_array().unwrap().contains(&text(&table).into()), "{blessed}");
+    assert_eq!(std::fs::read_to_string(&table).unwrap(), before);
+}

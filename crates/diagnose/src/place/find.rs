@@ -179,12 +179,13 @@ fn null_of(
     (null, variances)
 }
 
-/// ln of each engine's fuel flow less the mean of all, from the contrasts between the first k engines and the next.
+/// ln of each engine's fuel flow less the mean of all, from the contrasts between the first k engines and the next; one
+/// value more than contrasts.
 ///
 /// ```text
 /// c_k = (m_k − l_(k+1))·√(2k/(k + 1)),  m_k the mean of the first k;  m_n = 0
 /// ```
-fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
+pub(super) fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
     let mut apart = [0.0; MAXIMUM_CHANNELS];
     let mut mean = 0.0;
     for k in (1..=contrasts.len()).rev() {

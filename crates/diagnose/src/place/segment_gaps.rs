@@ -1,6 +1,6 @@
 //! The gap segment by segment, before and after effects are added: what a chart is drawn from.
 
-use effects::{EffectModel, Effects};
+use effects::{EffectModel, Effects, Trial};
 
 use crate::input::Input;
 use crate::library::Library;
@@ -8,6 +8,7 @@ use crate::library::dates::DateGrid;
 use crate::output::addition::Addition;
 use crate::output::note::LeftOutReason;
 use crate::output::region::Region;
+use crate::place::find::engines_apart;
 use crate::residuals::reference::Reference;
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::PreparedFlights;
@@ -33,6 +34,9 @@ pub struct SegmentGap {
     pub before_percent: f64,
     /// With the first effect of the addition, with the first two, and so on; as long as the addition has effects.
     pub after_percent: Vec<f64>,
+    /// Each engine's gap less the mean of all, before and with all effects of the addition; empty where engines are not
+    /// recorded separately.
+    pub engines_apart_percent: Vec<[f64; 2]>,
 }
 
 /// What charts of a diagnosis show beside the gap.
@@ -80,12 +84,19 @@ pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGa
     let mut gaps = Vec::with_capacity(data.segments.len());
     for (flight, rows) in data.flights.iter().enumerate() {
         for row in &data.segments[rows.segments.clone()] {
-            let gap = row.residual[0];
-            let without = data.predictor.predict(&row.response)[0];
-            let after = |trial| {
+            let channels = 1 + data.channels.contrasts;
+            let without = data.predictor.predict(&row.response);
+            let left = |trial: &Trial| {
                 let with = model.response_at(&row.known, trial);
-                100.0 * (gap - with.map_or(0.0, |with| data.predictor.predict(&with)[0] - without))
+                let with = with.map_or(without, |with| data.predictor.predict(&with));
+                let mut left = row.residual;
+                for channel in 0..channels {
+                    left[channel] -= with[channel] - without[channel];
+                }
+                left
             };
+            let after: Vec<_> = trials.iter().map(left).collect();
+            let last = after.last().unwrap_or(&row.residual);
             gaps.push(SegmentGap {
                 flight,
                 date_s: row.point.date_s,
@@ -97,12 +108,20 @@ pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGa
                         value(row, condition.variable).is_some_and(|value| condition.holds(value))
                     })
                 }),
-                before_percent: 100.0 * gap,
-                after_percent: trials.iter().map(after).collect(),
+                before_percent: 100.0 * row.residual[0],
+                after_percent: after.iter().map(|left| 100.0 * left[0]).collect(),
+                engines_apart_percent: apart(&row.residual[1..channels], &last[1..channels]),
             });
         }
     }
     Ok(gaps)
+}
+
+/// Each engine's gap less the mean of all, before and after, %.
+fn apart(before: &[f64], after: &[f64]) -> Vec<[f64; 2]> {
+    let engines = if before.is_empty() { 0 } else { before.len() + 1 };
+    let (before, after) = (engines_apart(before), engines_apart(after));
+    (0..engines).map(|engine| [100.0 * before[engine], 100.0 * after[engine]]).collect()
 }
 
 /// The first effect, the first two, and so on.

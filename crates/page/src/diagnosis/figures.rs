@@ -7,7 +7,7 @@ use flight::effect::HiddenParameter;
 use maud::{Markup, html};
 use pipeline::diagnosis_words::variable_words;
 
-use super::{Tail, map, unseen};
+use super::{Tail, engines, map, unseen};
 use crate::chart::{Axis, Bins, Chart, Key, Mark, dates, legend, thinned};
 use crate::place::Detail;
 use crate::text::{capitalised, counted, signed};
@@ -34,6 +34,7 @@ pub(super) fn figures(tail: &Tail<'_>) -> Markup {
             (over_time(tail, &bins))
             @if tail.detail == Detail::Full { (unseen::unseen(tail)) }
             @if let Some(driver) = tail.figures.driver { (over_driver(tail, &bins, driver)) }
+            @if engines::is_of_one(tail) { (engines::engines(tail)) }
         }
     }
 }
@@ -221,7 +222,7 @@ fn drawn(tail: &Tail<'_>, of: impl Fn(&SegmentGap) -> Option<(f64, f64)>) -> Poi
 }
 
 /// Points of a chart.
-type Points = Vec<(f64, f64)>;
+pub(super) type Points = Vec<(f64, f64)>;
 
 /// Mean date and mean gap of each flight, before and after.
 fn flight_means(segments: &[SegmentGap]) -> (Points, Points) {

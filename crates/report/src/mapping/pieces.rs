@@ -270,6 +270,12 @@ impl Piece {
         }
     }
 
+    /// Whether the recording breaks off in a line: only its last piece may have no line end.
+    pub(super) fn is_unfinished_at(&self, line: usize) -> bool {
+        matches!(&self.content, Content::Text(text) if !text.ends_with('\n'))
+            && line == self.end().0
+    }
+
     /// Bytes that it keeps.
     pub(super) fn kept_bytes(&self) -> usize {
         let text = match &self.content {

@@ -116,7 +116,9 @@ impl Assembly {
     }
 
     fn leave_out(&mut self, layout: &Layout, refusal: Refusal) -> Result<(), Refusal> {
-        if layout.plan.bad_rows == BadRows::Refuse {
+        // A recording that breaks off in a row is still being copied: its last flight is not whole.
+        let is_cut_off = matches!(refusal.kind, RefusalKind::LastRowUnfinished { .. });
+        if is_cut_off || layout.plan.bad_rows == BadRows::Refuse {
             return Err(refusal);
         }
         let recording = self.current(layout);

@@ -274,12 +274,13 @@ impl Rows {
         let (expected, found) = (row.layout.columns, row.fields.len());
         let line = self.piece.line(row.line);
         if found < expected {
-            return Refusal {
-                line: row.line,
-                column: line.chars().count() + 1,
-                found: Found::Fields(found),
-                kind: RefusalKind::TooFewFields { expected },
+            let kind = if self.piece.is_unfinished_at(row.line) {
+                RefusalKind::LastRowUnfinished { expected }
+            } else {
+                RefusalKind::TooFewFields { expected }
             };
+            let column = line.chars().count() + 1;
+            return Refusal { line: row.line, column, found: Found::Fields(found), kind };
         }
         let kind = RefusalKind::TooManyFields { expected };
         row.layout.refuse_field((row.line, &line), expected, Found::Fields(found), kind)
