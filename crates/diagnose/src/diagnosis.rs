@@ -16,6 +16,7 @@ use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unkno
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
+use crate::judge::table::is_table_off;
 use crate::judge::verdict::{Findings, advisor, level_like, verdict};
 use crate::library::Library;
 use crate::library::dates::DateGrid;
@@ -34,7 +35,7 @@ use crate::search::robust::outlier_weights;
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
-use crate::thresholds::{CLOSER_DATES, FORM_VARIABLES, WORTH_CLOSER_DATES};
+use crate::thresholds::{CLEAN_PROBABILITY, CLOSER_DATES, FORM_VARIABLES, WORTH_CLOSER_DATES};
 
 /// Diagnoses one set of flights.
 ///
@@ -172,6 +173,9 @@ impl Run<'_> {
             let problem = Problem { system: &system, model, library };
             analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
         }
+        if let Some(off) = with_table_off(&mut system, (model, library), &analysis, options)? {
+            analysis = off;
+        }
         if let Some(closer) = closer_dates(&analysis, library).filter(|_| may_go_closer) {
             return Ok(Attempt::Closer(Box::new(closer)));
         }
@@ -186,6 +190,36 @@ impl Run<'_> {
         diagnosis.notes = notes;
         Ok(Attempt::Done(Box::new(diagnosis)))
     }
+}
+
+/// The search again without the belief that a guide's table is right, where what is named under that belief explains unseen
+/// flights no better than a table does.
+///
+/// Evidence prefers one effect of any size to a function of two variables, as long as neither explains all of the gap. But an
+/// effect that is named in a guide's place sends someone to the aircraft, and a table costs an adaptation: the name has to be
+/// better where it was not fitted.
+fn with_table_off(
+    system: &mut WhitenedSystem<'_>,
+    (model, library): (&EffectModel<'_>, &Library),
+    analysis: &Analysis,
+    options: &Options,
+) -> Result<Option<Analysis>, DiagnoseError> {
+    let is_nothing = analysis.clean > CLEAN_PROBABILITY;
+    if !system.is_book() || options.skip_closure || is_nothing || is_table_off(analysis) {
+        return Ok(None);
+    }
+    // What is compared is what is left of the gap; the noise in it is the same.
+    let judge =
+        |system: &WhitenedSystem<'_>| nested(Problem { system, model, library }, 1.0, options.seed);
+    let named = judge(system);
+    let levels = system.levels.clone();
+    system.rule_out_right_table();
+    if named.leaves_less_than(&judge(system)) {
+        system.levels = levels;
+        return Ok(None);
+    }
+    let problem = Problem { system, model, library };
+    analyse(problem, None).ok_or(DiagnoseError::Degenerate).map(Some)
 }
 
 /// Leaves outliers out.

@@ -69,6 +69,9 @@ deciding_numbers! {
         LEAST_OF_A_TABLE: f64 = 0.5, "of the explainable gap",
             "lower end of the closure by a table fitted to other flights below which a guide's drag is not what is wrong",
             OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.95 and more; shuffled fuel flows 0 to 0.3.";
+        SHARE_BEYOND_TABLE: f64 = 0.2, "of d²",
+            "share of an effect beyond what a guide's table can take up, below which the table holds it",
+            OurChoice "Virtual fleets: drag, throttle, offtake, air data 0 to 0.13; Reynolds number, age, engines 0.5 and more.";
         LARGEST_REST: f64 = 25.0, "times the stated variance of noise",
             "mean square that a name leaves beyond which it keeps that share, unless it closes most of the gap",
             OurChoice "Five standard deviations: sensors three times worse than stated leave nine times it.";

@@ -8,7 +8,7 @@ use crate::output::Magnitude;
 use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
-use crate::thresholds::{FLEXIBLE_EFFECT, NORMAL_95};
+use crate::thresholds::{FLEXIBLE_EFFECT, MORE_PROBABLE_THAN_NOT, NORMAL_95};
 
 /// What is found of a guide's table.
 #[derive(Clone, Debug)]
@@ -31,8 +31,7 @@ impl TableFinding {
         if !system.is_book() {
             return None;
         }
-        let probability: f64 =
-            analysis.models.iter().map(|(scored, p)| p * scored.table_share).sum();
+        let probability = probability_off(analysis);
         let class = class(analysis, library);
         let best = &analysis.models.first()?.0.hypothesis.columns;
         let magnitude = magnitude(system, library, &beyond(library, &class, best))?;
@@ -87,6 +86,16 @@ impl FittedTable {
         table.write(&row.response, &mut loadings);
         loadings.iter().zip(&self.coefficients).map(|(loading, size)| loading * size).sum()
     }
+}
+
+/// Probability that a guide's table is off.
+fn probability_off(analysis: &Analysis) -> f64 {
+    analysis.models.iter().map(|(scored, p)| p * scored.table_share).sum()
+}
+
+/// Whether a guide's table is more probably off than right.
+pub(crate) fn is_table_off(analysis: &Analysis) -> bool {
+    probability_off(analysis) > MORE_PROBABLE_THAN_NOT
 }
 
 /// Columns of effects that no table can hold.

@@ -1,6 +1,6 @@
 //! One search, the leading models refined: the posterior that the verdict reads.
 
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 
 use crate::hypotheses::backgrounds::{
     Background, Level, Smoothed, TableBelief, backgrounds, diagonals, smoothed,
@@ -14,7 +14,7 @@ use crate::priors::FLIGHT_SCATTER_SIZES_PERCENT;
 use crate::search::refine::{Relinearised, refine};
 use crate::search::singles::{Kinds, search_all, search_flight_scatter};
 use crate::search::system::{EliminatedGrams, Problem, SmoothTerms};
-use crate::thresholds::{CONFUSED, REFINED, WORTH_REFINING};
+use crate::thresholds::{CONFUSED, REFINED, SHARE_BEYOND_TABLE, WORTH_REFINING};
 
 /// The posterior over models.
 pub(crate) struct Analysis {
@@ -105,23 +105,41 @@ fn smooth_out(problem: Problem<'_>, levels: &[(Level, &Reduced)]) -> Vec<Smoothe
 pub(crate) const DRAG_OF_A_TABLE: [EffectId; 4] =
     [EffectId::DragFactor, EffectId::ZeroLiftDrag, EffectId::InducedDrag, EffectId::WaveDrag];
 
-/// Of every effect, whether a guide's table that is off could hold it as well: it can be seen where the table is right, and no
-/// longer where it may be off. Nothing is held where the table is no guide's.
+/// Of every effect, whether a guide's table that is off could hold it as well: it can be seen where the table is right, and
+/// where it may be off no longer, or by a small share of its signature alone. What such a share says depends on how a guide
+/// may be off, of which nothing is known for certain. Nothing is held where the table is no guide's.
 fn held_by_table(problem: Problem<'_>, space: &EliminatedGrams) -> Vec<bool> {
-    let Problem { system, library, .. } = problem;
+    let library = problem.library;
+    if !problem.system.is_book() {
+        return vec![false; library.effects.len()];
+    }
     let at = |belief: TableBelief| {
         let level = space.beliefs.iter().position(|found| *found == belief)?;
         space.reduced.get(level)
     };
-    let of_effect = |effect: &Testable| {
-        let seen = |belief| {
-            let gram = at(belief)?.matrix[(effect.representative, effect.representative)];
-            Some(effect.typical * effect.typical * gram >= CONFUSED)
-        };
-        let hidden =
-            seen(TableBelief::Right) == Some(true) && seen(TableBelief::Uncertain) == Some(false);
-        system.is_book() && (hidden || DRAG_OF_A_TABLE.contains(&effect.id))
+    let (Some(right), Some(uncertain)) = (at(TableBelief::Right), at(TableBelief::Uncertain))
+    else {
+        return vec![false; library.effects.len()];
     };
+    let square = |under: &Reduced, column: usize| {
+        let typical = library.effects[library.columns[column].effect].typical;
+        typical * typical * under.matrix[(column, column)]
+    };
+    let is_hidden = |column: usize, share: f64| {
+        let (seen, left) = (square(right, column), square(uncertain, column));
+        seen >= CONFUSED && left < CONFUSED.max(share * seen)
+    };
+    let is_held = |effect: &Testable| match effect.id.entry().hidden {
+        // What the few flights before a date say is little, and no table's.
+        HiddenParameter::Step { .. } | HiddenParameter::History(_) => {
+            is_hidden(effect.representative, 0.0)
+        }
+        _ => {
+            let mut columns = effect.first_column..effect.first_column + effect.columns;
+            columns.any(|column| is_hidden(column, SHARE_BEYOND_TABLE))
+        }
+    };
+    let of_effect = |effect: &Testable| is_held(effect) || DRAG_OF_A_TABLE.contains(&effect.id);
     library.effects.iter().map(of_effect).collect()
 }
 

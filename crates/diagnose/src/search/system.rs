@@ -21,6 +21,10 @@ use crate::thresholds::{CLOSURE_FOLDS, TAUGHT_CLEAN_AMPLITUDE, TAUGHT_CLEAN_SPIK
 /// Whitened rows are kept in memory up to this many numbers (64 MB); beyond they are made again.
 const KEPT_NUMBERS: usize = 8_000_000;
 
+/// ln of a prior probability that no evidence outweighs: squares of residuals over their variances stay far below it. An
+/// infinity would make differences of it undefined.
+const LN_PRIOR_OF_NEVER: f64 = -1e12;
+
 /// The whitened linear system of all flights: data, columns, Gram matrices.
 pub(crate) struct WhitenedSystem<'a> {
     pub(crate) data: &'a PreparedFlights<'a>,
@@ -102,6 +106,15 @@ impl<'a> WhitenedSystem<'a> {
     /// Whether the table is a guide's that may be off or right.
     pub(crate) fn is_book(&self) -> bool {
         is_book(self.design)
+    }
+
+    /// No longer believes that a guide's table is right.
+    pub(crate) fn rule_out_right_table(&mut self) {
+        for level in &mut self.levels {
+            if level.table == TableBelief::Right {
+                level.ln_prior = LN_PRIOR_OF_NEVER;
+            }
+        }
     }
 
     /// Scatter between flights at a level, relative.
