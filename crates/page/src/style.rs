@@ -45,7 +45,10 @@ th[scope=colgroup] { text-align: center; }
 .row { display: flex; flex-wrap: wrap; gap: 0 2rem; }
 .row figure { max-width: 100%; min-width: 0; }
 .row figcaption { max-width: 34rem; }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto;
+  background: linear-gradient(to right, var(--paper) 40%, transparent) 0 0, linear-gradient(to left, var(--paper) 40%, transparent) 100% 0,
+    linear-gradient(to right, var(--line), transparent) 0 0, linear-gradient(to left, var(--line), transparent) 100% 0;
+  background-repeat: no-repeat; background-size: 3rem 100%, 3rem 100%, .8rem 100%, .8rem 100%; background-attachment: local, local, scroll, scroll; }
 .heat { font-size: .82rem; }
 .heat td { border: 1px solid var(--line); text-align: center; padding: .15rem .3rem; min-width: 4.6rem; height: 2.1rem; }
 .heat td:empty { background: var(--card); }
@@ -168,7 +171,7 @@ svg .diamond { fill: var(--paper); stroke: var(--after); stroke-width: 1.4; }
   thead { display: table-header-group; }
   tr, li { break-inside: avoid; }
   h2, h4, p.panel, figcaption { break-after: avoid; }
-  .scroll { overflow: visible; }
+  .scroll { overflow: visible; background: none; }
   .drawn { display: none; }
   .figures, .panels { grid-template-columns: 1fr 1fr; }
   .fleet { font-size: 8pt; } .fleet th, .fleet td { padding: .12rem .3rem; }

@@ -95,9 +95,8 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
                 "Probability " (format!("{:.2}", found.probability)) @if few { " of the first" }
                 @if found.probability < 0.5 { ": no cause stands out, do not act on it" }
                 ". "
-                @if few {
-                    "These flights cannot tell them apart. "
-                } @else if !others.is_empty() {
+                // Of a few the answer itself says that they are open, and advice says why.
+                @if !few && !others.is_empty() {
                     "These flights cannot tell it from: "
                     @for (place, id) in others.iter().enumerate() { @if place > 0 { "; " } (effect(diagnosis, *id)) }
                     ". "
