@@ -16,12 +16,12 @@ use crate::files::write_atomically;
 /// Values that are encoded together.
 const VALUES_AT_ONCE: usize = 1 << 16;
 
-/// Writes to a file whose ending chooses the format, or as CSV to standard output.
+/// Writes to a file whose ending chooses the format, or as CSV to standard output, which `-` means too.
 ///
 /// # Errors
 /// An ending that is neither `.csv` nor `.parquet`, or a file that cannot be written.
 pub(crate) fn write(columns: &Columns, path: Option<&Path>) -> Result<(), Failure> {
-    let Some(path) = path else {
+    let Some(path) = path.filter(|path| path.as_os_str() != "-") else {
         return crate::terminal::print_data(&columns.to_csv())
             .map_err(|error| Failure::unwritable(Path::new("standard output"), error));
     };

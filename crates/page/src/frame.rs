@@ -4,10 +4,11 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style;
 
-/// What a page does beyond being read: values, tables and links; zoom; surfaces that turn.
-const SCRIPTS: [&str; 3] = [
+/// What a page does beyond being read: values, tables and links; zoom; the numbers behind charts; surfaces that turn.
+const SCRIPTS: [&str; 4] = [
     include_str!("script/page.js"),
     include_str!("script/zoom.js"),
+    include_str!("script/values.js"),
     include_str!("script/turn.js"),
 ];
 /// The page may run what it holds and load nothing, whatever a name in it says.

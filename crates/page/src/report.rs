@@ -111,7 +111,7 @@ pub fn fleet_report(summary: &Summary, links: &BTreeMap<&str, String>, title: &s
     let body = html! {
         p.run { (what_was_run(summary, &[])) }
         (fleet_section(&rows))
-        p.note { "The name of a tail leads to its own page." }
+        p.note { "The name of a tail leads to its own page, a file in the folder beside this one: to forward or print a tail, take that." }
         (how_to_read(adapted))
         (fleet::refused(&summary.reports))
     };

@@ -94,8 +94,10 @@ svg .within { stroke: var(--ink); stroke-width: 2.2; }
 .bars th:last-child { min-width: 6.5rem; }
 .bars code, .id { color: var(--soft); font-size: .82em; }
 details.more { margin: .8rem 0; }
+details.values { font-size: .82rem; } details.values > summary { cursor: pointer; color: var(--link); }
+details.values .scroll { max-height: 18rem; overflow-y: auto; } details.values td, details.values th { padding: .1rem .6rem .1rem 0; text-align: left; }
 details.more > summary { cursor: pointer; color: var(--link); }
-details.more > summary:focus-visible, details.tail > summary:focus-visible, a:focus-visible, button:focus-visible, svg:focus-visible
+details.more > summary:focus-visible, details.values > summary:focus-visible, details.tail > summary:focus-visible, a:focus-visible, button:focus-visible, svg:focus-visible
   { outline: 2px solid var(--after); outline-offset: 2px; }
 th button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer; text-align: inherit; }
 th button::after { content: "\00a0↕"; color: var(--soft); font-weight: normal; }
@@ -181,7 +183,7 @@ svg .diamond { fill: var(--paper); stroke: var(--after); stroke-width: 1.4; }
   .heat { font-size: 7pt; } .heat td { min-width: 0; height: auto; padding: .12rem .15rem; }
   details.tail { border: 0; } details.tail + details.tail { break-before: page; }
   details::details-content { content-visibility: visible; block-size: auto; }
-  input, button.save, .zoom, #tip { display: none !important; }
+  input, button.save, .zoom, .values, #tip { display: none !important; }
   th button::after { content: ""; }
   .verdict, .bars tr { break-inside: avoid; }
   a { color: inherit; text-decoration: none; }

@@ -22,7 +22,7 @@ pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 pub fn advice(verdict: &Verdict) -> String {
     match verdict {
         Verdict::NoGap => {
-            "Nothing beyond the noise. `detectable` says how large each effect would have to be."
+            "Nothing beyond the noise. Each effect has a size that would just have been seen."
                 .to_owned()
         }
         Verdict::InsufficientData(reason) => {
@@ -140,10 +140,10 @@ pub fn insufficient_words(reason: Insufficient) -> String {
             format!("none of {segments} segments is inside the drag table")
         }
         Insufficient::Flights { found, needed } => {
-            format!("{found} flights, at least {needed} are needed")
+            format!("{}, at least {needed} are needed", counted(found, "flight"))
         }
         Insufficient::Segments { found, needed } => {
-            format!("{found} segments, at least {needed} are needed")
+            format!("{}, at least {needed} are needed", counted(found, "segment"))
         }
         Insufficient::NothingTestable => "no effect of the library can be tested".to_owned(),
         Insufficient::OneCondition => "all segments were flown at the same conditions".to_owned(),

@@ -11,7 +11,7 @@ use flight::column::{COLUMN_NAMES, Column};
 /// Lines are physical lines from 1. Columns are characters (Unicode scalar values) from 1 in the physical line; a tab
 /// is one character and a byte-order mark is none. Something missing at the end is one character past the end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("line {line}, column {column}: found {found}, expected {kind}")]
+#[error("line {line}, column {column}: found {found}, expected {kind}{}", self.meant())]
 pub struct Refusal {
     /// Physical line from 1.
     pub line: usize,
@@ -21,6 +21,23 @@ pub struct Refusal {
     pub found: Found,
     /// What is wrong; displays as what was expected.
     pub kind: RefusalKind,
+}
+
+impl Refusal {
+    /// "; did you mean MACH?" where a name that is not known is like one that is.
+    fn meant(&self) -> String {
+        let Found::Text(found) = &self.found else { return String::new() };
+        let near = match &self.kind {
+            RefusalKind::ColumnUnknown => {
+                nearest(found, COLUMN_NAMES.split(' ').map(|name| name.trim_matches(',')))
+            }
+            RefusalKind::UnitUnknown { column } => {
+                nearest(found, column.units().iter().map(|unit| unit.name))
+            }
+            _ => None,
+        };
+        near.map_or_else(String::new, |name| format!("; did you mean {name}?"))
+    }
 }
 
 /// What was found where something else was expected.

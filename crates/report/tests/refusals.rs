@@ -245,8 +245,8 @@ fn column_names() {
          (k from 1 to 4), or a name that begins with X-";
     for (from, to, code, expected) in [
         (" LAT ", " LATITUDE ", "column-unknown", format!("line 8, column 67: found \"LATITUDE\", expected {unknown}")),
-        (" LAT ", " lat ", "column-unknown", format!("line 8, column 67: found \"lat\", expected {unknown}")),
-        ("N2(2)", "N2(5)", "column-unknown", format!("line 8, column 46: found \"N2(5)\", expected {unknown}")),
+        (" LAT ", " lat ", "column-unknown", format!("line 8, column 67: found \"lat\", expected {unknown}; did you mean LAT?")),
+        ("N2(2)", "N2(5)", "column-unknown", format!("line 8, column 46: found \"N2(5)\", expected {unknown}; did you mean N2(k)?")),
         ("N2(2)", "N2", "column-unknown", format!("line 8, column 46: found \"N2\", expected {unknown}")),
         (" LAT ", " x-LAT ", "column-unknown", format!("line 8, column 67: found \"x-LAT\", expected {unknown}")),
         (" LAT ", " ALT ", "column-doubled", "line 8, column 67: found \"ALT\", expected each column once (it is at column 6 already)".to_owned()),
@@ -347,13 +347,13 @@ fn unit_line() {
             "degC",
             "degc",
             "unit-unknown",
-            "line 9, column 6: found \"degc\", expected degC or K for SAT",
+            "line 9, column 6: found \"degc\", expected degC or K for SAT; did you mean degC?",
         ),
         (
             "lb/h lb/h",
             "lb/h g/s",
             "unit-unknown",
-            "line 9, column 36: found \"g/s\", expected lb/h, kg/h or kg/s for WF(2)",
+            "line 9, column 36: found \"g/s\", expected lb/h, kg/h or kg/s for WF(2); did you mean kg/s?",
         ),
         (
             "- kt kt",

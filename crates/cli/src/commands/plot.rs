@@ -21,8 +21,8 @@ use pipeline::segments_table;
 use pipeline::whole_model::Predicts;
 use serde::Deserialize;
 
-/// What `diagnose` writes into its folder.
-const DIAGNOSIS: &str = "diagnosis.json";
+/// What `diagnose`, `monitor` and `trial` write into their folders.
+const DOCUMENTS: [&str; 3] = ["diagnosis.json", "monitor.json", "trials.json"];
 
 /// Runs the command.
 ///
@@ -32,9 +32,9 @@ pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
     let format = Format::of(&arguments.output)?;
     let source = &arguments.source;
     let charts: Vec<&str> = arguments.charts.iter().map(String::as_str).collect();
-    let diagnosis = source.join(DIAGNOSIS);
-    let drawn = if diagnosis.is_file() {
-        of_document(&diagnosis, arguments.tail.as_deref(), &charts)?
+    let document = DOCUMENTS.map(|name| source.join(name)).into_iter().find(|path| path.is_file());
+    let drawn = if let Some(document) = document {
+        of_document(&document, arguments.tail.as_deref(), &charts)?
     } else if source.is_dir() {
         page::plot(&of_folder(source, arguments.tail.as_deref())?, &charts)
     } else if source.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json")) {

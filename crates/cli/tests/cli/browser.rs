@@ -52,6 +52,7 @@ fn pages_of_the_demo() {
     browser.open(&folder.join("diagnosis/diagnosis.html"));
     check_causes(&browser, &document(&folder.join("diagnosis/diagnosis.json")));
     check_keys_and_pointer(&browser);
+    charts::check_values(&browser, &folder.join("diagnosis/gaps.csv"));
     browser.open(&adapted.join("report.html"));
     check_numbers_of_rows(&browser, &document(&adapted.join("summary.json")));
     charts::check_zoom(&browser);

@@ -233,7 +233,7 @@ impl Fleet {
         let count = kept(&mut probabilities, FALSE_DISCOVERIES);
         let least = count.checked_sub(1).map_or(f64::INFINITY, |last| probabilities[last]);
         let false_share =
-            probabilities[..count].iter().map(|p| 1.0 - p).sum::<f64>() / count.max(1) as f64;
+            probabilities[..count].iter().fold(0.0, |sum, p| sum + (1.0 - p)) / count.max(1) as f64;
         let found = self.sizes()?;
         let findings = acting
             .into_iter()

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use diagnose::Diagnosis;
+use diagnose::{Diagnosis, LeftOutReason, Note};
 use maud::{Markup, html};
 use pipeline::diagnosed_tail::DiagnosedTail;
 use pipeline::diagnosis_text;
@@ -10,13 +10,18 @@ use pipeline::diagnosis_words::{left_out_words, measurement_words, region_words}
 
 use super::causes::named;
 use crate::place::Detail;
-use crate::text::{capitalised, signed, three_digits};
+use crate::text::{capitalised, counted, signed, three_digits};
 
 /// The folded part of a tail's section.
 pub(super) fn tables(diagnosed: &DiagnosedTail, detail: Detail) -> Markup {
     let diagnosis = &diagnosed.diagnosis;
     let notes = diagnosed.notes();
     let full = detail == Detail::Full;
+    // A note says more of outliers than their number.
+    let are_noted = diagnosis.notes.iter().any(|note| matches!(note, Note::Outliers { .. }));
+    let is_told = |reason: &LeftOutReason| are_noted && *reason == LeftOutReason::Outlier;
+    let left_out: Vec<_> =
+        diagnosis.left_out.iter().filter(|(reason, _)| !is_told(reason)).collect();
     html! {
         details.more {
             summary { "In full sentences" }
@@ -29,11 +34,11 @@ pub(super) fn tables(diagnosed: &DiagnosedTail, detail: Detail) -> Markup {
         }
         (beforehand(diagnosis))
         (not_testable(diagnosis))
-        @if !(notes.is_empty() && diagnosis.left_out.is_empty()) {
+        @if !(notes.is_empty() && left_out.is_empty()) {
             details.more {
-                summary { "Notes on model and data (" (notes.len() + diagnosis.left_out.len()) ")" }
+                summary { "Notes on model and data (" (notes.len() + left_out.len()) ")" }
                 ul {
-                    @for (reason, count) in &diagnosis.left_out { li { (count) " segments left out: " (left_out_words(*reason)) "." } }
+                    @for (reason, count) in &left_out { li { (counted(**count, "segment")) " left out: " (left_out_words(**reason)) "." } }
                     @for note in &notes { li { (capitalised(note)) "." } }
                 }
             }

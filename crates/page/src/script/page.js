@@ -164,7 +164,7 @@
 
   let folded = [];
   addEventListener('beforeprint', () => {
-    folded = all('details:not([open])');
+    folded = all('details:not([open]):not(.values)');
     for (const fold of folded) fold.open = true;
   });
   addEventListener('afterprint', () => { for (const fold of folded) fold.open = false; });

@@ -46,12 +46,15 @@ pub fn fleet_text(fleet: &DiagnosedFleet) -> String {
         };
         let _ = writeln!(text, "  {whose} differs by {}{of}.", told(found));
     }
-    let _ = writeln!(
-        text,
-        "  {} in all, of which {:.1} % are expected to be false.",
-        counted(diagnosis.findings.len(), "finding"),
-        100.0 * diagnosis.false_share
-    );
+    let _ = match diagnosis.findings.len() {
+        0 => writeln!(text, "  No findings."),
+        count => writeln!(
+            text,
+            "  {} in all, of which {:.1} % are expected to be false.",
+            counted(count, "finding"),
+            100.0 * diagnosis.false_share
+        ),
+    };
     text.push_str(&table(fleet));
     text
 }

@@ -1,8 +1,11 @@
-//! What the scripts of a page add to charts: zoom, and surfaces that turn.
+//! What the scripts of a page add to charts: zoom, values, and surfaces that turn.
+
+use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::driver::Browser;
+use crate::support::{csv_columns, numbers as numbers_of};
 
 /// Questions that all tests here ask of one chart, errors over time: its points lie on a scale of dates.
 const CHART: &str = "const svg = [...document.querySelectorAll('svg[data-frame]')].find((one) =>
@@ -153,7 +156,8 @@ pub(super) fn check_turn(browser: &Browser) {
          const drawn = () => pieces().map((one) => [one.getAttribute('d'), one.getAttribute('x'), one.getAttribute('y')].join());";
     let asked = |question: &str| browser.run(&format!("{SOLID} {question}"));
     let place = asked(
-        "for (const fold of document.querySelectorAll('details')) fold.open = true;
+        // Values are filled in a moment after they are unfolded, and would move the drawing.
+        "for (const fold of document.querySelectorAll('details:not(.values)')) fold.open = true;
          svg.scrollIntoView({ block: 'center' });
          const { x, y, width, height } = svg.getBoundingClientRect(); return [x + width / 2, y + height / 2];",
     );
@@ -204,4 +208,33 @@ pub(super) fn check_turn(browser: &Browser) {
     assert!(!is_home(), "a key turns it");
     browser.press(&['0']);
     assert!(is_home(), "0 goes back");
+}
+
+/// What is saved from the chart of the gap over time are the gaps of the file beside the page, to a thousandth of the scale;
+/// those off the scale are not drawn.
+pub(super) fn check_values(browser: &Browser, gaps: &Path) {
+    let saved = browser.run_waiting(
+        "const chart = [...document.querySelectorAll('svg[data-frame]')]
+           .find((svg) => svg.querySelector('title').textContent.endsWith('gap over time'));
+         const fold = chart.closest('figure').querySelector('details.values');
+         fold.open = true;
+         await new Promise((done) => setTimeout(done, 200));
+         let blob; URL.createObjectURL = (made) => { blob = made; return '#'; };
+         HTMLAnchorElement.prototype.click = () => {};
+         fold.querySelector('button.save').click();
+         const lines = (await blob.text()).trim().split('\\r\\n').map((line) => line.slice(1, -1).split('\",\"'));
+         return lines.filter(([series]) => series === 'segment before').map((fields) => +fields[2]);",
+        "",
+    );
+    let mut saved: Vec<f64> =
+        saved.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+    let mut recorded = numbers_of(&csv_columns(gaps), "gap_before_percent");
+    saved.sort_by(f64::total_cmp);
+    recorded.sort_by(f64::total_cmp);
+    assert!(saved.len() + 3 >= recorded.len(), "{} of {}", saved.len(), recorded.len());
+    for one in &saved {
+        let nearest =
+            recorded.iter().map(|other| (other - one).abs()).fold(f64::INFINITY, f64::min);
+        assert!(nearest <= 0.01, "{one} is no gap of the file");
+    }
 }

@@ -59,12 +59,15 @@ pub(super) fn check_drawn(browser: &Browser, name: &str) {
 /// Every table that can be saved has as many fields in each line as headings.
 pub(super) fn check_saved(browser: &Browser, name: &str) {
     let uneven = browser.run_waiting(
-        "const saved = []; URL.createObjectURL = (blob) => { saved.push(blob); return '#'; };
+        "for (const fold of document.querySelectorAll('details.values')) fold.open = true;
+         await new Promise((done) => setTimeout(done, 200));
+         const saved = []; URL.createObjectURL = (blob) => { saved.push(blob); return '#'; };
          HTMLAnchorElement.prototype.click = () => {};
          for (const button of document.querySelectorAll('button.save')) button.click();
          const texts = await Promise.all(saved.map((blob) => blob.text()));
          const counts = (text) => text.trim().split('\\r\\n').map((line) => line.match(/\"([^\"]|\"\")*\"/g).length);
-         return [saved.length > 0, texts.filter((text) => new Set(counts(text)).size > 1).map((text) => text.slice(0, 400))];",
+         const charts = document.querySelectorAll('figure svg[data-frame]').length;
+         return [saved.length > 0 && saved.length >= charts, texts.filter((text) => new Set(counts(text)).size > 1).map((text) => text.slice(0, 400))];",
         "",
     );
     assert_eq!(uneven, json!([true, []]), "{name}: saved tables");
