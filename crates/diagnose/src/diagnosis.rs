@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use effects::{EffectModel, EffectModelError, EffectReferences};
-use flight::effect::EffectId;
+use flight::effect::{EffectId, HiddenParameter};
 
 use crate::advice::advisor::Advisor;
 use crate::advice::distances::{Distances, leading_columns};
@@ -237,10 +237,22 @@ fn leave_out(data: &mut PreparedFlights<'_>, refused: &[bool]) -> Note {
 fn closer_dates(analysis: &Analysis, library: &Library) -> Option<DateGrid> {
     let worth =
         analysis.models.iter().filter(|(_, probability)| *probability >= WORTH_CLOSER_DATES);
+    let rival = |id: EffectId| {
+        let columns = analysis.models.iter().flat_map(|(scored, _)| &scored.hypothesis.columns);
+        let of_id = columns
+            .map(|&column| &library.columns[column])
+            .find(|column| library.effects[column.effect].id == id);
+        of_id.and_then(|column| match column.hidden {
+            HiddenParameter::History(history) => Some(history),
+            _ => None,
+        })
+    };
     worth
         .flat_map(|(scored, _)| &scored.hypothesis.columns)
         .map(|&column| &library.columns[column])
-        .find_map(|column| library.dates.closer(library.effects[column.effect].id, column.hidden))
+        .find_map(|column| {
+            library.dates.closer(library.effects[column.effect].id, column.hidden, rival)
+        })
 }
 
 fn conclude(

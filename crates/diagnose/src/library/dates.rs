@@ -119,8 +119,13 @@ impl DateGrid {
     }
 
     /// Closer dates about a leading hidden parameter; where they cannot be closer, one more fall for a history. `None` where
-    /// nothing is left to try.
-    pub(crate) fn closer(&self, id: EffectId, leading: HiddenParameter) -> Option<Self> {
+    /// nothing is left to try. `rival` is the most probable history of an effect, whatever its probability.
+    pub(crate) fn closer(
+        &self,
+        id: EffectId,
+        leading: HiddenParameter,
+        rival: impl Fn(EffectId) -> Option<History>,
+    ) -> Option<Self> {
         let course = self.course(id);
         let spacing = course.spacing.div_ceil(NEIGHBOURS);
         let next = match leading {
@@ -155,27 +160,46 @@ impl DateGrid {
         };
         let mut grid = self.clone();
         if let HiddenParameter::Step { from_s, target } = leading {
-            grid.bring_history_along(from_s, target, next.spacing);
+            grid.bring_histories_along(from_s, target, next.spacing, rival);
         }
         *grid.course_mut(id) = next;
         Some(grid)
     }
 
-    /// The history that falls where a step leads, from dates as close: a steady deterioration beside a step back is a history
-    /// in other words, and would win by its closer date alone.
-    fn bring_history_along(&mut self, from_s: f64, target: StepTarget, spacing: usize) {
-        let id = match target {
-            StepTarget::FuelFlow => EffectId::EngineHistory,
-            StepTarget::Drag => EffectId::AirframeHistory,
-        };
-        let course = self.course(id);
-        let is_behind = matches!(course.stage, Stage::Coarse | Stage::Closer);
-        if !is_behind || course.spacing <= spacing {
-            return;
+    /// Histories from dates as close as those of a step that leads: the one that falls where the step is (a steady
+    /// deterioration beside a step back is a history in other words), and of each effect the best so far about its own falls
+    /// (a deterioration that a late fall ends is a step up, somewhere before). A step would win by its closer date alone.
+    fn bring_histories_along(
+        &mut self,
+        from_s: f64,
+        target: StepTarget,
+        spacing: usize,
+        rival: impl Fn(EffectId) -> Option<History>,
+    ) {
+        for (id, of) in [
+            (EffectId::EngineHistory, StepTarget::FuelFlow),
+            (EffectId::AirframeHistory, StepTarget::Drag),
+        ] {
+            let course = self.course(id);
+            let is_behind = matches!(course.stage, Stage::Coarse | Stage::Closer);
+            if !is_behind || course.spacing <= spacing {
+                continue;
+            }
+            let there = (of == target)
+                .then(|| History::new(self.since_s, RECOVERED_FINE[0], &[from_s]).ok())
+                .flatten();
+            let mut tried = Vec::new();
+            for history in there.into_iter().chain(rival(id)) {
+                for hidden in self.histories_about(&history, spacing) {
+                    if !tried.contains(&hidden) {
+                        tried.push(hidden);
+                    }
+                }
+            }
+            if !tried.is_empty() {
+                *self.course_mut(id) = Course { tried, spacing, stage: Stage::Closer };
+            }
         }
-        let Ok(one_fall) = History::new(self.since_s, RECOVERED_FINE[0], &[from_s]) else { return };
-        let tried = self.histories_about(&one_fall, spacing);
-        *self.course_mut(id) = Course { tried, spacing, stage: Stage::Closer };
     }
 
     const fn course(&self, id: EffectId) -> &Course {
@@ -311,7 +335,7 @@ mod tests {
         for _ in 0..20 {
             let tried = grid.hidden(id).iter();
             let best = *tried.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
-            match grid.closer(id, best) {
+            match grid.closer(id, best, |_| None) {
                 Some(closer) => grid = closer,
                 None => return falls(&best),
             }
@@ -340,12 +364,38 @@ mod tests {
             let off = |hidden: &HiddenParameter| (falls(hidden)[0] - 616.5).abs();
             *on_drag.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
         };
-        while let Some(closer) = grid.closer(EffectId::StepChange, step(&grid)) {
+        while let Some(closer) = grid.closer(EffectId::StepChange, step(&grid), |_| None) {
             grid = closer;
         }
         let finds = |id| grid.hidden(id).iter().any(|hidden| falls(hidden) == [616.5]);
         assert!(finds(EffectId::AirframeHistory));
         assert!(!finds(EffectId::EngineHistory));
+    }
+
+    /// A deterioration that falls late is a step up before: the history with the late fall is tried as closely.
+    #[test]
+    fn a_history_with_a_fall_elsewhere_is_tried_as_closely() {
+        let mut grid = DateGrid::coarse(&days(1000), &[], None);
+        let nearest = |grid: &DateGrid, id, day: f64| {
+            let off = |hidden: &HiddenParameter| (falls(hidden)[0] - day).abs();
+            let mut tried = grid.hidden(id).to_vec();
+            tried.sort_by(|a, b| off(a).total_cmp(&off(b)));
+            tried[0]
+        };
+        loop {
+            let best = nearest(&grid, EffectId::AirframeHistory, 903.5);
+            let rival = |id| match best {
+                HiddenParameter::History(history) if id == EffectId::AirframeHistory => {
+                    Some(history)
+                }
+                _ => None,
+            };
+            let step = nearest(&grid, EffectId::StepChange, 306.5);
+            let Some(closer) = grid.closer(EffectId::StepChange, step, rival) else { break };
+            grid = closer;
+        }
+        assert_eq!(falls(&nearest(&grid, EffectId::AirframeHistory, 903.5)), [903.5]);
+        assert_eq!(falls(&nearest(&grid, EffectId::StepChange, 306.5)), [306.5]);
     }
 
     #[test]
@@ -368,7 +418,7 @@ mod tests {
         let grid = DateGrid::coarse(&days(40), &[], None);
         let step = grid.hidden(id)[0];
         assert_eq!(grid.ln_choices(id, step), None);
-        let closer = grid.closer(id, step).unwrap();
+        let closer = grid.closer(id, step, |_| None).unwrap();
         let found = closer.ln_choices(id, step).unwrap();
         assert!((found - f64::ln(78.0)).abs() < 1e-12, "{found}");
     }
