@@ -182,8 +182,21 @@ fn name_beside(path: &Path) -> Option<String> {
         .collect();
     // The system lists names in any order: of two equally near the first by name.
     names.sort();
-    let wanted = part.file_name()?.to_str()?;
-    let name = report::nearest(wanted, names.iter().map(String::as_str))?;
+    let wanted = Path::new(part.file_name()?);
+    // A shared ending is no likeness: names with the same one are compared without it.
+    let stem_of = |name: &str| {
+        let is_like = Path::new(name).extension() == wanted.extension();
+        is_like.then(|| name.len() - wanted.extension().map_or(0, |ending| ending.len() + 1))
+    };
+    let alike = names.iter().filter_map(|name| name.get(..stem_of(name)?));
+    let found = report::nearest(wanted.file_stem()?.to_str()?, alike).and_then(|stem| {
+        names.iter().find(|name| stem_of(name).is_some_and(|end| name.get(..end) == Some(stem)))
+    });
+    let others = names.iter().map(String::as_str).filter(|name| stem_of(name).is_none());
+    let name = match found {
+        Some(name) => name,
+        None => report::nearest(wanted.to_str()?, others)?,
+    };
     Some(show(&above.join(name)))
 }
 

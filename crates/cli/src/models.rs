@@ -29,9 +29,21 @@ pub(crate) fn model_of_bytes(path: &Path, bytes: &[u8]) -> Result<ModelFile, Fai
 fn model_of_text(path: &Path, text: &str) -> Result<ModelFile, Failure> {
     ModelFile::from_text(text).map_err(|error| Failure::BadFile {
         path: show(path),
-        help: error.help(),
+        help: error.help().or_else(|| other_kind(text)),
         reason: error.to_string(),
     })
+}
+
+/// What a text is that is no model, where it is of a kind that this program writes.
+fn other_kind(text: &str) -> Option<String> {
+    let kind = match text.trim_start().chars().next()? {
+        '{' => "a JSON document",
+        '<' => "a page (HTML) or a picture",
+        _ if text.starts_with("CRUISE-REPORT") => "a cruise report",
+        _ if text.lines().next()?.contains(',') => "a table (CSV)",
+        _ => return None,
+    };
+    Some(format!("this is {kind}; models are the .ron files that `init` and `adapt` write"))
 }
 
 /// Writes a model file: whole or not at all.

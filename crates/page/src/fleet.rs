@@ -56,7 +56,6 @@ pub(crate) fn overview(rows: &[FleetRow<'_>]) -> Markup {
 /// Every tail's deviation with its interval, in order.
 fn chart(rows: &[FleetRow<'_>]) -> Markup {
     let (low, high) = scale(rows);
-    let count = rows.len() as f64;
     let chart = Chart {
         id: "fleet".to_owned(),
         title: "Deviation of every tail".to_owned(),
@@ -67,7 +66,7 @@ fn chart(rows: &[FleetRow<'_>]) -> Markup {
         ),
         width: 1000.0,
         height: 300.0,
-        x: Axis::within(0.0, count + 1.0, 10),
+        x: Axis::of_counts(rows.len() + 1, (rows.len() + 1).min(10)),
         y: Axis::around(low, high, 6),
         x_label: "tail, by rank".to_owned(),
         y_label: "deviation, %".to_owned(),

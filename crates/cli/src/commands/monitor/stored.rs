@@ -26,13 +26,16 @@ pub(crate) struct StoredTail {
 /// A folder that cannot be read or holds no tail.
 pub(crate) fn tails(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let models = folder.join("models");
-    let entries =
-        std::fs::read_dir(&models).map_err(|error| Failure::unreadable(&models, error))?;
     let mut paths = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(|error| Failure::unreadable(&models, error))?.path();
-        if path.extension().is_some_and(|ending| ending == "ron") {
-            paths.push(path);
+    // A folder without `models/` is one that another command wrote.
+    if models.is_dir() || !folder.is_dir() {
+        let entries =
+            std::fs::read_dir(&models).map_err(|error| Failure::unreadable(&models, error))?;
+        for entry in entries {
+            let path = entry.map_err(|error| Failure::unreadable(&models, error))?.path();
+            if path.extension().is_some_and(|ending| ending == "ron") {
+                paths.push(path);
+            }
         }
     }
     paths.sort();
