@@ -12,7 +12,7 @@ use crate::chart::dates;
 use crate::fleet;
 use crate::frame::framed;
 use crate::place::Detail;
-use crate::report::TAILS_ON_ONE_PAGE;
+use crate::report::TAILS_IN_FULL;
 
 mod causes;
 mod engines;
@@ -45,7 +45,7 @@ pub fn diagnosis(
             id: anchor(number),
             diagnosed,
             figures,
-            detail: if diagnoses.len() > TAILS_ON_ONE_PAGE { Detail::Brief } else { Detail::Full },
+            detail: if diagnoses.len() > TAILS_IN_FULL { Detail::Brief } else { Detail::Full },
             most_points: (POINTS_OF_PAGE / diagnoses.len()).clamp(FEWEST_POINTS, MOST_POINTS),
         })
         .collect();

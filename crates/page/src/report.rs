@@ -18,11 +18,15 @@ use crate::{fleet, tail};
 
 /// Largest number of points of a chart.
 const MOST_POINTS: usize = 2000;
-/// Up to this many tails one page holds the charts of all; of more, each has its own page. At 2,000 points in
-/// each chart this is a page of about 2 MB.
-pub const TAILS_ON_ONE_PAGE: usize = 30;
+/// The same of all tails together where a page leaves charts out, and the least of a tail. Our choice: 200 tails stay below 6 MB.
+const POINTS_OF_PAGE: usize = 60_000;
+const FEWEST_POINTS: usize = 200;
+/// Up to this many tails have all charts and tables on one page: at 2,000 points in each chart a page of about 2 MB.
+pub(crate) const TAILS_IN_FULL: usize = 30;
+/// Up to this many tails one page holds the charts of all, which can be mailed; of more, each has its own page.
+pub const TAILS_ON_ONE_PAGE: usize = 200;
 
-/// A tail's part of a page: made tail by tail, so that a run need not hold all of them.
+/// A tail's part of a page, as large as the number of tails allows: made tail by tail, so that a run need not hold all of them.
 #[derive(Clone, Debug)]
 pub struct Section {
     /// Tail.
@@ -40,17 +44,15 @@ pub struct Section {
 /// The section of a tail, with what the trim criteria cost where that is known.
 #[must_use]
 pub fn section(result: &TailResult, costs: Option<&CriteriaCosts>, anchors: &Anchors) -> Section {
-    section_with(result, costs, anchors, Detail::Full)
-}
-
-fn section_with(
-    result: &TailResult,
-    costs: Option<&CriteriaCosts>,
-    anchors: &Anchors,
-    detail: Detail,
-) -> Section {
     let id = anchors.0.get(&result.tail).cloned().unwrap_or_default();
-    let place = Place { tail: &result.tail, id: id.clone(), most_points: MOST_POINTS, detail };
+    let tails = anchors.0.len();
+    // Of few on one page, and of those on pages of their own, nothing is left out.
+    let (detail, most_points) = if tails > TAILS_IN_FULL && tails <= TAILS_ON_ONE_PAGE {
+        (Detail::Brief, (POINTS_OF_PAGE / tails).clamp(FEWEST_POINTS, MOST_POINTS))
+    } else {
+        (Detail::Full, MOST_POINTS)
+    };
+    let place = Place { tail: &result.tail, id: id.clone(), most_points, detail };
     let view = TailView::new(result);
     let starts = || view.flights.iter().map(|flight| flight.start_s);
     Section {
@@ -69,9 +71,7 @@ fn section_with(
 #[must_use]
 pub fn report(summary: &Summary, tails: &[TailResult], title: &str) -> String {
     let anchors = Anchors::new(tails.iter().map(|tail| tail.tail.as_str()));
-    let detail = if tails.len() > TAILS_ON_ONE_PAGE { Detail::Brief } else { Detail::Full };
-    let sections: Vec<Section> =
-        tails.iter().map(|tail| section_with(tail, None, &anchors, detail)).collect();
+    let sections: Vec<Section> = tails.iter().map(|tail| section(tail, None, &anchors)).collect();
     report_of_sections(summary, &sections.iter().collect::<Vec<_>>(), title)
 }
 

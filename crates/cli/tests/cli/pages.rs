@@ -13,6 +13,32 @@ fn numbers_of_the_verdict() {
     check_plots(scratch.path());
 }
 
+/// What is forwarded is one file, of up to two hundred tails; of more, each tail has its own.
+#[test]
+fn a_fleet_is_one_page_up_to_two_hundred_tails() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let report = fs::read_to_string(fixture("reports/0001.txt")).unwrap();
+    assert!(report.contains("SIM-01"));
+    let reports = scratch.path().join("reports");
+    fs::create_dir(&reports).unwrap();
+    let (mut tails, output) = (0, scratch.path().join("out"));
+    for (until, pages) in [(31, 0), (200, 0), (201, 201)] {
+        for tail in tails..until {
+            let text = report.replace("SIM-01", &format!("T-{tail}"));
+            fs::write(reports.join(format!("{tail}.txt")), text).unwrap();
+        }
+        tails = until;
+        let law = ["--law", "paper"];
+        adapt(&model, &output, std::slice::from_ref(&reports), &law).expect(0);
+        let page = fs::read_to_string(output.join("report.html")).unwrap();
+        let sections = page.matches("<details class=\"tail\"").count();
+        assert_eq!(sections, if pages == 0 { until } else { 0 }, "{until} tails");
+        let own = fs::read_dir(output.join("pages")).map_or(0, Iterator::count);
+        assert_eq!(own, pages, "{until} tails");
+    }
+}
+
 /// The charts of documents: of a diagnosis, of months, of blind trials.
 fn check_plots(demo: &Path) {
     let (adapted, months) = (demo.join("adapted-bayes"), demo.join("monitor"));
@@ -28,6 +54,7 @@ fn check_plots(demo: &Path) {
         (demo.join("diagnosis/diagnosis.json"), "N750CF: from the gap to the noise"),
         (demo.join("diagnosis"), "N750CF: gap over Mach number and lift coefficient"),
         (months.join("monitor.json"), "N750CF: deviation of fuel flow over time"),
+        (months.clone(), "N750CF: deviation of fuel flow over time"),
         (trials.clone(), ">tsfc_level</text>"),
     ] {
         let arguments = ["plot".as_ref(), source.as_os_str(), "-o".as_ref(), figure.as_os_str()];
