@@ -20,6 +20,18 @@ pub(crate) const fn engine_look(engine: usize) -> (Mark, &'static str) {
     ENGINES[engine % ENGINES.len()]
 }
 
+/// The legend of the engines, with what is said of each.
+pub(crate) fn engine_entries(words: &[String]) -> Vec<(Key, &'static str, &str)> {
+    words
+        .iter()
+        .enumerate()
+        .map(|(engine, words)| {
+            let (mark, class) = engine_look(engine);
+            (Key::Mark(mark), class, words.as_str())
+        })
+        .collect()
+}
+
 /// Recorded and predicted specific range over gross mass.
 pub(crate) fn specific_range(view: &TailView, place: &Place<'_>) -> Markup {
     let shown = thinned(view.cruise.len(), MOST_POINTS.min(place.most_points));
@@ -102,14 +114,6 @@ pub(crate) fn engines(view: &TailView, place: &Place<'_>) -> Markup {
     let words: Vec<String> = (0..view.engines)
         .map(|engine| format!("engine {}: mean {} %", engine + 1, signed(Some(mean(engine)))))
         .collect();
-    let entries: Vec<(Key, &str, &str)> = words
-        .iter()
-        .enumerate()
-        .map(|(engine, words)| {
-            let (mark, class) = engine_look(engine);
-            (Key::Mark(mark), class, words.as_str())
-        })
-        .collect();
     let points = |engine: usize| -> Vec<(f64, f64)> {
         shown.iter().map(|k| (flights[*k].start_s, flights[*k].engines[engine])).collect()
     };
@@ -119,7 +123,7 @@ pub(crate) fn engines(view: &TailView, place: &Place<'_>) -> Markup {
                 b { "Engines against each other." } " Fuel flow of each engine, mean of each flight. A step of one engine is its \
                 meter, its thrust setting or its wear."
             }
-            (legend(&entries))
+            (legend(&engine_entries(&words)))
             (chart.draw(&html! {
                 (chart.horizontal(0.0, "zero"))
                 @for engine in 0..view.engines {

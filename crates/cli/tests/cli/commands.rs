@@ -1,7 +1,7 @@
 //! Each command once on real input.
 
 use crate::support::{
-    adapt, bytes_below, cruisefit, csv_columns, fixture, initial_model, numbers, root,
+    adapt, bytes_below, copy_of, cruisefit, csv_columns, fixture, initial_model, numbers, root,
 };
 
 #[test]
@@ -120,11 +120,7 @@ fn show_and_export_tell_what_the_model_holds() {
 fn golden_check_finds_a_changed_value() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("golden");
-    for (name, bytes) in bytes_below(&root().join("fixtures/global5000")) {
-        let path = folder.join(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, bytes).unwrap();
-    }
+    copy_of(&root().join("fixtures/global5000"), &folder);
     cruisefit(&["golden".as_ref(), "check".as_ref(), folder.as_os_str()]).expect(0);
     let table = folder.join("expected/SIM-01_table.csv");
     let text = std::fs::read_to_string(&table).unwrap();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::support::{adapt, bytes_below, cruisefit, fixture, initial_model, root};
+use crate::support::{adapt, bytes_below, copy_of, cruisefit, fixture, initial_model, root};
 
 /// The figures that a command prints with `--json`; its document has what every such document has.
 fn figures(arguments: &[&str]) -> Value {
@@ -134,11 +134,7 @@ fn what_is_for_programs_as_it_is_has_figures_too() {
 fn values_out_of_tolerance_are_in_the_document() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().join("golden");
-    for (name, bytes) in bytes_below(&root().join("fixtures/global5000")) {
-        let path = folder.join(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, bytes).unwrap();
-    }
+    copy_of(&root().join("fixtures/global5000"), &folder);
     let golden = text(&folder);
     let found = figures(&["golden", "check", &golden]);
     assert_eq!((&found["folders"], &found["differences"]), (&1.into(), &Value::Array(vec![])));

@@ -106,6 +106,15 @@ pub(crate) fn bytes_below(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     all
 }
 
+/// Copies all files of a folder.
+pub(crate) fn copy_of(folder: &Path, copy: &Path) {
+    for (name, bytes) in bytes_below(folder) {
+        let path = copy.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+}
+
 /// A CSV file's columns by name.
 pub(crate) fn csv_columns(path: &Path) -> BTreeMap<String, Vec<String>> {
     let mut reader = csv::Reader::from_path(path).unwrap();

@@ -5,8 +5,8 @@ use maud::{Markup, html};
 
 use super::Tail;
 use super::figures::{Points, chart, mean};
-use crate::chart::{Axis, Chart, Key, dates, legend};
-use crate::performance::engine_look;
+use crate::chart::{Axis, Chart, dates, legend};
+use crate::performance::{engine_entries, engine_look};
 use crate::text::signed;
 
 /// Whether the place that was found first, or an effect of the verdict, is of a single engine.
@@ -58,18 +58,10 @@ pub(super) fn engines(tail: &Tail<'_>) -> Markup {
             Axis::around(values().fold(0.0, f64::min), values().fold(0.0, f64::max), 6),
         )
     };
-    let entries: Vec<(Key, &str, &str)> = words
-        .iter()
-        .enumerate()
-        .map(|(engine, words)| {
-            let (mark, class) = engine_look(engine);
-            (Key::Mark(mark), class, words.as_str())
-        })
-        .collect();
     html! {
         figure {
             figcaption { b { "The gap by engine." } " Fuel flow of each engine against its prediction, less the mean of all; mean of each flight." }
-            (legend(&entries))
+            (legend(&engine_entries(&words)))
             (chart.draw(&html! {
                 (chart.horizontal(0.0, "zero"))
                 @for (engine, points) in before.iter().enumerate() {
