@@ -1,5 +1,6 @@
 //! Why a command ended without doing anything, worded so that a person can put it right, and the exit statuses.
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -184,18 +185,17 @@ fn name_beside(path: &Path) -> Option<String> {
     names.sort();
     let wanted = Path::new(part.file_name()?);
     // A shared ending is no likeness: names with the same one are compared without it.
-    let stem_of = |name: &str| {
-        let is_like = Path::new(name).extension() == wanted.extension();
-        is_like.then(|| name.len() - wanted.extension().map_or(0, |ending| ending.len() + 1))
-    };
-    let alike = names.iter().filter_map(|name| name.get(..stem_of(name)?));
-    let found = report::nearest(wanted.file_stem()?.to_str()?, alike).and_then(|stem| {
-        names.iter().find(|name| stem_of(name).is_some_and(|end| name.get(..end) == Some(stem)))
-    });
-    let others = names.iter().map(String::as_str).filter(|name| stem_of(name).is_none());
-    let name = match found {
-        Some(name) => name,
-        None => report::nearest(wanted.to_str()?, others)?,
+    let (alike, others): (Vec<&String>, Vec<&String>) =
+        names.iter().partition(|name| Path::new(name).extension() == wanted.extension());
+    let stem = |name: &Path| Some(name.file_stem()?.to_str()?.to_owned());
+    let stems: BTreeMap<String, &str> = alike
+        .into_iter()
+        .filter_map(|name| Some((stem(Path::new(name))?, name.as_str())))
+        .collect();
+    let near = report::nearest(&stem(wanted)?, stems.keys().map(String::as_str));
+    let name = match near {
+        Some(near) => stems[near],
+        None => report::nearest(wanted.to_str()?, others.into_iter().map(String::as_str))?,
     };
     Some(show(&above.join(name)))
 }

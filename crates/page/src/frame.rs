@@ -4,8 +4,10 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style;
 
-/// What a page does beyond being read: values, tables and links; zoom; the numbers behind charts; surfaces that turn.
-const SCRIPTS: [&str; 4] = [
+/// What a page does beyond being read: values, tables and links; zoom; the numbers behind charts; surfaces that turn. What
+/// they share comes first.
+const SCRIPTS: [&str; 5] = [
+    include_str!("script/shared.js"),
     include_str!("script/page.js"),
     include_str!("script/zoom.js"),
     include_str!("script/values.js"),

@@ -1,4 +1,4 @@
-//! Messages of one kind: those that differ in numbers and quoted words alone.
+//! Messages of one kind: those that differ in numbers, quoted words and names of tails, flights and types alone.
 
 /// Words before a name that differs from case to case.
 const BEFORE_NAMES: [&str; 3] = ["tail ", "flight ", "type "];

@@ -110,15 +110,12 @@ pub(crate) const DRAG_OF_A_TABLE: [EffectId; 4] =
 /// may be off, of which nothing is known for certain. Nothing is held where the table is no guide's.
 fn held_by_table(problem: Problem<'_>, space: &EliminatedGrams) -> Vec<bool> {
     let library = problem.library;
-    if !problem.system.is_book() {
-        return vec![false; library.effects.len()];
-    }
     let at = |belief: TableBelief| {
         let level = space.beliefs.iter().position(|found| *found == belief)?;
         space.reduced.get(level)
     };
-    let (Some(right), Some(uncertain)) = (at(TableBelief::Right), at(TableBelief::Uncertain))
-    else {
+    let beliefs = (at(TableBelief::Right), at(TableBelief::Uncertain));
+    let (true, (Some(right), Some(uncertain))) = (problem.system.is_book(), beliefs) else {
         return vec![false; library.effects.len()];
     };
     let square = |under: &Reduced, column: usize| {

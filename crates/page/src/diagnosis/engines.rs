@@ -4,7 +4,7 @@ use diagnose::{SegmentGap, Variable};
 use maud::{Markup, html};
 
 use super::Tail;
-use super::figures::{Points, chart, mean};
+use super::figures::{Points, chart, flight_means, mean};
 use crate::chart::{Axis, Chart, dates, legend};
 use crate::performance::{engine_entries, engine_look};
 use crate::text::signed;
@@ -22,20 +22,22 @@ pub(super) fn is_of_one(tail: &Tail<'_>) -> bool {
 pub(super) fn engines(tail: &Tail<'_>) -> Markup {
     let segments = &tail.figures.segments;
     let count = segments.iter().map(|one| one.engines_apart_percent.len()).max().unwrap_or(0);
-    let before: Vec<Points> = (0..count).map(|engine| flight_means(segments, engine)).collect();
-    let values = || before.iter().flatten().map(|point| point.1);
-    let (Some(first), Some(last)) =
-        (segments.first().map(|one| one.date_s), segments.last().map(|one| one.date_s))
-    else {
-        return html! {};
-    };
     if count == 0 {
         return html! {};
     }
+    let of = |engine: usize| move |one: &SegmentGap| of_engine(one, engine, 0);
+    let before: Vec<Points> = (0..count).map(|engine| flight_means(segments, of(engine))).collect();
+    let values = || before.iter().flatten().map(|point| point.1);
+    let dates_s = || segments.iter().map(|one| one.date_s);
+    let (first, last) =
+        (dates_s().fold(f64::INFINITY, f64::min), dates_s().fold(f64::NEG_INFINITY, f64::max));
     let has_effects = !tail.diagnosed.diagnosis.verdict.effects().is_empty();
     let words: Vec<String> = (0..count)
         .map(|engine| {
-            let mean_of = |after: usize| mean(&of_engine(segments, engine, after));
+            let mean_of = |after: usize| {
+                let values = segments.iter().filter_map(|one| of_engine(one, engine, after));
+                mean(&values.collect::<Vec<f64>>())
+            };
             let left = if has_effects {
                 format!(", with the effects added {} %", signed(mean_of(1)))
             } else {
@@ -54,7 +56,7 @@ pub(super) fn engines(tail: &Tail<'_>) -> Markup {
         ..chart(
             tail,
             "gap by engine",
-            dates::axis(first.min(last), first.max(last), 5),
+            dates::axis(first, last, 5),
             Axis::around(values().fold(0.0, f64::min), values().fold(0.0, f64::max), 6),
         )
     };
@@ -73,18 +75,7 @@ pub(super) fn engines(tail: &Tail<'_>) -> Markup {
     }
 }
 
-/// Mean date and mean of one engine of each flight.
-fn flight_means(segments: &[SegmentGap], engine: usize) -> Points {
-    segments
-        .chunk_by(|one, other| one.flight == other.flight)
-        .filter_map(|flight| {
-            let dates_s: Vec<f64> = flight.iter().map(|one| one.date_s).collect();
-            Some((mean(&dates_s)?, mean(&of_engine(flight, engine, 0))?))
-        })
-        .collect()
-}
-
-/// One engine's values: before (0) or after (1).
-fn of_engine(segments: &[SegmentGap], engine: usize, after: usize) -> Vec<f64> {
-    segments.iter().filter_map(|one| Some(one.engines_apart_percent.get(engine)?[after])).collect()
+/// One engine's value of a segment: before (0) or after (1).
+fn of_engine(segment: &SegmentGap, engine: usize, after: usize) -> Option<f64> {
+    Some(segment.engines_apart_percent.get(engine)?[after])
 }

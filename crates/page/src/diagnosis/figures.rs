@@ -120,7 +120,8 @@ fn over_time(tail: &Tail<'_>, bins: &Bins) -> Markup {
             Axis::within(bins.low(), bins.high(), 8),
         )
     };
-    let (before, after) = flight_means(segments);
+    let before = flight_means(segments, |one| Some(one.before_percent));
+    let after = flight_means(segments, |one| one.after_percent.last().copied());
     let within: Vec<&(f64, String)> =
         tail.figures.events.iter().filter(|(at, _)| chart.x.holds(*at)).collect();
     let marks = html! {
@@ -224,19 +225,19 @@ fn drawn(tail: &Tail<'_>, of: impl Fn(&SegmentGap) -> Option<(f64, f64)>) -> Poi
 /// Points of a chart.
 pub(super) type Points = Vec<(f64, f64)>;
 
-/// Mean date and mean gap of each flight, before and after.
-fn flight_means(segments: &[SegmentGap]) -> (Points, Points) {
-    let (mut before, mut after) = (Vec::new(), Vec::new());
-    for flight in segments.chunk_by(|one, other| one.flight == other.flight) {
-        let dates_s: Vec<f64> = flight.iter().map(|one| one.date_s).collect();
-        let gaps: Vec<f64> = flight.iter().map(|one| one.before_percent).collect();
-        let left: Vec<f64> =
-            flight.iter().filter_map(|one| one.after_percent.last().copied()).collect();
-        let Some(date_s) = mean(&dates_s) else { continue };
-        before.extend(mean(&gaps).map(|gap| (date_s, gap)));
-        after.extend(mean(&left).map(|gap| (date_s, gap)));
-    }
-    (before, after)
+/// Mean date of each flight and mean of a value of its segments, where it has any.
+pub(super) fn flight_means(
+    segments: &[SegmentGap],
+    of: impl Fn(&SegmentGap) -> Option<f64>,
+) -> Points {
+    let flights = segments.chunk_by(|one, other| one.flight == other.flight);
+    flights
+        .filter_map(|flight| {
+            let dates_s: Vec<f64> = flight.iter().map(|one| one.date_s).collect();
+            let values: Vec<f64> = flight.iter().filter_map(&of).collect();
+            Some((mean(&dates_s)?, mean(&values)?))
+        })
+        .collect()
 }
 
 pub(super) fn mean(values: &[f64]) -> Option<f64> {

@@ -2,12 +2,7 @@
 // CSV, links that unfold what they lead to, print of everything. Without it the page is complete; it loads nothing.
 (() => {
   'use strict';
-  const all = (selector, root = document) => [...root.querySelectorAll(selector)];
-  const make = (name, text, attributes = {}) => {
-    const made = Object.assign(document.createElement(name), { textContent: text });
-    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-    return made;
-  };
+  const { all, make, written } = page;
 
   const tip = make('div', '', { id: 'tip', role: 'status' });
   document.body.append(tip);
@@ -20,26 +15,16 @@
     tip.style.top = `${y - size.height - 12 < 4 ? y + 16 : y - size.height - 12}px`;
   };
 
-  // The points of a chart are read back from its paths: "M64 108h0" is a dot, the frame and the scales are attributes.
-  // A zoom moves them and leaves what was written beside it.
-  const written = (element, name) => element.written?.[name] ?? element.getAttribute(name);
-  const points = (svg) => svg.points ??= all('.dot,.disc', svg).flatMap((path) =>
-    [...written(path, 'd').matchAll(/M([-\d.]+) ([-\d.]+)h0/g)].map((match) => [+match[1], +match[2]])
-  ).sort((one, other) => one[0] - other[0]);
+  const points = (svg) => svg.points ??= all('.dot,.disc', svg).flatMap(page.dots).sort((one, other) => one[0] - other[0]);
   const words = (svg, [x, y]) => {
-    const numbers = (name) => svg.dataset[name].split(' ').map(Number);
-    const [left, right, top, bottom] = numbers('frame');
-    const [[x0, x1], [y0, y1]] = [numbers('x'), numbers('y')];
+    const scales = page.scalesOf(svg);
     const value = (number) => String(+number.toPrecision(4));
-    const across = x0 + (x - left) / (right - left) * (x1 - x0);
-    const up = y0 + (bottom - y) / (bottom - top) * (y1 - y0);
-    const [acrossName, upName] = all('.label', svg).map((label) => label.textContent);
-    const day = new Date(across * 1000);
-    return `${acrossName}: ${svg.dataset.xOf === 'dates' ? day.toISOString().slice(0, 10) : value(across)}\n${upName}: ${value(up)}`;
+    const across = scales.across(x);
+    return `${scales.acrossName}: ${scales.areDates ? page.day(across) : value(across)}\n${scales.upName}: ${value(scales.up(y))}`;
   };
   // Where a place of the whole chart is drawn, which zoom may have moved (`svg.placed`), and whether it is inside the frame.
   // A column has no height: it is told in the middle.
-  const frameOf = (svg) => svg.dataset.frame.split(' ').map(Number);
+  const frameOf = (svg) => page.numbers(svg.dataset.frame);
   const drawnAt = (svg, [x, y]) => {
     const [, , top, bottom] = frameOf(svg);
     const [across, up] = svg.placed ? svg.placed([x, y]) : [x, y];
@@ -138,18 +123,13 @@
     (table.closest('.scroll') ?? table).before(filter);
   }
 
-  // A field that a spreadsheet would take for a formula gets a quote in front; numbers keep their sign.
-  const field = (value) => `"${(/^[=+\-@\t]/.test(value) && !Number.isFinite(Number(value.replace(/[ %]+$/, ''))) ? "'" : '') + value.replaceAll('"', '""')}"`;
   for (const table of all('table.data')) {
     const save = make('button', 'Save as CSV', { type: 'button', class: 'save' });
     save.addEventListener('click', () => {
       // Drawings are not numbers; a heading over a drawing and its number is that of the number.
-      const fields = (cell) => [field(text(cell).replace(/\s+/g, ' ')), ...Array(cell.matches('td') ? cell.colSpan - 1 : 0).fill('""')];
-      const lines = [...table.rows].map((row) => [...row.cells].filter((cell) => !cell.matches('.bar,.drawn')).flatMap(fields).join(','));
-      const link = make('a', '', { download: `${table.dataset.name ?? 'table'}.csv` });
-      link.href = URL.createObjectURL(new Blob([`${lines.join('\r\n')}\r\n`], { type: 'text/csv' }));
-      link.click();
-      URL.revokeObjectURL(link.href);
+      const fields = (cell) => [text(cell).replace(/\s+/g, ' '), ...Array(cell.matches('td') ? cell.colSpan - 1 : 0).fill('')];
+      const rows = [...table.rows].map((row) => [...row.cells].filter((cell) => !cell.matches('.bar,.drawn')).flatMap(fields));
+      page.saveCsv(table.dataset.name ?? 'table', rows);
     });
     (table.closest('.scroll') ?? table).after(save);
   }

@@ -2,7 +2,7 @@
 // has the corners once (`data-at`, in thousandths of half a side) and says how it is seen (`data-turn`). `solid.rs` draws the same.
 (() => {
   'use strict';
-  const all = (selector, root = document) => [...root.querySelectorAll(selector)];
+  const { all, numbers } = page;
   const radians = (degrees) => degrees * Math.PI / 180;
   // Degrees: lower a surface is a line, higher its names leave the drawing.
   const [LOWEST, HIGHEST] = [8, 60];
@@ -13,7 +13,6 @@
   for (const svg of all('svg[data-turn]')) {
     const [azimuth, elevation, middleX, middleY, scale] = svg.dataset.turn.split(' ').map(Number);
     const corners = svg.dataset.at.split(',').map((corner) => corner.split(' ').map((one) => one / 1000));
-    const numbers = (text) => text.split(' ').map(Number);
     // Dots are as far away as the facet that they are on.
     const pieces = all('[data-p]', svg).map((element) => {
       const at = numbers(element.dataset.p);

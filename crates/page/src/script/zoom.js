@@ -7,8 +7,7 @@
   const DEEPEST = 32;
   // Pixels: a shorter drag is a click, a flat one chooses along one scale.
   const SHORTEST = 5;
-  const all = (selector, root = document) => [...root.querySelectorAll(selector)];
-  const numbers = (text) => text.split(' ').map(Number);
+  const { all, numbers } = page;
   const tenth = (number) => String(Math.round(number * 10) / 10);
 
   const roundTicks = (low, high, most, leastStep) => {
