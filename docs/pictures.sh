@@ -18,6 +18,7 @@ cd "$scratch"
 "$program" adapt fleet --model demo/MODEL.ron -o adapted --quiet
 "$program" monitor adapted -o monitor --quiet
 "$program" diagnose fleet --model demo/MODEL.ron --fleet -o compared --quiet
+"$program" trial "$OLDPWD/docs/pictures_trials.ron" -o trials --quiet
 "$program" plot demo/adapted-bayes --chart histogram,time,surface,relief -o "$pictures/tail.svg" --quiet
 "$program" plot demo/diagnosis -o "$pictures/gap.svg" --quiet
 
@@ -36,6 +37,7 @@ shot demo/diagnosis/diagnosis.html diagnosis 900 760
 shot adapted/report.html fleet 900 620
 shot monitor/monitor.html monitor 900 620
 shot compared/fleet.html compared 900 600
+shot trials/trials.html trials 900 760
 for picture in "$pictures"/*.png; do
   [ "$(wc -c <"$picture")" -le 150000 ] || { echo "$picture is larger than 150 kB" >&2; exit 1; }
 done

@@ -495,12 +495,19 @@ pub(crate) struct PlotArgs {
     /// Charts of a model, tail or diagnosis [default: all]
     #[arg(long = "chart", value_name = "NAME", value_delimiter = ',', value_parser = chart_names())]
     pub(crate) charts: Vec<String>,
-    /// Picture to write, .svg, .png or .pdf
+    /// Picture to write, .svg, .png or .pdf; `-` for standard output
     #[arg(long, short, value_name = "FIG.svg|png|pdf")]
     pub(crate) output: PathBuf,
+    /// Format of the picture [default: by the name of the file; SVG to standard output]
+    #[arg(long, value_name = "FORMAT", value_parser = picture_formats())]
+    pub(crate) format: Option<String>,
     /// Document.
     #[command(flatten)]
     pub(crate) json: JsonFlag,
+}
+
+fn picture_formats() -> PossibleValuesParser {
+    PossibleValuesParser::new(page::PictureFormat::ALL.map(page::PictureFormat::ending))
 }
 
 fn chart_names() -> PossibleValuesParser {
@@ -543,7 +550,7 @@ pub(crate) struct CompletionsArgs {
 /// `man`
 #[derive(Debug, Args)]
 pub(crate) struct ManArgs {
-    /// Folder to write to
+    /// Folder to write to; `-` prints the program's page
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// Document.

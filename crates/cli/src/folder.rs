@@ -51,6 +51,8 @@ pub(crate) struct Folder {
     state: State,
     /// Tails of a folder without `STATE.ron`.
     older: BTreeMap<String, StoredTail>,
+    /// Files that what is staged makes out of date: gone when it is in its place.
+    out_of_date: Vec<String>,
 }
 
 /// Folders of a tail's files, and of its page.
@@ -73,6 +75,7 @@ impl Folder {
             made,
             state: State::default(),
             older: BTreeMap::new(),
+            out_of_date: Vec::new(),
         };
         // An existing folder may still not be writable: better reported now than after an hour of work.
         tempfile::tempfile_in(&path).map_err(failed)?;
@@ -168,6 +171,12 @@ impl Folder {
         Ok(FileState::of(file, bytes))
     }
 
+    /// These files, where there are any, are out of date with what is staged, and go when it is in its place. None of them may
+    /// be of the state.
+    pub(crate) fn removes(&mut self, files: impl IntoIterator<Item = String>) {
+        self.out_of_date.extend(files);
+    }
+
     /// Makes these tails, with the files that were staged, the state of the folder.
     ///
     /// # Errors
@@ -235,6 +244,11 @@ impl Folder {
             }
         }
         move_all(waiting, &self.path)?;
+        for file in self.out_of_date.iter().map(|file| self.path.join(file)) {
+            if file.is_file() {
+                steps::remove_file(&file)?;
+            }
+        }
         steps::sync_folder(&self.path)?;
         steps::remove_folder(waiting)
     }

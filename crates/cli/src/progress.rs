@@ -1,8 +1,12 @@
 //! Progress on the terminal: count, rate, time left. None where stderr is not a terminal.
 
 use std::fmt::Write;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+
+/// Ticks of one piece of work, so that half of it can be shown.
+const TICKS: u64 = 2;
 
 /// Whether a run shows its progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,16 +24,27 @@ impl Progress {
             Self::Shown => ProgressDrawTarget::stderr_with_hz(5),
             Self::Hidden => ProgressDrawTarget::hidden(),
         };
-        let bar = ProgressBar::with_draw_target(Some(total as u64), target);
-        if let Ok(style) =
-            ProgressStyle::with_template("{prefix} {wide_bar} {pos}/{len}, {rate}, {eta} left")
-        {
-            bar.set_style(style.with_key("rate", |state: &ProgressState, text: &mut dyn Write| {
-                // Writing fails only where the bar's own text cannot grow.
-                let _ = text.write_str(&rate(state.per_sec()));
-            }));
+        let bar = ProgressBar::with_draw_target(Some(TICKS * total as u64), target);
+        let template = "{prefix} {wide_bar} {done}/{all}, {rate}, {elapsed}, {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            // Writing fails only where the bar's own text cannot grow.
+            let style = style
+                .with_key("done", |state: &ProgressState, text: &mut dyn Write| {
+                    let _ = write!(text, "{}", state.pos() / TICKS);
+                })
+                .with_key("all", |state: &ProgressState, text: &mut dyn Write| {
+                    let _ = write!(text, "{}", state.len().unwrap_or(0) / TICKS);
+                })
+                .with_key("rate", |state: &ProgressState, text: &mut dyn Write| {
+                    let _ = text.write_str(&rate(state.per_sec() / TICKS as f64));
+                });
+            bar.set_style(style);
         }
         bar.set_prefix(what);
+        // A single large tail takes long from one step to the next: the time shows that it is at work.
+        if self == Self::Shown {
+            bar.enable_steady_tick(Duration::from_secs(1));
+        }
         Bar(bar)
     }
 }
@@ -50,11 +65,16 @@ pub(crate) struct Bar(ProgressBar);
 impl Bar {
     /// One more is done.
     pub(crate) fn step(&self) {
-        self.0.inc(1);
+        self.0.inc(TICKS);
     }
 
     /// So many more are done.
     pub(crate) fn advance(&self, count: usize) {
+        self.0.inc(TICKS * count as u64);
+    }
+
+    /// Half of the work of so many more is done.
+    pub(crate) fn half(&self, count: usize) {
         self.0.inc(count as u64);
     }
 

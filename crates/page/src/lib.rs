@@ -57,9 +57,10 @@ mod waterfall;
 pub use diagnosis::diagnosis;
 pub use fleet_diagnosis::{FleetRun, fleet_diagnosis};
 pub use monitoring::monitoring;
-pub use picture::{Picture, PictureError, pdf, png};
+pub use picture::{Picture, PictureError, PictureFormat, pdf, png};
 pub use plot::{
-    Confusion, DIAGNOSIS_CHARTS, TAIL_CHARTS, plot, plot_confusions, plot_diagnoses, plot_months,
+    Confusion, DIAGNOSIS_CHARTS, TAIL_CHARTS, TrialConfusion, plot, plot_diagnoses, plot_months,
+    plot_trials,
 };
 pub use report::{
     Anchors, Section, TAILS_ON_ONE_PAGE, fleet_report, report, report_of_sections, section,

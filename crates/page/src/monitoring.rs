@@ -1,8 +1,12 @@
 //! `monitor.html`: months and fleets.
 
+mod words;
+
+use std::collections::BTreeSet;
+
 use flight::Timestamp;
 use maud::{Markup, html};
-use pipeline::monitoring::{Figure, MonitorDocument, TailDocument};
+use pipeline::monitoring::{AlertDocument, Figure, MonitorDocument, TailDocument};
 
 use crate::chart::{Axis, Chart, Key, Mark, dates, legend, thinned};
 use crate::frame::framed;
@@ -15,8 +19,8 @@ const MOST_POINTS: usize = 2000;
 const FEWEST_POINTS: usize = 200;
 const POINTS_OF_PAGE: usize = 60_000;
 
-/// The page of what `monitor` found.
-pub fn monitoring(document: &MonitorDocument) -> String {
+/// The page of what `monitor` found; `options` says what the run was asked for.
+pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
     let mut tails: Vec<(usize, &TailDocument)> = document.tails.iter().enumerate().collect();
     // What burns most comes first; the sort is stable.
     tails.sort_by(|(_, one), (_, other)| {
@@ -24,11 +28,7 @@ pub fn monitoring(document: &MonitorDocument) -> String {
     });
     let most = (POINTS_OF_PAGE / tails.len().max(1)).clamp(FEWEST_POINTS, MOST_POINTS);
     let body = html! {
-        p.run {
-            "cruisefit " (env!("CARGO_PKG_VERSION")) "; " (counted(tails.len(), "tail")) ", "
-            (counted(document.tails.iter().map(|tail| tail.flights.len()).sum(), "flight"))
-            @if let Some((from, to)) = period(document) { ", " (from) " to " (to) } "."
-        }
+        p.run { (head(document, options)) }
         p.note {
             "Deviation: 100 ln(recorded/predicted) fuel flow by the initial model, at each tail's mean conditions; positive, \
              the aircraft burns more. ± is half a 95 % interval. DSR: deviation of specific range, negative is worse. \
@@ -45,12 +45,42 @@ pub fn monitoring(document: &MonitorDocument) -> String {
             @for (place, (id, tail)) in tails.iter().enumerate() {
                 details.tail id=(format!("tail-{id}")) open[place == 0] {
                     summary { h3 { (tail.tail) } span { (figure(&tail.deviation_percent)) " %" } }
-                    div { (chart(tail, *id, most)) (changes(tail)) (months(tail)) }
+                    div {
+                        (in_words(tail, &document.alerts))
+                        (chart(tail, *id, most)) (changes(tail)) (months(tail))
+                    }
                 }
             }
         }
     };
     framed("Months and fleets", &body)
+}
+
+fn head(document: &MonitorDocument, options: &[String]) -> String {
+    let tails = &document.tails;
+    let mut told = vec![format!("cruisefit {}", env!("CARGO_PKG_VERSION"))];
+    if let Some((from, to)) = period(document) {
+        told.push(format!("flown {from} to {to}"));
+    }
+    let types: BTreeSet<&str> = tails.iter().map(|tail| tail.aircraft_type.as_str()).collect();
+    let types: Vec<&str> = types.into_iter().filter(|code| !code.is_empty()).collect();
+    let flights = tails.iter().map(|tail| tail.flights.len()).sum();
+    let types = if types.is_empty() { String::new() } else { format!(" ({})", types.join(", ")) };
+    told.push(format!("{}{types}", counted(tails.len(), "tail")));
+    told.push(counted(flights, "flight"));
+    told.extend(options.iter().cloned());
+    format!("{}.", told.join("; "))
+}
+
+/// What the tail does, what to do about it, and by which model.
+fn in_words(tail: &TailDocument, alerts: &[AlertDocument]) -> Markup {
+    html! {
+        dl.verdict.gap[words::burns_otherwise(tail)] {
+            dt { "What" } dd { b { (words::found(tail)) } }
+            dt { "What to do" } @for advice in words::advice(tail, alerts) { dd { (advice) } }
+        }
+        p.note { (tail.aircraft_type) ", " (tail.model) "." }
+    }
 }
 
 fn period(document: &MonitorDocument) -> Option<(&str, &str)> {
@@ -272,7 +302,7 @@ mod tests {
 
     #[test]
     fn a_page_without_tails_is_a_page() {
-        let page = monitoring(&MonitorDocument::new(Vec::new(), Vec::new()));
+        let page = monitoring(&MonitorDocument::new(Vec::new(), Vec::new()), &[]);
         assert!(page.contains("<h1>Months and fleets</h1>") && !page.contains("NaN"), "{page}");
     }
 }

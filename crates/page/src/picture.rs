@@ -4,6 +4,8 @@
 //! picture, and servers have nothing. The renderer knows no CSS variables and no media queries, so that the style sheet is
 //! made flat first: light colours, the variables replaced by what they stand for.
 
+mod format;
+
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -11,6 +13,8 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, WriteOptions, fontdb};
 use svg2pdf::{ConversionOptions, PageOptions};
 use ttf_parser::Face;
+
+pub use format::PictureFormat;
 
 use crate::style::STYLE;
 

@@ -8,6 +8,7 @@ use maud::{Markup, html};
 use pipeline::diagnosis_document::TailDiagnosis;
 use pipeline::evaluation::TailResult;
 use pipeline::monitoring::TailDocument;
+use serde::Deserialize;
 
 use crate::diagnosis::map::gap_map;
 use crate::place::{Detail, Place};
@@ -111,11 +112,39 @@ pub fn plot_months(tails: &[TailDocument]) -> Option<String> {
     sheet("Deviation over time", &drawings(&page))
 }
 
+/// A group of blind trials as `trials.json` has it: what is drawn of it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct TrialConfusion {
+    denied: serde_json::Value,
+    background: serde_json::Value,
+    times: f64,
+    scores: TrialScores,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+struct TrialScores {
+    confusion: Confusion,
+}
+
+impl TrialConfusion {
+    fn name(&self) -> String {
+        let words = |value: &serde_json::Value| {
+            value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+        };
+        format!(
+            "model {}, background {}, {} times the typical size",
+            words(&self.denied),
+            words(&self.background),
+            self.times
+        )
+    }
+}
+
 /// What was planted against what was found, a matrix for each group of blind trials.
 #[must_use]
-pub fn plot_confusions(groups: &[(String, Confusion)]) -> Option<String> {
+pub fn plot_trials(groups: &[TrialConfusion]) -> Option<String> {
     let page: Markup = html! {
-        @for (k, (name, confusion)) in groups.iter().enumerate() { (matrix::matrix(name, confusion, k)) }
+        @for (k, group) in groups.iter().enumerate() { (matrix::matrix(&group.name(), &group.scores.confusion, k)) }
     };
     let page = page.into_string();
     sheet("Planted and found", &drawings(&page))

@@ -6,7 +6,7 @@ use crate::chart::{Axis, Chart, Key, Mark, legend, thinned};
 use crate::place::Place;
 use crate::polars::nodes_near;
 use crate::shade;
-use crate::text::breakpoint;
+use crate::text::{breakpoint, signed_tenths};
 use crate::view::TailView;
 
 /// Flown points at most. Our choice: they show where, not how many.
@@ -129,9 +129,9 @@ fn tip(view: &TailView, row: usize, column: usize) -> String {
         .as_ref()
         .map_or_else(String::new, |half| format!(" ± {:.1}", 100.0 * half[node]));
     format!(
-        "Mach {}, CL {}\nCD {initial:.4} to {current:.4}: {:+.1}{within} %",
+        "Mach {}, CL {}\nCD {initial:.4} to {current:.4}: {}{within} %",
         breakpoint(polars.mach[column]),
         breakpoint(polars.lift_coefficient[row]),
-        change(view, node)
+        signed_tenths(change(view, node))
     )
 }

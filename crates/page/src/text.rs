@@ -1,5 +1,7 @@
 //! Numbers as the page writes them. A hyphen is the minus sign, no separators: figures can be pasted into a spreadsheet.
 
+use pipeline::summary::not_minus_zero;
+
 /// With sign and two decimals, a dash for no value.
 pub(crate) fn signed(value: Option<f64>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| format!("{:+.2}", not_minus_zero(value, 2)))
@@ -61,11 +63,6 @@ pub(crate) fn three_digits(value: f64) -> String {
 pub(crate) fn capitalised(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// What rounds to zero has no sign of its own.
-fn not_minus_zero(value: f64, decimals: i32) -> f64 {
-    if value.abs() < 0.5 * 10_f64.powi(-decimals) { 0.0 } else { value }
 }
 
 #[cfg(test)]

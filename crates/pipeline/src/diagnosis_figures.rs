@@ -4,8 +4,7 @@ use diagnose::{
     DiagnoseError, Diagnosis, Input, SegmentGap, Shown, Variable, Verdict, segment_gaps,
 };
 
-use crate::model_file::{AppliedRecord, ModelFile};
-use crate::summary::counted;
+use crate::model_file::ModelFile;
 
 /// The model and the segments behind one diagnosis.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,30 +48,12 @@ impl DiagnosisFigures {
         Ok(Self {
             aircraft: aircraft.name().to_owned(),
             type_code: aircraft.type_code().to_owned(),
-            model: model_words(model),
+            model: model.told(),
             driver,
             events: Vec::new(),
             segments,
         })
     }
-}
-
-/// "law bayes, 30 flights of N750CF learnt".
-fn model_words(model: &ModelFile) -> String {
-    let learnt = match &model.learnt {
-        Some(learnt) => format!(
-            "{}, {} of {} learnt",
-            learnt.law.told(),
-            counted(learnt.ledger.len(), "flight"),
-            learnt.tail
-        ),
-        None => "initial model, which has learnt no flight".to_owned(),
-    };
-    if model.applied.is_empty() {
-        return learnt;
-    }
-    let applied: Vec<String> = model.applied.iter().map(AppliedRecord::told).collect();
-    format!("{learnt}; contains {}", applied.join("; "))
 }
 
 /// What the verdict's effect depends on first, else what bounds the place, else what a cause outside the library depends on;

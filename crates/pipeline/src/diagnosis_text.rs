@@ -11,7 +11,7 @@ use crate::diagnosis_words::{
     acts_on_words, advice, are_few, distances_words, form_words, joined, measurement_words,
     others_of_class, region_words, told_size, variable_words,
 };
-use crate::summary::counted;
+use crate::summary::{counted, not_minus_zero};
 
 /// Effects whose smallest visible size is printed where nothing was found: one of each kind that a person would think of.
 const TOLD_WHEN_SILENT: [EffectId; 6] = [
@@ -117,7 +117,7 @@ fn gap(diagnosis: &Diagnosis) -> String {
     let gap = &diagnosis.gap;
     format!(
         "Gap {:+.2} % of fuel flow in the mean, {:.2} % rms (95 % interval {:.2} to {:.2}); noise alone makes {:.2} %.",
-        gap.mean_percent,
+        not_minus_zero(gap.mean_percent, 2),
         gap.rms_percent,
         gap.rms_ci95[0],
         gap.rms_ci95[1],
@@ -138,9 +138,9 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
                 "{} at {}: {:+.2} % there ({:+.2} to {:+.2}), {} of the explainable gap, p {:.3}.",
                 if rank == 0 { "It lies" } else { "And" },
                 region_words(&place.region),
-                place.mean_gap_percent,
-                place.ci95[0],
-                place.ci95[1],
+                not_minus_zero(place.mean_gap_percent, 2),
+                not_minus_zero(place.ci95[0], 2),
+                not_minus_zero(place.ci95[1], 2),
                 if place.share_of_gap > 1.0 {
                     "more than all".to_owned()
                 } else {

@@ -227,6 +227,11 @@ pub fn counted(number: usize, noun: &str) -> String {
     if number == 1 { format!("1 {noun}") } else { format!("{number} {noun}{ending}") }
 }
 
+/// What rounds to zero with so many decimals has no sign of its own.
+pub fn not_minus_zero(value: f64, decimals: i32) -> f64 {
+    if value.abs() < 0.5 * 10_f64.powi(-decimals) { 0.0 } else { value }
+}
+
 /// Columns of a terminal: no table is wider, but for a first column that is.
 const WIDTH: usize = 80;
 

@@ -48,7 +48,7 @@ fn changed(kinds: &[&str]) -> TailDocument {
         note: String::new(),
     };
     let events: Vec<Event> = kinds.iter().map(event).collect();
-    let found = MonitoredTail::new((&tail, "VIRT"), &deviations, &events).unwrap().unwrap();
+    let found = MonitoredTail::new(&tail, &deviations, &events).unwrap().unwrap();
     found.document(&MonitorOptions::default())
 }
 

@@ -44,6 +44,8 @@ pub(crate) fn check(
 #[derive(Debug)]
 pub(crate) struct Monitored {
     document: Arc<MonitorDocument>,
+    /// What was asked for, in words.
+    options: Arc<[String]>,
 }
 
 /// How tails are monitored, in the words of the Python files.
@@ -68,7 +70,7 @@ pub(crate) fn monitor_tails(
     asked: MonitorAsked,
 ) -> PyResult<Monitored> {
     let tails = Arc::clone(&adapted.tails);
-    let document = run(py, asked.threads, move |caller| {
+    let (document, options) = run(py, asked.threads, move |caller| {
         let events = match &asked.events {
             Some(bytes) => events_of(bytes)?,
             None => Vec::new(),
@@ -98,9 +100,10 @@ pub(crate) fn monitor_tails(
         }
         documents.sort_by(|one, other| one.tail.cmp(&other.tail));
         alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
-        Ok(MonitorDocument::new(documents, alerts))
+        let words = options.in_words(events.len(), before);
+        Ok((MonitorDocument::new(documents, alerts), words))
     })?;
-    Ok(Monitored { document: Arc::new(document) })
+    Ok(Monitored { document: Arc::new(document), options: options.into() })
 }
 
 fn monitor_tail(
@@ -116,9 +119,8 @@ fn monitor_tail(
         |error: &dyn std::fmt::Display| Failure::input(format!("tail {}: {error}", result.tail));
     let deviations =
         TailDeviations::new(&result.model, &segments, before).map_err(|error| named(&error))?;
-    let aircraft_type = result.model.initial.aircraft().type_code();
-    let found = MonitoredTail::new((&result.tail, aircraft_type), &deviations, events)
-        .map_err(|error| named(&error))?;
+    let found =
+        MonitoredTail::new(&result.tail, &deviations, events).map_err(|error| named(&error))?;
     Ok(found.map(|found| (found.document(options), found.alerts(options))))
 }
 
@@ -131,7 +133,7 @@ impl Monitored {
 
     /// `monitor.html`.
     fn page(&self) -> String {
-        page::monitoring(&self.document)
+        page::monitoring(&self.document, &self.options)
     }
 
     /// Deviations over time of these tails as SVG; of all without any.

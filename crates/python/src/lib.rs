@@ -52,7 +52,7 @@ mod _native {
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
-    use crate::plots::picture;
+    use crate::plots::{picture, plot_trials};
     #[pymodule_export]
     use crate::simulated::{Simulated, simulate};
     #[pymodule_export]

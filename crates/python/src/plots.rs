@@ -1,5 +1,6 @@
 //! Charts of `cruisefit plot`, chosen by their names, and pictures of them.
 
+use page::PictureFormat;
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
@@ -30,16 +31,21 @@ pub(crate) fn drawn(sheet: Option<String>) -> Result<String, Failure> {
 /// A sheet of charts as `png` or `pdf`, and the characters that the font of pictures does not have.
 #[pyfunction]
 pub(crate) fn picture(py: Python<'_>, svg: String, format: &str) -> PyResult<(Vec<u8>, String)> {
-    let draw = match format {
-        "png" => page::png,
-        "pdf" => page::pdf,
-        other => {
-            let found = format!("found {other:?}, expected a name that ends in .svg, .png or .pdf");
-            return Err(Failure::input(found).into());
-        }
+    let Some(of_ending) = PictureFormat::from_ending(format) else {
+        let found = format!("found {format:?}, expected a name that ends in .svg, .png or .pdf");
+        return Err(Failure::input(found).into());
     };
     run(py, None, move |_| {
-        let picture = draw(&svg).map_err(Failure::internal)?;
+        let picture = of_ending.draw(svg).map_err(Failure::internal)?;
         Ok((picture.bytes, picture.unknown_characters.iter().collect()))
     })
+}
+
+/// What was planted against what was found, of a `trials.json`, as SVG.
+#[pyfunction]
+pub(crate) fn plot_trials(json: &str) -> PyResult<String> {
+    let wrong = |error: serde_json::Error| Failure::input(format!("trials.json: {error}"));
+    let mut document: serde_json::Value = serde_json::from_str(json).map_err(wrong)?;
+    let groups = serde_json::from_value::<Vec<page::TrialConfusion>>(document["groups"].take());
+    Ok(drawn(page::plot_trials(&groups.map_err(wrong)?))?)
 }

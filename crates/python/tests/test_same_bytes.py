@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import get_args
 
 import pyarrow.csv
@@ -255,6 +256,15 @@ def test_charts_and_public_models(run, fixture, models, tmp_path):
         model.plot("surfaces")
     # The names that types know are those of the library.
     assert refused.value.expected == "one of " + ", ".join(get_args(TailChart))
+
+    group = {"denied": "exact", "background": "clean", "times": 1.0}
+    group["scores"] = {"confusion": {"drag_factor": {"drag_factor": 3, "no_gap": 1}}}
+    trials = tmp_path / "trials.json"
+    trials.write_text(json.dumps({"schema": "cruisefit.trials/1", "groups": [group]}))
+    run("plot", trials, "-o", tmp_path / "trials.svg")
+    assert cruisefit.plot_trials(trials).svg == (tmp_path / "trials.svg").read_text()
+    with pytest.raises(cruisefit.InputError, match=r"trials\.json"):
+        cruisefit.plot_trials(models / "initial.ron")
 
     run("guide", "--type", "b738", "-o", tmp_path)
     run("init", "--aircraft", tmp_path / "AIRCRAFT.ron", "--guide", tmp_path / "guide.csv", "-o", tmp_path / "B738.ron")

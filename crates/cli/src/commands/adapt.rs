@@ -20,7 +20,7 @@ use crate::folder::lock::Busy;
 use crate::folder::{Beginning, Folder};
 use crate::inputs;
 use crate::models::read_models;
-use crate::progress::Progress;
+use crate::progress::{Bar, Progress};
 use crate::reading::heads::{Head, Heads};
 use crate::reading::{Buffers, Source};
 pub(crate) use tail::stage;
@@ -33,6 +33,8 @@ struct Run<'a> {
     /// Whether the page of the run holds the tails' charts; otherwise each tail has its own page.
     on_one_page: bool,
     anchors: page::Anchors,
+    /// Counts reports: half of one when it is read, the other half when its tail has learnt.
+    bar: Bar,
 }
 
 /// Runs the command.
@@ -54,21 +56,23 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let tails = choose(tails, &mut starts, &mut refused);
     check_refused(&refused, files, arguments.reports.strict, tails.is_empty())?;
     let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };
-    let folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
+    let mut folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
     for (tail, (start, _)) in &tails {
         check_begun_alike(arguments, &folder, tail, start)?;
     }
     let mut all: BTreeSet<String> = folder.tails();
     all.extend(tails.keys().cloned());
     crate::folder::names::check(&arguments.output, &all)?;
+    let reports = tails.values().map(|(_, heads)| heads.len()).sum();
     let run = Run {
         arguments,
         folder: &folder,
         source: &source,
         on_one_page: all.len() <= page::TAILS_ON_ONE_PAGE,
         anchors: page::Anchors::new(all.iter().map(String::as_str)),
+        bar: progress.bar(reports, "learning flights"),
     };
-    let mut outcomes = learn_all(&run, tails, progress)?;
+    let mut outcomes = learn_all(&run, tails, reports)?;
     // The summary covers every tail that the folder holds, also those without a report in this run.
     let done: BTreeSet<String> = outcomes.iter().map(|one| one.tail.clone()).collect();
     let others: Vec<&String> = all.difference(&done).collect();
@@ -87,8 +91,15 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     let copies = outcomes.iter().map(|outcome| outcome.copies).sum();
     warn_of_copies(copies, outcomes.iter_mut().find_map(|outcome| outcome.first_copy.take()));
     let summary = results::write(&run, &refused, &outcomes)?;
+    // One page holds every tail: pages that an earlier run or program gave each of them would show old figures.
+    let pages: Vec<String> = if run.on_one_page {
+        all.iter().map(|tail| tail::page_file(tail)).collect()
+    } else {
+        Vec::new()
+    };
     let states = outcomes.into_iter().filter_map(|one| Some((one.tail, one.state?))).collect();
     drop(run);
+    folder.removes(pages);
     folder.commit(states)?;
     let text = format!(
         "{}Written to {}: models/, segments/, flights/, summary.json, report.html\n",
@@ -131,24 +142,19 @@ fn choose<'a>(
 fn learn_all(
     run: &Run<'_>,
     tails: Chosen<'_>,
-    progress: Progress,
+    reports: usize,
 ) -> Result<Vec<tail::TailOutcome>, Failure> {
-    let reports: usize = tails.values().map(|(_, heads)| heads.len()).sum();
     let large = reports / (2 * rayon::current_num_threads()).max(1);
-    let bar = progress.bar(reports, "learning flights");
     let jobs: Vec<_> = tails.into_iter().collect();
     let outcomes = jobs
         .into_par_iter()
         .map_init(Buffers::default, |buffers, (tail, (start, heads))| {
             // Few tails can be as large as that, so few jobs can wait inside each other.
             let side_by_side = heads.len() > large.max(tail::READ_AT_A_TIME);
-            let count = heads.len();
-            let outcome = run.learn(&tail, &start, heads, buffers, side_by_side);
-            bar.advance(count);
-            outcome
+            run.learn(&tail, &start, heads, buffers, side_by_side)
         })
         .collect();
-    bar.finish();
+    run.bar.finish();
     outcomes
 }
 

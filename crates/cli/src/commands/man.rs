@@ -5,15 +5,20 @@ use crate::commands::Outcome;
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 
-/// Writes `cruisefit.1`, `cruisefit-COMMAND.1`, ….
+/// Writes `cruisefit.1`, `cruisefit-COMMAND.1`, …; to `-` the first of them.
 ///
 /// # Errors
 /// A folder or file that cannot be written.
 pub(crate) fn run(arguments: &ManArgs) -> Result<Outcome, Failure> {
     let folder = &arguments.folder;
-    make_folder(folder)?;
     let pages =
         pages(crate::args::help::command()).map_err(|error| Failure::unwritable(folder, error))?;
+    if folder.as_os_str() == "-" {
+        let program = pages.first().map(|(_, page)| String::from_utf8_lossy(page).into_owned());
+        let figures = serde_json::json!({ "page": program });
+        return Ok(Outcome::with_figures(program.unwrap_or_default(), figures));
+    }
+    make_folder(folder)?;
     for (name, page) in &pages {
         write_atomically(&folder.join(name), page)?;
     }

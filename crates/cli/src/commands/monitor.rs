@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
     let document = MonitorDocument::new(documents, alerts);
     let mut printed = text(&document, if arguments.month { Rows::Months } else { Rows::Tails });
     if let Some(folder) = &arguments.output {
-        write(folder, &document)?;
+        write(folder, &document, &options.in_words(events.len(), before_learning))?;
         let _ = writeln!(
             printed,
             "Written to {}: monitor.html, monitor.json, tables (.csv)",
@@ -84,12 +84,12 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
     Ok(Outcome { ending, ..Outcome::with_json(printed, document.to_json()) })
 }
 
-fn write(folder: &Path, document: &MonitorDocument) -> Result<(), Failure> {
+fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Result<(), Failure> {
     make_folder(folder)?;
     write_atomically(&folder.join("monitor.json"), &document.to_json())?;
     write_atomically(
         &folder.join("monitor.html"),
-        neutral(&page::monitoring(document)).as_bytes(),
+        neutral(&page::monitoring(document, options)).as_bytes(),
     )?;
     for table in tables(document) {
         columns::write(&table.columns, Some(&folder.join(format!("{}.csv", table.name))))?;
@@ -108,8 +108,7 @@ fn monitor_tail(
     let deviations = TailDeviations::new(&model, &segments, before_learning)
         .map_err(|error| Failure::bad_file(path, error))?;
     drop(segments);
-    let aircraft_type = model.initial.aircraft().type_code();
-    let found = MonitoredTail::new((&tail, aircraft_type), &deviations, events)
+    let found = MonitoredTail::new(&tail, &deviations, events)
         .map_err(|error| Failure::bad_file(path, error))?;
     let Some(found) = found else {
         tracing::warn!(tail, "no segment is inside the table: there is nothing to monitor");

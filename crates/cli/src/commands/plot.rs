@@ -1,6 +1,6 @@
 //! `cruisefit plot`: the charts of a model, of a tail of an adapted folder, of a diagnosis, of months or trials, as SVG, PNG or PDF.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::failure::{Failure, show};
 use crate::files::{file_stem_of_tail, read_text, write_atomically};
 use crate::models::read_model;
 use diagnose::SegmentGap;
-use page::{Picture, PictureError};
+use page::{PictureFormat, TrialConfusion};
 use pipeline::diagnosis_document::TailDiagnosis;
 use pipeline::evaluation::{TailCounts, TailData, TailResult};
 use pipeline::gaps_table;
@@ -29,7 +29,7 @@ const DOCUMENTS: [&str; 3] = ["diagnosis.json", "monitor.json", "trials.json"];
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
-    let format = Format::of(&arguments.output)?;
+    let format = format(arguments)?;
     let source = &arguments.source;
     let charts: Vec<&str> = arguments.charts.iter().map(String::as_str).collect();
     let document = DOCUMENTS.map(|name| source.join(name)).into_iter().find(|path| path.is_file());
@@ -70,51 +70,36 @@ pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
     let figures = serde_json::json!({
         "format": format.ending(), "unknown_characters": unknown, "written": [show(&arguments.output)],
     });
+    // To `-` the picture alone.
+    if arguments.output.as_os_str() == "-" {
+        return Ok(Outcome::default());
+    }
     Ok(Outcome::with_figures(format!("Written to {}\n", show(&arguments.output)), figures))
 }
 
-/// What is written, by the ending of the file's name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Svg,
-    Png,
-    Pdf,
-}
-
-impl Format {
-    const ALL: [Self; 3] = [Self::Svg, Self::Png, Self::Pdf];
-
-    fn of(output: &Path) -> Result<Self, Failure> {
-        let ending = output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        Self::ALL
-            .into_iter()
-            .find(|format| ending.eq_ignore_ascii_case(format.ending()))
-            .ok_or_else(|| Failure::BadArgument {
-                argument: "--output",
-                reason: format!(
-                    "{}: found {ending:?}, expected a name that ends in .svg, .png or .pdf",
-                    show(output)
-                ),
-            })
+/// What is written: what was asked for, else what the name of the file ends in, else SVG to standard output.
+fn format(arguments: &PlotArgs) -> Result<PictureFormat, Failure> {
+    let output = &arguments.output;
+    let on_standard_output = output.as_os_str() == "-";
+    if on_standard_output && arguments.json.json {
+        return Err(Failure::BadArgument {
+            argument: "--json",
+            reason:
+                "standard output has room for the document alone; give the picture a file with -o"
+                    .to_owned(),
+        });
     }
-
-    const fn ending(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Png => "png",
-            Self::Pdf => "pdf",
-        }
-    }
-
-    fn draw(self, sheet: String) -> Result<Picture, PictureError> {
-        match self {
-            Self::Svg => {
-                Ok(Picture { bytes: sheet.into_bytes(), unknown_characters: BTreeSet::new() })
-            }
-            Self::Png => page::png(&sheet),
-            Self::Pdf => page::pdf(&sheet),
-        }
-    }
+    let ending = output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let of_name = PictureFormat::from_ending(ending);
+    let asked = arguments.format.as_deref().and_then(PictureFormat::from_ending);
+    let unnamed = on_standard_output.then_some(PictureFormat::Svg);
+    asked.or(of_name).or(unnamed).ok_or_else(|| Failure::BadArgument {
+        argument: "--output",
+        reason: format!(
+            "{}: found {ending:?}, expected a name that ends in .svg, .png or .pdf, or --format",
+            show(output)
+        ),
+    })
 }
 
 /// What this command reads of the documents of others.
@@ -126,20 +111,7 @@ enum Document {
     #[serde(rename = "cruisefit.monitor/1")]
     Monitor { tails: Vec<TailDocument> },
     #[serde(rename = "cruisefit.trials/1")]
-    Trials { groups: Vec<TrialGroup> },
-}
-
-#[derive(Deserialize)]
-struct TrialGroup {
-    denied: serde_json::Value,
-    background: serde_json::Value,
-    times: f64,
-    scores: TrialScores,
-}
-
-#[derive(Deserialize)]
-struct TrialScores {
-    confusion: page::Confusion,
+    Trials { groups: Vec<TrialConfusion> },
 }
 
 fn of_document(
@@ -159,21 +131,7 @@ fn of_document(
             tails.retain(|one| asked(&one.tail));
             page::plot_months(&tails)
         }
-        Document::Trials { groups } => {
-            let words = |value: &serde_json::Value| {
-                value.as_str().map_or_else(|| value.to_string(), str::to_owned)
-            };
-            let named = groups.into_iter().map(|group| {
-                let name = format!(
-                    "model {}, background {}, {} times the typical size",
-                    words(&group.denied),
-                    words(&group.background),
-                    group.times
-                );
-                (name, group.scores.confusion)
-            });
-            page::plot_confusions(&named.collect::<Vec<_>>())
-        }
+        Document::Trials { groups } => page::plot_trials(&groups),
     })
 }
 

@@ -1,6 +1,7 @@
 //! What a folder holds after the program died, or the power was cut, before or within any of its steps.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::Path;
 
 use pipeline::checksum::sha256;
@@ -177,4 +178,24 @@ fn a_restart_keeps_the_old_folder_or_changes_nothing() {
     store(folder, 2).unwrap();
     assert_eq!((version_seen(&path), version_seen(&scratch.path().join("out.1"))), (2, 1));
     assert_eq!(names_below(&scratch.path().join("out.1")).len(), 3 * TAILS.len() + 2);
+}
+
+#[test]
+fn what_is_out_of_date_goes_when_the_new_is_in_place_and_not_before() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("out");
+    store(open(&path), 1).unwrap();
+    let page = path.join("pages").join("A.html");
+    fs::create_dir_all(path.join("pages")).unwrap();
+    fs::write(&page, "old figures").unwrap();
+    let named = || ["pages/A.html", "pages/B.html"].map(str::to_owned);
+    let mut left = open(&path);
+    left.removes(named());
+    drop(left);
+    assert!(page.is_file());
+    let mut folder = open(&path);
+    folder.removes(named());
+    store(folder, 2).unwrap();
+    assert!(!page.exists());
+    assert_eq!(version_seen(&path), 2);
 }

@@ -3,6 +3,8 @@
 use std::fmt::{Display, Formatter};
 use std::path::Path;
 
+use flight::MAXIMUM_ENGINES;
+use flight::effect::EffectId;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme};
 
 use super::excerpt::{Excerpt, position_in};
@@ -58,6 +60,14 @@ fn place_of(failure: &Failure) -> Option<(&str, usize, Option<usize>)> {
 fn meant(message: &str) -> Option<String> {
     if message.contains("did you mean") {
         return None;
+    }
+    if let Some((_, behind)) = message.split_once("no effect is called ") {
+        let wrong = behind.split('"').nth(1)?;
+        let outside = behind.split(' ').map(|name| name.trim_matches(','));
+        let library = EffectId::library(MAXIMUM_ENGINES).into_iter().map(|id| id.to_string());
+        let names: Vec<String> = library.chain(outside.map(str::to_owned)).collect();
+        let name = report::nearest(wrong, names.iter().map(String::as_str))?;
+        return Some(format!("did you mean {name}?"));
     }
     let (before, list) = ["one of ", "known are ", "presets: ", "it holds "]
         .into_iter()

@@ -117,6 +117,9 @@ fn what_is_for_programs_as_it_is_has_figures_too() {
     let written = pages["written"].as_array().unwrap();
     assert_eq!(pages["pages"], written.len());
     assert!(written.iter().all(|page| Path::new(page.as_str().unwrap()).is_file()), "{pages}");
+    let page = cruisefit(&["man", "-"]).expect(0).stdout;
+    let beside = std::fs::read_to_string(scratch.path().join("man/cruisefit.1")).unwrap();
+    assert_eq!(page, beside);
 
     let model = text(&initial_model(scratch.path()));
     let csv = out("table.csv");

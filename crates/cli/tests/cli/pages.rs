@@ -160,6 +160,15 @@ fn a_plot_is_what_the_ending_of_its_name_says() {
         plot(&model, name).0.expect(0);
         assert_eq!(fs::read(&figure).unwrap(), first, "{name}: same model, same bytes");
     }
+    // To standard output the picture alone, as SVG or as asked for.
+    let model_path = model.to_str().unwrap();
+    let printed = cruisefit(&["plot", model_path, "-o", "-"]).expect(0).stdout;
+    assert_eq!(printed.into_bytes(), fs::read(scratch.path().join("model.svg")).unwrap());
+    let asked = std::process::Command::new(env!("CARGO_BIN_EXE_cruisefit"))
+        .args(["plot", model_path, "-o", "-", "--format", "pdf"])
+        .output()
+        .unwrap();
+    assert_eq!(asked.stdout, fs::read(scratch.path().join("model.pdf")).unwrap());
     let (ran, figure) = plot(&model, "model.jpeg");
     ran.expect(2).says("found \"jpeg\", expected a name that ends in .svg, .png or .pdf");
     assert!(!figure.exists());

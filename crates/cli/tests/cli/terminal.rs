@@ -113,12 +113,15 @@ fn errors_are_sentences() {
     let bad_guide = scratch.path().join("bad.csv");
     std::fs::write(&bad_guide, "weight_lb,pressure_altitude_ft,mahc,fuel_flow_lb_h\n1,2,3,4\n")
         .unwrap();
+    let wrong_effect = scratch.path().join("plan.ron");
+    let plan = include_str!("../../../simulate/examples/plan.ron");
+    std::fs::write(&wrong_effect, plan.replacen("wave_drag", "wave_drga", 1)).unwrap();
     let out = scratch.path().join("out");
     let plain = |path: &Path| path.to_str().unwrap().to_owned();
     let (model, reports, aircraft, guide) =
         (plain(&model), plain(&reports), plain(&aircraft), plain(&guide));
-    let (bad, bad_guide, out, folder) =
-        (plain(&bad), plain(&bad_guide), plain(&out), plain(scratch.path()));
+    let (bad, bad_guide, out, folder, wrong_effect) =
+        (plain(&bad), plain(&bad_guide), plain(&out), plain(scratch.path()), plain(&wrong_effect));
     adapt(Path::new(&model), Path::new(&out), &[fixture("reports")], &[]).expect(0);
     let learnt = format!("{out}/models/SIM-01.ron");
     let cases: Vec<(Vec<&str>, &str)> = vec![
@@ -145,6 +148,7 @@ fn errors_are_sentences() {
             "did you mean airbus-report-02?",
         ),
         (vec!["segment", &reports, "--mapping", "traffic-a32"], "did you mean traffic-a320?"),
+        (vec!["segment", &reports, "--mapping", "acropol"], "did you mean acropole-a320?"),
         (vec!["segment", &reports, "--mapping", &bad], "bad.ron"),
         (vec!["explain", "tsfc_engine2"], "did you mean tsfc_engine_2?"),
         (vec!["guide", "--type", "ZZZZ", "-o", "x"], "no public model of ZZZZ"),
@@ -156,6 +160,12 @@ fn errors_are_sentences() {
         (vec!["show", &guide], "this is a table (CSV)"),
         (vec!["plot", &out, "--tail", "SIM-11", "-o", "x.svg"], "did you mean"),
         (vec!["simulate", &bad, "-o", "x"], "bad.ron"),
+        (vec!["simulate", &wrong_effect, "-o", "x"], "did you mean wave_drag?"),
+        (vec!["plot", &model, "-o", "-", "--json"], "standard output has room"),
+        (
+            vec!["plot", &model, "-o", "x.svg", "--format", "jpeg"],
+            "[possible values: svg, png, pdf]",
+        ),
         (vec!["trial", &bad, "-o", "x"], "bad.ron"),
         (vec!["golden", "check", &folder], "golden.ron"),
         (

@@ -5,6 +5,7 @@ use units::convert::SECONDS_PER_DAY;
 
 use super::region::{instant, unit_words};
 use super::variable_words;
+use crate::summary::not_minus_zero;
 
 /// "CD +9.6 ± 0.8 counts around Mach number 0.781 (width 0.016): closes 93 % on unseen flights".
 pub fn form_words(found: &FoundForm) -> String {
@@ -17,7 +18,8 @@ pub fn form_words(found: &FoundForm) -> String {
         || "how much it closes could not be measured".to_owned(),
         |closure| format!("closes {:.0} % on unseen flights", 100.0 * closure.share.max(0.0)),
     );
-    format!("{what} {:+.2} ± {half:.2} {unit} {}: {closure}", found.size, shape(found))
+    let size = not_minus_zero(found.size, 2);
+    format!("{what} {size:+.2} ± {half:.2} {unit} {}: {closure}", shape(found))
 }
 
 /// What its size is of, and where.

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::ModelFile;
 use crate::addition_record::{AdditionRecord, UnknownEffect, effect_of};
 use crate::diagnosed_tail::POOL;
+use crate::summary::counted;
 
 /// What one diagnosis added to the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,6 +132,23 @@ impl ModelFile {
         let applied = self.applied.last().map(|record| record.diagnosis.tail.as_str());
         let learnt = self.learnt.as_ref().map(|learnt| learnt.tail.as_str());
         applied.filter(|tail| *tail != POOL).or(learnt)
+    }
+
+    /// What it has learnt, and the effects that it contains: "law bayes, 30 flights of N750CF learnt".
+    pub fn told(&self) -> String {
+        let learnt = match &self.learnt {
+            Some(learnt) => format!(
+                "{}, {} of {} learnt",
+                learnt.law.told(),
+                counted(learnt.ledger.len(), "flight"),
+                learnt.tail
+            ),
+            None => "initial model, which has learnt no flight".to_owned(),
+        };
+        if self.applied.is_empty() {
+            return learnt;
+        }
+        format!("{learnt}; contains {}", self.told_effects())
     }
 
     /// The effects that the model contains in words; "none" for none.

@@ -64,6 +64,10 @@ pub struct ReferenceConditions {
 /// A tail's flights in the order of flying.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TailDeviations {
+    /// Type code of the aircraft.
+    pub aircraft_type: String,
+    /// What the model has learnt, in words.
+    pub model: String,
     /// The flights.
     pub flights: Vec<MonitoredFlight>,
     /// What they are normalised to.
@@ -118,7 +122,8 @@ impl TailDeviations {
             from += flight.len();
         }
         flights.sort_by(|one, other| (one.start, &one.flight).cmp(&(other.start, &other.flight)));
-        Ok(Self { flights, reference })
+        let aircraft_type = model.initial.aircraft().type_code().to_owned();
+        Ok(Self { aircraft_type, model: model.told(), flights, reference })
     }
 }
 

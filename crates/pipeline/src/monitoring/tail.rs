@@ -10,13 +10,14 @@ use monitor::{
     months, years_between,
 };
 
-use super::deviations::{MonitoredFlight, ReferenceConditions, TailDeviations};
+use super::deviations::{BeforeLearning, MonitoredFlight, ReferenceConditions, TailDeviations};
 use super::document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure,
     FlightDocument, MonthDocument, ReferenceDocument, TailDocument,
 };
 use super::events::Event;
 use crate::statistics::ErrorStatistics;
+use crate::summary::counted;
 
 /// What a caller may choose.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,11 +30,40 @@ pub struct MonitorOptions {
     pub rules: Vec<AlertRule>,
 }
 
+impl MonitorOptions {
+    /// What a run was asked for in words, for the head of its page.
+    #[must_use]
+    pub fn in_words(&self, events: usize, before_learning: BeforeLearning) -> Vec<String> {
+        let mut told = vec![match events {
+            0 => "no events given".to_owned(),
+            events => format!("{} given", counted(events, "event")),
+        }];
+        let rules: Vec<String> = self.rules.iter().map(ToString::to_string).collect();
+        if !rules.is_empty() {
+            told.push(format!("alerts at {}", rules.join(", ")));
+        }
+        let figures = [
+            ("CO₂ by", self.cost.co2_kg_per_kg, "kg a kg of fuel"),
+            ("fuel at", self.cost.price_per_kg, "a kg"),
+            ("", self.cost.flights_per_year, "flights a year"),
+            ("basic factor of the FMS", self.basic_performance_factor_percent, "%"),
+        ];
+        for (what, value, unit) in figures {
+            told.extend(value.map(|value| format!("{what} {value} {unit}").trim().to_owned()));
+        }
+        if before_learning == BeforeLearning::LeaveOut {
+            told.push("without the deviation by the model before it learnt a flight".to_owned());
+        }
+        told
+    }
+}
+
 /// A tail with its series read.
 #[derive(Clone, Debug)]
 pub struct MonitoredTail<'a> {
     tail: &'a str,
     aircraft_type: &'a str,
+    model: &'a str,
     flights: Vec<&'a MonitoredFlight>,
     reference: ReferenceConditions,
     events: Vec<&'a Event>,
@@ -49,7 +79,7 @@ impl<'a> MonitoredTail<'a> {
     /// # Errors
     /// Flights that are not in order.
     pub fn new(
-        (tail, aircraft_type): (&'a str, &'a str),
+        tail: &'a str,
         deviations: &'a TailDeviations,
         events: &'a [Event],
     ) -> Result<Option<Self>, SeriesError> {
@@ -75,7 +105,8 @@ impl<'a> MonitoredTail<'a> {
         let reference = deviations.reference;
         Ok(Some(Self {
             tail,
-            aircraft_type,
+            aircraft_type: &deviations.aircraft_type,
+            model: &deviations.model,
             flights,
             reference,
             events,
@@ -102,6 +133,7 @@ impl<'a> MonitoredTail<'a> {
         TailDocument {
             tail: self.tail.to_owned(),
             aircraft_type: self.aircraft_type.to_owned(),
+            model: self.model.to_owned(),
             from: date(self.flights.first()),
             to: date(self.flights.last()),
             reference: reference_document(&self.reference),

@@ -31,6 +31,7 @@ from .diagnosis import (
     Verdict,
     diagnose,
     effects,
+    plot_trials,
 )
 from .errors import CruisefitError, DataWarning, InputError, InternalError, PredictionWarning
 from .model import Model, types
@@ -67,6 +68,7 @@ __all__ = [
     "evaluate",
     "mapping",
     "merge",
+    "plot_trials",
     "segment",
     "simulate",
     "types",

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from . import _native
-from ._pages import Chart, DiagnosisChart, framed, names_of
+from ._pages import Chart, DiagnosisChart, framed, names_of, read_text
 from .adaptation import warn_of_findings
 from .model import Model
 from .segments import Refused, Segments
@@ -25,6 +25,7 @@ __all__ = [
     "Verdict",
     "diagnose",
     "effects",
+    "plot_trials",
 ]
 
 Interval = tuple[float, float]
@@ -278,6 +279,18 @@ def diagnose(
 def effects(engines: int = 2) -> list[tuple[str, str, str]]:
     """The library of effects of an aircraft with so many engines: name, unit, what it changes."""
     return _native.effects(engines)
+
+
+def plot_trials(path: str | os.PathLike[str]) -> Chart:
+    """What was planted against what was found, a matrix for each group of blind trials: ``cruisefit plot trials.json``.
+
+    Args:
+        path: ``trials.json`` of ``cruisefit trial``.
+
+    Raises:
+        InputError: It is no such file.
+    """
+    return Chart(_native.plot_trials(read_text(path)))
 
 
 def _tail_diagnosis(record: dict[str, Any], lines: list[str]) -> TailDiagnosis:

@@ -75,6 +75,7 @@ impl Run<'_> {
             Ok(found) => found,
             // A damaged tail costs itself, not the batch.
             Err(failure) => {
+                self.bar.advance(paths.len());
                 let refuse = |path: Box<Path>| {
                     let reason = format!("tail {tail} is not touched: {failure}");
                     RefusedReport::whole(path.into(), reason)
@@ -83,6 +84,7 @@ impl Run<'_> {
                 return Ok(TailOutcome { refused, ..self.untouched(tail) });
             }
         };
+        self.bar.advance(paths.len() - new.len());
         let mut known = KnownFlights::new(known);
         if let Some(stored) = &stored {
             known.add_segments(&stored.segments);
@@ -112,7 +114,9 @@ impl Run<'_> {
             costs,
             ..TailOutcome::default()
         };
-        self.learn_sorted(start, sorting, stored, outcome)
+        let learnt = self.learn_sorted(start, sorting, stored, outcome);
+        self.bar.half(new.len());
+        learnt
     }
 
     /// Reads a tail's reports and sets aside those that its model is not for, or whose dates or figures cannot be right.
@@ -126,6 +130,7 @@ impl Run<'_> {
     ) -> Reading {
         let mut reading = Reading::default();
         for some in heads.chunks(READ_AT_A_TIME) {
+            self.bar.half(some.len());
             for (flights, refused) in read_some(self.source, some, buffers, side_by_side) {
                 reading.refused.extend(refused);
                 for flight in flights {

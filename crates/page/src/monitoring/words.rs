@@ -1,0 +1,182 @@
+//! A tail of `monitor.html` in plain words: what its fuel flow does, and what to do about it.
+
+use pipeline::monitoring::{AlertDocument, ChangeDocument, Figure, TailDocument};
+
+use super::{day, figure};
+use crate::text::signed_tenths;
+
+/// Whether the tail burns more or less than its initial model predicts.
+pub(super) fn burns_otherwise(tail: &TailDocument) -> bool {
+    differs_from_zero(&tail.deviation_percent)
+}
+
+/// What the fuel flow of a tail does, in a sentence.
+pub(super) fn found(tail: &TailDocument) -> String {
+    let level = &tail.deviation_percent;
+    let level = if burns_otherwise(tail) {
+        format!(
+            "Burns {} % {} than its initial model predicts",
+            size(level),
+            more_or_less(level.value)
+        )
+    } else {
+        format!("Burns what its initial model predicts ({} %)", figure(level))
+    };
+    let trend = &tail.trend_percent_per_year;
+    if differs_from_zero(trend) {
+        format!("{level}, and {} % {} each year.", size(trend), more_or_less(trend.value))
+    } else {
+        format!("{level}; no trend stands out ({} % a year).", figure(trend))
+    }
+}
+
+/// What to do about it; never empty.
+pub(super) fn advice(tail: &TailDocument, alerts: &[AlertDocument]) -> Vec<String> {
+    let mut told: Vec<String> = tail
+        .changes
+        .iter()
+        .filter(|change| change.event.is_none() && differs_from_zero(&change.step_percent))
+        .map(look_up)
+        .collect();
+    if told.len() > 1 {
+        // The newest is the one that can still be looked up; the others are listed below it.
+        told.drain(..told.len() - 1);
+    }
+    if differs_from_zero(&tail.trend_percent_per_year) && tail.trend_percent_per_year.value > 0.0 {
+        told.push(
+            "Wear, or dirt on engines or airframe: cruisefit diagnose says which of them fits the flights."
+                .to_owned(),
+        );
+    }
+    if burns_otherwise(tail) {
+        told.push(cause(tail, alerts));
+        let factor = &tail.airbus;
+        told.push(match factor.performance_factor_percent {
+            Some(percent) => {
+                format!("Until then: FMS PERF FACTOR {} %.", signed_tenths(percent))
+            }
+            None => format!(
+                "Until then, plan with a fuel factor of {} %.",
+                signed_tenths(factor.retained_fuel_factor_percent)
+            ),
+        });
+    }
+    if told.is_empty() {
+        told.push("Nothing to do.".to_owned());
+    }
+    told
+}
+
+fn look_up(change: &ChangeDocument) -> String {
+    let of = change.engine.map_or_else(String::new, |engine| format!(" of engine {engine}"));
+    format!(
+        "Look up what was done between {} and {}: the fuel flow{of} changed by {} %, and no event states why.",
+        day(&change.since_ci95[0]),
+        day(&change.since_ci95[1]),
+        figure(&change.step_percent)
+    )
+}
+
+/// Where the cause is named, or how to find it.
+fn cause(tail: &TailDocument, alerts: &[AlertDocument]) -> String {
+    let named = alerts
+        .iter()
+        .find(|alert| alert.tail == tail.tail && !alert.likely_causes.is_empty())
+        .map(|alert| alert.likely_causes.join(", "));
+    match named {
+        Some(causes) => format!("The newest diagnosis says {causes}: its page says what to do."),
+        None => "Find the cause: cruisefit diagnose with this tail's reports.".to_owned(),
+    }
+}
+
+fn differs_from_zero(figure: &Figure) -> bool {
+    figure.ci95[0] > 0.0 || figure.ci95[1] < 0.0
+}
+
+fn more_or_less(percent: f64) -> &'static str {
+    if percent > 0.0 { "more" } else { "less" }
+}
+
+fn size(figure: &Figure) -> String {
+    format!("{:.2} ± {:.2}", figure.value.abs(), figure.half_width())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figure(value: f64, half: f64) -> serde_json::Value {
+        serde_json::json!({ "value": value, "ci95": [value - half, value + half] })
+    }
+
+    /// A tail of which only this is known.
+    fn tail(level: (f64, f64), trend: (f64, f64), changes: &serde_json::Value) -> TailDocument {
+        serde_json::from_value(serde_json::json!({
+            "tail": "N1", "aircraft_type": "C750", "model": "law bayes, 3 flights of N1 learnt",
+            "from": "2026-01-01T00:00:00Z", "to": "2026-03-01T00:00:00Z",
+            "reference": { "pressure_altitude_m": 1.0, "mach": 0.8, "static_air_temperature_k": 220.0, "mass_kg": 1.0,
+                "true_airspeed_m_s": 1.0, "initial_fuel_flow_kg_s": 1.0, "segments": 1 },
+            "deviation_percent": figure(level.0, level.1), "before_learning_percent": null,
+            "trend_percent_per_year": figure(trend.0, trend.1),
+            "within_flight_percent": 0.0, "between_flights_percent": 0.0, "correlation": 0.0,
+            "airbus": { "specific_range_deviation_percent": 0.0, "specific_range_deviation_std_percent": null,
+                "readings": 1, "monitored_fuel_factor_percent": figure(1.2, 0.2),
+                "retained_fuel_factor_percent": 1.3, "performance_factor_percent": null },
+            "cost": { "flights_per_year": null, "fuel_kg_per_flight": 1.0, "fuel_kg_per_year": null,
+                "co2_kg_per_year": null, "price_per_year": null },
+            "changes": changes, "events": [], "months": [], "flights": []
+        }))
+        .unwrap()
+    }
+
+    fn change(day: &str, event: Option<&str>) -> serde_json::Value {
+        let time = format!("{day}T00:00:00Z");
+        serde_json::json!({ "engine": 2, "since": time, "since_ci95": [time, time], "probability": 0.99,
+            "step_percent": figure(1.0, 0.2), "event": event })
+    }
+
+    #[test]
+    fn a_tail_that_burns_what_is_predicted_needs_nothing() {
+        let tail = tail((0.1, 0.3), (-1.0, 2.0), &serde_json::json!([]));
+        assert_eq!(
+            found(&tail),
+            "Burns what its initial model predicts (+0.10 ± 0.30 %); no trend stands out (-1.00 ± 2.00 % a year)."
+        );
+        assert_eq!(advice(&tail, &[]), ["Nothing to do."]);
+    }
+
+    #[test]
+    fn the_newest_change_that_no_event_explains_is_looked_up() {
+        let changes = [
+            change("2026-01-05", None),
+            change("2026-02-05", None),
+            change("2026-02-20", Some("wash")),
+        ];
+        let tail = tail((1.2, 0.2), (0.5, 0.1), &serde_json::json!(changes));
+        assert_eq!(
+            found(&tail),
+            "Burns 1.20 ± 0.20 % more than its initial model predicts, and 0.50 ± 0.10 % more each year."
+        );
+        let told = advice(&tail, &[]);
+        assert_eq!(told.len(), 4, "{told:?}");
+        assert!(told[0].contains("2026-02-05") && told[0].contains("engine 2"), "{told:?}");
+        assert!(told[2].starts_with("Find the cause"), "{told:?}");
+        assert!(told[3].ends_with("a fuel factor of +1.3 %."), "{told:?}");
+    }
+
+    #[test]
+    fn a_diagnosis_at_hand_is_quoted_of_its_own_tail_alone() {
+        let tail = tail((-1.2, 0.2), (0.0, 1.0), &serde_json::json!([]));
+        let alert = |name: &str| AlertDocument {
+            tail: name.to_owned(),
+            rule: "deviation=1".to_owned(),
+            size: tail.deviation_percent,
+            unit: "%",
+            since: tail.from.clone(),
+            likely_causes: vec![format!("cause_of_{name}")],
+        };
+        let told = advice(&tail, &[alert("N2"), alert("N1")]);
+        assert!(told[0].contains("cause_of_N1"), "{told:?}");
+        assert!(found(&tail).starts_with("Burns 1.20 ± 0.20 % less"), "{}", found(&tail));
+    }
+}
