@@ -35,7 +35,7 @@ shot() {
 shot demo/adapted-bayes/report.html report 900 760
 shot demo/diagnosis/diagnosis.html diagnosis 900 760
 shot adapted/report.html fleet 900 620
-shot monitor/monitor.html monitor 900 620
+shot monitor/monitor.html monitor 900 800
 shot compared/fleet.html compared 900 600
 shot trials/trials.html trials 900 760
 for picture in "$pictures"/*.png; do

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use flight::Timestamp;
 use maud::{Markup, html};
-use pipeline::monitoring::{AlertDocument, Figure, MonitorDocument, TailDocument};
+use pipeline::monitoring::{Figure, MonitorDocument, TailDocument};
 
 use crate::chart::{Axis, Chart, Key, Mark, dates, legend, thinned};
 use crate::frame::framed;
@@ -46,7 +46,7 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
                 details.tail id=(format!("tail-{id}")) open[place == 0] {
                     summary { h3 { (tail.tail) } span { (figure(&tail.deviation_percent)) " %" } }
                     div {
-                        (in_words(tail, &document.alerts))
+                        (in_words(tail, document))
                         (chart(tail, *id, most)) (changes(tail)) (months(tail))
                     }
                 }
@@ -73,11 +73,16 @@ fn head(document: &MonitorDocument, options: &[String]) -> String {
 }
 
 /// What the tail does, what to do about it, and by which model.
-fn in_words(tail: &TailDocument, alerts: &[AlertDocument]) -> Markup {
+fn in_words(tail: &TailDocument, document: &MonitorDocument) -> Markup {
     html! {
         dl.verdict.gap[words::burns_otherwise(tail)] {
-            dt { "What" } dd { b { (words::found(tail)) } }
-            dt { "What to do" } @for advice in words::advice(tail, alerts) { dd { (advice) } }
+            dt { "What" }
+            dd {
+                b { (words::found(tail)) }
+                @if let Some(shared) = words::shared(tail, &document.fleet) { " " (shared) }
+            }
+            dt { "What to do" }
+            dd { @for (k, advice) in words::advice(tail, &document.alerts).iter().enumerate() { @if k > 0 { br; } (advice) } }
         }
         p.note { (tail.aircraft_type) ", " (tail.model) "." }
     }

@@ -34,7 +34,7 @@ tbody th, tfoot th { text-align: left; font-weight: 600; }
 thead tr:first-child th:first-child { text-align: left; }
 th[scope=colgroup] { text-align: center; }
 .fleet { width: 100%; } .fleet th, .fleet td { padding-inline: .3rem; }
-.fleet tbody th { white-space: nowrap; }
+.fleet tbody th, .fleet tbody td { white-space: nowrap; }
 @media (max-width: 1000px) { body { padding-inline: .8rem; } }
 .fleet tbody tr:hover { background: var(--card); }
 .fleet tfoot th, .fleet tfoot td { border-top: 1.5px solid var(--ink); border-bottom: 0; }

@@ -1,6 +1,6 @@
 //! A tail of `monitor.html` in plain words: what its fuel flow does, and what to do about it.
 
-use pipeline::monitoring::{AlertDocument, ChangeDocument, Figure, TailDocument};
+use pipeline::monitoring::{AlertDocument, ChangeDocument, Figure, FleetDocument, TailDocument};
 
 use super::{day, figure};
 use crate::text::signed_tenths;
@@ -28,6 +28,21 @@ pub(super) fn found(tail: &TailDocument) -> String {
     } else {
         format!("{level}; no trend stands out ({} % a year).", figure(trend))
     }
+}
+
+/// What of it all tails of the type have: an aircraft is not sent to a hangar for what its model lacks.
+pub(super) fn shared(tail: &TailDocument, fleets: &[FleetDocument]) -> Option<String> {
+    let fleet = fleets.iter().find(|fleet| fleet.aircraft_type == tail.aircraft_type)?;
+    let level = &fleet.deviation_percent;
+    let same_sign = level.value * tail.deviation_percent.value > 0.0;
+    (fleet.tails > 2 && burns_otherwise(tail) && differs_from_zero(level) && same_sign).then(|| {
+        format!(
+            "The {} tails of its type burn {} % {} in the mean: that part is the model's rather than the aircraft's.",
+            fleet.tails,
+            size(level),
+            more_or_less(level.value)
+        )
+    })
 }
 
 /// What to do about it; never empty.
@@ -143,6 +158,25 @@ mod tests {
             "Burns what its initial model predicts (+0.10 ± 0.30 %); no trend stands out (-1.00 ± 2.00 % a year)."
         );
         assert_eq!(advice(&tail, &[]), ["Nothing to do."]);
+    }
+
+    #[test]
+    fn what_all_tails_have_is_the_models() {
+        let tail = tail((9.2, 0.3), (0.0, 1.0), &serde_json::json!([]));
+        let fleet = |tails: usize, level: f64| FleetDocument {
+            aircraft_type: "C750".to_owned(),
+            tails,
+            deviation_percent: Figure { value: level, ci95: [level - 0.5, level + 0.5] },
+            between_tails_percent: 0.7,
+            trend_percent_per_year: tail.trend_percent_per_year,
+            months: Vec::new(),
+        };
+        let told = shared(&tail, &[fleet(8, 8.0)]).unwrap();
+        assert!(told.starts_with("The 8 tails of its type burn 8.00 ± 0.50 % more"), "{told}");
+        // A tail alone, a fleet that burns as predicted, one that burns less: no part of this is shared.
+        for other in [fleet(1, 9.2), fleet(8, 0.3), fleet(8, -1.0)] {
+            assert_eq!(shared(&tail, &[other]), None);
+        }
     }
 
     #[test]
