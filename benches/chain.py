@@ -27,8 +27,11 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
-def make_reports(folder, reports, tails):
-    """Reports that differ in who, when, where, how fast over ground and how heavy; the rest of a fixture serves many flights."""
+def make_reports(folder, reports, tails, longest=None):
+    """Reports that differ in who, when, where, how fast over ground and how heavy; the rest of a fixture serves many flights.
+
+    With `longest`, each ends after so many samples.
+    """
     sources = sorted((ROOT / "fixtures/global5000/reports").glob("*.txt"))
     texts = []
     for source in sources:
@@ -48,7 +51,7 @@ def make_reports(folder, reports, tails):
         rows, samples, speed, latitude = texts[(tail + flight) % len(texts)]
         of_round = flight // len(texts)
         lines = [" ".join(row) for row in rows[:samples]]
-        for row in rows[samples:]:
+        for row in rows[samples : None if longest is None else samples + longest]:
             row = list(row)
             row[speed] = f"{float(row[speed]) + 0.1 * (of_round % 97):.1f}"
             row[latitude] = f"{float(row[latitude]) - 0.001 * tail - 0.5 * (of_round // 97):.3f}"

@@ -1,6 +1,7 @@
 """Months of nightly runs with a fault every tenth night: the folder at the end is that of months without one.
 
-    python3 benches/soak.py FOLDER [--nights 730] [--tails 100] [--every 10] [--seed N] [--target target/release]
+    python3 benches/soak.py FOLDER [--nights 730] [--tails 100] [--every 10] [--samples N] [--seed N]
+        [--target target/release]
 
 Each night every tail has flown once, and `adapt --relearn` gets the reports of the last week; every thirtieth night `monitor` reads the
 folder and `diagnose` the reports of the last thirty nights against the models before them. Both are done twice: in one folder
@@ -33,7 +34,7 @@ class World:
 
     def __init__(self, asked, name):
         self.program = str(asked.target / "cruisefit")
-        self.reports = asked.folder / f"reports-{asked.nights * asked.tails}-{asked.tails}"
+        self.reports = asked.folder / f"reports-{asked.nights * asked.tails}-{asked.tails}-{asked.samples}"
         self.model = asked.folder / "MODEL.ron"
         self.home = asked.folder / name
         shutil.rmtree(self.home, ignore_errors=True)
@@ -141,6 +142,7 @@ def live(world, asked, faults):
         lasts = time.monotonic() - started if not faults else lasts * 0.9 + 0.1 * (time.monotonic() - started)
         if night % MONTH == MONTH - 1:
             world.month(night)
+            print(f"{world.home.name}: {night + 1} nights, the last in {lasts:.1f} s", flush=True)
     committed(world.output)
 
 
@@ -150,13 +152,14 @@ def main():
     parser.add_argument("--nights", type=int, default=730)
     parser.add_argument("--tails", type=int, default=100)
     parser.add_argument("--every", type=int, default=10)
+    parser.add_argument("--samples", type=int, help="end every report after so many, for more nights in the same time")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--target", type=pathlib.Path, default=ROOT / "target/release")
     asked = parser.parse_args()
     print(f"seed {asked.seed}", flush=True)
     undisturbed, disturbed = World(asked, "undisturbed"), World(asked, "disturbed")
     if not undisturbed.reports.exists():
-        make_reports(undisturbed.reports, asked.nights * asked.tails, asked.tails)
+        make_reports(undisturbed.reports, asked.nights * asked.tails, asked.tails, asked.samples)
     fixture = ROOT / "fixtures/global5000"
     subprocess.run([undisturbed.program, "init", "--aircraft", str(fixture / "AIRCRAFT.ron"), "--guide",
                     str(fixture / "guide.csv"), "-o", str(asked.folder / "MODEL.ron"), "--force"], check=True, **QUIET)
