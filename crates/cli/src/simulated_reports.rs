@@ -23,6 +23,9 @@ use crate::progress::Progress;
 /// The truth, written last: a folder without it was not completed.
 const TRUTH: &str = "TRUTH.json";
 
+/// What was done to the tails of a fleet.
+const EVENTS: &str = "EVENTS.csv";
+
 /// The aircraft file of the study: what a performance engineer knows of the Cessna Citation X. The TSFC constants are
 /// those that reproduce its published fuel burn (static TSFC of the AE 3007C1 from its emission certification).
 pub(crate) const CITATION_X: &str = include_str!("../embedded/CITATION-X.ron");
@@ -94,6 +97,7 @@ pub(crate) fn check_folder(
             [base.join(format!("{stem}.txt")), base.join(format!("{stem}-states.csv"))]
         })
         .chain([folder.join(TRUTH)])
+        .chain(simulation.plan().fleet.is_some().then(|| folder.join(EVENTS)))
         .collect();
     let strangers: Vec<PathBuf> =
         files_below(folder)?.into_iter().filter(|path| !own.contains(path)).collect();
@@ -188,6 +192,10 @@ pub(crate) fn write(
     bar.finish();
     let drawn_again = truths.iter().filter(|(_, again)| *again).count();
     let written = Written { flights: truths.len(), drawn_again };
+    if simulation.plan().fleet.is_some() {
+        let events = simulate::events_csv(simulation.events());
+        write_atomically(&folder.join(EVENTS), events.as_bytes())?;
+    }
     let truth = simulation.truth(truths.into_iter().map(|(truth, _)| truth).collect());
     let path = folder.join(TRUTH);
     let mut text =

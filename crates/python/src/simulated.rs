@@ -18,6 +18,8 @@ pub(crate) struct Simulated {
     reports: Vec<(String, String, String)>,
     /// `TRUTH.json`.
     truth: String,
+    /// `EVENTS.csv`; without events its header alone.
+    events: String,
 }
 
 /// Flies every flight of a plan (RON).
@@ -46,6 +48,7 @@ pub(crate) fn simulate(
         let mut truth =
             serde_json::to_string_pretty(&simulation.truth(truths)).map_err(Failure::internal)?;
         truth.push('\n');
-        Ok(Simulated { reports, truth })
+        let events = ::simulate::events_csv(simulation.events());
+        Ok(Simulated { reports, truth, events })
     })
 }

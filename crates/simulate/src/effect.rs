@@ -158,9 +158,13 @@ pub struct PlannedEffect {
     /// Size in the effect's unit; the typical size when left out.
     #[serde(default)]
     pub size: Option<f64>,
-    /// `step_change`, `engine_history`, `airframe_history`: the instant from which it holds, or of the fall; the middle of the fleet's dates when left out.
+    /// The instant from which it acts; always when left out. `step_change`, `engine_history`, `airframe_history`: the instant of
+    /// the step or fall; the middle of the fleet's dates when left out.
     #[serde(default, with = "optional_timestamp")]
     pub from: Option<Timestamp>,
+    /// The instant until which it acts; for ever when left out.
+    #[serde(default, with = "optional_timestamp", skip_serializing_if = "Option::is_none")]
+    pub until: Option<Timestamp>,
     /// `step_change`: what it multiplies; drag when left out.
     #[serde(default = "drag")]
     pub target: StepTarget,
@@ -178,13 +182,29 @@ impl PlannedEffect {
     /// An effect of a given size, everything else by default.
     #[must_use]
     pub const fn sized(id: TruthEffect, size: f64) -> Self {
-        Self { id, size: Some(size), from: None, target: StepTarget::Drag, at: None }
+        Self { id, size: Some(size), from: None, until: None, target: StepTarget::Drag, at: None }
+    }
+
+    /// Whether it acts on a flight that begins at an instant. Steps and histories act always: their date is within their form.
+    pub(crate) fn acts_at(&self, start: Timestamp) -> bool {
+        let begun = self.has_dated_form() || self.from.is_none_or(|from| start >= from);
+        begun && self.until.is_none_or(|until| start < until)
+    }
+
+    /// Whether its date is within its form.
+    pub(crate) const fn has_dated_form(&self) -> bool {
+        matches!(
+            self.id,
+            TruthEffect::Library(
+                EffectId::StepChange | EffectId::EngineHistory | EffectId::AirframeHistory
+            )
+        )
     }
 
     /// An effect of its typical size.
     #[must_use]
     pub const fn typical(id: TruthEffect) -> Self {
-        Self { id, size: None, from: None, target: StepTarget::Drag, at: None }
+        Self { id, size: None, from: None, until: None, target: StepTarget::Drag, at: None }
     }
 }
 
@@ -220,6 +240,30 @@ pub(crate) mod optional_timestamp {
     ) -> Result<Option<Timestamp>, D::Error> {
         Option::<String>::deserialize(deserializer)?
             .map(|text| text.parse().map_err(serde::de::Error::custom))
+            .transpose()
+    }
+}
+
+/// Two instants that may be left out.
+pub(crate) mod optional_timestamps {
+    use flight::Timestamp;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    type Instants = Option<(Timestamp, Timestamp)>;
+
+    pub(crate) fn serialize<S: Serializer>(
+        value: &Instants,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        value.map(|(from, to)| (from.to_string(), to.to_string())).serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Instants, D::Error> {
+        let instant = |text: String| text.parse().map_err(serde::de::Error::custom);
+        Option::<(String, String)>::deserialize(deserializer)?
+            .map(|(from, to)| Ok((instant(from)?, instant(to)?)))
             .transpose()
     }
 }

@@ -34,6 +34,7 @@
 
 mod aircraft;
 mod effect;
+mod fleet;
 mod fly;
 mod plan;
 mod random;
@@ -56,6 +57,10 @@ pub use aircraft::{
     TruthPhysics, TsfcLaw, ZeroLiftDrag,
 };
 pub use effect::{OutsideEffect, PlannedEffect, TruthEffect, UnknownEffect};
+pub use fleet::{
+    Chosen, FleetEvent, FleetPlan, Life, LifeEvent, PlannedEvent, Planted, PlantedLevel, Recovery,
+    TailEffects, TypeEffect, Upkeep, Work, events_csv,
+};
 pub use flight::effect::StepTarget;
 pub use fly::FlightError;
 pub use plan::{

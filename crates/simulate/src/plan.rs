@@ -7,6 +7,7 @@ use units::OutOfDomain;
 
 use crate::aircraft::{AircraftError, AircraftTruth, Preset, Switch, TruthPhysics};
 use crate::effect::PlannedEffect;
+use crate::fleet::FleetPlan;
 use crate::route::{Autopilot, Earth, FlightPlan};
 use crate::sensor::{Columns, Sensors};
 use crate::terms::References;
@@ -18,7 +19,7 @@ pub use design::FleetDesign;
 pub(crate) const MOST_FLIGHTS: usize = 1_000_000;
 pub(crate) use design::legs;
 
-/// A plan: aircraft, weather, sensors, effects, tails and flights. Only `seed` and `tails` are required.
+/// A plan: aircraft, weather, sensors, effects, tails and flights. Only `seed` is required, and `tails` or a `fleet`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
@@ -62,8 +63,12 @@ pub struct Plan {
     /// included.
     #[serde(default)]
     pub clutter_share: f64,
-    /// The tails.
+    /// The tails, one by one.
+    #[serde(default)]
     pub tails: Vec<TailPlan>,
+    /// A fleet of one type, in addition to them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fleet: Option<FleetPlan>,
 }
 
 /// Which aircraft.
@@ -205,7 +210,7 @@ pub struct TailPlan {
     #[serde(default)]
     pub engine_deterioration_percent: Vec<f64>,
     /// Conditions at which effects are zero; when left out, the means over the tail's flights, over those of all tails in a plan
-    /// with effects of all.
+    /// with effects of all, over those of the fleet in a plan with a fleet.
     #[serde(default)]
     pub references: Option<References>,
     /// Its flights.
@@ -240,7 +245,7 @@ pub enum PlanError {
         /// The name.
         tail: String,
     },
-    /// An effect that a tail carries twice.
+    /// An effect that a tail carries twice, without dates that distinguish the two.
     #[error("plan: tail {tail} has the effect {effect} twice")]
     DoubledEffect {
         /// The tail.
@@ -255,6 +260,15 @@ pub enum PlanError {
         tail: String,
         /// The flight.
         flight: String,
+    },
+    /// Neither tails nor a fleet.
+    #[error("plan: no tail; `tails` or `fleet` is needed")]
+    NoTails,
+    /// A tail that the fleet does not have.
+    #[error("plan: the fleet has no tail {tail}")]
+    UnknownTail {
+        /// The name.
+        tail: String,
     },
     /// A tail without flights.
     #[error("plan: tail {tail} has no flight")]
@@ -335,6 +349,7 @@ impl Plan {
                 references: None,
                 flights: Flights::Designed(Box::new(design)),
             }],
+            fleet: None,
         }
     }
 }

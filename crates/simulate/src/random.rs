@@ -22,6 +22,12 @@ pub(crate) enum Purpose {
     SmoothErrors = 9,
     SensorsOfTail = 10,
     Clutter = 11,
+    FleetChoice = 12,
+    TypeScatter = 13,
+    TailEffect = 14,
+    Lives = 15,
+    Washes = 16,
+    EngineChanges = 17,
 }
 
 /// A key of streams.

@@ -18,7 +18,6 @@ pub(crate) fn references_of(
     flights: &[FlightPlan],
 ) -> Result<References, OutOfDomain> {
     let terms = Terms::new(aircraft, physics);
-    let deviation = TemperatureDifference::kelvin(weather.isa_deviation_k.mean);
     let mut sums = Sums::default();
     let mut dates_s: Vec<f64> = Vec::with_capacity(flights.len());
     for flight in flights {
@@ -30,6 +29,9 @@ pub(crate) fn references_of(
             }
             Loading::AtRecording { gross_mass_kg, .. } => gross_mass_kg,
         };
+        let (latitude_deg, _) = flight.waypoints[0];
+        let season_k = weather.season_at(flight.start, latitude_deg.to_radians());
+        let deviation = TemperatureDifference::kelvin(weather.isa_deviation_k.mean + season_k);
         let legs = legs(flight);
         for (index, (from_s, feet, mach)) in legs.iter().enumerate() {
             let to_s = legs.get(index + 1).map_or(flight.duration_s, |next| next.0);
@@ -56,28 +58,36 @@ pub(crate) fn references_of(
 }
 
 /// The references of every tail: those of its plan, else the means over its own flights. Effects that all tails share are
-/// zero at the means over all flights, or each tail would have another effect; dates are the tail's own.
+/// zero at the means over all flights, or each tail would have another effect; dates are the tail's own. The tails of a fleet,
+/// the last ones, share conditions and dates; other tails of its plan share the conditions.
 pub(crate) fn references_of_tails(
     plan: &Plan,
-    aircraft: &AircraftTruth,
+    (tails, aircraft): (&[TailPlan], &AircraftTruth),
     flown: &[(Vec<FlightPlan>, Option<FleetDesign>)],
 ) -> Result<Vec<References>, OutOfDomain> {
     let of = |flights: &[FlightPlan]| references_of(aircraft, plan.physics, &plan.weather, flights);
-    let shared = if plan.effects.is_empty() || flown.len() < 2 {
+    let fleet_from = if plan.fleet.is_some() { plan.tails.len() } else { flown.len() };
+    let shared = if fleet_from < flown.len() {
+        let all: Vec<FlightPlan> =
+            flown[fleet_from..].iter().flat_map(|(flights, _)| flights).cloned().collect();
+        Some(of(&all)?)
+    } else if plan.effects.is_empty() || flown.len() < 2 {
         None
     } else {
         let all: Vec<FlightPlan> = flown.iter().flat_map(|(flights, _)| flights).cloned().collect();
         Some(of(&all)?)
     };
-    let of_tail = |(tail, (flights, _)): (&TailPlan, &(Vec<FlightPlan>, _))| match (
-        tail.references,
-        shared,
-    ) {
-        (Some(given), _) => Ok(given),
-        (None, None) => of(flights),
-        (None, Some(shared)) => Ok(dated_by(shared, flights)),
-    };
-    plan.tails.iter().zip(flown).map(of_tail).collect()
+    let of_tail =
+        |(place, (tail, (flights, _))): (usize, (&TailPlan, &(Vec<FlightPlan>, _)))| match (
+            tail.references,
+            shared,
+        ) {
+            (Some(given), _) => Ok(given),
+            (None, None) => of(flights),
+            (None, Some(shared)) if place >= fleet_from => Ok(shared),
+            (None, Some(shared)) => Ok(dated_by(shared, flights)),
+        };
+    tails.iter().zip(flown).enumerate().map(of_tail).collect()
 }
 
 /// These conditions with the dates of these flights.

@@ -2,19 +2,20 @@
 
 mod check;
 mod draw;
+mod effects;
 mod ranges;
 
 use std::collections::BTreeSet;
 
 use flight::column::Column;
-use flight::effect::{EffectId, TypicalSize};
 use flight::{Report, ReportDataError};
-use units::{OutOfDomain, check_within};
+use units::OutOfDomain;
 
 use crate::aircraft::AircraftTruth;
-use crate::effect::{PlannedEffect, TruthEffect};
+use crate::effect::PlannedEffect;
+use crate::fleet::{DrawnFleet, FleetEvent, Lives, Planted};
 use crate::fly::{FlightError, fly};
-use crate::plan::{AircraftChoice, FleetDesign, Flights, Plan, PlanError};
+use crate::plan::{AircraftChoice, FleetDesign, Flights, Plan, PlanError, TailPlan};
 use crate::random::{Purpose, Streams};
 use crate::references::references_of_tails;
 use crate::route::FlightPlan;
@@ -22,10 +23,11 @@ use crate::sensor::{BankSetup, SensorBank, Sensors};
 use crate::smooth::SmoothErrors;
 use crate::state::TrueState;
 use crate::terms::References;
-use crate::truth::{EffectTruth, FlightTruth, TRUTH_SCHEMA, TailTruth, Truth};
+use crate::truth::{FlightTruth, TRUTH_SCHEMA, TailTruth, Truth};
 
 use check::{MOST_FLIGHTS, check_flights, check_plan};
 use draw::Drawn;
+use effects::{draw_clutter, effect_truths, effects_of_tail};
 use ranges::check_ranges;
 
 /// A flight that lacks thrust is drawn again as often as this before it counts as one that cannot be flown.
@@ -38,6 +40,9 @@ pub struct Simulation {
     aircraft: AircraftTruth,
     sensors: Sensors,
     tails: Vec<Tail>,
+    /// Of the fleet: what was planted, and what was done when.
+    planted: Vec<Planted>,
+    events: Vec<FleetEvent>,
     /// Tail and flight of each job.
     jobs: Vec<(usize, usize)>,
 }
@@ -48,6 +53,7 @@ struct Tail {
     effects: Vec<(PlannedEffect, f64)>,
     clutter: Vec<(PlannedEffect, f64)>,
     deterioration_percent: Vec<f64>,
+    lives: Lives,
     references: References,
     flights: Vec<FlightPlan>,
     /// From which a flight that cannot be flown is drawn again; `None` where the flights are listed.
@@ -133,19 +139,27 @@ impl Simulation {
             }
         };
         check_plan(&plan)?;
-        let flown = drawn_flights(&plan, &aircraft)?;
-        let references = references_of_tails(&plan, &aircraft, &flown)?;
-        let mut tails: Vec<Tail> = Vec::with_capacity(plan.tails.len());
-        for ((tail_plan, (flights, design)), references) in
-            plan.tails.iter().zip(flown).zip(references)
+        if plan.tails.is_empty() && plan.fleet.is_none() {
+            return Err(PlanError::NoTails);
+        }
+        let engines = aircraft.engine.count;
+        let fleet = plan.fleet.as_ref().map(|fleet| fleet.draw(plan.seed, engines)).transpose()?;
+        let DrawnFleet { tails: of_fleets, events } = fleet.unwrap_or_default();
+        let tail_plans: Vec<TailPlan> =
+            plan.tails.iter().chain(of_fleets.iter().map(|tail| &tail.plan)).cloned().collect();
+        let flown = drawn_flights((&tail_plans, plan.seed), &aircraft)?;
+        let references = references_of_tails(&plan, (&tail_plans, &aircraft), &flown)?;
+        let mut tails: Vec<Tail> = Vec::with_capacity(tail_plans.len());
+        let mut planted = Vec::new();
+        for (place, ((tail_plan, (flights, design)), references)) in
+            tail_plans.iter().zip(flown).zip(references).enumerate()
         {
-            let effects = plan
-                .effects
-                .iter()
-                .chain(&tail_plan.effects)
-                .map(|effect| sized(effect, &references, &aircraft))
-                .collect::<Result<Vec<_>, _>>()?;
-            check_effects(&tail_plan.tail, &effects)?;
+            let of_fleet = place.checked_sub(plan.tails.len()).map(|place| &of_fleets[place]);
+            let effects = effects_of_tail(
+                (&plan, tail_plan, of_fleet),
+                (&aircraft, &references),
+                &mut planted,
+            )?;
             let clutter = draw_clutter(&plan, &tail_plan.tail, &effects, &references, &aircraft);
             let sizes = &plan.smooth_errors;
             let smooth_errors =
@@ -163,6 +177,7 @@ impl Simulation {
                 effects,
                 clutter,
                 deterioration_percent: tail_plan.engine_deterioration_percent.clone(),
+                lives: of_fleet.map(|tail| tail.lives.clone()).unwrap_or_default(),
                 references,
                 flights,
                 design,
@@ -175,7 +190,10 @@ impl Simulation {
             .flat_map(|(t, tail)| (0..tail.flights.len()).map(move |f| (t, f)))
             .collect();
         let sensors = plan.sensors.sensors();
-        Ok(Self { plan, aircraft, sensors, tails, jobs })
+        planted.sort_by(|one: &Planted, other| {
+            (one.level, &one.tail, one.effect).cmp(&(other.level, &other.tail, other.effect))
+        });
+        Ok(Self { plan, aircraft, sensors, tails, planted, events, jobs })
     }
 
     /// How many flights there are, all tails together.
@@ -200,6 +218,18 @@ impl Simulation {
     #[must_use]
     pub const fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// What was done to the tails of the fleet, in order of time: the rows of `EVENTS.csv`.
+    #[must_use]
+    pub fn events(&self) -> &[FleetEvent] {
+        &self.events
+    }
+
+    /// The effects of the fleet and whose they are: those of the type, then tail by tail.
+    #[must_use]
+    pub fn planted(&self) -> &[Planted] {
+        &self.planted
     }
 
     /// Tail and plan of a flight.
@@ -314,6 +344,8 @@ impl Simulation {
                 tail: tail.name.clone(),
                 effects: effect_truths(&tail.effects),
                 clutter: effect_truths(&tail.clutter),
+                airframe: tail.lives.airframe.clone(),
+                engines: tail.lives.engines.clone(),
                 references: tail.references,
                 flights: Vec::new(),
             })
@@ -330,6 +362,8 @@ impl Simulation {
             seed: self.plan.seed,
             aircraft: self.aircraft.type_code.clone(),
             tails,
+            planted: self.planted.clone(),
+            events: self.events.clone(),
         }
     }
 }
@@ -337,9 +371,12 @@ impl Simulation {
 /// The flights of every tail, and the design they were drawn from.
 type PlannedFlights = (Vec<FlightPlan>, Option<FleetDesign>);
 
-fn drawn_flights(plan: &Plan, aircraft: &AircraftTruth) -> Result<Vec<PlannedFlights>, PlanError> {
+fn drawn_flights(
+    (tails, seed): (&[TailPlan], u64),
+    aircraft: &AircraftTruth,
+) -> Result<Vec<PlannedFlights>, PlanError> {
     let mut names = BTreeSet::new();
-    plan.tails
+    tails
         .iter()
         .map(|tail_plan| {
             let tail = &tail_plan.tail;
@@ -349,83 +386,11 @@ fn drawn_flights(plan: &Plan, aircraft: &AircraftTruth) -> Result<Vec<PlannedFli
             let (flights, design) = match &tail_plan.flights {
                 Flights::Listed(flights) => (flights.clone(), None),
                 Flights::Designed(design) => {
-                    (design.draw(aircraft, plan.seed, tail)?, Some((**design).clone()))
+                    (design.draw(aircraft, seed, tail)?, Some((**design).clone()))
                 }
             };
             check_flights(tail, &flights)?;
             Ok((flights, design))
         })
         .collect()
-}
-
-fn sized(
-    effect: &PlannedEffect,
-    references: &References,
-    aircraft: &AircraftTruth,
-) -> Result<(PlannedEffect, f64), PlanError> {
-    if let TruthEffect::Library(EffectId::TsfcEngine(k) | EffectId::FuelFlowGainEngine(k)) =
-        effect.id
-        && usize::from(k) > aircraft.engines()
-    {
-        return Err(PlanError::Engine {
-            effect: effect.id.to_string(),
-            engines: aircraft.engines(),
-        });
-    }
-    let size = effect.size.unwrap_or_else(|| effect.id.typical_size(references.mass_kg));
-    Ok((*effect, check_within("effect size", effect.id.unit(), size, -1e6, 1e6)?))
-}
-
-fn check_effects(tail: &str, effects: &[(PlannedEffect, f64)]) -> Result<(), PlanError> {
-    for (index, (effect, _)) in effects.iter().enumerate() {
-        if effects[..index].iter().any(|(other, _)| other.id == effect.id) {
-            return Err(PlanError::DoubledEffect {
-                tail: tail.to_owned(),
-                effect: effect.id.to_string(),
-            });
-        }
-    }
-    Ok(())
-}
-
-/// Every effect of the library that the tail does not carry, with a small size.
-fn draw_clutter(
-    plan: &Plan,
-    tail: &str,
-    effects: &[(PlannedEffect, f64)],
-    references: &References,
-    aircraft: &AircraftTruth,
-) -> Vec<(PlannedEffect, f64)> {
-    if plan.clutter_share <= 0.0 {
-        return Vec::new();
-    }
-    let mut random = Streams::of_tail(plan.seed, tail).stream(Purpose::Clutter);
-    EffectId::library(aircraft.engines())
-        .into_iter()
-        .filter_map(|id| {
-            // Drawn whether used or not: a planted effect changes no other draw.
-            let drawn = plan.clutter_share * random.normal();
-            let effect = TruthEffect::Library(id);
-            let size = effect.typical_size(references.mass_kg)
-                * if id.is_one_sided() { drawn.abs() } else { drawn };
-            let planted = effects.iter().any(|(other, _)| other.id == effect);
-            let known = id.entry().typical == TypicalSize::Known;
-            (!planted && !known).then(|| (PlannedEffect::sized(effect, size), size))
-        })
-        .collect()
-}
-
-fn effect_truths(effects: &[(PlannedEffect, f64)]) -> Vec<EffectTruth> {
-    effects.iter().map(|(effect, size)| effect_truth(effect, *size)).collect()
-}
-
-fn effect_truth(effect: &PlannedEffect, size: f64) -> EffectTruth {
-    let step = effect.id == TruthEffect::Library(EffectId::StepChange);
-    EffectTruth {
-        id: effect.id,
-        size,
-        from: effect.from,
-        target: step.then_some(effect.target),
-        at: effect.at,
-    }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use flight::effect::StepTarget;
 
 use crate::effect::{TruthEffect, optional_timestamp, timestamp};
+use crate::fleet::{FleetEvent, Life, Planted};
 use crate::state::{EnergyBook, MassBook};
 use crate::terms::{MAXIMUM_ENGINES, References};
 
@@ -23,6 +24,12 @@ pub struct Truth {
     pub aircraft: String,
     /// The tails, in the plan's order.
     pub tails: Vec<TailTruth>,
+    /// Of a fleet: every planted effect and whose it is.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub planted: Vec<Planted>,
+    /// Of a fleet: what was done to which tail, as in `EVENTS.csv`, with what it changed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<FleetEvent>,
 }
 
 /// The truth of a tail.
@@ -34,6 +41,12 @@ pub struct TailTruth {
     pub effects: Vec<EffectTruth>,
     /// Its clutter: small effects.
     pub clutter: Vec<EffectTruth>,
+    /// Level and deterioration of its airframe, if the fleet has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub airframe: Option<Life>,
+    /// The same of each engine.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub engines: Vec<Life>,
     /// Conditions at which effects are zero.
     pub references: References,
     /// Its flights, in order.
@@ -47,9 +60,12 @@ pub struct EffectTruth {
     pub id: TruthEffect,
     /// Size in its unit.
     pub size: f64,
-    /// `step_change`: from when.
+    /// From when, if the plan gave it.
     #[serde(default, with = "optional_timestamp")]
     pub from: Option<Timestamp>,
+    /// Until when, if the plan gave it.
+    #[serde(default, with = "optional_timestamp", skip_serializing_if = "Option::is_none")]
+    pub until: Option<Timestamp>,
     /// `step_change`: of what.
     #[serde(default)]
     pub target: Option<StepTarget>,

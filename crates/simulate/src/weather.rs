@@ -9,7 +9,9 @@ mod turbulence;
 
 use core::f64::consts::TAU;
 
+use flight::Timestamp;
 use serde::{Deserialize, Serialize};
+use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 
 use crate::random::Stream;
 use crate::vector::{EARTH_RADIUS_M, Vector, combine, cross, dot, east_and_north};
@@ -23,6 +25,9 @@ pub(crate) use turbulence::{DrydenFilters, Gusts, Patch, draw_patches, intensity
 pub struct Weather {
     /// Mean over flights, and spread between flights, of the ISA deviation, K.
     pub isa_deviation_k: Spread,
+    /// How much warmer than on the mean of the year it is on the warmest day at 45° latitude, K.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub season_k: f64,
     /// Standard deviation along a flight of the ISA deviation, K.
     pub isa_deviation_field_k: f64,
     /// Mean over flights, and spread between them, of the eastward wind, m/s.
@@ -58,6 +63,7 @@ impl Default for Weather {
     fn default() -> Self {
         Self {
             isa_deviation_k: Spread { mean: 0.0, sd: 5.0 },
+            season_k: 0.0,
             isa_deviation_field_k: 2.0,
             wind_east_m_s: Spread { mean: 12.0, sd: 9.0 },
             wind_north_m_s: Spread { mean: 0.0, sd: 8.0 },
@@ -71,7 +77,30 @@ impl Default for Weather {
     }
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// The warmest day of the northern year, days after its beginning: our choice, a month after the solstice.
+const WARMEST_DAY: f64 = 202.0;
+
 impl Weather {
+    /// ISA deviation of the season, K: half a year later south of the equator, and none at it.
+    ///
+    /// ```text
+    /// ΔT = A·(sin φ/sin 45°)·cos(2π (d − 202 d)/365.25 d)      [virtual.19]
+    /// ```
+    pub(crate) fn season_at(&self, start: Timestamp, latitude_rad: f64) -> f64 {
+        if self.season_k == 0.0 {
+            return 0.0;
+        }
+        // 1970 begins with a year: whole years of 365.25 days keep the phase within a day.
+        let days = flight::seconds_since_1970(start) / SECONDS_PER_DAY;
+        let phase = TAU * (days - WARMEST_DAY) / DAYS_PER_YEAR;
+        self.season_k * latitude_rad.sin() * core::f64::consts::SQRT_2 * phase.cos()
+    }
+
     /// Still air of the standard day.
     #[must_use]
     pub fn still() -> Self {
@@ -142,9 +171,16 @@ const VERTICAL_WAVES: usize = 8;
 
 impl AirMass {
     /// Draws the air about a point of the unit sphere, the middle of the route.
-    pub(crate) fn draw(weather: &Weather, middle: Vector, random: &mut Stream) -> Self {
+    pub(crate) fn draw(
+        weather: &Weather,
+        middle: Vector,
+        start: Timestamp,
+        random: &mut Stream,
+    ) -> Self {
         let mut drawn = |spread: &Spread| spread.mean + spread.sd * random.normal();
-        let mean_isa_deviation_k = drawn(&weather.isa_deviation_k);
+        // The sphere's third coordinate is the sine of latitude.
+        let season_k = weather.season_at(start, middle[2].clamp(-1.0, 1.0).asin());
+        let mean_isa_deviation_k = drawn(&weather.isa_deviation_k) + season_k;
         let mean_east_m_s = drawn(&weather.wind_east_m_s);
         let mean_north_m_s = drawn(&weather.wind_north_m_s);
         let synoptic = weather.wavelengths_km;
@@ -268,7 +304,7 @@ mod tests {
         for flight in 0..count {
             let mut random = Streams::of_flight(7, "weather", flight).stream(Purpose::Weather);
             let middle = Place::at(45.0, 10.0, 60.0);
-            let air = AirMass::draw(weather, middle.position, &mut random);
+            let air = AirMass::draw(weather, middle.position, Timestamp::UNIX_EPOCH, &mut random);
             each(&air, middle);
         }
     }

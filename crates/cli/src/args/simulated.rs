@@ -13,7 +13,7 @@ pub(crate) struct SimulateArgs {
     /// with aircraft file, guide and static points
     #[arg(value_name = "PLAN.ron")]
     pub(crate) plan: PathBuf,
-    /// Folder to write to: TAIL/FLIGHT.txt and TRUTH.json
+    /// Folder to write to: TAIL/FLIGHT.txt and TRUTH.json; of a fleet also EVENTS.csv
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
     /// Also write the true state of each sample: TAIL/FLIGHT-states.csv

@@ -39,8 +39,9 @@ pub(crate) fn run(arguments: &SimulateArgs, progress: Progress) -> Result<Outcom
         n => format!(" ({n} were drawn again)"),
     };
     let text = format!(
-        "{flights} flights{again} written to {}: one folder per tail, TRUTH.json\n",
-        show(&arguments.output)
+        "{flights} flights{again} written to {}: one folder per tail, TRUTH.json{}\n",
+        show(&arguments.output),
+        if simulation.plan().fleet.is_some() { ", EVENTS.csv" } else { "" }
     );
     Ok(Outcome::with_figures(text, figures(written, arguments)))
 }

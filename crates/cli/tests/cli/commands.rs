@@ -257,6 +257,46 @@ fn simulated_reports_do_not_depend_on_threads() {
 }
 
 #[test]
+fn a_simulated_fleet_has_its_events_and_one_truth() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (plan, folder) = (scratch.path().join("PLAN.ron"), scratch.path().join("fleet"));
+    std::fs::write(
+        &plan,
+        r#"(seed: 3, fleet: (
+            tails: 4,
+            flights: (flights: 2, duration_h: (0.4, 0.4)),
+            type_effects: [(effect: (id: "induced_drag"))],
+            tail_effects: [(effects: [(id: "drag_factor", size: -1.0)], of: Share(0.5),
+                between: ("2018-06-01T00:00:00Z", "2018-12-01T00:00:00Z"), event: "retrofit")],
+            events: [(of: Tails(["T-002"]), at: "2018-09-01T00:00:00Z", what: Wash)],
+        ))"#,
+    )
+    .unwrap();
+    let simulate =
+        || cruisefit(&["simulate".as_ref(), plan.as_os_str(), "-o".as_ref(), folder.as_os_str()]);
+    let said = simulate().expect(0);
+    assert!(said.stdout.contains("8 flights") && said.stdout.contains("EVENTS.csv"), "{said:?}");
+    let files = bytes_below(&folder);
+    assert_eq!(files.len(), 8 + 2, "{:?}", files.keys());
+    // What `monitor`, `adapt` and `diagnose` read.
+    let events = pipeline::monitoring::read_events(&files["EVENTS.csv"]).unwrap();
+    let kinds: Vec<&str> = events.iter().map(|event| event.kind.as_str()).collect();
+    assert_eq!(kinds.iter().filter(|kind| **kind == "retrofit").count(), 2);
+    assert_eq!(kinds.iter().filter(|kind| **kind == "wash").count(), 1);
+    let truth: serde_json::Value = serde_json::from_slice(&files["TRUTH.json"]).unwrap();
+    let levels: Vec<&str> = truth["planted"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["level"].as_str().unwrap())
+        .collect();
+    assert_eq!(levels, ["type", "tail", "tail"]);
+    // Its own files are not strangers in the folder.
+    simulate().expect(0);
+    assert_eq!(bytes_below(&folder), files);
+}
+
+#[test]
 fn merged_models_are_the_model_of_all_flights() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());

@@ -36,6 +36,10 @@ class Simulation:
         """The text of ``TRUTH.json``."""
         return self._native.truth
 
+    def events_csv(self) -> str:
+        """The text of ``EVENTS.csv``: what was done to the tails of a fleet."""
+        return self._native.events
+
     def __len__(self) -> int:
         return len(self._native.reports)
 

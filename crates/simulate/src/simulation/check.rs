@@ -23,6 +23,7 @@ pub(super) fn check_plan(plan: &Plan) -> Result<(), PlanError> {
         ("mean ISA deviation", "K", weather.isa_deviation_k.mean, -60.0, 60.0),
         ("standard deviation of ISA deviation", "K", weather.isa_deviation_k.sd, 0.0, 30.0),
         ("wind field", "m/s", weather.wind_field_m_s, 0.0, 40.0),
+        ("season", "K", weather.season_k, 0.0, 30.0),
         ("ISA deviation field", "K", weather.isa_deviation_field_k, 0.0, 15.0),
         ("ageostrophic share", "-", weather.ageostrophic_share, 0.0, 1.0),
         ("vertical wind", "m/s", weather.vertical_wind_m_s, 0.0, 2.0),

@@ -1,9 +1,10 @@
 //! Everything random about one flight, except gusts and sensors.
 
-use flight::FlightIdentity;
+use flight::{FlightIdentity, Timestamp};
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
 use super::{Simulation, Tail};
+use crate::effect::PlannedEffect;
 use crate::fly::{FlightSetup, RollTrim};
 use crate::plan::Scatter;
 use crate::random::{Purpose, Stream, Streams};
@@ -38,8 +39,8 @@ impl Simulation {
         let shares = draw_shares(self.aircraft.engines(), scatter, &mut airframe);
         let roll_trim = draw_roll_trim(scatter, &mut airframe);
 
-        let middle = middle_of(plan);
-        let air = AirMass::draw(&self.plan.weather, middle, &mut streams.stream(Purpose::Weather));
+        let mut weather = streams.stream(Purpose::Weather);
+        let air = AirMass::draw(&self.plan.weather, middle_of(plan), plan.start, &mut weather);
         let settle_s = 60.0 * self.plan.recording.after_top_of_climb_min;
         let turbulence = &self.plan.weather.turbulence;
         let patches =
@@ -130,7 +131,12 @@ impl Simulation {
             date_s: flight::seconds_since_1970(plan.start),
             engines: self.aircraft.engines(),
         };
-        for (effect, size) in tail.effects.iter().chain(&tail.clutter) {
+        terms.drag.zero_lift_factor *= 1.0
+            + 0.01 * tail.lives.airframe.as_ref().map_or(0.0, |life| life.percent_at(plan.start));
+        for (factor, life) in terms.fuel.engine_factor.iter_mut().zip(&tail.lives.engines) {
+            *factor *= 1.0 + 0.01 * life.percent_at(plan.start);
+        }
+        for (effect, size) in acting(&tail.effects, plan.start).iter().chain(&tail.clutter) {
             terms.add(effect, *size, &context);
         }
         terms
@@ -185,6 +191,22 @@ impl Simulation {
             }
         }
     }
+}
+
+/// The effects that act on a flight that begins at an instant. What acts twice, of a type and on its tail, acts with both sizes:
+/// several terms hold one size only. Steps and histories have dates of their own and stay apart.
+fn acting(effects: &[(PlannedEffect, f64)], start: Timestamp) -> Vec<(PlannedEffect, f64)> {
+    let mut all: Vec<(PlannedEffect, f64)> = Vec::with_capacity(effects.len());
+    for (effect, size) in effects.iter().filter(|(effect, _)| effect.acts_at(start)) {
+        let same = |other: &&mut (PlannedEffect, f64)| {
+            other.0.id == effect.id && other.0.at == effect.at && !effect.has_dated_form()
+        };
+        match all.iter_mut().find(same) {
+            Some((_, sum)) => *sum += size,
+            None => all.push((*effect, *size)),
+        }
+    }
+    all
 }
 
 /// The result of the draw.

@@ -4,5 +4,6 @@
 
 mod common;
 mod effects;
+mod fleets;
 mod motion;
 mod plans;
