@@ -57,7 +57,8 @@ pub struct TailDocument {
     pub tail: String,
     /// Type code of its aircraft.
     pub aircraft_type: String,
-    /// What the tail's model has learnt, in words.
+    /// What the tail's model has learnt, in words; empty in documents of older programs.
+    #[serde(default)]
     pub model: String,
     /// First flight.
     pub from: String,
