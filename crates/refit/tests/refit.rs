@@ -200,3 +200,15 @@ fn tables_on_two_grids_are_refused() {
         .unwrap_err();
     assert_eq!(error, RefitError::GridsDiffer);
 }
+
+/// A polynomial through numbers near the largest overflows between them: nothing is written.
+#[test]
+fn values_that_overflow_leave_the_tables_as_they_were() {
+    let grid = grid();
+    let large = |x: f64, _: f64| if x < 0.35 { -1.6e308 } else { 1.6e308 };
+    let (mut drag, mut lambda) = (table(&grid, large), confidence(&grid, 50, 2.5));
+    let (drag_before, lambda_before) = (drag.clone(), lambda.clone());
+    let refused = refit(RefitRule::ghazi_2020(), BASIS, &mut drag, &mut lambda);
+    assert!(matches!(refused, Err(RefitError::ValueNotFinite { .. })), "{refused:?}");
+    assert_eq!((drag, lambda), (drag_before, lambda_before));
+}

@@ -179,6 +179,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn another_limit_changes_its_criterion_alone() {
+        let published = TrimCriteria::ghazi_2020_table_4();
+        for changed in Criterion::ALL {
+            let other = published.with_limit(changed, 0.125);
+            for criterion in Criterion::ALL {
+                let expected =
+                    if criterion == changed { 0.125 } else { published.limit(criterion) };
+                assert!((other.limit(criterion) - expected).abs() < 1e-15, "{criterion}");
+            }
+        }
+    }
+
+    #[test]
     fn counts_of_samples_follow_the_interval() {
         // By hand, (Δt, ⌊600/Δt⌋, max(⌈180/Δt⌉, 2)): 600/75 = 8, 180/75 = 2.4; 600/90 = 6.67, 180/90 = 2;
         // 600/45 = 13.3, 180/45 = 4; 600/59 = 10.17, 180/59 = 3.05; 600/200 = 3, 180/200 = 0.9.

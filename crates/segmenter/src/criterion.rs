@@ -207,10 +207,29 @@ mod tests {
         assert_eq!(Criterion::from_name("TAT"), None);
     }
 
+    /// Table 4 of Ghazi et al. 2020: what each row judges, in which unit its limit stands.
+    #[test]
+    fn quantities_and_units_are_those_of_the_published_table() {
+        let words: Vec<_> =
+            Criterion::ALL.into_iter().map(|row| (row.name(), row.meaning(), row.unit())).collect();
+        let published = [
+            ("ALT", "pressure altitude", "ft"),
+            ("VS", "vertical speed (rate of pressure altitude)", "ft/min"),
+            ("MACH", "Mach number", "-"),
+            ("GSPD", "ground speed", "kt"),
+            ("SAT", "static air temperature", "degC"),
+            ("N2", "high-pressure rotor speed of each engine", "%"),
+            ("DRIFT", "drift angle", "deg"),
+            ("ROLL", "roll angle", "deg"),
+        ];
+        assert_eq!(words, published);
+    }
+
     #[test]
     fn sets_keep_the_table_s_order() {
         let set: CriterionSet = [Criterion::Roll, Criterion::Mach].into_iter().collect();
         assert_eq!(set.to_string(), "MACH, ROLL");
+        assert_eq!(format!("{set:?}"), "{Mach, Roll}");
         assert_eq!(set.len(), 2);
         assert!(set.contains(Criterion::Roll) && !set.contains(Criterion::Drift));
         assert_eq!(CriterionSet::EMPTY.to_string(), "");

@@ -103,3 +103,39 @@ impl fmt::Display for SampleVerdict {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Criterion;
+
+    /// No two verdicts read alike, and each says which criteria, or why not.
+    #[test]
+    fn verdicts_say_what_happened() {
+        let criteria: CriterionSet = [Criterion::Mach, Criterion::Roll].into_iter().collect();
+        for (verdict, sentence) in [
+            (SampleVerdict::NotJudged, "not judged: too few samples between time gaps"),
+            (SampleVerdict::Unsteady(criteria), "unsteady: MACH, ROLL"),
+            (SampleVerdict::Outlier(criteria), "outlier: MACH, ROLL"),
+            (SampleVerdict::InDroppedPiece(PieceDropReason::OneSample), "steady, but alone"),
+            (
+                SampleVerdict::InDroppedPiece(PieceDropReason::TooShort),
+                "steady, but not long enough",
+            ),
+            (SampleVerdict::Kept { segment: 3 }, "kept in segment 3"),
+        ] {
+            assert_eq!(verdict.to_string(), sentence);
+        }
+    }
+
+    /// Samples 4, 5, 6 and 7: the last is 7, not 8.
+    #[test]
+    fn dropped_pieces_name_their_first_and_last_sample() {
+        let piece =
+            DroppedPiece { samples: 4..8, kept: 2, needed: 3, reason: PieceDropReason::TooShort };
+        assert_eq!(piece.to_string(), "samples 4 to 7: 4 steady, 2 left by the filter, 3 needed");
+        let alone =
+            DroppedPiece { samples: 4..5, kept: 1, needed: 3, reason: PieceDropReason::OneSample };
+        assert_eq!(alone.to_string(), "sample 4 alone has no spread");
+    }
+}
