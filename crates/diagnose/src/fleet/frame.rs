@@ -154,12 +154,12 @@ impl<'a> FleetFrame<'a> {
             sum.add(&rows, data.recorded_values(flight));
         }
         let gram = sum.finish();
-        // What is uncertain is the tail's alone, or mostly its type's.
-        let (share, smooth_amplitude) = match self.model_of {
-            ModelOf::Type => (FLEET_TAIL_NUISANCE, FLEET_TAIL_SMOOTH),
-            ModelOf::Tail => (1.0, FLEET_TAIL_SMOOTH.hypot(FLEET_MODEL_SMOOTH)),
+        // What the model does not know of the aircraft that taught it, it does not know of this one either.
+        let smooth_amplitude = match self.model_of {
+            ModelOf::Type => FLEET_TAIL_SMOOTH,
+            ModelOf::Tail => FLEET_TAIL_SMOOTH.hypot(FLEET_MODEL_SMOOTH),
         };
-        let mut deviations = vec![share; nuisance];
+        let mut deviations = vec![FLEET_TAIL_NUISANCE; nuisance];
         deviations.resize(nuisance + smooth, self.design.smooth_deviation(smooth_amplitude));
         let out: Vec<usize> = (effects..columns - 1).collect();
         let (kept, shared): (Vec<usize>, SharedColumns) = match self.model_of {
