@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::aircraft::Switch;
 use crate::effect::PlannedEffect;
 use crate::plan::FleetDesign;
+use crate::terms::References;
 
 pub(crate) use draw::{DrawnEffect, DrawnFleet, DrawnTail};
 pub(crate) use life::Lives;
@@ -32,6 +33,9 @@ pub struct FleetPlan {
     /// The flights of each tail.
     #[serde(default)]
     pub flights: Box<FleetDesign>,
+    /// Conditions at which its effects are zero; the means over all its flights when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub references: Option<References>,
     /// Effects that all tails share.
     #[serde(default)]
     pub type_effects: Vec<TypeEffect>,

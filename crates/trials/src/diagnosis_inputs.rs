@@ -1,14 +1,18 @@
 //! What the diagnosis of a case is given: a model that knows nothing of what was planted, and segments. No name of an
 //! effect, no size.
 
-use diagnose::{Baseline, Diagnosis, FlightRecord, Input, Options, TableUncertainty, diagnose};
+use diagnose::{
+    Baseline, Diagnosis, FlightRecord, Input, Options, TableUncertainty, WholeModel, diagnose,
+};
 use effects::ExtendedModel;
+use flight::Segment;
 use flight::effect::EffectId;
 use lut::Table;
 use pipeline::learning::{self, FlightToLearn, LawChoice};
 use pipeline::model_file::{LawState, LedgerEntry};
 use pipeline::reduction::ReducedFlight;
 use pipeline::table_uncertainty;
+use pipeline::whole_model::SegmentHeld;
 use segmenter::TrimCriteria;
 use simulate::Scatter;
 use simulate::study::DragError;
@@ -99,6 +103,19 @@ impl DiagnosisInputs {
         Self { flights, ..self.clone() }
     }
 
+    pub(crate) fn flights(&self) -> &[ReducedFlight] {
+        &self.flights
+    }
+
+    /// Everything that the model has learnt, ready to predict segments.
+    ///
+    /// # Errors
+    /// [`CaseFailure::Untaught`] for a model that has learnt too little.
+    pub(crate) fn whole_model(&self) -> Result<WholeOfType<'_>, CaseFailure> {
+        let baseline = self.baseline.as_ref().ok_or(CaseFailure::Untaught)?;
+        Ok(WholeOfType { whole: WholeModel::new(&self.model, baseline)?, model: &self.model })
+    }
+
     pub(crate) fn records(&self) -> Vec<FlightRecord<'_>> {
         records(&self.flights)
     }
@@ -116,8 +133,22 @@ impl DiagnosisInputs {
     }
 }
 
+/// A model with everything that it has learnt.
+#[derive(Debug)]
+pub(crate) struct WholeOfType<'a> {
+    whole: WholeModel<'a>,
+    model: &'a ExtendedModel,
+}
+
+impl WholeOfType<'_> {
+    /// 100·ln of recorded over predicted fuel flow; `None` outside the table.
+    pub(crate) fn gap_percent(&self, segment: &Segment) -> Option<f64> {
+        SegmentHeld::new(&self.whole, self.model, segment).map(|held| 100.0 * held.gap)
+    }
+}
+
 /// Law `bayes` on clean flights with its remainder, as `cruisefit adapt` does it.
-fn adapted(
+pub(crate) fn adapted(
     initial: ExtendedModel,
     training_flights: &[ReducedFlight],
     flights: Vec<ReducedFlight>,

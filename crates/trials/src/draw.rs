@@ -17,8 +17,8 @@ use crate::seal::{CaseTruth, SEALED_SCHEMA};
 /// Tail of every case: a name that gives nothing away.
 pub(crate) const TAIL: &str = "TRIAL";
 /// Dates of sixty flights, s since 1970: 1.6 years, as the fleets of the virtual aircraft have them by default.
-const FIRST_DATE_S: i64 = 1_515_153_600;
-const SIXTY_FLIGHTS_S: i64 = 50_716_800;
+pub(crate) const FIRST_DATE_S: i64 = 1_515_153_600;
+pub(crate) const SIXTY_FLIGHTS_S: i64 = 50_716_800;
 
 /// A case, drawn: flights, effects, clutter.
 #[derive(Clone, Debug)]
@@ -189,7 +189,7 @@ fn times(spec: &CaseSpec) -> f64 {
 
 /// Everything beyond the model's equations that an adapted model can learn. Trim drag with the center of gravity and drag of
 /// a wing held low it cannot: with them in the truth, a flight without a planted effect would not be without effect.
-fn learnable() -> TruthPhysics {
+pub(crate) fn learnable() -> TruthPhysics {
     TruthPhysics { trim_drag: Switch::Off, asymmetry: Switch::Off, ..TruthPhysics::full() }
 }
 

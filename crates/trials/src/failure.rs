@@ -33,6 +33,9 @@ pub enum CaseFailure {
     /// What it should have learnt.
     #[error(transparent)]
     Learning(#[from] pipeline::learning::LearningError),
+    /// A model of a fleet's type that has learnt too little to be a reference.
+    #[error("the clean flights are too few for a model of the type")]
+    Untaught,
     /// What its table does not know.
     #[error(transparent)]
     Uncertainty(#[from] diagnose::TableUncertaintyError),

@@ -34,6 +34,7 @@ mod case;
 mod diagnosis_inputs;
 mod draw;
 mod failure;
+mod fleets;
 mod flown_case;
 mod markdown;
 pub mod places;
@@ -52,7 +53,11 @@ pub use case::{CaseResult, DiagnosedCase};
 pub use diagnosis_inputs::DiagnosisInputs;
 pub use draw::DrawnCase;
 pub use failure::CaseFailure;
-pub use markdown::{group_words, markdown, terminal};
+pub use fleets::{
+    DrawnFleet, FleetGroup, FleetPart, FleetResult, FleetScore, FleetSpec, FleetTruth, FoundAs,
+    FoundChange, FoundFleet, JudgedFinding, LevelFound, MonitoredTail, PlantedFound, StepFound,
+};
+pub use markdown::{fleet_words, group_words, markdown, terminal};
 pub use plan::{
     Background, CaseSpec, Floor, Kind, Part, ReferenceModel, TrialPlan, TrialPlanError,
 };
@@ -60,4 +65,4 @@ pub use scored_case::{Case, Located, Planted};
 pub use scores::{Reached, SCORES, Score, ScoreName, Scores};
 pub use seal::{CaseTruth, Seal, SealError};
 pub use share::Share;
-pub use summary::{FloorMissed, Goal, Group, Trials, floors_missed, summarize};
+pub use summary::{FleetTrials, FloorMissed, Goal, Group, Trials, floors_missed, summarize};

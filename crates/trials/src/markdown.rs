@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use crate::fleets::{FleetGroup, FleetScore};
 use crate::plan::{Background, ReferenceModel};
 use crate::scores::{SCORES, Score};
 use crate::share::Share;
@@ -37,10 +38,68 @@ pub fn markdown(trials: &Trials) -> String {
     for group in &trials.groups {
         group_table(group, &mut text);
     }
+    for group in &trials.fleets.groups {
+        let (name, fleets) = fleet_words(group);
+        let _ = writeln!(
+            text,
+            "\n## {name}\n\n{fleets}.\n\n| score | goal | reached | |\n|---|---|---|---|"
+        );
+        for score in group.scores.iter().filter(|score| score.reached.of > 0) {
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} |",
+                score.words,
+                fleet_goal(score, ["≥", "≤"]),
+                number(score.reached.share, Some(score.reached)),
+                fleet_verdict(score)
+            );
+        }
+    }
     for (case, reason) in &trials.failed {
         let _ = writeln!(text, "\nCase {case} came to nothing: {reason}");
     }
+    for (fleet, reason) in &trials.fleets.failed {
+        let _ = writeln!(text, "\nFleet {fleet} came to nothing: {reason}");
+    }
     text
+}
+
+/// Which fleets, and how many.
+#[must_use]
+pub fn fleet_words(group: &FleetGroup) -> (String, String) {
+    let part = &group.part;
+    let mut name = format!(
+        "fleets of {} tails, {} flights each, {} × typical",
+        part.tails, part.flights, part.times
+    );
+    if part.type_effects == 0 && part.disturbed_share <= 0.0 {
+        name = format!("fleets of {} tails, {} flights each, no effect", part.tails, part.flights);
+    }
+    if part.step_share > 0.0 {
+        let _ = write!(name, ", steps of {} %", part.step_percent);
+    }
+    let fleets = format!(
+        "{} fleets; {} effects of the type, an effect of its own or of a sensor on {:.0} % of the tails, a step on {:.0} %",
+        group.fleets,
+        part.type_effects,
+        100.0 * part.disturbed_share,
+        100.0 * part.step_share
+    );
+    (name, fleets)
+}
+
+fn fleet_goal(score: &FleetScore, [at_least, at_most]: [&str; 2]) -> String {
+    score.goal.map_or_else(String::new, |(more, goal)| {
+        format!("{} {}", if more { at_least } else { at_most }, (1e4 * goal).round() / 1e4)
+    })
+}
+
+const fn fleet_verdict(score: &FleetScore) -> &'static str {
+    match score.met {
+        Some(true) => "met",
+        Some(false) => "missed",
+        None => "–",
+    }
 }
 
 /// The goals in a dozen lines or two.
@@ -72,6 +131,20 @@ pub fn terminal(trials: &Trials) -> String {
                     reached(goal)
                 );
             }
+        }
+    }
+    for group in &trials.fleets.groups {
+        let (name, fleets) = fleet_words(group);
+        let _ = writeln!(text, "{}: {fleets}", name.replace('×', "x"));
+        for score in group.scores.iter().filter(|score| score.reached.of > 0) {
+            let _ = writeln!(
+                text,
+                "  {:<7} {}{}: {}",
+                fleet_verdict(score),
+                score.words,
+                fleet_goal(score, [" >=", " <="]),
+                number(score.reached.share, Some(score.reached))
+            );
         }
     }
     text

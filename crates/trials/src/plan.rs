@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use simulate::{AircraftChoice, Columns, OutsideEffect, SensorChoice, TruthEffect};
 
+use crate::fleets::{FleetPart, FleetSpec};
 use crate::scores::ScoreName;
 
 const SHORT: &str = include_str!("../embedded/TRIAL-SHORT.ron");
@@ -12,7 +13,7 @@ const LONG: &str = include_str!("../embedded/TRIAL-LONG.ron");
 /// Most cases of one plan: numbers of cases have five digits.
 const MOST_CASES: usize = 99_999;
 
-/// A plan of trials. Only `seed` and `parts` are required.
+/// A plan of trials. Only `seed` is required, and `parts` or `fleets`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrialPlan {
@@ -46,7 +47,11 @@ pub struct TrialPlan {
     #[serde(default)]
     pub effects: Vec<TruthEffect>,
     /// What is flown.
+    #[serde(default)]
     pub parts: Vec<Part>,
+    /// Whole fleets that are flown.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fleets: Vec<FleetPart>,
     /// Scores below (or above) which `--check` fails.
     #[serde(default)]
     pub floors: Vec<Floor>,
@@ -278,7 +283,15 @@ impl TrialPlan {
                 return wrong("effects", &outside.name(), "effects of the library");
             }
         }
-        let cases = self.cases(2).len();
+        for (index, part) in self.fleets.iter().enumerate() {
+            if let Some((field, found, expected)) = part.wrong() {
+                return Err(TrialPlanError::Value { field, found, expected });
+            }
+            if self.fleets[..index].iter().any(|other| other.label() == part.label()) {
+                return Err(TrialPlanError::PartTwice { label: part.label() });
+            }
+        }
+        let cases = self.cases(2).len() + self.fleets().len();
         if cases == 0 || cases > MOST_CASES {
             return wrong("cases", &cases, "1 to 99999");
         }
@@ -314,6 +327,17 @@ impl TrialPlan {
             }
         }
         cases
+    }
+
+    /// Every fleet, numbered.
+    #[must_use]
+    pub fn fleets(&self) -> Vec<FleetSpec> {
+        let each = |part: &FleetPart| {
+            let draws = |repeat: usize| self.draws(&format!("{}/{repeat}", part.label()));
+            (0..part.repeats).map(|repeat| (*part, draws(repeat))).collect::<Vec<_>>()
+        };
+        let all = self.fleets.iter().flat_map(each);
+        all.zip(1..).map(|((part, draws), number)| FleetSpec { number, part, draws }).collect()
     }
 
     /// Effects of the library that a part plants.

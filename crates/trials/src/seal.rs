@@ -1,9 +1,11 @@
 //! The truth of every case, sealed by its hash before the first diagnosis begins.
 
 use pipeline::checksum::sha256;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use simulate::EffectTruth;
 
+use crate::fleets::FleetTruth;
 use crate::plan::{Background, Kind, ReferenceModel};
 use crate::scored_case::Planted;
 
@@ -84,9 +86,21 @@ impl Seal {
     /// # Errors
     /// Bytes that are no longer what was sealed.
     pub fn open(&self, case: usize, bytes: &[u8]) -> Result<CaseTruth, SealError> {
+        self.open_as(case, bytes)
+    }
+
+    /// Opens the truth of a fleet: fleets are sealed after all cases, `place` being cases and the fleet's number together.
+    ///
+    /// # Errors
+    /// As of a case.
+    pub fn open_fleet(&self, place: usize, bytes: &[u8]) -> Result<FleetTruth, SealError> {
+        self.open_as(place, bytes)
+    }
+
+    fn open_as<T: DeserializeOwned>(&self, place: usize, bytes: &[u8]) -> Result<T, SealError> {
         let found = sha256(bytes);
-        if found != self.hash_of(case) {
-            return Err(SealError::Broken { found, sealed: self.hash_of(case).to_owned() });
+        if found != self.hash_of(place) {
+            return Err(SealError::Broken { found, sealed: self.hash_of(place).to_owned() });
         }
         Ok(serde_json::from_slice(bytes)?)
     }

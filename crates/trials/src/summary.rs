@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::case::CaseResult;
+use crate::fleets::{FleetGroup, FleetResult, fleet_groups};
 use crate::plan::{Background, Floor, Kind, ReferenceModel, TrialPlan};
 use crate::scored_case::Case;
 use crate::scores::{ScoreName, Scores};
@@ -26,6 +27,37 @@ pub struct Trials {
     pub goals: Vec<Goal>,
     /// Every case.
     pub cases: Vec<CaseResult>,
+    /// Of fleets: scores by part, every fleet, and those that came to nothing with the reason.
+    #[serde(flatten)]
+    pub fleets: FleetTrials,
+}
+
+/// What came of the fleets of a plan; nothing is written where it has none.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct FleetTrials {
+    /// Fleets that came to nothing, with the reason.
+    #[serde(rename = "failed_fleets", skip_serializing_if = "Vec::is_empty")]
+    pub failed: Vec<(usize, String)>,
+    /// Scores by part.
+    #[serde(rename = "fleet_groups", skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<FleetGroup>,
+    /// Every fleet.
+    #[serde(rename = "fleets", skip_serializing_if = "Vec::is_empty")]
+    pub results: Vec<FleetResult>,
+}
+
+impl FleetTrials {
+    /// Scores every fleet of a plan, in the order of their numbers.
+    #[must_use]
+    pub fn new(
+        plan: &TrialPlan,
+        mut results: Vec<FleetResult>,
+        mut failed: Vec<(usize, String)>,
+    ) -> Self {
+        results.sort_by_key(|fleet| fleet.fleet);
+        failed.sort();
+        Self { failed, groups: fleet_groups(&plan.fleets, &results), results }
+    }
 }
 
 /// Scores of one model, background and size.
@@ -152,7 +184,16 @@ pub fn summarize(
         })
         .collect();
     let goals = groups.iter().flat_map(goals_of).collect();
-    Trials { schema: SCHEMA, seed: plan.seed, seal_sha256, failed, groups, goals, cases }
+    Trials {
+        schema: SCHEMA,
+        seed: plan.seed,
+        seal_sha256,
+        failed,
+        groups,
+        goals,
+        cases,
+        fleets: FleetTrials::default(),
+    }
 }
 
 /// The floors of a plan that were not reached. A floor of a score without a case is missed.

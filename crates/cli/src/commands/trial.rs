@@ -4,10 +4,12 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use pipeline::summary::counted;
 use rayon::prelude::*;
 use simulate::{AircraftChoice, AircraftTruth};
 use trials::{
-    CaseSpec, DrawnCase, TrialPlan, Trials, floors_missed, markdown, summarize, terminal,
+    CaseSpec, DrawnCase, DrawnFleet, FleetSpec, FleetTrials, TrialPlan, Trials, floors_missed,
+    markdown, summarize, terminal,
 };
 
 use crate::args::TrialArgs;
@@ -36,10 +38,15 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
     make_folder(&arguments.output.join("cases"))?;
     begin(&arguments.output, &plan)?;
     let cases = plan.cases(engines(&plan)?);
-    let truths = seal(&arguments.output, &plan, &cases, progress)?;
+    let fleets = plan.fleets();
+    let truths = seal(&arguments.output, &plan, (&cases, &fleets), progress)?;
     // Printed before the first diagnosis, also where no progress is shown.
-    eprintln!("{} cases, truth sealed: sha256 {}", cases.len(), truths.seal().hash());
-    let bar = progress.bar(cases.len(), "trials");
+    let and_fleets = match fleets.len() {
+        0 => String::new(),
+        fleets => format!(" and {}", counted(fleets, "fleet")),
+    };
+    eprintln!("{} cases{and_fleets}, truth sealed: sha256 {}", cases.len(), truths.seal().hash());
+    let bar = progress.bar(cases.len() + fleets.len(), "trials");
     let results: Vec<_> = cases
         .par_iter()
         .map(|case| {
@@ -48,31 +55,51 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
             result.map_err(|error| (case.number, error.to_string()))
         })
         .collect();
+    let of_fleets: Vec<_> = fleets
+        .par_iter()
+        .map(|fleet| {
+            let result = folder::run_fleet(&arguments.output, &plan, fleet, &truths);
+            bar.step();
+            result.map_err(|error| (fleet.number, error.to_string()))
+        })
+        .collect();
     bar.finish();
-    let (mut done, mut failed) = (Vec::new(), Vec::new());
-    for result in results {
-        match result {
-            Ok(case) => done.push(case),
-            Err(reason) => failed.push(reason),
-        }
-    }
-    let trials = summarize(&plan, truths.seal().hash(), done, failed);
+    let (done, failed) = parted(results);
+    let mut trials = summarize(&plan, truths.seal().hash(), done, failed);
+    let (done, failed) = parted(of_fleets);
+    trials.fleets = FleetTrials::new(&plan, done, failed);
     let json = write(&arguments.output, &plan, &trials)?;
     let ending = if arguments.check { check(&plan, &trials) } else { Ending::Done };
     let mut text = terminal(&trials);
     let _ = writeln!(
         text,
-        "{} cases in {:.0} s. Written to {}: trials.html, trials.json, trials.md, truth/, cases/",
+        "{} cases{and_fleets} in {:.0} s. Written to {}: trials.html, trials.json, trials.md, truth/, cases/",
         trials.cases.len(),
         begun.elapsed().as_secs_f64(),
         show(&arguments.output)
     );
-    let refused = trials
-        .failed
-        .iter()
-        .map(|(case, reason)| RefusedReport::whole(format!("case {case}").into(), reason))
-        .collect();
+    let refused =
+        trials
+            .failed
+            .iter()
+            .map(|(case, reason)| RefusedReport::whole(format!("case {case}").into(), reason))
+            .chain(trials.fleets.failed.iter().map(|(fleet, reason)| {
+                RefusedReport::whole(format!("fleet {fleet}").into(), reason)
+            }))
+            .collect();
     Ok(Outcome { refused, ending, ..Outcome::with_json(text, json) })
+}
+
+/// What has a result, and what came to nothing.
+fn parted<T>(results: Vec<Result<T, (usize, String)>>) -> (Vec<T>, Vec<(usize, String)>) {
+    let (mut done, mut failed) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(one) => done.push(one),
+            Err(reason) => failed.push(reason),
+        }
+    }
+    (done, failed)
 }
 
 fn read_plan(arguments: &TrialArgs) -> Result<TrialPlan, Failure> {
@@ -124,14 +151,14 @@ fn begin(folder: &Path, plan: &TrialPlan) -> Result<(), Failure> {
     })
 }
 
-/// Draws every case and seals the truths.
+/// Draws every case and every fleet and seals the truths.
 fn seal(
     folder: &Path,
     plan: &TrialPlan,
-    cases: &[CaseSpec],
+    (cases, fleets): (&[CaseSpec], &[FleetSpec]),
     progress: Progress,
 ) -> Result<TruthFolder, Failure> {
-    let bar = progress.bar(cases.len(), "sealing");
+    let bar = progress.bar(cases.len() + fleets.len(), "sealing");
     let truths = cases
         .par_iter()
         .map(|case| {
@@ -140,8 +167,16 @@ fn seal(
             Ok(truth)
         })
         .collect::<Result<Vec<_>, Failure>>()?;
+    let of_fleets = fleets
+        .par_iter()
+        .map(|fleet| {
+            let drawn = DrawnFleet::draw(plan, fleet).map_err(|error| wrong(&error))?;
+            bar.step();
+            Ok(drawn.truth().clone())
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
     bar.finish();
-    TruthFolder::write(folder, &truths)
+    TruthFolder::write(folder, &truths, &of_fleets)
 }
 
 /// Writes what a folder of trials holds, and returns `trials.json`.
@@ -172,13 +207,11 @@ fn check(plan: &TrialPlan, trials: &Trials) -> Ending {
             floor.most.map_or_else(String::new, |most| format!("<= {most}")),
         ));
     }
-    if missed.is_empty() && trials.failed.is_empty() {
+    let failed = trials.failed.len() + trials.fleets.failed.len();
+    if missed.is_empty() && failed == 0 {
         Ending::Done
     } else {
-        Ending::NotPassed(Failure::TrialFloors {
-            missed: missed.len(),
-            failed: trials.failed.len(),
-        })
+        Ending::NotPassed(Failure::TrialFloors { missed: missed.len(), failed })
     }
 }
 

@@ -95,3 +95,52 @@ fn check_page(page: &str, trials: &serde_json::Value) {
         confusion.values().flat_map(|row| row.as_object().unwrap().values()).for_each(has);
     }
 }
+
+#[test]
+fn fleets_are_sealed_scored_and_gone_on_from() {
+    let scratch = tempfile::tempdir().unwrap();
+    let plan = scratch.path().join("plan.ron");
+    // An effect of the type of three times its typical size, one tail of its own, one step.
+    let text = "(seed: 3, clean_flights: 6, duration_h: 1.0,
+        fleets: [(tails: 4, flights: 5, repeats: 2, step_share: 0.25, times: 3.0)])";
+    std::fs::write(&plan, text).unwrap();
+    let output = scratch.path().join("out");
+    let run = |threads: &str| {
+        let paths = (plan.to_str().unwrap(), output.to_str().unwrap());
+        cruisefit(&["trial", paths.0, "-o", paths.1, "--threads", threads])
+    };
+    let ran = run("2").expect(0);
+    assert!(
+        ran.stdout.contains("fleets of 4 tails, 5 flights each, 3 x typical"),
+        "{}",
+        ran.stdout
+    );
+    let expected = bytes_below(&output);
+    let trials: serde_json::Value = serde_json::from_slice(&expected["trials.json"]).unwrap();
+    ran.says(trials["seal_sha256"].as_str().unwrap());
+    assert_eq!(trials["fleets"].as_array().unwrap().len(), 2);
+    for fleet in trials["fleets"].as_array().unwrap() {
+        assert_eq!(fleet["planted"].as_array().unwrap().len(), 2);
+        assert_eq!(fleet["steps"].as_array().unwrap().len(), 1);
+    }
+    let truth: serde_json::Value =
+        serde_json::from_slice(&expected["truth/fleet-00001.json"]).unwrap();
+    assert_eq!(truth["planted"][0]["level"], "type");
+    // The page and the table show the scores that the document holds.
+    let scores = trials["fleet_groups"][0]["scores"].as_array().unwrap();
+    let html = std::str::from_utf8(&expected["trials.html"]).unwrap();
+    let markdown = std::str::from_utf8(&expected["trials.md"]).unwrap();
+    for score in scores.iter().filter(|score| score["reached"]["of"] != 0) {
+        let words = score["words"].as_str().unwrap();
+        assert!(html.contains(words) && markdown.contains(words), "{words}");
+    }
+
+    std::fs::remove_file(output.join("cases/fleet-00002.json")).unwrap();
+    run("1").expect(0);
+    assert_eq!(bytes_below(&output), expected);
+
+    // A truth that was changed is not scored.
+    let sealed = output.join("truth/fleet-00001.json");
+    std::fs::write(&sealed, b"{}").unwrap();
+    run("1").expect(2).says("fleet 1");
+}

@@ -95,7 +95,7 @@ impl FleetPlan {
                 tail: name.clone(),
                 effects: Vec::new(),
                 engine_deterioration_percent: Vec::new(),
-                references: None,
+                references: self.references,
                 flights: Flights::Designed(self.flights.clone()),
             };
             tails.push(DrawnTail { plan, effects, lives });

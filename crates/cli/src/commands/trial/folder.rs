@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use trials::{CaseFailure, CaseResult, CaseSpec, CaseTruth, DiagnosedCase, Seal, TrialPlan};
+use trials::{
+    CaseFailure, CaseResult, CaseSpec, CaseTruth, DiagnosedCase, FleetResult, FleetSpec,
+    FleetTruth, FoundFleet, Seal, TrialPlan,
+};
 
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
@@ -11,6 +14,7 @@ use crate::files::{make_folder, write_atomically};
 #[derive(Clone, Debug)]
 pub(super) struct TruthFolder {
     folder: PathBuf,
+    cases: usize,
     seal: Seal,
 }
 
@@ -20,13 +24,22 @@ impl TruthFolder {
     ///
     /// # Errors
     /// A file or folder that cannot be written; a folder with other truths.
-    pub(super) fn write(folder: &Path, truths: &[CaseTruth]) -> Result<Self, Failure> {
+    pub(super) fn write(
+        folder: &Path,
+        truths: &[CaseTruth],
+        fleets: &[FleetTruth],
+    ) -> Result<Self, Failure> {
         let folder = folder.join("truth");
         make_folder(&folder)?;
-        let mut texts = Vec::with_capacity(truths.len());
-        for truth in truths {
-            let path = path_of(&folder, truth.case);
-            let text = truth.to_text().map_err(|error| Failure::unwritable(&path, error))?;
+        let of_cases = truths.iter().map(|truth| {
+            (format!("case {}", truth.case), path_of(&folder, truth.case), truth.to_text())
+        });
+        let of_fleets = fleets.iter().map(|truth| {
+            (format!("fleet {}", truth.fleet), fleet_path(&folder, truth.fleet), truth.to_text())
+        });
+        let mut texts = Vec::with_capacity(truths.len() + fleets.len());
+        for (name, path, text) in of_cases.chain(of_fleets) {
+            let text = text.map_err(|error| Failure::unwritable(&path, error))?;
             match std::fs::read(&path) {
                 Ok(bytes) if bytes == text.as_bytes() => {}
                 Ok(_) => {
@@ -34,8 +47,7 @@ impl TruthFolder {
                         folder: show(&folder),
                         what: "truth",
                         difference: format!(
-                            "case {}: it was drawn by another version of the program, or the file was changed",
-                            truth.case
+                            "{name}: it was drawn by another version of the program, or the file was changed"
                         ),
                     });
                 }
@@ -44,7 +56,7 @@ impl TruthFolder {
             texts.push(text);
         }
         let seal = Seal::of_texts(texts.iter().map(String::as_str));
-        Ok(Self { folder, seal })
+        Ok(Self { folder, cases: truths.len(), seal })
     }
 
     /// The seal.
@@ -60,6 +72,20 @@ impl TruthFolder {
         let path = path_of(&self.folder, case);
         let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
         self.seal.open(case, &bytes).map_err(|error| Failure::bad_file(&path, error))
+    }
+}
+
+impl TruthFolder {
+    /// The hash of a fleet's truth.
+    fn hash_of_fleet(&self, fleet: usize) -> &str {
+        self.seal.hash_of(self.cases + fleet)
+    }
+
+    fn open_fleet(&self, fleet: usize) -> Result<FleetTruth, Failure> {
+        let path = fleet_path(&self.folder, fleet);
+        let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
+        let place = self.cases + fleet;
+        self.seal.open_fleet(place, &bytes).map_err(|error| Failure::bad_file(&path, error))
     }
 }
 
@@ -101,11 +127,41 @@ pub(super) fn run_case(
     serde_json::from_str(&text).map_err(|error| CaseError::Disk(Failure::bad_file(&path, error)))
 }
 
+/// Runs one fleet in the same way.
+///
+/// # Errors
+/// [`CaseError`]; other fleets are not affected.
+pub(super) fn run_fleet(
+    folder: &Path,
+    plan: &TrialPlan,
+    spec: &FleetSpec,
+    truths: &TruthFolder,
+) -> Result<FleetResult, CaseError> {
+    let path = fleet_path(&folder.join("cases"), spec.number);
+    let sealed = truths.hash_of_fleet(spec.number);
+    let known = std::fs::read(&path).ok();
+    let known = known.and_then(|bytes| serde_json::from_slice::<FleetResult>(&bytes).ok());
+    if let Some(known) = known.filter(|known| known.truth_sha256 == sealed) {
+        return Ok(known);
+    }
+    let found = FoundFleet::run(plan, spec)?;
+    let result = found.score(&truths.open_fleet(spec.number)?, sealed);
+    let mut text =
+        serde_json::to_string_pretty(&result).map_err(|error| Failure::unwritable(&path, error))?;
+    text.push('\n');
+    write_atomically(&path, text.as_bytes())?;
+    serde_json::from_str(&text).map_err(|error| CaseError::Disk(Failure::bad_file(&path, error)))
+}
+
 /// The result of an earlier run, if it belongs to this truth.
 fn finished(path: &Path, truth_sha256: &str) -> Option<CaseResult> {
     let bytes = std::fs::read(path).ok()?;
     let known: CaseResult = serde_json::from_slice(&bytes).ok()?;
     (known.truth_sha256 == truth_sha256).then_some(known)
+}
+
+fn fleet_path(folder: &Path, fleet: usize) -> PathBuf {
+    folder.join(format!("fleet-{fleet:05}.json"))
 }
 
 fn path_of(folder: &Path, case: usize) -> PathBuf {
@@ -134,7 +190,8 @@ mod tests {
     #[test]
     fn a_broken_seal_is_noticed() {
         let folder = tempfile::tempdir().unwrap();
-        let write = |times| TruthFolder::write(folder.path(), &[truth(1, 1.0), truth(2, times)]);
+        let write =
+            |times| TruthFolder::write(folder.path(), &[truth(1, 1.0), truth(2, times)], &[]);
         let truths = write(0.5).unwrap();
         assert_eq!(truths.open(2).unwrap(), truth(2, 0.5));
         // The same truth gives the same seal; another truth in the same folder is refused.

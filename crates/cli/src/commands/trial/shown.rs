@@ -1,6 +1,7 @@
 //! Results of blind trials as their page shows them.
 
 use page::{TrialCalibration, TrialGoal, TrialGroup, TrialScore, TrialsPage};
+use trials::{FleetGroup, FleetScore, fleet_words};
 use trials::{Goal, Group, SCORES, Score, TrialPlan, Trials, group_words};
 
 /// The page of these results.
@@ -28,9 +29,52 @@ pub(super) fn page_of(plan: &TrialPlan, trials: &Trials) -> TrialsPage {
         plan: plan_words(plan),
         seal_sha256: trials.seal_sha256.clone(),
         cases: trials.cases.len(),
-        failed: trials.failed.clone(),
-        goals: trials.goals.iter().map(of_goal).collect(),
-        groups: trials.groups.iter().map(group_of).collect(),
+        failed: trials.failed.iter().chain(&trials.fleets.failed).cloned().collect(),
+        goals: trials.goals.iter().map(of_goal).chain(goals_of_fleets(trials)).collect(),
+        groups: trials
+            .groups
+            .iter()
+            .map(group_of)
+            .chain(trials.fleets.groups.iter().map(group_of_fleets))
+            .collect(),
+    }
+}
+
+fn goals_of_fleets(trials: &Trials) -> Vec<TrialGoal> {
+    let mut goals = Vec::new();
+    for group in &trials.fleets.groups {
+        for score in &group.scores {
+            let Some((at_least, goal)) = score.goal.filter(|_| score.reached.of > 0) else {
+                continue;
+            };
+            goals.push(TrialGoal {
+                group: fleet_words(group).0,
+                goal: format!("{} {goal:.4}", if at_least { "≥" } else { "≤" }),
+                reached: score_of_fleets(score),
+                met: score.met,
+            });
+        }
+    }
+    goals
+}
+
+fn group_of_fleets(group: &FleetGroup) -> TrialGroup {
+    let (name, cases) = fleet_words(group);
+    let scores = group.scores.iter().filter(|score| score.reached.of > 0);
+    TrialGroup {
+        name,
+        cases,
+        scores: scores.map(score_of_fleets).collect(),
+        ..TrialGroup::default()
+    }
+}
+
+fn score_of_fleets(score: &FleetScore) -> TrialScore {
+    TrialScore {
+        words: score.words.to_owned(),
+        value: Some(score.reached.share),
+        ci95: Some(score.reached.ci95),
+        of: Some(score.reached.of),
     }
 }
 
