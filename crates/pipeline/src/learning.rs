@@ -1,5 +1,7 @@
 //! One tail's flights, learnt one after the other.
 
+use std::borrow::Cow;
+
 use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
 use adapt::paper::{self, PaperLaw, State as PaperState, Update};
 use diagnose::{Baseline, FlightRecord, visited_nodes};
@@ -86,22 +88,48 @@ pub fn learn_flight(
 ) -> Result<FlightLearnt, LearningError> {
     let mut observations = Vec::with_capacity(flight.segments.len());
     let mut references = learnt.references.clone();
-    let mut result = FlightLearnt::default();
     for segment in flight.segments {
-        match (initial.observe(segment), initial.corrected(segment)) {
-            (Ok(observation), Ok(corrected)) => {
-                references.add(&corrected, observation.lift_coefficient);
-                observations.push(observation);
-            }
-            _ => result.outside_table += 1,
+        if let Some((observation, corrected)) = observed(initial, segment) {
+            references.add(&corrected, observation.lift_coefficient);
+            observations.push(observation);
         }
     }
-    match &mut learnt.law {
+    let mut result = learn_observations(initial, &mut learnt.law, &observations)?;
+    result.outside_table += flight.segments.len() - observations.len();
+    learnt.references = references;
+    learnt.ledger.push(LedgerEntry {
+        segments: flight.segments.len() as u64,
+        outside_table: result.outside_table as u64,
+        ..flight.entry.clone()
+    });
+    Ok(result)
+}
+
+/// What a segment says of drag, with the segment as it would have been recorded without the errors that the model contains;
+/// `None` where it cannot be reduced to an observation.
+pub(crate) fn observed<'s>(
+    initial: &ExtendedModel,
+    segment: &'s Segment,
+) -> Option<(Observation, Cow<'s, Segment>)> {
+    Some((initial.observe(segment).ok()?, initial.corrected(segment).ok()?))
+}
+
+/// Learns what the segments of one flight say of drag: the law's part of [`learn_flight`].
+///
+/// # Errors
+/// As there.
+pub(crate) fn learn_observations(
+    initial: &ExtendedModel,
+    law: &mut LawState,
+    observations: &[Observation],
+) -> Result<FlightLearnt, LearningError> {
+    let mut result = FlightLearnt::default();
+    match law {
         LawState::Paper { settings, state, ever_adapted, refits } => {
             let law = PaperLaw::new(settings.threshold_percent)?;
             // On copies: a flight whose refit fails leaves no trace.
             let (mut new_state, mut new_adapted) = (state.clone(), ever_adapted.clone());
-            learn_by_paper(law, &mut new_state, &mut new_adapted, &observations, &mut result);
+            learn_by_paper(law, &mut new_state, &mut new_adapted, observations, &mut result);
             let (drag_coefficient, confidence) = new_state.tables_mut();
             let basis = initial.polynomial().basis;
             let report =
@@ -113,7 +141,7 @@ pub fn learn_flight(
             (*state, *ever_adapted) = (new_state, new_adapted);
         }
         LawState::Bayes { state, .. } => {
-            let update = state.learn_flight(&observations);
+            let update = state.learn_flight(observations);
             for observation in &update.observations {
                 match observation {
                     ObservationUpdate::Learnt { .. } => result.adapted += 1,
@@ -122,12 +150,6 @@ pub fn learn_flight(
             }
         }
     }
-    learnt.references = references;
-    learnt.ledger.push(LedgerEntry {
-        segments: flight.segments.len() as u64,
-        outside_table: result.outside_table as u64,
-        ..flight.entry.clone()
-    });
     Ok(result)
 }
 

@@ -147,6 +147,21 @@ impl BlockFactor {
             .collect()
     }
 
+    /// Columns of A⁻¹, in node order: one for each of these nodes.
+    pub(super) fn inverse_columns(&self, nodes: &[usize]) -> Mat<f64> {
+        let mut parts = self.parts(nodes.len());
+        for (column, &node) in nodes.iter().enumerate() {
+            let (block, place) = self.layout.place(node);
+            parts[block][(place, column)] = 1.0;
+        }
+        self.solve_lower(&mut parts);
+        self.solve_upper(&mut parts);
+        Mat::from_fn(self.layout.outer * self.layout.inner, nodes.len(), |node, column| {
+            let (block, place) = self.layout.place(node);
+            parts[block][(place, column)]
+        })
+    }
+
     /// L⁻ᵀ·z in node order, for independent standard normal numbers z: a vector of covariance A⁻¹.
     pub(super) fn correlate(&self, standard_normal: &[f64]) -> Vec<f64> {
         let mut parts = self.parts(1);

@@ -7,6 +7,7 @@
 
 use std::iter;
 
+use faer::Mat;
 use lut::Grid;
 
 /// No slot yet.
@@ -115,6 +116,13 @@ impl Information {
     /// Nodes ever touched, in the order of slots.
     pub(super) fn touched(&self) -> &[usize] {
         &self.nodes
+    }
+
+    /// The whole matrix and the vector over [`touched`](Self::touched).
+    pub(super) fn of_touched(&self) -> (Mat<f64>, &[f64]) {
+        let count = self.nodes.len();
+        let matrix = Mat::from_fn(count, count, |row, column| self.matrix[packed(row, column)]);
+        (matrix, &self.vector)
     }
 
     /// (node, other node, entry) of the precision's lower triangle.

@@ -185,6 +185,37 @@ fn solve_agrees_with_dense_conditioning() {
     }
 }
 
+/// The mean after every flight by conditioning on covariances (nalgebra, dense), though the tables are made ready for the last
+/// state alone; and a state that the guard must mend is as it is solved.
+#[test]
+fn tables_on_the_way_agree_with_dense_conditioning() {
+    for (seed, grid) in [(1, even_grid()), (2, uneven_grid())] {
+        let initial = polar(&grid);
+        let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
+        let flights = flights(&mut random, &initial, 12, (0.01, 0.005), some_correction);
+        let empty = BayesState::new(&initial, BayesSettings::physical_2026()).unwrap();
+        let mut last = empty.clone();
+        let weights = weighted(&mut last, &flights);
+        let tables = DragTables::new(&last).unwrap();
+        let prior = dense_prior(&grid, last.settings()).try_inverse().unwrap();
+        let mut state = empty;
+        assert_eq!(tables.drag(&state).unwrap().values(), initial.values());
+        for count in 1..=flights.len() {
+            let flight = state.read(&flights[count - 1]);
+            state.learn_weighted(&flight, &weights[count - 1]);
+            let (rows, residuals, variance) =
+                dense_observations(&state, &flights[..count], &weights[..count]);
+            let of_residuals = &rows * &prior * rows.transpose() + variance;
+            let mean = &prior * rows.transpose() * of_residuals.try_inverse().unwrap() * residuals;
+            let drag = tables.drag(&state).unwrap();
+            for (node, value) in drag.values().iter().enumerate() {
+                let expected = initial.value_at_node(node) * (1.0 + mean[node]);
+                assert!((value - expected).abs() < 1e-11, "{node}: {value}, {expected}");
+            }
+        }
+    }
+}
+
 /// The evidence is the density of a multivariate normal: nalgebra's dense Cholesky of W·Q⁻¹·Wᵀ + V.
 #[test]
 fn evidence_is_a_dense_normal_density() {

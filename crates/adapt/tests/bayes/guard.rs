@@ -1,7 +1,8 @@
 //! Whatever the input, drag stays physical and every number finite.
 
 use adapt::bayes::{
-    BayesSettings, BayesState, GuardReason, InitialError, ObservationUpdate, SettingValues,
+    BayesSettings, BayesState, DragTables, GuardReason, InitialError, ObservationUpdate,
+    SettingValues,
 };
 use flight::{Observation, ObservationVariance, Timestamp};
 use lut::Table;
@@ -133,6 +134,7 @@ fn the_guard_acts_and_reports() {
     }
     let posterior = state.solve().unwrap();
     assert_physical(posterior.drag(), &initial);
+    assert_eq!(DragTables::new(&state).unwrap().drag(&state).unwrap(), *posterior.drag());
     let guard = posterior.guard().unwrap();
     assert!(guard.nodes.iter().any(|node| node.reason == GuardReason::NotRising));
     for node in &guard.nodes {
