@@ -1,5 +1,6 @@
 //! Drawings in three dimensions, seen from above at an angle, without perspective; nothing here is specific to aviation.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use maud::{Markup, PreEscaped, html};
@@ -36,6 +37,8 @@ pub(crate) struct Solid {
     camera: Camera,
     /// In thousandths.
     corners: Vec<[f64; 3]>,
+    /// The number of each, by its bits: a drawing has hundreds, each joined by several pieces.
+    numbers: BTreeMap<[u64; 3], usize>,
     /// Never in front of anything.
     below: String,
     pieces: Vec<(f64, String)>,
@@ -63,7 +66,8 @@ impl Solid {
     /// An empty drawing.
     pub(crate) fn new(camera: Camera) -> Self {
         let (below, texts) = (String::new(), String::new());
-        Self { camera, corners: Vec::new(), below, pieces: Vec::new(), texts }
+        let (corners, numbers) = (Vec::new(), BTreeMap::new());
+        Self { camera, corners, numbers, below, pieces: Vec::new(), texts }
     }
 
     /// Lines on the floor, behind everything.
@@ -134,9 +138,7 @@ impl Solid {
     /// The number of a corner.
     fn corner(&mut self, at: [f64; 3]) -> usize {
         let at = at.map(thousandths);
-        let known =
-            self.corners.iter().position(|corner| corner.map(f64::to_bits) == at.map(f64::to_bits));
-        known.unwrap_or_else(|| {
+        *self.numbers.entry(at.map(f64::to_bits)).or_insert_with(|| {
             self.corners.push(at);
             self.corners.len() - 1
         })
