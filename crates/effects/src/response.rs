@@ -2,7 +2,7 @@
 
 use flight::MAXIMUM_ENGINES;
 use lut::surface::{Basis, FitError, Surface, fit};
-use lut::{Outside, SmoothCell, Table};
+use lut::{Axis, Outside, SmoothCell, Table};
 use perf_model::Aircraft;
 use perf_model::tsfc::tsfc;
 use units::Mach;
@@ -182,25 +182,24 @@ fn table_value(
 ) -> Result<f64, EffectError> {
     let grid = drag_table.grid();
     let outside = |_| EffectError::OutsideTable { lift_coefficient, mach };
-    if edge == Edge::Refuse {
-        if between_nodes == BetweenNodes::Smooth {
-            let cell = SmoothCell::locate(grid, lift_coefficient, mach).map_err(outside)?;
-            return Ok(cell.value_of(drag_table));
+    let value = |lift_coefficient: f64, mach: f64| match between_nodes {
+        BetweenNodes::Straight => grid
+            .locate(lift_coefficient, mach, Outside::Error)
+            .map(|cell| drag_table.interpolate(&cell)),
+        BetweenNodes::Smooth => {
+            SmoothCell::locate(grid, lift_coefficient, mach).map(|cell| cell.value_of(drag_table))
         }
-        let cell = grid.locate(lift_coefficient, mach, Outside::Error).map_err(outside)?;
-        return Ok(drag_table.interpolate(&cell));
-    }
-    let clamped_lift = lift_coefficient.clamp(grid.x().first(), grid.x().last());
-    let clamped_mach = mach.clamp(grid.y().first(), grid.y().last());
-    let cell = grid.locate(clamped_lift, clamped_mach, Outside::Hold).map_err(outside)?;
-    let (along_lift, along_mach) = drag_table.gradient(&cell);
-    let inside = match between_nodes {
-        BetweenNodes::Straight => drag_table.interpolate(&cell),
-        BetweenNodes::Smooth => SmoothCell::locate(grid, clamped_lift, clamped_mach)
-            .map_err(outside)?
-            .value_of(drag_table),
     };
-    Ok(inside + along_lift * (lift_coefficient - clamped_lift) + along_mach * (mach - clamped_mach))
+    let held = |value: f64, axis: &Axis| value.clamp(axis.first(), axis.last());
+    let (held_lift, held_mach) = (held(lift_coefficient, grid.x()), held(mach, grid.y()));
+    let (beyond_lift, beyond_mach) = (lift_coefficient - held_lift, mach - held_mach);
+    if edge == Edge::Refuse || (beyond_lift == 0.0 && beyond_mach == 0.0) {
+        return value(lift_coefficient, mach).map_err(outside);
+    }
+    let cell = grid.locate(held_lift, held_mach, Outside::Hold).map_err(outside)?;
+    let (along_lift, along_mach) = drag_table.gradient(&cell);
+    let inside = value(held_lift, held_mach).map_err(outside)?;
+    Ok(inside + along_lift * beyond_lift + along_mach * beyond_mach)
 }
 
 /// CD0(M) and K(M) of a table.

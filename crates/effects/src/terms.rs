@@ -73,6 +73,7 @@ impl Terms {
 
     /// Size of an effect in the form that the equations need; 0 where it is not there. Effects of single engines and
     /// steps have fields of their own.
+    #[inline]
     pub(crate) const fn size(&self, id: EffectId) -> f64 {
         self.sizes[id.index()]
     }

@@ -41,6 +41,7 @@ macro_rules! effects {
             pub const ALL: &[Self] = &[$(Self::$id $((<$engine>::MIN + 1))?,)*];
 
             /// Index in [`ALL`](Self::ALL), whatever the engine.
+            #[inline] // of a constant, it is one
             #[must_use]
             pub const fn index(self) -> usize {
                 match self {

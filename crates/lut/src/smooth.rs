@@ -33,13 +33,13 @@ impl SmoothCell {
     pub fn locate(grid: &Grid, x: f64, y: f64) -> Result<Self, OutsideGrid> {
         let cell = grid.locate(x, y, Outside::Error)?;
         let (u, v) = cell.local();
-        let low = cell.nodes()[0];
-        let (row, column) = (low / grid.y().len(), low % grid.y().len());
+        let (low, columns) = (cell.nodes()[0], grid.y().len());
+        let (row, column) = (low / columns, low % columns);
         let (along_x, along_y) = (weights(grid.x(), row, u), weights(grid.y(), column, v));
         let mut found = Self { nodes: [0; NODES], weights: [0.0; NODES] };
-        for (k, (x_node, x_weight)) in along_x.into_iter().enumerate() {
-            for (l, (y_node, y_weight)) in along_y.into_iter().enumerate() {
-                found.nodes[4 * k + l] = x_node * grid.y().len() + y_node;
+        for (k, (x_node, x_weight)) in along_x.iter().enumerate() {
+            for (l, (y_node, y_weight)) in along_y.iter().enumerate() {
+                found.nodes[4 * k + l] = x_node * columns + y_node;
                 found.weights[4 * k + l] = x_weight * y_weight;
             }
         }
