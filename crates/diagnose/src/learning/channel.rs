@@ -43,7 +43,7 @@ pub(super) struct LearntChannel {
 pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<LearntChannel> {
     let mut weights = Weights::before(rows);
     // Few columns hold all others, whatever the weights: from here on they alone are looked at.
-    let reduction = reduction(&ChannelSums::new(rows, &Weights::of_one(rows)), groups.len());
+    let reduction = reduction(&ChannelSums::own(rows, &Weights::of_one(rows)), groups.len());
     let prior = prior_parts(&reduction, groups);
     let reduced = rows.only(&reduction.pivots);
     let mut dials = Dials::usual();
@@ -85,7 +85,7 @@ fn raise_scatter(
 }
 
 /// Few columns in which all others can be written.
-fn reduction(sums: &ChannelSums, width: usize) -> Pivoted {
-    let quiet = Mat::from_fn(width, width, |i, j| sums.own()[(i, j)] / (QUIET * QUIET));
+fn reduction(own: &Mat<f64>, width: usize) -> Pivoted {
+    let quiet = Mat::from_fn(width, width, |i, j| own[(i, j)] / (QUIET * QUIET));
     pivoted(&quiet, width, NEGLIGIBLE)
 }

@@ -97,7 +97,7 @@ impl<'a> Evidence<'a> {
         }
         let bits = |scales: [f64; SCALES]| scales.map(f64::to_bits);
         if self.precision.as_ref().is_none_or(|(at, ..)| bits(*at) != bits(dials.scales)) {
-            let factor = Cholesky::new(&self.prior_covariance(dials.scales))?;
+            let factor = Cholesky::in_place(self.prior_covariance(dials.scales))?;
             let size = factor.lower().nrows();
             let mut precision = Mat::identity(size, size);
             factor.solve(&mut precision);
@@ -106,14 +106,8 @@ impl<'a> Evidence<'a> {
         let ((_, gram, _), (_, prior, _)) = (self.gram.as_ref()?, self.precision.as_ref()?);
         let share = 1.0 / (dials.within * dials.within);
         let mut precision = prior.clone();
-        for column in 0..precision.ncols() {
-            let from = &gram.col_as_slice(column)[column..];
-            let into = &mut precision.col_as_slice_mut(column)[column..];
-            for (into, from) in into.iter_mut().zip(from) {
-                *into += share * from;
-            }
-        }
-        Cholesky::new(&precision)
+        add_lower(&mut precision, share, gram);
+        Cholesky::in_place(precision)
     }
 
     /// Factors are log-normal about what is usual: a few flights do not make noise vanish.
@@ -128,11 +122,11 @@ impl<'a> Evidence<'a> {
         scales.map(|(scale, deviation)| ln_log_normal(*scale, 1.0, deviation)).sum()
     }
 
-    /// Prior covariance of the columns at scales.
+    /// Lower triangle of the prior covariance of the columns at scales.
     pub(super) fn prior_covariance(&self, scales: [f64; SCALES]) -> Mat<f64> {
         let mut covariance = self.prior[0].clone();
         for (part, scale) in self.prior[1..].iter().zip(scales) {
-            covariance += faer::Scale(scale * scale) * part;
+            add_lower(&mut covariance, scale * scale, part);
         }
         covariance
     }
@@ -283,6 +277,16 @@ impl<'a> Evidence<'a> {
 fn ln_log_normal(value: f64, center: f64, ln_deviation: f64) -> f64 {
     let z = (value / center).ln() / ln_deviation;
     -0.5 * z * z
+}
+
+/// `C += share·A`, lower triangle only; A may have more rows and columns.
+fn add_lower(into: &mut Mat<f64>, share: f64, from: &Mat<f64>) {
+    for column in 0..into.ncols() {
+        let from = &from.col_as_slice(column)[column..];
+        for (into, from) in into.col_as_slice_mut(column)[column..].iter_mut().zip(from) {
+            *into += share * from;
+        }
+    }
 }
 
 /// Products of the columns with the residual: the last row of a lower triangle.

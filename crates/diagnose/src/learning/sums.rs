@@ -12,6 +12,8 @@
 //!
 //! A flight of which only a share counts, because knowledge ages, adds that share of each.
 
+use core::ops::Range;
+
 use faer::{Mat, Side};
 
 use crate::learning::outliers::Weights;
@@ -41,17 +43,9 @@ impl ChannelSums {
         let mut values = 0.0;
         for (group, range) in rows.groups.iter().enumerate() {
             let share = rows.shares[group];
-            let of_row = |row: usize| (share * weights.rows[row] / rows.variance[row]).sqrt();
-            let scale: Vec<f64> = range.clone().map(of_row).collect();
             values += share * range.len() as f64;
-            let mut white = Mat::<f64>::zeros(range.len(), size);
-            for column in 0..size {
-                let from = &rows.columns.col_as_slice(column)[range.clone()];
-                let into = white.col_as_slice_mut(column);
-                for ((into, from), scale) in into.iter_mut().zip(from).zip(&scale) {
-                    *into = from * scale;
-                }
-            }
+            let scale = scales(rows, weights, group);
+            let white = whitened(rows, range, &scale);
             own.add(&white, range.len() as f64);
             let of_group = 1.0 / (share * weights.groups[group]).sqrt();
             let loadings = Mat::from_fn(range.len(), rank, |at, r| {
@@ -72,9 +66,14 @@ impl ChannelSums {
         Self { own: own.finish().matrix, common, eigenvalues, values }
     }
 
-    /// Σ XᵀD⁻¹X of all columns, the residual last.
-    pub(super) const fn own(&self) -> &Mat<f64> {
-        &self.own
+    /// Σ XᵀD⁻¹X alone, the residual as last column.
+    pub(super) fn own(rows: &ChannelRows, weights: &Weights) -> Mat<f64> {
+        let mut own = Sum::new(rows.columns.ncols());
+        for (group, range) in rows.groups.iter().enumerate() {
+            let white = whitened(rows, range, &scales(rows, weights, group));
+            own.add(&white, range.len() as f64);
+        }
+        own.finish().matrix
     }
 
     /// Gram matrix at a ratio ρ of the noise between flights over that within, times w²; lower triangle. And Σ ln(1 + ρ²λ).
@@ -93,6 +92,26 @@ impl ChannelSums {
         subtract_gram(&mut gram, &scaled);
         (gram, ln_common)
     }
+}
+
+/// One over the standard deviation of each row of a group.
+fn scales(rows: &ChannelRows, weights: &Weights, group: usize) -> Vec<f64> {
+    let share = rows.shares[group];
+    let of_row = |row: usize| (share * weights.rows[row] / rows.variance[row]).sqrt();
+    rows.groups[group].clone().map(of_row).collect()
+}
+
+/// The rows of a group, each times its scale.
+fn whitened(rows: &ChannelRows, range: &Range<usize>, scale: &[f64]) -> Mat<f64> {
+    let mut white = Mat::<f64>::zeros(range.len(), rows.columns.ncols());
+    for column in 0..white.ncols() {
+        let from = &rows.columns.col_as_slice(column)[range.clone()];
+        let into = white.col_as_slice_mut(column);
+        for ((into, from), scale) in into.iter_mut().zip(from).zip(scale) {
+            *into = from * scale;
+        }
+    }
+    white
 }
 
 #[cfg(test)]

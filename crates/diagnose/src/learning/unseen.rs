@@ -48,7 +48,6 @@ pub(super) fn unseen(
     dials: &Dials,
 ) -> Vec<Unseen> {
     let errors = rows.left(&solved.mean);
-    let left = Mat::from_fn(errors.len(), 1, |row, _| errors[row]);
     let spread = rows.learnt_columns() * &solved.root;
     let (within, between) = (dials.within.powi(2), dials.between.powi(2));
     let groups = rows.groups.iter().enumerate();
@@ -64,16 +63,22 @@ pub(super) fn unseen(
                 let common: f64 = rows.loadings.iter().map(|u| u[a] * u[b]).sum();
                 (within * own + between * common / weights.groups[group]) / share
             });
-            let factor = Cholesky::new(&(&noise - known))?;
-            let mut solved = left.subrows(range.start, count).to_owned();
-            factor.solve(&mut solved);
-            let errors = &noise * &solved;
-            let mut turned = noise.clone();
+            let factor = Cholesky::in_place(&noise - known)?;
+            // With Q = LLᵀ and T = L⁻¹C: e = Tᵀ·L⁻¹(y − Zα), cov e − C = TᵀT − C.
+            let mut turned = Mat::from_fn(count, count + 1, |row, column| {
+                if column < count { noise[(row, column)] } else { errors[range.start + row] }
+            });
             factor.solve_lower(&mut turned);
-            let of_model = turned.transpose() * &turned - &noise;
-            let total = |matrix: &Mat<f64>| -> f64 {
-                (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).map(|at| matrix[at]).sum()
-            };
+            let (column, left) = (|k: usize| turned.col_as_slice(k), turned.col_as_slice(count));
+            let values: Vec<(f64, f64, usize)> = (0..count)
+                .map(|k| {
+                    let of_model = dot(column(k), column(k)) - noise[(k, k)];
+                    (dot(column(k), left), of_model.max(0.0), range.start + k)
+                })
+                .collect();
+            let row_sums = (0..count).map(|i| (0..count).map(|k| turned[(i, k)]).sum::<f64>());
+            let of_total = row_sums.map(|sum| sum * sum).sum::<f64>()
+                - (0..count).flat_map(|k| noise.col_as_slice(k)).sum::<f64>();
             let square = (count * count) as f64;
             let own: f64 = range.clone().map(|row| rows.variance[row]).sum();
             let common: f64 = rows
@@ -82,17 +87,19 @@ pub(super) fn unseen(
                 .map(|u| (u[range.clone()].iter().sum::<f64>() / count as f64).powi(2))
                 .sum();
             Some(Unseen {
-                mean: (0..count).map(|k| errors[(k, 0)]).sum::<f64>() / count as f64,
-                of_model: total(&of_model).max(0.0) / square,
+                mean: values.iter().map(|(error, ..)| error).sum::<f64>() / count as f64,
+                of_model: of_total.max(0.0) / square,
                 within: within * own / square,
                 between: common,
                 share,
-                values: (0..count)
-                    .map(|k| (errors[(k, 0)], of_model[(k, k)].max(0.0), range.start + k))
-                    .collect(),
+                values,
             })
         })
         .collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The factor between flights at which the mean errors of unseen flights are as large as announced, if that is more.
@@ -159,9 +166,79 @@ fn factor_of(mut distances: Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use faer::Side;
+    use faer::linalg::solvers::{DenseSolveCore, Solve};
     use statrs::distribution::ContinuousCDF;
 
     use super::*;
+
+    /// Numbers without order, from −½ to ½: the golden ratio's multiples.
+    fn number(k: usize) -> f64 {
+        (k as f64 * 0.618_033_988_749_895).fract() - 0.5
+    }
+
+    /// Learning from the other flights alone, with faer's inverses: priors of 1, covariances written out.
+    #[test]
+    fn unseen_flights_are_as_predicted_by_the_others() {
+        let (count, width) = (11, 3);
+        let rows = ChannelRows {
+            columns: Mat::from_fn(count, width + 1, |i, j| number(5 * i + 17 * j + 1)),
+            variance: (0..count).map(|i| 0.4 + 0.5 * number(i)).collect(),
+            loadings: (0..2).map(|r| (0..count).map(|i| number(3 * i + r)).collect()).collect(),
+            groups: vec![0..4, 4..5, 5..11],
+            shares: vec![0.5, 1.0, 0.8],
+        };
+        let weights = Weights {
+            rows: (0..count).map(|i| 0.7 + 0.3 * number(i + 4)).collect(),
+            groups: vec![1.0, 0.3, 0.8],
+        };
+        let dials = Dials { within: 0.7, between: 1.3, ..Dials::usual() };
+        let of = |group: usize| {
+            let range = rows.groups[group].clone();
+            let noise = Mat::from_fn(range.len(), range.len(), |i, j| {
+                let (i, j) = (range.start + i, range.start + j);
+                let own = if i == j { rows.variance[i] / weights.rows[i] } else { 0.0 };
+                let common: f64 = rows.loadings.iter().map(|u| u[i] * u[j]).sum();
+                (0.49 * own + 1.69 * common / weights.groups[group]) / rows.shares[group]
+            });
+            let part = rows.columns.subrows(range.start, range.len());
+            (part.subcols(0, width).to_owned(), part.col(width).to_owned(), noise)
+        };
+        let learnt = |left_out: Option<usize>| {
+            let (mut precision, mut right) =
+                (Mat::<f64>::identity(width, width), faer::Col::zeros(width));
+            for group in (0..3).filter(|group| Some(*group) != left_out) {
+                let (columns, values, noise) = of(group);
+                let solver = noise.llt(Side::Lower).unwrap();
+                precision += columns.transpose() * solver.solve(&columns);
+                right += columns.transpose() * solver.solve(&values);
+            }
+            let covariance = precision.llt(Side::Lower).unwrap().inverse();
+            (&covariance * right, covariance)
+        };
+        let (mean, covariance) = learnt(None);
+        let solved = Solved {
+            mean: Mat::from_fn(width, 1, |k, _| mean[k]),
+            root: Cholesky::new(&covariance).unwrap().lower().clone(),
+        };
+        let found = unseen(&rows, &weights, &solved, &dials);
+        assert_eq!(found.len(), 3);
+        for (group, found) in found.iter().enumerate() {
+            let (columns, values, _) = of(group);
+            let (mean, covariance) = learnt(Some(group));
+            let errors = values - &columns * mean;
+            let of_model = &columns * covariance * columns.transpose();
+            let size = errors.nrows();
+            let same = |one: f64, other: f64| assert!((one - other).abs() < 1e-10, "{one} {other}");
+            same(found.mean, errors.sum() / size as f64);
+            same(found.of_model, of_model.sum() / (size * size) as f64);
+            for (k, (error, variance, row)) in found.values.iter().enumerate() {
+                same(*error, errors[k]);
+                same(*variance, of_model[(k, k)]);
+                assert_eq!(*row, rows.groups[group].start + k);
+            }
+        }
+    }
 
     /// Quantiles of the half-normal distribution: `scipy.stats.halfnorm.ppf`, spaced evenly.
     #[test]

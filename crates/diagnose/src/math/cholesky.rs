@@ -1,9 +1,13 @@
 //! The Cholesky factor of a symmetric positive definite matrix, with what the search asks of it.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{
+    LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
+};
 use faer::linalg::triangular_solve::{
     solve_lower_triangular_in_place, solve_upper_triangular_in_place,
 };
-use faer::{Mat, Par, Side};
+use faer::{Auto, Mat, Par, Spec};
 
 /// Cholesky factor of a symmetric positive definite matrix.
 #[derive(Debug)]
@@ -14,9 +18,21 @@ pub(crate) struct Cholesky {
 impl Cholesky {
     /// Factors a matrix by its lower triangle; `None` where it is not positive definite.
     pub(crate) fn new(matrix: &Mat<f64>) -> Option<Self> {
-        let llt = matrix.llt(Side::Lower).ok()?;
-        let lower = llt.L().to_owned();
-        (0..lower.nrows()).all(|k| lower[(k, k)].is_finite()).then_some(Self { lower })
+        Self::in_place(matrix.clone())
+    }
+
+    /// The same of a matrix that is needed no more.
+    pub(crate) fn in_place(mut matrix: Mat<f64>) -> Option<Self> {
+        let parameters: Spec<LltParams, f64> = <LltParams as Auto<f64>>::auto().into();
+        let need = cholesky_in_place_scratch::<f64>(matrix.nrows(), Par::Seq, parameters);
+        let mut memory = MemBuffer::new(need);
+        let (stack, exact) = (MemStack::new(&mut memory), LltRegularization::default());
+        cholesky_in_place(matrix.as_mut(), exact, Par::Seq, stack, parameters).ok()?;
+        for column in 1..matrix.ncols() {
+            matrix.col_as_slice_mut(column)[..column].fill(0.0);
+        }
+        let is_finite = (0..matrix.nrows()).all(|k| matrix[(k, k)].is_finite());
+        is_finite.then_some(Self { lower: matrix })
     }
 
     /// ln of the determinant.
