@@ -227,14 +227,31 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Segment>, SegmentsTableError> {
     Ok(segments)
 }
 
-/// The names of the columns, in file order.
+/// The names of the columns, in file order, and where those of the engines are.
 struct Places {
     names: Vec<String>,
+    fuel_flow: ByEngine,
+    n2: ByEngine,
+    n1: ByEngine,
+    exhaust_gas_temperature: ByEngine,
 }
+
+/// The column of each engine.
+type ByEngine = [Option<usize>; MAXIMUM_ENGINES];
 
 impl Places {
     fn find(header: &csv::StringRecord) -> Result<Self, SegmentsTableError> {
-        let places = Self { names: header.iter().map(str::to_owned).collect() };
+        let names: Vec<String> = header.iter().map(str::to_owned).collect();
+        let by_engine = |name: fn(usize) -> String| -> ByEngine {
+            core::array::from_fn(|k| names.iter().position(|known| *known == name(k + 1)))
+        };
+        let places = Self {
+            fuel_flow: by_engine(|k| format!("fuel_flow_{k}_kg_s")),
+            n2: by_engine(|k| format!("n2_{k}_percent")),
+            n1: by_engine(|k| format!("n1_{k}_percent")),
+            exhaust_gas_temperature: by_engine(|k| format!("exhaust_gas_temperature_{k}_k")),
+            names,
+        };
         for name in ["tail", "flight", "start", "temperature_assumed", "rows"]
             .into_iter()
             .chain(REQUIRED.iter().map(|(name, _, _)| *name))
@@ -287,22 +304,25 @@ impl Row<'_> {
     }
 
     fn optional(&self, name: &str) -> Result<Option<f64>, SegmentsTableError> {
-        let Some(place) = self.places.index_of(name) else {
-            return Ok(None);
-        };
+        self.at(self.places.index_of(name))
+    }
+
+    /// The number in a column; `None` where there is no such column, or nothing in it.
+    fn at(&self, place: Option<usize>) -> Result<Option<f64>, SegmentsTableError> {
+        let Some(place) = place else { return Ok(None) };
         match self.record.get(place) {
             None | Some("") => Ok(None),
             Some(text) => match text.parse::<f64>() {
                 Ok(value) if value.is_finite() => Ok(Some(value)),
-                _ => Err(self.wrong(name, text, "a finite number")),
+                _ => Err(self.wrong(&self.places.names[place], text, "a finite number")),
             },
         }
     }
 
-    fn engines(&self, name: impl Fn(usize) -> String) -> Result<Vec<f64>, SegmentsTableError> {
+    fn engines(&self, places: &ByEngine) -> Result<Vec<f64>, SegmentsTableError> {
         let mut values = Vec::new();
-        for k in 1..=MAXIMUM_ENGINES {
-            match self.optional(&name(k))? {
+        for place in places {
+            match self.at(*place)? {
                 Some(value) => values.push(value),
                 None => break,
             }
@@ -312,11 +332,11 @@ impl Row<'_> {
 
     fn each_engine(
         &self,
-        name: impl Fn(usize) -> String,
+        places: &ByEngine,
     ) -> Result<[Option<f64>; MAXIMUM_ENGINES], SegmentsTableError> {
         let mut values = [None; MAXIMUM_ENGINES];
-        for (k, value) in values.iter_mut().enumerate() {
-            *value = self.optional(&name(k + 1))?;
+        for (value, place) in values.iter_mut().zip(places) {
+            *value = self.at(*place)?;
         }
         Ok(values)
     }
@@ -333,20 +353,19 @@ impl Row<'_> {
             vertical_speed_m_s: 0.0,
             mass_kg: 0.0,
             fuel_flow_total_kg_s: 0.0,
-            fuel_flow_engine_kg_s: self.engines(|k| format!("fuel_flow_{k}_kg_s"))?,
+            fuel_flow_engine_kg_s: self.engines(&self.places.fuel_flow)?,
             fuel_used_kg: 0.0,
             drift_deg: None,
             roll_deg: None,
             roll_squared_deg2: None,
-            n2_percent: self.engines(|k| format!("n2_{k}_percent"))?,
+            n2_percent: self.engines(&self.places.n2)?,
             latitude_deg: None,
             longitude_deg: None,
             true_heading_deg: None,
             center_of_gravity_percent_mac: None,
             total_air_temperature_k: None,
-            n1_percent: self.each_engine(|k| format!("n1_{k}_percent"))?,
-            exhaust_gas_temperature_k: self
-                .each_engine(|k| format!("exhaust_gas_temperature_{k}_k"))?,
+            n1_percent: self.each_engine(&self.places.n1)?,
+            exhaust_gas_temperature_k: self.each_engine(&self.places.exhaust_gas_temperature)?,
             fuel_quantity_kg: None,
             anti_ice: None,
         };
