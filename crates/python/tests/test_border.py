@@ -115,10 +115,15 @@ def test_a_fork_after_use(initial, segments):
 def test_ctrl_c_ends_a_call(initial):
     points = pa.table({name: pa.array(values * 8_000_000) for name, values in POINTS.items()})
     timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    # Shells start programs in the background with the signal ignored.
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        while True:  # however fast the machine is
-            initial.predict(points, threads=1)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            while True:  # however fast the machine is
+                initial.predict(points, threads=1)
+    finally:
+        signal.signal(signal.SIGINT, handler)
     assert initial.predict(POINTS).num_rows == 1
 
 
