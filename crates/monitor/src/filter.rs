@@ -42,6 +42,8 @@ pub struct ChangeFilter {
     best: Vec<(f64, usize)>,
     /// ln probability of a change before each flight, and the sum of ln probability of no change up to it.
     change: Vec<(f64, f64)>,
+    /// When the last flight was.
+    last_years: f64,
     /// Starts of the current piece that are remembered.
     starts: Vec<usize>,
     /// By flight: probability of each remembered start, given the flights up to then.
@@ -58,6 +60,7 @@ impl ChangeFilter {
             density: vec![0.0],
             best: vec![(0.0, 0)],
             change: Vec::new(),
+            last_years: f64::NEG_INFINITY,
             starts: Vec::new(),
             shares: Vec::new(),
         }
@@ -71,9 +74,10 @@ impl ChangeFilter {
     pub fn push(&mut self, flight: &FilteredFlight) {
         let index = self.change.len();
         let probability = match flight.event_before {
-            EventBefore::None => self.beliefs.change_between_flights,
+            EventBefore::None => self.beliefs.change_within(flight.years - self.last_years),
             EventBefore::Recorded => self.beliefs.change_at_event,
         };
+        self.last_years = flight.years;
         let stayed = self.change.last().map_or(0.0, |(_, stayed)| *stayed);
         // Nothing can change before the first flight: it begins a piece.
         self.change.push(if index == 0 {

@@ -8,7 +8,7 @@ use crate::filter::{ChangeFilter, EventBefore, FilteredFlight};
 use crate::levels::{Estimate, Levels};
 use crate::noise::{Noise, median};
 use crate::series::Series;
-use crate::settings::{ChangeBeliefs, DATE_INTERVAL, REPORTED_PROBABILITY};
+use crate::settings::{ABOUT_FLIGHTS, ChangeBeliefs, DATE_INTERVAL, REPORTED_PROBABILITY};
 
 /// A change that the flights show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -129,33 +129,62 @@ fn filter(
     filter
 }
 
-/// The changes of the most probable division that are more probable than not: each with the probability of all starts nearer
-/// to it than to another.
+/// Changes that are more probable than not: those of the most probable division, each with the probability of all starts nearer
+/// to it than to another; and where that division has none because no single flight stands out, those that begin within a few
+/// flights.
 fn changes(filter: &ChangeFilter) -> Vec<Change> {
-    let division = filter.best_division();
     let probabilities = filter.probabilities();
-    let mut found = Vec::new();
-    for (place, &first_flight) in division.iter().enumerate() {
-        let from =
-            place.checked_sub(1).map_or(1, |before| division[before].midpoint(first_flight) + 1);
-        let to = division
-            .get(place + 1)
-            .map_or(probabilities.len(), |after| first_flight.midpoint(*after) + 1);
-        let sum: f64 = probabilities[from..to].iter().sum();
-        if sum < REPORTED_PROBABILITY {
-            continue;
-        }
-        let (earliest, latest) = date_interval(&probabilities, from..to, first_flight);
-        found.push(Change {
-            first_flight,
-            earliest,
-            latest,
-            probability: sum.min(1.0),
-            step_percent: Estimate { value: 0.0, deviation: 0.0 },
-            event: None,
-        });
+    let division = filter.best_division();
+    let mut firsts: Vec<usize> = nearest(&division, probabilities.len())
+        .filter(|(_, near)| probabilities[near.clone()].iter().sum::<f64>() >= REPORTED_PROBABILITY)
+        .map(|(first, _)| first)
+        .collect();
+    while let Some(first) = about(&probabilities, &firsts) {
+        let place = firsts.partition_point(|other| *other < first);
+        firsts.insert(place, first);
     }
-    found
+    nearest(&firsts, probabilities.len())
+        .map(|(first_flight, near)| {
+            let sum: f64 = probabilities[near.clone()].iter().sum();
+            let (earliest, latest) = date_interval(&probabilities, near, first_flight);
+            Change {
+                first_flight,
+                earliest,
+                latest,
+                probability: sum.min(1.0),
+                step_percent: Estimate { value: 0.0, deviation: 0.0 },
+                event: None,
+            }
+        })
+        .collect()
+}
+
+/// Each of some flights in order, with the flights nearer to it than to another; the first flight of all is nobody's.
+fn nearest(firsts: &[usize], flights: usize) -> impl Iterator<Item = (usize, Range<usize>)> {
+    firsts.iter().enumerate().map(move |(place, &first)| {
+        let from = place.checked_sub(1).map_or(1, |before| firsts[before].midpoint(first) + 1);
+        let to = firsts.get(place + 1).map_or(flights, |after| first.midpoint(*after) + 1);
+        (first, from..to)
+    })
+}
+
+/// The most probable flight of the most probable [`ABOUT_FLIGHTS`] on either side of one, if a change is more probable than
+/// not to begin there; flights that near to a change that is known are its own.
+fn about(probabilities: &[f64], known: &[usize]) -> Option<usize> {
+    let flights = probabilities.len();
+    let window = |centre: usize| {
+        centre.saturating_sub(ABOUT_FLIGHTS).max(1)..(centre + ABOUT_FLIGHTS + 1).min(flights)
+    };
+    let mut free = probabilities.to_vec();
+    for &first in known {
+        free[window(first)].fill(0.0);
+    }
+    let sums = (1..flights).map(|centre| (centre, free[window(centre)].iter().sum::<f64>()));
+    let (centre, sum) = sums.max_by(|one, other| one.1.total_cmp(&other.1))?;
+    if sum < REPORTED_PROBABILITY {
+        return None;
+    }
+    window(centre).max_by(|one, other| free[*one].total_cmp(&free[*other]))
 }
 
 /// First and last flight of the interval that is grown from the most probable flight, always to the side that is more
@@ -214,5 +243,39 @@ fn effect(event: usize, at_flight: &[usize], measured: &Levels) -> EventEffect {
         first_flight,
         effect_percent: place.and_then(|place| measured.step_percent(place)),
         together_with,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: three neighbours of 0.2 each are one change, whose most probable flight is told; the same three 20 flights
+    /// apart are none; and nothing is found about a change that is known.
+    #[test]
+    fn a_change_whose_date_is_not_sharp() {
+        let with = |places: [usize; 3]| {
+            let mut probabilities = vec![0.0; 60];
+            for (place, probability) in places.into_iter().zip([0.2, 0.21, 0.2]) {
+                probabilities[place] = probability;
+            }
+            probabilities
+        };
+        assert_eq!(about(&with([30, 31, 32]), &[]), Some(31));
+        assert_eq!(about(&with([24, 31, 38]), &[]), Some(31));
+        assert_eq!(about(&with([11, 31, 51]), &[]), None);
+        assert_eq!(about(&with([30, 31, 32]), &[35]), None);
+        assert_eq!(about(&with([30, 31, 32]), &[45]), Some(31));
+        // The first flight begins a piece with probability 1 and is no change.
+        assert_eq!(about(&[1.0, 0.1, 0.1], &[]), None);
+        assert_eq!(about(&[1.0], &[]), None);
+    }
+
+    /// By hand: between changes at 10 and 20 the border is 15.
+    #[test]
+    fn flights_belong_to_the_nearest_change() {
+        let of: Vec<_> = nearest(&[10, 20], 60).collect();
+        assert_eq!(of, [(10, 1..16), (20, 16..60)]);
+        assert_eq!(nearest(&[], 60).count(), 0);
     }
 }

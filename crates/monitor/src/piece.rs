@@ -51,19 +51,26 @@ impl Piece {
     /// Natural logarithm of the density of a piece's deviations, less Σ ½ ln(w/2π), which no division into pieces changes.
     ///
     /// ```text
-    /// −½ [Syy + ln(1 + s²W) + ȳ²W/(1 + s²W) + ln(1 + o²Sxx) − o²Sxy²/(1 + o²Sxx)]             [monitoring.6]
+    /// ln ½ Σ_o exp −½ [Syy + ln(1 + s²W) + ȳ²W/(1 + s²W) + ln(1 + o²Sxx) − o²Sxy²/(1 + o²Sxx)] [monitoring.6]
     /// ```
     ///
-    /// The line's level at the piece's mean date is normal about 0 with deviation s, its slope about 0 with deviation o; both
-    /// are integrated out, which charges each piece for its two parameters.
+    /// The line's level at the piece's mean date is normal about 0 with deviation s, its slope about 0 with one of two
+    /// deviations o; both are integrated out, which charges each piece for its two parameters.
     pub(crate) fn log_evidence(&self, beliefs: &ChangeBeliefs) -> f64 {
-        let level = beliefs.level_deviation_percent.powi(2);
-        let slope = beliefs.slope_deviation_percent_per_year.powi(2);
-        let of_level = 1.0 + level * self.weight;
-        let of_slope = 1.0 + slope * self.sxx;
-        let square = self.syy + self.mean_y * self.mean_y * self.weight / of_level
-            - slope * self.sxy * self.sxy / of_slope;
-        -0.5 * (square + (of_level * of_slope).ln())
+        let of_level = 1.0 + beliefs.level_deviation_percent.powi(2) * self.weight;
+        let square = self.syy + self.mean_y * self.mean_y * self.weight / of_level;
+        let by_slope = |deviation: f64| {
+            let slope = deviation * deviation;
+            let of_slope = 1.0 + slope * self.sxx;
+            (slope * self.sxy * self.sxy / of_slope, (of_level * of_slope).sqrt())
+        };
+        let (gain, volume) = by_slope(beliefs.slope_deviation_percent_per_year);
+        let (small_gain, small_volume) = by_slope(beliefs.small_slope_deviation_percent_per_year);
+        // The larger gain stands outside, so that no exponential is too large.
+        let most = gain.max(small_gain);
+        let both =
+            (0.5 * (gain - most)).exp() / volume + (0.5 * (small_gain - most)).exp() / small_volume;
+        -0.5 * (square - most) + (0.5 * both).ln()
     }
 }
 
@@ -73,7 +80,7 @@ mod tests {
 
     use super::*;
 
-    /// Oracle: the density of a multivariate normal with covariance D + s²·11ᵀ + o²·xxᵀ, by dense Cholesky.
+    /// Oracle: the mean of two multivariate normal densities with covariance D + s²·11ᵀ + o²·xxᵀ, by dense Cholesky.
     #[test]
     fn evidence_is_the_dense_normal_density() {
         let beliefs = ChangeBeliefs::of_2026();
@@ -86,18 +93,23 @@ mod tests {
             sums.push(x[k], y[k], w[k]);
         }
         let piece = sums.piece(1, 6);
-        let mean = piece.mean_x;
-        let covariance = DMatrix::from_fn(5, 5, |i, j| {
-            beliefs.level_deviation_percent.powi(2)
-                + beliefs.slope_deviation_percent_per_year.powi(2) * (x[i] - mean) * (x[j] - mean)
-                + if i == j { 1.0 / w[i] } else { 0.0 }
-        });
-        let cholesky = covariance.cholesky().unwrap();
         let y = DVector::from_row_slice(&y);
-        let square = y.dot(&cholesky.solve(&y));
-        let log_determinant = 2.0 * cholesky.l().diagonal().map(f64::ln).sum();
-        let left_out: f64 = w.iter().map(|w| w.ln()).sum();
-        let dense = -0.5 * (square + log_determinant + left_out);
+        let log_density = |slope: f64| {
+            let covariance = DMatrix::from_fn(5, 5, |i, j| {
+                beliefs.level_deviation_percent.powi(2)
+                    + slope.powi(2) * (x[i] - piece.mean_x) * (x[j] - piece.mean_x)
+                    + if i == j { 1.0 / w[i] } else { 0.0 }
+            });
+            let cholesky = covariance.cholesky().unwrap();
+            let square = y.dot(&cholesky.solve(&y));
+            let log_determinant = 2.0 * cholesky.l().diagonal().map(f64::ln).sum();
+            let left_out: f64 = w.iter().map(|w| w.ln()).sum();
+            -0.5 * (square + log_determinant + left_out)
+        };
+        let ages = log_density(beliefs.slope_deviation_percent_per_year);
+        let hardly = log_density(beliefs.small_slope_deviation_percent_per_year);
+        assert!((ages - hardly).abs() > 0.1, "the two slopes are told apart");
+        let dense = (0.5 * (ages.exp() + hardly.exp())).ln();
         assert!((piece.log_evidence(&beliefs) - dense).abs() < 1e-10);
     }
 }

@@ -7,12 +7,16 @@ pub struct ChangeBeliefs {
     /// Standard deviation of the level between two changes, about the series' middle, %. A typical step (wash, engine
     /// change, recalibration) is 1.5 %.
     pub level_deviation_percent: f64,
-    /// Standard deviation of the slope, % a year: airframe ageing of 1.2 and engine ageing of 0.8 % a year, added in square.
+    /// Standard deviation of the slope of a tail that ages as fast as the effects of ageing state as typical, % a year:
+    /// airframe ageing of 1.2 and engine ageing of 0.8 % a year, added in square.
     pub slope_deviation_percent_per_year: f64,
-    /// Probability that something changes between two flights: about one change a year of an aircraft that flies one
-    /// recorded leg a day.
-    pub change_between_flights: f64,
-    /// The same where an event (wash, engine change) is recorded: most are meant to change something, not all do.
+    /// The same of a tail that hardly ages: between two changes, one is as likely as the other.
+    pub small_slope_deviation_percent_per_year: f64,
+    /// How often something changes that nobody recorded (engine, box, probe, load sheet), a year: however many flights there
+    /// are, aircraft change with time.
+    pub changes_per_year: f64,
+    /// Probability that something changes where an event (wash, engine change) is recorded: most are meant to change
+    /// something, not all do. Between two flights without an event it is never more likely, however long the aircraft stood.
     pub change_at_event: f64,
 }
 
@@ -23,21 +27,42 @@ impl ChangeBeliefs {
         Self {
             level_deviation_percent: 1.5,
             slope_deviation_percent_per_year: 1.5,
-            change_between_flights: 1.0 / 300.0,
+            small_slope_deviation_percent_per_year: 0.3,
+            changes_per_year: 1.0,
             change_at_event: 0.5,
         }
     }
+
+    /// Probability that something changes within a time between two flights where no event is recorded.
+    ///
+    /// ```text
+    /// p = min(1 − exp(−r·Δt), p at an event)                                                   [monitoring.17]
+    /// ```
+    ///
+    /// Flights at the same instant have a minute between them.
+    #[must_use]
+    pub fn change_within(&self, years: f64) -> f64 {
+        let apart = years.max(MINUTE_YEARS);
+        (-(-self.changes_per_year * apart).exp_m1()).min(self.change_at_event)
+    }
 }
+
+/// A minute in years of 365.25 days.
+const MINUTE_YEARS: f64 = 1.0 / (365.25 * 24.0 * 60.0);
 
 /// A change is reported where it is more probable than not.
 pub const REPORTED_PROBABILITY: f64 = 0.5;
+
+/// Flights on either side within which the probability of one change is summed up where no single flight stands out: two
+/// weeks of an aircraft that flies one recorded leg a day.
+pub const ABOUT_FLIGHTS: usize = 7;
 
 /// Share of the probability that the interval of a change's date holds.
 pub const DATE_INTERVAL: f64 = 0.95;
 
 /// Starts of the current piece that are remembered from flight to flight, the most probable ones: the cost of a flight is
 /// this many evidences, however long the history.
-pub const MOST_STARTS: usize = 200;
+pub const MOST_STARTS: usize = 300;
 
 /// A start of the current piece that is less probable than this is forgotten. A change of one standard deviation of a flight
 /// gains a factor of e^0.5 with each flight: what is forgotten would have needed 40 flights to become likely.
@@ -59,9 +84,10 @@ pub const BETWEEN_PRIOR_COUNT: f64 = 5.0;
 pub const FEWEST_FLIGHTS_OF_A_CORRELATION: usize = 30;
 /// Largest correlation that is believed: beyond, a wandering level and a noise that is correlated are the same thing.
 pub const LARGEST_CORRELATION: f64 = 0.8;
-/// The correlation used is the estimate less one standard error, which is about this over √n: a white series must not be
-/// taken for a correlated one half of the time.
-pub const CORRELATION_ERROR: f64 = 1.2;
+/// Standard error of the estimated correlation of a white series, over √n, by Monte Carlo (`noise` has the test).
+pub const CORRELATION_ERROR: f64 = 1.46;
+/// Standard errors below which a correlation is not believed: beyond the 95 % interval of none.
+pub const CORRELATION_SEEN: f64 = 2.0;
 
 /// Standard deviations beyond which a difference counts as no larger in the robust scale (Huber 1964, proposal 2, with
 /// 2.5).

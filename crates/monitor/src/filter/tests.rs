@@ -29,7 +29,7 @@ fn all_divisions(
                 let change = if event == Some(flight) {
                     beliefs.change_at_event
                 } else {
-                    beliefs.change_between_flights
+                    beliefs.change_within(0.01)
                 };
                 if bits >> (flight - 1) & 1 == 1 {
                     log += change.ln();
@@ -50,7 +50,7 @@ fn all_divisions(
 /// Oracle: the sum over all 2¹¹ divisions of a dozen flights, one by one.
 #[test]
 fn density_probabilities_and_best_division_by_brute_force() {
-    let beliefs = ChangeBeliefs { change_between_flights: 0.1, ..ChangeBeliefs::of_2026() };
+    let beliefs = ChangeBeliefs { changes_per_year: 10.5, ..ChangeBeliefs::of_2026() };
     let y = [0.1, -0.4, 0.3, 0.0, 1.6, 1.1, 1.9, 1.4, 0.2, -0.3, 0.4, 0.1];
     for event in [None, Some(8)] {
         let filter = filtered(beliefs, &y, event);
@@ -85,13 +85,14 @@ fn forgetting_does_not_matter() {
     let y: Vec<f64> = (0..600).map(|k| if k < 350 { noise() } else { 0.8 + noise() }).collect();
     let filter = filtered(beliefs, &y, None);
     let mut sums = RunningSums::new();
-    let stay = (1.0 - beliefs.change_between_flights).ln();
+    let change = beliefs.change_within(0.01);
+    let stay = (1.0 - change).ln();
     let mut density = vec![0.0_f64];
     let mut shares: Vec<Vec<f64>> = Vec::new();
     for (index, value) in y.iter().enumerate() {
         sums.push(0.01 * index as f64, *value, 4.0);
         let summand = |start: usize| {
-            let change = if start > 0 { beliefs.change_between_flights.ln() } else { 0.0 };
+            let change = if start > 0 { change.ln() } else { 0.0 };
             density[start]
                 + change
                 + stay * (index - start) as f64
@@ -111,8 +112,24 @@ fn forgetting_does_not_matter() {
         }
     }
     for (flight, probability) in filter.probabilities().iter().enumerate() {
-        assert!((probability - exact[flight]).abs() < 1e-3, "flight {flight}");
+        assert!(
+            (probability - exact[flight]).abs() < 1e-3,
+            "flight {flight}: {probability} {}",
+            exact[flight]
+        );
     }
     assert_eq!(filter.best_division(), [350]);
     assert!(filter.starts.len() <= MOST_STARTS);
+}
+
+/// By hand: a year of one change a year, 1 − 1/e; a stand of ten years is no more than an event; the same instant is possible.
+#[test]
+fn changes_come_with_time() {
+    let beliefs = ChangeBeliefs::of_2026();
+    let a_day = beliefs.change_within(1.0 / 365.25);
+    assert!((a_day - 0.002_734_098).abs() < 1e-8, "{a_day}");
+    assert!((beliefs.change_within(0.5) - 0.393_469_340).abs() < 1e-8);
+    assert!((beliefs.change_within(10.0) - 0.5).abs() < 1e-15);
+    let same = beliefs.change_within(0.0);
+    assert!(0.0 < same && same < 1e-5, "{same}");
 }
