@@ -148,6 +148,23 @@ fn quiet_tails_are_silent_or_not() {
     assert_eq!((score("false").reached.count, score("false").goal), (5, None));
 }
 
+/// Gravity by latitude acts on all tails, planted or not: to find it is neither right nor false; on one tail alone it is false.
+#[test]
+fn what_the_earth_does_is_no_false_finding() {
+    let (mut found, truth) = fleet();
+    let class = [EffectId::WaveDrag, EffectId::LocalGravity];
+    found.diagnosis.findings.push(finding(None, &class, &[FleetLevel::Type]));
+    found.diagnosis.findings.push(finding(Some(1), &class, &[FleetLevel::Tail]));
+    let result = found.score(&truth, "abc");
+    let last: Vec<(bool, bool)> =
+        result.findings[5..].iter().map(|one| (one.right, one.of_the_earth)).collect();
+    assert_eq!(last, [(false, true), (false, false)]);
+    let plan = TrialPlan::from_ron("(seed: 1, fleets: [(repeats: 1)])").unwrap();
+    let groups = FleetTrials::new(&plan, vec![result], Vec::new()).groups;
+    let score = groups[0].scores.iter().find(|score| score.name == "false").unwrap();
+    assert_eq!((score.reached.count, score.reached.of), (2, 5));
+}
+
 #[test]
 fn a_change_four_flights_away_is_another() {
     let (mut found, truth) = fleet();

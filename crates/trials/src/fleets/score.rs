@@ -88,6 +88,10 @@ pub struct JudgedFinding {
     pub right: bool,
     /// Whether a step was planted there, which a fleet's diagnosis does not look for: neither right nor false.
     pub beside_a_step: bool,
+    /// Whether its class holds the Earth's gravity or rotation, which act on all tails and which the model lacks, though
+    /// nobody planted them: neither right nor false.
+    #[serde(default)]
+    pub of_the_earth: bool,
 }
 
 /// A step and what was found of it.
@@ -220,6 +224,9 @@ impl FoundFleet {
             right,
             beside_a_step: tail.is_some()
                 && steps.iter().any(|planted| planted.tail.as_deref() == tail),
+            of_the_earth: !right
+                && tail.is_none()
+                && found.class.iter().any(|effect| effect.is_known()),
         }
     }
 
@@ -280,8 +287,11 @@ fn scores(own: &[&FleetResult]) -> Vec<FleetScore> {
     let stated_right = Share::new(right, right + of_level(LevelFound::Wrong));
     let open = Share::new(of_level(LevelFound::Open), all.len());
     let named = Share::new(all.iter().filter(|found| found.named).count(), all.len());
-    let findings: Vec<&JudgedFinding> =
-        own.iter().flat_map(|fleet| &fleet.findings).filter(|one| !one.beside_a_step).collect();
+    let findings: Vec<&JudgedFinding> = own
+        .iter()
+        .flat_map(|fleet| &fleet.findings)
+        .filter(|one| !one.beside_a_step && !one.of_the_earth)
+        .collect();
     let steps: Vec<&StepFound> = own.iter().flat_map(|fleet| &fleet.steps).collect();
     let wrong = Share::new(findings.iter().filter(|one| !one.right).count(), findings.len());
     let of_all = |of: fn(&FleetResult) -> usize| own.iter().map(|fleet| of(fleet)).sum();
