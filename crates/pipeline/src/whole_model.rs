@@ -87,10 +87,16 @@ pub fn error_percent_of(
     model: &ExtendedModel,
     segment: &Segment,
 ) -> Option<f64> {
+    ln_gap_of(whole, model, segment).map(error_percent)
+}
+
+/// ln of recorded over predicted fuel flow of a segment, without an interval: to the same bits as [`SegmentHeld`] at a fraction
+/// of its cost; `None` outside its table or a domain.
+pub fn ln_gap_of(whole: &WholeModel<'_>, model: &ExtendedModel, segment: &Segment) -> Option<f64> {
     let predicted = whole.ln_fuel_flow_of_segment(segment).ok()?;
     let corrected = model.corrected_means(&segment.means).ok()?;
     let gap = corrected.fuel_flow_total_kg_s.ln() - predicted;
-    gap.is_finite().then(|| error_percent(gap))
+    gap.is_finite().then_some(gap)
 }
 
 /// Of ln(recorded) − ln(predicted).

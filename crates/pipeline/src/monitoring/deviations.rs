@@ -7,7 +7,7 @@ use monitor::FlightDeviation;
 use crate::evaluation::evaluate;
 use crate::learning::{self, FlightToLearn, LawChoice, LearningError};
 use crate::model_file::{LawState, LedgerEntry, ModelFile};
-use crate::whole_model::{Predicts, SegmentHeld};
+use crate::whole_model::{Predicts, ln_gap_of};
 
 /// Whether the model is rebuilt flight by flight, which takes a solve per flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,8 +136,8 @@ fn deviation_percent(recorded_kg_s: f64, predicted_kg_s: f64) -> Option<f64> {
 /// 100·ln(recorded/predicted) by everything that the model has learnt; `None` outside its table.
 fn learnt_deviations_percent(model: &ModelFile, segments: &[Segment]) -> Vec<Option<f64>> {
     if let Some(whole) = model.whole(Predicts::WholeModel) {
-        let held = |segment| SegmentHeld::new(&whole, &model.initial, segment);
-        return segments.iter().map(|segment| held(segment).map(|held| 100.0 * held.gap)).collect();
+        let gap = |segment| ln_gap_of(&whole, &model.initial, segment);
+        return segments.iter().map(|segment| gap(segment).map(|gap| 100.0 * gap)).collect();
     }
     let learnt = evaluate(&model.initial, model.drag_coefficient(), segments);
     let recorded = segments.iter().map(|segment| segment.means.fuel_flow_total_kg_s);
