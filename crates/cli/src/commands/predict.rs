@@ -120,7 +120,10 @@ fn predict_numbers(
     let Some(points) = table.level_columns(|column| Some(Cow::Borrowed(&input[column].1[..])))
     else {
         for row in 0..input[0].1.len() {
-            let cell = |column: usize| PointCell::Number(input[column].1[row]);
+            let cell = |column: usize| match input[column].1[row] {
+                value if value.is_nan() => PointCell::Missing,
+                value => PointCell::Number(value),
+            };
             table.point(row as u64 + 2, cell).map_err(|error| bad(&error))?;
         }
         return Ok(None);

@@ -33,6 +33,11 @@ impl Excerpt {
         }
         let file = std::fs::File::options().read(true).open(path).ok()?;
         let mut reader = BufReader::new(file.take(MOST_BYTES));
+        // Tables of other kinds count rows as lines.
+        let beginning = reader.fill_buf().ok()?;
+        if beginning.starts_with(b"PAR1") || beginning.starts_with(b"ARROW1") {
+            return None;
+        }
         let mut bytes = Vec::new();
         for _ in 0..line {
             bytes.clear();
@@ -81,10 +86,17 @@ fn one(letter: char) -> char {
 }
 
 /// What is underlined: the name that the reason gives where the line has it, the occurrence nearest to the column; else the
-/// word at the column; else the whole line.
+/// field of a table, or the word at the column; else the whole line.
 fn place(letters: &[char], column: Option<usize>, reason: &str) -> (usize, usize) {
-    if let Some(found) = names_in(reason).find_map(|name| occurrence(letters, name, column)) {
+    // "column 4 (mach)" is the fourth field, "column 4" the fourth character.
+    let is_field = |column: &usize| reason.contains(&format!("column {column} ("));
+    let field = column.filter(is_field).and_then(|number| field(letters, number));
+    let near = field.map(|(first, _)| first + 1).or(column);
+    if let Some(found) = names_in(reason).find_map(|name| occurrence(letters, name, near)) {
         return found;
+    }
+    if let Some(field) = field {
+        return field;
     }
     let ends = |letter: &char| letter.is_whitespace() || matches!(letter, ',' | ';' | ')' | ':');
     if let Some(column) = column {
@@ -94,6 +106,14 @@ fn place(letters: &[char], column: Option<usize>, reason: &str) -> (usize, usize
     }
     let first = letters.iter().position(|letter| !letter.is_whitespace()).unwrap_or(0);
     (first, letters.len() - first)
+}
+
+/// A field of a line of a table: first character and number of characters, one for an empty field.
+fn field(letters: &[char], number: usize) -> Option<(usize, usize)> {
+    let separator = [';', '\t', ','].into_iter().find(|letter| letters.contains(letter))?;
+    let mut fields = letters.split(|letter| *letter == separator);
+    let before: usize = fields.by_ref().take(number.checked_sub(1)?).map(|of| of.len() + 1).sum();
+    fields.next().map(|of| (before, of.len().max(1)))
 }
 
 /// Names that a reason quotes or has in parentheses; what was found comes before what is expected.
@@ -173,6 +193,10 @@ mod tests {
             drawn("a,mahc,b", Some(2), "line 1, column 2 (mahc): unknown, expected one of mach"),
             "  12 │ a,mahc,b\n     │   ^^^^\n"
         );
+        let nothing = "line 12, column 3 (mach): found \"\", expected a number";
+        assert_eq!(drawn("680,390,,4", Some(3), nothing), "  12 │ 680,390,,4\n     │         ^\n");
+        let four = "line 12, column 4 (date): found \"4\", expected a date";
+        assert_eq!(drawn("4;4;0,4;4", Some(4), four), "  12 │ 4;4;0,4;4\n     │         ^\n");
         assert_eq!(drawn("\ta\u{1b}[2Jb", Some(2), "").lines().next(), Some("  12 │  a [2Jb"));
         // Of a long line the part about the place is shown.
         let long = format!("{} here {}", "x".repeat(200), "y".repeat(200));

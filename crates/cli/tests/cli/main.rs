@@ -26,6 +26,7 @@ mod json_schema;
 mod monitor;
 mod optimum;
 mod pages;
+mod parquet_points;
 mod points;
 mod project;
 mod recordings;
