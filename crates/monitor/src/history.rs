@@ -133,30 +133,40 @@ fn filter(
 /// to it than to another; and where that division has none because no single flight stands out, those that begin within a few
 /// flights.
 fn changes(filter: &ChangeFilter) -> Vec<Change> {
-    let probabilities = filter.probabilities();
-    let division = filter.best_division();
-    let mut firsts: Vec<usize> = nearest(&division, probabilities.len())
-        .filter(|(_, near)| probabilities[near.clone()].iter().sum::<f64>() >= REPORTED_PROBABILITY)
-        .map(|(first, _)| first)
-        .collect();
-    while let Some(first) = about(&probabilities, &firsts) {
-        let place = firsts.partition_point(|other| *other < first);
-        firsts.insert(place, first);
+    more_probable_than_not(&filter.probabilities(), &filter.best_division())
+}
+
+fn more_probable_than_not(probabilities: &[f64], division: &[usize]) -> Vec<Change> {
+    let reported = |firsts: &[usize]| -> Vec<Change> {
+        nearest(firsts, probabilities.len())
+            .map(|(first, near)| change(probabilities, first, near))
+            .filter(|change| change.probability >= REPORTED_PROBABILITY)
+            .collect()
+    };
+    let mut known = reported(division);
+    while let Some(first) = about(probabilities, &known) {
+        let mut firsts: Vec<usize> = known.iter().map(|change| change.first_flight).collect();
+        firsts.insert(firsts.partition_point(|other| *other < first), first);
+        let more = reported(&firsts);
+        if more.len() <= known.len() {
+            break;
+        }
+        known = more;
     }
-    nearest(&firsts, probabilities.len())
-        .map(|(first_flight, near)| {
-            let sum: f64 = probabilities[near.clone()].iter().sum();
-            let (earliest, latest) = date_interval(&probabilities, near, first_flight);
-            Change {
-                first_flight,
-                earliest,
-                latest,
-                probability: sum.min(1.0),
-                step_percent: Estimate { value: 0.0, deviation: 0.0 },
-                event: None,
-            }
-        })
-        .collect()
+    known
+}
+
+fn change(probabilities: &[f64], first_flight: usize, near: Range<usize>) -> Change {
+    let sum: f64 = probabilities[near.clone()].iter().sum();
+    let (earliest, latest) = date_interval(probabilities, near, first_flight);
+    Change {
+        first_flight,
+        earliest,
+        latest,
+        probability: sum.min(1.0),
+        step_percent: Estimate { value: 0.0, deviation: 0.0 },
+        event: None,
+    }
 }
 
 /// Each of some flights in order, with the flights nearer to it than to another; the first flight of all is nobody's.
@@ -169,22 +179,24 @@ fn nearest(firsts: &[usize], flights: usize) -> impl Iterator<Item = (usize, Ran
 }
 
 /// The most probable flight of the most probable [`ABOUT_FLIGHTS`] on either side of one, if a change is more probable than
-/// not to begin there; flights that near to a change that is known are its own.
-fn about(probabilities: &[f64], known: &[usize]) -> Option<usize> {
+/// not to begin there. Flights that near to a change that is known, and those that its date may be, are its own.
+fn about(probabilities: &[f64], known: &[Change]) -> Option<usize> {
     let flights = probabilities.len();
-    let window = |centre: usize| {
-        centre.saturating_sub(ABOUT_FLIGHTS).max(1)..(centre + ABOUT_FLIGHTS + 1).min(flights)
+    let window = |first: usize, last: usize| {
+        first.saturating_sub(ABOUT_FLIGHTS).max(1)..(last + ABOUT_FLIGHTS + 1).min(flights)
     };
     let mut free = probabilities.to_vec();
-    for &first in known {
-        free[window(first)].fill(0.0);
+    for change in known {
+        free[window(change.first_flight, change.first_flight)].fill(0.0);
+        free[change.earliest..=change.latest].fill(0.0);
     }
-    let sums = (1..flights).map(|centre| (centre, free[window(centre)].iter().sum::<f64>()));
+    let sums =
+        (1..flights).map(|centre| (centre, free[window(centre, centre)].iter().sum::<f64>()));
     let (centre, sum) = sums.max_by(|one, other| one.1.total_cmp(&other.1))?;
     if sum < REPORTED_PROBABILITY {
         return None;
     }
-    window(centre).max_by(|one, other| free[*one].total_cmp(&free[*other]))
+    window(centre, centre).max_by(|one, other| free[*one].total_cmp(&free[*other]))
 }
 
 /// First and last flight of the interval that is grown from the most probable flight, always to the side that is more
@@ -250,25 +262,60 @@ fn effect(event: usize, at_flight: &[usize], measured: &Levels) -> EventEffect {
 mod tests {
     use super::*;
 
+    fn with(flights: usize, places: &[(usize, f64)]) -> Vec<f64> {
+        let mut probabilities = vec![0.0; flights];
+        for (place, probability) in places {
+            probabilities[*place] = *probability;
+        }
+        probabilities
+    }
+
+    fn found(probabilities: &[f64], division: &[usize]) -> Vec<(usize, f64)> {
+        let all = more_probable_than_not(probabilities, division);
+        all.iter().map(|change| (change.first_flight, change.probability)).collect()
+    }
+
     /// By hand: three neighbours of 0.2 each are one change, whose most probable flight is told; the same three 20 flights
-    /// apart are none; and nothing is found about a change that is known.
+    /// apart are none. The first flight begins a piece with probability 1 and is no change.
     #[test]
     fn a_change_whose_date_is_not_sharp() {
-        let with = |places: [usize; 3]| {
-            let mut probabilities = vec![0.0; 60];
-            for (place, probability) in places.into_iter().zip([0.2, 0.21, 0.2]) {
-                probabilities[place] = probability;
-            }
-            probabilities
+        let three =
+            |places: [usize; 3]| with(60, &[(places[0], 0.2), (places[1], 0.21), (places[2], 0.2)]);
+        let firsts = |probabilities: &[f64]| -> Vec<usize> {
+            found(probabilities, &[]).into_iter().map(|(first, _)| first).collect()
         };
-        assert_eq!(about(&with([30, 31, 32]), &[]), Some(31));
-        assert_eq!(about(&with([24, 31, 38]), &[]), Some(31));
-        assert_eq!(about(&with([11, 31, 51]), &[]), None);
-        assert_eq!(about(&with([30, 31, 32]), &[35]), None);
-        assert_eq!(about(&with([30, 31, 32]), &[45]), Some(31));
-        // The first flight begins a piece with probability 1 and is no change.
-        assert_eq!(about(&[1.0, 0.1, 0.1], &[]), None);
-        assert_eq!(about(&[1.0], &[]), None);
+        assert_eq!(firsts(&three([30, 31, 32])), [31]);
+        assert_eq!(firsts(&three([24, 31, 38])), [31]);
+        assert_eq!(firsts(&three([11, 31, 51])), []);
+        assert_eq!(firsts(&[1.0, 0.1, 0.1]), []);
+        assert_eq!(firsts(&[1.0]), []);
+    }
+
+    /// What one change leaves over is not counted for another: by hand, 0.4 at flight 100 and 0.55 on the fifteen from 108 are
+    /// one change, and so are twenty flights of 0.05 each.
+    #[test]
+    fn one_change_is_reported_once() {
+        let mut probabilities = with(200, &[(100, 0.4)]);
+        probabilities[108..123].fill(0.55 / 15.0);
+        let one = found(&probabilities, &[100]);
+        assert_eq!(one.len(), 1, "{one:?}");
+        assert_eq!(one[0].0, 100);
+        assert!((one[0].1 - 0.95).abs() < 1e-12);
+        let mut even = vec![0.0; 200];
+        even[90..110].fill(0.05);
+        let one = found(&even, &[]);
+        assert_eq!(one.len(), 1, "{one:?}");
+        assert!((one[0].1 - 1.0).abs() < 1e-12);
+    }
+
+    /// By hand: a sharp change at 50, and 0.6 about flight 120 of which the division knows nothing.
+    #[test]
+    fn a_blurred_change_beside_a_sharp_one_is_another() {
+        let probabilities = with(200, &[(50, 1.0), (119, 0.2), (120, 0.21), (123, 0.19)]);
+        let both = found(&probabilities, &[50]);
+        assert_eq!(both.iter().map(|(first, _)| *first).collect::<Vec<_>>(), [50, 120]);
+        assert!((both[1].1 - 0.6).abs() < 1e-12);
+        assert_eq!(found(&probabilities[..100], &[50]).len(), 1);
     }
 
     /// By hand: between changes at 10 and 20 the border is 15.

@@ -30,7 +30,7 @@ impl Noise {
     /// ```text
     /// s²within = (ν₀·s₀² + Σ scatter)/(ν₀ + Σ(n − 1))                                       [monitoring.2]
     /// v₁ = ½·scale²(y(i+1) − y(i)),   s²between = v₁/(1 − ρ) − s²within·mean(1/n)             [monitoring.3]
-    /// r = v₂/v₁ − 1,   ρ = max(0, r − (2·1.46/√n)²/r);   v₂ of y(i+2) − y(i)                  [monitoring.4]
+    /// r = v₂/v₁ − 1,   ρ = max(0, r − (2·1.46/√n)²/r) ≤ 0.8;   v₂ of y(i+2) − y(i)                  [monitoring.4]
     /// ```
     ///
     /// The garrote (Breiman 1995, Technometrics 37, 373–384) leaves a large correlation nearly as it is, and keeps nothing of

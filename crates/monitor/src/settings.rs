@@ -1,6 +1,8 @@
 //! Every number that decides in this crate, once, with its reason. All of them are beliefs of before the flights were seen;
 //! none was fitted to a fleet.
 
+use crate::series::DAYS_A_YEAR;
+
 /// What is believed of a tail's changes before its flights are seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChangeBeliefs {
@@ -47,8 +49,8 @@ impl ChangeBeliefs {
     }
 }
 
-/// A minute in years of 365.25 days.
-const MINUTE_YEARS: f64 = 1.0 / (365.25 * 24.0 * 60.0);
+/// A minute in years.
+const MINUTE_YEARS: f64 = 1.0 / (DAYS_A_YEAR * 24.0 * 60.0);
 
 /// A change is reported where it is more probable than not.
 pub const REPORTED_PROBABILITY: f64 = 0.5;

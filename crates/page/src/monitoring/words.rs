@@ -47,16 +47,14 @@ pub(super) fn shared(tail: &TailDocument, fleets: &[FleetDocument]) -> Option<St
 
 /// What to do about it; never empty.
 pub(super) fn advice(tail: &TailDocument, alerts: &[AlertDocument]) -> Vec<String> {
-    let mut told: Vec<String> = tail
+    // The newest is the one that can still be looked up; the others are listed below it. Instants are written alike, in UTC;
+    // of several at one the first, that of all engines.
+    let unexplained = tail
         .changes
         .iter()
-        .filter(|change| change.event.is_none() && differs_from_zero(&change.step_percent))
-        .map(look_up)
-        .collect();
-    if told.len() > 1 {
-        // The newest is the one that can still be looked up; the others are listed below it.
-        told.drain(..told.len() - 1);
-    }
+        .filter(|change| change.event.is_none() && differs_from_zero(&change.step_percent));
+    let newest = unexplained.rev().max_by(|one, other| one.since.cmp(&other.since));
+    let mut told: Vec<String> = newest.map(look_up).into_iter().collect();
     if differs_from_zero(&tail.trend_percent_per_year) && tail.trend_percent_per_year.value > 0.0 {
         told.push(
             "Wear, or dirt on engines or airframe: cruisefit diagnose says which of them fits the flights."
@@ -182,8 +180,8 @@ mod tests {
     #[test]
     fn the_newest_change_that_no_event_explains_is_looked_up() {
         let changes = [
-            change("2026-01-05", None),
             change("2026-02-05", None),
+            change("2026-01-05", None),
             change("2026-02-20", Some("wash")),
         ];
         let tail = tail((1.2, 0.2), (0.5, 0.1), &serde_json::json!(changes));
