@@ -231,7 +231,8 @@ impl BayesState {
         }
     }
 
-    /// Solves for all nodes: the only expensive call. Of many states the tables alone cost less by [`DragTables`].
+    /// Solves for all nodes: the only expensive call. Of many states that touched few nodes the tables
+    /// alone cost less by [`DragTables`], whose systems are dense in the nodes touched.
     ///
     /// # Errors
     /// [`SolveError`] where the sums are not a positive definite information matrix (a damaged file).

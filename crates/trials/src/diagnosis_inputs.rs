@@ -12,7 +12,7 @@ use pipeline::learning::{self, FlightToLearn, LawChoice};
 use pipeline::model_file::{LawState, LedgerEntry};
 use pipeline::reduction::ReducedFlight;
 use pipeline::table_uncertainty;
-use pipeline::whole_model::SegmentHeld;
+use pipeline::whole_model::ln_gap_of;
 use segmenter::TrimCriteria;
 use simulate::Scatter;
 use simulate::study::DragError;
@@ -143,7 +143,7 @@ pub(crate) struct WholeOfType<'a> {
 impl WholeOfType<'_> {
     /// 100·ln of recorded over predicted fuel flow; `None` outside the table.
     pub(crate) fn gap_percent(&self, segment: &Segment) -> Option<f64> {
-        SegmentHeld::new(&self.whole, self.model, segment).map(|held| 100.0 * held.gap)
+        ln_gap_of(&self.whole, self.model, segment).map(|gap| 100.0 * gap)
     }
 }
 

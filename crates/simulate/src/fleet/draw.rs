@@ -6,7 +6,7 @@ use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 
 use super::life::{Life, LifeEvent, Lives, Recovery};
 use super::record::{FleetEvent, PlantedLevel};
-use super::{Chosen, FleetPlan, TailEffects, Upkeep, Work};
+use super::{Chosen, FleetPlan, TailEffects, TypeEffect, Upkeep, Work};
 use crate::effect::PlannedEffect;
 use crate::plan::{Flights, PlanError, TailPlan};
 use crate::random::{Purpose, Stream, Streams};
@@ -118,6 +118,13 @@ impl FleetPlan {
         for scatter in of_type.chain(of_tails) {
             check_within("scatter of an effect between tails", "-", scatter, 0.0, 3.0)?;
         }
+        let key = |of: &TypeEffect| (of.effect.id, of.effect.from, of.effect.until);
+        for (place, one) in self.type_effects.iter().enumerate() {
+            if self.type_effects[..place].iter().any(|other| key(other) == key(one)) {
+                let (tail, effect) = ("*".to_owned(), one.effect.id.to_string());
+                return Err(PlanError::DoubledEffect { tail, effect });
+            }
+        }
         for upkeep in self.airframe.iter().chain(&self.engines) {
             upkeep.check()?;
         }
@@ -198,7 +205,7 @@ impl Draw<'_> {
     }
 
     fn of_type(&self, tail: &str) -> Vec<DrawnEffect> {
-        let of = |(key, shared): (usize, &super::TypeEffect)| {
+        let of = |(key, shared): (usize, &TypeEffect)| {
             let drawn = self.stream(tail, key, Purpose::TypeScatter).normal();
             DrawnEffect {
                 effect: shared.effect,

@@ -67,7 +67,8 @@ impl Life {
         let mut at = self.first;
         for event in self.events.iter().filter(|event| event.at <= instant) {
             gathered = grown(gathered, years(at, event.at));
-            at = event.at;
+            // One before the first flight is part of the age that the tail has by then.
+            at = at.max(event.at);
             match event.what {
                 Recovery::Wash(share) => gathered *= 1.0 - share,
                 Recovery::Exchange(percent) => (level, gathered) = (percent, 0.0),

@@ -230,6 +230,10 @@ fn wrong_fleets_are_refused_with_the_reason() {
         (r#"tail_effects: [(effects: [], of: Tails(["X"]))],"#, "the fleet has no tail X"),
         ("tail_effects: [(effects: [], of: Drawn(4))],", "tails drawn 4"),
         (r#"type_effects: [(effect: (id: "tsfc_engine_3"))],"#, "tsfc_engine_3"),
+        (
+            r#"type_effects: [(effect: (id: "tsfc_factor")), (effect: (id: "tsfc_factor"))],"#,
+            "tail * has the effect tsfc_factor twice",
+        ),
         ("airframe: (changes_per_year: 1.0),", "changes of the airframe"),
         ("engines: (wash_every_days: (0.0, 5.0)),", "days between washes"),
         (

@@ -87,7 +87,8 @@ impl FleetPart {
             (
                 "fleets: step_share",
                 self.step_share,
-                (0.0, 1.0 - self.disturbed_share),
+                // 0.2 is more than 1 less 0.8 in binary.
+                (0.0, 1.0 - self.disturbed_share + 1e-9),
                 "0 to what disturbed_share leaves",
             ),
             ("fleets: step_percent", self.step_percent, (0.01, 10.0), "0.01 to 10"),

@@ -90,7 +90,6 @@ pub struct JudgedFinding {
     pub beside_a_step: bool,
     /// Whether its class holds the Earth's gravity or rotation, which act on all tails and which the model lacks, though
     /// nobody planted them: neither right nor false.
-    #[serde(default)]
     pub of_the_earth: bool,
 }
 
@@ -157,7 +156,7 @@ impl FoundFleet {
         let has_finding = |tail: &str| {
             self.diagnosis.findings.iter().any(|found| self.tail_of(found) == Some(tail))
         };
-        let steps: Vec<StepFound> = steps.iter().filter_map(|step| self.step_found(step)).collect();
+        let steps: Vec<StepFound> = steps.iter().map(|step| self.step_found(step)).collect();
         FleetResult {
             fleet: truth.fleet,
             truth_sha256: truth_sha256.to_owned(),
@@ -230,14 +229,17 @@ impl FoundFleet {
         }
     }
 
-    /// `None` for a tail that did not take part.
-    fn step_found(&self, planted: &Planted) -> Option<StepFound> {
-        let place = self.tails.iter().position(|tail| Some(tail) == planted.tail.as_ref())?;
-        let MonitoredTail { starts, changes } = &self.monitored[place];
+    /// On a tail that did not take part nothing is dated.
+    fn step_found(&self, planted: &Planted) -> StepFound {
+        let place = self.tails.iter().position(|tail| Some(tail) == planted.tail.as_ref());
+        let Some(MonitoredTail { starts, changes }) = place.map(|place| &self.monitored[place])
+        else {
+            return StepFound { planted: planted.clone(), flight: 0, nearest: None, dated: false };
+        };
         let flight = starts.partition_point(|start| planted.from.is_some_and(|from| *start < from));
         let nearest = changes.iter().copied().min_by_key(|change| change.abs_diff(flight));
         let dated = nearest.is_some_and(|change| change.abs_diff(flight) <= NEAR_FLIGHTS);
-        Some(StepFound { planted: planted.clone(), flight, nearest, dated })
+        StepFound { planted: planted.clone(), flight, nearest, dated }
     }
 
     fn false_changes(&self, steps: &[StepFound]) -> Vec<FoundChange> {
