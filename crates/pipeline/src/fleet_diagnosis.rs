@@ -21,7 +21,7 @@ mod text;
 
 pub use document::{FleetEffectRecord, FleetFindingRecord, FleetRecord, FleetTailRecord};
 pub use tables::fleet_table;
-pub use text::{fleet_text, size_words};
+pub use text::{TEACH_IT_FIRST, fleet_text, nothing_shared, size_words};
 
 /// The diagnosis of all tails of a type.
 #[derive(Clone, Debug)]
@@ -34,6 +34,8 @@ pub struct DiagnosedFleet {
     pub left_out: Vec<String>,
     /// Whether all tails are held against one model.
     pub model_of: ModelOf,
+    /// Whether every model has learnt flights: an error of a table that none has taught looks like effects that all share.
+    pub taught: bool,
     /// What was found.
     pub diagnosis: FleetDiagnosis,
 }
@@ -96,6 +98,7 @@ impl Fleet<'_> {
         let first = self.groups[self.members[0]].model;
         let is_shared =
             self.members.iter().all(|&place| std::ptr::eq(self.groups[place].model, first));
+        let taught = self.members.iter().all(|&place| self.groups[place].model.learnt.is_some());
         let model_of = if is_shared { ModelOf::Type } else { ModelOf::Tail };
         let reduced = match model_of {
             ModelOf::Type => {
@@ -132,7 +135,7 @@ impl Fleet<'_> {
             tails.iter_mut().map(|member: &mut FleetMember| &mut member.reduced).collect();
         let diagnosis = diagnose_fleet(&mut reduced)?;
         let aircraft_type = aircraft_type.to_owned();
-        Ok(DiagnosedFleet { aircraft_type, tails, left_out, model_of, diagnosis })
+        Ok(DiagnosedFleet { aircraft_type, tails, left_out, model_of, taught, diagnosis })
     }
 }
 

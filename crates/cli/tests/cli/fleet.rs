@@ -109,6 +109,18 @@ fn what_all_share_is_the_models_and_what_one_has_is_its_own() {
     diagnose("again", ["F-4", "F-6", "F-5", "F-3", "F-2", "F-1"], "1");
     assert_eq!(bytes_below(&at("found")), bytes_below(&at("again")));
     assert_eq!(bytes_below(&at("found-applied")), bytes_below(&at("again-applied")));
+    assert_eq!(fleet["taught"], true);
+    assert!(!ran.stdout.contains("has learnt no flight:"), "{}", ran.stdout);
+
+    // Against the guide, which no flight has taught, what all share may be the guide's error.
+    let (flown, out) = (at("fleet"), at("of-guide"));
+    let untaught =
+        ["diagnose", text(&flown), "--model", text(&initial), "--fleet", "-o", text(&out)];
+    let ran = cruisefit(&untaught);
+    assert!(ran.stdout.contains("The model has learnt no flight"), "{}", ran.stdout);
+    let page = std::fs::read_to_string(out.join("fleet.html")).unwrap();
+    assert!(page.contains("The model has learnt no flight"));
+    assert!(!page.contains("the model can stay as it is"));
 }
 
 /// Every size, count and probability of the document is on the page, and every tail leads to its diagnosis.

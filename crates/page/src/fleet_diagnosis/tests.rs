@@ -51,6 +51,7 @@ fn fleet(names: &[String]) -> FleetRecord {
     FleetRecord {
         aircraft_type: "GLEX <&>".to_owned(),
         model_of: "type".to_owned(),
+        taught: true,
         findings,
         false_share: 0.0123,
         spread_of_typical: 0.25,
@@ -97,10 +98,22 @@ fn every_number_of_the_document_is_on_the_page() {
         has(found.probability);
         has(found.effect_probability);
     }
-    assert!(page.contains("1.2 % of them are expected to be false"), "{page}");
+    assert!(page.contains("or more; 1.2 % expected to be false"), "{page}");
     assert!(page.contains("GROUNDED") && page.contains("GLEX &lt;&amp;&gt;"));
     assert!(page.contains("temperature_bias or mach_bias"));
     assert!(!page.contains("NaN") && !page.contains("inf\""));
+}
+
+/// Against a model that no flight has taught, what all share is not offered as an effect to apply.
+#[test]
+fn an_untaught_table_is_doubted_before_an_effect() {
+    let mut record = fleet(&names(12));
+    record.findings.truncate(1);
+    assert!(page(std::slice::from_ref(&record)).contains("Put what all share into the model"));
+    record.taught = false;
+    let of_untaught = page(&[record]);
+    assert!(of_untaught.contains("may be an error of its table"), "{of_untaught}");
+    assert!(!of_untaught.contains("Put what all share"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_document::{SeparationRecord, TailDiagnosis};
-use pipeline::fleet_diagnosis::{FleetFindingRecord, size_words};
+use pipeline::fleet_diagnosis::{FleetFindingRecord, TEACH_IT_FIRST, nothing_shared, size_words};
 
 use super::{Fleet, Found, Whose};
 use crate::text::{capitalised, counted};
@@ -27,7 +27,7 @@ pub(super) fn card(fleet: &Fleet<'_>) -> Markup {
         dl.verdict.gap[!record.findings.is_empty()] {
             dt { "What all share" }
             dd {
-                @if of_type.is_empty() { b { "Nothing that the model lacks." } }
+                @if of_type.is_empty() { b { (nothing_shared(record.taught)) } }
                 @for found in &of_type { (shared(found)) }
             }
             dt { "Which tails differ" }
@@ -122,8 +122,10 @@ fn how_sure(fleet: &Fleet<'_>) -> String {
     let findings = match least {
         None => "Nothing acts with a probability that would do for a finding.".to_owned(),
         Some(least) => format!(
-            "{}, each with a probability of {least:.2} or more; {:.1} % of them are expected to be false.",
+            "{}, {} a probability of {least:.2}{}; {:.1} % expected to be false.",
             capitalised(&counted(record.findings.len(), "finding")),
+            if record.findings.len() == 1 { "with" } else { "each with" },
+            if record.findings.len() == 1 { "" } else { " or more" },
             100.0 * record.false_share
         ),
     };
@@ -140,8 +142,11 @@ fn what_to_do(fleet: &Fleet<'_>) -> Markup {
     let sensors =
         findings.iter().any(|found| found.tail.is_some() && Whose::of(found) != Whose::Aircraft);
     html! {
-        @if findings.is_empty() { "Nothing: the model can stay as it is." }
-        @if findings.iter().filter(clear).any(|found| found.tail.is_none()) {
+        @if !fleet.record.taught {
+            div { (TEACH_IT_FIRST) }
+        } @else if findings.is_empty() {
+            "Nothing: the model can stay as it is."
+        } @else if findings.iter().filter(clear).any(|found| found.tail.is_none()) {
             div { "Put what all share into the model of the type: the same run with " code { "--apply FOLDER" } " writes it." }
         }
         @if findings.iter().filter(clear).any(|found| found.tail.is_some()) {

@@ -13,6 +13,9 @@ pub struct FleetRecord {
     pub aircraft_type: String,
     /// `type` where all tails are held against one model, `tail` where each has its own.
     pub model_of: String,
+    /// Whether every model has learnt flights; documents of older programs do not say.
+    #[serde(default = "taught")]
+    pub taught: bool,
     /// What was found, that of the type first, then tail by tail.
     pub findings: Vec<FleetFindingRecord>,
     /// Expected share of false ones among them.
@@ -27,6 +30,10 @@ pub struct FleetRecord {
     pub tails: Vec<FleetTailRecord>,
     /// Tails without a flight inside the table.
     pub left_out: Vec<String>,
+}
+
+const fn taught() -> bool {
+    true
 }
 
 /// An effect that acts in the type or on one tail.
@@ -95,6 +102,7 @@ impl From<&DiagnosedFleet> for FleetRecord {
                 ModelOf::Type => "type".to_owned(),
                 ModelOf::Tail => "tail".to_owned(),
             },
+            taught: fleet.taught,
             findings: diagnosis.findings.iter().map(|found| finding(fleet, found)).collect(),
             false_share: diagnosis.false_share,
             spread_of_typical: diagnosis.spread_of_typical,

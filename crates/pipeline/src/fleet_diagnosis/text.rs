@@ -10,6 +10,20 @@ use crate::summary::{aligned, counted};
 /// Most effects that the table of tails has columns for, the most frequent ones: what a terminal of usual width holds.
 const MOST_COLUMNS: usize = 5;
 
+/// What is said of a fleet whose model no flight has taught.
+pub const TEACH_IT_FIRST: &str = "The model has learnt no flight: what all tails share may be an error of its table rather than an \
+    effect. Teach it first (cruisefit adapt), and compare again.";
+
+/// What all tails share where no effect of the type was found.
+#[must_use]
+pub const fn nothing_shared(taught: bool) -> &'static str {
+    if taught {
+        "Nothing that the model lacks."
+    } else {
+        "Nothing that an error of the model's table would not explain."
+    }
+}
+
 /// What was found, and a table of the tails on which something was.
 #[must_use]
 pub fn fleet_text(fleet: &DiagnosedFleet) -> String {
@@ -32,10 +46,13 @@ pub fn fleet_text(fleet: &DiagnosedFleet) -> String {
     let of_type: Vec<&FleetFinding> =
         diagnosis.findings.iter().filter(|found| found.level == FleetLevel::Type).collect();
     if of_type.is_empty() {
-        text.push_str("  All tails share nothing that the model lacks.\n");
+        let _ = writeln!(text, "  What all tails share: {}", nothing_shared(fleet.taught));
     }
     for found in of_type {
         let _ = writeln!(text, "  The model of the type lacks {}.", told(found));
+    }
+    if !fleet.taught {
+        let _ = writeln!(text, "  {TEACH_IT_FIRST}");
     }
     for found in diagnosis.findings.iter().filter(|found| found.tail.is_some()) {
         let whose = fleet.whose(found);
