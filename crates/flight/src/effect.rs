@@ -188,6 +188,12 @@ impl EffectId {
         matches!(self.entry().typical, TypicalSize::Known)
     }
 
+    /// The unit of its size in a sentence: where physics knows the size, how many times that it is.
+    #[must_use]
+    pub const fn unit_words(self) -> &'static str {
+        if self.is_known() { "times its known size" } else { self.entry().unit }
+    }
+
     /// Whether physics requires its size to be positive, or its size has no sign.
     #[must_use]
     pub const fn is_one_sided(self) -> bool {

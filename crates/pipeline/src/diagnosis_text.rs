@@ -157,7 +157,7 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
         .iter()
         .filter_map(|id| {
             let entry = diagnosis.detectable.iter().find(|entry| entry.effect == *id)?;
-            Some(format!("{id} {} {}", digits(entry.smallest?), id.entry().unit))
+            Some(format!("{id} {} {}", digits(entry.smallest?), id.unit_words()))
         })
         .collect();
     let mut lines = vec!["Nothing beyond the noise: the model fits these flights.".to_owned()];
@@ -383,7 +383,7 @@ fn effect_told(diagnosis: &Diagnosis, id: EffectId) -> String {
         "{}, {id} {} {} ({} to {}){}",
         id.phrase(value),
         figure(value),
-        id.entry().unit,
+        id.unit_words(),
         figure(low),
         figure(high),
         if hidden.is_empty() { String::new() } else { format!(", {hidden}") }

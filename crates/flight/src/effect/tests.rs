@@ -59,6 +59,17 @@ fn places_in_the_list_and_factors_of_the_units() {
     assert_eq!(factors, by_hand);
 }
 
+/// Of the effects whose size physics knows, "1.02 times its known size", not "1.02 known, 1".
+#[test]
+fn units_in_a_sentence() {
+    for id in EffectId::library(2) {
+        let expected = if id.is_known() { "times its known size" } else { id.entry().unit };
+        assert_eq!(id.unit_words(), expected);
+        assert!(!id.unit_words().contains("known, 1"));
+    }
+    assert!(EffectId::LocalGravity.is_known());
+}
+
 #[test]
 fn every_entry_is_complete() {
     for id in EffectId::library(2) {

@@ -74,7 +74,7 @@ fn cause_row(diagnosis: &Diagnosis, cause: &Cause) -> Markup {
             td.number { (format!("{:.3}", cause.probability)) }
             td.number { (format!("{:.3}", cause.probability_flat)) }
             td.drawn { (spark(cause)) }
-            td { (three_digits(cause.magnitude.value)) " " (cause.effect.entry().unit) br;
+            td { (three_digits(cause.magnitude.value)) " " (cause.effect.unit_words()) br;
                  span.id { (three_digits(low)) " to " (three_digits(high)) } }
             td.number { @if let Some(closure) = cause.closure {
                 (format!("{:.0} %", 100.0 * closure.share))

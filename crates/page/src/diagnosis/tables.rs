@@ -83,7 +83,7 @@ fn causes(diagnosis: &Diagnosis) -> Markup {
                     td { (format!("{:.3}", cause.probability_flat)) }
                     td { (three_digits(cause.magnitude.value)) }
                     td { (three_digits(cause.magnitude.ci95[0])) " to " (three_digits(cause.magnitude.ci95[1])) }
-                    td { (cause.effect.entry().unit) }
+                    td { (cause.effect.unit_words()) }
                     td { @if let Some(closure) = cause.closure { (format!("{:.0} %", 100.0 * closure.share)) } @else { "–" } }
                     td { @if cause.class.len() > 1 { (named(&cause.class[1..])) } @else { "–" } }
                 } } }
@@ -101,7 +101,7 @@ fn detectable(diagnosis: &Diagnosis) -> Markup {
                 tbody { @for one in &diagnosis.detectable { tr {
                     th scope="row" { (one.effect.phrase(1.0)) " " span.id { "(" (one.effect) ")" } }
                     td { @if let Some(size) = one.smallest { (three_digits(size).trim_start_matches('+')) } @else { "never seen" } }
-                    td { (one.effect.entry().unit) }
+                    td { (one.effect.unit_words()) }
                 } } }
             }
         }

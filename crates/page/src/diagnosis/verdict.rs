@@ -16,7 +16,7 @@ use crate::text::{capitalised, signed, three_digits};
 /// The size of an effect with its 95 % interval.
 fn size_words(diagnosis: &Diagnosis, id: EffectId) -> Option<(f64, String)> {
     let Magnitude { value, ci95: [low, high] } = told_size(diagnosis, id)?;
-    let unit = id.entry().unit;
+    let unit = id.unit_words();
     let words =
         format!("{} {unit} ({} to {})", three_digits(value), three_digits(low), three_digits(high));
     Some((value, words))

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use pipeline::diagnosis_document::MagnitudeRecord;
 use pipeline::fleet_diagnosis::{FleetTailRecord, size_words};
 
-use super::words::named;
+use super::words::{named, unit_words};
 use super::{Fleet, Found, Whose};
 use crate::chart::{Axis, Chart, Key, Mark, legend};
 use crate::text::counted;
@@ -75,14 +75,14 @@ fn panel(fleet: &Fleet<'_>, effect: &Found<'_>, place: usize) -> Markup {
             effect.id,
             counted(sizes.len(), "tail"),
             size_words(effect.of_type.value, effect.of_type.ci95),
-            effect.of_type.unit
+            unit_words(effect.id, &effect.of_type.unit)
         ),
         width: WIDTH,
         height: HEIGHT,
         x: tails_axis(fleet),
         y: Axis::around(low, high, 5),
         x_label: if has_names(fleet) { "tail" } else { "tail, by rank" }.to_owned(),
-        y_label: effect.of_type.unit.clone(),
+        y_label: unit_words(effect.id, &effect.of_type.unit).to_owned(),
     };
     let of = |whose: Option<Whose>| -> Vec<(f64, f64)> {
         let is_of = |tail: &FleetTailRecord| effect.finding(&tail.tail).map(Whose::of) == whose;
@@ -130,10 +130,11 @@ fn tip(effect: &Found<'_>, tail: &FleetTailRecord, size: &MagnitudeRecord) -> St
         format!(
             "\ndiffers by {} {}, probability {:.2}: {}",
             size_words(found.magnitude.value, found.magnitude.ci95),
-            size.unit,
+            unit_words(effect.id, &size.unit),
             found.probability,
             Whose::of(found).words()
         )
     });
-    format!("{}: {} {}{found}", tail.tail, size_words(size.value, size.ci95), size.unit)
+    let unit = unit_words(effect.id, &size.unit);
+    format!("{}: {} {unit}{found}", tail.tail, size_words(size.value, size.ci95))
 }

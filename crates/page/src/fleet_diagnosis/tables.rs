@@ -6,6 +6,7 @@ use maud::{Markup, html};
 use pipeline::diagnosis_document::MagnitudeRecord;
 use pipeline::fleet_diagnosis::{FleetFindingRecord, FleetTailRecord, size_words};
 
+use super::words::unit_words;
 use super::{Fleet, Found, Whose};
 use crate::shade;
 
@@ -25,7 +26,7 @@ pub(super) fn tails(fleet: &Fleet<'_>, links: &Links<'_>) -> Markup {
             table.fleet.heat.sort.data data-name=(format!("fleet-{}", fleet.record.aircraft_type)) {
                 thead { tr {
                     th scope="col" { "tail" } th scope="col" { "findings" }
-                    @for effect in &fleet.effects { th scope="col" { (effect.id) ", " (effect.of_type.unit) } }
+                    @for effect in &fleet.effects { th scope="col" { (effect.id) ", " (unit_words(effect.id, &effect.of_type.unit)) } }
                     th scope="col" { "flights" } th scope="col" { "segments" } th scope="col" { "noise" }
                 } }
                 tbody { @for tail in &fleet.tails { (tail_row(fleet, tail, links)) } }

@@ -50,11 +50,16 @@ pub(super) fn named(effect: &str, size: f64) -> Markup {
     html! { @if let Some(phrase) = phrase { b { (phrase) } " " } span.id { "(" (effect) ")" } }
 }
 
+/// The unit of an effect's size in a sentence; as the document has it where the library does not have the effect.
+pub(super) fn unit_words<'a>(effect: &str, unit: &'a str) -> &'a str {
+    EffectId::from_name(effect).map_or(unit, |id| id.unit_words())
+}
+
 fn shared(found: &FleetFindingRecord) -> Markup {
     let magnitude = &found.magnitude;
     html! { div {
         (named(&found.effect, magnitude.value)) ": "
-        (size_words(magnitude.value, magnitude.ci95)) " " (magnitude.unit) ", probability "
+        (size_words(magnitude.value, magnitude.ci95)) " " (unit_words(&found.effect, &magnitude.unit)) ", probability "
         (format!("{:.2}", found.probability)) (or_others(found)) "."
     } }
 }
@@ -101,7 +106,7 @@ fn tail_words(found: &FleetFindingRecord) -> String {
         "{} {} {}",
         found.tail.as_deref().unwrap_or_default(),
         size_words(magnitude.value, magnitude.ci95),
-        magnitude.unit
+        unit_words(&found.effect, &magnitude.unit)
     );
     let mut asides = Vec::new();
     if Whose::of(found) == Whose::Open {

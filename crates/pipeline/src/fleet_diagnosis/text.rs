@@ -81,7 +81,7 @@ fn told(found: &FleetFinding) -> String {
         "{} {} {} (probability {:.2}",
         found.effect,
         size(&found.magnitude),
-        found.effect.entry().unit,
+        found.effect.unit_words(),
         found.probability
     );
     if found.class.len() > 1 {
