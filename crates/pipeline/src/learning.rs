@@ -1,5 +1,7 @@
 //! One tail's flights, learnt one after the other.
 
+mod again;
+
 use std::borrow::Cow;
 
 use adapt::bayes::{BayesSettings, BayesState, InitialError, ObservationUpdate, SolveError};
@@ -12,6 +14,9 @@ use refit::RefitRule;
 use crate::condition_means::ConditionMeans;
 use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
 use crate::whole_model::belief_before_flights;
+
+pub(crate) use again::LearningAgain;
+pub use again::begin_again;
 
 /// A flight to learn.
 #[derive(Clone, Debug)]
@@ -107,7 +112,7 @@ pub fn learn_flight(
 
 /// What a segment says of drag, with the segment as it would have been recorded without the errors that the model contains;
 /// `None` where it cannot be reduced to an observation.
-pub(crate) fn observed<'s>(
+fn observed<'s>(
     initial: &ExtendedModel,
     segment: &'s Segment,
 ) -> Option<(Observation, Cow<'s, Segment>)> {
@@ -118,7 +123,7 @@ pub(crate) fn observed<'s>(
 ///
 /// # Errors
 /// As there.
-pub(crate) fn learn_observations(
+fn learn_observations(
     initial: &ExtendedModel,
     law: &mut LawState,
     observations: &[Observation],

@@ -5,16 +5,14 @@
 //! before it is learnt. That needs the reports of all flights up to it: from the first ledger entry whose report is not
 //! among those given, flights can only be predicted by the model that has learnt them, and their rows say so.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use adapt::bayes::DragTables;
 use flight::{FlightIdentity, Segment};
 
 use crate::columns::Columns;
 use crate::evaluation::{TailResult, evaluate};
-use crate::learning::{LawChoice, LearningError, begin, learn_observations, observed};
-use crate::model_file::{LawState, LedgerEntry, ModelFile};
+use crate::learning::{LearningAgain, LearningError};
+use crate::model_file::{LedgerEntry, ModelFile};
 use crate::segments_table::Evaluated;
 
 /// What the model that predicted a flight knew of it.
@@ -64,7 +62,7 @@ pub struct FlightResiduals {
 /// is what the model as given says of each segment of each flight.
 ///
 /// # Errors
-/// As for [`learn_flight`](crate::learning::learn_flight) and [`DragTables`], which do not happen on flights that were learnt before.
+/// As for [`learn_flight`](crate::learning::learn_flight), which do not happen on flights that were learnt before.
 pub fn before_learning(
     model: &ModelFile,
     flights: &[GivenFlight<'_>],
@@ -83,7 +81,7 @@ pub fn before_learning(
             evaluated,
         })
         .collect();
-    let Some(learnt) = &model.learnt else { return Ok(found) };
+    let Some(mut again) = LearningAgain::new(model)? else { return Ok(found) };
     let positions: BTreeMap<(&str, String, &str), usize> = flights
         .iter()
         .enumerate()
@@ -92,36 +90,19 @@ pub fn before_learning(
             ((name.as_str(), start.to_string(), flight.content), at)
         })
         .collect();
-    let mut again =
-        begin(&model.initial, &learnt.tail, &learnt.criteria, law_of(model, &learnt.law))?;
-    let tables = tables_of(&learnt.law)?;
     for entry in ledger {
         let key = (entry.flight.as_str(), entry.start.clone(), entry.content.as_str());
         let Some(at) = positions.get(&key) else { break };
         let segments = flights[*at].segments;
-        let table = match (&tables, &again.law) {
-            (Some(tables), LawState::Bayes { state, .. }) => Cow::Owned(tables.drag(state)?),
-            (_, law) => Cow::Borrowed(law.drag_coefficient()),
-        };
+        let table = again.table()?;
         found[*at] = FlightResiduals {
             knowledge: Knowledge::BeforeLearning,
             evaluated: evaluate(&model.initial, &table, segments),
         };
-        let observations: Vec<_> = segments
-            .iter()
-            .filter_map(|segment| Some(observed(&model.initial, segment)?.0))
-            .collect();
-        learn_observations(&model.initial, &mut again.law, &observations)?;
+        drop(table);
+        again.learn(segments)?;
     }
     Ok(found)
-}
-
-/// The tables that law `bayes` went through.
-fn tables_of(law: &LawState) -> Result<Option<DragTables>, LearningError> {
-    match law {
-        LawState::Paper { .. } => Ok(None),
-        LawState::Bayes { state, .. } => Ok(Some(DragTables::new(state)?)),
-    }
 }
 
 /// Errors in per cent, row by row, by the model before it learnt each flight, from the segments that it keeps; `None` for a model
@@ -168,13 +149,6 @@ fn is_of(entry: &LedgerEntry, identity: &FlightIdentity) -> bool {
     entry.tail == identity.tail
         && entry.flight == identity.flight
         && entry.start == identity.start.to_string()
-}
-
-fn law_of(model: &ModelFile, law: &LawState) -> LawChoice {
-    match law {
-        LawState::Paper { settings, .. } => LawChoice::Paper(*settings),
-        LawState::Bayes { .. } => LawChoice::Bayes(model.settings.bayes),
-    }
 }
 
 /// One row per segment, with its flight's mean.

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use flight::Timestamp;
 use pipeline::adaptation::{RemainderChoice, materials, rebuild, result_of, settled};
-use pipeline::learning::{self, LawChoice};
+use pipeline::learning;
 use pipeline::learnt_flights::{self, KnownFlight};
-use pipeline::model_file::{LawState, ModelFile};
+use pipeline::model_file::ModelFile;
 
 use crate::args::ForgetArgs;
 use crate::commands::Outcome;
@@ -123,11 +123,5 @@ fn find(flights: &[KnownFlight], arguments: &ForgetArgs) -> Result<usize, Failur
 
 /// The model as it was before it learnt anything.
 fn as_begun(model: &ModelFile) -> Result<ModelFile, learning::LearningError> {
-    let Some(learnt) = &model.learnt else { return Ok(model.clone()) };
-    let law = match &learnt.law {
-        LawState::Paper { settings, .. } => LawChoice::Paper(*settings),
-        LawState::Bayes { .. } => LawChoice::Bayes(model.settings.bayes),
-    };
-    let begun = learning::begin(&model.initial, &learnt.tail, &learnt.criteria, law)?;
-    Ok(ModelFile { learnt: Some(begun), ..model.clone() })
+    Ok(ModelFile { learnt: learning::begin_again(model)?, ..model.clone() })
 }

@@ -5,11 +5,11 @@ use flight::{MAXIMUM_ENGINES, Segment, Timestamp};
 use monitor::FlightDeviation;
 
 use crate::evaluation::evaluate;
-use crate::learning::{self, FlightToLearn, LawChoice, LearningError};
-use crate::model_file::{LawState, LedgerEntry, ModelFile};
+use crate::learning::{LearningAgain, LearningError};
+use crate::model_file::{LedgerEntry, ModelFile};
 use crate::whole_model::{Predicts, ln_gap_of};
 
-/// Whether the model is rebuilt flight by flight, which takes a solve per flight.
+/// Whether the model is rebuilt flight by flight, which takes a table per flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BeforeLearning {
     /// Rebuild it.
@@ -157,16 +157,15 @@ fn rebuild(
     segments: &[Segment],
     shown: &mut [Shown],
 ) -> Result<(), LearningError> {
-    let Some(known) = &model.learnt else { return Ok(()) };
-    let law = match &known.law {
-        LawState::Paper { settings, .. } => LawChoice::Paper(*settings),
-        LawState::Bayes { state, .. } => LawChoice::Bayes(*state.settings()),
+    let (Some(known), Some(mut again)) = (&model.learnt, LearningAgain::new(model)?) else {
+        return Ok(());
     };
-    let mut learnt = learning::begin(&model.initial, &known.tail, &known.criteria, law)?;
     let mut from = 0;
     let mut ledger = known.ledger.iter();
     for flight in segments.chunk_by(|one, other| one.identity == other.identity) {
-        let predicted = evaluate(&model.initial, learnt.law.drag_coefficient(), flight);
+        let table = again.table()?;
+        let predicted = evaluate(&model.initial, &table, flight);
+        drop(table);
         for (offset, (segment, predicted)) in flight.iter().zip(predicted).enumerate() {
             shown[from + offset].before_learning = predicted
                 .and_then(|of| of.predicted_fuel_flow_kg_s)
@@ -178,15 +177,10 @@ fn rebuild(
         let is_this = |entry: &&LedgerEntry| {
             entry.flight == flight[0].identity.flight && entry.start == start
         };
-        let Some(entry) = ledger.find(is_this) else { break };
-        learning::learn_flight(
-            &model.initial,
-            &mut learnt,
-            &FlightToLearn { entry: entry.clone(), segments: flight },
-        )?;
-        if let LawState::Bayes { state, posterior } = &mut learnt.law {
-            **posterior = state.solve()?;
+        if ledger.find(is_this).is_none() {
+            break;
         }
+        again.learn(flight)?;
     }
     Ok(())
 }
