@@ -77,7 +77,7 @@ const fn a_quarter() -> f64 {
     0.25
 }
 
-const fn once() -> f64 {
+pub(crate) const fn once() -> f64 {
     1.0
 }
 

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::plan::once;
+
 /// Fleets of a plan. Only `repeats` is required.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -22,10 +24,10 @@ pub struct FleetPart {
     #[serde(default)]
     pub step_share: f64,
     /// Size of a step, % of drag or fuel flow.
-    #[serde(default = "one_percent")]
+    #[serde(default = "once")]
     pub step_percent: f64,
     /// Size of the other effects over the typical size.
-    #[serde(default = "one_percent")]
+    #[serde(default = "once")]
     pub times: f64,
     /// How many fleets.
     pub repeats: usize,
@@ -45,10 +47,6 @@ const fn one() -> usize {
 
 const fn three_tenths() -> f64 {
     0.3
-}
-
-const fn one_percent() -> f64 {
-    1.0
 }
 
 /// A fleet before it is drawn.

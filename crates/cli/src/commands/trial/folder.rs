@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use trials::{
     CaseFailure, CaseResult, CaseSpec, CaseTruth, DiagnosedCase, FleetResult, FleetSpec,
-    FleetTruth, FoundFleet, Seal, TrialPlan,
+    FleetTruth, FoundFleet, Seal, SealError, TrialPlan,
 };
 
 use crate::failure::{Failure, show};
@@ -69,24 +71,18 @@ impl TruthFolder {
     /// # Errors
     /// A file that cannot be read, or that differs from what was sealed.
     pub(super) fn open(&self, case: usize) -> Result<CaseTruth, Failure> {
-        let path = path_of(&self.folder, case);
-        let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-        self.seal.open(case, &bytes).map_err(|error| Failure::bad_file(&path, error))
+        opened(&path_of(&self.folder, case), |bytes| self.seal.open(case, bytes))
+    }
+
+    /// The same of a fleet, by its place among the sealed truths.
+    fn open_fleet(&self, fleet: usize, place: usize) -> Result<FleetTruth, Failure> {
+        opened(&fleet_path(&self.folder, fleet), |bytes| self.seal.open_fleet(place, bytes))
     }
 }
 
-impl TruthFolder {
-    /// The hash of a fleet's truth.
-    fn hash_of_fleet(&self, fleet: usize) -> &str {
-        self.seal.hash_of(self.cases + fleet)
-    }
-
-    fn open_fleet(&self, fleet: usize) -> Result<FleetTruth, Failure> {
-        let path = fleet_path(&self.folder, fleet);
-        let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-        let place = self.cases + fleet;
-        self.seal.open_fleet(place, &bytes).map_err(|error| Failure::bad_file(&path, error))
-    }
+fn opened<T>(path: &Path, open: impl FnOnce(&[u8]) -> Result<T, SealError>) -> Result<T, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::unreadable(path, error))?;
+    open(&bytes).map_err(|error| Failure::bad_file(path, error))
 }
 
 /// Why a case has no result: the case failed, or its files did.
@@ -113,18 +109,13 @@ pub(super) fn run_case(
 ) -> Result<CaseResult, CaseError> {
     let path = folder.join("cases").join(format!("{:05}.json", spec.number));
     let sealed = truths.seal().hash_of(spec.number);
-    if let Some(known) = finished(&path, sealed) {
+    let is_of_truth = |known: &CaseResult| known.truth_sha256 == sealed;
+    if let Some(known) = finished(&path).filter(is_of_truth) {
         return Ok(known);
     }
     let diagnosed = DiagnosedCase::run(plan, spec)?;
-    let truth = truths.open(spec.number)?;
-    let result = diagnosed.score(&truth, sealed)?;
-    let mut text =
-        serde_json::to_string_pretty(&result).map_err(|error| Failure::unwritable(&path, error))?;
-    text.push('\n');
-    write_atomically(&path, text.as_bytes())?;
-    // Read back as a later run would read it: a run that continues from a folder must arrive at the same bytes.
-    serde_json::from_str(&text).map_err(|error| CaseError::Disk(Failure::bad_file(&path, error)))
+    let result = diagnosed.score(&truths.open(spec.number)?, sealed)?;
+    Ok(kept(&path, &result)?)
 }
 
 /// Runs one fleet in the same way.
@@ -138,26 +129,31 @@ pub(super) fn run_fleet(
     truths: &TruthFolder,
 ) -> Result<FleetResult, CaseError> {
     let path = fleet_path(&folder.join("cases"), spec.number);
-    let sealed = truths.hash_of_fleet(spec.number);
-    let known = std::fs::read(&path).ok();
-    let known = known.and_then(|bytes| serde_json::from_slice::<FleetResult>(&bytes).ok());
-    if let Some(known) = known.filter(|known| known.truth_sha256 == sealed) {
+    // Fleets are sealed after all cases.
+    let place = truths.cases + spec.number;
+    let sealed = truths.seal().hash_of(place);
+    let is_of_truth = |known: &FleetResult| known.truth_sha256 == sealed;
+    if let Some(known) = finished(&path).filter(is_of_truth) {
         return Ok(known);
     }
     let found = FoundFleet::run(plan, spec)?;
-    let result = found.score(&truths.open_fleet(spec.number)?, sealed);
-    let mut text =
-        serde_json::to_string_pretty(&result).map_err(|error| Failure::unwritable(&path, error))?;
-    text.push('\n');
-    write_atomically(&path, text.as_bytes())?;
-    serde_json::from_str(&text).map_err(|error| CaseError::Disk(Failure::bad_file(&path, error)))
+    let result = found.score(&truths.open_fleet(spec.number, place)?, sealed);
+    Ok(kept(&path, &result)?)
 }
 
-/// The result of an earlier run, if it belongs to this truth.
-fn finished(path: &Path, truth_sha256: &str) -> Option<CaseResult> {
-    let bytes = std::fs::read(path).ok()?;
-    let known: CaseResult = serde_json::from_slice(&bytes).ok()?;
-    (known.truth_sha256 == truth_sha256).then_some(known)
+/// The result of an earlier run.
+fn finished<T: DeserializeOwned>(path: &Path) -> Option<T> {
+    serde_json::from_slice(&std::fs::read(path).ok()?).ok()
+}
+
+/// Writes a result and reads it back as a later run would read it: a run that continues from a folder must arrive at the same
+/// bytes.
+fn kept<T: Serialize + DeserializeOwned>(path: &Path, result: &T) -> Result<T, Failure> {
+    let mut text =
+        serde_json::to_string_pretty(result).map_err(|error| Failure::unwritable(path, error))?;
+    text.push('\n');
+    write_atomically(path, text.as_bytes())?;
+    serde_json::from_str(&text).map_err(|error| Failure::bad_file(path, error))
 }
 
 fn fleet_path(folder: &Path, fleet: usize) -> PathBuf {
