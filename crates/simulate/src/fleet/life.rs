@@ -140,6 +140,16 @@ mod tests {
         }
     }
 
+    /// By hand: what was gathered by the first date, 3.6·(1 − exp(−1/3)) = 1.0205, and the wash of months before leaves 0.3 of
+    /// it; the months between do not count twice.
+    #[test]
+    fn an_event_before_the_first_date_does_not_age() {
+        let wash = LifeEvent { at: instant("2017-07-01T00:00:00Z"), what: Recovery::Wash(0.7) };
+        let life = Life { level_percent: 0.0, events: vec![wash], ..life() };
+        let found = life.percent_at(life.first);
+        assert!((found - 0.3 * 1.0205).abs() < 1e-4, "{found}");
+    }
+
     #[test]
     fn an_event_changes_what_it_changes() {
         let life = life();
