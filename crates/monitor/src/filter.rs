@@ -31,6 +31,18 @@ pub enum EventBefore {
     Recorded,
 }
 
+/// A flight at which the current piece may have begun.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    index: usize,
+    /// Share of the best division of the flights before it in their density, up to a factor that all starts have in common.
+    best: f64,
+    /// Probability that the piece began here, given the flights so far.
+    share: f64,
+    /// ln of what the share is multiplied by before it is one.
+    exponent: f64,
+}
+
 /// What is known after each flight about the start of the piece that it belongs to.
 #[derive(Clone, Debug)]
 pub struct ChangeFilter {
@@ -38,14 +50,14 @@ pub struct ChangeFilter {
     sums: RunningSums,
     /// By number of flights: ln density of the flights before, over all divisions.
     density: Vec<f64>,
-    /// By number of flights: the same of the best division, and where its last piece begins.
-    best: Vec<(f64, usize)>,
+    /// By number of flights: where the last piece of the best division begins.
+    best: Vec<usize>,
     /// ln probability of a change before each flight, and the sum of ln probability of no change up to it.
     change: Vec<(f64, f64)>,
     /// When the last flight was.
     last_years: f64,
     /// Starts of the current piece that are remembered.
-    starts: Vec<usize>,
+    starts: Vec<Start>,
     /// By flight: probability of each remembered start, given the flights up to then.
     shares: Vec<Vec<(u32, f64)>>,
 }
@@ -58,7 +70,7 @@ impl ChangeFilter {
             beliefs,
             sums: RunningSums::new(),
             density: vec![0.0],
-            best: vec![(0.0, 0)],
+            best: vec![0],
             change: Vec::new(),
             last_years: f64::NEG_INFINITY,
             starts: Vec::new(),
@@ -86,37 +98,47 @@ impl ChangeFilter {
             (probability.ln(), stayed + (-probability).ln_1p())
         });
         self.sums.push(flight.years, flight.deviation_percent, flight.weight);
-        self.starts.push(index);
-        let to = index + 1;
+        self.starts.push(Start { index, best: 1.0, share: 0.0, exponent: 0.0 });
+        let last = self.weigh(index);
+        let shares = self
+            .starts
+            .iter()
+            .map(|start| (u32::try_from(start.index).unwrap_or(u32::MAX), start.share));
+        self.shares.push(shares.collect());
+        self.best.push(last);
+    }
+
+    /// The density with one flight more, the share of each start in it, and the last start of the best division.
+    fn weigh(&mut self, index: usize) -> usize {
         let no_change_until = self.change[index].1;
-        let mut best = (f64::NEG_INFINITY, 0);
-        let mut summands = Vec::with_capacity(self.starts.len());
-        for &start in &self.starts {
-            let (log_change, stayed) = self.change[start];
-            let piece = self.sums.piece(start, to).log_evidence(&self.beliefs)
+        let mut largest = f64::NEG_INFINITY;
+        for start in &mut self.starts {
+            let (log_change, stayed) = self.change[start.index];
+            let evidence = self.sums.piece(start.index, index + 1).evidence(&self.beliefs);
+            start.share = evidence.factor;
+            start.exponent = evidence.exponent
+                + self.density[start.index]
                 + log_change
                 + (no_change_until - stayed);
-            summands.push(self.density[start] + piece);
-            let all = self.best[start].0 + piece;
-            if all > best.0 {
-                best = (all, start);
+            largest = largest.max(start.exponent);
+        }
+        let mut sum = 0.0;
+        let (mut best, mut last) = (0.0, 0);
+        for start in &mut self.starts {
+            start.share *= (start.exponent - largest).exp();
+            sum += start.share;
+            if start.share * start.best > best {
+                (best, last) = (start.share * start.best, start.index);
             }
         }
-        let largest = summands.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = summands.iter().map(|summand| (summand - largest).exp()).sum();
-        let density = largest + sum.ln();
-        self.density.push(density);
-        self.best.push(best);
-        let starts = self.starts.iter().zip(&summands);
-        let numbered = |start: usize| u32::try_from(start).unwrap_or(u32::MAX);
-        let shares: Vec<(u32, f64)> = starts
-            .map(|(&start, summand)| (numbered(start), (summand - density).exp()))
-            .filter(|(start, share)| *share >= FORGOTTEN_SHARE || *start as usize == index)
-            .collect();
-        let shares = most_probable(shares);
-        self.starts.clear();
-        self.starts.extend(shares.iter().map(|(start, _)| *start as usize));
-        self.shares.push(shares);
+        self.density.push(largest + sum.ln());
+        for start in &mut self.starts {
+            start.share /= sum;
+            start.best *= sum / best;
+        }
+        self.starts.retain(|start| start.share >= FORGOTTEN_SHARE || start.index == index);
+        forget_the_least_probable(&mut self.starts);
+        last
     }
 
     /// Number of flights seen.
@@ -147,7 +169,7 @@ impl ChangeFilter {
         let mut starts = Vec::new();
         let mut end = self.flights();
         while end > 0 {
-            end = self.best[end].1;
+            end = self.best[end];
             if end > 0 {
                 starts.push(end);
             }
@@ -180,20 +202,22 @@ impl ChangeFilter {
     }
 }
 
-/// At most [`MOST_STARTS`], in order of start, and their shares of 1.
-fn most_probable(mut shares: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
-    if shares.len() > MOST_STARTS {
-        shares.select_nth_unstable_by(MOST_STARTS - 1, |one, other| {
-            other.1.total_cmp(&one.1).then(one.0.cmp(&other.0))
+/// Leaves at most [`MOST_STARTS`], with shares of 1. Each flight brings one start, so that at most one goes; of two that are
+/// alike, the later.
+fn forget_the_least_probable(starts: &mut Vec<Start>) {
+    if starts.len() > MOST_STARTS {
+        let places = starts.iter().enumerate();
+        let least = places.min_by(|(_, one), (_, other)| {
+            one.share.total_cmp(&other.share).then(other.index.cmp(&one.index))
         });
-        shares.truncate(MOST_STARTS);
-        shares.sort_unstable_by_key(|(start, _)| *start);
+        if let Some((place, _)) = least {
+            starts.remove(place);
+        }
     }
-    let sum: f64 = shares.iter().map(|(_, share)| share).sum();
-    for (_, share) in &mut shares {
-        *share /= sum;
+    let sum: f64 = starts.iter().map(|start| start.share).sum();
+    for start in starts {
+        start.share /= sum;
     }
-    shares
 }
 
 #[cfg(test)]

@@ -87,21 +87,31 @@ impl History {
         Some(Self { noise, weights, changes, levels, events })
     }
 
-    /// Weighted mean of flights, %.
-    ///
-    /// ```text
-    /// Σ w·y/Σ w,  variance 1/Σ w                                                             [monitoring.11]
-    /// ```
-    ///
-    /// `None` without a flight.
+    /// [`weighted_mean_percent`] of flights with the weights of this history.
     #[must_use]
     pub fn mean_percent(&self, series: &Series, flights: Range<usize>) -> Option<Estimate> {
-        let of = series.flights().get(flights.clone())?;
-        let weights = self.weights.get(flights)?;
-        let weight: f64 = weights.iter().sum();
-        let sum: f64 = of.iter().zip(weights).map(|(f, w)| f.deviation_percent() * w).sum();
-        (weight > 0.0).then(|| Estimate { value: sum / weight, deviation: weight.powf(-0.5) })
+        weighted_mean_percent(series, &self.weights, flights)
     }
+}
+
+/// Weighted mean of flights, %.
+///
+/// ```text
+/// Σ w·y/Σ w,  variance 1/Σ w                                                                 [monitoring.11]
+/// ```
+///
+/// Weights are those of [`Noise::weights`], %⁻², as many as the series has flights. `None` without a flight.
+#[must_use]
+pub fn weighted_mean_percent(
+    series: &Series,
+    weights: &[f64],
+    flights: Range<usize>,
+) -> Option<Estimate> {
+    let of = series.flights().get(flights.clone())?;
+    let weights = weights.get(flights)?;
+    let weight: f64 = weights.iter().sum();
+    let sum: f64 = of.iter().zip(weights).map(|(f, w)| f.deviation_percent() * w).sum();
+    (weight > 0.0).then(|| Estimate { value: sum / weight, deviation: weight.powf(-0.5) })
 }
 
 fn filter(

@@ -47,16 +47,23 @@ impl RunningSums {
     }
 }
 
+/// A density as factor·e^exponent: one logarithm fewer than its logarithm takes, and no overflow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Evidence {
+    pub(crate) factor: f64,
+    pub(crate) exponent: f64,
+}
+
 impl Piece {
-    /// Natural logarithm of the density of a piece's deviations, less Σ ½ ln(w/2π), which no division into pieces changes.
+    /// Density of a piece's deviations, less Π √(w/2π), which no division into pieces changes.
     ///
     /// ```text
-    /// ln ½ Σ_o exp −½ [Syy + ln(1 + s²W) + ȳ²W/(1 + s²W) + ln(1 + o²Sxx) − o²Sxy²/(1 + o²Sxx)] [monitoring.6]
+    /// ½ Σ_o exp −½ [Syy + ln(1 + s²W) + ȳ²W/(1 + s²W) + ln(1 + o²Sxx) − o²Sxy²/(1 + o²Sxx)]  [monitoring.6]
     /// ```
     ///
     /// The line's level at the piece's mean date is normal about 0 with deviation s, its slope about 0 with one of two
     /// deviations o; both are integrated out, which charges each piece for its two parameters.
-    pub(crate) fn log_evidence(&self, beliefs: &ChangeBeliefs) -> f64 {
+    pub(crate) fn evidence(&self, beliefs: &ChangeBeliefs) -> Evidence {
         let of_level = 1.0 + beliefs.level_deviation_percent.powi(2) * self.weight;
         let square = self.syy + self.mean_y * self.mean_y * self.weight / of_level;
         let by_slope = |deviation: f64| {
@@ -67,10 +74,12 @@ impl Piece {
         let (gain, volume) = by_slope(beliefs.slope_deviation_percent_per_year);
         let (small_gain, small_volume) = by_slope(beliefs.small_slope_deviation_percent_per_year);
         // The larger gain stands outside, so that no exponential is too large.
-        let most = gain.max(small_gain);
-        let both =
-            (0.5 * (gain - most)).exp() / volume + (0.5 * (small_gain - most)).exp() / small_volume;
-        -0.5 * (square - most) + (0.5 * both).ln()
+        let less = (-0.5 * (gain - small_gain).abs()).exp();
+        let (of_gain, of_small_gain) = if gain >= small_gain { (1.0, less) } else { (less, 1.0) };
+        Evidence {
+            factor: 0.5 * (of_gain / volume + of_small_gain / small_volume),
+            exponent: -0.5 * (square - gain.max(small_gain)),
+        }
     }
 }
 
@@ -110,6 +119,7 @@ mod tests {
         let hardly = log_density(beliefs.small_slope_deviation_percent_per_year);
         assert!((ages - hardly).abs() > 0.1, "the two slopes are told apart");
         let dense = (0.5 * (ages.exp() + hardly.exp())).ln();
-        assert!((piece.log_evidence(&beliefs) - dense).abs() < 1e-10);
+        let evidence = piece.evidence(&beliefs);
+        assert!((evidence.factor.ln() + evidence.exponent - dense).abs() < 1e-10);
     }
 }

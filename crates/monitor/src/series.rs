@@ -48,6 +48,27 @@ impl FlightDeviation {
         })
     }
 
+    /// A flight whose mean and sum of squared differences (%, %²) are known; `None` where they are none: not finite, or a sum
+    /// below zero.
+    #[must_use]
+    pub fn of_mean(
+        time: Timestamp,
+        deviation_percent: f64,
+        segments: NonZeroU32,
+        scatter_percent2: f64,
+    ) -> Option<Self> {
+        let holds = deviation_percent.is_finite()
+            && scatter_percent2.is_finite()
+            && scatter_percent2 >= 0.0;
+        holds.then_some(Self { time, deviation_percent, segments, scatter_percent2 })
+    }
+
+    /// The same flight where every segment deviates by so much more, %.
+    #[must_use]
+    pub fn raised(self, percent: f64) -> Self {
+        Self { deviation_percent: self.deviation_percent + percent, ..self }
+    }
+
     /// When the flight began.
     #[must_use]
     pub const fn time(&self) -> Timestamp {
@@ -141,6 +162,18 @@ mod tests {
         let flight = FlightDeviation::of_segments(Timestamp::UNIX_EPOCH, &[1.0, 2.0, 6.0]).unwrap();
         assert_eq!((flight.deviation_percent(), flight.segments()), (3.0, 3));
         assert!((flight.scatter_percent2() - 14.0).abs() < 1e-12);
+        let known = |mean, scatter| {
+            FlightDeviation::of_mean(
+                Timestamp::UNIX_EPOCH,
+                mean,
+                NonZeroU32::new(3).unwrap(),
+                scatter,
+            )
+        };
+        assert_eq!(known(3.0, flight.scatter_percent2()), Some(flight));
+        assert_eq!(known(1.0, flight.scatter_percent2()).unwrap().raised(2.0), flight);
+        assert!(known(f64::NAN, 1.0).is_none() && known(1.0, -1.0).is_none());
+        assert!(known(1.0, f64::INFINITY).is_none());
         assert!(FlightDeviation::of_segments(Timestamp::UNIX_EPOCH, &[]).is_none());
         assert!(FlightDeviation::of_segments(Timestamp::UNIX_EPOCH, &[1.0, f64::NAN]).is_none());
     }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::piece::Piece;
 
 fn filtered(beliefs: ChangeBeliefs, y: &[f64], event: Option<usize>) -> ChangeFilter {
     let mut filter = ChangeFilter::new(beliefs);
@@ -9,6 +10,11 @@ fn filtered(beliefs: ChangeBeliefs, y: &[f64], event: Option<usize>) -> ChangeFi
         filter.push(&FilteredFlight { years, deviation_percent, weight: 4.0, event_before });
     }
     filter
+}
+
+fn log_evidence(piece: &Piece, beliefs: &ChangeBeliefs) -> f64 {
+    let evidence = piece.evidence(beliefs);
+    evidence.factor.ln() + evidence.exponent
 }
 
 /// Every division of the flights into pieces, with its ln prior times evidence.
@@ -40,7 +46,7 @@ fn all_divisions(
             }
             for (piece, start) in starts.iter().enumerate() {
                 let end = starts.get(piece + 1).copied().unwrap_or(y.len());
-                log += sums.piece(*start, end).log_evidence(beliefs);
+                log += log_evidence(&sums.piece(*start, end), beliefs);
             }
             (starts, log)
         })
@@ -96,7 +102,7 @@ fn forgetting_does_not_matter() {
             density[start]
                 + change
                 + stay * (index - start) as f64
-                + sums.piece(start, index + 1).log_evidence(&beliefs)
+                + log_evidence(&sums.piece(start, index + 1), &beliefs)
         };
         let summands: Vec<f64> = (0..=index).map(summand).collect();
         let largest = summands.iter().copied().fold(f64::NEG_INFINITY, f64::max);
