@@ -4,7 +4,6 @@ pub(crate) mod outputs;
 pub(crate) mod standard_input;
 pub(crate) mod steps;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
@@ -19,20 +18,28 @@ pub(crate) const TEMPORARY: &str = ".cruisefit-";
 /// # Errors
 /// Any error of the operating system; a file at `path` then is as it was.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    write_streamed(path, |to| to.write_all(bytes))
+}
+
+/// The same of what a function writes, piece by piece: for files that need not be in memory as a whole.
+///
+/// # Errors
+/// As for [`write_atomically`].
+pub(crate) fn write_streamed(path: &Path, content: impl Fn(To<'_>) -> Done) -> Result<(), Failure> {
     let attempt = || -> std::io::Result<()> {
         if path.as_os_str() == "-" {
-            return std::io::stdout().write_all(bytes);
+            return content(&mut std::io::stdout());
         }
         // `/dev/stdout` may be a regular file, which whoever opened it wants to see written, not replaced.
         let is_device = path.starts_with("/dev") || path.starts_with("/proc");
         let permissions = match path.metadata() {
             Ok(known) if is_device || !(known.is_file() || known.is_dir()) => {
-                return std::fs::OpenOptions::new().append(true).open(path)?.write_all(bytes);
+                return content(&mut std::fs::OpenOptions::new().append(true).open(path)?);
             }
             known => known.ok().map(|known| known.permissions()),
         };
         let target = behind_links(path)?;
-        replace(&target, bytes, permissions, Durability::Synced)
+        replace(&target, &content, permissions, Durability::Synced)
     };
     attempt().map_err(|error| Failure::unwritable(path, error))
 }
@@ -43,9 +50,13 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Failure>
 /// # Errors
 /// Any error of the operating system; a file at `path` then is as it was.
 pub(crate) fn write_unsynced(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    replace(path, bytes, None, Durability::Unsynced)
+    replace(path, &|to: To<'_>| to.write_all(bytes), None, Durability::Unsynced)
         .map_err(|error| Failure::unwritable(path, error))
 }
+
+/// Where a file's content is written to.
+type To<'a> = &'a mut dyn std::io::Write;
+type Done = std::io::Result<()>;
 
 /// Whether a file survives a power cut right after it was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +68,7 @@ enum Durability {
 /// Replaces a file by way of a temporary one. A file that was there keeps its mode, a new one has that of the umask.
 fn replace(
     path: &Path,
-    bytes: &[u8],
+    content: &dyn Fn(To<'_>) -> Done,
     permissions: Option<std::fs::Permissions>,
     durability: Durability,
 ) -> std::io::Result<()> {
@@ -70,7 +81,7 @@ fn replace(
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    content(&mut file)?;
     if let Some(permissions) = permissions {
         // Where the file belongs to somebody else its mode cannot be kept: the umask's serves.
         let _ = file.as_file().set_permissions(permissions);

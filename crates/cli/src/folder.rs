@@ -17,16 +17,18 @@ mod tests;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use flight::Timestamp;
 use pipeline::adaptation::StoredTail;
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::ModelFile;
+use pipeline::monitoring::{MonitoredFlight, curve_of_flights, read_flights};
 use pipeline::segments_table;
 
 use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
-use state::{FileState, State, TailState};
+use state::{DeviationsState, FileState, State, TailState};
 
 /// Whether a folder that exists is continued.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +58,7 @@ pub(crate) struct Folder {
 }
 
 /// Folders of a tail's files, and of its page.
-const FOLDERS: [&str; 4] = ["models", "segments", "flights", "pages"];
+const FOLDERS: [&str; 5] = ["models", "segments", "flights", "deviations", "pages"];
 
 impl Folder {
     /// Opens the folder at a path, created if it does not exist.
@@ -146,7 +148,14 @@ impl Folder {
         let segments =
             segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
         let flights = flights_of(&self.path, &self.state, tail, entry)?;
-        Ok(StoredTail { model, segments, flights })
+        let curve = match &entry.deviations {
+            Some(of) => {
+                let flights = deviations_of(&self.state, &self.path, of, None)?;
+                Some(curve_of_flights(&flights))
+            }
+            None => None,
+        };
+        Ok(StoredTail { model, segments, flights, curve })
     }
 
     /// Whether the folder has a file at this path now.
@@ -220,7 +229,9 @@ impl Folder {
         self.move_files(&state::waiting(&self.state, &self.path))?;
         let files = |state: &State| -> BTreeSet<String> {
             let of_tail = |tail: &TailState| {
-                [&tail.model, &tail.segments, &tail.flights].map(|file| file.file.clone())
+                let deviations = tail.deviations.as_ref().map(|of| of.file.file.clone());
+                let others = [&tail.model, &tail.segments, &tail.flights];
+                others.map(|file| file.file.clone()).into_iter().chain(deviations)
             };
             state.tails.values().flat_map(of_tail).collect()
         };
@@ -339,6 +350,21 @@ pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)
             },
         }
     }
+}
+
+/// What each flight of a tail shows, if there is an instant of those that began at or after it.
+///
+/// # Errors
+/// A file that is damaged.
+pub(crate) fn deviations_of(
+    state: &State,
+    folder: &Path,
+    of: &DeviationsState,
+    since: Option<Timestamp>,
+) -> Result<Vec<MonitoredFlight>, Failure> {
+    let bytes = state::bytes_of(state, folder, &of.file)?;
+    read_flights(&bytes, since)
+        .map_err(|reason| Failure::bad_file(&folder.join(&of.file.file), reason))
 }
 
 fn flights_of(

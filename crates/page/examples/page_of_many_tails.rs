@@ -30,6 +30,7 @@ fn main() {
                 segments,
                 counts: TailCounts { flights: 12, flights_new: 12, samples: 900 },
                 notes: Vec::new(),
+                curve: None,
             })
         })
         .collect();

@@ -165,14 +165,12 @@ pub(crate) fn before_learning(view: &TailView, place: &Place<'_>) -> Markup {
         let flights = shown.iter().map(|k| &view.flights[*k]);
         flights.filter_map(|flight| Some((flight.start_s, of(flight)?))).collect()
     };
-    let forecast = of(|flight| flight.before_learning.mean);
+    let forecast = of(|flight| flight.before_learning);
     let (Some(first), Some(last)) = (forecast.first(), forecast.last()) else { return html! {} };
     let initial = of(|flight| flight.before.mean);
     let values = || forecast.iter().chain(&initial).map(|point| point.1);
     let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
-    let means: Vec<ErrorStatistics> =
-        view.flights.iter().map(|flight| flight.before_learning).collect();
-    let told: Vec<f64> = means.iter().filter_map(|statistics| statistics.mean).collect();
+    let told: Vec<f64> = view.flights.iter().filter_map(|flight| flight.before_learning).collect();
     let later = ErrorStatistics::from_errors(&told[told.len() / 2..]);
     let chart = Chart {
         id: place.id("forecast"),

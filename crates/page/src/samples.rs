@@ -53,7 +53,7 @@ fn view(points: Vec<Point>, adapted: bool) -> TailView {
         let start = Timestamp::from_second(start_s as i64).unwrap();
         let (before, after) = (of(|point| point.before), of(|point| point.after));
         let (name, engines) = (format!("F{}", flights.len()), vec![-0.5, 0.5]);
-        let before_learning = after;
+        let before_learning = after.mean;
         flights.push(Flight { name, start, start_s, before, after, before_learning, engines });
     }
     TailView {

@@ -19,7 +19,7 @@ fn tail(name: &str, adapted: bool) -> TailResult {
     let segments = segments_table::read(SEGMENTS).unwrap();
     let counts = TailCounts { flights: 12, flights_new: 12, samples: 900 };
     let notes = vec!["roll <not> recorded".to_owned()];
-    let data = TailData { tail: name.to_owned(), model, segments, counts, notes };
+    let data = TailData { tail: name.to_owned(), model, segments, counts, notes, curve: None };
     if adapted {
         TailResult::adapted(data)
     } else {

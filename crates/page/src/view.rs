@@ -7,7 +7,6 @@ use flight::Timestamp;
 
 use pipeline::evaluation::TailResult;
 use pipeline::model_file::ModelFile;
-use pipeline::residuals::errors_before_learning;
 use pipeline::segments_table::SegmentRow;
 use pipeline::statistics::{ErrorStatistics, NORMAL_95};
 use units::convert::METERS_PER_NAUTICAL_MILE;
@@ -73,8 +72,8 @@ pub(crate) struct Flight {
     pub(crate) before: ErrorStatistics,
     /// Of its segments inside the table.
     pub(crate) after: ErrorStatistics,
-    /// The same by the model before it learnt this flight; no errors where that is not known.
-    pub(crate) before_learning: ErrorStatistics,
+    /// Mean error by the model before it learnt this flight, where that is known.
+    pub(crate) before_learning: Option<f64>,
     /// Mean fuel flow of each engine against the mean of all engines, %; empty where they are not recorded separately.
     pub(crate) engines: Vec<f64>,
 }
@@ -104,14 +103,13 @@ impl TailView {
         let adapted = result.summary.fuel_flow_error_percent.after.is_some();
         let after = result.errors_after();
         // A state that was learnt once can be learnt again; if not, this one figure is missing.
-        let earlier = errors_before_learning(result).ok().flatten().unwrap_or_default();
+        let curve = result.learning_curve().unwrap_or_default();
         let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
         let mut cruise = Vec::new();
         let mut flights: BTreeMap<(Timestamp, &str), Errors> = BTreeMap::new();
         for (k, row) in result.rows.iter().enumerate() {
             let identity = &row.segment.identity;
             let errors = flights.entry((identity.start, &identity.flight)).or_default();
-            errors.before_learning.extend(earlier.get(k).copied().flatten());
             errors.add_engines(&row.segment.means.fuel_flow_engine_kg_s);
             if row.evaluated.is_none_or(|evaluated| evaluated.error_percent.is_none()) {
                 match result.model.initial.observe(&row.segment) {
@@ -138,7 +136,11 @@ impl TailView {
         }
         let flights: Vec<Flight> = flights
             .into_iter()
-            .map(|((start, flight), errors)| errors.of_flight(start, flight))
+            .map(|((start, flight), errors)| {
+                let forecast = curve.get(&(start, flight.to_owned()));
+                let before_learning = forecast.map(|forecast| forecast.mean_error_percent);
+                Flight { before_learning, ..errors.of_flight(start, flight) }
+            })
             .collect();
         Self {
             points,
@@ -178,7 +180,6 @@ impl TailView {
 struct Errors {
     before: Vec<f64>,
     after: Vec<f64>,
-    before_learning: Vec<f64>,
     /// Sums of the fuel flow of each engine, kg/s.
     engines_kg_s: Vec<f64>,
 }
@@ -204,7 +205,7 @@ impl Errors {
             start_s: start.as_second() as f64,
             before: ErrorStatistics::from_errors(&self.before),
             after: ErrorStatistics::from_errors(&self.after),
-            before_learning: ErrorStatistics::from_errors(&self.before_learning),
+            before_learning: None,
             engines: engines.iter().map(|one| 100.0 * (one / mean - 1.0)).collect(),
         }
     }

@@ -60,7 +60,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert_eq!(ModelFile::from_text(&text)?.to_text()?, text);
 
     let tail = "SIM-01".to_owned();
-    let result = TailResult::adapted(TailData { tail, model, segments, counts, notes: vec![] });
+    let result =
+        TailResult::adapted(TailData { tail, model, segments, counts, notes: vec![], curve: None });
     let errors = result.summary.fuel_flow_error_percent;
     let (before, after) =
         (errors.before.mean.unwrap_or(f64::NAN), errors.after.and_then(|e| e.mean));

@@ -3,6 +3,7 @@
 
 mod begun;
 mod dates;
+mod new_flights;
 mod sorting;
 
 use std::borrow::Cow;
@@ -12,13 +13,14 @@ use flight::Segment;
 
 use crate::evaluation::{TailCounts, TailData, TailResult};
 use crate::known_flights::entry_of;
-use crate::learning::{self, FlightToLearn, LearningError};
+use crate::learning::{self, FlightToLearn, LearningCurve, LearningError};
 use crate::learnt_flights::KnownFlight;
 use crate::model_file::{Learnt, LedgerEntry, ModelFile};
 use crate::reading::{FlightRead, RefusedReport};
 
 pub use begun::{LawAsked, Start, Starts};
 pub use dates::{Dates, refuse_impossible};
+use new_flights::NewFlights;
 pub use sorting::{Contradictions, OlderFlights, Sorting};
 
 /// A tail that has learnt flights.
@@ -30,6 +32,8 @@ pub struct StoredTail {
     pub segments: Vec<Segment>,
     /// The flights in its ledger.
     pub flights: Vec<KnownFlight>,
+    /// How far off it was on each of them before it learnt it; `None` where a program stored the tail that did not keep this.
+    pub curve: Option<LearningCurve>,
 }
 
 /// A flight with its segments: what a model is rebuilt from.
@@ -91,14 +95,14 @@ pub fn learn(
 
 /// The figures of a tail.
 pub fn result_of(stored: StoredTail, flights_new: usize, notes: Vec<String>) -> TailResult {
-    let StoredTail { model, segments, flights } = stored;
+    let StoredTail { model, segments, flights, curve } = stored;
     let tail = model.tail().unwrap_or_default().to_owned();
     let counts = TailCounts {
         flights: flights.len(),
         flights_new,
         samples: flights.iter().map(|flight| flight.entry.samples).sum(),
     };
-    TailResult::adapted(TailData { tail, model, segments, counts, notes })
+    TailResult::adapted(TailData { tail, model, segments, counts, notes, curve })
 }
 
 /// Brings the model up to date with what it has learnt.
@@ -133,6 +137,7 @@ pub fn rebuild(mut model: ModelFile, flights: Vec<Material>) -> Result<StoredTai
     let mut known = Vec::new();
     let starts = flights.iter().map(|flight| flight.known.start).collect();
     let dated = Dates::of_starts(&model, starts);
+    let mut new = NewFlights::after(&model);
     for flight in flights {
         let Some(learnt) = &mut model.learnt else { break };
         let as_dated = match flight.segments.first() {
@@ -140,9 +145,11 @@ pub fn rebuild(mut model: ModelFile, flights: Vec<Material>) -> Result<StoredTai
             None => Cow::Borrowed(&flight.segments[..]),
         };
         known.push(learn_one(&model.initial, learnt, flight.known, &as_dated)?);
+        new.learnt(as_dated, &flight.segments);
         segments.extend(flight.segments);
     }
-    Ok(StoredTail { model, segments, flights: known })
+    let curve = Some(new.curve(&model, LearningCurve::new(), &segments)?);
+    Ok(StoredTail { model, segments, flights: known, curve })
 }
 
 /// A tail's learning in this run.
@@ -165,9 +172,12 @@ impl Work {
         let mut stored = match stored {
             Some(stored) => stored,
             None => {
-                StoredTail { model: start.fresh(tail)?, segments: Vec::new(), flights: Vec::new() }
+                let model = start.fresh(tail)?;
+                let curve = Some(LearningCurve::new());
+                StoredTail { model, segments: Vec::new(), flights: Vec::new(), curve }
             }
         };
+        let mut learning = NewFlights::after(&stored.model);
         self.notes.extend(stored.model.note_of_effects());
         let dated = Dates::of_learnt_and_new(&stored.model, &new);
         for flight in new {
@@ -179,10 +189,15 @@ impl Work {
                     self.flights_new += 1;
                     flight.add_notes(&mut self.notes);
                     stored.flights.push(known);
+                    learning.learnt(as_dated, &flight.reduced.segments);
                     stored.segments.extend(flight.reduced.segments);
                 }
                 Err(error) => self.refused.push(RefusedReport::whole(flight.path, error)),
             }
+        }
+        // Where nothing was kept of earlier flights, the whole curve is made again when it is asked for.
+        if let Some(before) = stored.curve.take() {
+            stored.curve = Some(learning.curve(&stored.model, before, &stored.segments)?);
         }
         Ok(Some(stored))
     }

@@ -162,15 +162,26 @@ impl Columns {
             text.push(',');
         }
         end_line(&mut text, 0);
+        self.push_rows(&mut text);
+        text.into_bytes()
+    }
+
+    /// The same without the header line: more rows of a table with the same columns.
+    pub fn to_csv_rows(&self) -> Vec<u8> {
+        let mut text = String::new();
+        self.push_rows(&mut text);
+        text.into_bytes()
+    }
+
+    fn push_rows(&self, text: &mut String) {
         for row in 0..self.rows() {
             let start = text.len();
             for (_, cells) in &self.columns {
-                cells.push_field(row, &mut text);
+                cells.push_field(row, text);
                 text.push(',');
             }
-            end_line(&mut text, start);
+            end_line(text, start);
         }
-        text.into_bytes()
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a table predicts for segments, and the results of each tail at the end of a run: the material of summary, tables, pages.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use adapt::paper;
@@ -8,6 +9,7 @@ use effects::ExtendedModel;
 use flight::{Observation, Segment, Timestamp};
 use lut::{Outside, Table};
 
+use crate::learning::{LearningCurve, LearningError, curve_of};
 use crate::model_file::ModelFile;
 use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
@@ -30,6 +32,8 @@ pub struct TailResult {
     pub summary: TailSummary,
     /// What is worth knowing about this tail's data ("roll not recorded: criterion not evaluated", …), each once.
     pub notes: Vec<String>,
+    /// How far off the model was on each flight before it learnt it, where that is known.
+    pub curve: Option<LearningCurve>,
 }
 
 /// Counts that do not follow from the segments.
@@ -56,6 +60,8 @@ pub struct TailData {
     pub counts: TailCounts,
     /// What is worth knowing about its data, each once.
     pub notes: Vec<String>,
+    /// How far off the model was on each flight before it learnt it, where that is known.
+    pub curve: Option<LearningCurve>,
 }
 
 impl TailResult {
@@ -107,7 +113,7 @@ impl TailResult {
             flight.add_notes(&mut notes);
         }
         let segments = flights.into_iter().flat_map(|flight| flight.reduced.segments).collect();
-        Self::as_given(TailData { tail, model, segments, counts, notes }, predicts)
+        Self::as_given(TailData { tail, model, segments, counts, notes, curve: None }, predicts)
     }
 
     fn put_together(
@@ -116,13 +122,26 @@ impl TailResult {
         after: Vec<Option<Evaluated>>,
         summary: TailSummary,
     ) -> Self {
-        let TailData { tail, model, segments, notes, .. } = data;
+        let TailData { tail, model, segments, notes, curve, .. } = data;
         let rows = segments
             .into_iter()
             .zip(before)
             .map(|(segment, evaluated)| SegmentRow { segment, evaluated })
             .collect();
-        Self { tail, model, rows, after, summary, notes }
+        Self { tail, model, rows, after, summary, notes, curve }
+    }
+
+    /// How far off the model was on each flight before it learnt it; made anew where it is not known. Empty for a model that has
+    /// learnt nothing.
+    ///
+    /// # Errors
+    /// As for [`curve_of`].
+    pub fn learning_curve(&self) -> Result<Cow<'_, LearningCurve>, LearningError> {
+        if let Some(curve) = &self.curve {
+            return Ok(Cow::Borrowed(curve));
+        }
+        let segments: Vec<Segment> = self.rows.iter().map(|row| row.segment.clone()).collect();
+        curve_of(&self.model, &segments).map(Cow::Owned)
     }
 
     /// Errors of the final table in per cent, segment by segment; empty where nothing is adapted.

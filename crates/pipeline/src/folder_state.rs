@@ -41,8 +41,23 @@ pub struct TailState {
     pub segments: FileState,
     /// Every flight that it has learnt.
     pub flights: FileState,
+    /// What each flight shows, for `monitor`; `None` of a tail that an older program stored.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviations: Option<DeviationsState>,
     /// Its figures.
     pub summary: TailSummary,
+}
+
+/// What each flight of a tail shows, and what has to be known of the tail beside it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeviationsState {
+    /// The table of flights.
+    pub file: FileState,
+    /// Type code of the aircraft.
+    pub aircraft_type: String,
+    /// What the model has learnt, in words.
+    pub model: String,
 }
 
 /// A file of the state.
@@ -163,6 +178,11 @@ mod tests {
             model: file("models/T.ron"),
             segments: file("segments/T.csv"),
             flights: file("flights/T.csv"),
+            deviations: Some(DeviationsState {
+                file: file("deviations/T.csv"),
+                aircraft_type: "SIM".to_owned(),
+                model: "3 flights".to_owned(),
+            }),
             summary: serde_json::from_str(json).unwrap(),
         };
         state.tails.insert("T, \"1\"".to_owned(), tail);
@@ -171,5 +191,10 @@ mod tests {
         let changed = text.replacen("generation: 7", "generation: 8", 1);
         assert!(State::from_text(&changed).unwrap_err().to_string().contains("changed or damaged"));
         assert!(State::from_text(&text[..text.len() / 2]).is_err());
+        // As older programs wrote it.
+        state.tails.values_mut().for_each(|tail| tail.deviations = None);
+        let text = state.to_text().unwrap();
+        assert!(!text.contains("deviations"));
+        assert_eq!(State::from_text(&text).unwrap(), state);
     }
 }

@@ -1,6 +1,7 @@
 //! One tail's flights, learnt one after the other.
 
 mod again;
+mod curve;
 
 use std::borrow::Cow;
 
@@ -17,6 +18,8 @@ use crate::whole_model::belief_before_flights;
 
 pub(crate) use again::LearningAgain;
 pub use again::begin_again;
+pub use curve::{FlightKey, Forecast, LearningCurve, curve_of};
+pub(crate) use curve::{continue_curve, deviation_percent};
 
 /// A flight to learn.
 #[derive(Clone, Debug)]

@@ -1,21 +1,26 @@
 //! Months and fleets from what `adapt` has learnt: deviations, changes, events, fuel factors, costs; as tables, JSON and text.
 //!
-//! [`TailDeviations`] turns a tail's model and segments into a deviation per flight, crate `monitor` reads the series, and
+//! [`TailDeviations`] turns a tail's model and segments, or what was kept of them flight by flight ([`MonitoredFlight`]), into a
+//! deviation per flight, crate `monitor` reads the series, and
 //! [`MonitorDocument`] holds every result once: the CSV tables ([`tables`]), the JSON and the text are made from it.
 
 mod deviations;
 mod document;
 mod events;
+mod flights;
+mod flights_table;
 mod tables;
 mod tail;
 mod text;
 
-pub use deviations::{BeforeLearning, MonitoredFlight, ReferenceConditions, TailDeviations};
+pub use deviations::{BeforeLearning, TailDeviations};
 pub use document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure, FleetDocument,
     FlightDocument, MonitorDocument, MonthDocument, ReferenceDocument, SCHEMA, TailDocument,
 };
-pub use events::{Event, EventsError, read_events};
-pub use tables::{NamedTable, tables};
+pub use events::{Event, EventsError, instant, read_events};
+pub use flights::{MeanConditions, MonitoredFlight, curve_of_flights, flights_of};
+pub use flights_table::{flights_to_csv, read_flights};
+pub use tables::{FLIGHTS, NamedTable, flights_by_tail, tables, tables_but_flights};
 pub use tail::{MonitorOptions, MonitoredTail};
 pub use text::{Rows, text};

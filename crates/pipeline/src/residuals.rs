@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use flight::{FlightIdentity, Segment};
 
 use crate::columns::Columns;
-use crate::evaluation::{TailResult, evaluate};
+use crate::evaluation::evaluate;
 use crate::learning::{LearningAgain, LearningError};
 use crate::model_file::{LedgerEntry, ModelFile};
 use crate::segments_table::Evaluated;
@@ -103,46 +103,6 @@ pub fn before_learning(
         again.learn(segments)?;
     }
     Ok(found)
-}
-
-/// Errors in per cent, row by row, by the model before it learnt each flight, from the segments that it keeps; `None` for a model
-/// that has learnt nothing.
-///
-/// # Errors
-/// As for [`before_learning`].
-pub fn errors_before_learning(
-    result: &TailResult,
-) -> Result<Option<Vec<Option<f64>>>, LearningError> {
-    let Some(learnt) = &result.model.learnt else { return Ok(None) };
-    let mut rows: BTreeMap<(&str, String), Vec<usize>> = BTreeMap::new();
-    for (place, row) in result.rows.iter().enumerate() {
-        let identity = &row.segment.identity;
-        let key = (identity.flight.as_str(), identity.start.to_string());
-        rows.entry(key).or_default().push(place);
-    }
-    let mut flights = Vec::with_capacity(learnt.ledger.len());
-    for entry in &learnt.ledger {
-        // A ledger is read with its dates checked; a flight that has none ends what can be learnt again.
-        let Ok(start) = entry.start.parse() else { break };
-        let (tail, flight) = (entry.tail.clone(), entry.flight.clone());
-        let places = rows.remove(&(entry.flight.as_str(), entry.start.clone())).unwrap_or_default();
-        let segments: Vec<Segment> =
-            places.iter().map(|place| result.rows[*place].segment.clone()).collect();
-        flights.push((FlightIdentity { tail, start, flight }, &entry.content, places, segments));
-    }
-    let given: Vec<GivenFlight<'_>> = flights
-        .iter()
-        .map(|(identity, content, _, segments)| GivenFlight { identity, content, segments })
-        .collect();
-    let unknown = given.iter().map(|flight| vec![None; flight.segments.len()]).collect();
-    let mut errors = vec![None; result.rows.len()];
-    let found = before_learning(&result.model, &given, unknown)?;
-    for (residuals, (_, _, places, _)) in found.iter().zip(&flights) {
-        for (place, evaluated) in places.iter().zip(&residuals.evaluated) {
-            errors[*place] = evaluated.and_then(|evaluated| evaluated.error_percent);
-        }
-    }
-    Ok(Some(errors))
 }
 
 fn is_of(entry: &LedgerEntry, identity: &FlightIdentity) -> bool {

@@ -85,6 +85,7 @@ fn state() -> State {
         model: file("models/T-1.ron"),
         segments: file("segments/T-1.csv"),
         flights: file("flights/T-1.csv"),
+        deviations: None,
         summary: serde_json::from_str(summary).unwrap(),
     };
     State { generation: 7, tails: BTreeMap::from([("T-1".to_owned(), tail)]) }

@@ -7,8 +7,9 @@ use pipeline::adaptation::{self, StoredTail};
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::file_names::file_stem_of_tail;
-use pipeline::folder_state::{self, FileState, State, TailState};
+use pipeline::folder_state::{self, DeviationsState, FileState, State, TailState};
 use pipeline::learnt_flights::{self, KnownFlight};
+use pipeline::monitoring::{flights_of, flights_to_csv};
 use pipeline::reading::RefusedReport;
 use pipeline::segments_table;
 use pipeline::summary::{RefusedSummary, ReportsSummary, SCHEMA, Summary};
@@ -52,7 +53,8 @@ impl Tail {
     /// What is learnt on.
     pub(crate) fn stored(self) -> StoredTail {
         let segments = self.result.rows.into_iter().map(|row| row.segment).collect();
-        StoredTail { model: self.result.model, segments, flights: self.flights }
+        let TailResult { model, curve, .. } = self.result;
+        StoredTail { model, segments, flights: self.flights, curve }
     }
 
     fn segments_csv(&self) -> Vec<u8> {
@@ -216,7 +218,13 @@ fn stored_tail(
     if flights.iter().map(|flight| &flight.entry).ne(&learnt.ledger) {
         return Err(named(&"found a table of other flights than its ledger, expected the same"));
     }
-    let stored = StoredTail { model: model.file.as_ref().clone(), segments, flights };
+    let stored = StoredTail {
+        model: model.file.as_ref().clone(),
+        segments,
+        flights,
+        // Not among what is kept from night to night here; made again where it is needed.
+        curve: None,
+    };
     Ok(Tail::learnt(stored, begun, 0, Vec::new()))
 }
 
@@ -272,6 +280,11 @@ impl Adapted {
                 model: named(0),
                 segments: named(1),
                 flights: named(2),
+                deviations: Some(DeviationsState {
+                    file: named(3),
+                    aircraft_type: tail.result.model.initial.aircraft().type_code().to_owned(),
+                    model: tail.result.model.told(),
+                }),
                 summary,
             };
             state.tails.insert(tail.result.tail.clone(), of_state);
@@ -315,13 +328,15 @@ impl Adapted {
     }
 }
 
-/// Model, segments and flights.
+/// Model, segments, flights and deviations.
 fn files_of_tail(tail: &Tail) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let stem = file_stem_of_tail(&tail.result.tail);
     let model = tail.result.model.to_text().map_err(Failure::internal)?;
+    let deviations = flights_of(&tail.result).map_err(Failure::internal)?;
     Ok(vec![
         (format!("models/{stem}.ron"), model.into_bytes()),
         (format!("segments/{stem}.csv"), tail.segments_csv()),
         (format!("flights/{stem}.csv"), learnt_flights::to_csv(&tail.flights)),
+        (format!("deviations/{stem}.csv"), flights_to_csv(&deviations)),
     ])
 }

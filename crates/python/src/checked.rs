@@ -59,6 +59,7 @@ pub(crate) struct MonitorAsked {
     flights_per_year: Option<f64>,
     basic_performance_factor_percent: Option<f64>,
     quick: bool,
+    since: Option<String>,
     threads: Option<NonZeroUsize>,
 }
 
@@ -84,13 +85,18 @@ pub(crate) fn monitor_tails(
             },
             basic_performance_factor_percent: asked.basic_performance_factor_percent,
             rules: rules.collect::<Result<Vec<_>, Failure>>()?,
+            before_learning: if asked.quick {
+                BeforeLearning::LeaveOut
+            } else {
+                BeforeLearning::Rebuild
+            },
+            since: asked.since.as_deref().map(date).transpose()?,
         };
-        let before = if asked.quick { BeforeLearning::LeaveOut } else { BeforeLearning::Rebuild };
         let found = tails
             .par_iter()
             .map(|tail| {
                 caller.still_waits()?;
-                monitor_tail(tail, before, &events, &options)
+                monitor_tail(tail, &events, &options)
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         let (mut documents, mut alerts) = (Vec::new(), Vec::new());
@@ -100,25 +106,31 @@ pub(crate) fn monitor_tails(
         }
         documents.sort_by(|one, other| one.tail.cmp(&other.tail));
         alerts.sort_by(|one, other| one.tail.cmp(&other.tail));
-        let words = options.in_words(events.len(), before);
+        let words = options.in_words(events.len());
         Ok((MonitorDocument::new(documents, alerts), words))
     })?;
     Ok(Monitored { document: Arc::new(document), options: options.into() })
 }
 
+fn date(text: &str) -> Result<flight::Timestamp, Failure> {
+    pipeline::monitoring::instant(text).ok_or_else(|| {
+        Failure::input(format!(
+            "found since = {text:?}, expected a date like 2026-03-02, or an instant like 2026-03-02T10:00:00Z"
+        ))
+    })
+}
+
 fn monitor_tail(
     tail: &Tail,
-    before: BeforeLearning,
     events: &[Event],
     options: &MonitorOptions,
 ) -> Result<Option<(TailDocument, Vec<AlertDocument>)>, Failure> {
     let result = &tail.result;
-    let segments: Vec<flight::Segment> =
-        result.rows.iter().map(|row| row.segment.clone()).collect();
     let named =
         |error: &dyn std::fmt::Display| Failure::input(format!("tail {}: {error}", result.tail));
-    let deviations =
-        TailDeviations::new(&result.model, &segments, before).map_err(|error| named(&error))?;
+    let deviations = TailDeviations::of_result(result, options.before_learning)
+        .map_err(|error| named(&error))?
+        .since(options.since);
     let found =
         MonitoredTail::new(&result.tail, &deviations, events).map_err(|error| named(&error))?;
     Ok(found.map(|found| (found.document(options), found.alerts(options))))

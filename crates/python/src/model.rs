@@ -109,6 +109,7 @@ impl Model {
             segments: Vec::new(),
             counts: TailCounts::default(),
             notes: Vec::new(),
+            curve: None,
         };
         Ok(drawn(page::plot(&TailResult::as_given(data, Predicts::WholeModel), &charts))?)
     }

@@ -9,8 +9,8 @@
 //!
 //! K is that of the prior alone, so that its columns are solved for once, however many states there are.
 
+use faer::Mat;
 use faer::linalg::solvers::Solve;
-use faer::{Mat, MatRef};
 use lut::Table;
 
 use super::guard::project;
@@ -43,7 +43,13 @@ impl DragTables {
         for (column, &node) in touched.iter().enumerate() {
             columns[node] = Some(column);
         }
-        Ok(Self { columns, prior: factor.inverse_columns(touched) })
+        // One by one: to the last bit a column must not depend on which other nodes are touched in the end, so that a table is
+        // the same whether its flights were learnt at once or night by night.
+        let mut prior = Mat::zeros(grid.nodes(), touched.len());
+        for (column, node) in touched.iter().enumerate() {
+            prior.col_mut(column).copy_from(factor.inverse_columns(&[*node]).col(0));
+        }
+        Ok(Self { columns, prior })
     }
 
     /// The table of [`Posterior::drag`](super::Posterior::drag), to rounding.
@@ -51,29 +57,34 @@ impl DragTables {
     /// # Errors
     /// As for [`BayesState::solve`].
     pub fn drag(&self, state: &BayesState) -> Result<Table, SolveError> {
-        let information = &state.information;
-        let touched: Option<Vec<usize>> =
-            information.touched().iter().map(|&node| self.columns[node]).collect();
-        let found = touched.and_then(|touched| self.corrected(state, &touched));
+        let touched = state.information.touched();
+        // In the order of nodes: that of first touch is not that of a state which was stored in the meantime.
+        let mut slots: Vec<usize> = (0..touched.len()).collect();
+        slots.sort_unstable_by_key(|&slot| touched[slot]);
+        let columns: Option<Vec<usize>> =
+            slots.iter().map(|&slot| self.columns[touched[slot]]).collect();
+        let found = columns.and_then(|columns| self.corrected(state, &slots, &columns));
         // How unphysical drag is mended depends on variances, and these on everything.
         found.map_or_else(|| Ok(state.solve()?.drag().clone()), Ok)
     }
 
-    /// The table of a state that touched these columns' nodes; `None` where it is not physical.
-    fn corrected(&self, state: &BayesState, touched: &[usize]) -> Option<Table> {
+    /// The table of a state that touched nodes in these slots, whose columns these are; `None` where it is not physical.
+    fn corrected(&self, state: &BayesState, slots: &[usize], columns: &[usize]) -> Option<Table> {
         let nodes = state.information.touched();
-        let among = Mat::from_fn(nodes.len(), nodes.len(), |row, column| {
-            self.prior[(nodes[row], touched[column])]
+        let count = slots.len();
+        let among = Mat::from_fn(count, count, |row, column| {
+            self.prior[(nodes[slots[row]], columns[column])]
         });
         let (matrix, vector) = state.information.of_touched();
+        let matrix = Mat::from_fn(count, count, |row, column| matrix[(slots[row], slots[column])]);
+        let right = Mat::from_fn(count, 1, |row, _| vector[slots[row]]);
         let mut system = &matrix * &among;
-        for k in 0..nodes.len() {
+        for k in 0..count {
             system[(k, k)] += 1.0;
         }
-        let right = MatRef::from_column_major_slice(vector, vector.len(), 1);
         let weights = system.partial_piv_lu().solve(right);
         let mut correction = vec![0.0; self.prior.nrows()];
-        for (k, &column) in touched.iter().enumerate() {
+        for (k, &column) in columns.iter().enumerate() {
             for (sum, covariance) in correction.iter_mut().zip(self.prior.col_as_slice(column)) {
                 *sum += weights[(k, 0)] * covariance;
             }

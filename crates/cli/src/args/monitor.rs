@@ -15,6 +15,10 @@ pub(crate) struct MonitorArgs {
     /// Events to measure: date,tail,kind,note (wash, `engine_change`, …)
     #[arg(long, value_name = "EVENTS.csv")]
     pub(crate) events: Option<PathBuf>,
+    /// Only flights that began on or after this date (2026-03-02, or an instant with its offset): what is shown of a tail, its
+    /// reference conditions too, is then of these flights, and a night takes no longer for the years before them
+    #[arg(long, value_name = "DATE", value_parser = date)]
+    pub(crate) since: Option<flight::Timestamp>,
     /// Print a row for each month instead of one for each tail
     #[arg(long)]
     pub(crate) month: bool,
@@ -44,9 +48,16 @@ pub(crate) struct MonitorArgs {
     /// Basic factor of the flight management system, %: adds the PERF FACTOR, basic plus monitored
     #[arg(long, value_name = "PCT", allow_negative_numbers = true)]
     pub(crate) basic_perf_factor: Option<f64>,
-    /// Leave out the deviation by the model before it learnt each flight, for which the model is rebuilt flight by flight
+    /// Leave out the deviation by the model before it learnt each flight, for which a model whose folder an older program wrote
+    /// is rebuilt flight by flight
     #[arg(long)]
     pub(crate) quick: bool,
+}
+
+fn date(text: &str) -> Result<flight::Timestamp, String> {
+    pipeline::monitoring::instant(text).ok_or_else(|| {
+        "expected a date like 2026-03-02, or an instant like 2026-03-02T10:00:00Z".to_owned()
+    })
 }
 
 fn positive(text: &str) -> Result<f64, String> {

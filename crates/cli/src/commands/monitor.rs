@@ -3,13 +3,15 @@
 mod causes;
 mod stored;
 
-use std::fmt::Write;
+use std::fmt::Write as _;
+use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
+use monitor::SeriesError;
 use monitor::cost::CostFactors;
 use pipeline::monitoring::{
-    AlertDocument, BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail, Rows,
-    TailDeviations, TailDocument, tables, text,
+    AlertDocument, BeforeLearning, Event, FLIGHTS, MonitorDocument, MonitorOptions, MonitoredTail,
+    Rows, TailDeviations, TailDocument, flights_by_tail, tables_but_flights, text,
 };
 use rayon::prelude::*;
 
@@ -17,11 +19,12 @@ use crate::args::MonitorArgs;
 use crate::columns;
 use crate::commands::{Ending, Outcome, events_of, warn_of_events};
 use crate::failure::{Failure, show};
-use crate::files::{make_folder, write_atomically};
+use crate::files::{make_folder, write_atomically, write_streamed};
 use crate::progress::Progress;
 use crate::terminal::neutral;
 
 use causes::Causes;
+use stored::Tails;
 
 /// Runs the command.
 ///
@@ -36,29 +39,29 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
         },
         basic_performance_factor_percent: arguments.basic_perf_factor,
         rules: arguments.alert.clone(),
+        before_learning: if arguments.quick {
+            BeforeLearning::LeaveOut
+        } else {
+            BeforeLearning::Rebuild
+        },
+        since: arguments.since,
     };
     let events = match &arguments.events {
         Some(path) => events_of(path)?,
         None => Vec::new(),
     };
     let causes = arguments.diagnosis.as_deref().map(Causes::read).transpose()?;
-    let before_learning =
-        if arguments.quick { BeforeLearning::LeaveOut } else { BeforeLearning::Rebuild };
-    let tails = stored::tails(&arguments.folder)?;
-    let bar = progress.bar(tails.len(), "reading tails");
-    // One tail at a time on each thread: memory does not grow with the fleet's segments.
-    let read = tails
-        .par_iter()
-        .map(|path| {
-            let found = monitor_tail(&arguments.folder, path, before_learning, &events, &options);
-            bar.step();
-            found
-        })
-        .collect::<Result<Vec<_>, Failure>>()?;
-    bar.finish();
-    let mut documents = Vec::new();
+    let read = loop {
+        let tails = Tails::of(&arguments.folder)?;
+        match monitor_all(&tails, &events, &options, progress) {
+            // Another process stored a newer generation in the meantime.
+            Err(_) if tails.is_out_of_date() => {}
+            other => break other?,
+        }
+    };
+    let mut documents = Vec::with_capacity(read.len());
     let mut alerts = Vec::new();
-    for (tail, fired) in read.into_iter().flatten() {
+    for (tail, fired) in read {
         documents.push(tail);
         alerts.extend(fired);
     }
@@ -73,7 +76,7 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
     let document = MonitorDocument::new(documents, alerts);
     let mut printed = text(&document, if arguments.month { Rows::Months } else { Rows::Tails });
     if let Some(folder) = &arguments.output {
-        write(folder, &document, &options.in_words(events.len(), before_learning))?;
+        write(folder, &document, &options.in_words(events.len()))?;
         let _ = writeln!(
             printed,
             "Written to {}: monitor.html, monitor.json, tables (.csv)",
@@ -81,37 +84,70 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
         );
     }
     let ending = if document.alerts.is_empty() { Ending::Done } else { Ending::Alerts };
-    Ok(Outcome { ending, ..Outcome::with_json(printed, document.to_json()) })
+    // Of a large fleet the document is hundreds of megabytes.
+    let json = arguments.json.json.then(|| document.to_json());
+    Ok(Outcome { ending, json, ..Outcome::text(printed) })
 }
 
 fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Result<(), Failure> {
     make_folder(folder)?;
-    write_atomically(&folder.join("monitor.json"), &document.to_json())?;
+    write_streamed(&folder.join("monitor.json"), |to| {
+        let mut to = BufWriter::new(to);
+        document.write_json(&mut to)?;
+        to.flush()
+    })?;
     write_atomically(
         &folder.join("monitor.html"),
         neutral(&page::monitoring(document, options)).as_bytes(),
     )?;
-    for table in tables(document) {
+    for table in tables_but_flights(document) {
         columns::write(&table.columns, Some(&folder.join(format!("{}.csv", table.name))))?;
     }
-    Ok(())
+    write_streamed(&folder.join(format!("{FLIGHTS}.csv")), |to| {
+        for (place, table) in flights_by_tail(document).enumerate() {
+            to.write_all(&if place == 0 { table.to_csv() } else { table.to_csv_rows() })?;
+        }
+        Ok(())
+    })
+}
+
+type Found = (TailDocument, Vec<AlertDocument>);
+
+fn monitor_all(
+    tails: &Tails,
+    events: &[Event],
+    options: &MonitorOptions,
+    progress: Progress,
+) -> Result<Vec<Found>, Failure> {
+    let places = tails.places()?;
+    let bar = progress.bar(places.len(), "reading tails");
+    // One tail at a time on each thread: memory does not grow with the fleet's segments.
+    let read = places
+        .par_iter()
+        .map(|place| {
+            let (tail, deviations) = tails.deviations(place, options)?;
+            let found = monitor_tail(&tail, &deviations, events, options)
+                .map_err(|error| Failure::bad_file(Path::new(&tail), error));
+            bar.step();
+            found
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
+    bar.finish();
+    Ok(read.into_iter().flatten().collect())
 }
 
 fn monitor_tail(
-    folder: &Path,
-    path: &Path,
-    before_learning: BeforeLearning,
+    tail: &str,
+    deviations: &TailDeviations,
     events: &[Event],
     options: &MonitorOptions,
-) -> Result<Option<(TailDocument, Vec<AlertDocument>)>, Failure> {
-    let stored::StoredTail { tail, model, segments } = stored::read(folder, path)?;
-    let deviations = TailDeviations::new(&model, &segments, before_learning)
-        .map_err(|error| Failure::bad_file(path, error))?;
-    drop(segments);
-    let found = MonitoredTail::new(&tail, &deviations, events)
-        .map_err(|error| Failure::bad_file(path, error))?;
-    let Some(found) = found else {
-        tracing::warn!(tail, "no segment is inside the table: there is nothing to monitor");
+) -> Result<Option<Found>, SeriesError> {
+    let Some(found) = MonitoredTail::new(tail, deviations, events)? else {
+        tracing::warn!(
+            tail,
+            "no segment is inside the table{}: there is nothing to monitor",
+            options.since.map_or_else(String::new, |since| format!(" since {since}"))
+        );
         return Ok(None);
     };
     Ok(Some((found.document(options), found.alerts(options))))

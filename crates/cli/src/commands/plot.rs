@@ -158,6 +158,7 @@ fn of_model(model: ModelFile) -> TailResult {
             segments: Vec::new(),
             counts: TailCounts::default(),
             notes: Vec::new(),
+            curve: None,
         },
         Predicts::WholeModel,
     )
@@ -176,7 +177,14 @@ fn of_folder(folder: &Path, tail: Option<&str>) -> Result<TailResult, Failure> {
         Some(learnt) => learnt.tail.clone(),
         None => model.initial.aircraft().name().to_owned(),
     };
-    let data = TailData { tail, model, segments, counts: TailCounts::default(), notes: Vec::new() };
+    let data = TailData {
+        tail,
+        model,
+        segments,
+        counts: TailCounts::default(),
+        notes: Vec::new(),
+        curve: None,
+    };
     Ok(TailResult::adapted(data))
 }
 

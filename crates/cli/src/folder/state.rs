@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-pub(crate) use pipeline::folder_state::{FileState, NAME, State, TailState};
+pub(crate) use pipeline::folder_state::{DeviationsState, FileState, NAME, State, TailState};
 
 use crate::failure::Failure;
 use crate::files::{TEMPORARY, read_text};

@@ -33,6 +33,7 @@ fn store(folder: Folder, version: u32) -> Result<(), crate::failure::Failure> {
             model: folder.stage(&format!("models/{tail}.ron"), text("model").as_bytes())?,
             segments: folder.stage(&format!("segments/{tail}.csv"), text("segments").as_bytes())?,
             flights: folder.stage(&format!("flights/{tail}.csv"), text("flights").as_bytes())?,
+            deviations: None,
             summary: summary(tail),
         };
         tails.insert(tail.to_owned(), state);

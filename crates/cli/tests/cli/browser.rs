@@ -225,7 +225,8 @@ fn large_fleet(page: &Path, hostile: &str) -> Value {
             }
             let counts = TailCounts { flights: 12, flights_new: 12, samples: 900 };
             let notes = Vec::new();
-            TailResult::adapted(TailData { tail, model: model.clone(), segments, counts, notes })
+            let model = model.clone();
+            TailResult::adapted(TailData { tail, model, segments, counts, notes, curve: None })
         })
         .collect();
     let summary = Summary {

@@ -17,6 +17,10 @@ fn adapted(folder: &Path) -> PathBuf {
     output
 }
 
+fn reports() -> Vec<PathBuf> {
+    (1..=12).map(|flight| fixture(&format!("reports/{flight:04}.txt"))).collect()
+}
+
 fn monitor(folder: &Path, more: &[&str]) -> Ran {
     let mut arguments: Vec<std::ffi::OsString> = vec!["monitor".into(), folder.into()];
     arguments.extend(more.iter().map(Into::into));
@@ -95,6 +99,9 @@ fn alerts_set_the_exit_status_and_name_likely_causes() {
     assert!(printed.contains("likely: drag_factor, tsfc_factor"), "{printed}");
     monitor(&adapted, &["--alert", "deviation=50"]).expect(0);
     monitor(&adapted, &["--alert", "speed=1"]).expect(2).says("expected deviation=PCT");
+    monitor(&adapted, &["--since", "27/03/2019"]).expect(2).says("expected a date like 2026-03-02");
+    let none = monitor(&adapted, &["--since", "2029-01-01"]);
+    none.says("no segment is inside the table since 2029-01-01T00:00:00Z");
 }
 
 #[test]
@@ -136,4 +143,75 @@ fn months_and_costs_are_printed_as_asked_for() {
     assert!((number("fuel_kg_per_year") - 100.0 * number("fuel_kg_per_flight")).abs() < 1e-6);
     assert!((number("co2_kg_per_year") - 3.16 * number("fuel_kg_per_year")).abs() < 1e-6);
     assert!(cost["price_per_year"].is_null());
+}
+
+/// What `adapt` kept of each flight says what its segments say: a folder of a program that kept nothing gives the same documents.
+#[test]
+fn what_is_kept_of_flights_says_what_their_segments_say() {
+    for law in ["bayes", "paper"] {
+        let folder = tempfile::tempdir().unwrap();
+        let model = initial_model(folder.path());
+        let adapted = folder.path().join("adapted");
+        adapt(&model, &adapted, &[fixture("reports")], &["--law", law]).expect(0);
+        let all = |name: &str| {
+            let outputs = ["whole", "quick", "since"].map(|how| folder.path().join(name).join(how));
+            let more: [&[&str]; 3] = [&[], &["--quick"], &["--since", "2019-03-27"]];
+            for (output, more) in outputs.iter().zip(more) {
+                let arguments = [&["-o", output.to_str().unwrap()], more].concat();
+                monitor(&adapted, &arguments).expect(0);
+            }
+            assert_eq!(csv_columns(&outputs[2].join("flights.csv"))["flight"].len(), 6);
+            outputs.map(|output| bytes_below(&output))
+        };
+        let kept = all("kept");
+        std::fs::remove_file(adapted.join("STATE.ron")).unwrap();
+        std::fs::remove_dir_all(adapted.join("deviations")).unwrap();
+        assert!(all("segments") == kept, "law {law}");
+    }
+}
+
+/// A folder of a program that kept nothing is gone on with, and from then on has what its first flights show too.
+#[test]
+fn an_older_folder_learns_what_its_flights_showed() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let (whole, older) = (folder.path().join("whole"), folder.path().join("older"));
+    let reports = reports();
+    adapt(&model, &whole, &reports, &[]).expect(0);
+    adapt(&model, &older, &reports[..7], &[]).expect(0);
+    std::fs::remove_file(older.join("STATE.ron")).unwrap();
+    std::fs::remove_dir_all(older.join("deviations")).unwrap();
+    adapt(&model, &older, &reports[7..], &[]).expect(0);
+    let name = "deviations/SIM-01.csv";
+    assert!(bytes_below(&older)[name] == bytes_below(&whole)[name]);
+    assert_eq!(csv_columns(&whole.join(name))["flight"].len(), 12);
+}
+
+/// A flight that is forgotten is gone from what was kept, and what came after it is learnt without it.
+#[test]
+fn what_is_forgotten_shows_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let (all, without) = (folder.path().join("all"), folder.path().join("without"));
+    let mut reports = reports();
+    adapt(&model, &all, &reports, &[]).expect(0);
+    let name = "deviations/SIM-01.csv";
+    let flight = csv_columns(&all.join(name))["flight"][4].clone();
+    let (tail, flight) = (["--tail", "SIM-01"], ["--flight", flight.as_str()]);
+    let mut arguments: Vec<std::ffi::OsString> = vec!["forget".into(), all.clone().into()];
+    arguments.extend(tail.iter().chain(&flight).map(Into::into));
+    cruisefit(&arguments).expect(0);
+    reports.remove(4);
+    adapt(&model, &without, &reports, &[]).expect(0);
+    assert!(bytes_below(&all)[name] == bytes_below(&without)[name]);
+}
+
+#[test]
+fn what_was_changed_by_hand_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let path = adapted.join("deviations/SIM-01.csv");
+    let changed = std::fs::read_to_string(&path).unwrap().replacen(",1", ",2", 1);
+    std::fs::write(&path, changed).unwrap();
+    monitor(&adapted, &[]).expect(2).says("deviations/SIM-01.csv").says("SHA-256");
 }

@@ -85,7 +85,7 @@ fn a_hostile_tail_does_nothing_anywhere() {
             assert!(!text.contains("}<b>"), "{name}: markup of a name is text");
         }
     }
-    assert_eq!(tables, 2);
+    assert_eq!(tables, 3, "segments, flights, deviations");
     // What a planner's own column holds comes through `predict`.
     let points = scratch.path().join("points.csv");
     std::fs::write(

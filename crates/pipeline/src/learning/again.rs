@@ -40,11 +40,28 @@ impl<'m> LearningAgain<'m> {
         let (Some(begun), Some(learnt)) = (begin_again(model)?, &model.learnt) else {
             return Ok(None);
         };
-        let tables = match &learnt.law {
+        Self::from(&model.initial, begun.law, &learnt.law).map(Some)
+    }
+
+    /// Goes on from what a tail had learnt to what it has learnt now.
+    ///
+    /// # Errors
+    /// As for [`DragTables::new`].
+    pub(crate) fn from(
+        initial: &'m ExtendedModel,
+        begun: LawState,
+        now: &LawState,
+    ) -> Result<Self, LearningError> {
+        let tables = match now {
             LawState::Paper { .. } => None,
             LawState::Bayes { state, .. } => Some(DragTables::new(state)?),
         };
-        Ok(Some(Self { initial: &model.initial, law: begun.law, tables }))
+        Ok(Self { initial, law: begun, tables })
+    }
+
+    /// The model that the tail began with.
+    pub(crate) const fn initial(&self) -> &'m ExtendedModel {
+        self.initial
     }
 
     /// The drag table now.

@@ -286,9 +286,19 @@ impl MonitorDocument {
     /// As JSON, with a final line end.
     #[must_use]
     pub fn to_json(&self) -> Vec<u8> {
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text.into_bytes()
+        let mut text = Vec::new();
+        // Memory takes everything.
+        let _ = self.write_json(&mut text);
+        text
+    }
+
+    /// Writes the same; of a large fleet it is hundreds of megabytes.
+    ///
+    /// # Errors
+    /// Those of what is written to.
+    pub fn write_json(&self, to: &mut dyn std::io::Write) -> std::io::Result<()> {
+        serde_json::to_writer_pretty(&mut *to, self)?;
+        to.write_all(b"\n")
     }
 }
 

@@ -104,7 +104,10 @@ pub fn read_events(bytes: &[u8]) -> Result<Vec<Event>, EventsError> {
     Ok(events)
 }
 
-fn instant(text: &str) -> Option<Timestamp> {
+/// An instant as events have it: with its offset (`2026-03-02T10:00:00Z`), or a date, whose day begins at 00:00 UTC; `None` for
+/// anything else.
+#[must_use]
+pub fn instant(text: &str) -> Option<Timestamp> {
     if let Ok(time) = text.parse() {
         return Some(time);
     }

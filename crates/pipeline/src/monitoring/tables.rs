@@ -12,13 +12,30 @@ pub struct NamedTable {
     pub columns: Columns,
 }
 
+/// Name of the table of flights.
+pub const FLIGHTS: &str = "flights";
+
 /// All tables of a run.
 #[must_use]
 pub fn tables(document: &MonitorDocument) -> Vec<NamedTable> {
+    let mut tables = tables_but_flights(document);
+    let columns = flights(&document.tails, engines_of(document));
+    tables.insert(2, NamedTable { name: FLIGHTS, columns });
+    tables
+}
+
+/// The table of flights tail by tail, with the same columns throughout: of a large fleet it is half a million rows.
+pub fn flights_by_tail(document: &MonitorDocument) -> impl Iterator<Item = Columns> {
+    let engines = engines_of(document);
+    document.tails.iter().map(move |tail| flights(std::slice::from_ref(tail), engines))
+}
+
+/// All tables but that of flights.
+#[must_use]
+pub fn tables_but_flights(document: &MonitorDocument) -> Vec<NamedTable> {
     [
         ("tails", tails(document)),
         ("months", months(document)),
-        ("flights", flights(document)),
         ("changes", changes(document)),
         ("events", events(document)),
         ("fleet", fleet(document)),
@@ -44,11 +61,10 @@ fn figure<'a, R: 'a>(
 }
 
 fn rows_of<'a, T>(
-    document: &'a MonitorDocument,
+    tails: &'a [TailDocument],
     of: impl Fn(&'a TailDocument) -> &'a [T],
 ) -> Vec<(&'a str, &'a T)> {
-    let tails = document.tails.iter();
-    tails.flat_map(|tail| of(tail).iter().map(|row| (tail.tail.as_str(), row))).collect()
+    tails.iter().flat_map(|tail| of(tail).iter().map(|row| (tail.tail.as_str(), row))).collect()
 }
 
 fn tails(document: &MonitorDocument) -> Columns {
@@ -100,7 +116,7 @@ fn tails(document: &MonitorDocument) -> Columns {
 }
 
 fn months(document: &MonitorDocument) -> Columns {
-    let rows = rows_of(document, |tail| &tail.months);
+    let rows = rows_of(&document.tails, |tail| &tail.months);
     let mut columns = Columns::default();
     columns.text("tail", rows.iter().map(|(tail, _)| (*tail).to_owned()));
     columns.text("month", rows.iter().map(|(_, month)| month.month.clone()));
@@ -128,8 +144,14 @@ fn months(document: &MonitorDocument) -> Columns {
     columns
 }
 
-fn flights(document: &MonitorDocument) -> Columns {
-    let rows = rows_of(document, |tail| &tail.flights);
+/// The largest number of engines that a flight of the document has recorded apart.
+fn engines_of(document: &MonitorDocument) -> usize {
+    let flights = document.tails.iter().flat_map(|tail| &tail.flights);
+    flights.map(|flight| flight.engines_percent.len()).max().unwrap_or(0)
+}
+
+fn flights(tails: &[TailDocument], engines: usize) -> Columns {
+    let rows = rows_of(tails, |tail| &tail.flights);
     let mut columns = Columns::default();
     columns.text("tail", rows.iter().map(|(tail, _)| (*tail).to_owned()));
     columns.text("flight", rows.iter().map(|(_, flight)| flight.flight.clone()));
@@ -152,7 +174,6 @@ fn flights(document: &MonitorDocument) -> Columns {
         "specific_range_deviation_percent",
         rows.iter().map(|(_, f)| Some(f.specific_range_deviation_percent)),
     );
-    let engines = rows.iter().map(|(_, flight)| flight.engines_percent.len()).max().unwrap_or(0);
     for engine in 0..engines {
         columns.number(
             format!("engine_{}_percent", engine + 1),
@@ -164,7 +185,7 @@ fn flights(document: &MonitorDocument) -> Columns {
 }
 
 fn changes(document: &MonitorDocument) -> Columns {
-    let rows = rows_of(document, |tail| &tail.changes);
+    let rows = rows_of(&document.tails, |tail| &tail.changes);
     let mut columns = Columns::default();
     columns.text("tail", rows.iter().map(|(tail, _)| (*tail).to_owned()));
     columns.text(
@@ -181,7 +202,7 @@ fn changes(document: &MonitorDocument) -> Columns {
 }
 
 fn events(document: &MonitorDocument) -> Columns {
-    let rows = rows_of(document, |tail| &tail.events);
+    let rows = rows_of(&document.tails, |tail| &tail.events);
     let mut columns = Columns::default();
     columns.text("tail", rows.iter().map(|(tail, _)| (*tail).to_owned()));
     columns.text("time", rows.iter().map(|(_, event)| event.time.clone()));

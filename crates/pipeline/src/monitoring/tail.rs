@@ -6,16 +6,17 @@ use flight::Timestamp;
 use monitor::airbus;
 use monitor::cost::{Cost, CostFactors, excess_fuel_kg};
 use monitor::{
-    AlertRule, ChangeBeliefs, Estimate, FlightDeviation, History, Month, Series, SeriesError,
-    months, years_between,
+    AlertRule, ChangeBeliefs, Estimate, FlightDeviation, History, Month, Noise, Series,
+    SeriesError, months, weighted_mean_percent, years_between,
 };
 
-use super::deviations::{BeforeLearning, MonitoredFlight, ReferenceConditions, TailDeviations};
+use super::deviations::{BeforeLearning, TailDeviations};
 use super::document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure,
     FlightDocument, MonthDocument, ReferenceDocument, TailDocument,
 };
 use super::events::Event;
+use super::flights::{MeanConditions, MonitoredFlight};
 use crate::statistics::ErrorStatistics;
 use crate::summary::counted;
 
@@ -28,12 +29,16 @@ pub struct MonitorOptions {
     pub basic_performance_factor_percent: Option<f64>,
     /// Rules.
     pub rules: Vec<AlertRule>,
+    /// Whether deviations by the model before it learnt each flight are wanted.
+    pub before_learning: BeforeLearning,
+    /// Only flights that began at or after this instant.
+    pub since: Option<Timestamp>,
 }
 
 impl MonitorOptions {
     /// What a run was asked for in words, for the head of its page.
     #[must_use]
-    pub fn in_words(&self, events: usize, before_learning: BeforeLearning) -> Vec<String> {
+    pub fn in_words(&self, events: usize) -> Vec<String> {
         let mut told = vec![match events {
             0 => "no events given".to_owned(),
             events => format!("{} given", counted(events, "event")),
@@ -51,7 +56,8 @@ impl MonitorOptions {
         for (what, value, unit) in figures {
             told.extend(value.map(|value| format!("{what} {value} {unit}").trim().to_owned()));
         }
-        if before_learning == BeforeLearning::LeaveOut {
+        told.extend(self.since.map(|since| format!("flights since {since}")));
+        if self.before_learning == BeforeLearning::LeaveOut {
             told.push("without the deviation by the model before it learnt a flight".to_owned());
         }
         told
@@ -65,11 +71,12 @@ pub struct MonitoredTail<'a> {
     aircraft_type: &'a str,
     model: &'a str,
     flights: Vec<&'a MonitoredFlight>,
-    reference: ReferenceConditions,
+    reference: MeanConditions,
     events: Vec<&'a Event>,
     series: Series,
     history: History,
-    before_learning: Option<(Series, History)>,
+    /// Deviations with the flights' weights; what changed is read from the normalised ones.
+    before_learning: Option<(Series, Vec<f64>)>,
     engines: Vec<(Series, History)>,
 }
 
@@ -87,20 +94,30 @@ impl<'a> MonitoredTail<'a> {
         let events: Vec<&Event> = events.iter().filter(|event| event.tail == tail).collect();
         let times: Vec<Timestamp> = events.iter().map(|event| event.time).collect();
         let flights: Vec<&MonitoredFlight> =
-            deviations.flights.iter().filter(|flight| flight.normalised.is_some()).collect();
-        let read = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>| {
+            deviations.flights.iter().filter(|flight| flight.learnt.is_some()).collect();
+        let series = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>| {
             let shown: Option<Vec<FlightDeviation>> =
                 flights.iter().map(|flight| of(flight)).collect();
-            let Some(shown) = shown else { return Ok(None) };
-            let series = Series::new(shown)?;
+            shown.map(Series::new).transpose()
+        };
+        let read = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>| {
+            let Some(series) = series(of)? else { return Ok(None) };
             Ok(History::fit(&series, &times, &beliefs).map(|history| (series, history)))
         };
-        let Some((series, history)) = read(&|flight| flight.normalised)? else { return Ok(None) };
-        let before_learning = read(&|flight| flight.before_learning)?;
+        let normalised =
+            |of: Option<FlightDeviation>| of.map(|of| of.raised(deviations.level_percent));
+        let Some((series_of_all, history)) = read(&|flight| normalised(flight.learnt))? else {
+            return Ok(None);
+        };
+        let before_learning =
+            series(&|flight| Some(flight.before_learning?.deviation))?.map(|series| {
+                let weights = Noise::estimate(&series).weights(&series);
+                (series, weights)
+            });
         let count = flights.iter().map(|flight| flight.engines.len()).min().unwrap_or(0);
         let mut engines = Vec::with_capacity(count);
         for engine in 0..count {
-            engines.extend(read(&|flight| flight.engines.get(engine).copied())?);
+            engines.extend(read(&|flight| normalised(flight.engines.get(engine).copied()))?);
         }
         let reference = deviations.reference;
         Ok(Some(Self {
@@ -110,7 +127,7 @@ impl<'a> MonitoredTail<'a> {
             flights,
             reference,
             events,
-            series,
+            series: series_of_all,
             history,
             before_learning,
             engines,
@@ -172,8 +189,8 @@ impl<'a> MonitoredTail<'a> {
     }
 
     fn before_learning_mean(&self, flights: Range<usize>) -> Option<Figure> {
-        let (series, history) = self.before_learning.as_ref()?;
-        history.mean_percent(series, flights).map(Figure::from)
+        let (series, weights) = self.before_learning.as_ref()?;
+        weighted_mean_percent(series, weights, flights).map(Figure::from)
     }
 
     fn fuel_flow_kg_s(&self, deviation_percent: f64) -> f64 {
@@ -320,7 +337,7 @@ impl<'a> MonitoredTail<'a> {
             outside_table: flight.outside_table,
             deviation_percent: Estimate { value: percent, deviation: variance.sqrt() }.into(),
             initial_deviation_percent: of(flight.initial).unwrap_or(percent),
-            before_learning_percent: of(flight.before_learning),
+            before_learning_percent: of(flight.before_learning.map(|known| known.deviation)),
             level_percent: self.history.levels.level_percent(index, years).into(),
             fuel_flow_kg_s: self.fuel_flow_kg_s(percent),
             specific_range_m_kg: self.specific_range_m_kg(percent),
@@ -335,7 +352,7 @@ impl<'a> MonitoredTail<'a> {
     }
 }
 
-fn reference_document(reference: &ReferenceConditions) -> ReferenceDocument {
+fn reference_document(reference: &MeanConditions) -> ReferenceDocument {
     ReferenceDocument {
         pressure_altitude_m: reference.pressure_altitude_m,
         mach: reference.mach,

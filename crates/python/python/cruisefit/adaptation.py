@@ -191,6 +191,7 @@ class Adaptation(_Run):
         flights_per_year: float | None = None,
         basic_performance_factor_percent: float | None = None,
         quick: bool = False,
+        since: str | None = None,
         threads: int | None = None,
     ) -> Monitoring:
         """What changed on these tails, when and by how much: ``cruisefit monitor``.
@@ -203,6 +204,7 @@ class Adaptation(_Run):
             flights_per_year: Flights a year; as many as were recorded without it.
             basic_performance_factor_percent: Basic factor of the flight management system, in per cent.
             quick: Leave out the deviation by the model before it learnt each flight.
+            since: Only flights that began on or after this date (``2026-03-02``, or an instant with its offset).
             threads: Threads to use; all processors without it.
 
         Raises:
@@ -216,6 +218,7 @@ class Adaptation(_Run):
             "flights_per_year": flights_per_year,
             "basic_performance_factor_percent": basic_performance_factor_percent,
             "quick": quick,
+            "since": since,
             "threads": threads,
         }
         return Monitoring(_native.monitor_tails(self._native, asked))

@@ -12,6 +12,7 @@ use pipeline::known_flights::KnownFlights;
 use pipeline::learning::LearningError;
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::models::check_engines;
+use pipeline::monitoring::{flights_of, flights_to_csv};
 use pipeline::plausibility::{self, Absurd};
 use pipeline::segments_table;
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ use crate::commands::tell_serious;
 use crate::failure::{Failure, RefusedReport};
 use crate::files::file_stem_of_tail;
 use crate::folder::Folder;
-use crate::folder::state::TailState;
+use crate::folder::state::{DeviationsState, TailState};
 use crate::reading::heads::Head;
 use crate::reading::{Buffers, FlightRead, Reading, Source};
 use crate::terminal::neutral;
@@ -301,6 +302,9 @@ pub(crate) fn stage(
         .map_err(|error| Failure::unwritable(Path::new(&model_file), error))?;
     let engines = result.model.initial.aircraft().engines();
     let segments = segments_table::table(&result.rows, engines).to_csv();
+    let deviations =
+        flights_of(result).map_err(|error| Failure::bad_file(Path::new(&model_file), error))?;
+    let deviations = flights_to_csv(&deviations);
     let mut summary = result.summary.clone();
     summary.flights_new = 0;
     Ok(TailState {
@@ -308,6 +312,11 @@ pub(crate) fn stage(
         model: folder.stage(&model_file, model.as_bytes())?,
         segments: folder.stage(&format!("segments/{stem}.csv"), &segments)?,
         flights: folder.stage(&format!("flights/{stem}.csv"), flights)?,
+        deviations: Some(DeviationsState {
+            file: folder.stage(&format!("deviations/{stem}.csv"), &deviations)?,
+            aircraft_type: result.model.initial.aircraft().type_code().to_owned(),
+            model: result.model.told(),
+        }),
         summary,
     })
 }

@@ -4,27 +4,114 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use flight::Segment;
+use pipeline::monitoring::{BeforeLearning, MonitorOptions, TailDeviations};
+use pipeline::segments_table;
 
 use crate::failure::Failure;
 use crate::files::file_stem_of_tail;
-use crate::models::read_model;
-use pipeline::model_file::ModelFile;
-use pipeline::segments_table;
+use crate::folder::deviations_of;
+use crate::folder::state::{self, State, TailState};
+use crate::models::{model_of_bytes, read_model};
 
-/// A tail of the folder.
+/// The tails of a folder.
 #[derive(Debug)]
-pub(crate) struct StoredTail {
-    pub(crate) tail: String,
-    pub(crate) model: ModelFile,
-    /// Segments of the flights in its ledger, in the order in which they were learnt.
-    pub(crate) segments: Vec<Segment>,
+pub(crate) struct Tails {
+    folder: PathBuf,
+    /// What the folder holds; `None` of a program that kept no state.
+    state: Option<State>,
 }
 
-/// The model files of a folder, in order.
-///
-/// # Errors
-/// A folder that cannot be read or holds no tail.
-pub(crate) fn tails(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+/// Where a tail is found.
+#[derive(Debug)]
+pub(crate) enum Place<'a> {
+    /// In the state, by its name.
+    State(&'a State, &'a str, &'a TailState),
+    /// The model of a folder without a state.
+    Model(PathBuf),
+}
+
+impl Tails {
+    /// Looks what a folder holds.
+    ///
+    /// # Errors
+    /// A state that cannot be read.
+    pub(crate) fn of(folder: &Path) -> Result<Self, Failure> {
+        Ok(Self { folder: folder.to_owned(), state: state::read(folder)? })
+    }
+
+    /// Whether the folder holds something newer by now: files may have gone while they were read.
+    pub(crate) fn is_out_of_date(&self) -> bool {
+        let generation = |state: &Option<State>| state.as_ref().map(|state| state.generation);
+        state::read(&self.folder)
+            .is_ok_and(|newer| newer.is_some() && generation(&newer) != generation(&self.state))
+    }
+
+    /// The tails, in order.
+    ///
+    /// # Errors
+    /// A folder that cannot be read or holds no tail.
+    pub(crate) fn places(&self) -> Result<Vec<Place<'_>>, Failure> {
+        let places: Vec<Place<'_>> = match &self.state {
+            Some(state) => {
+                state.tails.iter().map(|(tail, entry)| Place::State(state, tail, entry)).collect()
+            }
+            None => models_below(&self.folder)?.into_iter().map(Place::Model).collect(),
+        };
+        if places.is_empty() {
+            return Err(Failure::bad_file(
+                &self.folder,
+                "found no model in models/, expected a folder that `cruisefit adapt` wrote",
+            ));
+        }
+        Ok(places)
+    }
+
+    /// A tail's name and what its flights show.
+    ///
+    /// # Errors
+    /// A file that cannot be read or was damaged.
+    pub(crate) fn deviations(
+        &self,
+        place: &Place<'_>,
+        options: &MonitorOptions,
+    ) -> Result<(String, TailDeviations), Failure> {
+        match place {
+            Place::State(state, tail, entry) => {
+                Ok(((*tail).to_owned(), self.of_state(state, entry, options)?))
+            }
+            Place::Model(path) => of_model(&self.folder, path, options),
+        }
+    }
+
+    fn of_state(
+        &self,
+        state: &State,
+        entry: &TailState,
+        options: &MonitorOptions,
+    ) -> Result<TailDeviations, Failure> {
+        if let Some(of) = &entry.deviations {
+            let mut flights = deviations_of(state, &self.folder, of, options.since)?;
+            if options.before_learning == BeforeLearning::LeaveOut {
+                for flight in &mut flights {
+                    flight.before_learning = None;
+                }
+            }
+            return Ok(TailDeviations::of_flights(&of.aircraft_type, &of.model, flights));
+        }
+        let path = self.folder.join(&entry.model.file);
+        let model = model_of_bytes(&path, &state::bytes_of(state, &self.folder, &entry.model)?)?;
+        let table = self.folder.join(&entry.segments.file);
+        let bytes = state::bytes_of(state, &self.folder, &entry.segments)?;
+        let segments =
+            segments_table::read(&bytes).map_err(|error| Failure::bad_file(&table, error))?;
+        TailDeviations::new(&model, &segments, options.before_learning)
+            .map(|deviations| deviations.since(options.since))
+            .map_err(|error| Failure::bad_file(&path, error))
+    }
+}
+
+/// The model files of a folder without a state, in order.
+fn models_below(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let models = folder.join("models");
     let mut paths = Vec::new();
     // A folder without `models/` is one that another command wrote.
@@ -39,34 +126,31 @@ pub(crate) fn tails(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         }
     }
     paths.sort();
-    if paths.is_empty() {
-        return Err(Failure::bad_file(
-            folder,
-            "found no model in models/, expected a folder that `cruisefit adapt` wrote",
-        ));
-    }
     Ok(paths)
 }
 
-/// Reads one tail.
-///
-/// # Errors
-/// A model or segment file that cannot be read or was damaged.
-pub(crate) fn read(folder: &Path, path: &Path) -> Result<StoredTail, Failure> {
+/// A tail of a folder without a state.
+fn of_model(
+    folder: &Path,
+    path: &Path,
+    options: &MonitorOptions,
+) -> Result<(String, TailDeviations), Failure> {
     let model = read_model(path)?;
     let Some(learnt) = &model.learnt else {
         return Err(Failure::bad_file(path, "a model that has learnt nothing"));
     };
     let tail = learnt.tail.clone();
-    let path = folder.join("segments").join(format!("{}.csv", file_stem_of_tail(&tail)));
-    let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-    let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
+    let table = folder.join("segments").join(format!("{}.csv", file_stem_of_tail(&tail)));
+    let bytes = std::fs::read(&table).map_err(|error| Failure::unreadable(&table, error))?;
+    let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&table, error))?;
     // A run that was interrupted may have left segments of flights that the ledger does not list.
     let known: BTreeSet<(&str, &str)> =
         learnt.ledger.iter().map(|entry| (entry.flight.as_str(), entry.start.as_str())).collect();
     let is_known = |segment: &Segment| {
         known.contains(&(segment.identity.flight.as_str(), &segment.identity.start.to_string()))
     };
-    let segments = all.into_iter().filter(is_known).collect();
-    Ok(StoredTail { tail, model, segments })
+    let segments: Vec<Segment> = all.into_iter().filter(is_known).collect();
+    let deviations = TailDeviations::new(&model, &segments, options.before_learning)
+        .map_err(|error| Failure::bad_file(path, error))?;
+    Ok((tail, deviations.since(options.since)))
 }
