@@ -149,10 +149,14 @@ impl Folder {
             segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
         let flights = flights_of(&self.path, &self.state, tail, entry)?;
         let curve = match &entry.deviations {
-            Some(of) => {
-                let flights = deviations_of(&self.state, &self.path, of, None)?;
-                Some(curve_of_flights(&flights))
-            }
+            Some(of) => match deviations_of(&self.state, &self.path, of, None) {
+                Ok(flights) => Some(curve_of_flights(&flights)),
+                // Nothing is lost with it: all that it holds follows from model and segments.
+                Err(failure) => {
+                    tracing::warn!("{failure}; it is made anew");
+                    None
+                }
+            },
             None => None,
         };
         Ok(StoredTail { model, segments, flights, curve })

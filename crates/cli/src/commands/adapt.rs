@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     folder.removes(pages);
     folder.commit(states)?;
     let text = format!(
-        "{}Written to {}: models/, segments/, flights/, summary.json, report.html\n",
+        "{}Written to {}: models/, segments/, flights/, deviations/, summary.json, report.html\n",
         summary.to_text(),
         show(&arguments.output)
     );

@@ -206,12 +206,25 @@ fn what_is_forgotten_shows_nothing() {
     assert!(bytes_below(&all)[name] == bytes_below(&without)[name]);
 }
 
+/// Nothing is lost with the table of what flights show: it is told that it is damaged, what it held follows from model and
+/// segments, and the next flight that is learnt puts it right.
 #[test]
-fn what_was_changed_by_hand_is_refused_by_name() {
+fn a_damaged_table_of_flights_is_told_and_made_anew() {
     let folder = tempfile::tempdir().unwrap();
-    let adapted = adapted(folder.path());
-    let path = adapted.join("deviations/SIM-01.csv");
-    let changed = std::fs::read_to_string(&path).unwrap().replacen(",1", ",2", 1);
-    std::fs::write(&path, changed).unwrap();
-    monitor(&adapted, &[]).expect(2).says("deviations/SIM-01.csv").says("SHA-256");
+    let model = initial_model(folder.path());
+    let (sound, damaged) = (folder.path().join("sound"), folder.path().join("damaged"));
+    let name = "deviations/SIM-01.csv";
+    for output in [&sound, &damaged] {
+        adapt(&model, output, &reports()[..9], &[]).expect(0);
+    }
+    let changed = std::fs::read_to_string(damaged.join(name)).unwrap().replacen(",1", ",2", 1);
+    std::fs::write(damaged.join(name), changed).unwrap();
+    let told = monitor(&damaged, &["--json"]).expect(0);
+    told.says(name).says("SHA-256").says("segments are read instead");
+    assert_eq!(told.stdout, monitor(&sound, &["--json"]).expect(0).stdout);
+    for output in [&sound, &damaged] {
+        let ran = adapt(&model, output, &reports(), &[]).expect(0);
+        assert_eq!(ran.stderr.contains("it is made anew"), output == &damaged, "{}", ran.stderr);
+    }
+    assert!(bytes_below(&sound) == bytes_below(&damaged));
 }

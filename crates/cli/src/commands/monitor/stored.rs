@@ -90,13 +90,16 @@ impl Tails {
         options: &MonitorOptions,
     ) -> Result<TailDeviations, Failure> {
         if let Some(of) = &entry.deviations {
-            let mut flights = deviations_of(state, &self.folder, of, options.since)?;
-            if options.before_learning == BeforeLearning::LeaveOut {
-                for flight in &mut flights {
-                    flight.before_learning = None;
+            match deviations_of(state, &self.folder, of, options.since) {
+                Ok(mut flights) => {
+                    if options.before_learning == BeforeLearning::LeaveOut {
+                        flights.iter_mut().for_each(|flight| flight.before_learning = None);
+                    }
+                    return Ok(TailDeviations::of_flights(&of.aircraft_type, &of.model, flights));
                 }
+                // All that it holds follows from model and segments, more slowly.
+                Err(failure) => tracing::warn!("{failure}; model and segments are read instead"),
             }
-            return Ok(TailDeviations::of_flights(&of.aircraft_type, &of.model, flights));
         }
         let path = self.folder.join(&entry.model.file);
         let model = model_of_bytes(&path, &state::bytes_of(state, &self.folder, &entry.model)?)?;
