@@ -382,15 +382,19 @@ fn flights_of(
         .map_err(|reason| Failure::bad_file(&folder.join(&entry.flights.file), reason))
 }
 
-/// Files in `models/` and `segments/` that the state does not name.
-fn strangers(folder: &Path, state: &State) -> Vec<PathBuf> {
+/// Files in `models/`, `segments/` and `deviations/` that the state does not name.
+pub(crate) fn strangers(folder: &Path, state: &State) -> Vec<PathBuf> {
     let named: BTreeSet<PathBuf> = state
         .tails
         .values()
-        .flat_map(|tail| [&tail.model, &tail.segments].map(|file| folder.join(&file.file)))
+        .flat_map(|tail| {
+            let deviations = tail.deviations.as_ref().map(|of| &of.file);
+            [&tail.model, &tail.segments].into_iter().chain(deviations)
+        })
+        .map(|file| folder.join(&file.file))
         .collect();
     let mut strangers = Vec::new();
-    for name in ["models", "segments"] {
+    for name in ["models", "segments", "deviations"] {
         let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
         for path in entries.flatten().map(|entry| entry.path()) {
             let file = path.file_name().unwrap_or_default().to_string_lossy();

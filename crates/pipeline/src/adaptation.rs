@@ -169,13 +169,12 @@ impl Work {
         stored: Option<StoredTail>,
         new: Vec<FlightRead>,
     ) -> Result<Option<StoredTail>, LearningError> {
-        let mut stored = match stored {
-            Some(stored) => stored,
-            None => {
-                let model = start.fresh(tail)?;
-                let curve = Some(LearningCurve::new());
-                StoredTail { model, segments: Vec::new(), flights: Vec::new(), curve }
-            }
+        let mut stored = if let Some(stored) = stored {
+            stored
+        } else {
+            let model = start.fresh(tail)?;
+            let curve = Some(LearningCurve::new());
+            StoredTail { model, segments: Vec::new(), flights: Vec::new(), curve }
         };
         let mut learning = NewFlights::after(&stored.model);
         self.notes.extend(stored.model.note_of_effects());

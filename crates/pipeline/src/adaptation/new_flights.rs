@@ -44,8 +44,7 @@ impl NewFlights {
         let flights = self.counts.iter().enumerate().map(|(place, count)| {
             let (recorded, others) = rest.split_at(*count);
             rest = others;
-            let moved = self.moved.get(&place);
-            (recorded, moved.map_or(Cow::Borrowed(recorded), |moved| Cow::Borrowed(&moved[..])))
+            (recorded, self.moved.get(&place).map_or(recorded, Vec::as_slice))
         });
         let again = LearningAgain::from(&model.initial, begun, &now.law)?;
         continue_curve(&mut curve, again, flights)?;

@@ -1,6 +1,5 @@
 //! How far off a model was on each flight before it learnt it.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use flight::{Segment, Timestamp};
@@ -55,7 +54,7 @@ pub fn curve_of(model: &ModelFile, segments: &[Segment]) -> Result<LearningCurve
                     && entry.segments == flight.len() as u64
             })
         });
-    continue_curve(&mut curve, again, learnt.map(|flight| (flight, Cow::Borrowed(flight))))?;
+    continue_curve(&mut curve, again, learnt.map(|flight| (flight, flight)))?;
     Ok(curve)
 }
 
@@ -67,7 +66,7 @@ pub fn curve_of(model: &ModelFile, segments: &[Segment]) -> Result<LearningCurve
 pub(crate) fn continue_curve<'s>(
     curve: &mut LearningCurve,
     mut again: LearningAgain<'_>,
-    flights: impl Iterator<Item = (&'s [Segment], Cow<'s, [Segment]>)>,
+    flights: impl Iterator<Item = (&'s [Segment], &'s [Segment])>,
 ) -> Result<(), LearningError> {
     for (recorded, as_learnt) in flights {
         let Some(first) = recorded.first() else { continue };
@@ -76,7 +75,7 @@ pub(crate) fn continue_curve<'s>(
         if let Some(forecast) = forecast(start, recorded, &predicted) {
             curve.insert((start, first.identity.flight.clone()), forecast);
         }
-        again.learn(&as_learnt)?;
+        again.learn(as_learnt)?;
     }
     Ok(())
 }

@@ -9,8 +9,8 @@ use pipeline::segments_table;
 
 use crate::failure::Failure;
 use crate::files::file_stem_of_tail;
-use crate::folder::deviations_of;
 use crate::folder::state::{self, State, TailState};
+use crate::folder::{deviations_of, strangers};
 use crate::models::{model_of_bytes, read_model};
 
 /// The tails of a folder.
@@ -36,7 +36,11 @@ impl Tails {
     /// # Errors
     /// A state that cannot be read.
     pub(crate) fn of(folder: &Path) -> Result<Self, Failure> {
-        Ok(Self { folder: folder.to_owned(), state: state::read(folder)? })
+        let state = state::read(folder)?;
+        for stranger in state.iter().flat_map(|state| strangers(folder, state)) {
+            tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
+        }
+        Ok(Self { folder: folder.to_owned(), state })
     }
 
     /// Whether the folder holds something newer by now: files may have gone while they were read.
@@ -93,7 +97,9 @@ impl Tails {
             match deviations_of(state, &self.folder, of, options.since) {
                 Ok(mut flights) => {
                     if options.before_learning == BeforeLearning::LeaveOut {
-                        flights.iter_mut().for_each(|flight| flight.before_learning = None);
+                        for flight in &mut flights {
+                            flight.before_learning = None;
+                        }
                     }
                     return Ok(TailDeviations::of_flights(&of.aircraft_type, &of.model, flights));
                 }
