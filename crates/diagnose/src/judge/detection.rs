@@ -3,6 +3,7 @@
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
 use crate::judge::gap::{is_large, is_vague};
+use crate::judge::noise_floors::held_out_smooth;
 use crate::judge::posterior::{Posterior, id_of};
 use crate::judge::table::TableFinding;
 use crate::judge::verdict::{beside, closed, credit};
@@ -84,9 +85,23 @@ pub(crate) fn detect(
     let stands_out = something
         && !own_error
         && is_large(system, gap, top)
-        && !is_vague(gap, outside, top, taught && makes_worse(unseen));
+        && !is_vague(gap, outside, top, taught && makes_worse(unseen))
+        && !(taught && is_unnamed(outside, named) && is_unpredictable(problem, own));
     let detected = input.is_real && (table.is_some() || stands_out);
     Detection { detected, table: table.filter(|_| detected), smooth_term }
+}
+
+/// Whether no name would be reported.
+fn is_unnamed(outside: &Outside, named: f64) -> bool {
+    outside.probability > OUTSIDE_PROBABILITY
+        || named * (1.0 - outside.probability) <= MORE_PROBABLE_THAN_NOT
+}
+
+/// Whether smooth functions that were fitted to other flights do not surely predict a flight better than no gap at all does
+/// `[diagnosis.53]`: what errs anew on every flight is no property of the aircraft.
+fn is_unpredictable(problem: Problem<'_>, own: &Shrinkage) -> bool {
+    held_out_smooth(problem.system)
+        .is_some_and(|fitted| !own.with_change(problem.system, &fitted).closes())
 }
 
 /// A guide's table with less probability where a table that was fitted to other flights may close less than half of the gap:

@@ -2,6 +2,7 @@
 
 use crate::judge::closure::Shrinkage;
 use crate::library::Library;
+use crate::priors::SMOOTH_AMPLITUDES;
 use crate::search::folds::fold_of;
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
@@ -55,24 +56,49 @@ pub(crate) fn held_out_floor(system: &WhitenedSystem<'_>, library: &Library) -> 
         .chain(design.nuisance.clone().map(|column| (column, 1.0)))
         .chain(design.smooth.clone().map(|column| (column, FLEXIBLE_SMOOTH)))
         .unzip();
-    let mut sum = 0.0;
+    let fitted = held_out(system, &columns, &deviations)?;
+    let rows = system.data.segments.iter().zip(&fitted);
+    let sum: f64 = rows.map(|(row, fitted)| (row.residual[0] - fitted).powi(2)).sum();
+    Some(sum / fitted.len() as f64)
+}
+
+/// What smooth functions of all variables, as small as the least smooth discrepancy, say of each segment's ln fuel flow where
+/// they were not fitted to the segment's fold of flights. `None` where they cannot be fitted.
+pub(crate) fn held_out_smooth(system: &WhitenedSystem<'_>) -> Option<Vec<f64>> {
+    let design = system.design;
+    let (columns, deviations): (Vec<usize>, Vec<f64>) = design
+        .nuisance
+        .clone()
+        .map(|column| (column, 1.0))
+        .chain(design.smooth.clone().map(|column| (column, SMOOTH_AMPLITUDES[1])))
+        .unzip();
+    held_out(system, &columns, &deviations)
+}
+
+/// A fit of these columns with these prior standard deviations: what it says of each segment, fitted without its fold.
+fn held_out(
+    system: &WhitenedSystem<'_>,
+    columns: &[usize],
+    deviations: &[f64],
+) -> Option<Vec<f64>> {
+    let design = system.design;
+    let mut all = vec![0.0; system.data.segments.len()];
     for fold in 0..CLOSURE_FOLDS {
         let gram = system.gram(Some(fold));
-        let sizes = gram.fit(&columns, &deviations, design.residual())?;
+        let sizes = gram.fit(columns, deviations, design.residual())?;
         for (index, flight) in system.data.flights.iter().enumerate() {
             if fold_of(index) != fold {
                 continue;
             }
             let rows = design.fuel_flow(system.data, flight);
-            for row in 0..rows.nrows() {
-                let fitted: f64 = columns
+            for (row, segment) in flight.segments.clone().enumerate() {
+                all[segment] = columns
                     .iter()
                     .enumerate()
                     .map(|(k, &column)| rows[(row, column)] * sizes[(k, 0)])
                     .sum();
-                sum += (rows[(row, design.residual())] - fitted).powi(2);
             }
         }
     }
-    Some(sum / system.data.segments.len() as f64)
+    Some(all)
 }
