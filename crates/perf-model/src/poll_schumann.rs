@@ -211,3 +211,19 @@ pub fn relative_efficiency(relative_thrust: f64) -> f64 {
         1.0 + SIGMA + x * (-2.0 * SIGMA + SIGMA * x)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The source has the two polynomials meet at 0.3 with one slope, and their highest value, 1, at a relative thrust of 1.
+    #[test]
+    fn the_two_polynomials_meet() {
+        let slope = |x: f64| (relative_efficiency(x + 1e-6) - relative_efficiency(x - 1e-6)) / 2e-6;
+        let (below, above) = (relative_efficiency(0.3 - 1e-9), relative_efficiency(0.3));
+        assert!((below - above).abs() < 1e-4, "{below} {above}");
+        assert!((slope(0.3 - 2e-6) - slope(0.3 + 2e-6)).abs() < 1e-3);
+        assert!((relative_efficiency(1.0) - 1.0).abs() < 1e-12 && slope(1.0).abs() < 1e-6);
+        assert!(relative_efficiency(0.0).abs() < 1e-12);
+    }
+}

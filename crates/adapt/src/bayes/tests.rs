@@ -355,6 +355,31 @@ fn outlier_weights_are_the_fixed_point() {
     assert!(others.into_iter().all(|(_, weight)| *weight > 3.0 * flight_weights.weights[1]));
 }
 
+/// Of many points as of one, on grids with more of either variable; and the share of informed nodes by counting.
+#[test]
+fn variances_of_many_points_are_those_of_each() {
+    for grid in [even_grid(), uneven_grid()] {
+        let initial = polar(&grid);
+        let mut random = Random(ChaCha8Rng::seed_from_u64(6));
+        let learnt = flights(&mut random, &initial, 8, (0.004, 0.004), |_| 0.02);
+        let mut state = BayesState::new(&initial, BayesSettings::physical_2026()).unwrap();
+        let _ = weighted(&mut state, &learnt);
+        let posterior = state.solve().unwrap();
+        let many = VarianceByCell::new(&posterior);
+        for observation in learnt.iter().flatten() {
+            let (cell, _) = located(&initial, observation).unwrap();
+            let one = posterior.segment_variance(&cell, &SENSORS);
+            let of_many = many.segment_variance(&cell, &SENSORS);
+            assert!((of_many / one - 1.0).abs() < 1e-10, "{of_many} {one}");
+        }
+        let counts = posterior.observations();
+        let informed = (0..counts.len()).filter(|node| counts[*node] >= 1.0).count();
+        assert!(0 < informed && informed < counts.len());
+        let share = informed as f64 / counts.len() as f64;
+        assert!((posterior.informed_share() - share).abs() < 1e-15);
+    }
+}
+
 /// Truth drawn from the prior, noise as in the settings: 95 % intervals of nodes and of unseen segments cover 92 to 98
 /// %.
 #[test]

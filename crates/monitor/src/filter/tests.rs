@@ -128,6 +128,19 @@ fn forgetting_does_not_matter() {
     assert!(filter.starts.len() <= MOST_STARTS);
 }
 
+/// Where nothing changes, as many starts are remembered as may be, the first among them, and they share all probability.
+#[test]
+fn the_least_probable_start_goes() {
+    let beliefs = ChangeBeliefs::of_2026();
+    let y: Vec<f64> = (0..500).map(|k| [0.3, -0.2, 0.1, -0.3, 0.2, -0.1][k * 7 % 6]).collect();
+    let filter = filtered(beliefs, &y, None);
+    assert_eq!(filter.starts.len(), MOST_STARTS);
+    assert_eq!(filter.starts[0].index, 0);
+    let sum: f64 = filter.starts.iter().map(|start| start.share).sum();
+    assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+    assert!(filter.starts.windows(2).all(|pair| pair[0].index < pair[1].index));
+}
+
 /// By hand: a year of one change a year, 1 − 1/e; a stand of ten years is no more than an event; the same instant is possible.
 #[test]
 fn changes_come_with_time() {
