@@ -6,6 +6,7 @@
 //! while files move has committed: readers look for a file in the waiting folder first, and the next run completes the
 //! moves. A waiting folder of another generation was never committed and is removed.
 
+mod contents;
 pub(crate) mod lock;
 pub(crate) mod names;
 mod older;
@@ -17,18 +18,18 @@ mod tests;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use flight::Timestamp;
 use pipeline::adaptation::StoredTail;
-use pipeline::learnt_flights::{self, KnownFlight};
-use pipeline::model_file::ModelFile;
-use pipeline::monitoring::{MonitoredFlight, curve_of_flights, read_flights};
+use pipeline::learnt_flights::KnownFlight;
+use pipeline::monitoring::curve_of_flights;
 use pipeline::segments_table;
 
 use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
+use contents::flights_of;
+pub(crate) use contents::{deviations_of, models_of, strangers};
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
-use state::{DeviationsState, FileState, State, TailState};
+use state::{FileState, State, TailState};
 
 /// Whether a folder that exists is continued.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -324,87 +325,6 @@ impl Drop for Folder {
             let _ = std::fs::remove_dir(&self.path);
         }
     }
-}
-
-/// Models of a folder that has a state, in the order of tails, for commands that only read.
-///
-/// # Errors
-/// A file that is damaged.
-pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)>>, Failure> {
-    loop {
-        let Some(state) = state::read(folder)? else { return Ok(None) };
-        for stranger in strangers(folder, &state) {
-            tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
-        }
-        let models = state
-            .tails
-            .values()
-            .map(|tail| {
-                let path = folder.join(&tail.model.file);
-                let bytes = state::bytes_of(&state, folder, &tail.model)?;
-                Ok((path.clone(), crate::models::model_of_bytes(&path, &bytes)?))
-            })
-            .collect::<Result<Vec<_>, Failure>>();
-        match models {
-            Ok(models) => return Ok(Some(models)),
-            // Another process may have stored a newer generation in the meantime.
-            Err(failure) => match state::read(folder)? {
-                Some(newer) if newer.generation != state.generation => {}
-                _ => return Err(failure),
-            },
-        }
-    }
-}
-
-/// What each flight of a tail shows, if there is an instant of those that began at or after it.
-///
-/// # Errors
-/// A file that is damaged.
-pub(crate) fn deviations_of(
-    state: &State,
-    folder: &Path,
-    of: &DeviationsState,
-    since: Option<Timestamp>,
-) -> Result<Vec<MonitoredFlight>, Failure> {
-    let bytes = state::bytes_of(state, folder, &of.file)?;
-    read_flights(&bytes, since)
-        .map_err(|reason| Failure::bad_file(&folder.join(&of.file.file), reason))
-}
-
-fn flights_of(
-    folder: &Path,
-    state: &State,
-    tail: &str,
-    entry: &TailState,
-) -> Result<Vec<KnownFlight>, Failure> {
-    let bytes = state::bytes_of(state, folder, &entry.flights)?;
-    learnt_flights::read(tail, &bytes)
-        .map_err(|reason| Failure::bad_file(&folder.join(&entry.flights.file), reason))
-}
-
-/// Files in `models/`, `segments/` and `deviations/` that the state does not name.
-pub(crate) fn strangers(folder: &Path, state: &State) -> Vec<PathBuf> {
-    let named: BTreeSet<PathBuf> = state
-        .tails
-        .values()
-        .flat_map(|tail| {
-            let deviations = tail.deviations.as_ref().map(|of| &of.file);
-            [&tail.model, &tail.segments].into_iter().chain(deviations)
-        })
-        .map(|file| folder.join(&file.file))
-        .collect();
-    let mut strangers = Vec::new();
-    for name in ["models", "segments", "deviations"] {
-        let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
-        for path in entries.flatten().map(|entry| entry.path()) {
-            let file = path.file_name().unwrap_or_default().to_string_lossy();
-            if !named.contains(&path) && !file.starts_with(TEMPORARY) {
-                strangers.push(path);
-            }
-        }
-    }
-    strangers.sort();
-    strangers
 }
 
 /// Moves the files of one folder into another, and makes that durable.
