@@ -103,7 +103,7 @@ impl TailView {
         let adapted = result.summary.fuel_flow_error_percent.after.is_some();
         let after = result.errors_after();
         // A state that was learnt once can be learnt again; if not, this one figure is missing.
-        let curve = result.learning_curve().unwrap_or_default();
+        let curve = result.learning_curve();
         let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
         let mut cruise = Vec::new();
         let mut flights: BTreeMap<(Timestamp, &str), Errors> = BTreeMap::new();

@@ -148,7 +148,7 @@ pub fn rebuild(mut model: ModelFile, flights: Vec<Material>) -> Result<StoredTai
         new.learnt(as_dated, &flight.segments);
         segments.extend(flight.segments);
     }
-    let curve = Some(new.curve(&model, LearningCurve::new(), &segments)?);
+    let curve = new.curve(&model, LearningCurve::new(), &segments);
     Ok(StoredTail { model, segments, flights: known, curve })
 }
 
@@ -196,7 +196,7 @@ impl Work {
         }
         // Where nothing was kept of earlier flights, the whole curve is made again when it is asked for.
         if let Some(before) = stored.curve.take() {
-            stored.curve = Some(learning.curve(&stored.model, before, &stored.segments)?);
+            stored.curve = learning.curve(&stored.model, before, &stored.segments);
         }
         Ok(Some(stored))
     }

@@ -9,7 +9,7 @@ use effects::ExtendedModel;
 use flight::{Observation, Segment, Timestamp};
 use lut::{Outside, Table};
 
-use crate::learning::{LearningCurve, LearningError, curve_of};
+use crate::learning::{LearningCurve, curve_of};
 use crate::model_file::ModelFile;
 use crate::reading::FlightRead;
 use crate::segments_table::{Evaluated, SegmentRow};
@@ -132,16 +132,20 @@ impl TailResult {
     }
 
     /// How far off the model was on each flight before it learnt it; made anew where it is not known. Empty for a model that has
-    /// learnt nothing.
-    ///
-    /// # Errors
-    /// As for [`curve_of`].
-    pub fn learning_curve(&self) -> Result<Cow<'_, LearningCurve>, LearningError> {
+    /// learnt nothing, or that cannot learn its flights again, which is told.
+    pub fn learning_curve(&self) -> Cow<'_, LearningCurve> {
         if let Some(curve) = &self.curve {
-            return Ok(Cow::Borrowed(curve));
+            return Cow::Borrowed(curve);
         }
         let segments: Vec<Segment> = self.rows.iter().map(|row| row.segment.clone()).collect();
-        curve_of(&self.model, &segments).map(Cow::Owned)
+        let curve = curve_of(&self.model, &segments);
+        Cow::Owned(curve.unwrap_or_else(|error| {
+            tracing::warn!(
+                tail = self.tail,
+                "what the model said before it learnt each flight is not known: {error}"
+            );
+            LearningCurve::new()
+        }))
     }
 
     /// Errors of the final table in per cent, segment by segment; empty where nothing is adapted.

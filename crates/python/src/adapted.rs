@@ -332,7 +332,7 @@ impl Adapted {
 fn files_of_tail(tail: &Tail) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let stem = file_stem_of_tail(&tail.result.tail);
     let model = tail.result.model.to_text().map_err(Failure::internal)?;
-    let deviations = flights_of(&tail.result).map_err(Failure::internal)?;
+    let deviations = flights_of(&tail.result);
     Ok(vec![
         (format!("models/{stem}.ron"), model.into_bytes()),
         (format!("segments/{stem}.csv"), tail.segments_csv()),

@@ -128,9 +128,8 @@ fn monitor_tail(
     let result = &tail.result;
     let named =
         |error: &dyn std::fmt::Display| Failure::input(format!("tail {}: {error}", result.tail));
-    let deviations = TailDeviations::of_result(result, options.before_learning)
-        .map_err(|error| named(&error))?
-        .since(options.since);
+    let deviations =
+        TailDeviations::of_result(result, options.before_learning).since(options.since);
     let found =
         MonitoredTail::new(&result.tail, &deviations, events).map_err(|error| named(&error))?;
     Ok(found.map(|found| (found.document(options), found.alerts(options))))

@@ -127,7 +127,7 @@ fn monitor_all(
         .map(|place| {
             let (tail, deviations) = tails.deviations(place, options)?;
             let found = monitor_tail(&tail, &deviations, events, options)
-                .map_err(|error| Failure::bad_file(Path::new(&tail), error));
+                .map_err(|error| Failure::bad_file(tails.folder(), error));
             bar.step();
             found
         })

@@ -86,7 +86,10 @@ pub(crate) fn detect(
         && !own_error
         && is_large(system, gap, top)
         && !is_vague(gap, outside, top, taught && makes_worse(unseen))
-        && !(taught && is_unnamed(outside, named) && is_unpredictable(problem, own));
+        && !(taught
+            && !input.lies_at_an_engine
+            && is_unnamed(outside, named)
+            && is_unpredictable(problem, own));
     let detected = input.is_real && (table.is_some() || stands_out);
     Detection { detected, table: table.filter(|_| detected), smooth_term }
 }

@@ -32,8 +32,20 @@ impl NewFlights {
         self.counts.push(recorded.len());
     }
 
-    /// The curve with these flights, whose segments are the last of these.
+    /// The curve with these flights, whose segments are the last of these; `None` where what was learnt cannot be learnt again.
+    /// The model does not need it.
     pub(super) fn curve(
+        self,
+        model: &ModelFile,
+        curve: LearningCurve,
+        segments: &[Segment],
+    ) -> Option<LearningCurve> {
+        self.continued(model, curve, segments)
+            .inspect_err(|error| tracing::warn!("what was learnt cannot be learnt again: {error}"))
+            .ok()
+    }
+
+    fn continued(
         self,
         model: &ModelFile,
         mut curve: LearningCurve,

@@ -34,7 +34,8 @@ pub(crate) fn deviation_percent(recorded_kg_s: f64, predicted_kg_s: f64) -> Opti
 /// The curve of a model whose flights' segments these are, in the order in which they were learnt: up to the first flight whose
 /// segments are missing. Empty for a model that has learnt nothing.
 ///
-/// Exact: the same flights in the same order by the same settings as the model has learnt them.
+/// Exact, the same flights in the same order by the same settings as the model has learnt them, but where a flight's date was
+/// taken for an error: it is learnt here as recorded.
 ///
 /// # Errors
 /// A model that cannot learn its own flights again (a damaged file).

@@ -55,19 +55,14 @@ impl TailDeviations {
     }
 
     /// The same of a tail at the end of a run, whose segments have been predicted.
-    ///
-    /// # Errors
-    /// As for [`TailResult::learning_curve`].
-    pub fn of_result(
-        result: &TailResult,
-        before_learning: BeforeLearning,
-    ) -> Result<Self, LearningError> {
+    #[must_use]
+    pub fn of_result(result: &TailResult, before_learning: BeforeLearning) -> Self {
         let flights = match before_learning {
-            BeforeLearning::Rebuild => flights_of(result)?,
+            BeforeLearning::Rebuild => flights_of(result),
             BeforeLearning::LeaveOut => flights_with(result, &LearningCurve::new()),
         };
         let of_type = result.model.initial.aircraft().type_code();
-        Ok(Self::of_flights(of_type, &result.model.told(), flights))
+        Self::of_flights(of_type, &result.model.told(), flights)
     }
 
     /// Only the flights that began at or after an instant, if there is one.

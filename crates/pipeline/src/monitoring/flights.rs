@@ -5,7 +5,7 @@ use flight::{MAXIMUM_ENGINES, Segment, Timestamp};
 use monitor::FlightDeviation;
 
 use crate::evaluation::TailResult;
-use crate::learning::{Forecast, LearningCurve, LearningError, deviation_percent};
+use crate::learning::{Forecast, LearningCurve, deviation_percent};
 use crate::segments_table::Evaluated;
 
 /// One flight of a tail; deviations are 100·ln(recorded/predicted) fuel flow.
@@ -91,12 +91,9 @@ struct Shown<'s> {
 }
 
 /// The flights of a tail that has learnt, in the order in which it learnt them.
-///
-/// # Errors
-/// As for [`TailResult::learning_curve`].
-pub fn flights_of(result: &TailResult) -> Result<Vec<MonitoredFlight>, LearningError> {
-    let curve = result.learning_curve()?;
-    Ok(flights_with(result, &curve))
+#[must_use]
+pub fn flights_of(result: &TailResult) -> Vec<MonitoredFlight> {
+    flights_with(result, &result.learning_curve())
 }
 
 /// The same with this learning curve.

@@ -186,7 +186,10 @@ impl Run<'_> {
     /// A tail for which this run has no report: what the folder has of it, written again only where it has to be.
     pub(super) fn at_rest(&self, tail: &str) -> Result<TailOutcome, Failure> {
         let needs_page = self.on_one_page || !self.folder.has(&page_file(tail));
-        if !self.folder.holds(tail) || !(needs_page || self.folder.is_older(tail)) {
+        let lacks_deviations =
+            self.folder.state_of(tail).is_some_and(|state| state.deviations.is_none());
+        let is_older = self.folder.is_older(tail) || lacks_deviations;
+        if !self.folder.holds(tail) || !(needs_page || is_older) {
             return Ok(self.untouched(tail));
         }
         let stored = match self.folder.load(tail) {
@@ -202,7 +205,8 @@ impl Run<'_> {
             None => String::new(),
         };
         let outcome = TailOutcome { tail: tail.to_owned(), ..TailOutcome::default() };
-        if self.folder.is_older(tail) {
+        // Of an older program, or damaged: what follows from model and segments is written again.
+        if is_older || stored.curve.is_none() {
             return self.store(&begun, stored, Vec::new(), outcome);
         }
         let result = result_of(stored, 0, Vec::new());
@@ -302,9 +306,7 @@ pub(crate) fn stage(
         .map_err(|error| Failure::unwritable(Path::new(&model_file), error))?;
     let engines = result.model.initial.aircraft().engines();
     let segments = segments_table::table(&result.rows, engines).to_csv();
-    let deviations =
-        flights_of(result).map_err(|error| Failure::bad_file(Path::new(&model_file), error))?;
-    let deviations = flights_to_csv(&deviations);
+    let deviations = flights_to_csv(&flights_of(result));
     let mut summary = result.summary.clone();
     summary.flights_new = 0;
     Ok(TailState {

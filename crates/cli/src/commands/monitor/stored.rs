@@ -43,11 +43,14 @@ impl Tails {
         Ok(Self { folder: folder.to_owned(), state })
     }
 
+    /// The folder.
+    pub(crate) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Whether the folder holds something newer by now: files may have gone while they were read.
     pub(crate) fn is_out_of_date(&self) -> bool {
-        let generation = |state: &Option<State>| state.as_ref().map(|state| state.generation);
-        state::read(&self.folder)
-            .is_ok_and(|newer| newer.is_some() && generation(&newer) != generation(&self.state))
+        state::read(&self.folder).is_ok_and(|newer| newer.is_some() && newer != self.state)
     }
 
     /// The tails, in order.
@@ -103,6 +106,7 @@ impl Tails {
                     }
                     return Ok(TailDeviations::of_flights(&of.aircraft_type, &of.model, flights));
                 }
+                Err(failure) if self.is_out_of_date() => return Err(failure),
                 // All that it holds follows from model and segments, more slowly.
                 Err(failure) => tracing::warn!("{failure}; model and segments are read instead"),
             }
