@@ -9,7 +9,7 @@
 mod contents;
 pub(crate) mod lock;
 pub(crate) mod names;
-mod older;
+pub(crate) mod older;
 mod restart;
 pub(crate) mod state;
 #[cfg(test)]
@@ -26,7 +26,7 @@ use pipeline::segments_table;
 use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
 use contents::flights_of;
-pub(crate) use contents::{deviations_of, models_of, strangers};
+pub(crate) use contents::{deviations_of, is_superseded, models_of, warn_of_strangers};
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
 use state::{FileState, State, TailState};
@@ -92,7 +92,9 @@ impl Folder {
             None => folder.older = older::read(&path)?,
         }
         folder.clear_up().map_err(failed)?;
-        folder.warn_of_strangers();
+        if folder.state.generation > 0 {
+            warn_of_strangers(&folder.path, &folder.state);
+        }
         Ok(folder)
     }
 
@@ -292,16 +294,6 @@ impl Folder {
             }
         }
         Ok(())
-    }
-
-    /// Names files that look like state and are none.
-    fn warn_of_strangers(&self) {
-        if self.state.generation == 0 {
-            return;
-        }
-        for stranger in strangers(&self.path, &self.state) {
-            tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
-        }
     }
 
     fn waiting(&self) -> PathBuf {

@@ -102,7 +102,6 @@ impl TailView {
     pub(crate) fn new(result: &TailResult) -> Self {
         let adapted = result.summary.fuel_flow_error_percent.after.is_some();
         let after = result.errors_after();
-        // A state that was learnt once can be learnt again; if not, this one figure is missing.
         let curve = result.learning_curve();
         let (mut points, mut outside, mut not_observed) = (Vec::new(), Vec::new(), Vec::new());
         let mut cruise = Vec::new();
@@ -138,8 +137,7 @@ impl TailView {
             .into_iter()
             .map(|((start, flight), errors)| {
                 let forecast = curve.get(&(start, flight.to_owned()));
-                let before_learning = forecast.map(|forecast| forecast.mean_error_percent);
-                Flight { before_learning, ..errors.of_flight(start, flight) }
+                errors.of_flight(start, flight, forecast.map(|of| of.mean_error_percent))
             })
             .collect();
         Self {
@@ -196,7 +194,7 @@ impl Errors {
         }
     }
 
-    fn of_flight(self, start: Timestamp, name: &str) -> Flight {
+    fn of_flight(self, start: Timestamp, name: &str, before_learning: Option<f64>) -> Flight {
         let engines = &self.engines_kg_s;
         let mean = engines.iter().sum::<f64>() / engines.len() as f64;
         Flight {
@@ -205,7 +203,7 @@ impl Errors {
             start_s: start.as_second() as f64,
             before: ErrorStatistics::from_errors(&self.before),
             after: ErrorStatistics::from_errors(&self.after),
-            before_learning: None,
+            before_learning,
             engines: engines.iter().map(|one| 100.0 * (one / mean - 1.0)).collect(),
         }
     }

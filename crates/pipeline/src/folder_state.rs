@@ -9,6 +9,7 @@ use ron::ser::PrettyConfig;
 use serde::{Deserialize, Serialize};
 
 use crate::checksum::sha256;
+use crate::evaluation::TailResult;
 use crate::summary::TailSummary;
 
 /// Name of the file.
@@ -68,6 +69,14 @@ pub struct FileState {
     pub file: String,
     /// SHA-256 of its bytes.
     pub sha256: String,
+}
+
+impl DeviationsState {
+    /// Of a tail at the end of a run, whose table of flights is in this file.
+    pub fn of(file: FileState, result: &TailResult) -> Self {
+        let aircraft_type = result.model.initial.aircraft().type_code().to_owned();
+        Self { file, aircraft_type, model: result.model.told() }
+    }
 }
 
 impl FileState {

@@ -16,7 +16,7 @@ mod text;
 pub use deviations::{BeforeLearning, TailDeviations};
 pub use document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure, FleetDocument,
-    FlightDocument, MonitorDocument, MonthDocument, ReferenceDocument, SCHEMA, TailDocument,
+    FlightDocument, MonitorDocument, MonthDocument, SCHEMA, TailDocument,
 };
 pub use events::{Event, EventsError, instant, read_events};
 pub use flights::{MeanConditions, MonitoredFlight, curve_of_flights, flights_of};

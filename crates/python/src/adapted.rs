@@ -280,11 +280,7 @@ impl Adapted {
                 model: named(0),
                 segments: named(1),
                 flights: named(2),
-                deviations: Some(DeviationsState {
-                    file: named(3),
-                    aircraft_type: tail.result.model.initial.aircraft().type_code().to_owned(),
-                    model: tail.result.model.told(),
-                }),
+                deviations: Some(DeviationsState::of(named(3), &tail.result)),
                 summary,
             };
             state.tails.insert(tail.result.tail.clone(), of_state);

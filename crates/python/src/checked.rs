@@ -85,11 +85,7 @@ pub(crate) fn monitor_tails(
             },
             basic_performance_factor_percent: asked.basic_performance_factor_percent,
             rules: rules.collect::<Result<Vec<_>, Failure>>()?,
-            before_learning: if asked.quick {
-                BeforeLearning::LeaveOut
-            } else {
-                BeforeLearning::Rebuild
-            },
+            before_learning: BeforeLearning::left_out(asked.quick),
             since: asked.since.as_deref().map(date).transpose()?,
         };
         let found = tails

@@ -39,11 +39,7 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
         },
         basic_performance_factor_percent: arguments.basic_perf_factor,
         rules: arguments.alert.clone(),
-        before_learning: if arguments.quick {
-            BeforeLearning::LeaveOut
-        } else {
-            BeforeLearning::Rebuild
-        },
+        before_learning: BeforeLearning::left_out(arguments.quick),
         since: arguments.since,
     };
     let events = match &arguments.events {

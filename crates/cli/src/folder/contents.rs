@@ -19,9 +19,7 @@ use crate::files::TEMPORARY;
 pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)>>, Failure> {
     loop {
         let Some(state) = state::read(folder)? else { return Ok(None) };
-        for stranger in strangers(folder, &state) {
-            tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
-        }
+        warn_of_strangers(folder, &state);
         let models = state
             .tails
             .values()
@@ -34,12 +32,15 @@ pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)
         match models {
             Ok(models) => return Ok(Some(models)),
             // Another process may have stored a newer generation in the meantime.
-            Err(failure) => match state::read(folder)? {
-                Some(newer) if newer.generation != state.generation => {}
-                _ => return Err(failure),
-            },
+            Err(_) if is_superseded(folder, &state) => {}
+            Err(failure) => return Err(failure),
         }
     }
+}
+
+/// Whether a folder has another state by now: files that this one names may have gone while they were read.
+pub(crate) fn is_superseded(folder: &Path, state: &State) -> bool {
+    state::read(folder).is_ok_and(|now| now.is_some_and(|now| now != *state))
 }
 
 /// What each flight of a tail shows, if there is an instant of those that began at or after it.
@@ -72,8 +73,15 @@ pub(super) fn flights_of(
         .map_err(|reason| Failure::bad_file(&folder.join(&entry.flights.file), reason))
 }
 
+/// Names files that look like state and are none.
+pub(crate) fn warn_of_strangers(folder: &Path, state: &State) {
+    for stranger in strangers(folder, state) {
+        tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
+    }
+}
+
 /// Files in `models/`, `segments/` and `deviations/` that the state does not name.
-pub(crate) fn strangers(folder: &Path, state: &State) -> Vec<PathBuf> {
+fn strangers(folder: &Path, state: &State) -> Vec<PathBuf> {
     let named: BTreeSet<PathBuf> = state
         .tails
         .values()

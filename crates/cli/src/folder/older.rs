@@ -2,12 +2,12 @@
 //! model's ledger are left over from a run that was interrupted.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flight::Segment;
 use pipeline::adaptation::StoredTail;
 use pipeline::learnt_flights;
-use pipeline::model_file::ModelFile;
+use pipeline::model_file::Learnt;
 use pipeline::segments_table;
 
 use crate::failure::Failure;
@@ -44,7 +44,7 @@ pub(super) fn read(folder: &Path) -> Result<BTreeMap<String, StoredTail>, Failur
             );
             continue;
         }
-        let segments = segments_of(folder, &tail, &model)?;
+        let segments = segments_of(folder, learnt)?;
         let flights = learnt_flights::of_ledger(&learnt.ledger, &segments)
             .map_err(|reason| Failure::bad_file(&path, reason))?;
         tails.insert(tail, StoredTail { model, segments, flights, curve: None });
@@ -52,26 +52,36 @@ pub(super) fn read(folder: &Path) -> Result<BTreeMap<String, StoredTail>, Failur
     Ok(tails)
 }
 
-fn segments_of(folder: &Path, tail: &str, model: &ModelFile) -> Result<Vec<Segment>, Failure> {
-    let path = folder.join("segments").join(format!("{}.csv", file_stem_of_tail(tail)));
-    let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
-    let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
-    let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
-    let known: BTreeSet<(&str, &str)> =
-        ledger.iter().map(|entry| (entry.flight.as_str(), entry.start.as_str())).collect();
-    let mut segments = Vec::with_capacity(all.len());
-    for segment in all {
-        let start = segment.identity.start.to_string();
-        if known.contains(&(segment.identity.flight.as_str(), start.as_str())) {
-            segments.push(segment);
-        }
-    }
-    let expected: u64 = ledger.iter().map(|entry| entry.segments).sum();
+/// The segments of all flights of a tail's ledger.
+fn segments_of(folder: &Path, learnt: &Learnt) -> Result<Vec<Segment>, Failure> {
+    let segments = known_segments(folder, learnt)?;
+    let expected: u64 = learnt.ledger.iter().map(|entry| entry.segments).sum();
     if segments.len() as u64 != expected {
         return Err(Failure::bad_file(
-            &path,
+            &segments_file(folder, &learnt.tail),
             format!("{} segments, the model's ledger has {expected}", segments.len()),
         ));
     }
     Ok(segments)
+}
+
+fn segments_file(folder: &Path, tail: &str) -> PathBuf {
+    folder.join("segments").join(format!("{}.csv", file_stem_of_tail(tail)))
+}
+
+/// Segments of flights in a tail's ledger, in the order in which they were learnt. A run that was interrupted may have left
+/// some of other flights.
+///
+/// # Errors
+/// A file that cannot be read or was damaged.
+pub(crate) fn known_segments(folder: &Path, learnt: &Learnt) -> Result<Vec<Segment>, Failure> {
+    let path = segments_file(folder, &learnt.tail);
+    let bytes = std::fs::read(&path).map_err(|error| Failure::unreadable(&path, error))?;
+    let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
+    let known: BTreeSet<(&str, &str)> =
+        learnt.ledger.iter().map(|entry| (entry.flight.as_str(), entry.start.as_str())).collect();
+    let is_known = |segment: &Segment| {
+        known.contains(&(segment.identity.flight.as_str(), &segment.identity.start.to_string()))
+    };
+    Ok(all.into_iter().filter(is_known).collect())
 }

@@ -18,6 +18,14 @@ pub enum BeforeLearning {
     LeaveOut,
 }
 
+impl BeforeLearning {
+    /// Left out where that is asked for.
+    #[must_use]
+    pub const fn left_out(asked: bool) -> Self {
+        if asked { Self::LeaveOut } else { Self::Rebuild }
+    }
+}
+
 /// A tail's flights in the order of flying.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TailDeviations {

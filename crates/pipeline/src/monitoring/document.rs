@@ -3,6 +3,8 @@
 use monitor::{Estimate, FleetMean, fleet_mean};
 use serde::{Deserialize, Serialize};
 
+use super::flights::MeanConditions;
+
 /// Name and version of the JSON.
 pub const SCHEMA: &str = "cruisefit.monitor/1";
 
@@ -65,7 +67,7 @@ pub struct TailDocument {
     /// Last flight.
     pub to: String,
     /// Conditions that deviations are normalised to.
-    pub reference: ReferenceDocument,
+    pub reference: MeanConditions,
     /// Level at the last flight.
     pub deviation_percent: Figure,
     /// Mean of deviations by the model before it learnt each flight; absent where it was not rebuilt.
@@ -90,19 +92,6 @@ pub struct TailDocument {
     pub months: Vec<MonthDocument>,
     /// Flights.
     pub flights: Vec<FlightDocument>,
-}
-
-/// Conditions that deviations are normalised to.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "quantities with their units")]
-pub struct ReferenceDocument {
-    pub pressure_altitude_m: f64,
-    pub mach: f64,
-    pub static_air_temperature_k: f64,
-    pub mass_kg: f64,
-    pub true_airspeed_m_s: f64,
-    pub initial_fuel_flow_kg_s: f64,
-    pub segments: usize,
 }
 
 /// Airbus' terms.

@@ -3,6 +3,7 @@
 
 use flight::{MAXIMUM_ENGINES, Segment, Timestamp};
 use monitor::FlightDeviation;
+use serde::{Deserialize, Serialize};
 
 use crate::evaluation::TailResult;
 use crate::learning::{Forecast, LearningCurve, deviation_percent};
@@ -36,7 +37,7 @@ pub struct MonitoredFlight {
 }
 
 /// Means over segments that both the initial and the learnt model predict, geometric where the quantity is positive by nature.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MeanConditions {
     /// Mean pressure altitude, m.
     pub pressure_altitude_m: f64,

@@ -13,7 +13,7 @@ use monitor::{
 use super::deviations::{BeforeLearning, TailDeviations};
 use super::document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure,
-    FlightDocument, MonthDocument, ReferenceDocument, TailDocument,
+    FlightDocument, MonthDocument, TailDocument,
 };
 use super::events::Event;
 use super::flights::{MeanConditions, MonitoredFlight};
@@ -153,7 +153,7 @@ impl<'a> MonitoredTail<'a> {
             model: self.model.to_owned(),
             from: date(self.flights.first()),
             to: date(self.flights.last()),
-            reference: reference_document(&self.reference),
+            reference: self.reference,
             deviation_percent: level.into(),
             before_learning_percent: self.before_learning_mean(0..self.series.len()),
             trend_percent_per_year: self.history.levels.trend_percent_per_year().into(),
@@ -349,17 +349,5 @@ impl<'a> MonitoredTail<'a> {
                 .collect(),
             excess_fuel_kg: excess_fuel_kg(flight.cruise_fuel_kg, percent),
         }
-    }
-}
-
-fn reference_document(reference: &MeanConditions) -> ReferenceDocument {
-    ReferenceDocument {
-        pressure_altitude_m: reference.pressure_altitude_m,
-        mach: reference.mach,
-        static_air_temperature_k: reference.static_air_temperature_k,
-        mass_kg: reference.mass_kg,
-        true_airspeed_m_s: reference.true_airspeed_m_s,
-        initial_fuel_flow_kg_s: reference.initial_fuel_flow_kg_s,
-        segments: reference.segments,
     }
 }

@@ -314,11 +314,10 @@ pub(crate) fn stage(
         model: folder.stage(&model_file, model.as_bytes())?,
         segments: folder.stage(&format!("segments/{stem}.csv"), &segments)?,
         flights: folder.stage(&format!("flights/{stem}.csv"), flights)?,
-        deviations: Some(DeviationsState {
-            file: folder.stage(&format!("deviations/{stem}.csv"), &deviations)?,
-            aircraft_type: result.model.initial.aircraft().type_code().to_owned(),
-            model: result.model.told(),
-        }),
+        deviations: Some(DeviationsState::of(
+            folder.stage(&format!("deviations/{stem}.csv"), &deviations)?,
+            result,
+        )),
         summary,
     })
 }

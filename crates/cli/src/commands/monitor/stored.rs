@@ -1,16 +1,14 @@
 //! What `monitor` needs of an output folder of `adapt`: it reads, and writes nothing there.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use flight::Segment;
 use pipeline::monitoring::{BeforeLearning, MonitorOptions, TailDeviations};
 use pipeline::segments_table;
 
 use crate::failure::Failure;
-use crate::files::file_stem_of_tail;
+use crate::folder::older::known_segments;
 use crate::folder::state::{self, State, TailState};
-use crate::folder::{deviations_of, strangers};
+use crate::folder::{deviations_of, is_superseded, warn_of_strangers};
 use crate::models::{model_of_bytes, read_model};
 
 /// The tails of a folder.
@@ -37,8 +35,8 @@ impl Tails {
     /// A state that cannot be read.
     pub(crate) fn of(folder: &Path) -> Result<Self, Failure> {
         let state = state::read(folder)?;
-        for stranger in state.iter().flat_map(|state| strangers(folder, state)) {
-            tracing::warn!("{} is ignored: STATE.ron does not name it", stranger.display());
+        if let Some(state) = &state {
+            warn_of_strangers(folder, state);
         }
         Ok(Self { folder: folder.to_owned(), state })
     }
@@ -50,7 +48,10 @@ impl Tails {
 
     /// Whether the folder holds something newer by now: files may have gone while they were read.
     pub(crate) fn is_out_of_date(&self) -> bool {
-        state::read(&self.folder).is_ok_and(|newer| newer.is_some() && newer != self.state)
+        match &self.state {
+            Some(state) => is_superseded(&self.folder, state),
+            None => self.folder.join(state::NAME).exists(),
+        }
     }
 
     /// The tails, in order.
@@ -153,16 +154,7 @@ fn of_model(
         return Err(Failure::bad_file(path, "a model that has learnt nothing"));
     };
     let tail = learnt.tail.clone();
-    let table = folder.join("segments").join(format!("{}.csv", file_stem_of_tail(&tail)));
-    let bytes = std::fs::read(&table).map_err(|error| Failure::unreadable(&table, error))?;
-    let all = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&table, error))?;
-    // A run that was interrupted may have left segments of flights that the ledger does not list.
-    let known: BTreeSet<(&str, &str)> =
-        learnt.ledger.iter().map(|entry| (entry.flight.as_str(), entry.start.as_str())).collect();
-    let is_known = |segment: &Segment| {
-        known.contains(&(segment.identity.flight.as_str(), &segment.identity.start.to_string()))
-    };
-    let segments: Vec<Segment> = all.into_iter().filter(is_known).collect();
+    let segments = known_segments(folder, learnt)?;
     let deviations = TailDeviations::new(&model, &segments, options.before_learning)
         .map_err(|error| Failure::bad_file(path, error))?;
     Ok((tail, deviations.since(options.since)))
