@@ -1,10 +1,10 @@
 """Months of nightly runs with a fault every tenth night: the folder at the end is that of months without one.
 
-    python3 benches/soak.py FOLDER [--nights 730] [--tails 100] [--every 10] [--samples N] [--seed N]
+    python3 benches/soak.py FOLDER [--nights 730] [--tails 100] [--every 10] [--diagnosed 1] [--samples N] [--seed N]
         [--target target/release]
 
 Each night every tail has flown once, and `adapt --relearn` gets the reports of the last week; every thirtieth night `monitor` reads the
-folder and `diagnose` the reports of the last thirty nights against the models before them. Both are done twice: in one folder
+folder, and in one such month of `--diagnosed` months `diagnose` the reports of the last thirty nights against the models before them. Both are done twice: in one folder
 undisturbed, in the other with a fault every tenth night and the same command once more after it. Faults in turn: kill -9,
 SIGTERM, no space for a file, a report of which half has arrived, files that are no reports, two processes at once, a changed
 digit in a segments file that is put right from a backup. In the end models, segments, flights, monitor.json and all
@@ -41,6 +41,7 @@ class World:
         self.home.mkdir(parents=True)
         self.output, self.before = self.home / "out", self.home / "before"
         self.documents = {}
+        self.diagnosed = asked.diagnosed
 
     def of_nights(self, first, last):
         names = [f"{flight:05}.txt" for flight in range(max(0, first), last + 1)]
@@ -57,12 +58,13 @@ class World:
         out = self.home / f"month-{night}"
         subprocess.run([self.program, "monitor", str(self.output), "-o", str(out)], check=True, **QUIET)
         self.documents[f"monitor {night}"] = (out / "monitor.json").read_bytes()
-        if self.before.exists():
+        is_diagnosed = (night + 1) // MONTH % self.diagnosed == 0
+        if self.before.exists() and is_diagnosed:
             inputs = self.of_nights(night - MONTH + 1, night)
             model = ["--model", str(self.before), "--no-progress", "-o", str(out / "diagnosis")]
             subprocess.run([self.program, "diagnose", *inputs, *model], check=True, **QUIET)
             self.documents[f"diagnosis {night}"] = (out / "diagnosis" / "diagnosis.json").read_bytes()
-            shutil.rmtree(self.before)
+        shutil.rmtree(self.before, ignore_errors=True)
         shutil.copytree(self.output, self.before)
 
 
@@ -152,6 +154,7 @@ def main():
     parser.add_argument("--nights", type=int, default=730)
     parser.add_argument("--tails", type=int, default=100)
     parser.add_argument("--every", type=int, default=10)
+    parser.add_argument("--diagnosed", type=int, default=1, help="months of which one is diagnosed: most of the time goes there")
     parser.add_argument("--samples", type=int, help="end every report after so many, for more nights in the same time")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--target", type=pathlib.Path, default=ROOT / "target/release")

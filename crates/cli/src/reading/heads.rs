@@ -41,17 +41,17 @@ pub(crate) struct Heads {
 
 impl Source {
     /// The flights in files.
-    pub(crate) fn heads(&self, files: Vec<PathBuf>, progress: &Bar) -> Heads {
+    pub(crate) fn heads(&self, mut files: Vec<PathBuf>, progress: &Bar) -> Heads {
         /// So many files at a time: what is known of them is small, but the list of it should not double it.
         const FILES_AT_A_TIME: usize = 4096;
         let mut heads = Heads::default();
         let mut types: BTreeMap<String, Arc<str>> = BTreeMap::new();
-        let mut files = files.into_iter();
-        loop {
-            let some: Vec<PathBuf> = files.by_ref().take(FILES_AT_A_TIME).collect();
-            if some.is_empty() {
-                break;
-            }
+        // Taken from the end, so that the list gives back its memory while what is known of its files grows.
+        files.reverse();
+        while !files.is_empty() {
+            let mut some = files.split_off(files.len().saturating_sub(FILES_AT_A_TIME));
+            files.shrink_to_fit();
+            some.reverse();
             let read: Vec<(Vec<Found>, Vec<RefusedReport>)> = some
                 .into_par_iter()
                 .map_init(Buffers::default, |buffers, path| {

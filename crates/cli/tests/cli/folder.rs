@@ -266,6 +266,7 @@ fn copies_are_found_by_every_command_and_said_once() {
         let ran = cruisefit(&arguments).expect(0);
         let said = ran.stderr.matches("8 reports are copies of others and used once").count();
         assert_eq!(said, 1, "{command}: {}", ran.stderr);
+        assert!(!ran.stderr.contains("flight-copied"), "{command}: {}", ran.stderr);
         ran
     };
     let with_model = ["--model".as_ref(), model.as_os_str()];

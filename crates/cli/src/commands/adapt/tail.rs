@@ -66,13 +66,14 @@ impl Run<'_> {
         let paths: Vec<Box<Path>> = heads.iter().map(|head| head.path.clone()).collect();
         let attempt = self.folder.flights(tail).and_then(|known| {
             let (new, refused, already_known) = unknown(heads, &known, buffers);
+            let (new, copies) = without_copies(new, buffers);
             let stored = match (self.folder.holds(tail), new.is_empty()) {
                 (true, false) => Some(self.folder.load(tail)?),
                 _ => None,
             };
-            Ok((known, new, refused, already_known, stored))
+            Ok((known, new, (refused, already_known, copies), stored))
         });
-        let (known, new, refused, already_known, stored) = match attempt {
+        let (known, new, (refused, already_known, copies), stored) = match attempt {
             Ok(found) => found,
             // A damaged tail costs itself, not the batch.
             Err(failure) => {
@@ -98,7 +99,9 @@ impl Run<'_> {
             sorting.contradictions = Contradictions::Relearn;
         }
         sorting.refused = refused;
-        sorting.already_known = already_known;
+        sorting.already_known = already_known + copies.count;
+        sorting.copies = copies.count;
+        sorting.first_copy = copies.first;
         let reading = self.plausible(tail, start, &new, buffers, side_by_side);
         sorting.refused.extend(reading.refused);
         let usable = already_known + reading.flights.len();
@@ -281,6 +284,41 @@ fn unknown(
         }
     }
     (new, refused, already_known)
+}
+
+/// Reports that hold what another report of the batch holds.
+#[derive(Debug, Default)]
+struct Copies {
+    count: usize,
+    /// The first of them, and what it is a copy of.
+    first: Option<(String, String)>,
+}
+
+/// Reports without those that are byte for byte another one's copies: however many there are, each flight is read once.
+/// What cannot be read stays, and is refused where it is read.
+fn without_copies(heads: Vec<Head>, buffers: &mut Buffers) -> (Vec<Head>, Copies) {
+    let is_one_flight =
+        |one: &Head, other: &Head| one.start == other.start && one.flight == other.flight;
+    let mut copies = Copies::default();
+    let mut is_copy = Vec::with_capacity(heads.len());
+    for of_flight in heads.chunk_by(is_one_flight) {
+        let mut contents: Vec<(String, &Path)> = Vec::new();
+        for head in of_flight {
+            let of_file = of_flight.len() > 1 && head.read.is_none();
+            let content = of_file.then(|| buffers.content_of(&head.path).ok()).flatten();
+            let original = contents.iter().find(|(known, _)| Some(known) == content.as_ref());
+            is_copy.push(original.is_some());
+            if let Some((_, original)) = original {
+                copies.count += 1;
+                let names = || (head.path.display().to_string(), original.display().to_string());
+                copies.first.get_or_insert_with(names);
+            } else if let Some(content) = content {
+                contents.push((content, &head.path));
+            }
+        }
+    }
+    let kept = heads.into_iter().zip(is_copy).filter(|(_, is_copy)| !is_copy);
+    (kept.map(|(head, _)| head).collect(), copies)
 }
 
 /// Path of a tail's own page below the folder.
