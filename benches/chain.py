@@ -43,7 +43,8 @@ def make_reports(folder, reports, tails, longest=None):
     for number in range(reports):
         tail, flight = number % tails, number // tails
         start = first_start + datetime.timedelta(hours=6 * flight, minutes=tail % 60)
-        zero_fuel_lb = 52000 + (number * 7919) % 2000
+        # No two flights of a tail with one fixture's samples weigh the same, or the later would be known for the earlier.
+        zero_fuel_lb = 52000 + (tail * 7919 + flight * 37) % 2000
         head = (
             f"CRUISE-REPORT 1\nTAIL B-{tail:04}\nFLIGHT {flight:05}\n"
             f"START {start:%Y-%m-%dT%H:%M:%S}Z\nZFW {zero_fuel_lb} lb\n"
