@@ -204,6 +204,34 @@ fn points_on_one_line_leave_a_combination() {
     assert!(coefficients.iter().all(|coefficient| coefficient.abs() <= 1.0));
 }
 
+/// By hand: on the parabola y = 2x², which is no line, 2x² − y is the only sum that vanishes; divided by its largest
+/// coefficient it is x² − y/2. The columns of y and of x² differ in length by a factor of 2.
+#[test]
+fn points_on_a_parabola_leave_the_parabola() {
+    let points: Vec<_> =
+        (1..=20).map(|i| 0.1 * f64::from(i)).map(|x| (x, 2.0 * x * x, x, 1.0)).collect();
+    let (rank, undetermined) = undetermined(Basis::FullQuadratic, &points);
+    assert_eq!(rank, 5);
+    let Undetermined::Combination { coefficients } = undetermined else { panic!("{undetermined}") };
+    for (found, expected) in coefficients.into_iter().zip([0.0, -0.5, 0.0, 0.0, 0.0, 1.0]) {
+        assert!((found - expected).abs() < 1e-9, "{coefficients:?}");
+    }
+}
+
+/// A point of weight 0 is a point left out: it neither makes up the number nor adds a y that differs.
+#[test]
+fn points_without_weight_determine_nothing() {
+    let basis = Basis::SeparableQuadratic;
+    let mut points = grid_points(|x, y| x + y);
+    points[2].3 = 0.0;
+    assert_eq!(fit(basis, &points[..6]), Err(FitError::TooFewPoints { points: 5 }));
+    for point in &mut points {
+        point.1 = 0.8;
+    }
+    points[2].1 = 0.5;
+    assert_eq!(undetermined(basis, &points).1, Undetermined::SameY { value: 0.8 });
+}
+
 #[test]
 fn other_refusals_and_their_words() {
     let mut points = grid_points(|x, y| x + y);
