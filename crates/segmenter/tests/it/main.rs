@@ -10,5 +10,6 @@ mod criteria;
 mod golden;
 mod missing;
 mod pieces;
+mod points;
 mod properties;
 mod support;
