@@ -75,4 +75,12 @@ mod tests {
             assert_eq!(range.maximum, Some(ours.maximum * factor), "{}", ours.name);
         }
     }
+
+    /// A flight level is a hundred feet of pressure altitude, below sea level too.
+    #[test]
+    #[expect(clippy::float_cmp, reason = "whole numbers are exact")]
+    fn flight_levels_are_hundreds_of_feet() {
+        assert_eq!(100.0 * FLIGHT_LEVEL.minimum, PRESSURE_ALTITUDE_FT.minimum);
+        assert_eq!(100.0 * FLIGHT_LEVEL.maximum, PRESSURE_ALTITUDE_FT.maximum);
+    }
 }

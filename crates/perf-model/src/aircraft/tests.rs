@@ -175,3 +175,20 @@ fn reads_as_a_part_of_another_file() {
     let wrong = text.replace("48.96", "0");
     assert!(ron::from_str::<Model>(&wrong).is_err());
 }
+
+/// By definition of a file: what differs from the default is read back, and what does not is not written.
+#[test]
+fn sensors_are_written_and_read_back() {
+    let drift = FuelFlowDrift { percent: 0.4, time_s: 900.0 };
+    let bias = FlightBias { mach: 0.0, ..FlightBias::default() };
+    for sensors in [
+        SensorDeviations::default(),
+        SensorDeviations { fuel_flow_drift: drift, ..SensorDeviations::default() },
+        SensorDeviations { flight_bias: bias, ..SensorDeviations::default() },
+    ] {
+        let text = ron::to_string(&sensors).unwrap();
+        assert_eq!(ron::from_str::<SensorDeviations>(&text).unwrap(), sensors, "{text}");
+        let has_drift = sensors.fuel_flow_drift != FuelFlowDrift::default();
+        assert_eq!(text.contains("fuel_flow_drift"), has_drift, "{text}");
+    }
+}

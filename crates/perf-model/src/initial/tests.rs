@@ -140,6 +140,7 @@ fn nodes_outside_the_guides_range_are_marked() {
     }
     let finding = &initial.findings[0];
     assert_eq!(finding.code, "guide-extrapolated-nodes");
+    assert_eq!(finding.severity, flight::Severity::Note);
     assert!(
         finding.message.starts_with(&format!("{} of 130 nodes", initial.fit.extrapolated_nodes))
     );
@@ -221,4 +222,60 @@ fn a_mistyped_row_is_pointed_at() {
     let initial = initial_model(&aircraft, &typo).unwrap();
     let odd = initial.findings.iter().find(|finding| finding.code == "guide-odd-row").unwrap();
     assert_eq!(odd.line, Some(20));
+}
+
+fn finding(initial: &InitialModel, code: &str) -> Option<(flight::Severity, String)> {
+    let found = initial.findings.iter().find(|finding| finding.code == code)?;
+    Some((found.severity, found.message.clone()))
+}
+
+/// A table that lies above the guide's Mach numbers, 0.82 at most, is extrapolated as a whole: that is more than a note.
+#[test]
+fn a_table_that_is_all_extrapolated_is_a_warning() {
+    let guide = guide(&aircraft("SeparableQuadratic"), &WEIGHTS_LB, &ALTITUDES_FT, &MACHS);
+    let beyond = AIRCRAFT.replace("mach: (0.50, 0.95,", "mach: (0.85, 0.95,");
+    let initial = initial_model(&Aircraft::from_ron(&beyond).unwrap(), &guide).unwrap();
+    let (severity, message) = finding(&initial, "guide-extrapolated-nodes").unwrap();
+    assert!(message.starts_with("39 of 39 nodes"), "{message}");
+    assert_eq!(severity, flight::Severity::Warning);
+}
+
+/// By hand: flow times a factor is drag times it, the lift-to-drag ratio divided by it. The polar's is 11.7 in the median of the
+/// guide's rows: half the flow (that of one of two engines) makes 23.5, which is too high, twice the flow 5.9, which is too low,
+/// and each has its own causes.
+#[test]
+fn a_lift_to_drag_ratio_has_causes_on_either_side() {
+    let aircraft = aircraft("SeparableQuadratic");
+    let healthy = guide(&aircraft, &WEIGHTS_LB, &ALTITUDES_FT, &MACHS);
+    let cause = |factor: f64| {
+        let initial = initial_model(&aircraft, &scaled(&healthy, |_| factor)).unwrap();
+        finding(&initial, "guide-lift-to-drag").map(|(_, message)| message)
+    };
+    assert_eq!(cause(1.0), None);
+    let high = cause(0.5).unwrap();
+    assert!(
+        high.contains("ratio of 23.5") && high.contains("flow of one engine as total"),
+        "{high}"
+    );
+    let low = cause(2.0).unwrap();
+    assert!(low.contains("ratio of 5.9") && low.contains("mass in kg under weight_lb"), "{low}");
+}
+
+/// By hand: rows that all scatter by ±2 % have none that is five times as far off as the others, and a single row off by 0.5 %
+/// is within how guides are rounded.
+#[test]
+fn scattered_and_rounded_rows_are_not_mistyped() {
+    let aircraft = aircraft("SeparableQuadratic");
+    let healthy = guide(&aircraft, &WEIGHTS_LB, &ALTITUDES_FT, &MACHS);
+    let scattered = scaled(&healthy, |row| if row.line % 2 == 0 { 1.02 } else { 0.98 });
+    let initial = initial_model(&aircraft, &scattered).unwrap();
+    assert!(initial.fit.worst_row.1.abs() > 1.0, "{:?}", initial.fit);
+    assert_eq!(finding(&initial, "guide-odd-row"), None);
+
+    let rounded = scaled(&healthy, |row| if row.line == 20 { 1.005 } else { 1.0 });
+    let initial = initial_model(&aircraft, &rounded).unwrap();
+    let (line, percent) = initial.fit.worst_row;
+    assert_eq!(line, 20);
+    assert!(percent.abs() > 5.0 * initial.fit.residual_rms_percent, "{:?}", initial.fit);
+    assert_eq!(finding(&initial, "guide-odd-row"), None);
 }

@@ -366,6 +366,7 @@ impl<const N: usize> Polynomial<N> {
 
 #[cfg(test)]
 mod tests {
+    use flight::{Cruise, Segment, SegmentMeans};
     use units::TemperatureDifference;
 
     use super::*;
@@ -415,6 +416,42 @@ mod tests {
             }
         }
         assert!((400..3600).contains(&found), "{found} of {} are inside the table", flows.len());
+    }
+
+    /// By definition: level flight that is recorded as it is predicted is a segment whose observation has this variance (its
+    /// derivatives are checked by finite differences elsewhere). By hand, two independent meters of 0.5 % are 0.005²/2 of it.
+    #[test]
+    fn the_variance_is_that_of_an_observation() {
+        let model = super::super::tests::citation_x();
+        let columns = LevelFlights {
+            mass_kg: &[13_500.0],
+            pressure_altitude_m: &[43_000.0 * 0.3048],
+            mach: &[0.82],
+            isa_deviation_k: &[5.0],
+        };
+        let mut compared = 0;
+        model.predict_level(columns, |_, predicted| {
+            let cruise = Cruise {
+                pressure_altitude: PressureAltitude::meters(columns.pressure_altitude_m[0]),
+                static_air_temperature: predicted.static_air_temperature,
+                mach: predicted.mach,
+                true_airspeed: predicted.true_airspeed,
+                mass: predicted.mass,
+                fuel_flow_total: predicted.fuel_flow_total,
+            };
+            let segment = Segment {
+                rows: (0..8).collect(),
+                means: SegmentMeans::cruise(&cruise),
+                ..crate::variance::tests::segment()
+            };
+            let expected = model.observe(&segment).unwrap().variance;
+            let found = model.level_variance(predicted, 8);
+            assert!((found.segment / expected.segment - 1.0).abs() < 1e-9, "{found:?}");
+            assert!((found.flight / expected.flight - 1.0).abs() < 1e-9, "{found:?}");
+            assert!(found.segment > 0.005 * 0.005 / 2.0, "{found:?}");
+            compared += 1;
+        });
+        assert_eq!(compared, 1);
     }
 
     #[test]
