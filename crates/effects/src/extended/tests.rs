@@ -375,3 +375,31 @@ fn sizes_that_are_no_numbers_are_refused() {
         Err(EffectModelError::Size { effect: EffectId::DragFactor, .. })
     ));
 }
+
+/// By hand: scatters of 0.3 and 0.4 % in two layers are one of 0.5 %; other effects are no scatter.
+#[test]
+fn scatters_of_layers_add_in_squares() {
+    let scatter = |percent: f64| Effects::one(EffectId::FuelHeatingValue, percent);
+    let other = scatter(0.4).with(EffectId::TsfcFactor, 3.0);
+    let applied = AppliedEffects::new(vec![layer(scatter(0.3)), layer(other)]);
+    assert!((applied.fuel_heating_value_deviation() - 0.005).abs() < 1e-15);
+    assert!(AppliedEffects::default().fuel_heating_value_deviation().abs() < 1e-15);
+}
+
+/// By hand: engine 2 burns 0.4 of the fuel and its meter counts 5 % more, 1.02 of it all; another 1 % on all meters makes
+/// 1.02·1.01. Without an error the meters count what is burnt.
+#[test]
+fn metered_fuel_over_burnt_fuel_by_hand() {
+    let ratio = |layers: &[Effects]| {
+        let layers = layers.iter().cloned().map(layer).collect();
+        let model = bare().with_effects(AppliedEffects::new(layers)).unwrap();
+        let effects = EffectModel::new(&model, model.drag_table(), references()).unwrap();
+        let at = EffectPoint::from_segment(&segment(), 2);
+        effects.metered_over_burnt(&EffectPoint { fuel_flow_share: [0.6, 0.4, 0.0, 0.0], ..at })
+    };
+    let one = Effects::one(EffectId::FuelFlowGainEngine(2), 5.0);
+    let all = Effects::one(EffectId::FuelFlowGain, 1.0);
+    assert!((ratio(&[]) - 1.0).abs() < 1e-15);
+    assert!((ratio(std::slice::from_ref(&one)) - 1.02).abs() < 1e-15);
+    assert!((ratio(&[one, all]) - 1.02 * 1.01).abs() < 1e-15);
+}

@@ -8,6 +8,7 @@ use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, Temperature, TrueAirspe
 
 use super::*;
 use crate::mean::mean_references;
+use crate::response::value_continued;
 
 /// Constants of the numerical prototype whose signature table is the oracle: CD0 0.0188, K 0.056, Lock's wave drag with
 /// Mdd 0.797 + 0.1077 at lift coefficient 0.35, TSFC exponent 0.8.
@@ -262,6 +263,9 @@ fn without_effects_it_is_the_models_own_prediction() {
     assert!((response.ln_fuel_flow_total.exp() / flow - 1.0).abs() < 1e-13);
     // Recorded 0.26 and 0.24: shares 0.52 and 0.48.
     assert!((at.fuel_flow_share[0] - 0.52).abs() < 1e-15);
+    // 17 671 days from 1970 to 2018-05-20, then 14:14:21 and 570.25 s of flight.
+    let date_s = EffectPoint::from_segment(&segment, 2).date_s;
+    assert!((date_s - (17_671.0 * 86_400.0 + 51_261.0 + 570.25)).abs() < 1e-6, "{date_s}");
 }
 
 /// Fuel flow of level flight is TSFC times drag, so that two tables' predictions differ by the ratio of their drag. Between
@@ -295,6 +299,26 @@ fn a_smooth_table_is_the_parabola_that_it_was_made_of() {
         assert!(expected > 1e-4, "the chord is off: {expected}");
         let found = chord.ln_fuel_flow_total - curve.ln_fuel_flow_total;
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    }
+}
+
+/// A plane is its own straight continuation, by definition: inside the table, beyond each edge and beyond its corners.
+#[test]
+fn a_plane_is_continued_as_the_plane() {
+    let axis = |values: [f64; 3]| lut::Axis::new(values.to_vec()).unwrap();
+    let grid = Arc::new(lut::Grid::new(axis([0.2, 0.3, 0.5]), axis([0.6, 0.7, 0.8])));
+    let plane = |(lift, mach): (f64, f64)| 0.01 + 0.04 * lift + 0.02 * mach;
+    let values = (0..grid.nodes()).map(|node| plane(grid.coordinates(node))).collect();
+    let table = Table::new(grid, values).unwrap();
+    for between_nodes in [BetweenNodes::Straight, BetweenNodes::Smooth] {
+        let continued = |lift, mach| value_continued((&table, between_nodes), lift, mach);
+        for lift in [0.15, 0.25, 0.41, 0.6] {
+            for mach in [0.55, 0.62, 0.74, 0.9] {
+                let found = continued(lift, mach).unwrap();
+                assert!((found - plane((lift, mach))).abs() < 1e-12, "{lift} {mach}: {found}");
+            }
+        }
+        assert_eq!(continued(f64::NAN, 0.7), None);
     }
 }
 
@@ -434,6 +458,22 @@ fn hidden_parameters_without_an_argument_are_over_corrected_thrust() {
     assert_eq!(ron::from_str::<Effects>(&text).unwrap(), by_n2);
 }
 
+/// Engines and airframe have a history each; both come back from a file as they were.
+#[test]
+fn histories_are_read_back_as_they_were_written() {
+    let history = |recovered: f64| {
+        HiddenParameter::History(History::new(1.4e9, recovered, &[1.45e9]).unwrap())
+    };
+    let (engine, airframe) = (EffectId::EngineHistory, EffectId::AirframeHistory);
+    let of_engine = Effects::one(engine, 1.5).with_hidden(engine, history(0.3));
+    let both = of_engine.clone().with(airframe, 0.5).with_hidden(airframe, history(0.9));
+    for effects in [of_engine, both] {
+        let text = ron::to_string(&effects).unwrap();
+        assert_eq!(ron::from_str::<Effects>(&text).unwrap(), effects, "{text}");
+        assert_eq!(effects.hidden(engine), history(0.3));
+    }
+}
+
 #[test]
 fn what_is_not_recorded_is_said_and_nothing_becomes_nan() {
     let performance = model(true);
@@ -500,6 +540,8 @@ fn references_are_means_and_read_back_to_the_same_bits() {
     assert!((found.mass_kg - 14_000.0).abs() < 1e-9);
     assert!((found.date_s - 1.5e9).abs() < 1e-6);
     assert_eq!(found.center_of_gravity_percent_mac, Some(22.0));
+    // 222 K over 288.15 K, at both points.
+    assert!((found.temperature_ratio - 222.0 / 288.15).abs() < 1e-12);
     // 1.5 % of 14 000 kg.
     assert!((found.typical_size(EffectId::ZeroFuelMassBias) - 210.0).abs() < 1e-9);
     let text = ron::to_string(&found).unwrap();
