@@ -287,3 +287,52 @@ fn evidence(
     sum += posterior.log_determinant() - prior.log_determinant() - explained;
     Ok(-0.5 * sum)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By definition: slopes have one factor, bends have one, every other setting has its own, and the rest stays.
+    #[test]
+    fn every_factor_acts_on_its_settings() {
+        let start = BayesSettings::physical_2026();
+        let found = changed_by(&start, &[2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0]).unwrap();
+        let before = *start.values();
+        let expected = SettingValues {
+            correction_std: 2.0 * before.correction_std,
+            slope_std_per_lift_coefficient: 3.0 * before.slope_std_per_lift_coefficient,
+            slope_std_per_mach: 3.0 * before.slope_std_per_mach,
+            bend_std_per_lift_coefficient_squared: 5.0
+                * before.bend_std_per_lift_coefficient_squared,
+            bend_std_per_lift_coefficient_mach: 5.0 * before.bend_std_per_lift_coefficient_mach,
+            bend_std_per_mach_squared: 5.0 * before.bend_std_per_mach_squared,
+            extra_flight_std: 7.0 * before.extra_flight_std,
+            extra_segment_std: 11.0 * before.extra_segment_std,
+            sensor_flight_factor: 13.0 * before.sensor_flight_factor,
+            sensor_segment_factor: 17.0 * before.sensor_segment_factor,
+            ..before
+        };
+        assert_eq!(*found.values(), expected);
+        let beyond_its_limit = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1e3];
+        assert_eq!(changed_by(&start, &beyond_its_limit), None);
+    }
+
+    /// A factor of the prior's size is one standard deviation of a normal ln, up or down: by hand, ln density falls by ½ for
+    /// each, and by 2 at two of them.
+    #[test]
+    fn the_prior_of_factors_is_log_normal() {
+        for prior_factor in [2.0_f64, 1.5] {
+            let search = Search { prior_factor, ..Search::standard() };
+            let (up, down) = (prior_factor, 1.0 / prior_factor);
+            for (factors, expected) in [
+                ([1.0, 1.0, 1.0], 0.0),
+                ([1.0, up, 1.0], -0.5),
+                ([down, up, 1.0], -1.0),
+                ([1.0, 1.0, up * up], -2.0),
+            ] {
+                let found = search.log_prior(&factors);
+                assert!((found - expected).abs() < 1e-12, "{factors:?}: {found}");
+            }
+        }
+    }
+}

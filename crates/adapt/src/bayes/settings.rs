@@ -199,3 +199,28 @@ fn named(values: &SettingValues) -> [(&'static str, f64, f64, f64); 12] {
         ("half_life_days", v.half_life_days.unwrap_or(f64::INFINITY), 1.0, f64::INFINITY),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By definition of a file: factors of 1 are not written, others are, and either comes back.
+    #[test]
+    #[expect(clippy::float_cmp, reason = "exactly the default is not written")]
+    fn settings_are_read_back_as_they_were_written() {
+        let physical = *BayesSettings::physical_2026().values();
+        for (segment, flight) in [(1.0, 1.0), (0.5, 1.0), (1.0, 2.0), (0.7, 1.3)] {
+            let values = SettingValues {
+                sensor_segment_factor: segment,
+                sensor_flight_factor: flight,
+                half_life_days: Some(400.0),
+                ..physical
+            };
+            let settings = BayesSettings::new(values).unwrap();
+            let text = ron::to_string(&settings).unwrap();
+            assert_eq!(ron::from_str::<BayesSettings>(&text).unwrap(), settings, "{text}");
+            assert_eq!(text.contains("sensor_segment_factor"), segment != 1.0, "{text}");
+            assert_eq!(text.contains("sensor_flight_factor"), flight != 1.0, "{text}");
+        }
+    }
+}

@@ -187,4 +187,26 @@ mod tests {
             assert!((found - expected).abs() < 1e-9 * (1.0 + expected), "{node}");
         }
     }
+
+    /// Bilinear weights have their point as their mean: at points inside cells of the table, which are not cells of the
+    /// corrections and neither 1 wide nor square, the coordinates come back.
+    #[test]
+    fn corrections_act_at_the_point_they_are_asked_for() {
+        let axis = |count: usize, step: f64| {
+            Axis::new((0..count).map(|k| step * k as f64).collect()).unwrap()
+        };
+        let table = Arc::new(Grid::new(axis(101, 0.5), axis(81, 0.25)));
+        let support = Support::new(&table);
+        let initial = Table::new(Arc::clone(&table), vec![1.0; table.nodes()]).unwrap();
+        for (x, y) in [(0.1, 0.2), (7.6, 3.9), (12.3, 10.1), (49.9, 19.9)] {
+            let cell = table.locate(x, y, Outside::Error).unwrap();
+            let terms = support.terms(&initial, &cell);
+            let fewer = support.grid();
+            let found = (
+                terms.sum(|node| fewer.coordinates(node).0),
+                terms.sum(|node| fewer.coordinates(node).1),
+            );
+            assert!((found.0 - x).abs() < 1e-9 && (found.1 - y).abs() < 1e-9, "{found:?}");
+        }
+    }
 }

@@ -10,6 +10,8 @@ use rand_distr::{Distribution, StandardNormal};
 use super::outlier_weights::FlightWeights;
 use super::*;
 
+mod parts;
+
 type Field = fn(f64, f64) -> f64;
 
 const SENSORS: ObservationVariance = ObservationVariance { segment: 2.5e-5, flight: 2e-5 };
