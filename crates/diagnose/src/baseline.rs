@@ -15,6 +15,7 @@ use crate::priors::{
 use crate::signals::n2_deck::{DECK_TERMS, Deck};
 use crate::signals::noise::NoiseFactors;
 use crate::signals::table_uncertainty::TableUncertainty;
+use crate::signals::variables::flown;
 use crate::thresholds::FARTHEST_PRODUCT;
 
 pub(crate) mod layout;
@@ -243,7 +244,7 @@ impl Baseline {
         let mut scaled = Vec::with_capacity(smooth.len());
         into[0] = 1.0;
         for one in smooth {
-            let value = one.variable().flown(response, &self.parts.references);
+            let value = flown(one.variable(), response, &self.parts.references);
             left += one.write(value, &mut into[at..at + one.len()]);
             scaled.push(one.at(value).clamp(-FARTHEST_PRODUCT, FARTHEST_PRODUCT));
             at += one.len();
@@ -259,7 +260,7 @@ impl Baseline {
 
     /// Whether a variable of the remainder lies beyond what was flown.
     pub(crate) fn is_beyond_flights(&self, response: &Response) -> bool {
-        let of = |one: &Smooth| one.variable().flown(response, &self.parts.references);
+        let of = |one: &Smooth| flown(one.variable(), response, &self.parts.references);
         self.parts.smooth.iter().any(|one| one.is_beyond(of(one)))
     }
 

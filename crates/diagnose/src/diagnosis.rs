@@ -11,7 +11,7 @@ use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
 use crate::judge::closure::{Shrinkage, in_sample, nested};
 use crate::judge::detection::{Detection, DetectionInput, detect};
-use crate::judge::forms::forms;
+use crate::judge::forms::leading_forms;
 use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
 use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{causes, dominant};
@@ -35,7 +35,7 @@ use crate::search::robust::outlier_weights;
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
-use crate::thresholds::{CLEAN_PROBABILITY, CLOSER_DATES, FORM_VARIABLES, WORTH_CLOSER_DATES};
+use crate::thresholds::{CLEAN_PROBABILITY, CLOSER_DATES, WORTH_CLOSER_DATES};
 
 /// Diagnoses one set of flights.
 ///
@@ -312,7 +312,9 @@ fn conclude(
     };
     let verdict = verdict(&findings, notes);
     let found_forms = match &verdict {
-        Verdict::OutsideLibrary(_) => forms_of(problem, analysis, &outside, scale, options.seed),
+        Verdict::OutsideLibrary(_) => {
+            leading_forms(problem, analysis, &outside, (scale, options.seed))
+        }
         _ => vec![],
     };
     Ok(Diagnosis {
@@ -326,24 +328,12 @@ fn conclude(
             .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
-        outside: outside_library(&outside, found_forms),
+        outside: outside_library(&outside, found_forms, *model.references()),
         held_out: unseen.as_ref().map_or_else(Vec::new, Shrinkage::by_flight),
         left_out: BTreeMap::new(),
         outliers: vec![],
         notes: vec![],
     })
-}
-
-/// The forms that the leading variables of a cause outside the library may have.
-fn forms_of(
-    problem: Problem<'_>,
-    analysis: &Analysis,
-    outside: &Outside,
-    noise_scale: f64,
-    seed: u64,
-) -> Vec<FoundForm> {
-    let variables = &outside.leading[..outside.leading.len().min(FORM_VARIABLES)];
-    forms(problem.system, &analysis.scorer, variables, noise_scale, seed)
 }
 
 /// Adds the two estimates of the noise floor that need no sensor's standard deviation.
@@ -359,12 +349,18 @@ fn percent(mean_square: f64) -> f64 {
 }
 
 /// What is reported of a cause outside the library.
-fn outside_library(outside: &Outside, forms: Vec<FoundForm>) -> OutsideLibrary {
+fn outside_library(
+    outside: &Outside,
+    forms: Vec<FoundForm>,
+    references: EffectReferences,
+) -> OutsideLibrary {
+    let form = forms.first().and_then(FoundForm::applied);
     OutsideLibrary {
         probability: outside.probability,
         variable: outside.variable.map(|(variable, _)| variable),
         acts_on: outside.variable.map(|(_, acts)| acts_on(acts)),
         forms,
+        addition: form.map(|form| Addition { effects: vec![], form: Some(form), references }),
     }
 }
 

@@ -126,6 +126,8 @@ mod numbers;
 #[cfg(test)]
 mod oracles;
 
+pub use effects::{Form, Variable};
+
 pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;
@@ -135,7 +137,7 @@ pub use fleet::infer::diagnose_fleet;
 pub use input::{Input, Options};
 pub use numbers::numbers_that_decide;
 pub use output::addition::{AddedEffect, Addition};
-pub use output::form::{ActsOn, Form, FoundForm};
+pub use output::form::{ActsOn, FoundForm};
 pub use output::measurement::{
     FlightsOnPurpose, LoadingKind, Measurement, Separation, Sweep, SweepLoading,
 };
@@ -157,4 +159,3 @@ pub use signals::references::{DiagnoseError, references_of};
 pub use signals::table_uncertainty::{
     TableOrigin, TableUncertainty, TableUncertaintyError, visited_nodes,
 };
-pub use signals::variables::Variable;

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use effects::Effects;
+use effects::{Effects, Variable};
 use flight::effect::{EffectId, HiddenParameter, NeededInput};
 
 use crate::output::addition::Addition;
@@ -13,7 +13,6 @@ use crate::output::measurement::Separation;
 use crate::output::note::{LeftOutReason, Note};
 use crate::output::region::Region;
 use crate::output::verdict::{Closure, Verdict};
-use crate::signals::variables::Variable;
 
 pub(crate) mod addition;
 pub(crate) mod form;
@@ -191,6 +190,8 @@ pub struct OutsideLibrary {
     /// Where the verdict is such a cause: functions of single variables that describe it, of different kinds, the most probable
     /// first.
     pub forms: Vec<FoundForm>,
+    /// What the first of them would add to the model; only where a person asks for it.
+    pub addition: Option<Addition>,
 }
 
 impl Diagnosis {

@@ -6,6 +6,8 @@
 //! predictions. Effects of the recording (sensors, load sheet, fuel quantity) correct recordings before anything else
 //! uses them, and no prediction contains them.
 
+use std::collections::BTreeSet;
+
 use flight::effect::{EffectId, HiddenParameter, NeededInput, ThrottleArgument};
 use lut::Table;
 use lut::surface::{FitError, Surface};
@@ -13,13 +15,17 @@ use perf_model::FlightPoint;
 use serde::{Deserialize, Serialize};
 
 use crate::error::EffectModelError;
+use crate::form::AppliedForm;
 use crate::references::EffectReferences;
 use crate::response::fit_polar;
 use crate::set::{Effects, SizedEffect};
 use crate::terms::Terms;
+use crate::variable::Variable;
 
 /// The column of flight points that holds the date.
 const DATE: &str = "date";
+/// What a form outside the library is called.
+const OUTSIDE: &str = "outside";
 
 /// Effects that were applied together, with the references that they are relative to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,8 +33,23 @@ const DATE: &str = "date";
 pub struct AppliedLayer {
     /// Sizes and hidden parameters.
     pub effects: Effects,
+    /// What acts beside them without being an effect of the library.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub forms: Vec<AppliedForm>,
     /// The conditions at which they are zero.
     pub references: EffectReferences,
+}
+
+impl AppliedLayer {
+    /// Effects of the library alone.
+    #[must_use]
+    pub const fn new(effects: Effects, references: EffectReferences) -> Self {
+        Self { effects, forms: Vec::new(), references }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.effects.is_empty() && self.forms.is_empty()
+    }
 }
 
 /// Effects that a model contains, layer by layer in the order in which they were applied.
@@ -54,7 +75,7 @@ impl AppliedEffects {
     /// Whether nothing is applied.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.layers.iter().all(|layer| layer.effects.is_empty())
+        self.layers.iter().all(AppliedLayer::is_empty)
     }
 
     /// Whether an effect was applied.
@@ -67,6 +88,11 @@ impl AppliedEffects {
     #[must_use]
     pub fn settles(&self, effect: EffectId) -> bool {
         effect.is_known() && self.contains(effect)
+    }
+
+    /// Forms outside the library, layer by layer.
+    pub fn forms(&self) -> impl Iterator<Item = &AppliedForm> {
+        self.layers.iter().flat_map(|layer| &layer.forms)
     }
 
     /// Effects and sizes, layer by layer.
@@ -84,11 +110,11 @@ impl AppliedEffects {
             .sqrt()
     }
 
-    /// Physical effects that a flight point lacks an input for, with the column that is missing: the prediction has them at
-    /// their reference (center of gravity and date of the reference, standard gravity, anti-ice bleed off, wings level, no
-    /// wind).
+    /// Names of physical effects that a flight point lacks an input for, with the column that is missing: the prediction has
+    /// them at their reference (center of gravity and date of the reference, standard gravity, anti-ice bleed off, wings level,
+    /// no wind), and a form outside the library at the mean of its variable.
     #[must_use]
-    pub fn at_reference(&self, point: &FlightPoint) -> Vec<(EffectId, &'static str)> {
+    pub fn at_reference(&self, point: &FlightPoint) -> Vec<(String, &'static str)> {
         let mut lacking = Vec::new();
         for (id, _) in self.iter().filter(|(id, _)| !id.is_of_recordings()) {
             let missing = match id {
@@ -99,16 +125,20 @@ impl AppliedEffects {
                 | EffectId::StepChange => point.date.is_none().then_some(DATE),
                 _ => id.entry().needs.iter().find_map(|needed| lacks(*needed, point)),
             };
-            if let Some(missing) = missing
-                && !lacking.contains(&(id, missing))
-            {
-                lacking.push((id, missing));
-            }
+            lacking.extend(missing.map(|missing| (id.to_string(), missing)));
         }
+        let variables = self.forms().flat_map(AppliedForm::variables);
+        lacking.extend(
+            variables.filter_map(|of| lacks_variable(of, point)).map(|m| (OUTSIDE.to_owned(), m)),
+        );
+        let mut told = BTreeSet::new();
+        lacking.retain(|one| told.insert(one.clone()));
         lacking
     }
 
-    fn terms(&self, of: impl Fn(EffectId) -> bool, dated: Dated) -> Vec<Terms> {
+    fn terms(&self, acts: ActsOnWhat, dated: Dated) -> Vec<Terms> {
+        let with_forms = acts == ActsOnWhat::Aircraft;
+        let of = |id: EffectId| id.is_of_recordings() == (acts == ActsOnWhat::Recordings);
         self.layers
             .iter()
             .filter_map(|layer| {
@@ -119,10 +149,11 @@ impl AppliedEffects {
                     .filter(|effect| of(effect.id))
                     .map(|effect| SizedEffect { hidden: over_thrust(effect.hidden), ..*effect })
                     .collect();
-                if effects.is_empty() {
+                let forms = if with_forms { layer.forms.clone() } else { Vec::new() };
+                if effects.is_empty() && forms.is_empty() {
                     return None;
                 }
-                let terms = Terms::new(&effects, &layer.references);
+                let terms = Terms::new(&effects, &layer.references).with_forms(forms);
                 Some(match dated {
                     Dated::Yes => terms,
                     Dated::No => terms.at_reference_date(),
@@ -130,6 +161,15 @@ impl AppliedEffects {
             })
             .collect()
     }
+}
+
+/// What a term acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ActsOnWhat {
+    /// The aircraft and its surroundings.
+    Aircraft,
+    /// What is recorded of them.
+    Recordings,
 }
 
 /// Whether points have a date.
@@ -155,6 +195,34 @@ fn lacks(needed: NeededInput, point: &FlightPoint) -> Option<&'static str> {
         NeededInput::FuelFlowPerEngine => (true, ""),
     };
     (!there).then_some(name)
+}
+
+/// The same for a variable of a form.
+fn lacks_variable(variable: Variable, point: &FlightPoint) -> Option<&'static str> {
+    let needed = match variable {
+        Variable::Date => return point.date.is_none().then_some(DATE),
+        Variable::Roll => NeededInput::Roll,
+        Variable::CrossWind | Variable::LatitudeCrossWind => NeededInput::Drift,
+        Variable::Latitude => NeededInput::Latitude,
+        Variable::EastwardSpeed => NeededInput::TrueHeading,
+        Variable::CenterOfGravity | Variable::CenterOfGravityLift => NeededInput::CenterOfGravity,
+        Variable::Mach
+        | Variable::LiftCoefficient
+        | Variable::PressureAltitude
+        | Variable::CorrectedThrust
+        | Variable::IsaDeviation
+        | Variable::StaticAirTemperature
+        | Variable::Acceleration
+        | Variable::Mass
+        | Variable::MachLift
+        | Variable::MachExcess
+        | Variable::AntiIce
+        // No form is over these.
+        | Variable::FuelUsed
+        | Variable::Engine
+        | Variable::N2 => return None,
+    };
+    lacks(needed, point)
 }
 
 /// Points of a forecast have no N2, and most of what evaluates a model has no deck: N2 only served to find the size.
@@ -195,12 +263,12 @@ impl Prepared {
                     return Err(EffectModelError::Size { effect, size });
                 }
             }
+            layer.forms.iter().try_for_each(AppliedForm::check)?;
         }
-        let is_physical = |id: EffectId| !id.is_of_recordings();
         Ok(Some(Self {
-            physical: effects.terms(is_physical, Dated::Yes),
-            undated: effects.terms(is_physical, Dated::No),
-            recorded: effects.terms(EffectId::is_of_recordings, Dated::Yes),
+            physical: effects.terms(ActsOnWhat::Aircraft, Dated::Yes),
+            undated: effects.terms(ActsOnWhat::Aircraft, Dated::No),
+            recorded: effects.terms(ActsOnWhat::Recordings, Dated::Yes),
             polar: fit_polar(drag_table)?,
             effects,
         }))

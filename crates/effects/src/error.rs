@@ -34,6 +34,22 @@ pub enum EffectModelError {
         /// The value given.
         size: f64,
     },
+    /// A number of a form outside the library that is not finite, or a width that is not positive.
+    #[error("{quantity} of a form outside the library is {value}, not finite, or not positive")]
+    Form {
+        /// Which.
+        quantity: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A form outside the library over something that is no property of the aircraft or its surroundings.
+    #[error(
+        "a function of {variable} says something of what was recorded, and is no part of a prediction"
+    )]
+    FormOver {
+        /// Of what.
+        variable: &'static str,
+    },
     /// None of the segments can be predicted by the model, so there are no references.
     #[error("none of {segments} segments is inside the drag table")]
     NothingInside {

@@ -63,7 +63,7 @@
 //!     mass_kg: 30_000.0,
 //!     center_of_gravity_percent_mac: None,
 //! };
-//! let layer = AppliedLayer { effects: Effects::one(EffectId::DragFactor, 2.0), references };
+//! let layer = AppliedLayer::new(Effects::one(EffectId::DragFactor, 2.0), references);
 //! let extended = base.with_effects(AppliedEffects::new(vec![layer]))?;
 //!
 //! let cruise = FlightPoint::new(Mass::pounds(66_000.0), PressureAltitude::feet(41_000.0), Mach::new(0.80));
@@ -77,6 +77,7 @@ mod drag;
 mod engine;
 mod error;
 mod extended;
+mod form;
 mod known;
 mod mean;
 mod model;
@@ -86,12 +87,14 @@ mod references;
 mod response;
 mod set;
 mod terms;
+mod variable;
 
 pub use applied::{AppliedEffects, AppliedLayer};
 pub use drag::drag_rise;
 pub use engine::ANTI_ICE_PROXY_K;
 pub use error::{EffectError, EffectModelError, ObserveError, PredictError};
 pub use extended::ExtendedModel;
+pub use form::{AppliedForm, Form};
 pub use known::{KnownPoint, Trial};
 pub use mean::mean_references;
 pub use model::EffectModel;
@@ -99,3 +102,4 @@ pub use point::EffectPoint;
 pub use references::EffectReferences;
 pub use response::{BetweenNodes, Response, value_continued};
 pub use set::Effects;
+pub use variable::Variable;

@@ -10,9 +10,11 @@ use units::Mach;
 use crate::drag::{self, AtTable};
 use crate::engine::{self, Thrust};
 use crate::error::EffectError;
+use crate::form::{self, Change};
 use crate::point::EffectPoint;
 use crate::recorded::{self, AsFlown};
 use crate::terms::Layers;
+use crate::variable::Aloft;
 
 /// The prediction for one segment, with everything that the residual channels need.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,9 +128,17 @@ pub(crate) fn evaluate(
         None => table_value(surface, lift_coefficient, flown.mach, edge)?,
     };
     let at = AtTable { drag_coefficient: table, lift_coefficient, polar: &bare.polar };
-    let drag_coefficient = drag::drag_coefficient(at, point, &flown, layers);
-    let drag_n = surface_n * drag_coefficient;
-    let net_thrust_n = drag_n + drag::path_force_n(point, &flown, layers);
+    let of_effects = drag::drag_coefficient(at, point, &flown, layers);
+    let path_force_n = drag::path_force_n(point, &flown, layers);
+    let outside = if layers.has_forms() {
+        let thrust_n = surface_n * of_effects + path_force_n;
+        let corrected_thrust_n = thrust_n / flown.pressure_ratio;
+        form::change(layers, point, Aloft { lift_coefficient, corrected_thrust_n })
+    } else {
+        Change::default()
+    };
+    let drag_n = surface_n * (of_effects + outside.drag_coefficient);
+    let net_thrust_n = drag_n + path_force_n;
     // Written so that NaN is refused too.
     if net_thrust_n.is_nan() || net_thrust_n <= 0.0 {
         return Err(EffectError::ThrustNotPositive { net_thrust_n });
@@ -141,14 +151,15 @@ pub(crate) fn evaluate(
         engines: bare.aircraft.engines(),
     };
     let (total_kg_s, engines_kg_s) = engine::recorded_fuel_flow(&thrust, point, &flown, layers);
+    let by_outside = outside.ln_fuel_flow;
     let mut ln_fuel_flow_engine = [f64::NEG_INFINITY; MAXIMUM_ENGINES];
     for (ln, flow_kg_s) in
         ln_fuel_flow_engine.iter_mut().zip(engines_kg_s).take(bare.aircraft.engines())
     {
-        *ln = flow_kg_s.ln();
+        *ln = flow_kg_s.ln() + by_outside;
     }
     let response = Response {
-        ln_fuel_flow_total: total_kg_s.ln(),
+        ln_fuel_flow_total: total_kg_s.ln() + by_outside,
         ln_fuel_flow_engine,
         ln_corrected_thrust: corrected_thrust_n.ln(),
         ln_pressure_ratio: flown.ln_pressure_ratio,

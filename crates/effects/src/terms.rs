@@ -3,6 +3,7 @@
 use flight::MAXIMUM_ENGINES;
 use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 
+use crate::form::AppliedForm;
 use crate::references::EffectReferences;
 use crate::set::{Effects, SizedEffect};
 
@@ -21,6 +22,11 @@ impl<'t> Layers<'t> {
 
     pub(crate) fn sum(self, value: impl Fn(&Terms) -> f64) -> f64 {
         self.iter().map(value).sum()
+    }
+
+    /// Whether anything outside the library acts.
+    pub(crate) fn has_forms(self) -> bool {
+        self.iter().any(|terms| !terms.forms.is_empty())
     }
 
     /// Whether an effect moves lift coefficient or Mach number away from what was recorded.
@@ -48,6 +54,8 @@ pub(crate) struct Terms {
     /// Of the engines and of the airframe.
     pub(crate) engine_history: History,
     pub(crate) airframe_history: History,
+    /// What is no effect of the library.
+    pub(crate) forms: Vec<AppliedForm>,
     /// Whether everything is as it was on the reference date, whatever the point's.
     is_at_reference_date: bool,
 }
@@ -59,6 +67,11 @@ impl Terms {
             terms.add(effect);
         }
         terms
+    }
+
+    /// The same with forms outside the library.
+    pub(crate) fn with_forms(self, forms: Vec<AppliedForm>) -> Self {
+        Self { forms, ..self }
     }
 
     /// The same as they were on the date of their references.
@@ -124,6 +137,7 @@ impl Terms {
             step_from_s: f64::INFINITY,
             engine_history: History::NONE,
             airframe_history: History::NONE,
+            forms: Vec::new(),
             is_at_reference_date: false,
         }
     }

@@ -1,7 +1,7 @@
 //! What a verdict adds to a model, as `diagnosis.json` and model files have it.
 
 use diagnose::{AddedEffect, Addition};
-use effects::EffectReferences;
+use effects::{AppliedForm, EffectReferences};
 use flight::effect::{EffectId, HiddenParameter, History, StepTarget, ThrottleArgument};
 use serde::{Deserialize, Serialize};
 
@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields, rename = "Addition")]
 pub struct AdditionRecord {
     effects: Vec<AddedEffectRecord>,
+    /// What is no effect of the library.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    form: Option<AppliedForm>,
     references: EffectReferences,
 }
 
@@ -47,6 +50,7 @@ impl From<&Addition> for AdditionRecord {
     fn from(addition: &Addition) -> Self {
         Self {
             effects: addition.effects.iter().map(AddedEffectRecord::from).collect(),
+            form: addition.form,
             references: addition.references,
         }
     }
@@ -56,8 +60,9 @@ impl TryFrom<AdditionRecord> for Addition {
     type Error = UnknownEffect;
 
     fn try_from(record: AdditionRecord) -> Result<Self, UnknownEffect> {
-        let effects = record.effects.into_iter().map(AddedEffect::try_from);
-        Ok(Self { effects: effects.collect::<Result<_, _>>()?, references: record.references })
+        let AdditionRecord { effects, form, references } = record;
+        let effects = effects.into_iter().map(AddedEffect::try_from).collect::<Result<_, _>>()?;
+        Ok(Self { effects, form, references })
     }
 }
 

@@ -160,7 +160,13 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
             Some(format!("{id} {} {}", digits(entry.smallest?), id.unit_words()))
         })
         .collect();
-    let mut lines = vec!["Nothing beyond the noise: the model fits these flights.".to_owned()];
+    let gap = &diagnosis.gap;
+    let verdict = if gap.rms_ci95[0] > gap.noise_floor_rms_percent {
+        "No effect is seen: what exceeds the noise is too small, or too different from flight to flight."
+    } else {
+        "Nothing beyond the noise: the model fits these flights."
+    };
+    let mut lines = vec![verdict.to_owned()];
     if !told.is_empty() {
         lines.push(format!("What would just have been seen: {}.", told.join(", ")));
     }

@@ -15,15 +15,14 @@ use crate::summary::counted;
 mod form;
 mod region;
 
-pub use form::{form_name, form_parameters, form_words};
+pub use form::{applied_form_words, form_name, form_parameters, form_words};
 pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
 /// What to do after a verdict: one sentence or two.
 pub fn advice(verdict: &Verdict) -> String {
     match verdict {
         Verdict::NoGap => {
-            "Nothing beyond the noise. Each effect has a size that would just have been seen."
-                .to_owned()
+            "No effect is seen. Each has a size that would just have been seen.".to_owned()
         }
         Verdict::InsufficientData(reason) => {
             format!("Too little data: {}.", insufficient_words(*reason))

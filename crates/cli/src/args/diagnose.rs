@@ -19,7 +19,8 @@ pub(crate) struct DiagnoseArgs {
     /// Folder to write to: diagnosis.json, diagnosis.html, gaps.csv
     #[arg(long, short, value_name = "DIR")]
     pub(crate) output: PathBuf,
-    /// Look for these effects only
+    /// Look for these effects only. `outside` is none of them: with --apply it has the form applied that describes a gap
+    /// which no effect explains
     #[arg(long, value_name = "ID", value_delimiter = ',')]
     pub(crate) effects: Vec<String>,
     /// Leave these effects out

@@ -10,6 +10,7 @@ use flight::effect::EffectId;
 use page::FleetRun;
 use rayon::prelude::*;
 
+use self::apply::Outside;
 use crate::args::DiagnoseArgs;
 use crate::commands::{Outcome, check_refused, events_of, prepare, tell_serious, warn_of_events};
 use crate::failure::{Failure, show};
@@ -33,9 +34,10 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
+    let outside = Outside::of(arguments)?;
     let options = Options {
-        effects: effects("--effects", &arguments.effects)?,
-        without: effects("--without", &arguments.without)?,
+        effects: effects("--effects", &arguments.effects, &[apply::OUTSIDE])?,
+        without: effects("--without", &arguments.without, &[])?,
         ..Options::default()
     };
     let asked = asked(arguments)?;
@@ -93,7 +95,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         let applied = if arguments.fleet {
             fleet::apply(folder, &groups, &fleets)?
         } else {
-            apply::apply(folder, &groups, &diagnoses)?
+            apply::apply(folder, &groups, &diagnoses, outside)?
         };
         text.push_str(&applied.text);
         reading.refused.extend(applied.refused);
@@ -145,8 +147,15 @@ fn asked(arguments: &DiagnoseArgs) -> Result<RunOptions, Failure> {
     })
 }
 
-fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Failure> {
-    effects_named(names).map_err(|NoSuchEffect { name, known }| Failure::BadArgument {
+/// The effects of these names, but for names that are none.
+fn effects(
+    argument: &'static str,
+    names: &[String],
+    others: &[&str],
+) -> Result<Vec<EffectId>, Failure> {
+    let names: Vec<String> =
+        names.iter().filter(|name| !others.contains(&name.as_str())).cloned().collect();
+    effects_named(&names).map_err(|NoSuchEffect { name, known }| Failure::BadArgument {
         argument,
         reason: format!("no effect {name:?}; known are {known}"),
     })

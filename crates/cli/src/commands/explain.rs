@@ -15,8 +15,8 @@ use crate::failure::Failure;
 const VERDICTS: [(&str, &str); 4] = [
     (
         "no_gap",
-        "Nothing beyond the noise: the model fits these flights. The diagnosis says how large\n\
-         each effect would have to be to be seen.",
+        "No effect is seen: nothing is beyond the noise, or nothing beyond it is the same from\n\
+         flight to flight. The diagnosis says how large each effect would have to be to be seen.",
     ),
     (
         "effects",

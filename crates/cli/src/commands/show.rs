@@ -207,11 +207,12 @@ fn describe_effects(model: &ModelFile, text: &mut String) {
     }
     let Some(effects) = model.initial.effects() else { return };
     let named = |of_recordings: bool| {
-        let mut names: Vec<String> = effects
+        let of_library = effects
             .iter()
             .filter(|(id, _)| id.is_of_recordings() == of_recordings)
-            .map(|(id, _)| id.to_string())
-            .collect();
+            .map(|(id, _)| id.to_string());
+        let outside = effects.forms().filter(|_| !of_recordings).map(|_| "outside".to_owned());
+        let mut names: Vec<String> = of_library.chain(outside).collect();
         names.dedup();
         names.join(", ")
     };

@@ -82,11 +82,9 @@ fn verdict(folder: &Path) -> serde_json::Value {
     document["diagnoses"][0]["verdict"].clone()
 }
 
-#[test]
-fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
-    let scratch = tempfile::tempdir().unwrap();
-    let at = |name: &str| scratch.path().join(name);
-    std::fs::write(at("PLAN.ron"), PLAN).unwrap();
+/// Flies PLAN.ron in a folder, and teaches the study's model with the flights of NEW; returns the initial model.
+fn taught(folder: &Path) -> PathBuf {
+    let at = |name: &str| folder.join(name);
     run(&[&"simulate", &at("PLAN.ron"), &"-o", &at("flown")]).expect(0);
     run(&[&"simulate", &"ghazi-2020", &"-o", &at("study")]).expect(0);
     let initial = at("MODEL.ron");
@@ -98,6 +96,15 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     let (aircraft, guide) = (at("study/AIRCRAFT.ron"), at("study/guide.csv"));
     run(&[&"init", &"--aircraft", &aircraft, &"--guide", &guide, &"-o", &initial]).expect(0);
     adapt(&initial, &at("new"), &[at("flown/NEW")], &[]).expect(0);
+    initial
+}
+
+#[test]
+fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
+    let scratch = tempfile::tempdir().unwrap();
+    let at = |name: &str| scratch.path().join(name);
+    std::fs::write(at("PLAN.ron"), PLAN).unwrap();
+    let initial = taught(scratch.path());
     let (learnt, worn) = (at("new/models/NEW.ron"), at("flown/WORN"));
     let (found, applied) = (at("found"), at("applied"));
 
@@ -173,6 +180,70 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     run(&[&"export", &extended, &"-o", &at("table.csv")])
         .expect(0)
         .says("effects that the model contains are not in it: tsfc_engine_2");
+}
+
+/// A bump of drag that no effect of the library is: it is applied where a person asks for it, and nothing is left then.
+#[test]
+fn a_form_outside_the_library_is_applied_by_its_name() {
+    let scratch = tempfile::tempdir().unwrap();
+    let at = |name: &str| scratch.path().join(name);
+    let bump = r#"effects: [(id: "outside_mach_bump", size: Some(15), at: Some(0.74))], flights: Designed(("#;
+    let plan = PLAN
+        .replace(r#"effects: [(id: "tsfc_engine_2", size: Some(3))], flights: Designed(("#, bump);
+    let plan = plan.replace("flights: 20", "flights: 40");
+    std::fs::write(at("PLAN.ron"), plan).unwrap();
+    taught(scratch.path());
+    let (learnt, bumped) = (at("new/models/NEW.ron"), at("flown/WORN"));
+    let (found, applied) = (at("found"), at("applied"));
+    let ran =
+        run(&[&"diagnose", &bumped, &"--model", &learnt, &"-o", &found, &"--apply", &applied])
+            .expect(0);
+    assert!(
+        ran.stdout.contains("--effects outside applies the form that describes it, drag +"),
+        "{}",
+        ran.stdout
+    );
+    assert!(bytes_below(&applied).is_empty());
+    let ran = run(&[
+        &"diagnose",
+        &bumped,
+        &"--model",
+        &learnt,
+        &"-o",
+        &found,
+        &"--effects",
+        &"outside",
+        &"--apply",
+        &applied,
+    ])
+    .expect(0);
+    assert!(ran.stdout.contains("WORN: applied outside: drag +"), "{}", ran.stdout);
+    let extended = applied.join("WORN.ron");
+    let shown = run(&[&"show", &extended]).expect(0);
+    assert!(shown.stdout.contains("Predictions have outside\n"), "{}", shown.stdout);
+    let again = at("again");
+    run(&[&"diagnose", &bumped, &"--model", &extended, &"-o", &again]).expect(0);
+    assert_eq!(verdict(&again)["kind"], "no_gap");
+    // At the bump the planner gets the drag that was planted there, elsewhere nothing.
+    let points = at("points.csv");
+    std::fs::write(
+        &points,
+        "mass_kg,pressure_altitude_ft,mach\n14000,41000,0.74\n14000,41000,0.64\n",
+    )
+    .unwrap();
+    let drag = |model: &Path| {
+        let out = at("predicted.csv");
+        run(&[&"predict", &"--model", &model, &points, &"-o", &out, &"--table-only"]).expect(0);
+        numbers(&csv_columns(&out), "drag_coefficient")
+    };
+    let (with, without) = (drag(&extended), drag(&learnt));
+    let counts: Vec<f64> = with.iter().zip(&without).map(|(a, b)| 1e4 * (a - b)).collect();
+    assert!((counts[0] - 15.0).abs() < 3.0 && counts[1].abs() < 2.0, "{counts:?}");
+    let fleet = [&"--fleet" as &dyn AsRef<std::ffi::OsStr>, &"--effects", &"outside"];
+    let mut words: Vec<&dyn AsRef<std::ffi::OsStr>> =
+        vec![&"diagnose", &bumped, &"--model", &learnt, &"-o", &found];
+    words.extend(fleet);
+    run(&words).expect(2).says("`outside` is the form of one tail's gap");
 }
 
 /// A model of the fixture's aircraft that contains effects, written by hand as a program of today writes it.

@@ -1,10 +1,10 @@
 //! Smooth functions of one variable: a Gaussian process on a few knots.
 
+use effects::Variable;
 use serde::{Deserialize, Serialize};
 
 use crate::math::cholesky::Cholesky;
 use crate::priors::{SMOOTH_KNOT_DISTANCE, SMOOTH_MOST_KNOTS};
-use crate::signals::variables::Variable;
 use faer::Mat;
 
 /// Share of a knot's variance that keeps the kernel's matrix positive definite in doubles.

@@ -283,7 +283,11 @@ impl FleetTail {
             let hidden = place.map_or(effect.entry().hidden, |place| self.hidden[place]);
             AddedEffect { effect, size, standard_deviation, hidden }
         };
-        Addition { effects: sizes.iter().map(added).collect(), references: self.references }
+        Addition {
+            effects: sizes.iter().map(added).collect(),
+            form: None,
+            references: self.references,
+        }
     }
 
     /// Takes its Gram, over the effects of a fleet; one that the tail cannot test has zeros. `None` where what it shares is

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use effects::EffectReferences;
+use effects::{EffectReferences, Variable};
 use faer::Mat;
 
 use crate::baseline::Baseline;
@@ -15,7 +15,7 @@ use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::table_uncertainty::TableUncertainty;
-use crate::signals::variables::{Hats, Scaled, Variable};
+use crate::signals::variables::{Hats, Scaled};
 
 /// Variables of the smooth background. Our choice: what effects of the library depend on.
 const SMOOTH_VARIABLES: [Variable; 15] = [

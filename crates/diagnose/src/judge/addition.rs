@@ -42,7 +42,7 @@ impl Addition {
         }));
         // The order of the verdict, the larger effect first.
         effects.sort_by_key(|added| named.iter().position(|id| *id == added.effect));
-        Some(Self { effects, references })
+        Some(Self { effects, form: None, references })
     }
 }
 

@@ -130,6 +130,11 @@ impl Shrinkage {
         (low.is_finite() && high.is_finite()).then_some((closure, [low, high]))
     }
 
+    /// Of the resamples.
+    pub(crate) const fn seed(&self) -> u64 {
+        self.seed
+    }
+
     /// The same gap with another change of each segment's predicted ln fuel flow.
     pub(crate) fn with_change(&self, system: &WhitenedSystem<'_>, change: &[f64]) -> Self {
         // What is expected of the noise is proportional to its scale, and not asked for here.

@@ -2,6 +2,7 @@
 
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
+use crate::judge::forms::leading_forms;
 use crate::judge::gap::{is_large, is_vague};
 use crate::judge::noise_floors::held_out_smooth;
 use crate::judge::posterior::{Posterior, id_of};
@@ -12,8 +13,8 @@ use crate::search::analyse::{Analysis, DRAG_OF_A_TABLE};
 use crate::search::outside::Outside;
 use crate::search::system::Problem;
 use crate::thresholds::{
-    LARGEST_REST, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM, OUTSIDE_PROBABILITY,
-    UNPROVEN_SHARE,
+    LARGEST_REST, LEAST_OF_A_FORM, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM,
+    OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
 };
 
 /// What a decision is made from.
@@ -89,7 +90,7 @@ pub(crate) fn detect(
         && !(taught
             && !input.lies_at_an_engine
             && is_unnamed(outside, named)
-            && is_unpredictable(problem, own));
+            && is_unpredictable(problem, input, outside));
     let detected = input.is_real && (table.is_some() || stands_out);
     Detection { detected, table: table.filter(|_| detected), smooth_term }
 }
@@ -100,11 +101,19 @@ fn is_unnamed(outside: &Outside, named: f64) -> bool {
         || named * (1.0 - outside.probability) <= MORE_PROBABLE_THAN_NOT
 }
 
-/// Whether smooth functions that were fitted to other flights do not surely predict a flight better than no gap at all does
-/// `[diagnosis.53]`: what errs anew on every flight is no property of the aircraft.
-fn is_unpredictable(problem: Problem<'_>, own: &Shrinkage) -> bool {
-    held_out_smooth(problem.system)
-        .is_some_and(|fitted| !own.with_change(problem.system, &fitted).closes())
+/// Whether nothing that was fitted to other flights surely predicts a flight better than no gap at all does `[diagnosis.53]`:
+/// neither smooth functions do, nor does the form that describes the gap best surely close more than half of it. What errs anew
+/// on every flight is no property of the aircraft.
+fn is_unpredictable(problem: Problem<'_>, input: &DetectionInput<'_>, outside: &Outside) -> bool {
+    let DetectionInput { analysis, own, noise_scale, .. } = *input;
+    let Some(fitted) = held_out_smooth(problem.system) else { return false };
+    if own.with_change(problem.system, &fitted).closes() {
+        return false;
+    }
+    // A bump between two knots is no sum of smooth functions, and may be all of a large gap.
+    let described = leading_forms(problem, analysis, outside, (noise_scale, own.seed()));
+    let closure = described.first().and_then(|best| best.closure);
+    closure.is_none_or(|closure| closure.ci95[0] <= LEAST_OF_A_FORM)
 }
 
 /// A guide's table with less probability where a table that was fitted to other flights may close less than half of the gap:

@@ -1,5 +1,6 @@
 //! Outside the library: which function of which variable, how large, and how much of the gap it closes on unseen flights.
 
+use effects::Variable;
 use faer::Mat;
 use units::convert::STANDARD_GRAVITY_M_S2;
 
@@ -14,23 +15,33 @@ use crate::output::verdict::Closure;
 use crate::priors::{FORM_AMPLITUDES, NOISE_FREEDOM};
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
+use crate::search::analyse::Analysis;
 use crate::search::folds::fold_of;
-use crate::search::system::{SmoothTerms, WhitenedSystem};
+use crate::search::outside::Outside;
+use crate::search::system::{Problem, SmoothTerms, WhitenedSystem};
 use crate::signals::channels::MAXIMUM_CHANNELS;
-use crate::signals::variables::Variable;
-use crate::thresholds::{CLOSURE_FOLDS, FORMS_TOLD};
+use crate::thresholds::{CLOSURE_FOLDS, FORM_VARIABLES, FORMS_TOLD, NORMAL_95};
 
 pub(crate) mod dictionary;
 
-/// 95 % of a normal distribution lie within so many standard deviations.
-const NORMAL_95: f64 = 1.96;
 /// A drag count.
 const COUNT: f64 = 1e-4;
 /// Share of a whole in per cent.
 const PERCENT: f64 = 0.01;
 
+/// The forms that the leading variables of a cause outside the library may have, best first.
+pub(crate) fn leading_forms(
+    problem: Problem<'_>,
+    analysis: &Analysis,
+    outside: &Outside,
+    (noise_scale, seed): (f64, u64),
+) -> Vec<FoundForm> {
+    let variables = &outside.leading[..outside.leading.len().min(FORM_VARIABLES)];
+    forms(problem.system, &analysis.scorer, variables, noise_scale, seed)
+}
+
 /// The most probable forms of different kinds, best first, where a function of one of these variables is needed.
-pub(crate) fn forms(
+fn forms(
     system: &WhitenedSystem<'_>,
     scorer: &Scorer,
     leading: &[Variable],

@@ -1,6 +1,6 @@
 //! From clean flights to a baseline.
 
-use effects::{BetweenNodes, EffectModel, EffectReferences, ExtendedModel};
+use effects::{BetweenNodes, EffectModel, EffectReferences, ExtendedModel, Variable};
 use faer::Mat;
 use units::convert::SECONDS_PER_DAY;
 
@@ -17,7 +17,7 @@ use crate::signals::noise::NoiseFactors;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::TableUncertainty;
-use crate::signals::variables::Variable;
+use crate::signals::variables::flown;
 use crate::thresholds::FEWEST_FLIGHTS_OF_A_BASELINE;
 
 /// Least share of a flight that counts. Our choice: nothing, and no division by zero.
@@ -129,7 +129,7 @@ fn count_by_age(flights: &mut [FlightRows], half_life_days: Option<f64>) {
 fn smooth_functions(data: &PreparedFlights<'_>, references: &EffectReferences) -> Vec<Smooth> {
     let of = |(variable, length): (Variable, f64)| {
         let values: Vec<f64> =
-            data.segments.iter().map(|row| variable.flown(&row.response, references)).collect();
+            data.segments.iter().map(|row| flown(variable, &row.response, references)).collect();
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let length = if variable == Variable::Mass { length * mean } else { length };
         Smooth::over(variable, length, &values)

@@ -1,6 +1,6 @@
 //! What a verdict would add to the model: its effects with sizes, hidden parameters and references, ready to be applied.
 
-use effects::{AppliedLayer, EffectReferences, Effects};
+use effects::{AppliedForm, AppliedLayer, EffectReferences, Effects};
 use flight::effect::{EffectId, HiddenParameter};
 
 /// Effects of a verdict and what they are zero at.
@@ -8,6 +8,8 @@ use flight::effect::{EffectId, HiddenParameter};
 pub struct Addition {
     /// The effects, as they act together.
     pub effects: Vec<AddedEffect>,
+    /// What acts without being an effect of the library.
+    pub form: Option<AppliedForm>,
     /// What they are zero at.
     pub references: EffectReferences,
 }
@@ -34,7 +36,8 @@ impl Addition {
             effects =
                 effects.with(added.effect, added.size).with_hidden(added.effect, added.hidden);
         }
-        AppliedLayer { effects, references: self.references }
+        let forms = self.form.into_iter().collect();
+        AppliedLayer { effects, forms, references: self.references }
     }
 }
 
@@ -69,6 +72,7 @@ mod tests {
                 effect(EffectId::StepChange, 1.5, step),
                 effect(EffectId::WaveDrag, 0.006, rise),
             ],
+            form: None,
             references,
         };
         assert_eq!(

@@ -1,7 +1,10 @@
 //! The form of a cause outside the library.
 
+use effects::{AppliedForm, Form, Variable};
+use flight::effect::StepTarget;
+
 use crate::output::verdict::Closure;
-use crate::signals::variables::Variable;
+use crate::thresholds::NORMAL_95;
 
 /// What a cause outside the library acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -12,64 +15,6 @@ pub enum ActsOn {
     Thrust,
     /// One engine's fuel flow.
     OneEngine,
-}
-
-/// A function of one variable, or a product of two; places and widths in the variable's unit, dates in s since 1970.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Form {
-    /// The same everywhere.
-    Offset,
-    /// (x − mean)/deviation.
-    Linear,
-    /// The square of that.
-    Square,
-    /// (x/mean)^exponent − 1.
-    Power {
-        /// Exponent.
-        exponent: f64,
-    },
-    /// max(0, x − from)/deviation.
-    HingeAbove {
-        /// Where it begins.
-        from: f64,
-    },
-    /// max(0, to − x)/deviation.
-    HingeBelow {
-        /// Where it ends.
-        to: f64,
-    },
-    /// 1 from here on.
-    Step {
-        /// Where.
-        from: f64,
-    },
-    /// 1/(1 + e^(−(x − middle)/width)).
-    Logistic {
-        /// Where it is one half.
-        middle: f64,
-        /// Its width.
-        width: f64,
-    },
-    /// e^(−((x − middle)/width)²/2).
-    Bump {
-        /// Where it is largest.
-        middle: f64,
-        /// Its width.
-        width: f64,
-    },
-    /// The product of two linear forms.
-    Product {
-        /// The second variable.
-        with: Variable,
-    },
-}
-
-impl Form {
-    /// Whether two are of one kind, whatever their parameters.
-    #[must_use]
-    pub fn is_like(self, other: Self) -> bool {
-        core::mem::discriminant(&self) == core::mem::discriminant(&other)
-    }
 }
 
 /// A form with its size, as the flights have it.
@@ -94,4 +39,24 @@ pub struct FoundForm {
     pub probability: f64,
     /// Share of the explainable gap that it closes on flights that neither its parameters nor its size have seen.
     pub closure: Option<Closure>,
+}
+
+impl FoundForm {
+    /// The form as a model contains it; `None` for one engine's, which no model has by itself.
+    #[must_use]
+    pub fn applied(&self) -> Option<AppliedForm> {
+        let acts_on = match self.acts_on {
+            ActsOn::FuelFlow => StepTarget::FuelFlow,
+            ActsOn::Thrust => StepTarget::Drag,
+            ActsOn::OneEngine => return None,
+        };
+        Some(AppliedForm {
+            form: self.form,
+            variable: self.variable,
+            scale: self.scale,
+            acts_on,
+            size: self.size,
+            standard_deviation: (self.size_ci95[1] - self.size_ci95[0]) / (2.0 * NORMAL_95),
+        })
+    }
 }

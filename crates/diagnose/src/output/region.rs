@@ -1,6 +1,6 @@
 //! A part of what was flown.
 
-use crate::signals::variables::Variable;
+use effects::Variable;
 
 /// A part of what was flown: the segments that meet every condition, of all engines or of one.
 #[derive(Clone, Debug, Default, PartialEq)]

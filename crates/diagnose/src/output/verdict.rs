@@ -1,9 +1,9 @@
 //! The conclusion of a diagnosis.
 
+use effects::Variable;
 use flight::effect::EffectId;
 
 use crate::output::measurement::Separation;
-use crate::signals::variables::Variable;
 
 /// The conclusion.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,10 +1,9 @@
 //! Variables that a place is said in: their edges, and which bin a segment is in.
 
-use effects::EffectReferences;
+use effects::{EffectReferences, Variable};
 
 use crate::output::region::{Condition, Edge};
 use crate::residuals::rows::SegmentRow;
-use crate::signals::variables::Variable;
 use crate::thresholds::{BINS, EDGE_TOLERANCE, ROLL_EDGES_DEG};
 
 /// The variables that places are said in, besides the engine.

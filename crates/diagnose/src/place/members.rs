@@ -1,12 +1,11 @@
 //! Which segments lie in a region.
 
-use effects::{EffectModel, EffectPoint, Effects};
+use effects::{EffectModel, EffectPoint, Effects, Variable};
 
 use crate::input::Input;
 use crate::output::region::Region;
 use crate::signals::channels::mean_n2_percent;
 use crate::signals::references::{DiagnoseError, references_of};
-use crate::signals::variables::Variable;
 
 /// Of every segment, flight by flight, whether it meets the conditions of a region. What the model cannot predict lies
 /// nowhere; which engine the region is of changes nothing: every segment is of all engines.

@@ -1,6 +1,6 @@
 //! The gap segment by segment, before and after effects are added: what a chart is drawn from.
 
-use effects::{EffectModel, Effects, Trial};
+use effects::{EffectModel, Effects, Trial, Variable};
 
 use crate::input::Input;
 use crate::library::Library;
@@ -13,7 +13,6 @@ use crate::residuals::reference::Reference;
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::references::{DiagnoseError, references_of};
-use crate::signals::variables::Variable;
 
 /// The gap at one segment: ln recorded − ln predicted total fuel flow, in per cent, as [`crate::diagnose()`] counts it.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,7 +10,7 @@ mod covariance;
 mod functions;
 
 use atmos::constants::SEA_LEVEL_PRESSURE_PA;
-use effects::{BetweenNodes, EffectModel, EffectPoint, drag_rise, value_continued};
+use effects::{BetweenNodes, EffectModel, EffectPoint, Variable, drag_rise, value_continued};
 use flight::effect::{EffectId, HiddenParameter};
 use lut::{Cell, Outside, Table};
 use perf_model::aircraft::SensorDeviations;
@@ -24,7 +24,6 @@ use crate::residuals::level::covariance::Covariance;
 use crate::residuals::level::functions::{Functions, State};
 use crate::signals::noise::NoiseFactors;
 use crate::signals::table_uncertainty::TableUncertainty;
-use crate::signals::variables::Variable;
 
 /// Relative step of the mass, and step of the acceleration (m/s²), of the slopes of the noise.
 const MASS_STEP: f64 = 1e-3;

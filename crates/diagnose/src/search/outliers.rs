@@ -7,6 +7,7 @@
 //! Difficult: one absurd segment moves what its whole flight seems to have in common. Rows are therefore whitened segment by
 //! segment, and a flight's common errors are estimated from its ordinary segments alone.
 
+use effects::Variable;
 use faer::Mat;
 
 use crate::hypotheses::design::{AGNOSTIC_VARIABLES, Design};
@@ -20,7 +21,6 @@ use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::common_loadings;
 use crate::signals::channels::MAXIMUM_CHANNELS;
-use crate::signals::variables::Variable;
 use crate::thresholds::{
     ALIKE_NEIGHBORS, FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, LEAST_ROBUST_SCALE,
     OUTLIER_DISTANCE, OUTLIER_NEIGHBORS,

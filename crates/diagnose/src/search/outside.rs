@@ -1,5 +1,7 @@
 //! Outside the library: smooth terms of one variable compete with the named effects.
 
+use effects::Variable;
+
 use crate::hypotheses::backgrounds::{Background, TableBelief, small_effects};
 use crate::hypotheses::design::Acts;
 use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, Single};
@@ -11,7 +13,6 @@ use crate::priors::{AGNOSTIC_AMPLITUDES, FORM_ERROR, PRIOR_OTHER_FORM, PRIOR_OUT
 use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
-use crate::signals::variables::Variable;
 use crate::thresholds::AGNOSTIC_SETS;
 
 /// What the competition says.

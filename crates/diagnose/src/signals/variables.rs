@@ -1,171 +1,33 @@
-//! The physical variables that a gap may hang on, and hat functions over them.
+//! The physical variables that a gap may hang on as they were flown, and hat functions over them.
 
-use effects::{EffectPoint, EffectReferences, Response};
-use flight::effect::DrivingVariable;
+use effects::{EffectReferences, Response, Variable};
 use serde::{Deserialize, Serialize};
-use units::convert::RADIANS_PER_DEGREE;
 
 use crate::math::quantile::{QuantileType, quantile};
 
-/// A variable of a segment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Variable {
-    /// Mach number.
-    Mach,
-    /// Lift coefficient.
-    LiftCoefficient,
-    /// Pressure altitude, m.
-    PressureAltitude,
-    /// Corrected thrust over its reference.
-    CorrectedThrust,
-    /// Deviation from the standard day, K.
-    IsaDeviation,
-    /// Static air temperature, K.
-    StaticAirTemperature,
-    /// Date: years since the reference; the bounds of a region are s since 1970.
-    Date,
-    /// Fuel used, kg.
-    FuelUsed,
-    /// Root of the mean squared roll angle, degrees.
-    Roll,
-    /// Along-path acceleration, m/s².
-    Acceleration,
-    /// Cross-wind to the left, m/s.
-    CrossWind,
-    /// Latitude, degrees.
-    Latitude,
-    /// Speed over the ground towards east, m/s.
-    EastwardSpeed,
-    /// Center of gravity, %MAC.
-    CenterOfGravity,
-    /// Gross mass, kg.
-    Mass,
-    /// Latitude's sine times cross-wind.
-    LatitudeCrossWind,
-    /// Center of gravity times lift coefficient.
-    CenterOfGravityLift,
-    /// Mach number times lift coefficient.
-    MachLift,
-    /// Squared excess of Mach number over its reference.
-    MachExcess,
-    /// Which engine.
-    Engine,
-    /// Mean N2 of the engines, %: of a segment, not of a point.
-    N2,
-    /// Share of the segment with anti-ice bleed on, as recorded.
-    AntiIce,
-}
-
-impl Variable {
-    /// The value at a segment; `None` where an input is not recorded.
-    pub(crate) fn value(
-        self,
-        point: &EffectPoint,
-        response: &Response,
-        references: &EffectReferences,
-    ) -> Option<f64> {
-        let cross_wind = || {
-            point
-                .drift_deg
-                .map(|drift_deg| -point.true_airspeed_m_s * (drift_deg * RADIANS_PER_DEGREE).sin())
-        };
-        Some(match self {
-            Self::Mach => point.mach,
-            Self::LiftCoefficient => response.lift_coefficient,
-            Self::PressureAltitude => point.pressure_altitude_m,
-            Self::CorrectedThrust => {
-                response.ln_corrected_thrust.exp() / references.corrected_thrust_n
-            }
-            Self::IsaDeviation => {
-                let isa = atmos::isa::temperature(units::PressureAltitude::meters(
-                    point.pressure_altitude_m,
-                ))
-                .ok()?;
-                point.static_air_temperature_k - isa.to_kelvin()
-            }
-            Self::StaticAirTemperature => point.static_air_temperature_k,
-            Self::Date => {
-                (point.date_s - references.date_s)
-                    / (units::convert::DAYS_PER_YEAR * units::convert::SECONDS_PER_DAY)
-            }
-            Self::FuelUsed => point.fuel_used_kg,
-            Self::Roll => point.roll_squared_deg2?.max(0.0).sqrt(),
-            Self::Acceleration => point.acceleration_m_s2,
-            Self::CrossWind => cross_wind()?,
-            Self::Latitude => point.latitude_deg?,
-            Self::EastwardSpeed => {
-                let track_deg = point.true_heading_deg? + point.drift_deg.unwrap_or(0.0);
-                point.ground_speed_m_s * (track_deg * RADIANS_PER_DEGREE).sin()
-            }
-            Self::CenterOfGravity => point.center_of_gravity_percent_mac?,
-            Self::Mass => point.mass_kg,
-            Self::AntiIce => point.anti_ice?,
-            Self::LatitudeCrossWind => {
-                (point.latitude_deg? * RADIANS_PER_DEGREE).sin() * cross_wind()?
-            }
-            Self::CenterOfGravityLift => {
-                (point.center_of_gravity_percent_mac? - references.center_of_gravity_percent_mac?)
-                    * response.lift_coefficient
-            }
-            Self::MachLift => (point.mach - references.mach) * response.lift_coefficient,
-            Self::MachExcess => (point.mach - references.mach + 0.02).max(0.0).powi(2),
-            Self::Engine | Self::N2 => return None,
-        })
-    }
-}
-
-impl Variable {
-    /// The value as it was flown, effects of sensors and mass undone; only for variables of state.
-    pub(crate) fn flown(self, response: &Response, references: &EffectReferences) -> f64 {
-        let altitude = || {
-            let pressure = units::Pressure::pascals(
-                response.ln_pressure_ratio.exp() * atmos::constants::SEA_LEVEL_PRESSURE_PA,
-            );
-            // A response exists only inside the atmosphere's domain.
-            atmos::isa::pressure_altitude(pressure).map_or(0.0, units::PressureAltitude::to_meters)
-        };
-        match self {
-            Self::Mach => response.mach,
-            Self::LiftCoefficient => response.lift_coefficient,
-            Self::PressureAltitude => altitude(),
-            Self::CorrectedThrust => {
-                response.ln_corrected_thrust.exp() / references.corrected_thrust_n
-            }
-            Self::IsaDeviation => {
-                let isa_k = atmos::isa::temperature(units::PressureAltitude::meters(altitude()))
-                    .map_or(0.0, units::Temperature::to_kelvin);
-                response.ln_temperature_ratio.exp() * atmos::constants::SEA_LEVEL_TEMPERATURE_K
-                    - isa_k
-            }
-            Self::Mass => response.mass_kg,
-            _ => 0.0,
+/// The value of a variable as it was flown, effects of sensors and mass undone; only for variables of state.
+pub(crate) fn flown(variable: Variable, response: &Response, references: &EffectReferences) -> f64 {
+    let altitude = || {
+        let pressure = units::Pressure::pascals(
+            response.ln_pressure_ratio.exp() * atmos::constants::SEA_LEVEL_PRESSURE_PA,
+        );
+        // A response exists only inside the atmosphere's domain.
+        atmos::isa::pressure_altitude(pressure).map_or(0.0, units::PressureAltitude::to_meters)
+    };
+    match variable {
+        Variable::Mach => response.mach,
+        Variable::LiftCoefficient => response.lift_coefficient,
+        Variable::PressureAltitude => altitude(),
+        Variable::CorrectedThrust => {
+            response.ln_corrected_thrust.exp() / references.corrected_thrust_n
         }
-    }
-}
-
-/// The variable that bounds of a region are said in.
-impl From<DrivingVariable> for Variable {
-    fn from(driver: DrivingVariable) -> Self {
-        match driver {
-            DrivingVariable::Mach => Self::Mach,
-            DrivingVariable::StaticAirTemperature => Self::StaticAirTemperature,
-            DrivingVariable::PressureAltitude => Self::PressureAltitude,
-            DrivingVariable::Roll => Self::Roll,
-            DrivingVariable::CorrectedThrust => Self::CorrectedThrust,
-            DrivingVariable::N2 => Self::N2,
-            DrivingVariable::CrossWind => Self::CrossWind,
-            DrivingVariable::Latitude => Self::Latitude,
-            DrivingVariable::Date => Self::Date,
-            DrivingVariable::FuelUsed => Self::FuelUsed,
-            DrivingVariable::Mass => Self::Mass,
-            DrivingVariable::CenterOfGravity => Self::CenterOfGravity,
-            DrivingVariable::LiftCoefficient => Self::LiftCoefficient,
-            DrivingVariable::IsaDeviation => Self::IsaDeviation,
-            DrivingVariable::EastwardSpeed => Self::EastwardSpeed,
-            DrivingVariable::Engine => Self::Engine,
-            DrivingVariable::AntiIce => Self::AntiIce,
+        Variable::IsaDeviation => {
+            let isa_k = atmos::isa::temperature(units::PressureAltitude::meters(altitude()))
+                .map_or(0.0, units::Temperature::to_kelvin);
+            response.ln_temperature_ratio.exp() * atmos::constants::SEA_LEVEL_TEMPERATURE_K - isa_k
         }
+        Variable::Mass => response.mass_kg,
+        _ => 0.0,
     }
 }
 

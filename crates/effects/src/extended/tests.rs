@@ -9,6 +9,8 @@ use super::*;
 use crate::applied::AppliedLayer;
 use crate::model::EffectModel;
 
+mod outside;
+
 const DATE_S: f64 = 1.5e9;
 const YEAR_S: f64 = 365.25 * 86_400.0;
 
@@ -58,7 +60,7 @@ fn hidden(effects: Effects) -> Effects {
 }
 
 fn layer(effects: Effects) -> AppliedLayer {
-    AppliedLayer { effects: hidden(effects), references: references() }
+    AppliedLayer::new(hidden(effects), references())
 }
 
 fn with(effects: Effects) -> ExtendedModel {
@@ -194,11 +196,9 @@ fn a_model_that_contains_an_effect_leaves_nothing_of_it() {
 fn a_throttle_effect_found_over_n2_acts_over_corrected_thrust() {
     let by_thrust = with(Effects::one(EffectId::TsfcThrottle, 0.6));
     let over_n2 = HiddenParameter::Throttle { pivot: 0.8, argument: ThrottleArgument::N2 };
-    let layer = AppliedLayer {
-        effects: Effects::one(EffectId::TsfcThrottle, 0.6)
-            .with_hidden(EffectId::TsfcThrottle, over_n2),
-        references: references(),
-    };
+    let effects =
+        Effects::one(EffectId::TsfcThrottle, 0.6).with_hidden(EffectId::TsfcThrottle, over_n2);
+    let layer = AppliedLayer::new(effects, references());
     let model = bare().with_effects(AppliedEffects::new(vec![layer])).unwrap();
     let flow = |model: &ExtendedModel| {
         model.predict(&flight_point()).unwrap().fuel_flow_total.to_kilograms_per_second()
@@ -300,7 +300,7 @@ fn what_a_point_does_not_say_is_at_its_reference() {
     ] {
         let model = with(Effects::one(id, typical(id)));
         let effects = model.effects().unwrap();
-        assert_eq!(effects.at_reference(&bare_point), vec![(id, missing)]);
+        assert_eq!(effects.at_reference(&bare_point), vec![(id.to_string(), missing)]);
         let found = model.predict(&bare_point).unwrap().fuel_flow_total.to_kilograms_per_second();
         assert!((found / plain - 1.0).abs() < 1e-12, "{id}: {found} {plain}");
     }

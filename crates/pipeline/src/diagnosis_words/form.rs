@@ -1,6 +1,8 @@
 //! A form outside the library in words.
 
 use diagnose::{ActsOn, Form, FoundForm, Variable};
+use effects::AppliedForm;
+use flight::effect::StepTarget;
 use units::convert::SECONDS_PER_DAY;
 
 use super::region::{instant, unit_words};
@@ -11,23 +13,44 @@ use crate::summary::not_minus_zero;
 pub fn form_words(found: &FoundForm) -> String {
     let half = 0.5 * (found.size_ci95[1] - found.size_ci95[0]);
     let (what, unit) = match found.acts_on {
-        ActsOn::Thrust => ("drag", "counts"),
-        ActsOn::FuelFlow | ActsOn::OneEngine => ("fuel flow", "%"),
+        ActsOn::Thrust => of_target(StepTarget::Drag),
+        ActsOn::FuelFlow | ActsOn::OneEngine => of_target(StepTarget::FuelFlow),
     };
     let closure = found.closure.map_or_else(
         || "how much it closes could not be measured".to_owned(),
         |closure| format!("closes {:.0} % on unseen flights", 100.0 * closure.share.max(0.0)),
     );
     let size = not_minus_zero(found.size, 2);
-    format!("{what} {size:+.2} ± {half:.2} {unit} {}: {closure}", shape(found))
+    let shape = shape(found.form, (found.variable, found.scale), found.place_ci95);
+    format!("{what} {size:+.2} ± {half:.2} {unit} {shape}: {closure}")
+}
+
+/// "outside: drag +9.61 ± 0.80 counts around Mach number 0.781, width 0.016".
+pub fn applied_form_words(applied: &AppliedForm) -> String {
+    let (what, unit) = of_target(applied.acts_on);
+    let shape = shape(applied.form, (applied.variable, applied.scale), None);
+    let AppliedForm { size, standard_deviation, .. } = applied;
+    format!("outside: {what} {size:+.4} ± {standard_deviation:.4} {unit} {shape}")
+}
+
+/// What a size is of, and its unit.
+const fn of_target(target: StepTarget) -> (&'static str, &'static str) {
+    match target {
+        StepTarget::Drag => ("drag", "counts"),
+        StepTarget::FuelFlow => ("fuel flow", "%"),
+    }
 }
 
 /// What its size is of, and where.
-fn shape(found: &FoundForm) -> String {
-    let name = variable_words(found.variable);
-    let [mean, deviation] = found.scale;
-    let unit = unit_words(found.variable);
-    let is_date = found.variable == Variable::Date;
+fn shape(
+    form: Form,
+    (variable, scale): (Variable, [f64; 2]),
+    place_ci95: Option<[f64; 2]>,
+) -> String {
+    let name = variable_words(variable);
+    let [mean, deviation] = scale;
+    let unit = unit_words(variable);
+    let is_date = variable == Variable::Date;
     let bare = |value: f64| if is_date { day(value) } else { short(value, deviation) };
     let written = |value: f64| format!("{}{unit}", bare(value));
     let length = |value: f64| {
@@ -37,14 +60,14 @@ fn shape(found: &FoundForm) -> String {
             format!("{}{unit}", short(value, deviation))
         }
     };
-    let place = |value: f64| match found.place_ci95 {
+    let place = |value: f64| match place_ci95 {
         Some([low, high]) if high > low => {
             format!("{} ({} to {})", written(value), bare(low), bare(high))
         }
         _ => written(value),
     };
     let per = length(deviation);
-    match found.form {
+    match form {
         Form::Offset => "everywhere".to_owned(),
         Form::Linear => format!("per {per} of {name}, zero at {}", written(mean)),
         Form::Square => format!("at {per} of {name} from {}, growing as the square", written(mean)),
@@ -60,7 +83,7 @@ fn shape(found: &FoundForm) -> String {
         Form::Bump { middle, width } => {
             format!("around {name} {}, width {}", place(middle), length(width))
         }
-        Form::Product { with } => {
+        Form::Product { with, .. } => {
             format!("per standard deviation of {name} and of {}", variable_words(with))
         }
     }
@@ -105,7 +128,7 @@ pub const fn form_parameters(
             (Some(middle), Some(width), None, None)
         }
         Form::Power { exponent } => (None, None, Some(exponent), None),
-        Form::Product { with } => (None, None, None, Some(with)),
+        Form::Product { with, .. } => (None, None, None, Some(with)),
         Form::Offset | Form::Linear | Form::Square => (None, None, None, None),
     }
 }

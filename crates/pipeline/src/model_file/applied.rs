@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::ModelFile;
 use crate::addition_record::{AdditionRecord, UnknownEffect, effect_of};
 use crate::diagnosed_tail::POOL;
+use crate::diagnosis_words::applied_form_words;
 use crate::summary::counted;
 
 /// What one diagnosis added to the model.
@@ -87,7 +88,9 @@ impl TryFrom<AppliedText> for AppliedRecord {
 impl AppliedRecord {
     /// The effects with sizes and units, in words.
     pub fn told(&self) -> String {
-        self.addition.effects.iter().map(told).collect::<Vec<_>>().join(" and ")
+        let effects = self.addition.effects.iter().map(told);
+        let form = self.addition.form.iter().map(applied_form_words);
+        effects.chain(form).collect::<Vec<_>>().join(" and ")
     }
 }
 

@@ -1,21 +1,53 @@
 //! `cruisefit diagnose --apply`: each tail's model extended by the effects of its verdict.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
-use diagnose::{Diagnosis, Verdict};
+use diagnose::{Addition, Diagnosis, Verdict};
+use flight::effect::EffectId;
 
+use crate::args::DiagnoseArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport, show};
 use crate::files::{file_stem_of_tail, make_folder};
 use crate::models::write_model;
 use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
 use pipeline::diagnosis_groups::Group;
-use pipeline::diagnosis_words::joined;
+use pipeline::diagnosis_words::{form_words, joined};
 use pipeline::model_file::{AppliedRecord, DiagnosisRecord};
 
-/// Writes the extended model of every group whose verdict names its effects unambiguously. The other groups are
-/// reported, or refused where a person has to choose.
+/// The name by which a person asks for the form of a cause outside the library.
+pub(super) const OUTSIDE: &str = "outside";
+
+/// Whether the form of a cause outside the library is applied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Outside {
+    /// As long as nobody asks for it.
+    Left,
+    Applied,
+}
+
+impl Outside {
+    /// # Errors
+    /// A fleet, whose causes are those of the library.
+    pub(super) fn of(arguments: &DiagnoseArgs) -> Result<Self, Failure> {
+        if !arguments.effects.iter().any(|name| name == OUTSIDE) {
+            return Ok(Self::Left);
+        }
+        if arguments.fleet {
+            return Err(Failure::BadArgument {
+                argument: "--effects",
+                reason: "`outside` is the form of one tail's gap; with --fleet only effects of the library are applied"
+                    .to_owned(),
+            });
+        }
+        Ok(Self::Applied)
+    }
+}
+
+/// Writes the extended model of every group whose verdict names its effects unambiguously, or is a cause outside the library
+/// that a person asks for. The other groups are reported, or refused where a person has to choose.
 ///
 /// # Errors
 /// A file or folder that cannot be written.
@@ -23,18 +55,19 @@ pub(super) fn apply(
     folder: &Path,
     groups: &[Group<'_>],
     diagnoses: &[DiagnosedTail],
+    outside: Outside,
 ) -> Result<Outcome, Failure> {
     make_folder(folder)?;
     let mut outcome = Outcome::default();
     for (group, diagnosed) in groups.iter().zip(diagnoses) {
         let path = folder.join(format!("{}.ron", file_stem(group)));
-        let result = match chosen(group, &diagnosed.diagnosis) {
+        let result = match chosen(group, &diagnosed.diagnosis, outside) {
             Choice::Nothing(reason) => format!("nothing applied: {reason}"),
             Choice::Refused(reason) => {
                 outcome.refused.push(RefusedReport::whole(path, reason));
                 continue;
             }
-            Choice::Record(record) => match group.model.extended(record) {
+            Choice::Record(record) => match group.model.extended(*record) {
                 Ok(model) => {
                     write_model(&model, &path)?;
                     let record = model.applied.last().map_or_else(String::new, AppliedRecord::told);
@@ -61,22 +94,23 @@ fn file_stem(group: &Group<'_>) -> String {
 }
 
 enum Choice {
-    Record(AppliedRecord),
-    Nothing(&'static str),
+    Record(Box<AppliedRecord>),
+    Nothing(Cow<'static, str>),
     Refused(String),
 }
 
-fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
+fn chosen(group: &Group<'_>, diagnosis: &Diagnosis, outside: Outside) -> Choice {
+    let nothing = |reason: &'static str| Choice::Nothing(reason.into());
     let found = match &diagnosis.verdict {
         Verdict::Effects(found) => found,
-        Verdict::NoGap => return Choice::Nothing("no gap beyond the noise"),
-        Verdict::OutsideLibrary(_) => {
-            return Choice::Nothing("no effect of the library explains the gap");
+        Verdict::NoGap => return nothing("no gap beyond the noise"),
+        Verdict::OutsideLibrary(unexplained) => {
+            return of_outside(group, diagnosis, unexplained.probability, outside);
         }
-        Verdict::InsufficientData(_) => return Choice::Nothing("insufficient data"),
+        Verdict::InsufficientData(_) => return nothing("insufficient data"),
     };
     if diagnosis.verdict.is_of_table() {
-        return Choice::Nothing(
+        return nothing(
             "the drag of the guide is off, and what else acts is not known before it is adapted: adapt first, then diagnose \
              flights that the adapted model has not learnt",
         );
@@ -95,9 +129,43 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
             joined(&found.effects, " and ")
         ));
     };
+    record(group, diagnosis, addition, (found.probability, &found.class))
+}
+
+/// What is applied of a cause outside the library: nothing, or the form that describes it best.
+fn of_outside(
+    group: &Group<'_>,
+    diagnosis: &Diagnosis,
+    probability: f64,
+    outside: Outside,
+) -> Choice {
+    let form = diagnosis.outside.forms.first();
+    match (outside, form.zip(diagnosis.outside.addition.clone())) {
+        (Outside::Applied, Some((_, addition))) => {
+            record(group, diagnosis, addition, (probability, &[]))
+        }
+        (Outside::Left, Some((form, _))) => Choice::Nothing(
+            format!(
+                "no effect of the library explains the gap; --effects {OUTSIDE} applies the form that describes it, {}",
+                form_words(form)
+            )
+            .into(),
+        ),
+        (_, None) => Choice::Nothing(
+            "no effect of the library explains the gap, and no form describes it".into(),
+        ),
+    }
+}
+
+fn record(
+    group: &Group<'_>,
+    diagnosis: &Diagnosis,
+    addition: Addition,
+    (probability, class): (f64, &[EffectId]),
+) -> Choice {
     let starts = || group.flights.iter().map(|flight| flight.reduced.identity.start);
     let word = |start: Option<flight::Timestamp>| start.map_or_else(String::new, |s| s.to_string());
-    Choice::Record(AppliedRecord {
+    Choice::Record(Box::new(AppliedRecord {
         addition,
         diagnosis: DiagnosisRecord {
             tail: group.name.clone(),
@@ -105,8 +173,8 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis) -> Choice {
             segments: diagnosis.segments as u64,
             first: word(starts().min()),
             last: word(starts().max()),
-            probability: found.probability,
-            class: found.class.clone(),
+            probability,
+            class: class.to_vec(),
         },
-    })
+    }))
 }

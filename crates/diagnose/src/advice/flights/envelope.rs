@@ -1,6 +1,6 @@
 //! What the flights at hand show to be possible, and what is usual on them: the limits of a flight on purpose.
 
-use effects::{EffectModel, EffectPoint, Effects};
+use effects::{EffectModel, EffectPoint, Effects, Variable};
 use units::convert::METERS_PER_FOOT;
 use units::{Mach, PressureAltitude, Temperature};
 
@@ -8,7 +8,6 @@ use crate::math::quantile::{QuantileType, quantile};
 use crate::output::measurement::LoadingKind;
 use crate::residuals::planned::Recorded;
 use crate::residuals::segments::PreparedFlights;
-use crate::signals::variables::Variable;
 use crate::thresholds::{
     ADVISED_SEGMENTS, EDGE_MACH, EDGE_MASS, HEAVY, LEVEL_TOLERANCE_M, LIGHT, REDUCED_SEPARATION_TO,
     SEGMENT_EVERY_S,

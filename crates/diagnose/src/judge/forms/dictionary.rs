@@ -1,10 +1,10 @@
 //! The dictionary of forms: functions of one variable with the places and widths that are tried, and products of two.
 
+use effects::{Form, Variable};
+
 use crate::hypotheses::design::Acts;
 use crate::math::quantile::{QuantileType, quantile};
-use crate::output::form::Form;
 use crate::priors::{FORM_EXPONENTS, FORM_PLACES, FORM_WIDTHS};
-use crate::signals::variables::Variable;
 
 /// Steps on either side of a place or width in the closer grid.
 const FINER: i32 = 4;
@@ -47,10 +47,6 @@ impl Values {
         Some(Self { variable, acts, mean, deviation, of_segments, sorted })
     }
 
-    fn standard(&self, segment: usize) -> f64 {
-        (self.of_segments[segment] - self.mean) / self.deviation
-    }
-
     fn quantile(&self, share: f64) -> f64 {
         quantile(&self.sorted, share, QuantileType::Type7)
     }
@@ -77,19 +73,8 @@ impl Candidate {
     /// Its value at a segment.
     pub(crate) fn value(&self, values: &[Values], segment: usize) -> f64 {
         let of = &values[self.variable];
-        let x = of.of_segments[segment];
-        match self.form {
-            Form::Offset => 1.0,
-            Form::Linear => of.standard(segment),
-            Form::Square => of.standard(segment).powi(2),
-            Form::Power { exponent } => (x / of.mean).powf(exponent) - 1.0,
-            Form::HingeAbove { from } => (x - from).max(0.0) / of.deviation,
-            Form::HingeBelow { to } => (to - x).max(0.0) / of.deviation,
-            Form::Step { from } => f64::from(u8::from(x >= from)),
-            Form::Logistic { middle, width } => 1.0 / (1.0 + (-(x - middle) / width).exp()),
-            Form::Bump { middle, width } => (-0.5 * ((x - middle) / width).powi(2)).exp(),
-            Form::Product { .. } => of.standard(segment) * values[self.other].standard(segment),
-        }
+        let with = values[self.other].of_segments[segment];
+        self.form.value(of.of_segments[segment], [of.mean, of.deviation], with)
     }
 }
 
@@ -109,7 +94,8 @@ pub(crate) fn candidates(values: &[Values]) -> Vec<Candidate> {
         }
         for (other, with) in values.iter().enumerate().skip(variable + 1) {
             if with.variable != of.variable && with.acts == of.acts {
-                let form = Form::Product { with: with.variable };
+                let scale = [with.mean, with.deviation];
+                let form = Form::Product { with: with.variable, scale };
                 all.push(Candidate { form, variable, other, ln_prior: 0.0 });
             }
         }

@@ -1,8 +1,9 @@
 //! The remainder over the variables of a state, each function asked only where its variable moved.
 
+use effects::Variable;
+
 use crate::baseline::Baseline;
 use crate::baseline::smooth::Prepared;
-use crate::signals::variables::Variable;
 use crate::thresholds::FARTHEST_PRODUCT;
 
 /// Most variables that a remainder has.
