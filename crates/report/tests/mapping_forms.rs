@@ -271,15 +271,32 @@ fn decimal_commas_units_rows_and_encodings() {
     assert_eq!(columns(&expected).mach, [0.78; 3]);
     let utf_16: Vec<u8> =
         core::iter::once(0xfeff).chain(rows.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    let utf_16_big: Vec<u8> =
+        core::iter::once(0xfeff).chain(rows.encode_utf16()).flat_map(u16::to_be_bytes).collect();
     let windows_1252: Vec<u8> =
         rows.chars().map(|letter| u8::try_from(u32::from(letter)).unwrap()).collect();
     let with_mark = [b"\xef\xbb\xbf", rows.as_bytes()].concat();
-    for bytes in [utf_16, windows_1252, with_mark] {
+    for bytes in [utf_16, utf_16_big, windows_1252, with_mark] {
         assert_eq!(european.read(&bytes).unwrap(), expected);
     }
     // Without the separator the message says what the line holds.
     let refusal = mapping(&[]).read(rows.as_bytes()).unwrap_err();
     assert!(refusal.to_string().contains("separator: ';' in the mapping?"), "{refusal}");
+}
+
+/// Track less heading, whatever the two columns are called: 92° − 90°, and 1° − 359° over north.
+#[test]
+fn a_difference_takes_the_names_that_are_there() {
+    let rows = plain()
+        .replace("ff,gw", "ff,gw,trk,hdg_true")
+        .replace(",65000", ",65000,92,90")
+        .replace(",64960", ",64960,92,90")
+        .replace(",64920", ",64920,1,359");
+    let named = mapping(&[(
+        "\"WF\": Recorded(column: \"ff\", unit: \"kg/h\"),",
+        "\"WF\": Recorded(column: \"ff\", unit: \"kg/h\"), \"DRIFT\": Difference(column: \"track|trk\", minus: \"hdg*\", unit: \"deg\"),",
+    )]);
+    assert_eq!(columns(&read(&named, &rows)).drift_deg.as_ref().unwrap(), &[2.0; 3]);
 }
 
 #[test]

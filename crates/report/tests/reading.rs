@@ -32,6 +32,21 @@ fn report_of(header: &str, names: &str, units: &str, rows: [&str; 3]) -> String 
     )
 }
 
+/// Who flew and when is in the first lines; a beginning that ends before the columns' names holds no whole header.
+#[test]
+fn the_head_of_the_sample() {
+    let at = SAMPLE.find("\n0 ").unwrap();
+    for beginning in [SAMPLE.as_bytes(), &SAMPLE.as_bytes()[..=at]] {
+        let head = report::head(beginning).unwrap();
+        assert_eq!(head.aircraft_type, "C750");
+        assert_eq!((head.identity.tail.as_str(), head.identity.flight.as_str()), ("T-001", "0007"));
+        assert_eq!(head.identity.start.as_second(), 17_671 * 86_400 + 51_261);
+    }
+    let cut = SAMPLE.find("ZFW").unwrap();
+    assert_eq!(report::head(&SAMPLE.as_bytes()[..cut]), None);
+    assert_eq!(report::head(b"no report"), None);
+}
+
 #[test]
 fn the_sample_of_the_format_page() {
     let report = read(SAMPLE).report;
