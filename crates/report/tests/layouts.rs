@@ -57,6 +57,21 @@ fn every_layout_is_read_with_its_first_mapping() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
+/// The first mapping of a recording is the same in every encoding that a recording is read in.
+#[test]
+fn a_first_mapping_does_not_depend_on_the_encoding() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/layouts");
+    #[expect(clippy::disallowed_methods, reason = "tests read data from files")]
+    let text = std::fs::read_to_string(path.join("01_named_units.csv")).unwrap();
+    let plain = first_mapping(text.as_bytes()).unwrap();
+    let units = || core::iter::once(0xfeff).chain(text.encode_utf16());
+    let little: Vec<u8> = units().flat_map(u16::to_le_bytes).collect();
+    let big: Vec<u8> = units().flat_map(u16::to_be_bytes).collect();
+    for bytes in [little, big] {
+        assert_eq!(first_mapping(&bytes).unwrap(), plain);
+    }
+}
+
 /// Cruise points: a few rows for each flight, half an hour apart, and flights of one row.
 #[test]
 fn rows_far_apart_are_taken_for_averaged_points() {
