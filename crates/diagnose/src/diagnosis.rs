@@ -287,7 +287,7 @@ fn conclude(
         exceeds_uncertainty: exceeds,
         lies_at_an_engine: places.as_ref().is_some_and(FoundPlaces::name_an_engine),
     };
-    let Detection { detected, table, smooth_term } =
+    let Detection { detected, table, smooth_term, forms } =
         detect(problem, &detection_input, &mut outside);
     gap.detected = detected;
     let unseen = unseen.filter(|_| gap.detected);
@@ -312,9 +312,8 @@ fn conclude(
     };
     let verdict = verdict(&findings, notes);
     let found_forms = match &verdict {
-        Verdict::OutsideLibrary(_) => {
-            leading_forms(problem, analysis, &outside, (scale, options.seed))
-        }
+        Verdict::OutsideLibrary(_) => forms
+            .unwrap_or_else(|| leading_forms(problem, analysis, &outside, (scale, options.seed))),
         _ => vec![],
     };
     Ok(Diagnosis {

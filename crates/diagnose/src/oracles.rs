@@ -1,14 +1,19 @@
 //! Oracles of equations whose parts lie in several modules: dense linear algebra of crate `nalgebra`, Monte Carlo from the model
 //! of the noise, values by hand.
 
-use effects::{EffectModel, EffectPoint, Effects};
+use effects::{
+    AppliedEffects, AppliedForm, AppliedLayer, EffectModel, EffectPoint, Effects, Form, Variable,
+};
 use faer::Mat;
 use flight::Segment;
+use flight::effect::StepTarget;
 use nalgebra::{DMatrix, DVector};
 use test_support::fleet::{Background, Setup, exact_model, fly};
 
-use crate::hypotheses::design::Design;
+use crate::hypotheses::design::{Acts, Design};
 use crate::judge::closure::Shrinkage;
+use crate::judge::forms::change;
+use crate::judge::forms::dictionary::{Values, candidates};
 use crate::judge::noise_floors::replicate_floor;
 use crate::judge::verdict::credit;
 use crate::library::Library;
@@ -20,7 +25,7 @@ use crate::place::likelihood::Noise;
 use crate::place::regions::{Search, Series};
 use crate::residuals::chords::chord_errors;
 use crate::residuals::reference::Reference;
-use crate::residuals::rows::FlightRows;
+use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
 use crate::search::robust::student_weight;
@@ -442,4 +447,58 @@ fn credit_by_hand() {
         let found = credit(beside, closed);
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     }
+}
+
+/// What a form is fitted as is what it does once a model contains it: every kind of form, on drag and on fuel flow, over a
+/// variable of the state, of the forces and of time; a size so small that the difference is of first order.
+#[test]
+fn a_form_acts_in_a_model_as_it_was_fitted() {
+    const SIZE: f64 = 1e-3;
+    with_system(&fleet(9806, 8), |problem| {
+        let (system, plain) = (problem.system, exact_model());
+        let references = *system.design.references();
+        let values: Vec<Values> = [Variable::Mach, Variable::CorrectedThrust, Variable::Date]
+            .into_iter()
+            .flat_map(|variable| [Acts::FuelFlow, Acts::Thrust].map(|acts| (variable, acts)))
+            .filter_map(|(variable, acts)| {
+                let of = |row: &SegmentRow| {
+                    variable.value_of_form(&row.point, &row.response, &references).unwrap()
+                };
+                Values::new(variable, acts, system.data.segments.iter().map(of).collect())
+            })
+            .collect();
+        let mut kinds: Vec<(Form, usize)> = Vec::new();
+        for one in candidates(&values) {
+            let of = &values[one.variable];
+            if kinds
+                .iter()
+                .any(|(form, variable)| form.is_like(one.form) && *variable == one.variable)
+            {
+                continue;
+            }
+            kinds.push((one.form, one.variable));
+            let acts_on =
+                if of.acts == Acts::Thrust { StepTarget::Drag } else { StepTarget::FuelFlow };
+            let form = AppliedForm {
+                form: one.form,
+                variable: of.variable,
+                scale: [of.mean, of.deviation],
+                acts_on,
+                size: SIZE,
+                standard_deviation: SIZE,
+            };
+            let layer = AppliedLayer { effects: Effects::none(), forms: vec![form], references };
+            let extended = plain.with_effects(AppliedEffects::new(vec![layer])).unwrap();
+            let applied = EffectModel::new(&extended, extended.drag_table(), references).unwrap();
+            for (segment, row) in system.data.segments.iter().enumerate() {
+                let with = applied.response(&row.point, &Effects::none()).unwrap();
+                let found = (with.ln_fuel_flow_total - row.response.ln_fuel_flow_total) / SIZE;
+                let fitted = change(&values, &one, segment, row);
+                let scale = 1e-4 * fitted.abs().max(1e-2);
+                assert!((found - fitted).abs() < scale, "{form:?}: {found} {fitted}");
+            }
+        }
+        // Ten kinds of each of six; an offset once for each of the two that it can act on.
+        assert!(kinds.len() > 50, "{}", kinds.len());
+    });
 }

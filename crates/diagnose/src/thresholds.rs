@@ -71,7 +71,7 @@ deciding_numbers! {
             OurChoice "More than half. Guides of virtual fleets, while this was developed: 0.95 and more; shuffled fuel flows 0 to 0.3.";
         LEAST_OF_A_FORM: f64 = 0.5, "of the explainable gap",
             "lower end of the closure by a form fitted to other flights above which a gap needs no name",
-            OurChoice "More than half. Narrow bumps of drag close 0.76 to 1.06; the best form where nothing acts 0.54 to 0.69.";
+            OurChoice "More than half, for sure. Closures of narrow bumps are 0.76 to 1.06, of the best form where nothing acts 0.54 to 0.69.";
         SHARE_BEYOND_TABLE: f64 = 0.2, "of d²",
             "share of an effect beyond what a guide's table can take up, below which the table holds it",
             OurChoice "Virtual fleets: drag, throttle, offtake, air data 0 to 0.13; Reynolds number, age, engines 0.5 and more.";

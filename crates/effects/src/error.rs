@@ -34,13 +34,15 @@ pub enum EffectModelError {
         /// The value given.
         size: f64,
     },
-    /// A number of a form outside the library that is not finite, or a width that is not positive.
-    #[error("{quantity} of a form outside the library is {value}, not finite, or not positive")]
+    /// A number of a form outside the library that makes no function.
+    #[error("{quantity} of a form outside the library is {value}, expected {expected}")]
     Form {
         /// Which.
         quantity: &'static str,
         /// The value given.
         value: f64,
+        /// What it has to be.
+        expected: &'static str,
     },
     /// A form outside the library over something that is no property of the aircraft or its surroundings.
     #[error(
@@ -81,6 +83,9 @@ pub enum EffectError {
         /// Mach number.
         mach: f64,
     },
+    /// An applied form outside the library has no value: a power of what is not positive.
+    #[error("the form outside the library that the model contains has no value at this point")]
+    FormUndefined,
     /// No thrust is left with these effects.
     #[error("net thrust {net_thrust_n:.0} N is not positive")]
     ThrustNotPositive {

@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::EffectModelError;
 use crate::point::EffectPoint;
-use crate::terms::{Layers, Terms};
+use crate::terms::Terms;
 use crate::variable::{Aloft, Variable};
 
-/// A drag count.
-const COUNT: f64 = 1e-4;
-/// Share of a whole in per cent.
-const PERCENT: f64 = 0.01;
+/// A drag count, the size that forms acting on drag are in.
+pub const DRAG_COEFFICIENT_PER_COUNT: f64 = 1e-4;
+/// A per cent as a share, the size that forms acting on fuel flow are in.
+pub const PERCENT: f64 = 0.01;
 
 /// A function of one variable, or a product of two; places and widths in the variable's unit, dates in s since 1970.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,43 +120,71 @@ impl Form {
         }
     }
 
-    /// The numbers that it has beside its variable's scale, with their names; the second is whether it has to be positive.
-    fn parameters(self) -> [Option<(&'static str, bool, f64)>; 2] {
+    /// The numbers that it has beside its variable's scale, with their names, and what each has to be.
+    fn parameters(self) -> [Option<(&'static str, Must, f64)>; 2] {
         match self {
             Self::Offset | Self::Linear | Self::Square => [None, None],
-            Self::Power { exponent } => [Some(("exponent", false, exponent)), None],
-            Self::HingeAbove { from } | Self::Step { from } => [Some(("from", false, from)), None],
-            Self::HingeBelow { to } => [Some(("to", false, to)), None],
+            Self::Power { exponent } => [Some(("exponent", Must::BeFinite, exponent)), None],
+            Self::HingeAbove { from } | Self::Step { from } => {
+                [Some(("from", Must::BeFinite, from)), None]
+            }
+            Self::HingeBelow { to } => [Some(("to", Must::BeFinite, to)), None],
             Self::Logistic { middle, width } | Self::Bump { middle, width } => {
-                [Some(("middle", false, middle)), Some(("width", true, width))]
+                [Some(("middle", Must::BeFinite, middle)), Some(("width", Must::BePositive, width))]
             }
-            Self::Product { scale: [mean, deviation], .. } => {
-                [Some(("second mean", false, mean)), Some(("second deviation", true, deviation))]
-            }
+            Self::Product { scale: [mean, deviation], .. } => [
+                Some(("second mean", Must::BeFinite, mean)),
+                Some(("second deviation", Must::BePositive, deviation)),
+            ],
         }
     }
 }
 
+/// What a number of a form has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Must {
+    BeFinite,
+    BePositive,
+}
+
 impl AppliedForm {
-    /// Refuses variables that no flight point has, numbers that are not finite, and widths and deviations that are not positive.
+    /// Whether it is a property of the aircraft or its surroundings, which a prediction can have: not over fuel used, an engine
+    /// or N2, which no flight point has.
+    #[must_use]
+    pub fn is_of_aircraft(&self) -> bool {
+        self.of_recordings().is_none()
+    }
+
+    /// A variable that no flight point has.
+    fn of_recordings(&self) -> Option<&'static str> {
+        self.variables().find_map(|variable| match variable {
+            Variable::FuelUsed => Some("fuel used"),
+            Variable::Engine => Some("the engine"),
+            Variable::N2 => Some("N2"),
+            _ => None,
+        })
+    }
+
+    /// Refuses variables that no flight point has, numbers that are not finite, and widths, deviations and means of powers that
+    /// are not positive.
     pub(crate) fn check(&self) -> Result<(), EffectModelError> {
-        for variable in self.variables() {
-            let variable = match variable {
-                Variable::FuelUsed => "fuel used",
-                Variable::Engine => "the engine",
-                Variable::N2 => "N2",
-                _ => continue,
-            };
+        if let Some(variable) = self.of_recordings() {
             return Err(EffectModelError::FormOver { variable });
         }
+        let is_power = matches!(self.form, Form::Power { .. });
         let own = [
-            Some(("size", false, self.size)),
-            Some(("mean", false, self.scale[0])),
-            Some(("deviation", true, self.scale[1])),
+            Some(("size", Must::BeFinite, self.size)),
+            Some(("standard deviation", Must::BeFinite, self.standard_deviation)),
+            Some(("mean", if is_power { Must::BePositive } else { Must::BeFinite }, self.scale[0])),
+            Some(("deviation", Must::BePositive, self.scale[1])),
         ];
-        for (quantity, has_sign, value) in own.into_iter().chain(self.form.parameters()).flatten() {
-            if !value.is_finite() || (has_sign && value <= 0.0) {
-                return Err(EffectModelError::Form { quantity, value });
+        for (quantity, must, value) in own.into_iter().chain(self.form.parameters()).flatten() {
+            let (is_good, expected) = match must {
+                Must::BeFinite => (value.is_finite(), "a finite number"),
+                Must::BePositive => (value.is_finite() && value > 0.0, "a positive number"),
+            };
+            if !is_good {
+                return Err(EffectModelError::Form { quantity, value, expected });
             }
         }
         Ok(())
@@ -175,11 +203,8 @@ impl AppliedForm {
 
     /// The function at a point; a variable that the point lacks is at its mean.
     fn shape(&self, point: &EffectPoint, aloft: Aloft, terms: &Terms) -> f64 {
-        let of = |variable: Variable| match variable {
-            // The instant itself, not years since a reference that nobody sees.
-            Variable::Date => Some(terms.date_s(point.date_s)),
-            _ => variable.at(point, aloft, &terms.references),
-        };
+        let dated = EffectPoint { date_s: terms.date_s(point.date_s), ..*point };
+        let of = |variable: Variable| variable.of_form(&dated, aloft, &terms.references);
         let [mean, _] = self.scale;
         let with = match self.form {
             Form::Product { with, scale: [mean, _] } => of(with).unwrap_or(mean),
@@ -189,21 +214,25 @@ impl AppliedForm {
     }
 }
 
-/// What the forms of all layers change at a point, lift and thrust without them:
-///
-/// ```text
-/// CD + Σ s·1e-4·f(x),   Wf·exp(Σ s/100·f(x))                                           [applying.3]
-/// ```
-pub(crate) fn change(layers: Layers<'_>, point: &EffectPoint, aloft: Aloft) -> Change {
-    let mut change = Change::default();
-    for terms in layers.iter() {
+impl Change {
+    /// With the forms of one more layer:
+    ///
+    /// ```text
+    /// CD + Σ s·1e-4·f(x),   Wf·exp(Σ s/100·f(x))                                           [applying.3]
+    /// ```
+    pub(crate) fn with_layer(mut self, terms: &Terms, point: &EffectPoint, aloft: Aloft) -> Self {
         for form in &terms.forms {
             let sized = form.size * form.shape(point, aloft, terms);
             match form.acts_on {
-                StepTarget::Drag => change.drag_coefficient += sized * COUNT,
-                StepTarget::FuelFlow => change.ln_fuel_flow += sized * PERCENT,
+                StepTarget::Drag => self.drag_coefficient += sized * DRAG_COEFFICIENT_PER_COUNT,
+                StepTarget::FuelFlow => self.ln_fuel_flow += sized * PERCENT,
             }
         }
+        self
     }
-    change
+
+    /// Whether every form has a value.
+    pub(crate) const fn is_finite(self) -> bool {
+        self.drag_coefficient.is_finite() && self.ln_fuel_flow.is_finite()
+    }
 }

@@ -94,7 +94,7 @@ pub use drag::drag_rise;
 pub use engine::ANTI_ICE_PROXY_K;
 pub use error::{EffectError, EffectModelError, ObserveError, PredictError};
 pub use extended::ExtendedModel;
-pub use form::{AppliedForm, Form};
+pub use form::{AppliedForm, DRAG_COEFFICIENT_PER_COUNT, Form, PERCENT};
 pub use known::{KnownPoint, Trial};
 pub use mean::mean_references;
 pub use model::EffectModel;

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use atmos::constants::SEA_LEVEL_PRESSURE_PA;
 use atmos::{airspeed, isa, viscosity};
 use flight::SegmentMeans;
 use flight::effect::EffectId;
@@ -85,6 +86,30 @@ pub(crate) fn as_flown(point: &EffectPoint, terms: &Terms) -> Result<AsFlown, Ef
             viscosity::dynamic_viscosity(sat),
         ),
     })
+}
+
+impl AsFlown {
+    /// A recorded point as it was flown, if the recording has the errors that the effects describe.
+    pub(crate) fn point(
+        &self,
+        recorded: &EffectPoint,
+        terms: &Terms,
+    ) -> Result<EffectPoint, EffectError> {
+        let pressure_altitude_m = if terms.size(EffectId::StaticPressureBias) == 0.0 {
+            recorded.pressure_altitude_m
+        } else {
+            let pressure = Pressure::pascals(self.pressure_ratio * SEA_LEVEL_PRESSURE_PA);
+            isa::pressure_altitude(pressure)?.to_meters()
+        };
+        Ok(EffectPoint {
+            pressure_altitude_m,
+            static_air_temperature_k: self.static_air_temperature_k,
+            mach: self.mach,
+            true_airspeed_m_s: self.true_airspeed_m_s,
+            mass_kg: self.mass_kg,
+            ..*recorded
+        })
+    }
 }
 
 /// Undoes layers of recording errors, one after the other.

@@ -10,7 +10,7 @@ use units::Mach;
 use crate::drag::{self, AtTable};
 use crate::engine::{self, Thrust};
 use crate::error::EffectError;
-use crate::form::{self, Change};
+use crate::form::Change;
 use crate::point::EffectPoint;
 use crate::recorded::{self, AsFlown};
 use crate::terms::Layers;
@@ -131,9 +131,8 @@ pub(crate) fn evaluate(
     let of_effects = drag::drag_coefficient(at, point, &flown, layers);
     let path_force_n = drag::path_force_n(point, &flown, layers);
     let outside = if layers.has_forms() {
-        let thrust_n = surface_n * of_effects + path_force_n;
-        let corrected_thrust_n = thrust_n / flown.pressure_ratio;
-        form::change(layers, point, Aloft { lift_coefficient, corrected_thrust_n })
+        let before = Thrusts { surface_n, drag_coefficient: of_effects, path_force_n };
+        of_forms(point, &flown, lift_coefficient, before, layers)?
     } else {
         Change::default()
     };
@@ -172,6 +171,35 @@ pub(crate) fn evaluate(
         mass_kg: flown.mass_kg,
     };
     Ok((response, Known { flown, gravity_m_s2, table: Some(table), tsfc_kg_per_n_s }))
+}
+
+/// Drag and path force before any form.
+#[derive(Clone, Copy, Debug)]
+struct Thrusts {
+    surface_n: f64,
+    drag_coefficient: f64,
+    path_force_n: f64,
+}
+
+/// What forms outside the library change at the flown state, layer by layer: the thrust that a form is over has the forms of the
+/// layers before it, as it had when the flights showed it.
+fn of_forms(
+    point: &EffectPoint,
+    flown: &AsFlown,
+    lift_coefficient: f64,
+    before: Thrusts,
+    layers: Layers<'_>,
+) -> Result<Change, EffectError> {
+    let flown_point = flown.point(point, layers.trial)?;
+    let mut change = Change::default();
+    for terms in layers.iter().filter(|terms| !terms.forms.is_empty()) {
+        let drag_coefficient = before.drag_coefficient + change.drag_coefficient;
+        let thrust_n = before.surface_n * drag_coefficient + before.path_force_n;
+        let corrected_thrust_n = thrust_n / flown.pressure_ratio;
+        change =
+            change.with_layer(terms, &flown_point, Aloft { lift_coefficient, corrected_thrust_n });
+    }
+    if change.is_finite() { Ok(change) } else { Err(EffectError::FormUndefined) }
 }
 
 /// A table's drag coefficient, continued in a straight line beyond its edge; `None` where a coordinate is no number.

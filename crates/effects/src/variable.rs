@@ -68,11 +68,7 @@ impl Variable {
         response: &Response,
         references: &EffectReferences,
     ) -> Option<f64> {
-        let aloft = Aloft {
-            lift_coefficient: response.lift_coefficient,
-            corrected_thrust_n: response.ln_corrected_thrust.exp(),
-        };
-        self.at(point, aloft, references)
+        self.at(point, Aloft::of(response), references)
     }
 
     /// The same where lift and thrust are known, and no more of the response.
@@ -127,6 +123,33 @@ impl Variable {
     }
 }
 
+impl Variable {
+    /// The value that a form outside the library is over: of a date the instant itself, s since 1970, not years since a
+    /// reference that nobody sees.
+    pub(crate) fn of_form(
+        self,
+        point: &EffectPoint,
+        aloft: Aloft,
+        references: &EffectReferences,
+    ) -> Option<f64> {
+        match self {
+            Self::Date => Some(point.date_s),
+            _ => self.at(point, aloft, references),
+        }
+    }
+
+    /// The same at a segment of which the response is known.
+    #[must_use]
+    pub fn value_of_form(
+        self,
+        point: &EffectPoint,
+        response: &Response,
+        references: &EffectReferences,
+    ) -> Option<f64> {
+        self.of_form(point, Aloft::of(response), references)
+    }
+}
+
 /// The variable that bounds of a region are said in.
 impl From<DrivingVariable> for Variable {
     fn from(driver: DrivingVariable) -> Self {
@@ -158,4 +181,13 @@ pub(crate) struct Aloft {
     pub(crate) lift_coefficient: f64,
     /// Net thrust of all engines over pressure ratio, N.
     pub(crate) corrected_thrust_n: f64,
+}
+
+impl Aloft {
+    fn of(response: &Response) -> Self {
+        Self {
+            lift_coefficient: response.lift_coefficient,
+            corrected_thrust_n: response.ln_corrected_thrust.exp(),
+        }
+    }
 }

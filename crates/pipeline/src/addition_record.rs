@@ -131,6 +131,8 @@ pub(crate) fn effect_of(name: &str) -> Result<EffectId, UnknownEffect> {
 
 #[cfg(test)]
 mod tests {
+    use effects::{Form, Variable};
+
     use super::*;
 
     #[test]
@@ -148,6 +150,33 @@ mod tests {
         let text = ron::to_string(&AddedEffectRecord::from(&by_n2)).unwrap();
         let record: AddedEffectRecord = ron::from_str(&text).unwrap();
         assert_eq!(AddedEffect::try_from(record).unwrap(), by_n2);
+    }
+
+    #[test]
+    fn every_form_reads_back_as_it_was_written() {
+        for form in [
+            Form::Offset,
+            Form::Linear,
+            Form::Square,
+            Form::Power { exponent: -0.75 },
+            Form::HingeAbove { from: 0.1 },
+            Form::HingeBelow { to: 1.0 / 3.0 },
+            Form::Step { from: 1_557_446_400.0 },
+            Form::Logistic { middle: 0.78, width: 0.01 },
+            Form::Bump { middle: 0.74, width: 0.012_5 },
+            Form::Product { with: Variable::CenterOfGravity, scale: [24.5, 2.1] },
+        ] {
+            let applied = AppliedForm {
+                form,
+                variable: Variable::Mach,
+                scale: [0.76, 0.03],
+                acts_on: StepTarget::Drag,
+                size: 15.7,
+                standard_deviation: 0.2,
+            };
+            let text = ron::to_string(&applied).unwrap();
+            assert_eq!(ron::from_str::<AppliedForm>(&text).unwrap(), applied, "{text}");
+        }
     }
 
     #[test]

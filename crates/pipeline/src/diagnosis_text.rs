@@ -9,7 +9,7 @@ use flight::effect::{EffectGroup, EffectId};
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_words::{
     acts_on_words, advice, are_few, distances_words, form_words, joined, measurement_words,
-    others_of_class, region_words, told_size, variable_words,
+    others_of_class, region_words, silent_words, told_size, variable_words,
 };
 use crate::summary::{counted, not_minus_zero};
 
@@ -160,13 +160,7 @@ fn silent(diagnosis: &Diagnosis) -> Vec<String> {
             Some(format!("{id} {} {}", digits(entry.smallest?), id.unit_words()))
         })
         .collect();
-    let gap = &diagnosis.gap;
-    let verdict = if gap.rms_ci95[0] > gap.noise_floor_rms_percent {
-        "No effect is seen: what exceeds the noise is too small, or too different from flight to flight."
-    } else {
-        "Nothing beyond the noise: the model fits these flights."
-    };
-    let mut lines = vec![verdict.to_owned()];
+    let mut lines = vec![silent_words(diagnosis).to_owned()];
     if !told.is_empty() {
         lines.push(format!("What would just have been seen: {}.", told.join(", ")));
     }

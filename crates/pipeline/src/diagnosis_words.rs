@@ -18,6 +18,16 @@ mod region;
 pub use form::{applied_form_words, form_name, form_parameters, form_words};
 pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
+/// What a verdict of no gap means: noise, or more than noise that is no effect.
+pub fn silent_words(diagnosis: &Diagnosis) -> &'static str {
+    let gap = &diagnosis.gap;
+    if gap.rms_ci95[0] > gap.noise_floor_rms_percent {
+        "No effect is seen: what exceeds the noise is too small, too different from flight to flight, or within what the model leaves open."
+    } else {
+        "Nothing beyond the noise: the model fits these flights."
+    }
+}
+
 /// What to do after a verdict: one sentence or two.
 pub fn advice(verdict: &Verdict) -> String {
     match verdict {

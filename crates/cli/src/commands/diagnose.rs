@@ -137,7 +137,7 @@ fn diagnose_all(
 /// What the run is asked for.
 fn asked(arguments: &DiagnoseArgs) -> Result<RunOptions, Failure> {
     Ok(RunOptions {
-        effects: arguments.effects.clone(),
+        effects: arguments.effects.iter().filter(|name| *name != apply::OUTSIDE).cloned().collect(),
         without: arguments.without.clone(),
         pool: arguments.pool,
         fleet: arguments.fleet,

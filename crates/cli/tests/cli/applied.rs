@@ -218,6 +218,7 @@ fn a_form_outside_the_library_is_applied_by_its_name() {
     ])
     .expect(0);
     assert!(ran.stdout.contains("WORN: applied outside: drag +"), "{}", ran.stdout);
+    assert!(!ran.stdout.contains("only these effects"), "{}", ran.stdout);
     let extended = applied.join("WORN.ron");
     let shown = run(&[&"show", &extended]).expect(0);
     assert!(shown.stdout.contains("Predictions have outside\n"), "{}", shown.stdout);
@@ -239,10 +240,10 @@ fn a_form_outside_the_library_is_applied_by_its_name() {
     let (with, without) = (drag(&extended), drag(&learnt));
     let counts: Vec<f64> = with.iter().zip(&without).map(|(a, b)| 1e4 * (a - b)).collect();
     assert!((counts[0] - 15.0).abs() < 3.0 && counts[1].abs() < 2.0, "{counts:?}");
-    let fleet = [&"--fleet" as &dyn AsRef<std::ffi::OsStr>, &"--effects", &"outside"];
     let mut words: Vec<&dyn AsRef<std::ffi::OsStr>> =
-        vec![&"diagnose", &bumped, &"--model", &learnt, &"-o", &found];
-    words.extend(fleet);
+        vec![&"diagnose", &bumped, &"--model", &learnt, &"-o", &found, &"--effects", &"outside"];
+    run(&words).expect(2).says("give --apply DIR too");
+    words.extend([&"--fleet" as &dyn AsRef<std::ffi::OsStr>, &"--apply", &applied]);
     run(&words).expect(2).says("`outside` is the form of one tail's gap");
 }
 

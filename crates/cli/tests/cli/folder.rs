@@ -285,6 +285,28 @@ fn copies_are_found_by_every_command_and_said_once() {
     assert_eq!(flights_of(&learnt), ["0005"]);
 }
 
+/// What is wrong with a report is wrong with its copies: none of them counts as known.
+#[test]
+fn copies_of_a_refused_report_are_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    adapt(&model, &output, &[report(5)], &[]).expect(0);
+    let text = std::fs::read_to_string(report(5)).unwrap();
+    let fuel = text.lines().find(|line| line.starts_with("ZFW")).unwrap().to_owned();
+    let other = ["a.txt", "b.txt", "c.txt"]
+        .map(|name| changed(scratch.path(), 5, name, &[(&fuel, "ZFW 54321 lb")]));
+    let ran = adapt(&model, &output, &other, &[]).expect(1);
+    for name in ["a.txt", "b.txt", "c.txt"] {
+        assert!(ran.stderr.contains(&format!("{name}: ")), "{}", ran.stderr);
+    }
+    assert_eq!(ran.stderr.matches("already known with different content").count(), 3);
+    assert!(!ran.stderr.contains("copies of others"), "{}", ran.stderr);
+    let reports = &summary(&output)["reports"];
+    assert_eq!(reports["refused"].as_array().unwrap().len(), 3);
+    assert_eq!(reports["already_known"], 0);
+}
+
 #[test]
 fn the_same_hours_or_samples_are_not_learnt_again() {
     let scratch = tempfile::tempdir().unwrap();

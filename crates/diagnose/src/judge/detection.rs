@@ -9,6 +9,8 @@ use crate::judge::posterior::{Posterior, id_of};
 use crate::judge::table::TableFinding;
 use crate::judge::verdict::{beside, closed, credit};
 use crate::output::Gap;
+use crate::output::form::FoundForm;
+use crate::output::verdict::Closure;
 use crate::search::analyse::{Analysis, DRAG_OF_A_TABLE};
 use crate::search::outside::Outside;
 use crate::search::system::Problem;
@@ -43,6 +45,8 @@ pub(crate) struct Detection {
     pub(crate) table: Option<TableFinding>,
     /// Probability that a smooth term is needed, before any of it is credited to the leading effect.
     pub(crate) smooth_term: f64,
+    /// Forms that describe a gap without a name, best first, where they were asked.
+    pub(crate) forms: Option<Vec<FoundForm>>,
 }
 
 /// Decides. The probability of a cause outside takes what names lose.
@@ -83,6 +87,7 @@ pub(crate) fn detect(
         .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
     let announced = taught && !input.exceeds_uncertainty && !input.lies_at_an_engine;
     let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
+    let mut forms = None;
     let stands_out = something
         && !own_error
         && is_large(system, gap, top)
@@ -90,9 +95,9 @@ pub(crate) fn detect(
         && !(taught
             && !input.lies_at_an_engine
             && is_unnamed(outside, named)
-            && is_unpredictable(problem, input, outside));
+            && is_unpredictable(problem, input, outside, &mut forms));
     let detected = input.is_real && (table.is_some() || stands_out);
-    Detection { detected, table: table.filter(|_| detected), smooth_term }
+    Detection { detected, table: table.filter(|_| detected), smooth_term, forms }
 }
 
 /// Whether no name would be reported.
@@ -104,16 +109,26 @@ fn is_unnamed(outside: &Outside, named: f64) -> bool {
 /// Whether nothing that was fitted to other flights surely predicts a flight better than no gap at all does `[diagnosis.53]`:
 /// neither smooth functions do, nor does the form that describes the gap best surely close more than half of it. What errs anew
 /// on every flight is no property of the aircraft.
-fn is_unpredictable(problem: Problem<'_>, input: &DetectionInput<'_>, outside: &Outside) -> bool {
+fn is_unpredictable(
+    problem: Problem<'_>,
+    input: &DetectionInput<'_>,
+    outside: &Outside,
+    forms: &mut Option<Vec<FoundForm>>,
+) -> bool {
     let DetectionInput { analysis, own, noise_scale, .. } = *input;
     let Some(fitted) = held_out_smooth(problem.system) else { return false };
     if own.with_change(problem.system, &fitted).closes() {
         return false;
     }
     // A bump between two knots is no sum of smooth functions, and may be all of a large gap.
-    let described = leading_forms(problem, analysis, outside, (noise_scale, own.seed()));
-    let closure = described.first().and_then(|best| best.closure);
-    closure.is_none_or(|closure| closure.ci95[0] <= LEAST_OF_A_FORM)
+    let described =
+        forms.insert(leading_forms(problem, analysis, outside, (noise_scale, own.seed())));
+    !bears_out(described.first().and_then(|best| best.closure))
+}
+
+/// Whether a form surely closes more than half of the gap on flights that its parameters have not seen.
+fn bears_out(closure: Option<Closure>) -> bool {
+    closure.is_some_and(|closure| closure.ci95[0] > LEAST_OF_A_FORM)
 }
 
 /// A guide's table with less probability where a table that was fitted to other flights may close less than half of the gap:
@@ -141,4 +156,19 @@ fn closes_more_than(share: f64, unseen: Option<&Shrinkage>) -> bool {
 /// this is wrong.
 fn makes_worse(unseen: Option<&Shrinkage>) -> bool {
     unseen.and_then(Shrinkage::closure).is_some_and(|(closure, _)| closure < 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// More than half for sure, or nothing is said to be there: the lower end of the interval decides, not the closure.
+    #[test]
+    fn a_form_has_to_close_more_than_half_for_sure() {
+        let closure = |share: f64, low: f64| Some(Closure { share, ci95: [low, 1.1] });
+        assert!(bears_out(closure(0.9, 0.51)));
+        assert!(!bears_out(closure(0.9, 0.5)));
+        assert!(!bears_out(closure(0.65, 0.2)));
+        assert!(!bears_out(None));
+    }
 }

@@ -1,6 +1,6 @@
 //! Outside the library: which function of which variable, how large, and how much of the gap it closes on unseen flights.
 
-use effects::Variable;
+use effects::{DRAG_COEFFICIENT_PER_COUNT, PERCENT, Variable};
 use faer::Mat;
 use units::convert::STANDARD_GRAVITY_M_S2;
 
@@ -23,11 +23,6 @@ use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::thresholds::{CLOSURE_FOLDS, FORM_VARIABLES, FORMS_TOLD, NORMAL_95};
 
 pub(crate) mod dictionary;
-
-/// A drag count.
-const COUNT: f64 = 1e-4;
-/// Share of a whole in per cent.
-const PERCENT: f64 = 0.01;
 
 /// The forms that the leading variables of a cause outside the library may have, best first.
 pub(crate) fn leading_forms(
@@ -90,11 +85,8 @@ fn forms(
 fn values_of(system: &WhitenedSystem<'_>, variables: &[Variable]) -> Vec<Values> {
     let mut all: Vec<Values> = Vec::new();
     for &variable in variables {
-        let of = |row: &SegmentRow| match variable {
-            // The instant itself, not years since a reference that nobody sees.
-            Variable::Date => Some(row.point.date_s),
-            _ => variable.value(&row.point, &row.response, system.design.references()),
-        };
+        let references = system.design.references();
+        let of = |row: &SegmentRow| variable.value_of_form(&row.point, &row.response, references);
         let values: Option<Vec<f64>> = system.data.segments.iter().map(of).collect();
         let Some(values) = values else { continue };
         for acts in [Acts::FuelFlow, Acts::Thrust] {
@@ -217,14 +209,14 @@ impl Fits {
 }
 
 /// What a candidate changes ln fuel flow by at a segment, where its size is 1 in its unit: 1 % of fuel flow, a drag count.
-fn change(values: &[Values], one: &Candidate, segment: usize, row: &SegmentRow) -> f64 {
+pub(crate) fn change(values: &[Values], one: &Candidate, segment: usize, row: &SegmentRow) -> f64 {
     let shape = one.value(values, segment);
     match values[one.variable].acts {
         Acts::Thrust => {
             let weight_n = row.response.mass_kg * STANDARD_GRAVITY_M_S2;
             let drag_n = row.drag_over_thrust * row.response.net_thrust_n;
             let drag_coefficient = row.response.lift_coefficient * drag_n / weight_n;
-            shape * COUNT / drag_coefficient * row.drag_over_thrust
+            shape * DRAG_COEFFICIENT_PER_COUNT / drag_coefficient * row.drag_over_thrust
         }
         _ => shape * PERCENT,
     }

@@ -42,7 +42,8 @@ pub struct FoundForm {
 }
 
 impl FoundForm {
-    /// The form as a model contains it; `None` for one engine's, which no model has by itself.
+    /// The form as a model contains it; `None` for what no prediction can have: one engine's, or one over what is recorded and no
+    /// property of the aircraft.
     #[must_use]
     pub fn applied(&self) -> Option<AppliedForm> {
         let acts_on = match self.acts_on {
@@ -50,13 +51,14 @@ impl FoundForm {
             ActsOn::Thrust => StepTarget::Drag,
             ActsOn::OneEngine => return None,
         };
-        Some(AppliedForm {
+        let applied = AppliedForm {
             form: self.form,
             variable: self.variable,
             scale: self.scale,
             acts_on,
             size: self.size,
             standard_deviation: (self.size_ci95[1] - self.size_ci95[0]) / (2.0 * NORMAL_95),
-        })
+        };
+        applied.is_of_aircraft().then_some(applied)
     }
 }

@@ -6,8 +6,8 @@ use diagnose::{Diagnosis, Magnitude, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_words::{
-    acts_on_words, advice, are_few, form_words, others_of_class, region_words, told_size,
-    variable_words,
+    acts_on_words, advice, are_few, form_words, others_of_class, region_words, silent_words,
+    told_size, variable_words,
 };
 
 use super::Tail;
@@ -56,7 +56,7 @@ pub(super) fn card(diagnosis: &Diagnosis) -> Markup {
 /// The verdict in a sentence.
 fn what(diagnosis: &Diagnosis) -> Markup {
     match &diagnosis.verdict {
-        Verdict::NoGap => html! { b { "No gap beyond the noise: the model fits these flights." } },
+        Verdict::NoGap => html! { b { (silent_words(diagnosis)) } },
         Verdict::InsufficientData(_) => html! { b { "No verdict: too little data." } },
         Verdict::OutsideLibrary(_) => html! {
             b { "A real gap that no effect of the library explains" }

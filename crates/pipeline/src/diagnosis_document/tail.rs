@@ -266,6 +266,9 @@ pub struct FormRecord {
     pub variable: String,
     /// The second variable of a product.
     pub with: Option<String>,
+    /// Its mean and standard deviation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub with_scale: Option<[f64; 2]>,
     /// Fuel flow, or thrust (drag).
     pub acts_on: String,
     /// Change of fuel flow in %, or of the drag coefficient in counts, where the function is 1.
@@ -298,7 +301,8 @@ impl From<&FoundForm> for FormRecord {
         Self {
             form: form_name(found.form).to_owned(),
             variable: bounds_name(found.variable).to_owned(),
-            with: with.map(|variable| bounds_name(variable).to_owned()),
+            with: with.map(|(variable, _)| bounds_name(variable).to_owned()),
+            with_scale: with.map(|(_, scale)| scale),
             acts_on: acts_on_words(found.acts_on).to_owned(),
             size: found.size,
             size_ci95: found.size_ci95,

@@ -117,10 +117,11 @@ pub const fn form_name(form: Form) -> &'static str {
     }
 }
 
+/// The second variable of a product, with its mean and standard deviation.
+type With = (Variable, [f64; 2]);
+
 /// Place, width and exponent, where a form has them, and the second variable of a product.
-pub const fn form_parameters(
-    form: Form,
-) -> (Option<f64>, Option<f64>, Option<f64>, Option<Variable>) {
+pub const fn form_parameters(form: Form) -> (Option<f64>, Option<f64>, Option<f64>, Option<With>) {
     match form {
         Form::HingeAbove { from } | Form::Step { from } => (Some(from), None, None, None),
         Form::HingeBelow { to } => (Some(to), None, None, None),
@@ -128,7 +129,7 @@ pub const fn form_parameters(
             (Some(middle), Some(width), None, None)
         }
         Form::Power { exponent } => (None, None, Some(exponent), None),
-        Form::Product { with, .. } => (None, None, None, Some(with)),
+        Form::Product { with, scale } => (None, None, None, Some((with, scale))),
         Form::Offset | Form::Linear | Form::Square => (None, None, None, None),
     }
 }

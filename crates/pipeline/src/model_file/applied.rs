@@ -44,7 +44,7 @@ pub struct DiagnosisRecord {
     pub first: String,
     /// START of the last of them.
     pub last: String,
-    /// Probability of the first effect.
+    /// Probability of the first effect, or of a cause outside the library.
     pub probability: f64,
     /// Effects that the flights could not distinguish from it.
     #[serde(with = "effect_names")]

@@ -1,6 +1,7 @@
 //! One tail: its reports are read and sorted, its model learns, its files are written to the waiting room.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use pipeline::adaptation::{
     self, Contradictions, OlderFlights, RemainderChoice, Sorting, Start, StoredTail,
@@ -48,6 +49,28 @@ pub(super) struct TailOutcome {
     pub(super) costs: Option<CriteriaCosts>,
     /// The first copy, and what it is a copy of.
     pub(super) first_copy: Option<(String, String)>,
+}
+
+impl TailOutcome {
+    /// With the copies of its reports: a copy of a refused report is refused for the same reason, any other is a flight that is
+    /// known.
+    fn add_copies(&mut self, copies: Vec<Copy>) {
+        if copies.is_empty() {
+            return;
+        }
+        let refused: BTreeMap<PathBuf, RefusedReport> =
+            self.refused.iter().map(|one| (one.path.clone(), one.clone())).collect();
+        for (path, original) in copies {
+            if let Some(refusal) = refused.get(&*original) {
+                self.refused.push(RefusedReport { path: path.into(), ..refusal.clone() });
+                continue;
+            }
+            self.already_known += 1;
+            self.copies += 1;
+            let names = || (path.display().to_string(), original.display().to_string());
+            self.first_copy.get_or_insert_with(names);
+        }
+    }
 }
 
 impl Run<'_> {
@@ -99,9 +122,7 @@ impl Run<'_> {
             sorting.contradictions = Contradictions::Relearn;
         }
         sorting.refused = refused;
-        sorting.already_known = already_known + copies.count;
-        sorting.copies = copies.count;
-        sorting.first_copy = copies.first;
+        sorting.already_known = already_known;
         let reading = self.plausible(tail, start, &new, buffers, side_by_side);
         sorting.refused.extend(reading.refused);
         let usable = already_known + reading.flights.len();
@@ -118,9 +139,10 @@ impl Run<'_> {
             costs,
             ..TailOutcome::default()
         };
-        let learnt = self.learn_sorted(start, sorting, stored, outcome);
+        let mut outcome = self.learn_sorted(start, sorting, stored, outcome)?;
+        outcome.add_copies(copies);
         self.bar.half(new.len());
-        learnt
+        Ok(outcome)
     }
 
     /// Reads a tail's reports and sets aside those that its model is not for, or whose dates or figures cannot be right.
@@ -286,20 +308,15 @@ fn unknown(
     (new, refused, already_known)
 }
 
-/// Reports that hold what another report of the batch holds.
-#[derive(Debug, Default)]
-struct Copies {
-    count: usize,
-    /// The first of them, and what it is a copy of.
-    first: Option<(String, String)>,
-}
+/// A report that holds what another report of the batch holds, and that other report.
+type Copy = (Box<Path>, Box<Path>);
 
 /// Reports without those that are byte for byte another one's copies: however many there are, each flight is read once.
 /// What cannot be read stays, and is refused where it is read.
-fn without_copies(heads: Vec<Head>, buffers: &mut Buffers) -> (Vec<Head>, Copies) {
+fn without_copies(heads: Vec<Head>, buffers: &mut Buffers) -> (Vec<Head>, Vec<Copy>) {
     let is_one_flight =
         |one: &Head, other: &Head| one.start == other.start && one.flight == other.flight;
-    let mut copies = Copies::default();
+    let mut copies = Vec::new();
     let mut is_copy = Vec::with_capacity(heads.len());
     for of_flight in heads.chunk_by(is_one_flight) {
         let mut contents: Vec<(String, &Path)> = Vec::new();
@@ -309,9 +326,7 @@ fn without_copies(heads: Vec<Head>, buffers: &mut Buffers) -> (Vec<Head>, Copies
             let original = contents.iter().find(|(known, _)| Some(known) == content.as_ref());
             is_copy.push(original.is_some());
             if let Some((_, original)) = original {
-                copies.count += 1;
-                let names = || (head.path.display().to_string(), original.display().to_string());
-                copies.first.get_or_insert_with(names);
+                copies.push((head.path.clone(), Box::from(*original)));
             } else if let Some(content) = content {
                 contents.push((content, &head.path));
             }

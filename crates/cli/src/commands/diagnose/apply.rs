@@ -30,10 +30,18 @@ pub(super) enum Outside {
 
 impl Outside {
     /// # Errors
-    /// A fleet, whose causes are those of the library.
+    /// Without `--apply` it asks for nothing; the causes of a fleet are those of the library.
     pub(super) fn of(arguments: &DiagnoseArgs) -> Result<Self, Failure> {
         if !arguments.effects.iter().any(|name| name == OUTSIDE) {
             return Ok(Self::Left);
+        }
+        if arguments.apply.is_none() {
+            return Err(Failure::BadArgument {
+                argument: "--effects",
+                reason:
+                    "`outside` is applied, and looked for without being asked: give --apply DIR too"
+                        .to_owned(),
+            });
         }
         if arguments.fleet {
             return Err(Failure::BadArgument {
@@ -103,7 +111,7 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis, outside: Outside) -> Choice 
     let nothing = |reason: &'static str| Choice::Nothing(reason.into());
     let found = match &diagnosis.verdict {
         Verdict::Effects(found) => found,
-        Verdict::NoGap => return nothing("no gap beyond the noise"),
+        Verdict::NoGap => return nothing("no effect is seen"),
         Verdict::OutsideLibrary(unexplained) => {
             return of_outside(group, diagnosis, unexplained.probability, outside);
         }
@@ -139,20 +147,22 @@ fn of_outside(
     probability: f64,
     outside: Outside,
 ) -> Choice {
-    let form = diagnosis.outside.forms.first();
-    match (outside, form.zip(diagnosis.outside.addition.clone())) {
-        (Outside::Applied, Some((_, addition))) => {
+    const UNEXPLAINED: &str = "no effect of the library explains the gap";
+    let Some(form) = diagnosis.outside.forms.first() else {
+        return Choice::Nothing(format!("{UNEXPLAINED}, and no form describes it").into());
+    };
+    let described = form_words(form);
+    match (outside, diagnosis.outside.addition.clone()) {
+        (Outside::Applied, Some(addition)) => {
             record(group, diagnosis, addition, (probability, &[]))
         }
-        (Outside::Left, Some((form, _))) => Choice::Nothing(
-            format!(
-                "no effect of the library explains the gap; --effects {OUTSIDE} applies the form that describes it, {}",
-                form_words(form)
-            )
-            .into(),
+        (Outside::Left, Some(_)) => Choice::Nothing(
+            format!("{UNEXPLAINED}; --effects {OUTSIDE} applies the form that describes it, {described}")
+                .into(),
         ),
         (_, None) => Choice::Nothing(
-            "no effect of the library explains the gap, and no form describes it".into(),
+            format!("{UNEXPLAINED}; what describes it is of recordings, and no part of a prediction: {described}")
+                .into(),
         ),
     }
 }
