@@ -88,9 +88,14 @@ impl fmt::Display for Found {
             Self::Byte(byte) => write!(f, "byte 0x{byte:02x}"),
             Self::EndOfLine => f.write_str("the end of the line"),
             Self::EndOfText => f.write_str("the end of the text"),
-            Self::Number { value, unit } => write!(f, "{value} {unit}"),
+            Self::Number { value, unit } => write!(f, "{} {unit}", without_rounding(*value)),
         }
     }
+}
+
+/// A number in twelve significant digits: what a conversion of units adds behind them was never recorded.
+fn without_rounding(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 /// What is wrong, one variant per rule of the format. Displays as what was expected instead.

@@ -232,6 +232,35 @@ fn bad_rows_cost_themselves() {
     );
 }
 
+/// Where nothing is left of a recording because most of its rows were left out, the reason of the first is told, and not that
+/// too few are left.
+#[test]
+fn a_recording_of_bad_rows_says_what_is_wrong_with_them() {
+    let lenient =
+        mapping(&[("format: 1,", "format: 1, bad_rows: LeaveRowOut, out_of_range: LeaveRowOut,")]);
+    for (rows, expected) in [
+        (
+            plain().replace("-56.5", "216.65"),
+            "line 2, column 27: found 489.8 K, expected SAT of -100 to +60 degC",
+        ),
+        (
+            plain().replace(",0.78,", ",780,"),
+            "line 2, column 33: found 780 -, expected MACH of 0.1 to 0.99",
+        ),
+        (
+            plain().replace(",0.78,", ",oops,"),
+            "line 2, column 33: found \"oops\", expected a number or nothing in \"mach\"",
+        ),
+        (
+            plain().replace("2024-03-01", "01/03/2024"),
+            "line 2, column 1: found \"01/03/2024 10:00:00\", expected",
+        ),
+    ] {
+        let refusal = lenient.read(rows.as_bytes()).unwrap_err().to_string();
+        assert!(refusal.starts_with(expected), "{refusal}");
+    }
+}
+
 /// A recording that is read while it is copied would count as a flight, and its whole version as a copy.
 #[test]
 fn a_recording_that_breaks_off_in_a_row_is_not_whole() {

@@ -3,6 +3,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests write files and run the program")]
 
 mod bounded;
+mod corpora;
 mod edited;
 #[allow(dead_code, unreachable_pub, reason = "the fuzz targets share this file")]
 mod entries;

@@ -33,7 +33,7 @@ pub(super) fn report(
     let fewest = if plan.points.is_some() { 1 } else { 3 };
     let level_rows = parts.iter().map(Range::len).sum();
     let first = parts.first().map_or(0, |part| part.start);
-    let (rows, surplus) = rows_in_range(plan, recording, parts);
+    let (rows, surplus) = rows_in_range(plan, recording, parts, fewest);
     let refuse_inconsistent = |error| {
         let found = Found::Rows(level_rows - surplus.len());
         layout.refuse(recording, (first, 0), found, RefusalKind::Inconsistent(error))
@@ -119,18 +119,20 @@ struct Part<'p> {
 /// A row that is left out, and the column that is out of range in it.
 type Surplus = (usize, Column);
 
-/// The rows to use, and those with a recorded number out of range where the mapping leaves such rows out.
+/// The rows to use, and those with a recorded number out of range where the mapping leaves such rows out. Where too few would be
+/// left it is the column that is wrong and not its rows: all are used, and the first number out of range is refused.
 fn rows_in_range(
     plan: &Plan,
     recording: &Recording,
     parts: &[Range<usize>],
+    fewest: usize,
 ) -> (Vec<usize>, Vec<Surplus>) {
-    let rows = parts.iter().cloned().flatten();
+    let rows = || parts.iter().cloned().flatten();
     if plan.out_of_range == OutOfRange::Refuse {
-        return (rows.collect(), Vec::new());
+        return (rows().collect(), Vec::new());
     }
     let (mut kept, mut surplus) = (Vec::new(), Vec::new());
-    for row in rows {
+    for row in rows() {
         let outside = plan.recorded.iter().find(|(column, conversion)| {
             let value = conversion.apply(&recording.numbers, row);
             !Limits::new(*column, None).admit(value)
@@ -139,6 +141,9 @@ fn rows_in_range(
             None => kept.push(row),
             Some((column, _)) => surplus.push((row, *column)),
         }
+    }
+    if kept.len() < fewest && !surplus.is_empty() {
+        return (rows().collect(), Vec::new());
     }
     (kept, surplus)
 }

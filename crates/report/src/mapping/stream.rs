@@ -216,10 +216,12 @@ impl Stream {
     /// [`Refusal`] for a recording that gave no report.
     pub fn end(self) -> Result<Vec<Finding>, Refusal> {
         if self.tally.reports == 0 {
-            return Err(match self.tally.first_refusal {
-                Some(refusal) => refusal,
-                None => self.refuse_without_report(),
-            });
+            return Err(
+                match self.assembly.most_are_bad().or_else(|| self.tally.first_refusal.clone()) {
+                    Some(refusal) => refusal,
+                    None => self.refuse_without_report(),
+                },
+            );
         }
         let finding =
             |code, message| Finding { severity: Severity::Warning, code, message, line: None };

@@ -24,6 +24,11 @@ pub(in crate::mapping) struct Assembly {
     end: (usize, usize),
     /// Rows of the longest flight.
     pub(in crate::mapping) longest: usize,
+    /// Rows of all flights that have ended.
+    rows: usize,
+    /// Rows that could not be read, and the first refusal.
+    bad: usize,
+    first_bad: Option<Refusal>,
 }
 
 impl Assembly {
@@ -74,6 +79,11 @@ impl Assembly {
         }
     }
 
+    /// Why the first bad row was left out, where most rows were: what is wrong is then the mapping, and not the rows.
+    pub(in crate::mapping) fn most_are_bad(&self) -> Option<Refusal> {
+        self.first_bad.clone().filter(|_| self.bad > self.rows)
+    }
+
     /// Refuses behind the last line.
     pub(in crate::mapping) fn refuse_end(&self, found: Found, kind: RefusalKind) -> Refusal {
         Refusal { line: self.end.0.max(1), column: self.end.1 + 1, found, kind }
@@ -81,6 +91,7 @@ impl Assembly {
 
     fn end_flight(&mut self, recording: Recording) {
         self.longest = self.longest.max(recording.time_s.len());
+        self.rows += recording.time_s.len();
         self.ended.push(recording);
     }
 
@@ -121,6 +132,8 @@ impl Assembly {
         if is_cut_off || layout.plan.bad_rows == BadRows::Refuse {
             return Err(refusal);
         }
+        self.bad += 1;
+        self.first_bad.get_or_insert_with(|| refusal.clone());
         let recording = self.current(layout);
         recording.bad += 1;
         recording.first_bad.get_or_insert(refusal);
