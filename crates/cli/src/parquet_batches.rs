@@ -1,5 +1,6 @@
 //! Rows of a Parquet file, some thousands at a time and only the columns that are wanted: memory is that of a page of each.
 
+mod footer;
 mod shared_file;
 
 use std::fs::File;
@@ -95,7 +96,9 @@ struct Column {
 
 impl Table {
     fn open(file: File) -> Result<Self, ParquetError> {
-        let reader = SerializedFileReader::new(SharedFile::new(file)?)?;
+        let file = SharedFile::new(file)?;
+        footer::check(&file)?;
+        let reader = SerializedFileReader::new(file)?;
         Ok(Self { reader, group: 0, columns: Vec::new(), left: 0 })
     }
 
