@@ -111,13 +111,28 @@ impl Summary {
         text.into_bytes()
     }
 
+    /// Why no segment was used: what was refused, or else what finds segments.
+    fn why_nothing(&self) -> String {
+        let refused = &self.reports.refused;
+        refused.first().map_or_else(
+            || NO_SEGMENT.to_owned(),
+            |first| {
+                format!(
+                    "No segment was used: {} refused, the first: {}\n",
+                    counted(refused.len(), "report"),
+                    first.reason
+                )
+            },
+        )
+    }
+
     /// As tables for a person, 80 columns wide but for long tails.
     pub fn to_text(&self) -> String {
         let mut text = aligned(&self.counts());
         text.push_str("\nError of predicted fuel flow, %\n");
         text.push_str(&aligned(&self.errors()));
         if self.tails.iter().all(|tail| tail.segments == 0) {
-            text.push_str(NO_SEGMENT);
+            text.push_str(&self.why_nothing());
         }
         text.push_str(
             "Error = 100 (recorded − predicted)/recorded fuel flow, %: positive, the aircraft burns more than the model \

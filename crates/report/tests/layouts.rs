@@ -57,6 +57,26 @@ fn every_layout_is_read_with_its_first_mapping() {
     assert!(failed.is_empty(), "{}", failed.join("\n"));
 }
 
+/// Registrations and flights by other names, and what is said where no column names flights.
+#[test]
+fn flights_and_tails_are_found_by_usual_names() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/layouts");
+    #[expect(clippy::disallowed_methods, reason = "tests read data from files")]
+    let text = std::fs::read_to_string(path.join("01_named_units.csv")).unwrap();
+    let text = text.replace("registration", "AC_REG");
+    let with = |names: &str, values: &str| {
+        let mut lines = text.lines();
+        let head = format!("{names}{}\n", lines.next().unwrap());
+        let rows: String = lines.map(|line| format!("{values}{line}\n")).collect();
+        first_mapping((head + &rows).as_bytes()).unwrap()
+    };
+    let named = with("FLT_ID,", "17,");
+    assert!(named.contains("tail: Column(\"AC_REG\")"), "{named}");
+    assert!(named.contains("flight: Column(\"FLT_ID\")"), "{named}");
+    let unnamed = with("leg,", "17,");
+    assert!(unnamed.contains("flight: FileName,   // ? one flight"), "{unnamed}");
+}
+
 /// The first mapping of a recording is the same in every encoding that a recording is read in.
 #[test]
 fn a_first_mapping_does_not_depend_on_the_encoding() {

@@ -304,7 +304,17 @@ impl Columns {
             ),
             (
                 "tail",
-                &["tail", "registration", "reg", "acident", "tailnumber"][..],
+                &[
+                    "tail",
+                    "registration",
+                    "reg",
+                    "acident",
+                    "tailnumber",
+                    "tailno",
+                    "acreg",
+                    "acregistration",
+                    "aircraftregistration",
+                ][..],
                 "Text(\"TAIL\"),   // ?",
             ),
             (
@@ -314,12 +324,15 @@ impl Columns {
                     "flightnumber",
                     "flightno",
                     "flightid",
+                    "fltid",
+                    "fltnum",
+                    "flightnum",
                     "flt",
                     "fltno",
                     "callsign",
                     "systtrajid",
                 ][..],
-                "FileName,",
+                "FileName,   // ? one flight; several in a file: Column(\"NAME\"), or new_flight_after_s",
             ),
         ] {
             let column =
