@@ -24,8 +24,8 @@ use crate::variable::Variable;
 
 /// The column of flight points that holds the date.
 const DATE: &str = "date";
-/// What a form outside the library is called.
-const OUTSIDE: &str = "outside";
+/// What a form outside the library is called, in files, options and messages.
+pub const OUTSIDE: &str = "outside";
 
 /// Effects that were applied together, with the references that they are relative to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -89,7 +89,7 @@ mod set;
 mod terms;
 mod variable;
 
-pub use applied::{AppliedEffects, AppliedLayer};
+pub use applied::{AppliedEffects, AppliedLayer, OUTSIDE};
 pub use drag::drag_rise;
 pub use engine::ANTI_ICE_PROXY_K;
 pub use error::{EffectError, EffectModelError, ObserveError, PredictError};

@@ -6,6 +6,7 @@ mod fleet;
 use std::fmt::Write;
 
 use diagnose::Options;
+use effects::OUTSIDE;
 use flight::effect::EffectId;
 use page::FleetRun;
 use rayon::prelude::*;
@@ -36,7 +37,7 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
     let outside = Outside::of(arguments)?;
     let options = Options {
-        effects: effects("--effects", &arguments.effects, &[apply::OUTSIDE])?,
+        effects: effects("--effects", &arguments.effects, &[OUTSIDE])?,
         without: effects("--without", &arguments.without, &[])?,
         ..Options::default()
     };
@@ -137,7 +138,7 @@ fn diagnose_all(
 /// What the run is asked for.
 fn asked(arguments: &DiagnoseArgs) -> Result<RunOptions, Failure> {
     Ok(RunOptions {
-        effects: arguments.effects.iter().filter(|name| *name != apply::OUTSIDE).cloned().collect(),
+        effects: arguments.effects.iter().filter(|name| *name != OUTSIDE).cloned().collect(),
         without: arguments.without.clone(),
         pool: arguments.pool,
         fleet: arguments.fleet,

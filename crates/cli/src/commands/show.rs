@@ -211,7 +211,8 @@ fn describe_effects(model: &ModelFile, text: &mut String) {
             .iter()
             .filter(|(id, _)| id.is_of_recordings() == of_recordings)
             .map(|(id, _)| id.to_string());
-        let outside = effects.forms().filter(|_| !of_recordings).map(|_| "outside".to_owned());
+        let outside =
+            effects.forms().filter(|_| !of_recordings).map(|_| effects::OUTSIDE.to_owned());
         let mut names: Vec<String> = of_library.chain(outside).collect();
         names.dedup();
         names.join(", ")

@@ -1,7 +1,7 @@
 //! A form outside the library in words.
 
 use diagnose::{ActsOn, Form, FoundForm, Variable};
-use effects::AppliedForm;
+use effects::{AppliedForm, OUTSIDE};
 use flight::effect::StepTarget;
 use units::convert::SECONDS_PER_DAY;
 
@@ -30,7 +30,7 @@ pub fn applied_form_words(applied: &AppliedForm) -> String {
     let (what, unit) = of_target(applied.acts_on);
     let shape = shape(applied.form, (applied.variable, applied.scale), None);
     let AppliedForm { size, standard_deviation, .. } = applied;
-    format!("outside: {what} {size:+.4} ± {standard_deviation:.4} {unit} {shape}")
+    format!("{OUTSIDE}: {what} {size:+.4} ± {standard_deviation:.4} {unit} {shape}")
 }
 
 /// What a size is of, and its unit.

@@ -54,7 +54,7 @@ pub(super) struct TailOutcome {
 impl TailOutcome {
     /// With the copies of its reports: a copy of a refused report is refused for the same reason, any other is a flight that is
     /// known.
-    fn add_copies(&mut self, copies: Vec<Copy>) {
+    fn add_copies(&mut self, copies: Vec<CopyOf>) {
         if copies.is_empty() {
             return;
         }
@@ -309,11 +309,11 @@ fn unknown(
 }
 
 /// A report that holds what another report of the batch holds, and that other report.
-type Copy = (Box<Path>, Box<Path>);
+type CopyOf = (Box<Path>, Box<Path>);
 
 /// Reports without those that are byte for byte another one's copies: however many there are, each flight is read once.
 /// What cannot be read stays, and is refused where it is read.
-fn without_copies(heads: Vec<Head>, buffers: &mut Buffers) -> (Vec<Head>, Vec<Copy>) {
+fn without_copies(heads: Vec<Head>, buffers: &mut Buffers) -> (Vec<Head>, Vec<CopyOf>) {
     let is_one_flight =
         |one: &Head, other: &Head| one.start == other.start && one.flight == other.flight;
     let mut copies = Vec::new();

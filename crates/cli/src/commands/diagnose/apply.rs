@@ -5,6 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use diagnose::{Addition, Diagnosis, Verdict};
+use effects::OUTSIDE;
 use flight::effect::EffectId;
 
 use crate::args::DiagnoseArgs;
@@ -16,9 +17,6 @@ use pipeline::diagnosed_tail::{DiagnosedTail, POOL};
 use pipeline::diagnosis_groups::Group;
 use pipeline::diagnosis_words::{form_words, joined};
 use pipeline::model_file::{AppliedRecord, DiagnosisRecord};
-
-/// The name by which a person asks for the form of a cause outside the library.
-pub(super) const OUTSIDE: &str = "outside";
 
 /// Whether the form of a cause outside the library is applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
