@@ -66,9 +66,10 @@ fn flights_and_tails_are_found_by_usual_names() {
     let text = text.replace("registration", "AC_REG");
     let with = |names: &str, values: &str| {
         let mut lines = text.lines();
-        let head = format!("{names}{}\n", lines.next().unwrap());
-        let rows: String = lines.map(|line| format!("{values}{line}\n")).collect();
-        first_mapping((head + &rows).as_bytes()).unwrap()
+        let head = format!("{names}{}", lines.next().unwrap());
+        let rows = lines.map(|line| format!("{values}{line}"));
+        let all: Vec<String> = core::iter::once(head).chain(rows).collect();
+        first_mapping(all.join("\n").as_bytes()).unwrap()
     };
     let named = with("FLT_ID,", "17,");
     assert!(named.contains("tail: Column(\"AC_REG\")"), "{named}");
