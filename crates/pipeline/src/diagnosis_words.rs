@@ -32,7 +32,7 @@ pub fn silent_words(diagnosis: &Diagnosis) -> &'static str {
 pub fn advice(verdict: &Verdict) -> String {
     match verdict {
         Verdict::NoGap => {
-            "No effect is seen. Each has a size that would just have been seen.".to_owned()
+            "Nothing. Each effect has a size that would just have been seen.".to_owned()
         }
         Verdict::InsufficientData(reason) => {
             format!("Too little data: {}.", insufficient_words(*reason))
