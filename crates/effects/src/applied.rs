@@ -6,7 +6,7 @@
 //! predictions. Effects of the recording (sensors, load sheet, fuel quantity) correct recordings before anything else
 //! uses them, and no prediction contains them.
 
-use std::collections::BTreeSet;
+use core::fmt;
 
 use flight::effect::{EffectId, HiddenParameter, NeededInput, ThrottleArgument};
 use lut::Table;
@@ -110,12 +110,19 @@ impl AppliedEffects {
             .sqrt()
     }
 
-    /// Names of physical effects that a flight point lacks an input for, with the column that is missing: the prediction has
+    /// Physical effects that a flight point lacks an input for, with the column that is missing: the prediction has
     /// them at their reference (center of gravity and date of the reference, standard gravity, anti-ice bleed off, wings level,
     /// no wind), and a form outside the library at the mean of its variable.
     #[must_use]
-    pub fn at_reference(&self, point: &FlightPoint) -> Vec<(String, &'static str)> {
+    pub fn at_reference(&self, point: &FlightPoint) -> Vec<(AtReference, &'static str)> {
         let mut lacking = Vec::new();
+        let mut lacks_one = |one: AtReference, missing: Option<&'static str>| {
+            if let Some(missing) = missing
+                && !lacking.contains(&(one, missing))
+            {
+                lacking.push((one, missing));
+            }
+        };
         for (id, _) in self.iter().filter(|(id, _)| !id.is_of_recordings()) {
             let missing = match id {
                 EffectId::AirframeAgeing
@@ -125,14 +132,11 @@ impl AppliedEffects {
                 | EffectId::StepChange => point.date.is_none().then_some(DATE),
                 _ => id.entry().needs.iter().find_map(|needed| lacks(*needed, point)),
             };
-            lacking.extend(missing.map(|missing| (id.to_string(), missing)));
+            lacks_one(AtReference::Effect(id), missing);
         }
-        let variables = self.forms().flat_map(AppliedForm::variables);
-        lacking.extend(
-            variables.filter_map(|of| lacks_variable(of, point)).map(|m| (OUTSIDE.to_owned(), m)),
-        );
-        let mut told = BTreeSet::new();
-        lacking.retain(|one| told.insert(one.clone()));
+        for variable in self.forms().flat_map(AppliedForm::variables) {
+            lacks_one(AtReference::Outside, lacks_variable(variable, point));
+        }
         lacking
     }
 
@@ -160,6 +164,24 @@ impl AppliedEffects {
                 })
             })
             .collect()
+    }
+}
+
+/// What is held at its reference where a point lacks its input; displays as its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AtReference {
+    /// An effect of the library.
+    Effect(EffectId),
+    /// A form outside it.
+    Outside,
+}
+
+impl fmt::Display for AtReference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Effect(id) => id.fmt(f),
+            Self::Outside => f.write_str(OUTSIDE),
+        }
     }
 }
 

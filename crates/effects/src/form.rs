@@ -204,7 +204,7 @@ impl AppliedForm {
     /// The function at a point; a variable that the point lacks is at its mean.
     fn shape(&self, point: &EffectPoint, aloft: Aloft, terms: &Terms) -> f64 {
         let dated = EffectPoint { date_s: terms.date_s(point.date_s), ..*point };
-        let of = |variable: Variable| variable.of_form(&dated, aloft, &terms.references);
+        let of = |variable: Variable| variable.value_of_form(&dated, aloft, &terms.references);
         let [mean, _] = self.scale;
         let with = match self.form {
             Form::Product { with, scale: [mean, _] } => of(with).unwrap_or(mean),

@@ -89,7 +89,7 @@ mod set;
 mod terms;
 mod variable;
 
-pub use applied::{AppliedEffects, AppliedLayer, OUTSIDE};
+pub use applied::{AppliedEffects, AppliedLayer, AtReference, OUTSIDE};
 pub use drag::drag_rise;
 pub use engine::ANTI_ICE_PROXY_K;
 pub use error::{EffectError, EffectModelError, ObserveError, PredictError};
@@ -102,4 +102,4 @@ pub use point::EffectPoint;
 pub use references::EffectReferences;
 pub use response::{BetweenNodes, Response, value_continued};
 pub use set::Effects;
-pub use variable::Variable;
+pub use variable::{Aloft, Variable};

@@ -195,9 +195,9 @@ fn of_forms(
     for terms in layers.iter().filter(|terms| !terms.forms.is_empty()) {
         let drag_coefficient = before.drag_coefficient + change.drag_coefficient;
         let thrust_n = before.surface_n * drag_coefficient + before.path_force_n;
-        let corrected_thrust_n = thrust_n / flown.pressure_ratio;
+        let ln_corrected_thrust = (thrust_n / flown.pressure_ratio).ln();
         change =
-            change.with_layer(terms, &flown_point, Aloft { lift_coefficient, corrected_thrust_n });
+            change.with_layer(terms, &flown_point, Aloft { lift_coefficient, ln_corrected_thrust });
     }
     if change.is_finite() { Ok(change) } else { Err(EffectError::FormUndefined) }
 }

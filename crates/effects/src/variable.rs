@@ -59,25 +59,16 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// The value at a segment, in the variable's unit; `None` where an input is not recorded, and for what is no variable of a
+    /// The value at a point, in the variable's unit; `None` where an input is not recorded, and for what is no variable of a
     /// point (engine, N2).
     #[must_use]
     pub fn value(
         self,
         point: &EffectPoint,
-        response: &Response,
+        aloft: impl Into<Aloft>,
         references: &EffectReferences,
     ) -> Option<f64> {
-        self.at(point, Aloft::of(response), references)
-    }
-
-    /// The same where lift and thrust are known, and no more of the response.
-    pub(crate) fn at(
-        self,
-        point: &EffectPoint,
-        aloft: Aloft,
-        references: &EffectReferences,
-    ) -> Option<f64> {
+        let aloft = aloft.into();
         let cross_wind = || {
             point
                 .drift_deg
@@ -87,7 +78,9 @@ impl Variable {
             Self::Mach => point.mach,
             Self::LiftCoefficient => aloft.lift_coefficient,
             Self::PressureAltitude => point.pressure_altitude_m,
-            Self::CorrectedThrust => aloft.corrected_thrust_n / references.corrected_thrust_n,
+            Self::CorrectedThrust => {
+                aloft.ln_corrected_thrust.exp() / references.corrected_thrust_n
+            }
             Self::IsaDeviation => {
                 let isa = atmos::isa::temperature(units::PressureAltitude::meters(
                     point.pressure_altitude_m,
@@ -126,27 +119,17 @@ impl Variable {
 impl Variable {
     /// The value that a form outside the library is over: of a date the instant itself, s since 1970, not years since a
     /// reference that nobody sees.
-    pub(crate) fn of_form(
-        self,
-        point: &EffectPoint,
-        aloft: Aloft,
-        references: &EffectReferences,
-    ) -> Option<f64> {
-        match self {
-            Self::Date => Some(point.date_s),
-            _ => self.at(point, aloft, references),
-        }
-    }
-
-    /// The same at a segment of which the response is known.
     #[must_use]
     pub fn value_of_form(
         self,
         point: &EffectPoint,
-        response: &Response,
+        aloft: impl Into<Aloft>,
         references: &EffectReferences,
     ) -> Option<f64> {
-        self.of_form(point, Aloft::of(response), references)
+        match self {
+            Self::Date => Some(point.date_s),
+            _ => self.value(point, aloft, references),
+        }
     }
 }
 
@@ -175,19 +158,20 @@ impl From<DrivingVariable> for Variable {
     }
 }
 
-/// What a variable needs to know beside the point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Aloft {
-    pub(crate) lift_coefficient: f64,
-    /// Net thrust of all engines over pressure ratio, N.
-    pub(crate) corrected_thrust_n: f64,
+/// What a variable needs to know beside the point; a [`Response`] converts by [`From`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aloft {
+    /// Lift coefficient.
+    pub lift_coefficient: f64,
+    /// ln of the net thrust of all engines over pressure ratio, N.
+    pub ln_corrected_thrust: f64,
 }
 
-impl Aloft {
-    fn of(response: &Response) -> Self {
+impl From<&Response> for Aloft {
+    fn from(response: &Response) -> Self {
         Self {
             lift_coefficient: response.lift_coefficient,
-            corrected_thrust_n: response.ln_corrected_thrust.exp(),
+            ln_corrected_thrust: response.ln_corrected_thrust,
         }
     }
 }

@@ -36,12 +36,12 @@ use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcome, Failure> {
     let outside = Outside::of(arguments)?;
+    let asked = asked(arguments)?;
     let options = Options {
-        effects: effects("--effects", &arguments.effects, &[OUTSIDE])?,
-        without: effects("--without", &arguments.without, &[])?,
+        effects: effects("--effects", &asked.effects)?,
+        without: effects("--without", &asked.without)?,
         ..Options::default()
     };
-    let asked = asked(arguments)?;
     let models = read_models(&arguments.models.models)?;
     let mut reading = prepare(&arguments.reports, progress)?;
     let files = reading.files();
@@ -148,15 +148,8 @@ fn asked(arguments: &DiagnoseArgs) -> Result<RunOptions, Failure> {
     })
 }
 
-/// The effects of these names, but for names that are none.
-fn effects(
-    argument: &'static str,
-    names: &[String],
-    others: &[&str],
-) -> Result<Vec<EffectId>, Failure> {
-    let names: Vec<String> =
-        names.iter().filter(|name| !others.contains(&name.as_str())).cloned().collect();
-    effects_named(&names).map_err(|NoSuchEffect { name, known }| Failure::BadArgument {
+fn effects(argument: &'static str, names: &[String]) -> Result<Vec<EffectId>, Failure> {
+    effects_named(names).map_err(|NoSuchEffect { name, known }| Failure::BadArgument {
         argument,
         reason: format!("no effect {name:?}; known are {known}"),
     })

@@ -205,9 +205,9 @@ fn tell_references(model: &ModelFile, rows: &[FlightPointRow]) {
     let Some(effects) = model.initial.effects() else { return };
     let mut warned = Vec::new();
     for (effect, missing) in rows.iter().flat_map(|row| effects.at_reference(&row.point)) {
-        if !warned.contains(&(effect.clone(), missing)) {
-            tracing::warn!("points without {missing}: {effect} is at its reference there");
+        if !warned.contains(&(effect, missing)) {
             warned.push((effect, missing));
+            tracing::warn!("points without {missing}: {effect} is at its reference there");
         }
     }
 }

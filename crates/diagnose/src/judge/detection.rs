@@ -87,16 +87,23 @@ pub(crate) fn detect(
         .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
     let announced = taught && !input.exceeds_uncertainty && !input.lies_at_an_engine;
     let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
-    let mut forms = None;
     let stands_out = something
         && !own_error
         && is_large(system, gap, top)
-        && !is_vague(gap, outside, top, taught && makes_worse(unseen))
-        && !(taught
-            && !input.lies_at_an_engine
-            && is_unnamed(outside, named)
-            && is_unpredictable(problem, input, outside, &mut forms));
-    let detected = input.is_real && (table.is_some() || stands_out);
+        && !is_vague(gap, outside, top, taught && makes_worse(unseen));
+    // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
+    // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
+    // functions, and may be all of a large gap: the form that describes it is asked then.
+    let has_no_witness = stands_out
+        && taught
+        && !input.lies_at_an_engine
+        && is_unnamed(outside, named)
+        && smooth_predicts_nothing(problem, own);
+    let forms = has_no_witness
+        .then(|| leading_forms(problem, input.analysis, outside, (input.noise_scale, own.seed())));
+    let is_borne_out =
+        forms.as_ref().is_none_or(|forms| bears_out(forms.first().and_then(|best| best.closure)));
+    let detected = input.is_real && (table.is_some() || (stands_out && is_borne_out));
     Detection { detected, table: table.filter(|_| detected), smooth_term, forms }
 }
 
@@ -106,24 +113,10 @@ fn is_unnamed(outside: &Outside, named: f64) -> bool {
         || named * (1.0 - outside.probability) <= MORE_PROBABLE_THAN_NOT
 }
 
-/// Whether nothing that was fitted to other flights surely predicts a flight better than no gap at all does `[diagnosis.53]`:
-/// neither smooth functions do, nor does the form that describes the gap best surely close more than half of it. What errs anew
-/// on every flight is no property of the aircraft.
-fn is_unpredictable(
-    problem: Problem<'_>,
-    input: &DetectionInput<'_>,
-    outside: &Outside,
-    forms: &mut Option<Vec<FoundForm>>,
-) -> bool {
-    let DetectionInput { analysis, own, noise_scale, .. } = *input;
-    let Some(fitted) = held_out_smooth(problem.system) else { return false };
-    if own.with_change(problem.system, &fitted).closes() {
-        return false;
-    }
-    // A bump between two knots is no sum of smooth functions, and may be all of a large gap.
-    let described =
-        forms.insert(leading_forms(problem, analysis, outside, (noise_scale, own.seed())));
-    !bears_out(described.first().and_then(|best| best.closure))
+/// Whether smooth functions that were fitted to other flights do not surely predict a flight better than no gap at all does.
+fn smooth_predicts_nothing(problem: Problem<'_>, own: &Shrinkage) -> bool {
+    held_out_smooth(problem.system)
+        .is_some_and(|fitted| !own.with_change(problem.system, &fitted).closes())
 }
 
 /// Whether a form surely closes more than half of the gap on flights that its parameters have not seen.

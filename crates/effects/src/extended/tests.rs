@@ -6,7 +6,7 @@ use lut::surface::Basis;
 use units::{Angle, Mach, Mass, PressureAltitude};
 
 use super::*;
-use crate::applied::AppliedLayer;
+use crate::applied::{AppliedLayer, AtReference};
 use crate::model::EffectModel;
 
 mod outside;
@@ -300,7 +300,7 @@ fn what_a_point_does_not_say_is_at_its_reference() {
     ] {
         let model = with(Effects::one(id, typical(id)));
         let effects = model.effects().unwrap();
-        assert_eq!(effects.at_reference(&bare_point), vec![(id.to_string(), missing)]);
+        assert_eq!(effects.at_reference(&bare_point), vec![(AtReference::Effect(id), missing)]);
         let found = model.predict(&bare_point).unwrap().fuel_flow_total.to_kilograms_per_second();
         assert!((found / plain - 1.0).abs() < 1e-12, "{id}: {found} {plain}");
     }

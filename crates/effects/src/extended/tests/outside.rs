@@ -69,7 +69,7 @@ fn what_a_point_lacks_is_at_its_mean() {
         assert!((100.0 * (flow(&model, &there) / plain).ln() - expected).abs() < 1e-9, "{form:?}");
         assert!((flow(&model, &without) / plain - 1.0).abs() < 1e-15, "{form:?}");
         let lacking = model.effects().unwrap().at_reference(&without);
-        assert_eq!(lacking, vec![("outside".to_owned(), "cg_percent_mac")]);
+        assert_eq!(lacking, vec![(AtReference::Outside, "cg_percent_mac")]);
     }
 }
 
@@ -89,7 +89,7 @@ fn a_date_is_that_of_the_point_or_of_the_references() {
     assert!((flow(&model, &undated) / plain - 1.0).abs() < 1e-15);
     assert_eq!(
         model.effects().unwrap().at_reference(&undated),
-        vec![("outside".to_owned(), "date")]
+        vec![(AtReference::Outside, "date")]
     );
 }
 

@@ -24,9 +24,8 @@ pub(in crate::mapping) struct Assembly {
     end: (usize, usize),
     /// Rows of the longest flight.
     pub(in crate::mapping) longest: usize,
-    /// Rows of all flights that have ended.
+    /// Of all flights that have ended: rows, those that could not be read, and the first refusal.
     rows: usize,
-    /// Rows that could not be read, and the first refusal.
     bad: usize,
     first_bad: Option<Refusal>,
 }
@@ -92,6 +91,10 @@ impl Assembly {
     fn end_flight(&mut self, recording: Recording) {
         self.longest = self.longest.max(recording.time_s.len());
         self.rows += recording.time_s.len();
+        self.bad += recording.bad;
+        if self.first_bad.is_none() {
+            self.first_bad.clone_from(&recording.first_bad);
+        }
         self.ended.push(recording);
     }
 
@@ -132,8 +135,6 @@ impl Assembly {
         if is_cut_off || layout.plan.bad_rows == BadRows::Refuse {
             return Err(refusal);
         }
-        self.bad += 1;
-        self.first_bad.get_or_insert_with(|| refusal.clone());
         let recording = self.current(layout);
         recording.bad += 1;
         recording.first_bad.get_or_insert(refusal);
