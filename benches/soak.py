@@ -1,9 +1,9 @@
 """Months of nightly runs with a fault every tenth night: the folder at the end is that of months without one.
 
-    python3 benches/soak.py FOLDER [--nights 730] [--tails 100] [--every 10] [--diagnosed 1] [--samples N] [--seed N]
-        [--target target/release]
+    python3 benches/soak.py FOLDER [--nights 730] [--tails 100] [--every 10] [--diagnosed 1] [--samples N]
+        [--flies-every 1] [--seed N] [--target target/release]
 
-Each night every tail has flown once, and `adapt --relearn` gets the reports of the last week; every thirtieth night `monitor` reads the
+Each night every tail has flown once (with `--flies-every N` every Nth tail in turn), and `adapt --relearn` gets the reports of the last week; every thirtieth night `monitor` reads the
 folder, and in one such month of `--diagnosed` months `diagnose` the reports of the last thirty nights against the models before them. Both are done twice: in one folder
 undisturbed, in the other with a fault every tenth night and the same command once more after it. Faults in turn: kill -9,
 SIGTERM, no space for a file, a report of which half has arrived, files that are no reports, two processes at once, a changed
@@ -34,7 +34,8 @@ class World:
 
     def __init__(self, asked, name):
         self.program = str(asked.target / "cruisefit")
-        self.reports = asked.folder / f"reports-{asked.nights * asked.tails}-{asked.tails}-{asked.samples}"
+        self.flies_every = asked.flies_every
+        self.reports = asked.folder / f"reports-{asked.flights * asked.tails}-{asked.tails}-{asked.samples}"
         self.model = asked.folder / "MODEL.ron"
         self.home = asked.folder / name
         shutil.rmtree(self.home, ignore_errors=True)
@@ -44,8 +45,13 @@ class World:
         self.diagnosed = asked.diagnosed
 
     def of_nights(self, first, last):
-        names = [f"{flight:05}.txt" for flight in range(max(0, first), last + 1)]
-        return [str(tail / name) for tail in sorted(self.reports.iterdir()) for name in names]
+        nights, of = range(max(0, first), last + 1), self.flies_every
+        return [
+            str(tail / f"{night // of:05}.txt")
+            for number, tail in enumerate(sorted(self.reports.iterdir()))
+            for night in nights
+            if night % of == number % of
+        ]
 
     def adapt(self, inputs):
         return [self.program, "adapt", *inputs, "--model", str(self.model), "-o", str(self.output), "--relearn", "--no-progress"]
@@ -77,6 +83,7 @@ class Faults:
 
     def strike(self, night, lasts):
         kind = self.kinds[sum(self.done.values()) % len(self.kinds)]
+        self.tonight = self.world.of_nights(night, night)
         kind(self.world.of_nights(night - WEEK + 1, night), lasts)
         self.done[kind.__name__] += 1
 
@@ -101,7 +108,7 @@ class Faults:
         assert status == 2, status
 
     def half_arrived(self, inputs, _):
-        whole = pathlib.Path(self.draw.choice([path for path in inputs if path.endswith(inputs[-1][-9:])]))
+        whole = pathlib.Path(self.draw.choice(self.tonight))
         half = self.world.home / "half" / whole.parent.name / whole.name
         half.parent.mkdir(parents=True, exist_ok=True)
         lines = whole.read_text().splitlines(keepends=True)
@@ -124,7 +131,10 @@ class Faults:
         assert statuses in ([0, 0], [0, 2]), statuses
 
     def damaged(self, inputs, _):
-        path = self.draw.choice(sorted((self.world.output / "segments").iterdir()))
+        # A tail with nothing new is not read.
+        flying = {pathlib.Path(path).parent.name for path in self.tonight}
+        files = sorted((self.world.output / "segments").iterdir())
+        path = self.draw.choice([path for path in files if path.name.split(".")[0] in flying])
         good = path.read_bytes()
         places = [place for place, byte in enumerate(good) if chr(byte).isdigit()]
         place = self.draw.choice(places)
@@ -156,13 +166,15 @@ def main():
     parser.add_argument("--every", type=int, default=10)
     parser.add_argument("--diagnosed", type=int, default=1, help="months of which one is diagnosed: most of the time goes there")
     parser.add_argument("--samples", type=int, help="end every report after so many, for more nights in the same time")
+    parser.add_argument("--flies-every", type=int, default=1, help="nights from one flight of a tail to its next")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--target", type=pathlib.Path, default=ROOT / "target/release")
     asked = parser.parse_args()
+    asked.flights = -(-asked.nights // asked.flies_every)
     print(f"seed {asked.seed}", flush=True)
     undisturbed, disturbed = World(asked, "undisturbed"), World(asked, "disturbed")
     if not undisturbed.reports.exists():
-        make_reports(undisturbed.reports, asked.nights * asked.tails, asked.tails, asked.samples)
+        make_reports(undisturbed.reports, asked.flights * asked.tails, asked.tails, asked.samples)
     fixture = ROOT / "fixtures/global5000"
     subprocess.run([undisturbed.program, "init", "--aircraft", str(fixture / "AIRCRAFT.ron"), "--guide",
                     str(fixture / "guide.csv"), "-o", str(asked.folder / "MODEL.ron"), "--force"], check=True, **QUIET)
