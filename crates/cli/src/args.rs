@@ -354,6 +354,9 @@ pub(crate) struct PredictArgs {
     /// Predict with the drag table alone, without what else the model has learnt
     #[arg(long)]
     pub(crate) table_only: bool,
+    /// State no standard deviations, which take most of the time at very many points
+    #[arg(long)]
+    pub(crate) without_deviations: bool,
     /// Document.
     #[command(flatten)]
     pub(crate) json: JsonFlag,

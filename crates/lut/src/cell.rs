@@ -27,6 +27,13 @@ impl Cell {
         [low, low + 1, high, high + 1]
     }
 
+    /// Index of the breakpoint at the cell's low end along x and along y.
+    #[must_use]
+    #[inline]
+    pub const fn indices(&self) -> (usize, usize) {
+        (self.x.index, self.y.index)
+    }
+
     /// Bilinear weights of the four nodes; they are not negative and sum to 1.
     ///
     /// A point on a node has exactly the weights 1, 0, 0, 0; a point on a grid line has two weights of exactly 0.

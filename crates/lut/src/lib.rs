@@ -41,5 +41,5 @@ mod table;
 pub use axis::{Axis, AxisError, SNAP};
 pub use cell::Cell;
 pub use grid::{Grid, Outside, OutsideGrid};
-pub use smooth::SmoothCell;
+pub use smooth::{SmoothCell, SmoothTable};
 pub use table::{Table, TableError};

@@ -1,6 +1,10 @@
 //! A smooth surface through the nodes of a table, for what needs its slope: where a bilinear surface has its optimum is
 //! decided by its edges, which are the grid's and not the aircraft's.
 
+mod table;
+
+pub use table::SmoothTable;
+
 use crate::{Axis, Grid, Outside, OutsideGrid, Table};
 
 /// Nodes that take part in a value.

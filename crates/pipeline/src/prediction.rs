@@ -32,6 +32,7 @@ pub struct Predictor<'a> {
     plain: Option<ExtendedModel>,
     /// Relative scatter between flights of an applied effect.
     scatter: f64,
+    states_deviations: bool,
 }
 
 /// What is predicted at a flight point.
@@ -68,8 +69,15 @@ impl<'a> Predictor<'a> {
             whole,
             plain: model.initial.with_effects(AppliedEffects::default()).ok(),
             scatter: effects.map_or(0.0, AppliedEffects::fuel_heating_value_deviation),
+            states_deviations: true,
             model,
         })
+    }
+
+    /// The same predictions without their standard deviations, which take most of the time of a learnt model.
+    #[must_use]
+    pub fn without_deviations(self) -> Self {
+        Self { states_deviations: false, ..self }
     }
 
     /// Whether more than the table predicts.
@@ -114,6 +122,9 @@ impl<'a> Predictor<'a> {
         prediction: &Prediction,
         whole: Option<&WholePrediction>,
     ) -> Option<f64> {
+        if !self.states_deviations {
+            return None;
+        }
         // The imagined segment is recorded by the aircraft's sensors without any error of theirs.
         let plain = self.plain.as_ref()?;
         let total_kg_s = prediction.fuel_flow_total.to_kilograms_per_second();

@@ -78,12 +78,14 @@ impl Model {
         Ok(self.file.to_text().map_err(Failure::internal)?)
     }
 
-    /// The table with its predictions, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`.
+    /// The table with its predictions, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`;
+    /// `deviations`: whether standard deviations are stated.
     fn predict(
         &self,
         py: Python<'_>,
         table: AnyRecordBatch,
         predicts: &str,
+        deviations: bool,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Prediction> {
         let predicts = predicts_of(predicts)?;
@@ -92,6 +94,7 @@ impl Model {
         let file = Arc::clone(&self.file);
         let (batches, refused) = run(py, threads, move |caller| {
             let predictor = Predictor::new(&file, predicts).map_err(Failure::input)?;
+            let predictor = if deviations { predictor } else { predictor.without_deviations() };
             points::predict(&predictor, &plain(batches)?, caller)
         })?;
         let schema = batches.first().map_or(schema, arrow_array::RecordBatch::schema);

@@ -133,6 +133,7 @@ fn judge(
             points: folder.join("static.csv"),
             output: Some(predicted.clone()),
             table_only: false,
+            without_deviations: false,
         })?;
         let errors = errors_of(&predicted)?;
         let _ = writeln!(

@@ -31,6 +31,8 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let model = read_model(&arguments.model)?;
     let predictor = Predictor::new(&model, Predicts::table_only(arguments.table_only))
         .map_err(|error| Failure::bad_file(&arguments.model, error))?;
+    let predictor =
+        if arguments.without_deviations { predictor.without_deviations() } else { predictor };
     if arguments.mapping.is_some() || is_segments(&arguments.points) {
         return predict_segments(arguments, &predictor);
     }

@@ -4,6 +4,8 @@ use effects::Variable;
 use serde::{Deserialize, Serialize};
 
 use crate::math::cholesky::Cholesky;
+use crate::math::lanes::{add, add_product, each, map};
+use crate::math::vector_ln_exp::exp;
 use crate::priors::{SMOOTH_KNOT_DISTANCE, SMOOTH_MOST_KNOTS};
 use faer::Mat;
 
@@ -207,6 +209,10 @@ impl Smooth {
     }
 }
 
+/// Lengths from the first knot up to which the kernel is computed from knot to knot: e^(−37²/2) is a normal number yet.
+const REACH: f64 = 37.0;
+
+/// Over many places at once, compiled for the vectors of the caller.
 impl Prepared {
     pub(crate) const fn variable(&self) -> Variable {
         self.text.variable
@@ -218,8 +224,15 @@ impl Prepared {
     }
 
     /// Lengths from the middle.
-    pub(crate) fn at(&self, value: f64) -> f64 {
-        self.text.at(value)
+    #[expect(clippy::inline_always, reason = "as the others")]
+    #[inline(always)]
+    pub(crate) fn at<const N: usize>(&self, values: &[f64; N]) -> [f64; N] {
+        map(values, |value| self.text.at(value))
+    }
+
+    /// Whether the other functions hold at a place in lengths.
+    pub(crate) fn reaches(&self, z: f64) -> bool {
+        (z - self.text.knots.0).abs() <= REACH
     }
 
     /// As [`Smooth::is_beyond`], of a place in lengths.
@@ -227,39 +240,73 @@ impl Prepared {
         self.text.beyond(z) > BEYOND_BY_ROUNDING
     }
 
-    /// Hands the kernel at each knot to `each`.
-    fn kernels(&self, z: f64, mut each: impl FnMut(usize, f64)) {
-        let from_first = z - self.text.knots.0;
-        let mut kernel = (-0.5 * from_first * from_first).exp();
-        let mut ratio = (from_first * self.distance - 0.5 * self.distance * self.distance).exp();
-        for knot in 0..self.text.count {
-            each(knot, kernel);
-            kernel *= ratio;
-            ratio *= self.ratio_falls;
+    /// The kernel at the first knot.
+    #[expect(clippy::inline_always, reason = "as the others")]
+    #[inline(always)]
+    fn kernels<const N: usize>(&self, z: &[f64; N]) -> Kernels<N> {
+        let (first, distance) = (self.text.knots.0, self.distance);
+        Kernels {
+            now: map(z, |z| exp(-0.5 * (z - first) * (z - first))),
+            ratio: map(z, |z| exp((z - first) * distance - 0.5 * distance * distance)),
+            ratio_falls: self.ratio_falls,
         }
     }
 
     /// The function's mean.
-    pub(crate) fn mean(&self, z: f64) -> f64 {
-        let mut sum = self.slope * z;
-        self.kernels(z, |knot, kernel| sum += self.weights[knot] * kernel);
-        sum
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
+    pub(crate) fn mean<const N: usize>(&self, z: &[f64; N]) -> [f64; N] {
+        let mut sums = map(z, |z| self.slope * z);
+        let mut kernels = self.kernels(z);
+        for weight in &self.weights {
+            add(&mut sums, *weight, &kernels.now);
+            kernels.step();
+        }
+        sums
     }
 
     /// As [`Smooth::write`].
-    pub(crate) fn write(&self, z: f64, into: &mut [f64]) -> f64 {
-        into[0] = z;
+    #[expect(clippy::inline_always, reason = "as the others")]
+    #[inline(always)]
+    pub(crate) fn write<const N: usize>(&self, z: &[f64; N], into: &mut [[f64; N]]) -> [f64; N] {
+        into[0] = *z;
         let terms = &mut into[1..=self.text.count];
-        self.kernels(z, |knot, kernel| terms[knot] = kernel);
-        let (mut held, mut rest) = (0.0, self.root.as_slice());
+        let mut kernels = self.kernels(z);
+        for term in terms.iter_mut() {
+            *term = kernels.now;
+            kernels.step();
+        }
+        let (mut held, mut rest) = ([0.0; N], self.root.as_slice());
         for k in 0..terms.len() {
             let (row, behind) = rest.split_at(k + 1);
-            let below: f64 = row[..k].iter().zip(&terms[..k]).map(|(l, term)| l * term).sum();
-            terms[k] = (terms[k] - below) * row[k];
-            held += terms[k] * terms[k];
+            let (below, from_here) = terms.split_at_mut(k);
+            let mut term = from_here[0];
+            for (l, other) in row.iter().zip(below.iter()) {
+                add(&mut term, -l, other);
+            }
+            let term = map(&term, |term| term * row[k]);
+            add_product(&mut held, 1.0, &term, &term);
+            from_here[0] = term;
             rest = behind;
         }
-        self.text.left_of_variance(z, held)
+        each(z, &held, |z, held| self.text.left_of_variance(z, held))
+    }
+}
+
+/// The kernel between places and one knot after the other.
+struct Kernels<const N: usize> {
+    now: [f64; N],
+    ratio: [f64; N],
+    ratio_falls: f64,
+}
+
+impl<const N: usize> Kernels<N> {
+    /// On to the next knot.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
+    fn step(&mut self) {
+        self.now = each(&self.now, &self.ratio, |kernel, ratio| kernel * ratio);
+        self.ratio = map(&self.ratio, |ratio| ratio * self.ratio_falls);
     }
 }
 
@@ -331,18 +378,19 @@ mod tests {
         let mean = |k: u32| 0.01 * f64::from(k * k % 7) - 0.02;
         let means: Vec<f64> = (0..20).map(mean).take(smooth.len()).collect();
         let prepared = smooth.prepared(means.iter().copied());
-        let (mut terms, mut found) = (vec![0.0; smooth.len()], vec![0.0; smooth.len()]);
+        let (mut terms, mut found) = (vec![0.0; smooth.len()], vec![[0.0]; smooth.len()]);
         for step in 0..=300 {
             let value = 0.4 + 0.002 * f64::from(step);
             let left = smooth.write(value, &mut terms);
-            let z = prepared.at(value);
-            let left_found = prepared.write(z, &mut found);
+            let z = prepared.at(&[value]);
+            assert!(prepared.reaches(z[0]));
+            let [left_found] = prepared.write(&z, &mut found);
             assert!((left - left_found).abs() < 1e-9 * left.max(1e-3), "{value}: {left_found}");
-            for (term, found) in terms.iter().zip(&found) {
+            for (term, [found]) in terms.iter().zip(&found) {
                 assert!((term - found).abs() < 1e-12 * term.abs().max(1.0), "{value}: {found}");
             }
             let expected: f64 = terms.iter().zip(&means).map(|(term, mean)| term * mean).sum();
-            assert!((prepared.mean(z) - expected).abs() < 1e-12, "{value}");
+            assert!((prepared.mean(&z)[0] - expected).abs() < 1e-12, "{value}");
         }
     }
 

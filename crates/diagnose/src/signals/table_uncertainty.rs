@@ -259,12 +259,6 @@ impl TableUncertainty {
         self.add_cell(&cell, into);
     }
 
-    /// The same of a cell of its grid.
-    pub(crate) fn write_at(&self, cell: &Cell, into: &mut [f64]) {
-        into.fill(0.0);
-        self.add_cell(cell, into);
-    }
-
     fn add_cell(&self, cell: &Cell, into: &mut [f64]) {
         for (node, weight) in cell.nodes().into_iter().zip(cell.weights()) {
             let row = &self.factor[node * self.rank..(node + 1) * self.rank];

@@ -50,6 +50,10 @@ pub struct LevelPrediction {
     pub drag_coefficient: f64,
     /// Change of predicted total fuel flow with drag coefficient, kg/s.
     pub fuel_flow_per_drag_coefficient_kg_s: f64,
+    /// Pressure altitude.
+    pub pressure_altitude: PressureAltitude,
+    /// Static pressure.
+    pub pressure: Pressure,
     /// Static air temperature.
     pub static_air_temperature: Temperature,
     /// Temperature of the ISA at the pressure altitude.
@@ -76,6 +80,7 @@ const BLOCK: usize = 64;
 
 /// What is known of the points of a block before the table is asked.
 struct Block {
+    pressure_pa: [f64; BLOCK],
     standard_temperature_k: [f64; BLOCK],
     static_air_temperature_k: [f64; BLOCK],
     true_airspeed_m_s: [f64; BLOCK],
@@ -112,6 +117,7 @@ impl PerformanceModel {
             [points.mass_kg, points.pressure_altitude_m, points.mach, points.isa_deviation_k];
         let count = points.count();
         let mut block = Block {
+            pressure_pa: [0.0; BLOCK],
             standard_temperature_k: [0.0; BLOCK],
             static_air_temperature_k: [0.0; BLOCK],
             true_airspeed_m_s: [0.0; BLOCK],
@@ -165,6 +171,8 @@ impl PerformanceModel {
             lift_coefficient,
             drag_coefficient,
             fuel_flow_per_drag_coefficient_kg_s: per_drag_coefficient_kg_s,
+            pressure_altitude: PressureAltitude::meters(altitude_m),
+            pressure: Pressure::pascals(block.pressure_pa[place]),
             static_air_temperature: Temperature::kelvin(block.static_air_temperature_k[place]),
             standard_temperature: Temperature::kelvin(block.standard_temperature_k[place]),
             mass: Mass::kilograms(mass_kg),
@@ -226,11 +234,10 @@ impl pulp::NullaryFnOnce for Fill<'_> {
         let Self { model, functions, columns, block } = self;
         let [masses_kg, altitudes_m, machs, deviations_k] = columns;
         let area = model.aircraft().wing_area();
-        let mut pressures_pa = [0.0; BLOCK];
-        functions.write_pressures_pa(altitudes_m, &mut pressures_pa);
+        functions.write_pressures_pa(altitudes_m, &mut block.pressure_pa);
         let points = masses_kg.iter().zip(altitudes_m).zip(machs).zip(deviations_k);
         for (place, (((mass_kg, altitude_m), mach), deviation_k)) in points.enumerate() {
-            let pressure = Pressure::pascals(pressures_pa[place]);
+            let pressure = Pressure::pascals(block.pressure_pa[place]);
             let standard_k =
                 functions.low_temperature_k.at(altitude_m.min(TROPOPAUSE_PRESSURE_ALTITUDE_M));
             let sat = Temperature::kelvin(standard_k + deviation_k);

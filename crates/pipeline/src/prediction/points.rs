@@ -1,8 +1,8 @@
 //! Predictions at many flight points, as columns.
 
-use diagnose::WholeModelOfLevels;
+use diagnose::{LevelCorrection, LevelQuestion, WholeModelOfLevels};
 use perf_model::fuel_flow::fuel_flow_error_percent;
-use perf_model::{FlightPoint, LevelFlights, specific_range::specific_range};
+use perf_model::{FlightPoint, LevelFlights, LevelPrediction, specific_range::specific_range};
 use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, TemperatureDifference};
 
 use super::{PointPrediction, Predictor};
@@ -11,7 +11,8 @@ use crate::columns::Columns;
 /// Predictions at many flight points.
 #[derive(Clone, Debug, Default)]
 pub struct PredictedPoints {
-    /// Names and values, NaN where there is none: `fuel_flow_kg_s`, `fuel_flow_std_kg_s` (none by law `paper`),
+    /// Names and values, NaN where there is none: `fuel_flow_kg_s`, `fuel_flow_std_kg_s` (none by law `paper`
+    /// and where it is not asked for),
     /// `specific_range_m_kg`, `lift_coefficient`, `drag_coefficient`, `extrapolated` (1 or 0), with measured fuel flows
     /// `error_percent`, and where more than the table predicts `remainder_percent` and `beyond_flights` (1 or 0).
     pub columns: Vec<(&'static str, Vec<f64>)>,
@@ -111,7 +112,8 @@ impl Predictor<'_> {
         }
         let model = self.current.base();
         let mut figures = Figures::none(flights.count());
-        let variances = self.model.posterior().map(adapt::bayes::Posterior::variance_by_cell);
+        let posterior = self.model.posterior().filter(|_| self.states_deviations);
+        let variances = posterior.map(adapt::bayes::Posterior::variance_by_cell);
         let known = variances.as_ref().zip(self.plain.as_ref());
         let mut next = 0;
         let mut refused = Vec::new();
@@ -144,34 +146,63 @@ impl Predictor<'_> {
         whole: &WholeModelOfLevels,
         flights: LevelFlights<'_>,
     ) -> (Figures, Refused) {
-        let (initial, current) = (self.model.initial.base(), self.current.base());
+        let initial = self.model.initial.base();
         let mut figures = Figures::none(flights.count());
         figures.predict_beside_table();
-        let (mut refused, mut scratch) = (Vec::new(), Vec::new());
+        let mut refused = Vec::new();
+        let question = if self.states_deviations {
+            LevelQuestion::MeansAndVariances
+        } else {
+            LevelQuestion::Means
+        };
+        let (mut places, mut block) = (Vec::new(), Vec::new());
         let mut next = 0;
+        let mut answer = |places: &mut Vec<usize>, block: &mut Vec<LevelPrediction>| {
+            let found = whole.corrections(block, question);
+            for ((place, predicted), found) in places.iter().zip(&*block).zip(found) {
+                let Some(found) = found else { continue };
+                self.one_by_one(flights, next..*place, &mut figures, &mut refused);
+                next = *place + 1;
+                self.set_corrected(&mut figures, *place, predicted, &found);
+            }
+            places.clear();
+            block.clear();
+        };
         initial.predict_level(flights, |place, predicted| {
-            let altitude_m = flights.pressure_altitude_m[place];
-            let Some(found) = whole.correction(predicted, altitude_m, &mut scratch) else { return };
-            self.one_by_one(flights, next..place, &mut figures, &mut refused);
-            next = place + 1;
-            let total_kg_s =
-                predicted.fuel_flow_total.to_kilograms_per_second() * found.ln_correction.exp();
-            let drag_coefficient = current.drag_table().interpolate(&predicted.cell);
-            let by_table_kg_s = drag_coefficient * predicted.fuel_flow_per_drag_coefficient_kg_s;
-            let total = FuelFlowTotal::kilograms_per_second(total_kg_s);
-            figures.fuel_flow_kg_s[place] = total_kg_s;
-            figures.fuel_flow_std_kg_s[place] =
-                self.with_scatter(found.variance.sqrt() * total_kg_s, total_kg_s);
-            figures.specific_range_m_kg[place] =
-                specific_range(predicted.true_airspeed, total).to_meters_per_kilogram();
-            figures.lift_coefficient[place] = predicted.lift_coefficient;
-            figures.drag_coefficient[place] = drag_coefficient;
-            figures.extrapolated[place] = flag(current.uses_extrapolated(&predicted.cell));
-            figures.remainder_percent[place] = 100.0 * (total_kg_s / by_table_kg_s - 1.0);
-            figures.beyond_flights[place] = flag(found.beyond_flights);
+            places.push(place);
+            block.push(*predicted);
+            if block.len() == WholeModelOfLevels::TOGETHER {
+                answer(&mut places, &mut block);
+            }
         });
+        answer(&mut places, &mut block);
         self.one_by_one(flights, next..flights.count(), &mut figures, &mut refused);
         (figures, refused)
+    }
+
+    fn set_corrected(
+        &self,
+        figures: &mut Figures,
+        place: usize,
+        predicted: &LevelPrediction,
+        found: &LevelCorrection,
+    ) {
+        let current = self.current.base();
+        let total_kg_s =
+            predicted.fuel_flow_total.to_kilograms_per_second() * found.ln_correction.exp();
+        let drag_coefficient = current.drag_table().interpolate(&predicted.cell);
+        let by_table_kg_s = drag_coefficient * predicted.fuel_flow_per_drag_coefficient_kg_s;
+        let total = FuelFlowTotal::kilograms_per_second(total_kg_s);
+        figures.fuel_flow_kg_s[place] = total_kg_s;
+        figures.fuel_flow_std_kg_s[place] =
+            self.with_scatter(found.variance.sqrt() * total_kg_s, total_kg_s);
+        figures.specific_range_m_kg[place] =
+            specific_range(predicted.true_airspeed, total).to_meters_per_kilogram();
+        figures.lift_coefficient[place] = predicted.lift_coefficient;
+        figures.drag_coefficient[place] = drag_coefficient;
+        figures.extrapolated[place] = flag(current.uses_extrapolated(&predicted.cell));
+        figures.remainder_percent[place] = 100.0 * (total_kg_s / by_table_kg_s - 1.0);
+        figures.beyond_flights[place] = flag(found.beyond_flights);
     }
 
     /// Points of which columns say nothing: they give no reason, and a limit may be drawn a rounding apart.

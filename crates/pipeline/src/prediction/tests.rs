@@ -135,6 +135,29 @@ fn points_of_which_more_is_known_are_predicted_one_by_one_among_the_others() {
     assert!(all.refused.is_sorted_by_key(|(place, _)| *place));
 }
 
+#[test]
+fn without_deviations_the_rest_is_the_same_to_the_bit() {
+    for (file, predicts) in [
+        (whole(), Predicts::WholeModel),
+        (ModelFile::from_text(BAYES).unwrap(), Predicts::TableOnly),
+    ] {
+        let with = Predictor::new(&file, predicts).unwrap();
+        let without = Predictor::new(&file, predicts).unwrap().without_deviations();
+        let points = points();
+        let (with, without) = (with.at_points(&points, None), without.at_points(&points, None));
+        assert_eq!(with.refused, without.refused);
+        for ((name, all), (_, some)) in with.columns.iter().zip(&without.columns) {
+            for (place, (one, other)) in all.iter().zip(some).enumerate() {
+                if *name == "fuel_flow_std_kg_s" {
+                    assert!(other.is_nan());
+                } else {
+                    assert_eq!(one.to_bits(), other.to_bits(), "{name} of point {place}");
+                }
+            }
+        }
+    }
+}
+
 /// By the ranges of what was flown, found in the segments.
 #[test]
 fn points_beyond_the_flights_are_marked_and_less_sure() {

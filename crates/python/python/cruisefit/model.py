@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._pages import Chart, TailChart, names_of, read_text, write_bytes
 from ._tables import Table, as_stream, like
-from .errors import InputError, PredictionWarning, warn
+from .errors import InputError, PredictionWarning, expected, warn
 from .segments import Segments
 
 if TYPE_CHECKING:
@@ -93,6 +93,7 @@ class Model:
         points: Table,
         *,
         table_only: bool = False,
+        deviations: bool = True,
         strict: bool = False,
         threads: int | None = None,
     ) -> Table:
@@ -104,6 +105,8 @@ class Model:
                 ``date``, ``cg_percent_mac``, ``anti_ice``, ``latitude_deg``, ``true_heading_deg``. Columns whose names begin
                 with ``X-`` have no meaning; any other name is refused.
             table_only: Predict with the drag table alone, without what else the model has learnt.
+            deviations: State standard deviations. They take most of the time of a learnt model: without them millions of points
+                are predicted several times as fast, and ``fuel_flow_std_kg_s`` is null.
             strict: Refuse points without a prediction, rather than warn of them.
             threads: Threads to use; all processors without it.
 
@@ -118,7 +121,7 @@ class Model:
             InputError: A column is missing or unknown, or a value is outside its limits, with row and column.
         """
         table, refused = self._native.predict(
-            as_stream(points), "table" if table_only else "whole", threads
+            as_stream(points), "table" if table_only else "whole", deviations, threads
         )
         if refused:
             row, reason = refused[0]
@@ -259,6 +262,21 @@ class Model:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, (self.to_text(), self.name)
+
+
+def natives_of(models: Model | Sequence[Model]) -> list[_native.Model]:
+    """One model or several, as the native half takes them.
+
+    Raises:
+        InputError: Something else.
+    """
+    several = [models] if isinstance(models, Model) else models
+    if isinstance(several, (str, bytes, os.PathLike)) or not isinstance(several, Iterable):
+        expected(several, Model, "Model.load reads the file of one")
+    several = list(several)
+    for one in several:
+        expected(one, Model, "Model.load reads the file of one")
+    return [one._native for one in several]
 
 
 def _unpickled(text: str, name: str) -> Model:

@@ -1,23 +1,28 @@
-//! The remainder over the variables of a state, each function asked only where its variable moved.
+//! The remainder over the variables of a state, each function asked only where its variable moved; a block of points at a time.
 
 use effects::Variable;
 
 use crate::baseline::Baseline;
 use crate::baseline::smooth::Prepared;
+use crate::math::lanes::{LANES, Lanes, add, add_product, map};
+use crate::priors::SMOOTH_MOST_KNOTS;
 use crate::thresholds::FARTHEST_PRODUCT;
 
 /// Most variables that a remainder has.
 const MOST: usize = 8;
 
+/// Most terms: a level, of each variable a slope and a term for each knot, and a product of each pair.
+pub(super) const MOST_TERMS: usize = 1 + MOST * (1 + SMOOTH_MOST_KNOTS) + MOST * (MOST - 1) / 2;
+
 /// What the remainder depends on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct State {
-    pub(super) mach: f64,
-    pub(super) lift_coefficient: f64,
-    pub(super) pressure_altitude_m: f64,
-    pub(super) corrected_thrust_n: f64,
-    pub(super) isa_deviation_k: f64,
-    pub(super) mass_kg: f64,
+pub(super) struct States {
+    pub(super) mach: Lanes,
+    pub(super) lift_coefficient: Lanes,
+    pub(super) pressure_altitude_m: Lanes,
+    pub(super) corrected_thrust_n: Lanes,
+    pub(super) isa_deviation_k: Lanes,
+    pub(super) mass_kg: Lanes,
 }
 
 pub(super) const MACH: [Variable; 3] =
@@ -45,15 +50,17 @@ pub(super) struct Functions {
     terms: usize,
 }
 
-/// The remainder at a point, and how it changes about it.
+/// The remainder at the points, and how it changes about them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Values {
     /// All of it.
-    pub(super) sum: f64,
-    functions: [f64; MOST],
+    pub(super) sum: Lanes,
+    /// Each variable in lengths of its function.
+    lengths: [Lanes; MOST],
+    functions: [Lanes; MOST],
     /// Each variable as a factor of products, and how all products change with it.
-    factors: [f64; MOST],
-    slopes: [f64; MOST],
+    factors: [Lanes; MOST],
+    slopes: [Lanes; MOST],
 }
 
 impl Functions {
@@ -95,84 +102,118 @@ impl Functions {
         self.terms
     }
 
-    fn variable(&self, variable: Variable, state: &State) -> f64 {
-        match variable {
-            Variable::Mach => state.mach,
-            Variable::LiftCoefficient => state.lift_coefficient,
-            Variable::PressureAltitude => state.pressure_altitude_m,
-            Variable::CorrectedThrust => state.corrected_thrust_n / self.reference_thrust_n,
-            Variable::IsaDeviation => state.isa_deviation_k,
-            Variable::Mass => state.mass_kg,
+    /// A variable in lengths of its function.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
+    fn lengths(&self, one: &Prepared, states: &States) -> Lanes {
+        match one.variable() {
+            Variable::Mach => one.at(&states.mach),
+            Variable::LiftCoefficient => one.at(&states.lift_coefficient),
+            Variable::PressureAltitude => one.at(&states.pressure_altitude_m),
+            Variable::CorrectedThrust => one.at(&map(&states.corrected_thrust_n, |thrust_n| {
+                thrust_n / self.reference_thrust_n
+            })),
+            Variable::IsaDeviation => one.at(&states.isa_deviation_k),
+            Variable::Mass => one.at(&states.mass_kg),
             // As of a state that was flown: not a variable of it.
-            _ => 0.0,
+            _ => one.at(&[0.0; LANES]),
         }
     }
 
-    pub(super) fn values(&self, state: &State) -> Values {
-        let (mut functions, mut factors) = ([0.0; MOST], [0.0; MOST]);
-        let mut sum = self.level;
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn values(&self, states: &States) -> Values {
+        let none = [[0.0; LANES]; MOST];
+        let (mut lengths, mut functions, mut factors) = (none, none, none);
+        let mut sum = [self.level; LANES];
         for (place, one) in self.smooth.iter().enumerate() {
-            let z = one.at(self.variable(one.variable(), state));
-            functions[place] = one.mean(z);
-            factors[place] = factor(z);
-            sum += functions[place];
+            let z = self.lengths(one, states);
+            functions[place] = one.mean(&z);
+            factors[place] = factor(&z);
+            add(&mut sum, 1.0, &functions[place]);
+            lengths[place] = z;
         }
-        let slopes = self.products.map(|row| product(&row, &factors));
-        sum += 0.5 * product(&factors, &slopes);
-        Values { sum, functions, factors, slopes }
+        let mut slopes = none;
+        for (place, slope) in slopes.iter_mut().enumerate().take(self.smooth.len()) {
+            *slope = self.product(place, &factors);
+            add_product(&mut sum, 0.5, &factors[place], slope);
+        }
+        Values { sum, lengths, functions, factors, slopes }
     }
 
-    /// How much the remainder at a state differs where only some variables do.
-    pub(super) fn change(&self, at: &Values, state: &State, moved: &[Variable]) -> f64 {
-        let mut steps = [0.0; MOST];
-        let mut sum = 0.0;
+    /// How much the remainder at other states differs where only some variables do.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn change(&self, at: &Values, states: &States, moved: &[Variable]) -> Lanes {
+        let mut steps = [[0.0; LANES]; MOST];
+        let mut sum = [0.0; LANES];
         for (place, one) in self.smooth.iter().enumerate() {
             if !moved.contains(&one.variable()) {
                 continue;
             }
-            let z = one.at(self.variable(one.variable(), state));
-            let step = factor(z) - at.factors[place];
-            sum += one.mean(z) - at.functions[place] + step * at.slopes[place];
+            let z = self.lengths(one, states);
+            let mut step = factor(&z);
+            add(&mut step, -1.0, &at.factors[place]);
+            add(&mut sum, 1.0, &one.mean(&z));
+            add(&mut sum, -1.0, &at.functions[place]);
+            add_product(&mut sum, 1.0, &step, &at.slopes[place]);
             // With each of those that moved before it.
-            sum += step * product(&self.products[place], &steps);
+            add_product(&mut sum, 1.0, &step, &self.product(place, &steps));
             steps[place] = step;
         }
         sum
     }
 
-    /// Whether a variable lies beyond what was flown.
-    pub(super) fn is_beyond_flights(&self, state: &State) -> bool {
-        let z = |one: &Prepared| one.at(self.variable(one.variable(), state));
-        self.smooth.iter().any(|one| one.is_beyond(z(one)))
+    /// Means of the products of one factor with others, times these.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn product(&self, place: usize, factors: &[Lanes; MOST]) -> Lanes {
+        let mut sum = [0.0; LANES];
+        let row = &self.products[place][..self.smooth.len()];
+        for (mean, factor) in row.iter().zip(factors) {
+            add(&mut sum, *mean, factor);
+        }
+        sum
+    }
+
+    /// Whether a variable at a point lies beyond what was flown.
+    pub(super) fn is_beyond_flights(&self, at: &Values, point: usize) -> bool {
+        let mut places = self.smooth.iter().zip(&at.lengths);
+        places.any(|(one, lengths)| one.is_beyond(lengths[point]))
+    }
+
+    /// Whether the functions hold at a point.
+    pub(super) fn reach(&self, at: &Values, point: usize) -> bool {
+        let mut places = self.smooth.iter().zip(&at.lengths);
+        places.all(|(one, lengths)| one.reaches(lengths[point]))
     }
 
     /// Writes the terms; returns the variance of what they do not hold.
-    pub(super) fn write(&self, state: &State, into: &mut [f64]) -> f64 {
-        let mut factors = [0.0; MOST];
-        let mut left = 0.0;
-        into[0] = 1.0;
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn write(&self, at: &Values, into: &mut [Lanes]) -> Lanes {
+        let mut left = [0.0; LANES];
+        into[0] = [1.0; LANES];
         let mut place = 1;
-        for (one, factor_of) in self.smooth.iter().zip(&mut factors) {
-            let z = one.at(self.variable(one.variable(), state));
-            left += one.write(z, &mut into[place..place + one.len()]);
-            *factor_of = factor(z);
+        for (one, z) in self.smooth.iter().zip(&at.lengths) {
+            let of_one = one.write(z, &mut into[place..place + one.len()]);
+            add(&mut left, self.smooth_variance, &of_one);
             place += one.len();
         }
-        let factors = &factors[..self.smooth.len()];
+        let factors = &at.factors[..self.smooth.len()];
         for (k, a) in factors.iter().enumerate() {
             for b in &factors[k + 1..] {
-                into[place] = a * b;
+                into[place] = [0.0; LANES];
+                add_product(&mut into[place], 1.0, a, b);
                 place += 1;
             }
         }
-        left * self.smooth_variance
+        left
     }
 }
 
-fn product(a: &[f64; MOST], b: &[f64; MOST]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn factor(z: f64) -> f64 {
-    z.clamp(-FARTHEST_PRODUCT, FARTHEST_PRODUCT)
+#[expect(clippy::inline_always, reason = "as above")]
+#[inline(always)]
+fn factor(lengths: &Lanes) -> Lanes {
+    map(lengths, |z| z.clamp(-FARTHEST_PRODUCT, FARTHEST_PRODUCT))
 }

@@ -1,0 +1,58 @@
+//! Numbers side by side, one for each of a few points: sums and functions of them all, compiled for the vectors of the caller.
+//!
+//! Loops count instead of going through iterators: those are calls of their own in a function that is compiled for other vectors
+//! than the rest of the program.
+
+#![expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+#![expect(clippy::needless_range_loop, reason = "as above")]
+
+/// Numbers side by side: two of the widest vectors that are compiled for, few enough to stay in registers.
+pub(crate) const LANES: usize = 8;
+
+/// A quantity at each point.
+pub(crate) type Lanes = [f64; LANES];
+
+/// A function of every number.
+#[inline(always)]
+pub(crate) fn map<const N: usize>(values: &[f64; N], of: impl Fn(f64) -> f64) -> [f64; N] {
+    let mut found = *values;
+    for lane in 0..N {
+        found[lane] = of(found[lane]);
+    }
+    found
+}
+
+/// A function of two numbers each.
+#[inline(always)]
+pub(crate) fn each<const N: usize>(
+    a: &[f64; N],
+    b: &[f64; N],
+    of: impl Fn(f64, f64) -> f64,
+) -> [f64; N] {
+    let mut found = *a;
+    for lane in 0..N {
+        found[lane] = of(found[lane], b[lane]);
+    }
+    found
+}
+
+/// `a += share·b`.
+#[inline(always)]
+pub(crate) fn add<const N: usize>(a: &mut [f64; N], share: f64, b: &[f64; N]) {
+    for lane in 0..N {
+        a[lane] += share * b[lane];
+    }
+}
+
+/// `a += share·b·c`.
+#[inline(always)]
+pub(crate) fn add_product<const N: usize>(
+    a: &mut [f64; N],
+    share: f64,
+    b: &[f64; N],
+    c: &[f64; N],
+) {
+    for lane in 0..N {
+        a[lane] += share * b[lane] * c[lane];
+    }
+}
