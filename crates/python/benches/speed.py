@@ -6,8 +6,8 @@
 At the same points (where the Global 5000 of fixtures/global5000 flies), best processor seconds of alternating runs:
 
 - `Model.predict` by an initial model, by a learnt drag table with standard deviations, and by all that a model has learnt from
-  the fixture's flights (table, remainder, standing effects, standard deviations; so many points as `--whole` says), against
-  OpenAP's fuel flow in numpy;
+  the fixture's flights (table, remainder, standing effects; with and without standard deviations; so many points as `--whole`
+  says), against OpenAP's fuel flow in numpy;
 - with `--program` and polars, Parquet to Parquet on one core: `cruisefit predict` against polars around OpenAP.
 """
 
@@ -113,6 +113,7 @@ def main():
     compare("initial model", initial, points, arguments.repeats)
     compare("table with deviations", learnt, points, arguments.repeats, table_only=True)
     compare("whole model", learnt, points.slice(0, arguments.whole), arguments.repeats)
+    compare("the same, means alone", learnt, points.slice(0, arguments.whole), arguments.repeats, deviations=False)
     if arguments.program:
         parquet_to_parquet(points, arguments.program, arguments.repeats)
 

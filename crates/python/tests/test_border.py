@@ -51,7 +51,9 @@ def test_a_damaged_model_is_refused(initial):
 def test_a_refused_report_has_its_place():
     text = REPORT.read_text().splitlines()
     text[-1] = text[-1].replace(text[-1].split()[1], "abc", 1)
-    segments = cruisefit.segment([("bad.txt", "\n".join(text).encode()), REPORT])
+    with pytest.warns(cruisefit.DataWarning, match="refused: bad.txt:.*found \"abc\"") as warned:
+        segments = cruisefit.segment([("bad.txt", "\n".join(text).encode()), REPORT])
+    assert warned[0].filename == __file__
     (refused,) = segments.refused
     assert (refused.path, refused.line) == ("bad.txt", len(text))
     assert refused.found == '"abc"' and refused.expected is not None
@@ -61,8 +63,33 @@ def test_a_refused_report_has_its_place():
 
 @pytest.mark.parametrize("junk", [b"", b"\0", b"\x1f\x8b\x08junk", b"CRUISE-REPORT 1\n" * 3, "ü".encode("latin-1")])
 def test_junk_is_refused_not_raised(junk):
-    segments = cruisefit.segment(junk)
+    with pytest.warns(cruisefit.DataWarning, match="nothing is left"):
+        segments = cruisefit.segment(junk)
     assert len(segments) == 0 and len(segments.refused) == 1
+
+
+def test_what_is_of_another_type_is_refused_with_what_makes_the_right_one(initial, segments):
+    table = pa.table({"a": [1.0]})
+    for of in (cruisefit.adapt, cruisefit.evaluate, cruisefit.diagnose):
+        with pytest.raises(cruisefit.InputError, match="found Table, expected Segments: cruisefit.segment makes"):
+            of(table, [initial])
+        for wrong in ("MODEL.ron", [REPORT], 3):
+            with pytest.raises(cruisefit.InputError, match="expected Model: Model.load reads"):
+                of(segments, wrong)
+    one, several = (cruisefit.evaluate(segments, models) for models in (initial, [initial]))
+    assert one.summary_json() == several.summary_json()
+    lazy = pytest.importorskip("polars").LazyFrame({"mass_kg": [1.0]})
+    with pytest.raises(TypeError, match=r"found LazyFrame.*collect\(\) it first"):
+        initial.predict(lazy)
+
+
+def test_options_are_told_as_arguments_of_python(initial, segments):
+    adapted = initial.adapt(segments)
+    with pytest.warns(cruisefit.DataWarning, match="allow_learnt=True diagnoses it anyway"):
+        diagnosis = adapted.model().diagnose(segments)
+    assert all("allow_learnt=True" in one.reason for one in diagnosis.refused)
+    # The document is that of the command line.
+    assert "--allow-learnt" in diagnosis.to_json()
 
 
 def test_wrong_arguments():
@@ -146,6 +173,21 @@ def test_memory_is_flat_after_a_thousand_calls(initial):
     grown = held_kb() - before
     print(f"grown by {grown} kB in 1,000 calls")
     assert grown < 8_000
+
+
+def test_a_monitoring_says_what_it_is_of(initial, segments):
+    monitoring = initial.adapt(segments).monitor(quick=True)
+    flights = len(segments.flights)
+    assert repr(monitoring) == f"<Monitoring: {len(segments.tails)} tails, {flights} flights, 0 changes found>"
+
+
+def test_without_deviations_the_rest_of_a_prediction_is_the_same(initial, segments):
+    model = initial.adapt(segments).model()
+    points = pa.table(POINTS)
+    whole, bare = (model.predict(points, deviations=on) for on in (True, False))
+    name = "fuel_flow_std_kg_s"
+    assert bare[name].null_count == bare.num_rows > whole[name].null_count
+    assert whole.drop_columns([name]) == bare.drop_columns([name])
 
 
 def test_pickles(initial, segments):

@@ -37,9 +37,10 @@ def as_stream(value: Table) -> ArrowStream:
         return cast("ArrowStream", value)
     if hasattr(value, "to_arrow_table"):  # a relation of DuckDB before 1.3
         return cast("ArrowStream", value.to_arrow_table())
+    collect = "; collect() it first" if hasattr(value, "collect") else ""
     raise TypeError(
         f"found {type(value).__name__}, expected a table with the Arrow C interface "
-        "(pyarrow, polars, pandas 2.2 or later, DuckDB)"
+        f"(pyarrow, polars, pandas 2.2 or later, DuckDB){collect}"
     )
 
 

@@ -13,9 +13,9 @@ from . import _native
 from ._folder import folder_lock
 from ._pages import Chart, TailChart, framed, names_of, read_text, write_bytes
 from ._tables import Table, like
-from .errors import InputError, warn
-from .model import Model
-from .segments import Refused, Segments
+from .errors import InputError, expected, in_python, warn, warn_of_refused
+from .model import Model, natives_of
+from .segments import MADE_BY, Refused, Segments, refused_of
 
 __all__ = ["Adaptation", "Evaluation", "Law", "Monitoring", "adapt", "evaluate", "merge"]
 
@@ -43,7 +43,7 @@ class _Run:
     @property
     def refused(self) -> list[Refused]:
         """Reports that were refused, with their reasons."""
-        return [Refused(*row) for row in self._native.refused()]
+        return refused_of(self._native.refused())
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -58,7 +58,7 @@ class _Run:
     @property
     def findings(self) -> str:
         """Serious findings in the data, in words; empty where there are none. :func:`cruisefit.check` lists all."""
-        return self._native.findings()
+        return in_python(self._native.findings())
 
     def notes(self, tail: str) -> list[str]:
         """What is worth knowing about a tail's data."""
@@ -272,6 +272,12 @@ class Monitoring:
     def _repr_html_(self) -> str:
         return framed(self.page())
 
+    def __repr__(self) -> str:
+        tails = self.to_dict()["tails"]
+        flights = sum(len(tail["flights"]) for tail in tails)
+        changes = sum(len(tail["changes"]) for tail in tails)
+        return f"<Monitoring: {len(tails)} tails, {flights} flights, {changes} changes found>"
+
 
 class Evaluation(_Run):
     """The fuel-flow error of models over flights."""
@@ -281,7 +287,7 @@ class Evaluation(_Run):
 
 def adapt(
     segments: Segments,
-    models: Sequence[Model],
+    models: Model | Sequence[Model],
     *,
     begun: Adaptation | None = None,
     law: Law = "bayes",
@@ -296,7 +302,7 @@ def adapt(
 
     Args:
         segments: Flights, of any tails and in any order; they are learnt in the order of flying.
-        models: Models to choose from. A flight takes the model of its tail, otherwise the one of its type. A model starts from
+        models: Model, or several to choose from. A flight takes the model of its tail, otherwise the one of its type. A model starts from
             its initial part and the effects applied to it.
         begun: What the tails have learnt before. A flight that is known there changes nothing; one known with other content
             is refused.
@@ -324,16 +330,24 @@ def adapt(
         "absurd": "accept" if accept else "refuse",
         "threads": threads,
     }
+    expected(segments, Segments, MADE_BY)
     adapted = Adaptation(
         _native.adapt(
-            [model._native for model in models],
+            natives_of(models),
             segments._flights,
             options,
             None if begun is None else begun._native,
         )
     )
     warn_of_findings(adapted.findings)
+    warn_of_new(segments, adapted.refused, len(adapted.tails))
     return adapted
+
+
+def warn_of_new(segments: Segments, refused: Sequence[Refused], left: int) -> None:
+    """Warns of what was refused beside what :func:`cruisefit.segment` has warned of."""
+    known = set(segments.refused)
+    warn_of_refused([one for one in refused if one not in known], left)
 
 
 def warn_of_findings(findings: str) -> None:
@@ -344,7 +358,7 @@ def warn_of_findings(findings: str) -> None:
 
 def evaluate(
     segments: Segments,
-    models: Sequence[Model],
+    models: Model | Sequence[Model],
     *,
     table_only: bool = False,
     threads: int | None = None,
@@ -354,16 +368,20 @@ def evaluate(
 
     Args:
         segments: Flights of any tails.
-        models: Models to choose from, as for :func:`adapt`.
+        models: Model, or several to choose from, as for :func:`adapt`.
         table_only: By the drag table alone, without what else the models have learnt.
         threads: Threads to use; all processors without it.
 
     Raises:
         InputError: Two models claim the same tail or type.
     """
-    natives = [model._native for model in models]
+    expected(segments, Segments, MADE_BY)
     predicts = "table" if table_only else "whole"
-    return Evaluation(_native.evaluate(natives, segments._flights, predicts, threads))
+    evaluation = Evaluation(
+        _native.evaluate(natives_of(models), segments._flights, predicts, threads)
+    )
+    warn_of_new(segments, evaluation.refused, len(evaluation.tails))
+    return evaluation
 
 
 def merge(models: Sequence[Model]) -> Model:
@@ -373,4 +391,4 @@ def merge(models: Sequence[Model]) -> Model:
     Raises:
         InputError: Models of another initial model, law or setting, or a flight that two have learnt.
     """
-    return Model(_native.merge([model._native for model in models]))
+    return Model(_native.merge(natives_of(models)))

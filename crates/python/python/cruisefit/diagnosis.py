@@ -11,9 +11,10 @@ from typing import Any, TypeVar
 
 from . import _native
 from ._pages import Chart, DiagnosisChart, framed, names_of, read_text
-from .adaptation import warn_of_findings
-from .model import Model
-from .segments import Refused, Segments
+from .adaptation import warn_of_findings, warn_of_new
+from .errors import expected, in_python
+from .model import Model, natives_of
+from .segments import MADE_BY, Refused, Segments, refused_of
 
 __all__ = [
     "Cause",
@@ -183,12 +184,12 @@ class Diagnosis:
     def refused(self) -> list[Refused]:
         """Reports that were refused, among them flights that the model has learnt."""
         refused = self._document["reports"]["refused"]
-        return [Refused(one["path"], one["line"], one["column"], one["reason"]) for one in refused]
+        return refused_of((one["path"], one["line"], one["column"], one["reason"]) for one in refused)
 
     @property
     def findings(self) -> str:
         """Serious findings in the data, in words; empty where there are none. :func:`cruisefit.check` lists all."""
-        return self._native.findings()
+        return in_python(self._native.findings())
 
     def to_dict(self) -> dict[str, Any]:
         """``diagnosis.json``."""
@@ -227,7 +228,7 @@ class Diagnosis:
 
 def diagnose(
     segments: Segments,
-    models: Sequence[Model],
+    models: Model | Sequence[Model],
     *,
     effects: Sequence[str] = (),
     without: Sequence[str] = (),
@@ -244,7 +245,7 @@ def diagnose(
 
     Args:
         segments: Flights, of any tails.
-        models: Models to choose from. A flight takes the model of its tail, otherwise the one of its type.
+        models: Model, or several to choose from. A flight takes the model of its tail, otherwise the one of its type.
         effects: Look for these effects only (names: :func:`effects`).
         without: Leave these effects out.
         pool: One diagnosis for all tails of a type together.
@@ -270,9 +271,10 @@ def diagnose(
         "absurd": "accept" if accept else "refuse",
         "threads": threads,
     }
-    natives = [model._native for model in models]
-    diagnosis = Diagnosis(_native.diagnose(natives, segments._flights, asked))
+    expected(segments, Segments, MADE_BY)
+    diagnosis = Diagnosis(_native.diagnose(natives_of(models), segments._flights, asked))
     warn_of_findings(diagnosis.findings)
+    warn_of_new(segments, diagnosis.refused, len(diagnosis))
     return diagnosis
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -29,6 +30,7 @@ class CruisefitError(Exception):
         line: int | None = None,
         column: int | str | None = None,
     ) -> None:
+        message = in_python(message)
         self.message = message
         self.file = file
         self.line = line
@@ -80,6 +82,37 @@ def found_and_expected(message: str) -> tuple[str | None, str | None]:
     return found, expected
 
 
+_OPTION = re.compile(r"--(accept|allow-learnt|relearn|table-only)\b")
+
+
+def in_python(message: str) -> str:
+    """A message of the command line's with its options as arguments.
+
+    >>> in_python("--allow-learnt diagnoses it anyway")
+    'allow_learnt=True diagnoses it anyway'
+    """
+    return _OPTION.sub(lambda option: option[1].replace("-", "_") + "=True", message)
+
+
+def expected(found: object, kind: type, made_by: str) -> None:
+    """Refuses an argument that is of another type.
+
+    Raises:
+        InputError: It is.
+    """
+    if not isinstance(found, kind):
+        what = type(found).__name__
+        raise InputError(f"found {what}, expected {kind.__name__}: {made_by}")
+
+
+def warn_of_refused(refused: Sequence[object], left: int) -> None:
+    """Says that something was refused while the rest continued, and what the first of it was."""
+    if refused:
+        others = f" and {len(refused) - 1} more (all of them: .refused)" if len(refused) > 1 else ""
+        nothing = "" if left else "; nothing is left"
+        warn([f"refused: {refused[0]}{others}{nothing}"])
+
+
 def warn(messages: Sequence[str]) -> None:
     """Raises a :class:`DataWarning` for each message, at the line outside of this package that led here."""
     package = str(Path(__file__).parent)
@@ -87,4 +120,4 @@ def warn(messages: Sequence[str]) -> None:
     while frame.f_back is not None and frame.f_code.co_filename.startswith(package):
         level, frame = level + 1, frame.f_back
     for message in messages:
-        warnings.warn(message, DataWarning, stacklevel=level)
+        warnings.warn(in_python(message), DataWarning, stacklevel=level)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Union
 from . import _native
 from ._pages import read_text
 from ._tables import Table, as_stream, is_table, like
-from .errors import InputError, found_and_expected
+from .errors import InputError, expected, found_and_expected, in_python, warn_of_refused
 
 if TYPE_CHECKING:
     from .model import Model
@@ -25,6 +25,9 @@ PRESETS = ("ghazi-2020-table-4", "airbus-report-02", "airbus-report-02-short")
 
 Report = Union[str, "os.PathLike[str]", bytes, tuple[str, bytes]]
 """A path (file, folder or glob), the bytes of a report, or its name and bytes."""
+
+MADE_BY = "cruisefit.segment makes them of reports, and with a mapping of tables"
+"""Where segments come from, for who gives something else."""
 
 _REPORT_ENDINGS = (".txt", ".rpt", ".gz")
 _RECORDING_ENDINGS = (".csv", ".gz")
@@ -65,6 +68,11 @@ class Refused:
         return f"{place}: {self.reason}"
 
 
+def refused_of(rows: Iterable[tuple[str, int | None, int | None, str]]) -> list[Refused]:
+    """What the native half refused."""
+    return [Refused(path, line, column, in_python(reason)) for path, line, column, reason in rows]
+
+
 class Segments:
     """Flights reduced to their stabilised segments: what models adapt to, are evaluated on and are diagnosed with.
 
@@ -79,7 +87,7 @@ class Segments:
     @property
     def refused(self) -> list[Refused]:
         """Reports that were refused, and flights that contradict another one, with their reasons."""
-        return [Refused(*row) for row in self._flights.refused()]
+        return refused_of(self._flights.refused())
 
     @property
     def tails(self) -> list[str]:
@@ -140,7 +148,10 @@ class Segments:
         return cls(_native.Flights.from_segments(as_stream(table), aircraft_type, criteria))
 
     def __add__(self, other: Segments) -> Segments:
-        return _looked_through(self._flights.and_([other._flights]))
+        expected(other, Segments, MADE_BY)
+        flights = self._flights.and_([other._flights])
+        flights.look_through()
+        return Segments(flights)
 
     def __len__(self) -> int:
         return self._flights.count_segments()
@@ -183,7 +194,8 @@ def segment(
         threads: Threads to use; all processors without it.
 
     Returns:
-        The segments; reports that were refused are in :attr:`Segments.refused`.
+        The segments; reports that were refused are in :attr:`Segments.refused`, and a :class:`DataWarning` says that there are
+        some.
 
     Raises:
         InputError: No report at all, unknown criteria, or a mapping that is none.
@@ -214,7 +226,9 @@ def segment(
 
 def _looked_through(flights: _native.Flights) -> Segments:
     flights.look_through()
-    return Segments(flights)
+    segments = Segments(flights)
+    warn_of_refused(segments.refused, len(flights))
+    return segments
 
 
 def mapping(recording: str | os.PathLike[str] | bytes | Table, *, name: str = "table") -> str:
@@ -263,18 +277,21 @@ class Check:
         return self._text
 
 
-def check(segments: Segments, models: Sequence[Model] = ()) -> Check:
+def check(segments: Segments, models: Model | Sequence[Model] = ()) -> Check:
     """What is wrong with reports, before any modelling: units, frozen or wrong channels, copies, dates; with models also
     against the book. For this, ``segments`` has to come from :func:`segment`: a table of segments has lost the samples.
 
     Args:
         segments: Flights of any tails.
-        models: Models to compare fuel flow with.
+        models: Model, or several, to compare fuel flow with.
 
     Raises:
         InputError: Two models claim the same tail or type.
     """
-    return Check(*_native.check([model._native for model in models], segments._flights))
+    expected(segments, Segments, MADE_BY)
+    from .model import natives_of
+
+    return Check(*_native.check(natives_of(models), segments._flights))
 
 
 def _mapping(mapping: str | os.PathLike[str]) -> str:
