@@ -78,6 +78,18 @@ fn flights_and_tails_are_found_by_usual_names() {
     assert!(unnamed.contains("flight: FileName,   // ? one flight"), "{unnamed}");
 }
 
+/// A computed fuel on board would bear out the meters that it was computed from.
+#[test]
+fn gauges_are_known_by_names_that_nothing_computed_has() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/layouts");
+    #[expect(clippy::disallowed_methods, reason = "tests read data from files")]
+    let text = std::fs::read_to_string(path.join("10_discretes.csv")).unwrap();
+    let gauges = first_mapping(text.as_bytes()).unwrap();
+    assert!(gauges.contains("\"FQ\": Recorded(column: \"fuel_qty_kg\", unit: \"kg\"),"), "{gauges}");
+    let computed = first_mapping(text.replace("fuel_qty_kg", "fob_kg").as_bytes()).unwrap();
+    assert!(!computed.contains("\"FQ\"") && computed.contains("fob_kg"), "{computed}");
+}
+
 /// The first mapping of a recording is the same in every encoding that a recording is read in.
 #[test]
 fn a_first_mapping_does_not_depend_on_the_encoding() {

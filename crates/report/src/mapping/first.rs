@@ -23,6 +23,7 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
     let mut quantities = String::new();
     let known: Vec<&'static str> =
         ORDINARY.iter().filter_map(|rule| columns.ordinary(rule, &mut quantities)).collect();
+    columns.ordinary(&GAUGES, &mut quantities);
     columns.engines(&mut quantities);
     columns.air_data(&known, &mut quantities);
     let (texts, time, mass) = (columns.texts(), columns.time(), columns.mass());
@@ -159,6 +160,13 @@ const GROSS: Rule = rule(
 const ZERO_FUEL: Rule = rule("", &["zerofuelweight", "zfw"], Kind::Mass);
 const TANKS: Rule =
     rule("", &["fuelquantity", "fuelqty", "fob", "fuelonboard", "fq", "totalfuel"], Kind::Mass);
+/// Names that gauges have and a computed fuel on board has not: that is often the first quantity less what meters count, and would
+/// bear out every meter.
+const GAUGES: Rule = rule(
+    "FQ",
+    &["fuelquantity", "fuelqty", "fq", "totalfuelquantity", "totalfuelqty", "fuelqtytotal"],
+    Kind::Mass,
+);
 const USED: Rule = rule("", &["fuelused", "fu", "fuelburn", "fuelburnt"], Kind::Mass);
 const ENGINE_NAMES: [(&str, &[&str]); 4] = [
     ("N1", &["n1"]),
