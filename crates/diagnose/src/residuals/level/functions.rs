@@ -141,27 +141,9 @@ impl Functions {
         Values { sum, lengths, functions, factors, slopes }
     }
 
-    /// How much the remainder at other states differs where only some variables do.
-    #[expect(clippy::inline_always, reason = "as above")]
-    #[inline(always)]
+    /// How much the remainder at other states differs where only some variables do. Compiled once: it is asked ten times.
     pub(super) fn change(&self, at: &Values, states: &States, moved: &[Variable]) -> Lanes {
-        let mut steps = [[0.0; LANES]; MOST];
-        let mut sum = [0.0; LANES];
-        for (place, one) in self.smooth.iter().enumerate() {
-            if !moved.contains(&one.variable()) {
-                continue;
-            }
-            let z = self.lengths(one, states);
-            let mut step = factor(&z);
-            add(&mut step, -1.0, &at.factors[place]);
-            add(&mut sum, 1.0, &one.mean(&z));
-            add(&mut sum, -1.0, &at.functions[place]);
-            add_product(&mut sum, 1.0, &step, &at.slopes[place]);
-            // With each of those that moved before it.
-            add_product(&mut sum, 1.0, &step, &self.product(place, &steps));
-            steps[place] = step;
-        }
-        sum
+        pulp::Arch::new().dispatch(Change { functions: self, at, states, moved })
     }
 
     /// Means of the products of one factor with others, times these.
@@ -209,6 +191,40 @@ impl Functions {
             }
         }
         left
+    }
+}
+
+struct Change<'a> {
+    functions: &'a Functions,
+    at: &'a Values,
+    states: &'a States,
+    moved: &'a [Variable],
+}
+
+impl pulp::NullaryFnOnce for Change<'_> {
+    type Output = Lanes;
+
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
+    fn call(self) -> Lanes {
+        let Self { functions, at, states, moved } = self;
+        let mut steps = [[0.0; LANES]; MOST];
+        let mut sum = [0.0; LANES];
+        for (place, one) in functions.smooth.iter().enumerate() {
+            if !moved.contains(&one.variable()) {
+                continue;
+            }
+            let z = functions.lengths(one, states);
+            let mut step = factor(&z);
+            add(&mut step, -1.0, &at.factors[place]);
+            add(&mut sum, 1.0, &one.mean(&z));
+            add(&mut sum, -1.0, &at.functions[place]);
+            add_product(&mut sum, 1.0, &step, &at.slopes[place]);
+            // With each of those that moved before it.
+            add_product(&mut sum, 1.0, &step, &functions.product(place, &steps));
+            steps[place] = step;
+        }
+        sum
     }
 }
 
