@@ -84,4 +84,5 @@ pub mod segments_table;
 pub mod statistics;
 pub mod summary;
 pub mod table_uncertainty;
+pub mod topics;
 pub mod whole_model;

@@ -127,6 +127,14 @@ pub(crate) fn diagnose(
     })
 }
 
+/// What an effect, a column, a set of criteria or a verdict is; without a topic all of their names.
+#[pyfunction]
+#[pyo3(signature = (topic))]
+pub(crate) fn explain(topic: Option<&str>) -> PyResult<String> {
+    let Some(topic) = topic else { return Ok(pipeline::topics::overview()) };
+    Ok(pipeline::topics::explain(topic).map_err(Failure::input)?)
+}
+
 /// The library: id, unit and perturbation of every effect that an aircraft of so many engines can have.
 #[pyfunction]
 pub(crate) fn effects(engines: usize) -> Vec<(String, String, String)> {

@@ -46,7 +46,7 @@ mod _native {
     #[pymodule_export]
     use crate::checked::{Monitored, check, monitor_tails};
     #[pymodule_export]
-    use crate::diagnosed::{Diagnosed, diagnose, effects};
+    use crate::diagnosed::{Diagnosed, diagnose, effects, explain};
     #[pymodule_export]
     use crate::flights::{Flights, Source};
     #[pymodule_export]

@@ -230,6 +230,14 @@ def test_one_process_at_a_time_writes_a_folder(fixture, models, tmp_path):
     assert taken_up.returncode == 0, taken_up.stderr
 
 
+def test_topics_are_explained_in_the_same_words(run):
+    for topic in ("tsfc_engine_2", "FQ", "airbus-report-02", "outside_library"):
+        assert cruisefit.explain(topic) == run("explain", topic)
+    assert repr(cruisefit.explain()) == run("explain").replace("cruisefit explain TOPIC", "cruisefit.explain(TOPIC)", 1)
+    with pytest.raises(cruisefit.InputError, match="did you mean tsfc_engine_2"):
+        cruisefit.explain("tsfc_engine2")
+
+
 def test_charts_and_public_models(run, fixture, models, tmp_path):
     model = cruisefit.Model.load(models / "initial.ron")
     run("plot", models / "initial.ron", "-o", tmp_path / "model.svg")

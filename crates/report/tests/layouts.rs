@@ -85,7 +85,10 @@ fn gauges_are_known_by_names_that_nothing_computed_has() {
     #[expect(clippy::disallowed_methods, reason = "tests read data from files")]
     let text = std::fs::read_to_string(path.join("10_discretes.csv")).unwrap();
     let gauges = first_mapping(text.as_bytes()).unwrap();
-    assert!(gauges.contains("\"FQ\": Recorded(column: \"fuel_qty_kg\", unit: \"kg\"),"), "{gauges}");
+    assert!(
+        gauges.contains("\"FQ\": Recorded(column: \"fuel_qty_kg\", unit: \"kg\"),"),
+        "{gauges}"
+    );
     let computed = first_mapping(text.replace("fuel_qty_kg", "fob_kg").as_bytes()).unwrap();
     assert!(!computed.contains("\"FQ\"") && computed.contains("fob_kg"), "{computed}");
 }

@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use flight::effect::{EffectEntry, EffectGroup, EffectId, EffectSign, TypicalSize};
+use flight::effect::{EffectGroup, EffectId, EffectSign, TypicalSize};
 
 use crate::commands::Outcome;
 use crate::failure::Failure;
 use pipeline::summary::aligned;
+use pipeline::topics::typical;
 
 const GROUPS: [(EffectGroup, &str); 6] = [
     (EffectGroup::Airframe, "Airframe"),
@@ -41,15 +42,6 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
     }
     text.push_str("{k} is an engine's number, from 1. cruisefit explain EFFECT says more.\n");
     Ok(Outcome::with_json(text, as_json()?))
-}
-
-/// Usual size of an effect in its unit.
-pub(super) fn typical(entry: &EffectEntry) -> String {
-    match entry.typical {
-        TypicalSize::Absolute(size) => size.to_string(),
-        TypicalSize::ShareOfMass(share) => format!("{} % of mass", 100.0 * share),
-        TypicalSize::Known => "1, known".to_owned(),
-    }
 }
 
 fn as_json() -> Result<String, Failure> {

@@ -31,6 +31,7 @@ from .diagnosis import (
     Verdict,
     diagnose,
     effects,
+    explain,
     plot_trials,
 )
 from .errors import CruisefitError, DataWarning, InputError, InternalError, PredictionWarning
@@ -66,6 +67,7 @@ __all__ = [
     "diagnose",
     "effects",
     "evaluate",
+    "explain",
     "mapping",
     "merge",
     "plot_trials",

@@ -26,6 +26,7 @@ __all__ = [
     "Verdict",
     "diagnose",
     "effects",
+    "explain",
     "plot_trials",
 ]
 
@@ -281,6 +282,29 @@ def diagnose(
 def effects(engines: int = 2) -> list[tuple[str, str, str]]:
     """The library of effects of an aircraft with so many engines: name, unit, what it changes."""
     return _native.effects(engines)
+
+
+class Explanation(str):
+    """A text that a notebook shows as it is."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def explain(topic: str | None = None) -> Explanation:
+    """What a topic is: an effect (``tsfc_engine_2``), a column of a report (``FQ``), trim criteria or a verdict
+    (``outside_library``): what ``cruisefit explain`` prints.
+
+    Args:
+        topic: Name of the topic; the names of all without one.
+
+    Raises:
+        InputError: There is no such topic; the nearest one is named.
+    """
+    text = _native.explain(topic)
+    return Explanation(text.replace("cruisefit explain TOPIC", "cruisefit.explain(TOPIC)", 1))
 
 
 def plot_trials(path: str | os.PathLike[str]) -> Chart:
