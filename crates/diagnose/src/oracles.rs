@@ -34,6 +34,9 @@ use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::references_of;
 
+mod forms;
+mod places;
+
 /// The linear system of a fleet against the model that flew it.
 fn with_system(flights: &[Vec<Segment>], check: impl FnOnce(&Problem<'_>)) {
     let model = exact_model();

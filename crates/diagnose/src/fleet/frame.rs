@@ -9,6 +9,7 @@ use crate::baseline::Baseline;
 use crate::fleet::basis::{Layout, SharedBasis};
 use crate::fleet::joint::TailGram;
 use crate::hypotheses::design::Design;
+use crate::hypotheses::evidence::ln_evidence_of_left;
 use crate::input::{Input, Options};
 use crate::library::dates::{DateGrid, is_dated};
 use crate::library::{Library, Testable};
@@ -19,7 +20,7 @@ use crate::math::linear::{subtract_gram, symmetrize};
 use crate::output::addition::{AddedEffect, Addition};
 use crate::priors::{
     BOOK_SCATTERS, FLEET_FLIGHT_SHARES, FLEET_MODEL_SMOOTH, FLEET_TAIL_NUISANCE, FLEET_TAIL_SMOOTH,
-    NOISE_FREEDOM, SMOOTH_AMPLITUDES, TAUGHT_SCATTERS,
+    SMOOTH_AMPLITUDES, TAUGHT_SCATTERS,
 };
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::{Frame as ChannelFrame, PreparedFlights};
@@ -232,11 +233,8 @@ impl FleetFrame<'_> {
         deviations.extend(shared.deviations(FLEET_MODEL_SMOOTH));
         let out: Vec<usize> = (0..last).collect();
         let left = integrate_out(&reduced.matrix, &[last], &out, &deviations)?;
-        let power = 0.5 * (NOISE_FREEDOM + rows);
-        Some(
-            -0.5 * (reduced.ln_determinant + left.ln_determinant)
-                - power * (NOISE_FREEDOM + left.matrix[(0, 0)]).ln(),
-        )
+        let ln_determinant = reduced.ln_determinant + left.ln_determinant;
+        Some(ln_evidence_of_left(rows, left.matrix[(0, 0)], ln_determinant))
     }
 }
 

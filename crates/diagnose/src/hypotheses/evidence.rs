@@ -155,7 +155,7 @@ impl Scorer {
 
     /// As [`none`](Self::none).
     pub(crate) fn nothing(&self, square: f64, ln_determinant: f64) -> f64 {
-        -0.5 * ln_determinant - self.power() * (NOISE_FREEDOM + square).ln()
+        ln_evidence_of_left(self.rows, square, ln_determinant)
     }
 
     /// One effect; `shift` is the size at which the model was linearised.
@@ -247,6 +247,21 @@ impl Scorer {
     }
 }
 
+/// ln of the evidence of what is left, over noise of an unknown variance v whose prior is scaled inverse χ² about 1; up to a
+/// constant that depends on `rows` alone.
+///
+/// ```text
+/// ∫ |vC|^(−1/2) exp(−q/2v) v^(−ν0/2 − 1) exp(−ν0/2v) dv ∝ |C|^(−1/2) (ν0 + q)^(−(ν0 + n)/2)
+/// ```
+///
+/// with n `rows`, q = yᵀC⁻¹y and ν0 [`NOISE_FREEDOM`].
+///
+/// # Source
+/// Gelman et al. 2013, Bayesian Data Analysis, 3rd edition, section 2.6 (normal distribution with known mean but unknown variance).
+pub(crate) fn ln_evidence_of_left(rows: f64, square: f64, ln_determinant: f64) -> f64 {
+    -0.5 * ln_determinant - 0.5 * (NOISE_FREEDOM + rows) * (NOISE_FREEDOM + square).ln()
+}
+
 /// ln of [`sign_factor`].
 fn ln_sign(sign: EffectSign, t: f64) -> f64 {
     if sign == EffectSign::Positive { sign_factor(sign, t).ln() } else { 0.0 }
@@ -304,6 +319,27 @@ mod tests {
         // Φ(1.96) = 0.975 002: 2·(0.95·0.975002 + 0.05·0.024998) = 1.855 004.
         assert!((ln_sign(EffectSign::Positive, 1.96).exp() - 1.855_004).abs() < 1e-5);
         assert!(ln_sign(EffectSign::Either, -5.0).abs() < 1e-300);
+    }
+
+    /// The density of what is left times the prior of the noise's variance, integrated on a grid of ln of the variance.
+    #[test]
+    fn evidence_of_what_is_left_is_the_integral_over_the_noise() {
+        let rows = 30.0;
+        let integral = |square: f64, ln_determinant: f64| {
+            let of_ln_variance = |k: i32| {
+                let v = (f64::from(k) * 0.01).exp();
+                let density = -0.5 * (ln_determinant + rows * v.ln() + square / v);
+                let prior = -0.5 * NOISE_FREEDOM * (v.ln() + 1.0 / v);
+                (density + prior).exp() * 0.01
+            };
+            (-300..=300).map(of_ln_variance).sum::<f64>().ln()
+        };
+        let (known, closed) = (integral(30.0, 0.0), ln_evidence_of_left(rows, 30.0, 0.0));
+        for (square, ln_determinant) in [(30.0, 3.0), (5.0, 0.0), (90.0, -2.0), (300.0, 7.0)] {
+            let expected = integral(square, ln_determinant) - known;
+            let found = ln_evidence_of_left(rows, square, ln_determinant) - closed;
+            assert!((found - expected).abs() < 1e-8, "{square}: {found} {expected}");
+        }
     }
 
     /// The closed form against the marginal likelihood integrated on a grid of θ and of ln of the noise scale.

@@ -235,16 +235,16 @@ fn unit_of(system: &WhitenedSystem<'_>, values: &[Values], one: &Candidate) -> f
 }
 
 /// Columns of candidates, and the residual behind them.
-struct Columns<'a> {
-    system: &'a WhitenedSystem<'a>,
-    values: &'a [Values],
-    candidates: &'a [Candidate],
-    units: &'a [f64],
+pub(crate) struct Columns<'a> {
+    pub(crate) system: &'a WhitenedSystem<'a>,
+    pub(crate) values: &'a [Values],
+    pub(crate) candidates: &'a [Candidate],
+    pub(crate) units: &'a [f64],
 }
 
 impl Columns<'_> {
     /// Products with all columns that are uncertain about the model, with each other, and with each flight's level.
-    fn products(&self, without: Option<usize>) -> (Changed, Mat<f64>) {
+    pub(crate) fn products(&self, without: Option<usize>) -> (Changed, Mat<f64>) {
         let Self { system, candidates, .. } = *self;
         let design = system.design;
         let (end, width) = (design.smooth.end, candidates.len() + 1);

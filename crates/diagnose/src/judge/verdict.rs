@@ -11,7 +11,6 @@ use crate::library::{Library, Testable};
 use crate::output::measurement::Separation;
 use crate::output::note::Note;
 use crate::output::verdict::{Beside, Found, Rest, RestKind, Unexplained, Verdict};
-use crate::residuals::rows::SegmentRow;
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
 use crate::search::system::{Problem, WhitenedSystem};
@@ -152,15 +151,19 @@ pub(crate) fn level_like(system: &WhitenedSystem<'_>, library: &Library) -> Vec<
         EffectId::TsfcTemperatureExponent,
     ];
     let segments = &system.data.segments;
-    let count = segments.len() as f64;
     let is_like = |effect: &&Testable| {
-        let of = |row: &SegmentRow| row.signatures[effect.representative][0];
-        let mean = segments.iter().map(of).sum::<f64>() / count;
-        let variance = segments.iter().map(|row| (of(row) - mean).powi(2)).sum::<f64>() / count;
-        mean * mean > LEVEL_LIKE * LEVEL_LIKE * variance
+        is_like_a_level(segments.iter().map(|row| row.signatures[effect.representative][0]))
     };
     let moving = library.effects.iter().filter(|effect| ZERO_AT_REFERENCE.contains(&effect.id));
     moving.filter(is_like).map(|effect| effect.id).collect()
+}
+
+/// Whether the mean of a signature exceeds its standard deviation over the segments.
+fn is_like_a_level(signature: impl ExactSizeIterator<Item = f64> + Clone) -> bool {
+    let count = signature.len() as f64;
+    let mean = signature.clone().sum::<f64>() / count;
+    let variance = signature.map(|value| (value - mean).powi(2)).sum::<f64>() / count;
+    mean * mean > LEVEL_LIKE * LEVEL_LIKE * variance
 }
 
 /// A guide's table that is off, and beside it what the flights show that no table can hold.
@@ -314,4 +317,28 @@ fn separations(
     }
     best_first(&mut all);
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: as many values of m − 1 as of m + 1 have the mean m and the standard deviation 1, however many they are; a
+    /// level may be negative.
+    #[test]
+    fn a_mean_beyond_one_standard_deviation_is_like_a_level() {
+        for pairs in [1, 2, 50] {
+            for (mean, expected) in [
+                (3.0, true),
+                (1.01, true),
+                (0.99, false),
+                (0.0, false),
+                (-0.99, false),
+                (-1.01, true),
+            ] {
+                let values = [mean - 1.0, mean + 1.0].repeat(pairs);
+                assert_eq!(is_like_a_level(values.into_iter()), expected, "{pairs}: {mean}");
+            }
+        }
+    }
 }

@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use effects::{BetweenNodes, EffectModel};
+use flight::Segment;
 use test_support::fleet::{Background, Setup, exact_model, fly};
 
+use super::rows::{ChannelRows, GivenThrust};
 use crate::baseline::Baseline;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
@@ -13,6 +15,22 @@ use crate::residuals::segments::PreparedFlights;
 use crate::signals::record::FlightRecord;
 use crate::signals::table_uncertainty::TableUncertainty;
 
+/// A table with far too little drag, off by a shape that a level and slopes do not have, and what is believed of it: just that.
+fn far_too_little_drag(exact: &lut::Table) -> (lut::Table, TableUncertainty) {
+    let grid = Arc::clone(exact.grid());
+    let shape: Vec<f64> = (0..grid.nodes())
+        .map(|node| grid.coordinates(node))
+        .map(|(lift, mach)| 0.2 + 8.0 * (mach - 0.7).powi(2) + 2.0 * (lift - 0.3).powi(2))
+        .collect();
+    let values = exact.values().iter().zip(&shape).map(|(drag, off)| drag / (1.0 + off)).collect();
+    let table = lut::Table::new(Arc::clone(&grid), values).unwrap();
+    (table, TableUncertainty::new(grid, 1, shape).unwrap())
+}
+
+fn records(flights: &[Vec<Segment>]) -> Vec<FlightRecord<'_>> {
+    flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect()
+}
+
 /// A table with far too little drag: what is learnt moves the thrust at which N2 is looked up. Least squares leave the mean of
 /// what taught them at zero, and so does the learnt deck where it is used, at the learnt thrust. (Fitted at the table's thrust
 /// and used at the learnt one it is off by its bend, 0.0014 here.)
@@ -20,19 +38,9 @@ use crate::signals::table_uncertainty::TableUncertainty;
 fn the_deck_holds_at_the_thrust_that_is_learnt() {
     let setup = Setup { flights: 30, ..Setup::default() };
     let fleet = fly(91, &setup, &[], &Background::default());
-    let records: Vec<FlightRecord<'_>> =
-        fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
+    let records = records(&fleet.flights);
     let model = exact_model();
-    let exact = model.drag_table();
-    let grid = Arc::clone(exact.grid());
-    // Off by a shape that a level and slopes do not have, and believed to be.
-    let shape: Vec<f64> = (0..grid.nodes())
-        .map(|node| grid.coordinates(node))
-        .map(|(lift, mach)| 0.2 + 8.0 * (mach - 0.7).powi(2) + 2.0 * (lift - 0.3).powi(2))
-        .collect();
-    let values = exact.values().iter().zip(&shape).map(|(drag, off)| drag / (1.0 + off)).collect();
-    let table = lut::Table::new(Arc::clone(&grid), values).unwrap();
-    let belief = TableUncertainty::new(Arc::clone(&grid), 1, shape).unwrap();
+    let (table, belief) = far_too_little_drag(model.drag_table());
     let taught = Baseline::learn(&model, &table, Some(belief), &records, None).unwrap();
 
     let effects = EffectModel::new(&model, &table, *taught.references())
@@ -49,4 +57,50 @@ fn the_deck_holds_at_the_thrust_that_is_learnt() {
     let drag = data.segments.iter().map(|row| taught.drag_at(&row.response)).sum::<f64>() / count;
     assert!(drag > 0.05, "{drag}");
     assert!(mean.abs() < 3e-4, "{mean} {drag}");
+}
+
+/// What drag changes in N2: differences of the residual over either side of what is learnt of drag, along each loading. No effect
+/// is carried, whose slopes would change with thrust too.
+#[test]
+fn columns_of_drag_in_n2_are_its_finite_differences() {
+    const STEP: f64 = 1e-4;
+    let setup = Setup { flights: 6, ..Setup::default() };
+    let fleet = fly(92, &setup, &[], &Background::default());
+    let records = records(&fleet.flights);
+    let model = exact_model();
+    let (table, belief) = far_too_little_drag(model.drag_table());
+    let taught = Baseline::learn(&model, &table, Some(belief), &records, None).unwrap();
+    let effects = EffectModel::new(&model, &table, *taught.references())
+        .unwrap()
+        .between_nodes(BetweenNodes::Smooth);
+    let nothing = |points: &[_], engines: bool, starts: &[f64]| {
+        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
+    };
+    let (data, _) = PreparedFlights::prepare(&effects, &records, Reference::Untaught, nothing);
+    let layout = taught.layout();
+    let none = vec![0.0; layout.standing_effects.len()];
+    let rows_at = |drag: &[f64]| {
+        let deck = &data.predictor.deck;
+        ChannelRows::of_n2(&taught, &data, &GivenThrust { drag, standing_effects: &none, deck })
+    };
+    let learnt = &taught.parts.drag;
+    let found = rows_at(learnt);
+    let first = layout.deck.len() + layout.standing_effects.len();
+    assert!(!learnt.is_empty() && found.width() == first + learnt.len());
+    for loading in 0..learnt.len() {
+        let moved = |by: f64| {
+            let mut drag = learnt.clone();
+            drag[loading] += by;
+            rows_at(&drag)
+        };
+        let (up, down) = (moved(STEP), moved(-STEP));
+        let column = found.columns.col_as_slice(first + loading);
+        let deviation = taught.prior_deviation(layout.drag.start + loading);
+        let largest = column.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        assert!(largest > 0.0, "{loading}");
+        for ((up, down), value) in up.residual().iter().zip(down.residual()).zip(column) {
+            let expected = -(up - down) / (2.0 * STEP) * deviation;
+            assert!((value - expected).abs() < 1e-6 * largest, "{loading}: {value} {expected}");
+        }
+    }
 }

@@ -198,7 +198,7 @@ pub(super) fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
     apart
 }
 
-fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
+pub(crate) fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
     let data = system.data;
     let contrasts = data.channels.contrasts;
     let total = data.segments.iter().map(|row| row.residual[0]).collect();
@@ -224,7 +224,7 @@ fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
 /// ```text
 /// E(δ | V̇G) = (V̇G − mean)·σ_δ²/var(V̇G),   ∂ ln Wf/∂V̇G = m/F                                    [diagnosis.27]
 /// ```
-fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
+pub(crate) fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
     let segments = &system.data.segments;
     let count = segments.len() as f64;
     let mean = segments.iter().map(|row| row.point.acceleration_m_s2).sum::<f64>() / count;

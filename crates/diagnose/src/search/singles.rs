@@ -163,3 +163,78 @@ impl<const K: usize> Sum<K> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+    use flight::effect::EffectSign;
+
+    use super::*;
+    use crate::hypotheses::evidence::{Prior, ln_evidence_of_left};
+    use crate::math::eliminate::integrate_out;
+
+    const ROWS: f64 = 60.0;
+    /// Standard deviations and shares of the prior of every effect: the last is the thin tail.
+    const SCALES: [(f64, f64); 3] = [(1.0, 0.45), (3.0, 0.45), (10.0, 0.1)];
+
+    fn scorer_of_three() -> Scorer {
+        let scales = SCALES.map(|(deviation, share)| (deviation, share.ln()));
+        let prior = Prior { mean: 0.0, scales, count: 3, sign: EffectSign::Either };
+        Scorer {
+            priors: vec![prior; 3],
+            effect_of: vec![0, 1, 2],
+            ln_choices: vec![0.0; 3],
+            effects: 3,
+            held: vec![false; 3],
+            rows: ROWS,
+        }
+    }
+
+    /// ln of the evidence of two columns, each with so many of its scales: columns of known prior are integrated out for every
+    /// choice of scales, and the noise after them, both of which have oracles of their own.
+    fn ln_evidence_of_pair(matrix: &Mat<f64>, columns: [usize; 2], counts: [usize; 2]) -> f64 {
+        let [of_first, of_second] = counts.map(|count| &SCALES[..count]);
+        let choices = of_first.iter().flat_map(|a| of_second.iter().map(move |b| (a, b)));
+        ln_sum(choices.map(|((first, share_a), (second, share_b))| {
+            let left = integrate_out(matrix, &[3], &columns, &[*first, *second]).unwrap();
+            let ln = ln_evidence_of_left(ROWS, left.matrix[(0, 0)], left.ln_determinant);
+            ln + (share_a * share_b).ln()
+        }))
+    }
+
+    /// Effects of about 9, −7 and 2 least scales: the thin tail counts in a pair for the first two, and not for the third.
+    #[test]
+    fn the_thin_tail_counts_in_pairs_for_large_effects_alone() {
+        let sizes = [9.0, -7.0, 2.0];
+        // So little information that no pair is negligible against the best.
+        let gram = [[1.0, 0.1, 0.05], [0.1, 1.2, -0.1], [0.05, -0.1, 0.8]];
+        // The three sizes explain the data, but for noise of about unit variance.
+        let product = gram.map(|row| row.iter().zip(sizes).map(|(g, size)| g * size).sum::<f64>());
+        let explained: f64 = product.iter().zip(sizes).map(|(b, size)| b * size).sum();
+        let matrix = Mat::from_fn(4, 4, |i, j| match (i, j) {
+            (3, 3) => explained + ROWS,
+            (3, k) | (k, 3) => product[k],
+            _ => gram[i][j],
+        });
+        let scorer = scorer_of_three();
+        let backgrounds = [Background::small(&matrix, &[0, 1, 2], 3, 0.0)];
+        let kinds = Kinds { nothing: vec![true], uncertain_table: vec![false] };
+        let found = search_all(&scorer, &backgrounds, 2, &kinds);
+        let pairs: Vec<&ScoredHypothesis> =
+            found.models.iter().filter(|model| model.hypothesis.columns.len() == 2).collect();
+        assert_eq!(pairs.len(), 3);
+        for (pair, (columns, counts)) in
+            pairs.iter().zip([([0, 1], [3, 3]), ([0, 2], [3, 2]), ([1, 2], [3, 2])])
+        {
+            assert_eq!(pair.hypothesis.columns, columns);
+            let prior = scorer.ln_prior(&pair.hypothesis);
+            let expected = ln_evidence_of_pair(&matrix, columns, counts) + prior;
+            assert!((pair.ln_weight - expected).abs() < 1e-10, "{columns:?}");
+            // With the tail for none of them, or for both, it would be another number.
+            for other in [[2, 2], [3, 3]].into_iter().filter(|other| *other != counts) {
+                let other = ln_evidence_of_pair(&matrix, columns, other) + prior;
+                assert!((other - expected).abs() > 0.01, "{columns:?}: {other} {expected}");
+            }
+        }
+    }
+}
