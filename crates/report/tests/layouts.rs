@@ -121,10 +121,40 @@ fn rows_far_apart_are_taken_for_averaged_points() {
     let several: Vec<String> =
         (1..4).flat_map(|day| [(10, 0), (10, 30), (11, 10)].map(|(h, m)| row(day, h, m))).collect();
     let single: Vec<String> = (1..5).map(|day| row(day, 12, 0)).collect();
-    for rows in [several, single] {
+    // Of many rows a step is far less than the time since the first one.
+    let many: Vec<String> = (0..9).map(|k| row(1, 10 + k / 2, 30 * (k % 2))).collect();
+    for rows in [several, single, many] {
         let text = format!("{names}\n{}\n", rows.join("\n"));
         let mapping = first_mapping(text.as_bytes()).unwrap();
         assert!(mapping.contains("rows: AveragedPoints(averaged_over_s: 60),   // ?"), "{mapping}");
         assert!(Mapping::from_ron(&mapping).is_ok(), "{mapping}");
+        assert!(!mapping.contains("No column found"), "{mapping}");
     }
+}
+
+/// Units and times by how large the numbers are, where names say nothing; and what no column is found for.
+#[test]
+fn numbers_without_a_unit_are_taken_for_what_they_can_be() {
+    let of = |time: &str, speed: &str| {
+        let text =
+            format!("t,tas,alt,mach,sat_degc,gw_kg\n{time},{speed},35000,0.78,-54.4,64000\n");
+        first_mapping(text.as_bytes()).unwrap()
+    };
+    for (speed, unit) in [("449.5", "kt"), ("231.2", "m/s")] {
+        let mapping = of("12", speed);
+        let expected = format!("\"VTAS\": Recorded(column: \"tas\", unit: \"{unit}\"),   // ?");
+        assert!(mapping.contains(&expected), "{mapping}");
+        assert!(mapping.contains("// No column found for: GSPD, WF."), "{mapping}");
+    }
+    // 2024-03-01 in seconds since 1970 and in fractions of them.
+    for (time, unit) in [
+        ("1709287200", "s"),
+        ("1709287200000", "ms"),
+        ("1709287200000000", "us"),
+        ("1709287200000000000", "ns"),
+    ] {
+        let mapping = of(time, "449.5");
+        assert!(mapping.contains(&format!("Epoch(column: \"t\", unit: \"{unit}\"),")), "{mapping}");
+    }
+    assert!(of("43210", "449.5").contains("Seconds(column: \"t\""));
 }

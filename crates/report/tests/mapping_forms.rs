@@ -403,3 +403,21 @@ fn messages_say_what_was_probably_meant() {
         mapping(&[]).read(plain().replace("mach", "Mach").as_bytes()).unwrap_err().to_string();
     assert!(refusal.contains("did you mean \"Mach\"?"), "{refusal}");
 }
+
+/// 100 000 lb/h an engine, the largest that a report may have, are 45 359 kg/h.
+#[test]
+fn a_total_fuel_flow_is_limited_by_the_number_of_engines() {
+    let two = mapping(&[(
+        "\"WF\": Recorded(column: \"ff\", unit: \"kg/h\"),",
+        "\"WF\": Recorded(column: \"ff\", unit: \"kg/h\"),
+             \"N2(1)\": Recorded(column: \"mach\", unit: \"%\", scale: 100),
+             \"N2(2)\": Recorded(column: \"mach\", unit: \"%\", scale: 100),",
+    )]);
+    let with_flow = |flow: &str| plain().replace("2400", flow);
+    assert_eq!(columns(&read(&two, &with_flow("90700"))).time_s.len(), 3);
+    let refusal = two.read(with_flow("90800").as_bytes()).unwrap_err();
+    assert!(refusal.to_string().contains("100000 lb/h per engine"), "{refusal}");
+    // Nothing says how many there are: up to four.
+    assert_eq!(columns(&read(&mapping(&[]), &with_flow("181400"))).time_s.len(), 3);
+    assert!(mapping(&[]).read(with_flow("181500").as_bytes()).is_err());
+}

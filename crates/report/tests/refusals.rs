@@ -495,6 +495,18 @@ fn ranges_of_columns_that_the_base_has_not() {
     }
 }
 
+/// TIME has no limit of its own, but a number of minutes has to be one of seconds too.
+#[test]
+fn a_time_in_minutes_is_finite_in_seconds() {
+    for (from, value) in [("\n0 ", "-1e307"), ("\n60 ", "1e307")] {
+        let text = with(from, &format!("\n{value} ")).replacen("\ns ", "\nmin ", 1);
+        assert!(text.contains("\nmin "));
+        let refusal = Reader::new().read(text.as_bytes()).unwrap_err();
+        assert_eq!(refusal.kind.code(), "out-of-range", "{refusal}");
+        assert!(refusal.to_string().contains(value), "{refusal}");
+    }
+}
+
 #[test]
 fn series() {
     for (from, to, code, expected) in [

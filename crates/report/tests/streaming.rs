@@ -121,6 +121,10 @@ fn a_refusal_far_behind_has_its_line_and_column() {
     let refusal = refusal.unwrap_err();
     // 2024-03-05T08:00:01.5,D-ABCD,LH5,35001,-54.1,fast
     assert_eq!((refusal.line, refusal.column), (line, 46));
+    // A byte that no text has.
+    let refusal =
+        read(with_line(&text, line, |sent| sent.replace("as flown", "as\0flown")).as_bytes());
+    assert_eq!(refusal.unwrap_err().line, line);
     // Found only when the flight is at its end.
     let refusal = read(with_line(&text, line, |sent| sent.replace("0.78", "7.8")).as_bytes());
     let refusal = refusal.unwrap_err();

@@ -91,27 +91,25 @@ pub(super) struct Conversion {
 
 impl Conversion {
     pub(super) fn apply(&self, numbers: &[Vec<f64>], row: usize) -> f64 {
-        let value = numbers[self.input][row] * self.factor + self.offset;
-        match self.minus {
-            None => value,
-            Some(minus) => wrap_deg(value - numbers[minus][row] * self.factor),
-        }
+        self.of(numbers[self.input][row], self.minus.map(|minus| numbers[minus][row]))
     }
-}
 
-impl Conversion {
     /// The same for rows that follow each other.
     pub(super) fn apply_to(&self, numbers: &[Vec<f64>], rows: core::ops::Range<usize>) -> Vec<f64> {
         let values = numbers[self.input][rows.clone()].iter();
         match self.minus {
-            None => values.map(|value| value * self.factor + self.offset).collect(),
-            Some(minus) => values
-                .zip(&numbers[minus][rows])
-                .map(|(value, less)| {
-                    wrap_deg(value * self.factor + self.offset - less * self.factor)
-                })
-                .collect(),
+            None => values.map(|value| self.of(*value, None)).collect(),
+            Some(minus) => {
+                let less = &numbers[minus][rows];
+                values.zip(less).map(|(value, less)| self.of(*value, Some(*less))).collect()
+            }
         }
+    }
+
+    /// Of a number, or of the angle between two.
+    fn of(&self, value: f64, less: Option<f64>) -> f64 {
+        let value = value * self.factor + self.offset;
+        less.map_or(value, |less| wrap_deg(value - less * self.factor))
     }
 }
 
