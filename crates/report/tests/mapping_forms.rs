@@ -14,6 +14,18 @@ const NAMES: &str = "utc,alt,sat,mach,tas,gs,ff,gw";
 
 /// A mapping of [`NAMES`]; each pair replaces a part of it.
 fn mapping(changes: &[(&str, &str)]) -> Mapping {
+    Mapping::from_ron(&text_of(changes)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Why such a mapping is refused.
+fn refused(changes: &[(&str, &str)]) -> String {
+    match Mapping::from_ron(&text_of(changes)) {
+        Ok(_) => panic!("it is accepted"),
+        Err(error) => error.to_string(),
+    }
+}
+
+fn text_of(changes: &[(&str, &str)]) -> String {
     let mut text = r#"(
         format: 1,
         aircraft: Text("A320"), tail: Text("D-ABCD"), flight: Text("1"),
@@ -33,7 +45,7 @@ fn mapping(changes: &[(&str, &str)]) -> Mapping {
         assert!(text.contains(from), "{from}");
         text = text.replacen(from, to, 1);
     }
-    Mapping::from_ron(&text).unwrap_or_else(|error| panic!("{error}"))
+    text
 }
 
 /// Rows of time, fuel flow and gross mass; everything else is constant.
@@ -420,4 +432,21 @@ fn a_total_fuel_flow_is_limited_by_the_number_of_engines() {
     // Nothing says how many there are: up to four.
     assert_eq!(columns(&read(&mapping(&[]), &with_flow("181400"))).time_s.len(), 3);
     assert!(mapping(&[]).read(with_flow("181500").as_bytes()).is_err());
+}
+
+#[test]
+fn averaged_points_have_no_samples_to_cut_cruises_from_or_to_integrate() {
+    let points = "format: 1,\n rows: AveragedPoints(averaged_over_s: 60),";
+    let cruise = "cruise: (minimum_pressure_altitude_ft: 30000, band_ft: 100, minimum_duration_s: 900, trim_s: 30),\n    )";
+    let gross = "GrossMass(column: \"gw\", unit: \"kg\", largest_rise_kg: 50)";
+    let start = "StartMass(gross_weight: Value(65000, \"kg\"))";
+    mapping(&[("format: 1,", points)]);
+    mapping(&[("50),\n    )", &format!("50),\n    {cruise}"))]);
+    for (entry, changes) in [
+        ("cruise", [("format: 1,", points), ("50),\n    )", &format!("50),\n    {cruise}")[..])]),
+        ("StartMass", [("format: 1,", points), (gross, start)]),
+    ] {
+        let error = refused(&changes);
+        assert!(error.contains(entry) && error.contains("samples"), "{error}");
+    }
 }
