@@ -1,6 +1,7 @@
 //! The command line's grammar. What a command does is in `commands`.
 
 mod common;
+mod deferred;
 mod diagnose;
 pub(crate) mod help;
 mod monitor;
@@ -12,6 +13,8 @@ use std::path::PathBuf;
 use crate::criteria::NamedCriteria;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use deferred::Deferred;
 
 pub(crate) use common::{Common, JsonFlag, JsonOutput, JsonWanted, When};
 pub(crate) use diagnose::DiagnoseArgs;
@@ -39,58 +42,58 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Initial model of an aircraft from its flight-planning guide
-    Init(InitArgs),
+    Init(Deferred<InitArgs>),
     /// Aircraft file and guide of a public model of the type, where the operator's own guide is not at hand
-    Guide(GuideArgs),
+    Guide(Deferred<GuideArgs>),
     /// Adapt models to cruise reports, one model per tail
-    Adapt(AdaptArgs),
+    Adapt(Deferred<AdaptArgs>),
     /// What is wrong with reports, before any modelling: units, signs, stuck channels, dates, flights given twice
-    Check(CheckArgs),
+    Check(Deferred<CheckArgs>),
     /// A first mapping file for a recording of another layout, from the names and values of its columns
-    Mapping(MappingArgs),
+    Mapping(Deferred<MappingArgs>),
     /// Recordings of another layout into cruise reports
-    Convert(ConvertArgs),
+    Convert(Deferred<ConvertArgs>),
     /// Remove a flight from what a tail has learnt (a wrong load sheet), as if it had never been learnt
-    Forget(ForgetArgs),
+    Forget(Deferred<ForgetArgs>),
     /// Stabilised segments only, no model needed
-    Segment(SegmentArgs),
+    Segment(Deferred<SegmentArgs>),
     /// Fit the settings of law `bayes` to past reports, by marginal likelihood
-    Tune(TuneArgs),
+    Tune(Deferred<TuneArgs>),
     /// Combine what models of the same initial model have learnt (law `bayes`)
-    Merge(MergeArgs),
+    Merge(Deferred<MergeArgs>),
     /// Predict fuel flow and specific range at flight points
-    Predict(PredictArgs),
+    Predict(Deferred<PredictArgs>),
     /// Fuel-flow error of a model over reports; nothing is adapted
-    Evaluate(EvaluateArgs),
+    Evaluate(Deferred<EvaluateArgs>),
     /// Which effect a model lacks: compares it with reports that it has not learnt
-    Diagnose(DiagnoseArgs),
+    Diagnose(Deferred<DiagnoseArgs>),
     /// What changed over months, when, on which tail: deviations, trends, changes, events, fuel factors
-    Monitor(MonitorArgs),
+    Monitor(Deferred<MonitorArgs>),
     /// Show what a model file, a report, a diagnosis or a folder of results holds
-    Show(ShowArgs),
+    Show(Deferred<ShowArgs>),
     /// Export a model's drag: CSV, polynomial, OpenAP, JSBSim, JSON
-    Export(ExportArgs),
+    Export(Deferred<ExportArgs>),
     /// Maximum-range, long-range and cost-index Mach numbers and best levels by a model, compared with the book's
-    Optimum(OptimumArgs),
+    Optimum(Deferred<OptimumArgs>),
     /// Draw a model, a tail of an adapted folder, a diagnosis, months or trials as SVG, PNG or PDF
-    Plot(PlotArgs),
+    Plot(Deferred<PlotArgs>),
     /// The library of effects: name, unit, usual size, what has to be recorded
-    Effects(EffectsArgs),
+    Effects(Deferred<EffectsArgs>),
     /// What an effect, a column, a set of trim criteria or a verdict is
-    Explain(ExplainArgs),
+    Explain(Deferred<ExplainArgs>),
     /// Compare a whole run with expected files, or accept it as expected
     #[command(subcommand)]
     Golden(GoldenCommand),
     /// Cruise reports of a virtual aircraft, with any effects switched on
-    Simulate(SimulateArgs),
+    Simulate(Deferred<SimulateArgs>),
     /// Blind trials: simulate flights with an effect that the model does not have, diagnose, score
-    Trial(TrialArgs),
+    Trial(Deferred<TrialArgs>),
     /// What a shell completes, for standard output: `cruisefit completions bash > FILE`
-    Completions(CompletionsArgs),
+    Completions(Deferred<CompletionsArgs>),
     /// Manual pages of the program and of each command
-    Man(ManArgs),
+    Man(Deferred<ManArgs>),
     /// The whole chain on embedded data; needs no input
-    Demo(DemoArgs),
+    Demo(Deferred<DemoArgs>),
 }
 
 /// Where reports come from.

@@ -116,7 +116,9 @@ fn project_file(arguments: Vec<OsString>) -> Result<(Option<PathBuf>, Vec<OsStri
 fn command_of(arguments: &[OsString]) -> Option<clap::Command> {
     let all = Cli::command();
     let found = arguments.iter().skip(1).find_map(|one| all.find_subcommand(one));
-    found.cloned()
+    let mut found = found?.clone();
+    found.build();
+    Some(found)
 }
 
 fn has_option(command: &clap::Command, name: &str) -> bool {
