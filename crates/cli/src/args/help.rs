@@ -120,13 +120,16 @@ const EXAMPLES: [(&str, &[&str]); 26] = [
 pub(crate) fn command() -> clap::Command {
     let mut program = <Cli as clap::CommandFactory>::command()
         .after_help(StyledStr::from(format!("{STATUS_OF_PROGRAM}\n\n{STATUS}")));
-    for (name, examples) in EXAMPLES {
-        program = program.mut_subcommand(name, |command| {
-            let status = if name == "monitor" { STATUS_OF_MONITOR } else { STATUS };
-            let lines: Vec<String> = examples.iter().map(|line| format!("  {line}")).collect();
-            let head = if lines.len() == 1 { "Example" } else { "Examples" };
-            command.after_help(format!("{head}:\n{}\n\n{status}", lines.join("\n")))
-        });
+    // In place: to take one out and put it back moves all others.
+    for one in program.get_subcommands_mut() {
+        let Some((name, examples)) = EXAMPLES.iter().find(|(name, _)| *name == one.get_name())
+        else {
+            continue;
+        };
+        let status = if *name == "monitor" { STATUS_OF_MONITOR } else { STATUS };
+        let head = if examples.len() == 1 { "Example" } else { "Examples" };
+        let help = format!("{head}:\n  {}\n\n{status}", examples.join("\n  "));
+        *one = core::mem::take(one).after_help(help);
     }
     program
 }
