@@ -158,3 +158,20 @@ fn numbers_without_a_unit_are_taken_for_what_they_can_be() {
     }
     assert!(of("43210", "449.5").contains("Seconds(column: \"t\""));
 }
+
+/// Temperatures by their middle, times by their looks, decimals by what has any.
+#[test]
+fn columns_are_known_by_their_values_where_names_leave_it_open() {
+    let of =
+        |names: &str, rows: &str| first_mapping(format!("{names}\n{rows}\n").as_bytes()).unwrap();
+    for (values, unit) in [("218\n217\n999", "K"), ("-55\n-56\n999", "degC")] {
+        let mapping = of("sat", values);
+        assert!(
+            mapping.contains(&format!("\"SAT\": Recorded(column: \"sat\", unit: \"{unit}\")")),
+            "{mapping}"
+        );
+        assert!(!mapping.contains("decimal:"), "{mapping}");
+    }
+    let mapping = of("frame,label,zulu", "17,a:b:c,10:00:00");
+    assert!(mapping.contains("TimeOfDay(column: \"zulu\""), "{mapping}");
+}

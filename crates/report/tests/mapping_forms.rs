@@ -104,6 +104,7 @@ fn a_slow_parameter_is_interpolated_over_no_longer_than_its_span() {
     let rows = rows.replacen(",2400,64920", ",2460,64920", 1);
     let parsed = read(&line, &rows);
     assert!((columns(&parsed).fuel_flow.total_kg_s(1) * 3600.0 - 2430.0).abs() < 1e-9);
+    assert_eq!(message(&parsed[0], "mapped-filled"), "\"ff\" is held or interpolated in 1 rows");
     let short = mapping(&[("unit: \"kg/h\"", "unit: \"kg/h\", interpolate_s: 119")]);
     assert_eq!(short.read(rows.as_bytes()).unwrap_err().kind.code(), "too-few-rows");
 }
@@ -147,6 +148,14 @@ fn forms_of_time() {
     let rows = plain().replace("2024-03-01 10:00:00", "1709287200000000000");
     let epoch = mapping(&[(form, "Epoch(column: \"utc\", unit: \"s\")")]);
     assert_eq!(epoch.read(rows.as_bytes()).unwrap_err().kind.code(), "source-instant-malformed");
+}
+
+#[test]
+fn fractions_of_seconds_count() {
+    let rows = plain().replace("10:01:00", "10:01:00.25").replace("10:02:00", "10:02:00.5");
+    assert_eq!(columns(&read(&mapping(&[]), &rows)).time_s, [0.0, 60.25, 120.5]);
+    let early = rows.replace("10:00:00", "09:59:59.75");
+    assert_eq!(columns(&read(&mapping(&[]), &early)).time_s, [0.0, 60.5, 120.75]);
 }
 
 #[test]
@@ -195,6 +204,11 @@ fn mass_of_a_load_sheet_in_columns() {
     assert_eq!(header.zero_fuel_mass.to_kilograms(), 52_000.0);
     assert!((header.fuel_on_board.to_kilograms() - 14_000.0).abs() < 0.01);
     assert_eq!(columns(&parsed).fuel_used_kg, [2000.0, 2040.0, 2080.0]);
+    // A counter may fall by its own step, as in a report, and no further.
+    let falling =
+        |value: &str| mapping(&[(MASS, source)]).read(rows.replace("2080", value).as_bytes());
+    assert!(falling("2039.5").is_ok());
+    assert_eq!(falling("2039.4").unwrap_err().kind.code(), "fuel-used-falls");
 }
 
 #[test]
@@ -237,6 +251,7 @@ fn bad_rows_cost_themselves() {
     let lenient = mapping(&[("format: 1,", "format: 1, bad_rows: LeaveRowOut,")]);
     let parsed = read(&lenient, &rows);
     assert_eq!(columns(&parsed).time_s, [0.0, 60.0, 300.0]);
+    assert_eq!(columns(&parsed).fuel_used_kg, [0.0, 40.0, 200.0]);
     let said = message(&parsed[0], "mapped-rows-bad");
     assert!(
         said.starts_with("3 rows cannot be read and are left out, the first: line 4"),
