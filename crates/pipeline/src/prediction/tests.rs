@@ -1,13 +1,16 @@
 use std::path::Path;
 
-use perf_model::LevelFlights;
+use perf_model::{Aircraft, Guide, LevelFlights};
 use segmenter::TrimCriteria;
 use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
 
 use super::*;
+use crate::learning::{LawChoice, begin};
 use crate::reading::FlightReader;
 
 const BAYES: &str = include_str!("../../../../fixtures/global5000/bayes/expected/SIM-01.ron");
+const AIRCRAFT: &str = include_str!("../../../../fixtures/global5000/AIRCRAFT.ron");
+const GUIDE: &str = include_str!("../../../../fixtures/global5000/guide.csv");
 const PAPER: &str = include_str!("../../../../fixtures/global5000/expected/SIM-01.ron");
 
 fn points() -> Vec<FlightPoint> {
@@ -31,24 +34,44 @@ fn whole() -> ModelFile {
     whole_and_segments().0
 }
 
-#[expect(clippy::disallowed_methods, reason = "a test reads the repository's fixture")]
 fn whole_and_segments() -> (ModelFile, Vec<Segment>) {
     let mut file = ModelFile::from_text(BAYES).unwrap();
+    let segments = segments();
+    let learnt = file.learnt.as_mut().unwrap();
+    crate::learning::remember_remainder(&file.initial, learnt, &segments);
+    assert!(learnt.baseline.is_some());
+    (file, segments)
+}
+
+/// The same flights by an aircraft whose TSFC depends on Mach number, as the fixture's does not.
+fn whole_with_mach_exponent() -> ModelFile {
+    let text = AIRCRAFT.replace("mach_exponent: 0.0", "mach_exponent: 0.6");
+    assert_ne!(text, AIRCRAFT);
+    let aircraft = Aircraft::from_ron(&text).unwrap();
+    let guide = Guide::from_csv(GUIDE.as_bytes()).unwrap();
+    let initial = perf_model::initial_model(&aircraft, &guide).unwrap();
+    let mut file = ModelFile::from_initial(&initial, &guide);
+    let law = LawChoice::Bayes(file.settings.bayes);
+    let mut learnt = begin(&file.initial, "SIM-01", TrimCriteria::PRESETS[0], law).unwrap();
+    crate::learning::remember_remainder(&file.initial, &mut learnt, &segments());
+    assert!(learnt.baseline.is_some());
+    file.learnt = Some(learnt);
+    file
+}
+
+#[expect(clippy::disallowed_methods, reason = "a test reads the repository's fixture")]
+fn segments() -> Vec<Segment> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/global5000/reports");
     let mut paths: Vec<_> =
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let criteria = TrimCriteria::preset(TrimCriteria::PRESETS[0]).unwrap();
     let mut reader = FlightReader::default();
-    let segments: Vec<Segment> = paths
+    paths
         .iter()
         .flat_map(|path| reader.read(path, &std::fs::read(path).unwrap(), None, &criteria).0)
         .flat_map(|flight| flight.reduced.segments)
-        .collect();
-    let learnt = file.learnt.as_mut().unwrap();
-    crate::learning::remember_remainder(&file.initial, learnt, &segments);
-    assert!(learnt.baseline.is_some());
-    (file, segments)
+        .collect()
 }
 
 /// The oracle is each prediction on its own.
@@ -109,6 +132,7 @@ fn columns_of_an_initial_model_and_of_both_laws_are_single_predictions() {
     columns_are_single_predictions(&ModelFile::from_text(PAPER).unwrap(), Predicts::TableOnly);
     columns_are_single_predictions(&ModelFile::from_text(BAYES).unwrap(), Predicts::TableOnly);
     columns_are_single_predictions(&whole(), Predicts::WholeModel);
+    columns_are_single_predictions(&whole_with_mach_exponent(), Predicts::WholeModel);
 }
 
 #[test]
