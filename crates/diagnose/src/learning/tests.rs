@@ -104,3 +104,25 @@ fn columns_of_drag_in_n2_are_its_finite_differences() {
         }
     }
 }
+
+/// By hand: 3 % a length for slopes, 1 % for what bends and 0.5 % for products, the last two times what flights made of them.
+#[test]
+fn what_a_remainder_may_be_is_scaled_as_flights_showed() {
+    let setup = Setup { flights: 6, ..Setup::default() };
+    let fleet = fly(93, &setup, &[], &Background::default());
+    let model = exact_model();
+    let records = records(&fleet.flights);
+    let mut taught = Baseline::learn(&model, model.drag_table(), None, &records, None).unwrap();
+    taught.parts.scales = [2.0, 3.0];
+    let variables = taught.parts.smooth.len();
+    let bending: usize = taught.parts.smooth.iter().map(|one| one.len() - 1).sum();
+    let found: Vec<f64> =
+        taught.layout().remainder.skip(1).map(|column| taught.prior_deviation(column)).collect();
+    let count =
+        |deviation: f64| found.iter().filter(|one| (**one - deviation).abs() < 1e-15).count();
+    assert!(variables >= 2);
+    assert_eq!(count(0.03), variables);
+    assert_eq!(count(0.02), bending);
+    assert_eq!(count(0.015), variables * (variables - 1) / 2);
+    assert_eq!(found.len(), variables + bending + variables * (variables - 1) / 2);
+}
