@@ -170,6 +170,8 @@ def main():
     parser.add_argument("--seed", type=int, default=int(time.time()))
     parser.add_argument("--target", type=pathlib.Path, default=ROOT / "target/release")
     asked = parser.parse_args()
+    if asked.flies_every > min(asked.every, asked.tails):
+        parser.error("--flies-every: every tail flies before the first fault, and some tail flies each night")
     asked.flights = -(-asked.nights // asked.flies_every)
     print(f"seed {asked.seed}", flush=True)
     undisturbed, disturbed = World(asked, "undisturbed"), World(asked, "disturbed")

@@ -21,8 +21,8 @@ const VERDICTS: [(&str, &str); 4] = [
     (
         "outside_library",
         "A gap that is real and that no effect of the library explains. Nothing is applied unless\n\
-         --effects outside asks for the form that describes it: look at what the flights have in\n\
-         common in that place, or record more signals.",
+         `cruisefit diagnose --effects outside` asks for the form that describes it: look at what\n\
+         the flights have in common in that place, or record more signals.",
     ),
     (
         "insufficient_data",

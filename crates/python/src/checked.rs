@@ -138,6 +138,13 @@ impl Monitored {
         self.document.to_json()
     }
 
+    /// Numbers of tails, flights and changes.
+    fn counts(&self) -> (usize, usize, usize) {
+        let tails = &self.document.tails;
+        let flights = tails.iter().map(|tail| tail.flights.len()).sum();
+        (tails.len(), flights, tails.iter().map(|tail| tail.changes.len()).sum())
+    }
+
     /// `monitor.html`.
     fn page(&self) -> String {
         page::monitoring(&self.document, &self.options)

@@ -91,6 +91,12 @@ fn gauges_are_known_by_names_that_nothing_computed_has() {
     );
     let computed = first_mapping(text.replace("fuel_qty_kg", "fob_kg").as_bytes()).unwrap();
     assert!(!computed.contains("\"FQ\"") && computed.contains("fob_kg"), "{computed}");
+    // Every name of gauges serves for the mass too.
+    for name in ["fuel_quantity_kg", "total_fuel_qty_kg", "fuel_qty_total_kg", "FQ"] {
+        let mapping = first_mapping(text.replace("fuel_qty_kg", name).as_bytes()).unwrap();
+        assert!(mapping.contains(&format!("\"FQ\": Recorded(column: \"{name}\"")), "{mapping}");
+        assert!(mapping.contains(&format!("tanks: [\"{name}\"]")), "{mapping}");
+    }
 }
 
 /// The first mapping of a recording is the same in every encoding that a recording is read in.

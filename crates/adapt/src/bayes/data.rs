@@ -74,7 +74,7 @@ pub enum StateDataError {
     },
     /// The nodes are those of the table, or of other corrections than this program has.
     #[error(
-        "what was learnt is over other nodes than this program corrects: learn the tail anew with --restart"
+        "what was learnt is over other nodes than this program corrects: learn the tail anew (`cruisefit adapt --restart`)"
     )]
     OtherNodes,
     /// A number is not finite, or negative where it must not be.

@@ -2,11 +2,15 @@
 //!
 //! The footer is Thrift in its compact protocol, in which every element of a list takes a byte at least. The decoder believes
 //! the length that a list states, and skips truth values without taking a byte: a few bytes of a damaged footer can keep it busy
-//! for seconds each. What is walked here to its end holds no more elements than bytes.
+//! for seconds each. A field that it knows it reads as what the field has to be, whatever the footer says that it is, and is then
+//! at another byte. What is walked here to its end holds no more elements than bytes, and every known field is what it has to be.
+
+mod fields;
 
 use parquet::errors::ParquetError;
 use parquet::file::reader::{ChunkReader, Length};
 
+use self::fields::{FILE, Kind, Structure};
 use super::shared_file::SharedFile;
 
 /// What ends a file: the footer's length in four bytes, and a name of four.
@@ -23,7 +27,7 @@ pub(super) fn check(file: &SharedFile) -> Result<(), ParquetError> {
     let Some(start) = end.checked_sub(length) else { return Ok(()) };
     let Ok(count) = usize::try_from(length) else { return Ok(()) };
     let footer = file.get_bytes(start, count)?;
-    match (Walk { rest: &footer }).structure(0) {
+    match (Walk { rest: &footer }).structure(FILE, 0) {
         Some(()) => Ok(()),
         None => Err(ParquetError::General("its footer is damaged".to_owned())),
     }
@@ -35,43 +39,55 @@ struct Walk<'f> {
 }
 
 impl Walk<'_> {
-    fn structure(&mut self, depth: usize) -> Option<()> {
+    fn structure(&mut self, known: Structure, depth: usize) -> Option<()> {
         if depth > DEEPEST {
             return None;
         }
+        let mut field = 0;
         loop {
             let head = self.byte()?;
             if head == 0 {
                 return Some(());
             }
-            if head >> 4 == 0 {
-                self.number()?;
-            }
-            // A truth value of a field is in its type.
-            if !matches!(head & 0x0f, 1 | 2) {
-                self.value(head & 0x0f, depth)?;
-            }
+            field = match head >> 4 {
+                // Zigzag: 0, −1, 1, −2, 2 …
+                0 => i64::try_from(self.number()?).ok().map(|n| (n >> 1) ^ -(n & 1))?,
+                more => field + i64::from(more),
+            };
+            let kind = known.iter().find(|(id, _)| *id == field).map(|(_, kind)| kind);
+            self.field(head & 0x0f, kind, depth)?;
+        }
+    }
+
+    /// The value of a field; a truth value is in its type.
+    fn field(&mut self, of_type: u8, kind: Option<&Kind>, depth: usize) -> Option<()> {
+        match (of_type, kind) {
+            (1 | 2, None | Some(Kind::Truth)) => Some(()),
+            (1 | 2, Some(_)) | (_, Some(Kind::Truth)) => None,
+            (of_type, kind) => self.value(of_type, kind, depth),
         }
     }
 
     /// A value of a type, as an element of a list has it.
-    fn value(&mut self, of_type: u8, depth: usize) -> Option<()> {
-        match of_type {
-            1..=3 => self.skip(1),
-            4..=6 => self.number().map(|_| ()),
-            7 => self.skip(8),
-            8 => {
+    fn value(&mut self, of_type: u8, kind: Option<&Kind>, depth: usize) -> Option<()> {
+        match (of_type, kind) {
+            (1 | 2, None | Some(Kind::Truth)) | (3, None | Some(Kind::Byte)) => self.skip(1),
+            (4..=6, None | Some(Kind::Number)) => self.number().map(|_| ()),
+            (7, None | Some(Kind::Double)) => self.skip(8),
+            (8, None | Some(Kind::Bytes)) => {
                 let length = self.number()?;
                 self.skip(usize::try_from(length).ok()?)
             }
-            9 | 10 => self.list(depth),
-            12 => self.structure(depth + 1),
+            (9 | 10, None) => self.list(None, depth),
+            (9, Some(Kind::List(of))) => self.list(Some(of), depth),
+            (12, None) => self.structure(&[], depth + 1),
+            (12, Some(Kind::Fields(known))) => self.structure(known, depth + 1),
             // No field of Parquet's metadata is a map.
             _ => None,
         }
     }
 
-    fn list(&mut self, depth: usize) -> Option<()> {
+    fn list(&mut self, kind: Option<&Kind>, depth: usize) -> Option<()> {
         if depth > DEEPEST {
             return None;
         }
@@ -83,7 +99,7 @@ impl Walk<'_> {
         if count > self.rest.len() {
             return None;
         }
-        (0..count).try_for_each(|_| self.value(head & 0x0f, depth + 1))
+        (0..count).try_for_each(|_| self.value(head & 0x0f, kind, depth + 1))
     }
 
     /// Seven bits a byte, the lowest first.
@@ -116,21 +132,41 @@ mod tests {
     use super::*;
 
     fn walked(footer: &[u8]) -> bool {
-        (Walk { rest: footer }).structure(0).is_some()
+        (Walk { rest: footer }).structure(FILE, 0).is_some()
     }
 
     /// By the compact protocol: field 1 as a number (0x15), 3, and the end; a list of three numbers; a text; a structure within.
     #[test]
     fn structures_by_hand() {
         assert!(walked(&[0x15, 0x06, 0x00]));
-        assert!(walked(&[0x19, 0x35, 0x02, 0x04, 0x06, 0x00]));
-        assert!(walked(&[0x18, 0x02, b'a', b'b', 0x1c, 0x11, 0x00, 0x00]));
+        // Behind the fields that are known: field 14 and on.
+        assert!(walked(&[0xe9, 0x35, 0x02, 0x04, 0x06, 0x00]));
+        assert!(walked(&[0xe8, 0x02, b'a', b'b', 0x1c, 0x11, 0x00, 0x00]));
+        // Field 2 is a list of structures, here of one with a name; field 6 a text.
+        assert!(walked(&[0x29, 0x1c, 0x48, 0x01, b'x', 0x00, 0x48, 0x01, b'c', 0x00]));
         // Cut off; a text longer than what is left; more elements than bytes; a type that there is not.
         assert!(!walked(&[0x15, 0x06]));
-        assert!(!walked(&[0x18, 0x05, b'a', 0x00]));
-        assert!(!walked(&[0x19, 0xf1, 0xff, 0xff, 0xff, 0xff, 0x0f, 0x00]));
+        assert!(!walked(&[0xe8, 0x05, b'a', 0x00]));
+        assert!(!walked(&[0xe9, 0xf1, 0xff, 0xff, 0xff, 0xff, 0x0f, 0x00]));
+        // A known field of another type, by its step or by its number: the version a truth value, the schema a list of texts.
+        assert!(!walked(&[0x11, 0x00]));
+        assert!(!walked(&[0x01, 0x02, 0x00]));
+        assert!(!walked(&[0x29, 0x18, 0x01, b'x', 0x00]));
         assert!(!walked(&[0x1f, 0x00]));
         assert!(!walked(&[[0x1c; 100].as_slice(), &[0; 101]].concat()));
+    }
+
+    /// What fuzzing found: a version that says that it is a truth value and is read as a number, so that what follows is something
+    /// else for the decoder than for who believes the footer.
+    #[test]
+    fn a_footer_that_is_read_in_two_ways_is_refused() {
+        let found = [
+            0x02, 0xfe, 0xce, 0x3c, 0x02, 0x02, 0x02, 0x02, 0x02, 0xff, 0xff, 0xff, 0xf1, 0x02,
+            0x22, 0x02, 0x33, 0x00, 0x2a, 0x8c, 0x02, 0xfe, 0xce, 0x3c, 0x02, 0x02, 0x02, 0x02,
+            0x5b, 0xff, 0xff, 0xff, 0xf1, 0x02, 0x22, 0x02, 0x02, 0x02, 0xfb, 0xff, 0xbf, 0xff,
+            0x15, 0xff, 0xff, 0xff, 0x02, 0x02, 0x41, 0x52,
+        ];
+        assert!(!walked(&found));
     }
 
     /// What fuzzing found: the decoder counted two thousand million truth values that take no byte.

@@ -76,6 +76,14 @@ fn judged(folder: &Path, initial: &Path, seed: u32) -> Judged {
     let (with, table) = (at("with.csv"), at("table.csv"));
     let ran = run(&[&"predict", &"--model", &model, &points, &"-o", &with]);
     assert!(ran.stdout.contains("by all that the model has learnt"), "{}", ran.stdout);
+    let bare = at("bare.csv");
+    run(&[&"predict", &"--model", &model, &points, &"-o", &bare, &"--without-deviations"])
+        .expect(0);
+    let (mut whole, mut without) = (csv_columns(&with), csv_columns(&bare));
+    let stated = whole.remove("fuel_flow_std_kg_s").unwrap();
+    assert!(stated.iter().any(|deviation| !deviation.is_empty()));
+    assert!(without.remove("fuel_flow_std_kg_s").unwrap().iter().all(String::is_empty));
+    assert_eq!(whole, without);
     let ran = run(&[&"predict", &"--model", &model, &points, &"-o", &table, &"--table-only"]);
     assert!(!ran.stdout.contains("all that the model has learnt"), "{}", ran.stdout);
     let (with, table) = (csv_columns(&with), csv_columns(&table));

@@ -97,4 +97,11 @@ mod tests {
         assert!(100.0 * weight(100.0, 2.5) < 10.0 * weight(10.0, 2.5));
         assert!((median(vec![3.0, 1.0, 2.0, 10.0]) - 2.5).abs() < 1e-15);
     }
+
+    #[test]
+    fn weights_are_settled_where_none_of_them_moved_by_much() {
+        let of = |row: f64, group: f64| Weights { rows: vec![1.0, row], groups: vec![group] };
+        assert!(of(0.5, 0.7).settled(&of(0.5, 0.7)) && of(0.5, 0.7).settled(&of(0.46, 0.74)));
+        assert!(!of(0.5, 0.7).settled(&of(0.44, 0.7)) && !of(0.5, 0.7).settled(&of(0.5, 0.76)));
+    }
 }

@@ -47,7 +47,8 @@ pub struct WholeModelOfLevels {
 /// What is asked of the whole model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LevelQuestion {
-    /// Predictions alone.
+    /// Predictions alone. Where a variance would have to be asked of a single prediction, at an end of the atmosphere or of the
+    /// table, the mean comes from here: the same within 1e-12.
     Means,
     /// Variances too, which take most of the time.
     MeansAndVariances,

@@ -7,6 +7,7 @@ use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
 use super::*;
 use crate::learning::{LawChoice, begin};
 use crate::reading::FlightReader;
+use crate::whole_model::belief_before_flights;
 
 const BAYES: &str = include_str!("../../../../fixtures/global5000/bayes/expected/SIM-01.ron");
 const AIRCRAFT: &str = include_str!("../../../../fixtures/global5000/AIRCRAFT.ron");
@@ -135,6 +136,41 @@ fn columns_of_an_initial_model_and_of_both_laws_are_single_predictions() {
     columns_are_single_predictions(&whole_with_mach_exponent(), Predicts::WholeModel);
 }
 
+/// A model whose functions bend over far shorter lengths than any that is learnt: many points lie where columns do not hold, or
+/// come there by a sensor's error, and are predicted one by one.
+#[test]
+fn points_far_beyond_what_columns_hold_are_single_predictions_too() {
+    let file = whole();
+    let middle_m = PressureAltitude::feet(30_000.0 + 18_000.0 * 30.0 / 61.0).to_meters();
+    for shorter in [40.0, 12_000.0] {
+        let mut file = file.clone();
+        let learnt = file.learnt.as_mut().unwrap();
+        let text = ron::to_string(learnt.baseline.as_ref().unwrap().record()).unwrap();
+        let length = "variable:pressure_altitude,middle:";
+        let (before, rest) = text.split_once(length).unwrap();
+        let (_, rest) = rest.split_once(",length:").unwrap();
+        let (known, rest) = rest.split_once(',').unwrap();
+        let known: f64 = known.parse().unwrap();
+        let text = format!("{before}{length}{middle_m},length:{},{rest}", known / shorter);
+        let record: diagnose::BaselineRecord = ron::from_str(&text).unwrap();
+        let bayes = file.settings.bayes;
+        let belief = belief_before_flights(&file.initial, bayes, record.drag_nodes()).unwrap();
+        learnt.baseline = Some(diagnose::Baseline::new(record, Some(belief)).unwrap());
+        columns_are_single_predictions(&file, Predicts::WholeModel);
+        let bare = Predictor::new(&file, Predicts::WholeModel).unwrap().without_deviations();
+        let points = points();
+        let found = bare.at_points(&points, None);
+        for (point, found_kg_s) in points.iter().zip(&found.columns[0].1) {
+            let alone = bare.at(point).ok();
+            let alone = alone.map(|one| one.prediction.fuel_flow_total.to_kilograms_per_second());
+            let is_same = alone.map_or(found_kg_s.is_nan(), |kg_s| {
+                (found_kg_s - kg_s).abs() <= 1e-12 * kg_s.abs().max(1e-3)
+            });
+            assert!(is_same, "{point:?}: {found_kg_s}, on its own {alone:?}");
+        }
+    }
+}
+
 #[test]
 fn points_of_which_more_is_known_are_predicted_one_by_one_among_the_others() {
     let file = whole();
@@ -217,10 +253,17 @@ fn points_beyond_the_flights_are_marked_and_less_sure() {
 
 #[test]
 fn columns_do_not_depend_on_where_they_are_cut() {
-    let file = ModelFile::from_text(BAYES).unwrap();
-    let predictor = Predictor::new(&file, Predicts::TableOnly).unwrap();
+    let file = whole();
+    for predicts in [Predicts::TableOnly, Predicts::WholeModel] {
+        are_the_same_wherever_they_are_cut(&Predictor::new(&file, predicts).unwrap());
+    }
+}
+
+fn are_the_same_wherever_they_are_cut(predictor: &Predictor<'_>) {
     assert!(predictor.predicts_columns());
-    let points = points();
+    let mut points = points();
+    points[70].mass = Mass::kilograms(f64::NAN);
+    points[71].isa_deviation = TemperatureDifference::kelvin(f64::NAN);
     let column = |of: fn(&FlightPoint) -> f64| points.iter().map(of).collect::<Vec<_>>();
     let mass_kg = column(|point| point.mass.to_kilograms());
     let pressure_altitude_m = column(|point| point.pressure_altitude.to_meters());
@@ -233,7 +276,7 @@ fn columns_do_not_depend_on_where_they_are_cut() {
         isa_deviation_k: &isa_deviation_k[first..],
     };
     let whole = predictor.at_points(&points, None);
-    for first in [0, 1, 63, 64, 1000] {
+    for first in [0, 1, 7, 8, 31, 32, 33, 63, 64, 1000] {
         let cut = predictor.at_level_flights(from(first), None);
         for ((name, all), (_, some)) in whole.columns.iter().zip(&cut.columns) {
             let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();

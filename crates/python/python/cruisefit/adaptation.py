@@ -273,10 +273,9 @@ class Monitoring:
         return framed(self.page())
 
     def __repr__(self) -> str:
-        tails = self.to_dict()["tails"]
-        flights = sum(len(tail["flights"]) for tail in tails)
-        changes = sum(len(tail["changes"]) for tail in tails)
-        return f"<Monitoring: {len(tails)} tails, {flights} flights, {changes} changes found>"
+        names = ("tail", "flight", "change")
+        counts = zip(self._native.counts(), names, strict=True)
+        return f"<Monitoring: {', '.join(f'{n} {name}' + 's' * (n != 1) for n, name in counts)}>"
 
 
 class Evaluation(_Run):

@@ -158,8 +158,7 @@ const GROSS: Rule = rule(
     Kind::Mass,
 );
 const ZERO_FUEL: Rule = rule("", &["zerofuelweight", "zfw"], Kind::Mass);
-const TANKS: Rule =
-    rule("", &["fuelquantity", "fuelqty", "fob", "fuelonboard", "fq", "totalfuel"], Kind::Mass);
+const COMPUTED_FUEL: Rule = rule("", &["fob", "fuelonboard", "totalfuel"], Kind::Mass);
 /// Names that gauges have and a computed fuel on board has not: that is often the first quantity less what meters count, and would
 /// bear out every meter.
 const GAUGES: Rule = rule(
@@ -450,7 +449,9 @@ impl Columns {
             (self.names[column].sent.clone(), unit, is_guess)
         };
         let mark = |is_guess: bool| if is_guess { "   // ?" } else { "" };
-        let found = [&GROSS, &ZERO_FUEL, &TANKS, &USED].map(|rule| self.find(rule));
+        let [gross, zero, used] = [&GROSS, &ZERO_FUEL, &USED].map(|rule| self.find(rule));
+        let tanks = self.find(&GAUGES).or_else(|| self.find(&COMPUTED_FUEL));
+        let found = [gross, zero, tanks, used];
         match found {
             [Some(gross), ..] => {
                 let (fields, is_guess) = self.recorded(gross, Kind::Mass);

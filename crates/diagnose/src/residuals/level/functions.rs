@@ -141,7 +141,8 @@ impl Functions {
         Values { sum, lengths, functions, factors, slopes }
     }
 
-    /// How much the remainder at other states differs where only some variables do. Compiled once: it is asked ten times.
+    /// How much the remainder at other states differs where only some variables do; no number where the functions do not hold
+    /// there. Compiled once: it is asked ten times.
     pub(super) fn change(&self, at: &Values, states: &States, moved: &[Variable]) -> Lanes {
         pulp::Arch::new().dispatch(Change { functions: self, at, states, moved })
     }
@@ -223,6 +224,11 @@ impl pulp::NullaryFnOnce for Change<'_> {
             // With each of those that moved before it.
             add_product(&mut sum, 1.0, &step, &functions.product(place, &steps));
             steps[place] = step;
+            for (sum, z) in sum.iter_mut().zip(&z) {
+                if !one.reaches(*z) {
+                    *sum = f64::NAN;
+                }
+            }
         }
         sum
     }

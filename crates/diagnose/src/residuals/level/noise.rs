@@ -75,7 +75,10 @@ impl Noise {
         states: &States,
         is_known: &mut [bool; LANES],
     ) -> Sides {
-        let (mach_step, _, altitude_step_m) = self.steps();
+        let (mach_step, temperature_step_k, altitude_step_m) = self.steps();
+        for (is_known, temperature_k) in is_known.iter_mut().zip(&block.temperature_k) {
+            *is_known &= *temperature_k > temperature_step_k;
+        }
         let mut find = |moved: &Moved| moved.find(drag, block, is_known);
         let along_mach = |by: f64| Moved::along_mach(states, by);
         let along_altitude = |by_m: f64| Moved::along_altitude(block, states, by_m);
