@@ -195,3 +195,13 @@ fn refine_leading(
     }
     refined
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_a_per_cent_of_scatter_is_five_thousandths() {
+        assert!((scattered(0.5).scatter - 0.005).abs() < 1e-15);
+    }
+}

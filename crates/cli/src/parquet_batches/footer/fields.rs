@@ -22,7 +22,7 @@ pub(super) enum Kind {
     /// A structure.
     Fields(Structure),
     /// A list.
-    List(&'static Kind),
+    List(&'static Self),
 }
 
 use Kind::{Byte, Bytes, Double, Fields, List, Number, Truth};
