@@ -54,6 +54,10 @@ impl Walk<'_> {
                 0 => i64::try_from(self.number()?).ok().map(|n| (n >> 1) ^ -(n & 1))?,
                 more => field + i64::from(more),
             };
+            // The decoder cuts a number to sixteen bits.
+            if !(1..=i64::from(i16::MAX)).contains(&field) {
+                return None;
+            }
             let kind = known.iter().find(|(id, _)| *id == field).map(|(_, kind)| kind);
             self.field(head & 0x0f, kind, depth)?;
         }
@@ -71,7 +75,7 @@ impl Walk<'_> {
     /// A value of a type, as an element of a list has it.
     fn value(&mut self, of_type: u8, kind: Option<&Kind>, depth: usize) -> Option<()> {
         match (of_type, kind) {
-            (1 | 2, None | Some(Kind::Truth)) | (3, None | Some(Kind::Byte)) => self.skip(1),
+            (3, None | Some(Kind::Byte)) => self.skip(1),
             (4..=6, None | Some(Kind::Number)) => self.number().map(|_| ()),
             (7, None | Some(Kind::Double)) => self.skip(8),
             (8, None | Some(Kind::Bytes)) => {
@@ -82,7 +86,8 @@ impl Walk<'_> {
             (9, Some(Kind::List(of))) => self.list(Some(of), depth),
             (12, None) => self.structure(&[], depth + 1),
             (12, Some(Kind::Fields(known))) => self.structure(known, depth + 1),
-            // No field of Parquet's metadata is a map.
+            // No field of Parquet's metadata is a map or a list of truth values, of which each takes a byte, and none where the
+            // decoder skips them.
             _ => None,
         }
     }
@@ -167,6 +172,9 @@ mod tests {
             0x15, 0xff, 0xff, 0xff, 0x02, 0x02, 0x41, 0x52,
         ];
         assert!(!walked(&found));
+        // A list of truth values, which the decoder skips without taking their bytes; a number of a field that is 1 in sixteen bits.
+        assert!(!walked(&[0xe9, 0x21, 0x01, 0x01, 0x00]));
+        assert!(!walked(&[0x05, 0x82, 0x80, 0x08, 0x06, 0x00]));
     }
 
     /// What fuzzing found: the decoder counted two thousand million truth values that take no byte.
