@@ -82,12 +82,24 @@ fn weights(axis: &Axis, cell: usize, share: f64) -> [(usize, f64); 4] {
     found[1].1 = (1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t);
     found[2].1 = t * t * (3.0 - 2.0 * t);
     let width = points[cell + 1] - points[cell];
-    let slopes = [(cell, t * (1.0 - t) * (1.0 - t) * width), (cell + 1, t * t * (t - 1.0) * width)];
-    for (at, factor) in slopes {
-        for (node, weight) in slope(points, at) {
+    let factors = [t * (1.0 - t) * (1.0 - t) * width, t * t * (t - 1.0) * width];
+    for (of_end, factor) in end_slopes(points, cell).iter().zip(factors) {
+        for (found, weight) in found.iter_mut().zip(of_end) {
+            found.1 += factor * weight;
+        }
+    }
+    found
+}
+
+/// The slopes at both ends of a cell as combinations of the values at the four breakpoints about it; 0 for those that do not
+/// exist.
+fn end_slopes(points: &[f64], cell: usize) -> [[f64; 4]; 2] {
+    let mut found = [[0.0; 4]; 2];
+    for (end, found) in found.iter_mut().enumerate() {
+        for (node, weight) in slope(points, cell + end) {
             // Slots are cell − 1, cell, cell + 1, cell + 2.
             if weight != 0.0 {
-                found[node + 1 - cell].1 += factor * weight;
+                found[node + 1 - cell] = weight;
             }
         }
     }

@@ -256,16 +256,17 @@ impl TableUncertainty {
         else {
             return;
         };
-        self.add_cell(&cell, into);
+        for (slot, loading) in into.iter_mut().zip(self.loadings(&cell)) {
+            *slot = loading;
+        }
     }
 
-    fn add_cell(&self, cell: &Cell, into: &mut [f64]) {
-        for (node, weight) in cell.nodes().into_iter().zip(cell.weights()) {
-            let row = &self.factor[node * self.rank..(node + 1) * self.rank];
-            for (slot, value) in into.iter_mut().zip(row) {
-                *slot += weight * value;
-            }
-        }
+    /// The same of a cell of its grid, one after the other.
+    pub(crate) fn loadings(&self, cell: &Cell) -> impl Iterator<Item = f64> {
+        let [a, b, c, d] = cell.weights();
+        let [p, q, r, s] = cell.nodes().map(|node| self.row(node));
+        let rows = p.iter().zip(q).zip(r).zip(s);
+        rows.map(move |(((p, q), r), s)| a * p + b * q + c * r + d * s)
     }
 
     /// Standard deviation of each node that the factor leaves out; none where it has all nodes.

@@ -2,7 +2,7 @@
 
 use crate::{Axis, Cell, Table};
 
-use super::slope;
+use super::end_slopes;
 
 /// Nodes along an axis that take part in a value.
 const NODES: usize = 4;
@@ -77,13 +77,11 @@ fn weights(axis: &Axis) -> Vec<Weights> {
         let mut found = [[0.0; NODES]; NODES];
         found[1] = [1.0, 0.0, -3.0, 2.0];
         found[2] = [0.0, 0.0, 3.0, -2.0];
-        for (end, cubic) in [(cell, [0.0, 1.0, -2.0, 1.0]), (cell + 1, [0.0, 0.0, -1.0, 1.0])] {
-            for (node, weight) in slope(points, end) {
-                // Slots are cell − 1, cell, cell + 1, cell + 2.
-                if weight != 0.0 {
-                    for (into, coefficient) in found[node + 1 - cell].iter_mut().zip(cubic) {
-                        *into += weight * width * coefficient;
-                    }
+        let cubics = [[0.0, 1.0, -2.0, 1.0], [0.0, 0.0, -1.0, 1.0]];
+        for (of_end, cubic) in end_slopes(points, cell).iter().zip(cubics) {
+            for (found, weight) in found.iter_mut().zip(of_end) {
+                for (into, coefficient) in found.iter_mut().zip(cubic) {
+                    *into += weight * width * coefficient;
                 }
             }
         }

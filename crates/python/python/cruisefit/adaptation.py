@@ -13,9 +13,9 @@ from . import _native
 from ._folder import folder_lock
 from ._pages import Chart, TailChart, framed, names_of, read_text, write_bytes
 from ._tables import Table, like
-from .errors import InputError, expected, in_python, warn, warn_of_refused
+from .errors import InputError, in_python, warn, warn_of_refused
 from .model import Model, natives_of
-from .segments import MADE_BY, Refused, Segments, refused_of
+from .segments import Refused, Segments, flights_of, refused_of
 
 __all__ = ["Adaptation", "Evaluation", "Law", "Monitoring", "adapt", "evaluate", "merge"]
 
@@ -329,11 +329,10 @@ def adapt(
         "absurd": "accept" if accept else "refuse",
         "threads": threads,
     }
-    expected(segments, Segments, MADE_BY)
     adapted = Adaptation(
         _native.adapt(
             natives_of(models),
-            segments._flights,
+            flights_of(segments),
             options,
             None if begun is None else begun._native,
         )
@@ -374,10 +373,9 @@ def evaluate(
     Raises:
         InputError: Two models claim the same tail or type.
     """
-    expected(segments, Segments, MADE_BY)
     predicts = "table" if table_only else "whole"
     evaluation = Evaluation(
-        _native.evaluate(natives_of(models), segments._flights, predicts, threads)
+        _native.evaluate(natives_of(models), flights_of(segments), predicts, threads)
     )
     warn_of_new(segments, evaluation.refused, len(evaluation.tails))
     return evaluation

@@ -12,9 +12,9 @@ from typing import Any, TypeVar
 from . import _native
 from ._pages import Chart, DiagnosisChart, framed, names_of, read_text
 from .adaptation import warn_of_findings, warn_of_new
-from .errors import expected, in_python
+from .errors import in_python
 from .model import Model, natives_of
-from .segments import MADE_BY, Refused, Segments, refused_of
+from .segments import Refused, Segments, flights_of, refused_of
 
 __all__ = [
     "Cause",
@@ -272,8 +272,7 @@ def diagnose(
         "absurd": "accept" if accept else "refuse",
         "threads": threads,
     }
-    expected(segments, Segments, MADE_BY)
-    diagnosis = Diagnosis(_native.diagnose(natives_of(models), segments._flights, asked))
+    diagnosis = Diagnosis(_native.diagnose(natives_of(models), flights_of(segments), asked))
     warn_of_findings(diagnosis.findings)
     warn_of_new(segments, diagnosis.refused, len(diagnosis))
     return diagnosis

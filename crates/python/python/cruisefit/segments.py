@@ -26,9 +26,6 @@ PRESETS = ("ghazi-2020-table-4", "airbus-report-02", "airbus-report-02-short")
 Report = Union[str, "os.PathLike[str]", bytes, tuple[str, bytes]]
 """A path (file, folder or glob), the bytes of a report, or its name and bytes."""
 
-MADE_BY = "cruisefit.segment makes them of reports, and with a mapping of tables"
-"""Where segments come from, for who gives something else."""
-
 _REPORT_ENDINGS = (".txt", ".rpt", ".gz")
 _RECORDING_ENDINGS = (".csv", ".gz")
 
@@ -148,8 +145,7 @@ class Segments:
         return cls(_native.Flights.from_segments(as_stream(table), aircraft_type, criteria))
 
     def __add__(self, other: Segments) -> Segments:
-        expected(other, Segments, MADE_BY)
-        flights = self._flights.and_([other._flights])
+        flights = self._flights.and_([flights_of(other)])
         flights.look_through()
         return Segments(flights)
 
@@ -167,6 +163,16 @@ class Segments:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _unpickled, (self.state(), self.criteria)
+
+
+def flights_of(segments: Segments) -> _native.Flights:
+    """Segments as the native half takes them.
+
+    Raises:
+        InputError: Something else.
+    """
+    expected(segments, Segments, "cruisefit.segment makes them of reports, and with a mapping of tables")
+    return segments._flights
 
 
 def _unpickled(state: Table, criteria: str) -> Segments:
@@ -288,10 +294,9 @@ def check(segments: Segments, models: Model | Sequence[Model] = ()) -> Check:
     Raises:
         InputError: Two models claim the same tail or type.
     """
-    expected(segments, Segments, MADE_BY)
     from .model import natives_of
 
-    return Check(*_native.check(natives_of(models), segments._flights))
+    return Check(*_native.check(natives_of(models), flights_of(segments)))
 
 
 def _mapping(mapping: str | os.PathLike[str]) -> str:

@@ -48,9 +48,7 @@ impl Block {
             bilinear_drag_coefficient: of(|point| point.drag_coefficient),
         })
     }
-}
 
-impl Block {
     /// The points' states at a drag coefficient.
     pub(super) fn states(&self, drag_coefficient: &Lanes) -> States {
         let mut corrected_thrust_n = self.dynamic_force_n;

@@ -92,12 +92,9 @@ impl Drag {
     /// Writes the loadings of one of the points; returns the variance that they leave out.
     pub(super) fn write(&self, cell: &Cell, place: usize, into: &mut [f64]) -> f64 {
         let Some(learnt) = &self.learnt else { return 0.0 };
-        let [a, b, c, d] = cell.weights();
-        let [p, q, r, s] = cell.nodes().map(|node| learnt.uncertainty.row(node));
-        let loadings = p.iter().zip(q).zip(r).zip(s);
-        for (slot, (((p, q), r), s)) in into.iter_mut().skip(place).step_by(TOGETHER).zip(loadings)
-        {
-            *slot = (a * p + b * q) + (c * r + d * s);
+        let slots = into.iter_mut().skip(place).step_by(TOGETHER);
+        for (slot, loading) in slots.zip(learnt.uncertainty.loadings(cell)) {
+            *slot = loading;
         }
         learnt.left_deviation.as_ref().map_or(0.0, |left| {
             let deviation = left.interpolate(cell);
