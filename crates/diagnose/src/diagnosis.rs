@@ -10,6 +10,7 @@ use crate::advice::distances::{Distances, leading_columns};
 use crate::hypotheses::design::{Acts, Design};
 use crate::input::{Input, Options};
 use crate::judge::closure::{Shrinkage, in_sample, nested};
+use crate::judge::contributions::contributions;
 use crate::judge::detection::{Detection, DetectionInput, detect};
 use crate::judge::forms::leading_forms;
 use crate::judge::gap::{exceeds_uncertainty, gap_of, is_real, noise_scale, unknown_square};
@@ -322,6 +323,11 @@ fn conclude(
         gap,
         r#where: places,
         causes: causes(&findings.of_causes(), &posteriors),
+        contributions: if gap.detected {
+            contributions(system, analysis, library, (scale, options.seed))
+        } else {
+            vec![]
+        },
         not_testable: vec![],
         addition: Addition::named(analysis, library, verdict.effects(), *model.references())
             .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),

@@ -2,6 +2,7 @@
 
 pub(crate) mod addition;
 pub(crate) mod closure;
+pub(crate) mod contributions;
 pub(crate) mod detection;
 pub(crate) mod forms;
 pub(crate) mod gap;

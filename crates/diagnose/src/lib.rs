@@ -119,6 +119,7 @@ mod fleet;
 mod advice;
 mod place;
 
+mod attainable;
 mod diagnosis;
 mod judge;
 mod numbers;
@@ -128,6 +129,7 @@ mod oracles;
 
 pub use effects::{Form, Variable};
 
+pub use attainable::{KnownClutter, attainable};
 pub use baseline::{Baseline, BaselineLengthError, BaselineRecord};
 pub use deciding::{Certainty, DecidingNumber};
 pub use diagnosis::diagnose;
@@ -147,7 +149,8 @@ pub use output::verdict::{
     Beside, Closure, Found, Insufficient, Rest, RestKind, Unexplained, Verdict,
 };
 pub use output::{
-    Cause, Detectable, Diagnosis, Gap, HeldOutFlight, Magnitude, NotTestable, OutsideLibrary, Slice,
+    Cause, Contribution, Detectable, Diagnosis, Gap, HeldOutFlight, Magnitude, NotTestable,
+    OutsideLibrary, Slice,
 };
 pub use place::members::region_members;
 pub use place::segment_gaps::{SegmentGap, Shown, segment_gaps};

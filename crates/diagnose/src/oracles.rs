@@ -34,6 +34,7 @@ use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::references_of;
 
+mod attainable;
 mod forms;
 mod places;
 

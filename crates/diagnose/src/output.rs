@@ -34,6 +34,9 @@ pub struct Diagnosis {
     pub r#where: Vec<Slice>,
     /// Causes, the most probable first.
     pub causes: Vec<Cause>,
+    /// What each effect makes of the gap, all of the library acting at once; the likeliest largest one first. Empty where no gap
+    /// is detected.
+    pub contributions: Vec<Contribution>,
     /// Effects that this data cannot test, and what they need.
     pub not_testable: Vec<NotTestable>,
     /// The conclusion.
@@ -127,6 +130,21 @@ pub struct Cause {
     pub closure: Option<Closure>,
     /// What it has beyond its size; [`HiddenParameter::None`] for most effects.
     pub hidden: HiddenParameter,
+}
+
+/// What one effect makes of the gap, all effects of the library acting at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contribution {
+    /// The effect.
+    pub effect: EffectId,
+    /// Its size: mean and 95 % interval.
+    pub magnitude: Magnitude,
+    /// Root mean square of the change of fuel flow that it makes, %: mean over what is believed of its size.
+    pub rms_percent: f64,
+    /// 95 % interval of that.
+    pub rms_ci95: [f64; 2],
+    /// Probability that it makes the largest change of all.
+    pub leads: f64,
 }
 
 /// The gap of one flight that choice and fit have not seen, root mean squares over its segments.

@@ -24,6 +24,9 @@ deciding_numbers! {
         PRIOR_SCALES: [(f64, f64); 3] = [(1.0, 0.45), (3.0, 0.45), (10.0, 0.10)], "",
             "prior standard deviations of an effect over its typical size, each with its probability",
             OurChoice "As much belief on three times the typical size, so that a large effect is not shrunk away; one in ten on ten times.";
+        CONTRIBUTING: f64 = 1.0, "effects",
+            "how many of all effects are expected to act at typical size where all are looked at at once",
+            OurChoice "One: most models lack one thing, and the rest a little. Flights decide.";
         FLAT_RANGE: f64 = 0.10, "of fuel flow",
             "range over which the effect of a cause on fuel flow is evenly probable where its prior size is left out",
             OurChoice "Five per cent either way: what an engineer would not call impossible of any cause.";

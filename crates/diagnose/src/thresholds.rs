@@ -151,6 +151,9 @@ deciding_numbers! {
         CLOSER_DATES: usize = 12, "",
             "times that closer dates, or one more fall of a history, are tried at most",
             OurChoice "Three to a date bring 5,000 flights to a few; four falls are then possible.";
+        CONTRIBUTION_SWEEPS: (usize, usize) = (200, 1000), "draws",
+            "draws thrown away, and kept, behind what each of all effects contributes",
+            OurChoice "Ends of a 95 % interval rest on 25 draws each.";
         AGNOSTIC_SETS: usize = 10, "hypotheses",
             "leading hypotheses to which functions without a name are added",
             OurChoice "Time grows with each; the tenth is rarely probable.";

@@ -12,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Floors from the ground up.
-const FLOORS: [&str; 21] = [
+const FLOORS: [&str; 22] = [
     "deciding",
     "priors",
     "thresholds",
@@ -31,6 +31,7 @@ const FLOORS: [&str; 21] = [
     "advice",
     "judge",
     "diagnosis",
+    "attainable",
     "numbers",
     // Tests of several floors at once.
     "oracles",

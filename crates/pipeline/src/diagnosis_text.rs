@@ -325,11 +325,28 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
             )
         ));
     }
+    lines.extend(made_up_of(diagnosis));
     for (found, words) in outside.forms.iter().zip(["Described best by", "Next best"]) {
         lines.push(format!("{words} {}.", form_words(found)));
     }
     lines.push("Nothing is applied. Look at what these flights have in common there, or record more signals.".to_owned());
     lines
+}
+
+/// What makes up a gap that no one or two effects carry, all of them at once; `None` where none may well make the most of it.
+fn made_up_of(diagnosis: &Diagnosis) -> Option<String> {
+    let told: Vec<String> = diagnosis
+        .contributions
+        .iter()
+        .filter(|one| one.leads >= LEAST_TOLD)
+        .take(OTHERS_TOLD)
+        .map(|one| {
+            let [low, high] = one.rms_ci95;
+            format!("{} {:.2} % rms ({low:.2} to {high:.2})", one.effect, one.rms_percent)
+        })
+        .collect();
+    let several = "If every effect of the library acted a little, the most would be made by";
+    (!told.is_empty()).then(|| format!("{several} {}.", told.join(", ")))
 }
 
 /// What follows from the verdict; not before it is clear whether the recording errs or the aircraft.

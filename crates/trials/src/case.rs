@@ -95,6 +95,9 @@ impl DiagnosedCase {
             // How far the struck effect is from the rest is known only to a library that holds it.
             scored.take_distance(&inputs.diagnose_quickly()?);
         }
+        if truth.background == Background::Clutter && truth.kind == Kind::Single {
+            scored.attainable = inputs.attainable(drawn.known_clutter(truth))?;
+        }
         scored.nearest =
             scored.nearest.map(|(other, pair)| (at_size(other, truth), at_size(pair, truth)));
         Ok(CaseResult {

@@ -2,7 +2,8 @@
 //! effect, no size.
 
 use diagnose::{
-    Baseline, Diagnosis, FlightRecord, Input, Options, TableUncertainty, WholeModel, diagnose,
+    Baseline, Diagnosis, FlightRecord, Input, KnownClutter, Options, TableUncertainty, WholeModel,
+    attainable, diagnose,
 };
 use effects::ExtendedModel;
 use flight::Segment;
@@ -91,6 +92,16 @@ impl DiagnosisInputs {
     /// What the diagnosis refuses.
     pub fn diagnose_quickly(&self) -> Result<Diagnosis, CaseFailure> {
         self.diagnose_with(&Options { skip_closure: true, skip_where: true, ..Options::default() })
+    }
+
+    /// The effect that one would name who knows how the clutter varies.
+    ///
+    /// # Errors
+    /// What the diagnosis refuses.
+    pub(crate) fn attainable(&self, clutter: KnownClutter) -> Result<Option<String>, CaseFailure> {
+        let records = self.records();
+        let found = attainable(&self.input(&records), clutter)?;
+        Ok(found.first().map(|(id, _)| id.to_string()))
     }
 
     fn diagnose_with(&self, options: &Options) -> Result<Diagnosis, CaseFailure> {

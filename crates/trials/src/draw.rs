@@ -1,5 +1,6 @@
 //! What a case flies. Knows the truth; the diagnosis never sees a value of these types.
 
+use diagnose::KnownClutter;
 use flight::Timestamp;
 use flight::effect::{EffectId, TypicalSize};
 use simulate::study::DragError;
@@ -146,6 +147,18 @@ impl DrawnCase {
 
     pub(crate) const fn stated_over_true(&self) -> f64 {
         self.stated_over_true
+    }
+
+    /// How the clutter of a case varies.
+    pub(crate) fn known_clutter(&self, truth: &CaseTruth) -> KnownClutter {
+        let plan = self.flown.plan();
+        let SmoothErrorSizes { drag_percent, fuel_flow_percent } = plan.smooth_errors;
+        KnownClutter {
+            share: plan.clutter_share,
+            // A share of drag is about the same share of fuel flow.
+            smooth_percent: drag_percent.hypot(fuel_flow_percent),
+            times: truth.times,
+        }
     }
 
     /// Flights that the model may learn, and those that are diagnosed.

@@ -58,6 +58,12 @@ pub struct Case {
     pub gap_rms_percent: f64,
     /// Distance of the planted effect from the nearest other one, and from the nearest pair, at typical size.
     pub nearest: Option<(f64, f64)>,
+    /// The effect that most probably makes the largest change, all effects looked at at once.
+    #[serde(default)]
+    pub largest: Option<String>,
+    /// The effect that one would name who knows the variances of the clutter, where the caller asked.
+    #[serde(default)]
+    pub attainable: Option<String>,
 }
 
 /// The region reported for the gap against the true one.
@@ -128,6 +134,8 @@ impl Case {
             closure: found.verdict.closure().map(|closure| closure.share),
             gap_rms_percent: found.gap.rms_percent,
             nearest: detectable.map(|d| (d.nearest_other, d.nearest_pair)),
+            largest: found.contributions.first().map(|largest| largest.effect.to_string()),
+            attainable: None,
             planted,
         }
     }

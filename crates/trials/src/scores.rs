@@ -54,73 +54,85 @@ scores! {
         |s| share(&s.planted, |c| !c.is_silent());
     TopOne, Some(2), "The planted effect is on top, of all reported",
         |s| share(&s.reported, Case::names_first);
-    TopOneSeparable, Some(3),
+    LeadsCauses, Some(3), "The planted effect leads the list of causes, whatever the verdict",
+        |s| share(&s.planted, Case::on_top);
+    LargestContribution, Some(4),
+        "The planted effect makes the largest change, all effects looked at at once",
+        |s| share(&s.planted, |c| c.largest.as_deref() == Some(c.truth()));
+    AttainableTopOne, Some(5),
+        "The ceiling of that: one who knows how all else varies, and the planted size, would name it",
+        |s| {
+            let known: Vec<&Case> =
+                s.planted.iter().copied().filter(|c| c.attainable.is_some()).collect();
+            share(&known, |c| c.attainable.as_deref() == Some(c.truth()))
+        };
+    TopOneSeparable, Some(6),
         "The planted effect is on top where the nearest other is 4 standard deviations away",
         |s| share(&s.separable, Case::names_first);
-    TopThree, Some(4), "The planted effect is among the first three",
+    TopThree, Some(7), "The planted effect is among the first three",
         |s| share(&s.reported, |c| {
             c.names_effects() && c.top_three.iter().any(|name| name == c.truth())
         });
-    Class, Some(5), "The planted effect is on top or in the class of what is",
+    Class, Some(8), "The planted effect is on top or in the class of what is",
         |s| share(&s.reported, |c| {
             c.names_effects() && (c.on_top() || c.class.iter().any(|name| name == c.truth()))
         });
-    SureAndWrong, Some(6), "Named with probability 0.9 or more, and wrong",
+    SureAndWrong, Some(9), "Named with probability 0.9 or more, and wrong",
         |s| share(&s.planted, |c| c.is_sure() && !c.on_top());
     Sure, None, "Named with probability 0.9 or more, of all reported",
         |s| share(&s.reported, Case::is_sure);
-    Credible, Some(7), "90 % credible sets that hold the planted effect",
+    Credible, Some(10), "90 % credible sets that hold the planted effect",
         |s| share(&s.reported, |c| c.credible.iter().any(|name| name == c.truth()));
-    Silent, Some(13), "No effect planted: no gap reported",
+    Silent, Some(16), "No effect planted: no gap reported",
         |s| share(&s.nulls, Case::is_silent);
-    Abstained, Some(15),
+    Abstained, Some(18),
         "Effect struck from the library, no pair within 5 standard deviations: outside the library",
         |s| share(&s.struck, |c| c.verdict == VerdictKind::OutsideLibrary);
-    StruckAndSure, Some(16), "Of those: another named with probability 0.9 or more",
+    StruckAndSure, Some(19), "Of those: another named with probability 0.9 or more",
         |s| share(&s.struck, Case::is_sure);
-    NullAndSure, Some(14), "No effect planted: one named with probability 0.9 or more",
+    NullAndSure, Some(17), "No effect planted: one named with probability 0.9 or more",
         |s| share(&s.nulls, Case::is_sure);
-    Outside, Some(17), "Effect that no library has: outside the library",
+    Outside, Some(20), "Effect that no library has: outside the library",
         |s| share(&s.outside, |c| c.verdict == VerdictKind::OutsideLibrary);
-    OutsideAndSure, Some(18), "Of those: one named with probability 0.9 or more",
+    OutsideAndSure, Some(21), "Of those: one named with probability 0.9 or more",
         |s| share(&s.outside, Case::is_sure);
-    PairExact, Some(19), "Pairs of which both are named and nothing else",
+    PairExact, Some(22), "Pairs of which both are named and nothing else",
         |s| share(&s.pairs, |c| {
             c.named.len() == 2 && c.planted.effects.iter().all(|(name, _)| c.is_named(name))
         });
-    PairClass, Some(20), "Pairs of which both are named or in the class",
+    PairClass, Some(23), "Pairs of which both are named or in the class",
         |s| share(&s.pairs, |c| {
             c.planted.effects.iter().all(|(name, _)| c.is_named(name) || c.class.contains(name))
         });
-    PairTop, Some(21), "Pairs of which one is on top",
+    PairTop, Some(24), "Pairs of which one is on top",
         |s| share(&s.pairs, |c| {
             c.names_effects() && c.planted.effects.iter().any(|(name, _)| c.top_is(name))
         });
-    PlaceSignificant, Some(22), "Gaps that vary by 0.35 % with a variable: a place is reported",
+    PlaceSignificant, Some(25), "Gaps that vary by 0.35 % with a variable: a place is reported",
         |s| located_share(&s.placed, |l| l.significant);
-    PlaceDriver, Some(23), "Of those: the variable that drives the gap is named",
+    PlaceDriver, Some(26), "Of those: the variable that drives the gap is named",
         |s| located_share(&s.placed, |l| l.driver_named);
-    PlaceAlarm, Some(25), "No effect planted: a place is reported",
+    PlaceAlarm, Some(28), "No effect planted: a place is reported",
         |s| {
             let located: Vec<&Located> = s.nulls.iter().filter_map(|c| c.located.as_ref()).collect();
             located_share(&located, |l| l.significant)
         };
-    PlaceOverlapMedian, Some(24), "Of those: overlap with the truly worst region, median",
+    PlaceOverlapMedian, Some(27), "Of those: overlap with the truly worst region, median",
         |s| Reached::Figure(median(s.placed.iter().map(|l| l.overlap).collect()));
-    Intervals, Some(9), "95 % intervals of size that hold the truth",
+    Intervals, Some(12), "95 % intervals of size that hold the truth",
         |s| {
             let on_top: Vec<&Case> =
                 s.reported.iter().copied().filter(|c| c.interval_holds.is_some()).collect();
             share(&on_top, |c| c.interval_holds == Some(true))
         };
-    CalibrationError, Some(8), "Expected calibration error",
+    CalibrationError, Some(11), "Expected calibration error",
         |s| Reached::Mean { value: calibration::error(&s.reported), of: s.reported.len() };
-    ClosureMedian, Some(11), "Closure on unseen flights, median over gaps above 0.5 %",
+    ClosureMedian, Some(14), "Closure on unseen flights, median over gaps above 0.5 %",
         |s| Reached::Figure(median(closable(&s.reported).filter_map(|c| c.closure).collect()));
-    PlantedClosureMedian, Some(12),
+    PlantedClosureMedian, Some(15),
         "Share of the planted gap that the named effects remove, median over gaps above 0.5 %",
         |s| Reached::Figure(median(closable(&s.reported).filter_map(|c| c.planted_closure).collect()));
-    SizeErrorMedian, Some(10), "Error of size, median",
+    SizeErrorMedian, Some(13), "Error of size, median",
         |s| Reached::Figure(median(
             s.reported.iter().filter_map(|c| c.size_error).map(f64::abs).collect(),
         ));
@@ -341,6 +353,8 @@ mod tests {
             closure: Some(0.9),
             gap_rms_percent: 1.0,
             nearest: Some((10.0, 10.0)),
+            largest: Some(top.to_owned()),
+            attainable: None,
         }
     }
 
@@ -360,6 +374,20 @@ mod tests {
         assert_eq!(bins, [(1, 1), (1, 2)]);
         assert_eq!(scores.confusion[a][b], 1);
         assert_eq!(scores.reached(ScoreName::ClosureMedian).value(), Some(0.9));
+    }
+
+    /// Of three cases one abstains with the right effect in the lead, and for two it is known what could be named.
+    #[test]
+    fn a_ceiling_counts_where_it_is_known_and_a_lead_whatever_the_verdict() {
+        let [a, b] = ["drag_factor", "tsfc_factor"];
+        let known = |name: &str, case: Case| Case { attainable: Some(name.to_owned()), ..case };
+        let abstains = Case { verdict: VerdictKind::OutsideLibrary, ..case(a, a, 0.3) };
+        let cases = [known(a, abstains), known(b, case(a, b, 0.9)), case(b, b, 0.8)];
+        let scores = Scores::from_cases(&cases);
+        let of = |name| scores.reached(name).share().map(|share| (share.count, share.of)).unwrap();
+        assert_eq!(of(ScoreName::TopOne), (1, 3));
+        assert_eq!(of(ScoreName::LeadsCauses), (2, 3));
+        assert_eq!(of(ScoreName::AttainableTopOne), (1, 2));
     }
 
     #[test]

@@ -308,6 +308,8 @@ mod tests {
                 located: None,
                 gap_rms_percent: 1.0,
                 nearest: None,
+                largest: None,
+                attainable: None,
             },
         }
     }

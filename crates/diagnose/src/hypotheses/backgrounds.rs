@@ -226,6 +226,18 @@ pub(crate) fn small_effects(library: &Library, small_effects_scale: f64) -> (Vec
 }
 
 impl Smoothed {
+    /// The Gram over all columns of the library and the residual, the last.
+    pub(crate) const fn gram(&self) -> &Mat<f64> {
+        &self.matrix
+    }
+
+    /// ln of its prior probability and of the determinant of its evidence, for residuals whose variance is this.
+    pub(crate) fn ln_weight(&self, noise_scale: f64) -> f64 {
+        let residual = self.matrix.ncols() - 1;
+        let square = self.matrix[(residual, residual)] / noise_scale;
+        self.ln_prior - 0.5 * (self.ln_determinant + square)
+    }
+
     pub(crate) fn is_of(&self, at: &Background) -> bool {
         self.smooth_amplitude.total_cmp(&at.smooth_amplitude).is_eq() && self.level == at.level
     }

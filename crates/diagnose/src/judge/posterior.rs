@@ -47,19 +47,21 @@ impl Posterior {
     }
 }
 
+/// Mean square of what a unit of a column changes ln fuel flow by.
+pub(crate) fn mean_square(system: &WhitenedSystem<'_>, column: usize) -> f64 {
+    let segments = &system.data.segments;
+    let sum: f64 = segments.iter().map(|row| row.signatures[column][0].powi(2)).sum();
+    sum / segments.len() as f64
+}
+
 /// Probability of each effect to be the larger one of what acts, over models.
 pub(crate) fn dominant(
     system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     library: &Library,
 ) -> Vec<Posterior> {
-    let count = system.data.segments.len() as f64;
-    let mean_squares: Vec<f64> = (0..library.columns.len())
-        .map(|column| {
-            system.data.segments.iter().map(|row| row.signatures[column][0].powi(2)).sum::<f64>()
-                / count
-        })
-        .collect();
+    let mean_squares: Vec<f64> =
+        (0..library.columns.len()).map(|column| mean_square(system, column)).collect();
     // One entry per effect, flight-to-flight scatter last.
     let mut found: Vec<Option<Posterior>> = vec![None; library.effects.len() + 1];
     let flats = flat_probabilities(analysis, &mean_squares);

@@ -58,6 +58,7 @@ pub(crate) const fn insufficient(
         gap: Gap::UNMEASURED,
         r#where: vec![],
         causes: vec![],
+        contributions: vec![],
         not_testable: vec![],
         verdict: Verdict::InsufficientData(reason),
         addition: None,

@@ -2,7 +2,7 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution, Open01, StandardNormal};
 
 /// A source of standard normal numbers: the same for the same seed and stream on every machine.
 pub(crate) struct RandomStream(ChaCha8Rng);
@@ -23,6 +23,16 @@ impl RandomStream {
         for slot in into {
             *slot = self.normal();
         }
+    }
+
+    /// A number evenly between 0 and 1, neither of them.
+    pub(crate) fn uniform(&mut self) -> f64 {
+        Open01.sample(&mut self.0)
+    }
+
+    /// An exponential number of mean 1.
+    pub(crate) fn exponential(&mut self) -> f64 {
+        -self.uniform().ln()
     }
 
     /// A number from 0 to n − 1.

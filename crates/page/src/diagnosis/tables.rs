@@ -29,6 +29,9 @@ pub(super) fn tables(diagnosed: &DiagnosedTail, detail: Detail) -> Markup {
         }
         @if !diagnosis.r#where.is_empty() { details.more { summary { "Places" } (places(diagnosis)) } }
         @if full && !diagnosis.causes.is_empty() { details.more { summary { "All causes" } (causes(diagnosis)) } }
+        @if full && !diagnosis.contributions.is_empty() {
+            details.more { summary { "What each effect makes of the gap, all of them at once" } (contributions(diagnosis)) }
+        }
         @if full && !diagnosis.detectable.is_empty() {
             details.more { summary { "How small an effect these flights would show" } (detectable(diagnosis)) }
         }
@@ -86,6 +89,30 @@ fn causes(diagnosis: &Diagnosis) -> Markup {
                     td { (cause.effect.unit_words()) }
                     td { @if let Some(closure) = cause.closure { (format!("{:.0} %", 100.0 * closure.share)) } @else { "–" } }
                     td { @if cause.class.len() > 1 { (named(&cause.class[1..])) } @else { "–" } }
+                } } }
+            }
+        }
+    }
+}
+
+fn contributions(diagnosis: &Diagnosis) -> Markup {
+    html! {
+        p.note { "Every effect of the library acts, most of them next to nothing: for a gap that no one or two carry. What these \
+                  flights cannot tell apart shares what it makes, so that its intervals reach down to nothing." }
+        div.scroll {
+            table.data data-name="contributions" {
+                thead { tr {
+                    th scope="col" { "effect" } th scope="col" { "makes the most" } th scope="col" { "of fuel flow, % rms" }
+                    th scope="col" { "95 % interval" } th scope="col" { "size" } th scope="col" { "95 % interval" } th scope="col" { "unit" }
+                } }
+                tbody { @for one in &diagnosis.contributions { tr {
+                    th scope="row" { code { (one.effect) } }
+                    td { (format!("{:.2}", one.leads)) }
+                    td { (format!("{:.2}", one.rms_percent)) }
+                    td { (format!("{:.2} to {:.2}", one.rms_ci95[0], one.rms_ci95[1])) }
+                    td { (three_digits(one.magnitude.value)) }
+                    td { (three_digits(one.magnitude.ci95[0])) " to " (three_digits(one.magnitude.ci95[1])) }
+                    td { (one.effect.unit_words()) }
                 } } }
             }
         }

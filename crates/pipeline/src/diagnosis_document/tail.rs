@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use diagnose::{
-    Beside, Cause, Closure, Detectable, Diagnosis, FoundForm, Gap, HeldOutFlight, OutsideLibrary,
-    Region, Separation, Slice, Verdict,
+    Beside, Cause, Closure, Contribution, Detectable, Diagnosis, FoundForm, Gap, HeldOutFlight,
+    OutsideLibrary, Region, Separation, Slice, Verdict,
 };
 use flight::effect::EffectId;
 use serde::{Deserialize, Serialize};
@@ -34,6 +34,10 @@ pub struct TailDiagnosis {
     pub r#where: Vec<SliceRecord>,
     /// Causes, the most probable first.
     pub causes: Vec<CauseRecord>,
+    /// What each effect makes of the gap, all of the library acting at once; the likeliest largest one first. Left out where no
+    /// gap is detected.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contributions: Vec<ContributionRecord>,
     /// Effects that this data cannot test, and what they need.
     pub not_testable: Vec<NotTestableRecord>,
     /// The conclusion.
@@ -135,6 +139,21 @@ pub struct CauseRecord {
     /// With `--fleet` whose it is: `type`, `tail` or `sensor`; absent where the fleet has no such finding.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<String>,
+}
+
+/// What one effect makes of the gap, all effects acting at once.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContributionRecord {
+    /// Name of the effect.
+    pub effect: String,
+    /// Its size.
+    pub magnitude: MagnitudeRecord,
+    /// Root mean square of the change of fuel flow that it makes, %.
+    pub rms_percent: f64,
+    /// 95 % interval of that.
+    pub rms_ci95: [f64; 2],
+    /// Probability that it makes the largest change of all.
+    pub leads: f64,
 }
 
 /// Size with unit and interval.
@@ -327,6 +346,7 @@ impl From<&DiagnosedTail> for TailDiagnosis {
             gap,
             r#where: places,
             causes,
+            contributions,
             not_testable,
             verdict,
             addition,
@@ -346,6 +366,7 @@ impl From<&DiagnosedTail> for TailDiagnosis {
             gap: GapRecord::from(gap),
             r#where: places.iter().map(SliceRecord::from).collect(),
             causes: causes.iter().map(CauseRecord::from).collect(),
+            contributions: contributions.iter().map(ContributionRecord::from).collect(),
             not_testable: not_testable
                 .iter()
                 .map(|entry| NotTestableRecord {
@@ -435,6 +456,18 @@ impl From<&Cause> for CauseRecord {
             closure_ci95: cause.closure.map(|closure| closure.ci95),
             hidden: cause.hidden.to_string(),
             level: None,
+        }
+    }
+}
+
+impl From<&Contribution> for ContributionRecord {
+    fn from(contribution: &Contribution) -> Self {
+        Self {
+            effect: contribution.effect.to_string(),
+            magnitude: MagnitudeRecord::of(contribution.effect, contribution.magnitude),
+            rms_percent: contribution.rms_percent,
+            rms_ci95: contribution.rms_ci95,
+            leads: contribution.leads,
         }
     }
 }

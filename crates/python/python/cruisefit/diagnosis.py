@@ -102,6 +102,25 @@ class Cause:
 
 
 @dataclass(frozen=True)
+class Contribution:
+    """What one effect makes of the gap, all effects of the library acting at once.
+
+    Attributes:
+        effect: Its name.
+        magnitude: Its size.
+        rms_percent: Root mean square of the change of fuel flow that it makes, %.
+        rms_ci95: 95 % interval of that.
+        leads: Probability that it makes the largest change of all.
+    """
+
+    effect: str
+    magnitude: Magnitude
+    rms_percent: float
+    rms_ci95: Interval
+    leads: float
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The conclusion.
 
@@ -131,6 +150,8 @@ class TailDiagnosis:
     Attributes:
         causes: The most probable first.
         where: Regions in which the gap lies, the clearest first.
+        contributions: What each effect makes of the gap, all of them at once, the likeliest largest one first; empty where no
+            gap is detected.
         not_testable: Effects that these data cannot test, and what each needs.
         lines: The diagnosis in plain words.
         record: Its part of ``diagnosis.json``, with all that the attributes leave out.
@@ -142,6 +163,7 @@ class TailDiagnosis:
     gap: Gap
     where: list[Slice]
     causes: list[Cause]
+    contributions: list[Contribution]
     not_testable: dict[str, list[str]]
     verdict: Verdict
     lines: list[str]
@@ -326,6 +348,7 @@ def _tail_diagnosis(record: dict[str, Any], lines: list[str]) -> TailDiagnosis:
         gap=_read(Gap, record["gap"]),
         where=[_read(Slice, one) for one in record["where"]],
         causes=[_cause(one) for one in record["causes"]],
+        contributions=[_contribution(one) for one in record.get("contributions", [])],
         not_testable={one["effect"]: one["needs"] for one in record["not_testable"]},
         verdict=_read(Verdict, _with_class(record["verdict"])),
         lines=lines,
@@ -335,6 +358,10 @@ def _tail_diagnosis(record: dict[str, Any], lines: list[str]) -> TailDiagnosis:
 
 def _cause(record: dict[str, Any]) -> Cause:
     return _read(Cause, {**_with_class(record), "magnitude": _read(Magnitude, record["magnitude"])})
+
+
+def _contribution(record: dict[str, Any]) -> Contribution:
+    return _read(Contribution, {**record, "magnitude": _read(Magnitude, record["magnitude"])})
 
 
 def _with_class(record: dict[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,264 @@
+//! All columns of a Gram at once under a prior that shrinks what is small and leaves what is large: the horseshoe.
+//!
+//! ```text
+//! β_j ~ N(0, τ² λ_j²)·N(0, c²),  λ_j ~ C⁺(0, 1),  τ ~ C⁺(0, τ₀)                                   [diagnosis.55]
+//! ```
+//!
+//! # Source
+//! Carvalho, C. M., Polson, N. G., and Scott, J. G.: The horseshoe estimator for sparse signals. Biometrika 97 (2010), 465–480.
+//! The slab c: Piironen, J., and Vehtari, A.: Sparsity information and regularization in the horseshoe and other shrinkage
+//! priors. Electronic Journal of Statistics 11 (2017), 5018–5051. The steps of the sampler: Makalic, E., and Schmidt, D. F.: A
+//! simple sampler for the horseshoe estimator. IEEE Signal Processing Letters 23 (2016), 179–182.
+
+use faer::Mat;
+
+use crate::math::cholesky::Cholesky;
+use crate::math::random::RandomStream;
+
+/// Largest precision of a column's prior: a millionth of its unit is nothing, and matrices stay finite.
+const LARGEST_PRECISION: f64 = 1e12;
+/// Sweeps between two choices of the background, each of which factors every one of them.
+const SWEEPS_TO_A_BACKGROUND: usize = 10;
+
+/// A linear system from which all but its columns was integrated out, residuals of unit variance.
+pub(crate) struct Candidate {
+    /// Products of the columns with each other.
+    pub(crate) gram: Mat<f64>,
+    /// Products of the columns with the residuals, one column.
+    pub(crate) product: Mat<f64>,
+    /// ln of its prior probability and of its evidence without any column.
+    pub(crate) ln_weight: f64,
+}
+
+/// What the prior believes and how long is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Horseshoe {
+    /// Scale τ₀ of the size that is common to all columns.
+    pub(crate) common_scale: f64,
+    /// Standard deviation c of the slab.
+    pub(crate) slab: f64,
+    /// Sweeps that are thrown away, and draws that are kept.
+    pub(crate) sweeps: (usize, usize),
+    pub(crate) seed: u64,
+}
+
+/// Draws of all coefficients, one column a draw; `None` where a matrix is not positive definite.
+pub(crate) fn draw(candidates: &[Candidate], prior: Horseshoe) -> Option<Mat<f64>> {
+    let size = candidates.first()?.gram.ncols();
+    let mut chain = Chain::new(size, prior);
+    let (discarded, kept) = prior.sweeps;
+    let mut draws = Mat::zeros(size, kept);
+    for sweep in 0..discarded + kept {
+        if candidates.len() > 1 && sweep % SWEEPS_TO_A_BACKGROUND == 0 {
+            chain.choose(candidates)?;
+        }
+        chain.draw_coefficients(&candidates[chain.candidate])?;
+        chain.draw_scales();
+        if let Some(place) = sweep.checked_sub(discarded) {
+            draws.col_as_slice_mut(place).copy_from_slice(&chain.coefficients);
+        }
+    }
+    Some(draws)
+}
+
+/// Where a sampler is.
+struct Chain {
+    prior: Horseshoe,
+    random: RandomStream,
+    candidate: usize,
+    coefficients: Vec<f64>,
+    /// λ², and the auxiliary variables of λ.
+    own: Vec<f64>,
+    own_auxiliary: Vec<f64>,
+    /// τ², and its auxiliary variable.
+    common: f64,
+    common_auxiliary: f64,
+}
+
+impl Chain {
+    fn new(size: usize, prior: Horseshoe) -> Self {
+        /// Stream of these draws among those of a seed.
+        const STREAM: u64 = 0x5A0E;
+        let common = prior.common_scale * prior.common_scale;
+        Self {
+            prior,
+            random: RandomStream::new(prior.seed, STREAM),
+            candidate: 0,
+            coefficients: vec![0.0; size],
+            own: vec![1.0; size],
+            own_auxiliary: vec![1.0; size],
+            common,
+            common_auxiliary: common,
+        }
+    }
+
+    /// Factor of a candidate's precision under the present scales, and `L⁻¹` of its product.
+    fn factored(&self, candidate: &Candidate) -> Option<(Cholesky, Mat<f64>)> {
+        let mut precision = candidate.gram.clone();
+        for (place, own) in self.own.iter().enumerate() {
+            let of_prior = 1.0 / (own * self.common) + self.prior.slab.powi(-2);
+            precision[(place, place)] += of_prior.min(LARGEST_PRECISION);
+        }
+        let factor = Cholesky::in_place(precision)?;
+        let mut half = candidate.product.clone();
+        factor.solve_lower(&mut half);
+        Some((factor, half))
+    }
+
+    /// Draws which candidate holds, coefficients integrated out.
+    fn choose(&mut self, candidates: &[Candidate]) -> Option<()> {
+        let mut lns = Vec::with_capacity(candidates.len());
+        for candidate in candidates {
+            let (factor, half) = self.factored(candidate)?;
+            let explained = half.col_as_slice(0).iter().map(|value| value * value).sum::<f64>();
+            lns.push(candidate.ln_weight + 0.5 * (explained - factor.ln_determinant()));
+        }
+        let largest = lns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights = lns.iter().map(|ln| (ln - largest).exp());
+        let mut left = self.random.uniform() * weights.clone().sum::<f64>();
+        self.candidate = lns.len() - 1;
+        for (place, weight) in weights.enumerate() {
+            left -= weight;
+            if left <= 0.0 {
+                self.candidate = place;
+                break;
+            }
+        }
+        Some(())
+    }
+
+    fn draw_coefficients(&mut self, candidate: &Candidate) -> Option<()> {
+        let (factor, mut half) = self.factored(candidate)?;
+        self.random.fill(&mut self.coefficients);
+        for (value, normal) in half.col_as_slice_mut(0).iter_mut().zip(&self.coefficients) {
+            *value += normal;
+        }
+        factor.solve_upper(&mut half);
+        self.coefficients.copy_from_slice(half.col_as_slice(0));
+        Some(())
+    }
+
+    fn draw_scales(&mut self) {
+        let (random, common) = (&mut self.random, self.common);
+        let mut sum = 0.0;
+        for ((own, auxiliary), value) in
+            self.own.iter_mut().zip(&mut self.own_auxiliary).zip(&self.coefficients)
+        {
+            let square = value * value;
+            *own = (1.0 / *auxiliary + square / (2.0 * common)) / random.exponential();
+            *auxiliary = (1.0 + 1.0 / *own) / random.exponential();
+            sum += square / *own;
+        }
+        let gamma = half_gamma(random, self.coefficients.len() + 1);
+        self.common = (1.0 / self.common_auxiliary + 0.5 * sum) / gamma;
+        let scale = self.prior.common_scale.powi(-2);
+        self.common_auxiliary = (scale + 1.0 / self.common) / random.exponential();
+    }
+}
+
+/// A gamma number of shape `halves`/2 and unit rate: exponentials, and half the square of a normal number.
+fn half_gamma(random: &mut RandomStream, halves: usize) -> f64 {
+    let whole: f64 = (0..halves / 2).map(|_| random.exponential()).sum();
+    let mut normal = [0.0];
+    if halves % 2 == 1 {
+        random.fill(&mut normal);
+    }
+    whole + 0.5 * normal[0] * normal[0]
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::FRAC_2_PI;
+
+    use super::*;
+
+    fn candidate(gram: f64, product: f64, ln_weight: f64) -> Candidate {
+        let of = |value: f64| Mat::from_fn(1, 1, |_, _| value);
+        Candidate { gram: of(gram), product: of(product), ln_weight }
+    }
+
+    fn prior(kept: usize) -> Horseshoe {
+        Horseshoe { common_scale: 0.5, slab: 4.0, sweeps: (500, kept), seed: 20 }
+    }
+
+    /// Evidence, mean and mean square of one coefficient by the trapezium rule over ln λ and ln τ; given both, all is normal.
+    fn integrated(gram: f64, product: f64) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for i in -300..=300 {
+            for j in -300..=300 {
+                let (own, common) = ((0.05 * f64::from(i)).exp(), (0.05 * f64::from(j)).exp());
+                // Densities of half-Cauchy numbers, in their logarithms.
+                let density = FRAC_2_PI * own / (1.0 + own * own) * FRAC_2_PI * common
+                    / 0.5
+                    / (1.0 + (common / 0.5).powi(2));
+                let spread = (own * common).powi(-2);
+                let precision = gram + spread + 1.0 / 16.0;
+                let mean = product / precision;
+                // ∫ N(β; 0, 1/spread)·N(β; 0, 16)·exp(product·β − ½ gram·β²) dβ but for constants.
+                let weight = density * (spread / precision).sqrt() * (0.5 * product * mean).exp();
+                sums[0] += weight;
+                sums[1] += weight * mean;
+                sums[2] += weight * (mean * mean + 1.0 / precision);
+            }
+        }
+        [sums[0], sums[1] / sums[0], sums[2] / sums[0]]
+    }
+
+    /// One coefficient, of about one and of about four standard deviations. Oracle: numerical integration.
+    #[test]
+    fn one_coefficient_by_integration() {
+        for (gram, product) in [(4.0, 2.0), (4.0, 9.0)] {
+            let draws = draw(&[candidate(gram, product, 0.0)], prior(60_000)).unwrap();
+            let values: Vec<f64> = (0..draws.ncols()).map(|k| draws[(0, k)]).collect();
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
+            let [_, expected, expected_square] = integrated(gram, product);
+            // Four standard errors of some 6 000 independent draws.
+            let tolerance = 4.0 * (expected_square - expected * expected).sqrt() / 6_000_f64.sqrt();
+            assert!((mean - expected).abs() < tolerance, "{mean} {expected} {tolerance}");
+            assert!(
+                (square - expected_square).abs() < 4.0 * tolerance,
+                "{square} {expected_square}"
+            );
+            // A shrunk mean: neither nothing nor least squares.
+            assert!(expected > 0.05 && expected < product / gram, "{expected}");
+        }
+    }
+
+    /// Two backgrounds, one of which explains what the coefficient would: the share of draws in each is that of its evidence.
+    #[test]
+    fn backgrounds_are_chosen_by_evidence() {
+        let (gram, products) = (4.0, [6.0, 1.0]);
+        let [first, second] = products.map(|product| integrated(gram, product)[0]);
+        // Weights that make the two about as probable.
+        let lns = [0.0, (first / second).ln() - 0.4];
+        let candidates = [candidate(gram, 6.0, lns[0]), candidate(gram, 1.0, lns[1])];
+        let mut chain = Chain::new(1, prior(0));
+        let mut chosen = 0_u32;
+        for sweep in 0..120_000 {
+            if sweep % SWEEPS_TO_A_BACKGROUND == 0 {
+                chain.choose(&candidates).unwrap();
+                chosen += u32::try_from(chain.candidate).unwrap();
+            }
+            chain.draw_coefficients(&candidates[chain.candidate]).unwrap();
+            chain.draw_scales();
+        }
+        let share = f64::from(chosen) / 12_000.0;
+        let expected = 1.0 / (1.0 + 0.4_f64.exp());
+        assert!((share - expected).abs() < 0.03, "{share} {expected}");
+    }
+
+    /// Shapes of whole and of half numbers: mean and variance are the shape.
+    #[test]
+    fn gamma_numbers_have_their_moments() {
+        let mut random = RandomStream::new(3, 0);
+        for halves in [3, 8] {
+            let numbers: Vec<f64> = (0..40_000).map(|_| half_gamma(&mut random, halves)).collect();
+            let shape = halves as f64 / 2.0;
+            let mean = numbers.iter().sum::<f64>() / 40_000.0;
+            let variance = numbers.iter().map(|n| (n - mean).powi(2)).sum::<f64>() / 40_000.0;
+            assert!((mean - shape).abs() < 5.0 * (shape / 40_000.0).sqrt(), "{mean} {shape}");
+            assert!((variance / shape - 1.0).abs() < 0.1, "{variance} {shape}");
+        }
+    }
+}
