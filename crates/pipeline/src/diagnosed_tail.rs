@@ -3,6 +3,7 @@
 use diagnose::Diagnosis;
 use serde::{Deserialize, Serialize};
 
+use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::note_words;
 use crate::monitoring::Event;
 use crate::summary::counted;
@@ -19,6 +20,8 @@ pub struct DiagnosedTail {
     pub diagnosis: Diagnosis,
     /// The flights and the model.
     pub compared: Compared,
+    /// The gap month by month.
+    pub months: Vec<MonthGap>,
     /// What the run adds to the diagnosis' own notes: of the model, then of the reports.
     pub run_notes: Vec<String>,
 }

@@ -7,6 +7,7 @@ use flight::effect::EffectId;
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail, POOL, RunOptions};
 use crate::diagnosis_figures::DiagnosisFigures;
+use crate::diagnosis_months::months;
 use crate::model_file::ModelFile;
 use crate::models::Models;
 use crate::monitoring::Event;
@@ -154,6 +155,7 @@ impl Group<'_> {
             tail: self.name.clone(),
             diagnosis,
             compared: self.compared(),
+            months: months(&figures.segments),
             run_notes: self.run_notes(asked),
         };
         Ok((diagnosed, figures))

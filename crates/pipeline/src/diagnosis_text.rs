@@ -7,6 +7,7 @@ use diagnose::{Closure, Diagnosis, Found, Magnitude, Verdict};
 use flight::effect::{EffectGroup, EffectId};
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
+use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::{
     acts_on_words, advice, are_few, distances_words, form_words, joined, measurement_words,
     others_of_class, region_words, silent_words, told_size, variable_words,
@@ -74,6 +75,9 @@ pub fn lines(diagnosed: &DiagnosedTail) -> Vec<String> {
         Verdict::OutsideLibrary(_) => unnamed(diagnosis),
     };
     lines.push(gap(diagnosis));
+    if diagnosis.gap.detected {
+        lines.extend(newest_month(&diagnosed.months));
+    }
     lines.extend(places(diagnosis));
     lines.extend(found);
     if !diagnosis.not_testable.is_empty() {
@@ -123,6 +127,31 @@ fn gap(diagnosis: &Diagnosis) -> String {
         gap.rms_ci95[1],
         gap.noise_floor_rms_percent
     )
+}
+
+/// The newest month apart, where there are others: whether the gap is still there, and what is named still holds.
+fn newest_month(months: &[MonthGap]) -> Option<String> {
+    let newest = months.last().filter(|_| months.len() > 1)?;
+    let told = |mean: f64, ci95: Option<[f64; 2]>| {
+        let mean = format!("{:+.2} %", not_minus_zero(mean, 2));
+        match ci95 {
+            Some([low, high]) => format!(
+                "{mean} ({:+.2} to {:+.2})",
+                not_minus_zero(low, 2),
+                not_minus_zero(high, 2)
+            ),
+            None => mean,
+        }
+    };
+    let after = newest.after_percent.map_or_else(String::new, |after| {
+        format!("; {} with what is named in the model", told(after, newest.after_ci95))
+    });
+    Some(format!(
+        "In the newest month, {} with {}, the mean gap is {}{after}.",
+        newest.month,
+        counted(newest.flights, "flight"),
+        told(newest.mean_gap_percent, newest.ci95),
+    ))
 }
 
 fn places(diagnosis: &Diagnosis) -> Vec<String> {
@@ -441,6 +470,25 @@ mod tests {
         }
         assert_eq!(EffectId::TsfcEngine(2).phrase(3.0), "engine 2 burns more");
         assert_eq!(EffectId::MachBias.phrase(-0.004), "Mach number reads low");
+    }
+
+    #[test]
+    fn the_newest_month_is_said_where_there_are_others() {
+        let month = |month: &str, after_percent: Option<f64>| MonthGap {
+            month: month.to_owned(),
+            flights: 3,
+            segments: 20,
+            mean_gap_percent: 1.234,
+            ci95: Some([0.9, 1.6]),
+            after_percent,
+            after_ci95: after_percent.map(|_| [-0.4, 0.3]),
+        };
+        assert_eq!(newest_month(&[month("2026-01", None)]), None);
+        assert_eq!(
+            newest_month(&[month("2026-01", Some(0.2)), month("2026-02", Some(-0.004))]).unwrap(),
+            "In the newest month, 2026-02 with 3 flights, the mean gap is +1.23 % (+0.90 to +1.60); +0.00 % (-0.40 to +0.30) \
+             with what is named in the model."
+        );
     }
 
     #[test]

@@ -53,6 +53,7 @@ pub mod diagnosed_tail;
 pub mod diagnosis_document;
 pub mod diagnosis_figures;
 pub mod diagnosis_groups;
+pub mod diagnosis_months;
 pub mod diagnosis_text;
 pub mod diagnosis_words;
 pub mod difference;

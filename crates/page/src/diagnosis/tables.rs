@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use diagnose::{Diagnosis, LeftOutReason, Note};
 use maud::{Markup, html};
 use pipeline::diagnosed_tail::DiagnosedTail;
+use pipeline::diagnosis_months::MonthGap;
 use pipeline::diagnosis_text;
 use pipeline::diagnosis_words::{left_out_words, measurement_words, region_words};
 
@@ -28,6 +29,9 @@ pub(super) fn tables(diagnosed: &DiagnosedTail, detail: Detail) -> Markup {
             @for line in diagnosis_text::lines(diagnosed).iter().skip(1) { p { (line) } }
         }
         @if !diagnosis.r#where.is_empty() { details.more { summary { "Places" } (places(diagnosis)) } }
+        @if full && diagnosed.months.len() > 1 {
+            details.more { summary { "Month by month" } (months(&diagnosed.months)) }
+        }
         @if full && !diagnosis.causes.is_empty() { details.more { summary { "All causes" } (causes(diagnosis)) } }
         @if full && !diagnosis.contributions.is_empty() {
             details.more { summary { "What each effect makes of the gap, all of them at once" } (contributions(diagnosis)) }
@@ -65,6 +69,36 @@ fn places(diagnosis: &Diagnosis) -> Markup {
                     td { (signed(Some(place.ci95[0]))) " to " (signed(Some(place.ci95[1]))) }
                     td { @if place.share_of_gap > 1.0 { "all" } @else { (format!("{:.0} %", 100.0 * place.share_of_gap)) } }
                     td { (format!("{:.3}", place.p_value)) }
+                } } }
+            }
+        }
+    }
+}
+
+fn months(months: &[MonthGap]) -> Markup {
+    let interval = |ci95: Option<[f64; 2]>| {
+        ci95.map_or_else(
+            || "–".to_owned(),
+            |[low, high]| format!("{} to {}", signed(Some(low)), signed(Some(high))),
+        )
+    };
+    html! {
+        p.note { "Mean gap over the segments of a month, its 95 % interval by flight; with what is named in the model, of the sizes \
+                  that all flights together gave it." }
+        div.scroll {
+            table.data data-name="months" {
+                thead { tr {
+                    th scope="col" { "month" } th scope="col" { "flights" } th scope="col" { "segments" } th scope="col" { "mean gap, %" }
+                    th scope="col" { "95 % interval, %" } th scope="col" { "with what is named, %" } th scope="col" { "95 % interval, %" }
+                } }
+                tbody { @for one in months { tr {
+                    th scope="row" { (one.month) }
+                    td { (one.flights) }
+                    td { (one.segments) }
+                    td { (signed(Some(one.mean_gap_percent))) }
+                    td { (interval(one.ci95)) }
+                    td { @if one.after_percent.is_some() { (signed(one.after_percent)) } @else { "–" } }
+                    td { (interval(one.after_ci95)) }
                 } } }
             }
         }

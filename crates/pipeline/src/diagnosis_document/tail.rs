@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::addition_record::AdditionRecord;
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
+use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::{
     ENGINE_BOUNDS, acts_on_words, advice, bounds_name, form_name, form_parameters, form_words,
     left_out_words, measurement_words, region_words, variable_words,
@@ -30,6 +31,9 @@ pub struct TailDiagnosis {
     pub segments: usize,
     /// The gap before anything is added to the model.
     pub gap: GapRecord,
+    /// The gap in each calendar month, the newest last; left out where no segment was used.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub months: Vec<MonthGap>,
     /// Where the gap lies.
     pub r#where: Vec<SliceRecord>,
     /// Causes, the most probable first.
@@ -364,6 +368,7 @@ impl From<&DiagnosedTail> for TailDiagnosis {
             flights: *flights,
             segments: *segments,
             gap: GapRecord::from(gap),
+            months: diagnosed.months.clone(),
             r#where: places.iter().map(SliceRecord::from).collect(),
             causes: causes.iter().map(CauseRecord::from).collect(),
             contributions: contributions.iter().map(ContributionRecord::from).collect(),

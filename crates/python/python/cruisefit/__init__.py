@@ -23,9 +23,11 @@ from ._native import __version__
 from .adaptation import Adaptation, Evaluation, Monitoring, adapt, evaluate, merge
 from .diagnosis import (
     Cause,
+    Contribution,
     Diagnosis,
     Gap,
     Magnitude,
+    MonthGap,
     Slice,
     TailDiagnosis,
     Verdict,
@@ -44,6 +46,7 @@ __all__ = [
     "Adaptation",
     "Cause",
     "Check",
+    "Contribution",
     "CruisefitError",
     "DataWarning",
     "Diagnosis",
@@ -53,6 +56,7 @@ __all__ = [
     "InternalError",
     "Magnitude",
     "Model",
+    "MonthGap",
     "Monitoring",
     "PredictionWarning",
     "Refused",

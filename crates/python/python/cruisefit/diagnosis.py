@@ -121,6 +121,29 @@ class Contribution:
 
 
 @dataclass(frozen=True)
+class MonthGap:
+    """The gap in one calendar month, UTC.
+
+    Attributes:
+        month: Year and month, as ``2026-03``.
+        flights: Flights that were used.
+        segments: Segments that were used.
+        mean_gap_percent: Mean gap, %.
+        ci95: 95 % interval by flight; none for a single flight.
+        after_percent: Mean gap with the named effects in the model, %; none where nothing is named.
+        after_ci95: 95 % interval of that.
+    """
+
+    month: str
+    flights: int
+    segments: int
+    mean_gap_percent: float
+    ci95: Interval | None = None
+    after_percent: float | None = None
+    after_ci95: Interval | None = None
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The conclusion.
 
@@ -149,6 +172,7 @@ class TailDiagnosis:
 
     Attributes:
         causes: The most probable first.
+        months: The gap in each calendar month, the newest last.
         where: Regions in which the gap lies, the clearest first.
         contributions: What each effect makes of the gap, all of them at once, the likeliest largest one first; empty where no
             gap is detected.
@@ -161,6 +185,7 @@ class TailDiagnosis:
     flights: int
     segments: int
     gap: Gap
+    months: list[MonthGap]
     where: list[Slice]
     causes: list[Cause]
     contributions: list[Contribution]
@@ -346,6 +371,7 @@ def _tail_diagnosis(record: dict[str, Any], lines: list[str]) -> TailDiagnosis:
         flights=record["flights"],
         segments=record["segments"],
         gap=_read(Gap, record["gap"]),
+        months=[_read(MonthGap, one) for one in record.get("months", [])],
         where=[_read(Slice, one) for one in record["where"]],
         causes=[_cause(one) for one in record["causes"]],
         contributions=[_contribution(one) for one in record.get("contributions", [])],
@@ -372,7 +398,7 @@ def _with_class(record: dict[str, Any]) -> dict[str, Any]:
 def _read(kind: type[_T], record: dict[str, Any]) -> _T:
     """A record as a data class: pairs as tuples; fields that the class does not have stay in the record."""
     names = {one.name for one in fields(kind)}  # type: ignore[arg-type]
-    pairs = {"rms_ci95", "ci95", "closure_ci95"}
+    pairs = {"rms_ci95", "ci95", "closure_ci95", "after_ci95"}
     values: dict[str, Any] = {name: value for name, value in record.items() if name in names}
     for name in pairs & values.keys():
         if values[name] is not None:

@@ -1,0 +1,142 @@
+//! The gap month by month: whether it is still there, and whether what is named holds in the newest month.
+
+use diagnose::SegmentGap;
+use flight::Timestamp;
+use monitor::Month;
+use serde::{Deserialize, Serialize};
+
+/// The gap in one calendar month, UTC.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MonthGap {
+    /// Year and month.
+    pub month: String,
+    /// Flights that were used.
+    pub flights: usize,
+    /// Segments that were used.
+    pub segments: usize,
+    /// Mean gap, %.
+    pub mean_gap_percent: f64,
+    /// 95 % interval by flight; `null` for a single flight.
+    pub ci95: Option<[f64; 2]>,
+    /// Mean gap with the named effects in the model, of the sizes that all flights gave them, %; `null` where nothing is named.
+    pub after_percent: Option<f64>,
+    /// 95 % interval of that, by flight.
+    pub after_ci95: Option<[f64; 2]>,
+}
+
+/// Half width of a 95 % interval in standard deviations: the normal distribution's 97.5 % quantile.
+const NORMAL_95: f64 = 1.96;
+
+/// The months in which a tail flew, in order.
+#[must_use]
+pub fn months(segments: &[SegmentGap]) -> Vec<MonthGap> {
+    let month_of = |segment: &SegmentGap| {
+        #[expect(clippy::cast_possible_truncation, reason = "seconds, far below 2^53")]
+        let time = Timestamp::from_second(segment.date_s as i64).ok()?;
+        Some(Month::from_timestamp(time))
+    };
+    let mut known: Vec<(Month, &SegmentGap)> =
+        segments.iter().filter_map(|segment| Some((month_of(segment)?, segment))).collect();
+    known.sort_by_key(|(month, segment)| (*month, segment.flight));
+    known.chunk_by(|a, b| a.0 == b.0).map(of_month).collect()
+}
+
+fn of_month(rows: &[(Month, &SegmentGap)]) -> MonthGap {
+    let before = Mean::of(rows, |segment| Some(segment.before_percent));
+    let after = Mean::of(rows, |segment| segment.after_percent.last().copied());
+    MonthGap {
+        month: rows.first().map_or_else(String::new, |(month, _)| month.to_string()),
+        flights: rows.chunk_by(|a, b| a.1.flight == b.1.flight).count(),
+        segments: rows.len(),
+        mean_gap_percent: before.map_or(0.0, |before| before.mean),
+        ci95: before.and_then(|before| before.ci95),
+        after_percent: after.map(|after| after.mean),
+        after_ci95: after.and_then(|after| after.ci95),
+    }
+}
+
+/// A mean over segments with its interval by flight.
+#[derive(Clone, Copy, Debug)]
+struct Mean {
+    mean: f64,
+    ci95: Option<[f64; 2]>,
+}
+
+impl Mean {
+    /// Mean over segments; its variance is that of the flights' sums about it, since segments of a flight err together.
+    ///
+    /// ```text
+    /// s² = F/(F − 1)·Σ_f (Σ_i g_i − n_f ḡ)² / n²
+    /// ```
+    fn of(
+        rows: &[(Month, &SegmentGap)],
+        value: impl Fn(&SegmentGap) -> Option<f64>,
+    ) -> Option<Self> {
+        let values = rows.iter().map(|(_, segment)| Some((segment.flight, value(segment)?)));
+        let values: Vec<(usize, f64)> = values.collect::<Option<_>>()?;
+        let count = values.len() as f64;
+        let mean = values.iter().map(|(_, value)| value).sum::<f64>() / count;
+        let flights: Vec<f64> = values
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|own| own.iter().map(|(_, value)| value - mean).sum::<f64>())
+            .collect();
+        let (of, squares) =
+            (flights.len() as f64, flights.iter().map(|sum| sum * sum).sum::<f64>());
+        let half = NORMAL_95 * (of / (of - 1.0) * squares).sqrt() / count;
+        let ci95 = (flights.len() > 1).then_some([mean - half, mean + half]);
+        Some(Self { mean, ci95 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn segment(flight: usize, date: &str, before: f64, after: &[f64]) -> SegmentGap {
+        let time: Timestamp = date.parse().unwrap();
+        SegmentGap {
+            flight,
+            date_s: time.as_second() as f64,
+            mach: 0.8,
+            lift_coefficient: 0.4,
+            driver: None,
+            in_region: false,
+            before_percent: before,
+            after_percent: after.to_vec(),
+            engines_apart_percent: vec![],
+        }
+    }
+
+    /// By hand: gaps of 1, 1 in one flight and 3, 3 in another have the mean 2, flights' sums ∓2, and a standard deviation of
+    /// √(2·8)/4 = 1.
+    #[test]
+    fn months_by_hand() {
+        let segments = [
+            segment(2, "2026-02-01T00:00:00Z", 0.5, &[1.5, -0.25]),
+            segment(0, "2026-01-01T08:00:00Z", 1.0, &[0.5, 0.5]),
+            segment(0, "2026-01-01T09:00:00Z", 1.0, &[0.5, 0.5]),
+            segment(1, "2026-01-31T23:30:00Z", 3.0, &[0.5, 0.5]),
+            segment(1, "2026-01-31T23:59:59Z", 3.0, &[0.5, 0.5]),
+        ];
+        let found = months(&segments);
+        assert_eq!(found.len(), 2);
+        let january = &found[0];
+        assert_eq!((january.month.as_str(), january.flights, january.segments), ("2026-01", 2, 4));
+        let [low, high] = january.ci95.unwrap();
+        let is = |value: f64, expected: f64| (value - expected).abs() < 1e-12;
+        assert!(
+            is(january.mean_gap_percent, 2.0) && is(low, 0.04) && is(high, 3.96),
+            "{january:?}"
+        );
+        assert_eq!(january.after_ci95, Some([0.5, 0.5]));
+        let february = &found[1];
+        assert_eq!((february.after_percent, february.ci95), (Some(-0.25), None));
+    }
+
+    #[test]
+    fn without_named_effects_nothing_is_after() {
+        let found = months(&[segment(0, "2026-01-01T08:00:00Z", 1.0, &[])]);
+        assert_eq!((found[0].after_percent, found[0].after_ci95), (None, None));
+        assert!(months(&[]).is_empty());
+    }
+}
