@@ -178,14 +178,17 @@ fn index_row(tail: &Tail<'_>) -> Markup {
     let diagnosis = &tail.diagnosed.diagnosis;
     let gap = &diagnosis.gap;
     let closure = diagnosis.verdict.closure();
+    let is_computed = !matches!(diagnosis.verdict, Verdict::InsufficientData(_));
     html! {
         tr {
             th scope="row" { a href=(format!("#{}", tail.id)) { (tail.diagnosed.name()) } }
             td style="text-align:left" { (short(diagnosis)) }
             td { @if let Some(found) = diagnosis.verdict.found() { (format!("{:.2}", found.probability)) } @else { "–" } }
-            td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
-            td data-v=(gap.rms_percent) { (format!("{:.2}", gap.rms_percent)) }
-            td data-v=(gap.noise_floor_rms_percent) { (format!("{:.2}", gap.noise_floor_rms_percent)) }
+            @if is_computed {
+                td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
+                td data-v=(gap.rms_percent) { (format!("{:.2}", gap.rms_percent)) }
+                td data-v=(gap.noise_floor_rms_percent) { (format!("{:.2}", gap.noise_floor_rms_percent)) }
+            } @else { td { "–" } td { "–" } td { "–" } }
             td { @if let Some(closure) = closure { (percent(closure.share)) } @else { "–" } }
         }
     }
