@@ -6,8 +6,8 @@ use diagnose::{Diagnosis, Magnitude, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_words::{
-    acts_on_words, advice, are_few, form_words, others_of_class, region_words, silent_words,
-    told_size, variable_words,
+    NOT_RULED_OUT, acts_on_words, advice, are_few, form_words, near_and_far, others_of_class,
+    region_words, silent_words, told_size, variable_words,
 };
 
 use super::Tail;
@@ -48,7 +48,7 @@ pub(super) fn card(diagnosis: &Diagnosis) -> Markup {
             @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) {
                 dt { "How sure" } dd { (how_sure(diagnosis)) }
             }
-            dt { "What to do" } dd { (advice(&diagnosis.verdict)) }
+            dt { "What to do" } dd { (advice(diagnosis)) }
         }
     }
 }
@@ -96,8 +96,13 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
                 @if found.probability < 0.5 { ": no cause stands out, do not act on it" }
                 ". "
                 // Of a few the answer itself says that they are open, and advice says why.
-                @if !few && !others.is_empty() {
-                    "These flights cannot tell it from: "
+                @let [near, far] = near_and_far(found);
+                @let told = [
+                    ("These flights cannot tell it from", near),
+                    (NOT_RULED_OUT, far),
+                ];
+                @for (words, others) in told.iter().filter(|(_, others)| !few && !others.is_empty()) {
+                    (words) ": "
                     @for (place, id) in others.iter().enumerate() { @if place > 0 { "; " } (effect(diagnosis, *id)) }
                     ". "
                 }

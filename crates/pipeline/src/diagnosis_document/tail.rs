@@ -179,7 +179,7 @@ pub struct VerdictRecord {
     pub kind: VerdictKind,
     /// Effects that act.
     pub effects: Vec<String>,
-    /// Effects that these data cannot distinguish from the first.
+    /// Effects that these data cannot distinguish from the first, and those that its probabilities leave open all the same.
     pub class: Vec<String>,
     /// Probability of the first effect.
     pub probability: f64,
@@ -357,7 +357,10 @@ impl From<&DiagnosedTail> for TailDiagnosis {
                     needs: entry.needs.iter().map(|needed| needed.name().to_owned()).collect(),
                 })
                 .collect(),
-            verdict: VerdictRecord::from(verdict),
+            verdict: VerdictRecord {
+                advice: advice(&diagnosed.diagnosis),
+                ..VerdictRecord::from(verdict)
+            },
             addition: addition.as_ref().map(AdditionRecord::from),
             detectable: detectable.iter().map(DetectableRecord::from).collect(),
             outside: OutsideLibraryRecord::from(outside),
@@ -471,7 +474,8 @@ impl From<&Verdict> for VerdictRecord {
             }),
             closure: closure.map(|closure| closure.share),
             closure_ci95: closure.map(|closure| closure.ci95),
-            advice: advice(verdict),
+            // With the words for what was found, which the whole diagnosis has.
+            advice: String::new(),
             separations: verdict.found().map_or_else(Vec::new, |found| {
                 found.separations.iter().map(SeparationRecord::from).collect()
             }),
