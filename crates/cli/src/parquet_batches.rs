@@ -79,6 +79,8 @@ enum Kind {
     Number(f64),
     /// With nanoseconds for each count.
     Instant(i64),
+    /// Likewise, on a clock of which the file does not say where it is.
+    LocalTime(i64),
     /// Days since 1970.
     Date,
     /// Time of day, with nanoseconds for each count.
@@ -164,7 +166,8 @@ fn kind_of(column: &ColumnDescriptor) -> Option<Kind> {
     match (column.logical_type_ref(), column.physical_type()) {
         (_, PhysicalType::INT96) => Some(Kind::Instant(1)),
         (Some(LogicalType::Timestamp(form)), PhysicalType::INT64) => {
-            Some(Kind::Instant(nanoseconds(form.unit)))
+            let kind = if form.is_adjusted_to_u_t_c { Kind::Instant } else { Kind::LocalTime };
+            Some(kind(nanoseconds(form.unit)))
         }
         (Some(LogicalType::Time(form)), _) if is_integer => {
             Some(Kind::Time(nanoseconds(form.unit)))
@@ -244,6 +247,9 @@ fn counts<T: DataType>(
             cells.iter().map(|cell| cell.map_or(f64::NAN, |count| count as f64 * factor)).collect(),
         ),
         Kind::Instant(each) => BatchColumn::Instants(
+            cells.iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
+        ),
+        Kind::LocalTime(each) => BatchColumn::LocalTimes(
             cells.iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
         ),
         Kind::Date => text(|days, day_s| date(days.saturating_mul(day_s)), DAY_S),

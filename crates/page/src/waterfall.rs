@@ -9,14 +9,17 @@ use crate::chart::{Axis, Chart};
 const STEP: f64 = 190.0;
 const MARGINS: f64 = 76.0;
 
-/// Steps of one diagnosis: words, root mean square in %, class.
+/// Steps of one diagnosis: words, root mean square in %, class. None of one without a gap: of insufficient data.
 fn steps(diagnosis: &TailDiagnosis) -> Vec<(String, f64, &'static str)> {
     let gap = &diagnosis.gap;
-    let mut steps = vec![("gap".to_owned(), gap.rms_percent, "more4")];
+    let (Some(rms_percent), Some(floor)) = (gap.rms_percent, gap.noise_floor_rms_percent) else {
+        return Vec::new();
+    };
+    let mut steps = vec![("gap".to_owned(), rms_percent, "more4")];
     let first = diagnosis.causes.iter().find_map(|cause| Some((cause, cause.rms_after_percent?)));
     steps
         .extend(first.map(|(cause, left)| (format!("with {} added", cause.effect), left, "less5")));
-    steps.push(("noise of the sensors".to_owned(), gap.noise_floor_rms_percent, "even"));
+    steps.push(("noise of the sensors".to_owned(), floor, "even"));
     let floors = [
         ("noise of like segments", gap.floor_by_replicates_rms_percent),
         ("flexible model", gap.floor_by_held_out_fit_rms_percent),
@@ -30,6 +33,9 @@ fn steps(diagnosis: &TailDiagnosis) -> Vec<(String, f64, &'static str)> {
 /// The drawing: a bar for each step, its words and number below it.
 pub(crate) fn waterfall(diagnosis: &TailDiagnosis, number: usize) -> Markup {
     let steps = steps(diagnosis);
+    if steps.is_empty() {
+        return html! {};
+    }
     let largest = steps.iter().map(|step| step.1).fold(0.0, f64::max);
     let chart = Chart {
         id: format!("waterfall-{number}"),

@@ -9,8 +9,9 @@ use flight::effect::{EffectGroup, EffectId};
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::{
-    acts_on_words, advice, are_few, distances_words, form_words, joined, measurement_words,
-    others_of_class, region_words, silent_words, told_size, variable_words,
+    NOT_RULED_OUT, acts_on_words, advice, are_few, distances_words, form_words, joined,
+    measurement_words, near_and_far, others_of_class, region_words, silent_words, told_size,
+    variable_words,
 };
 use crate::summary::{counted, not_minus_zero};
 
@@ -66,7 +67,7 @@ pub fn lines(diagnosed: &DiagnosedTail) -> Vec<String> {
     )];
     let found = match &diagnosis.verdict {
         Verdict::InsufficientData(_) => {
-            let advice = advice(&diagnosis.verdict);
+            let advice = advice(diagnosis);
             lines.push(format!("No verdict, insufficient data. {advice}"));
             return lines;
         }
@@ -257,8 +258,13 @@ fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
             )
         } else if place == 0 && few {
             format!(
-                "Cause: one of {}, which these flights cannot tell apart: {what}, probability {:.2}; or {}.",
+                "Cause: one of {}, {}: {what}, probability {:.2}; or {}.",
                 others.len() + 1,
+                if found.credible.is_empty() {
+                    "which these flights cannot tell apart"
+                } else {
+                    "between which these flights do not decide"
+                },
                 found.probability,
                 others.iter().map(|id| with_probability(diagnosis, *id)).collect::<Vec<_>>().join(", ")
             )
@@ -272,8 +278,14 @@ fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         lines.extend(follows(found));
     }
     lines.push(closes(diagnosis, found));
-    if !others.is_empty() && (open || !few) {
-        lines.push(format!("These flights cannot tell it from: {}.", joined(&others, ", ")));
+    if open || !few {
+        let [near, far] = near_and_far(found);
+        if !near.is_empty() {
+            lines.push(format!("These flights cannot tell it from: {}.", joined(&near, ", ")));
+        }
+        if !far.is_empty() {
+            lines.push(format!("{NOT_RULED_OUT}: {}.", joined(&far, ", ")));
+        }
     }
     lines.extend(to_be_sure(found));
     let told = if few && !open { &others[..] } else { &[] };

@@ -29,8 +29,8 @@ pub fn silent_words(diagnosis: &Diagnosis) -> &'static str {
 }
 
 /// What to do after a verdict: one sentence or two.
-pub fn advice(verdict: &Verdict) -> String {
-    match verdict {
+pub fn advice(diagnosis: &Diagnosis) -> String {
+    match &diagnosis.verdict {
         Verdict::NoGap => {
             "Nothing. Each effect has a size that would just have been seen.".to_owned()
         }
@@ -38,7 +38,7 @@ pub fn advice(verdict: &Verdict) -> String {
             format!("Too little data: {}.", insufficient_words(*reason))
         }
         Verdict::OutsideLibrary(unexplained) => unexplained_words(unexplained),
-        Verdict::Effects(found) => found_words(found),
+        Verdict::Effects(found) => found_words(diagnosis, found),
     }
 }
 
@@ -58,14 +58,20 @@ fn unexplained_words(unexplained: &Unexplained) -> String {
     words
 }
 
-fn found_words(found: &Found) -> String {
+fn found_words(diagnosis: &Diagnosis, found: &Found) -> String {
     if found.effects.first() == Some(&EffectId::DragTable) {
         return table_words(found);
     }
-    let mut words = if found.class.len() > 1 {
-        format!("One of {}: these flights cannot tell them apart.", joined(&found.class, ", "))
-    } else {
-        format!("{}.", joined(&found.effects, " and "))
+    let titles = |ids: &[EffectId], between: &str| {
+        ids.iter().map(|id| title(diagnosis, *id)).collect::<Vec<_>>().join(between)
+    };
+    let mut words = match found.class.len() {
+        0 | 1 => format!("{}.", capital(&titles(&found.effects, ", and "))),
+        // A longer list in words hides what is advised.
+        _ if are_few(&others_of_class(found)) => {
+            format!("One of these: {}; {}.", titles(&found.class, "; "), undecided(found))
+        }
+        _ => format!("One of {}: {}.", joined(&found.class, ", "), undecided(found)),
     };
     if let Some(Rest { kind, variable }) = found.rest {
         let variable = variable_or_none(variable);
@@ -83,6 +89,28 @@ fn found_words(found: &Found) -> String {
         let _ = write!(words, " To be sure: {measurement} ({}).", distances_words(best));
     }
     words
+}
+
+/// Why the members of a class are named together.
+const fn undecided(found: &Found) -> &'static str {
+    if found.credible.is_empty() {
+        "these flights cannot tell them apart"
+    } else {
+        "these flights do not decide between them"
+    }
+}
+
+/// An effect in words at the sign that was found, and its name in files.
+fn title(diagnosis: &Diagnosis, id: EffectId) -> String {
+    let size = told_size(diagnosis, id).map_or(1.0, |size| size.value);
+    format!("{} ({id})", id.phrase(size))
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().collect::<String>() + letters.as_str()
+    })
 }
 
 /// A guide whose drag is off: adapting comes first.
@@ -111,6 +139,16 @@ fn table_words(found: &Found) -> String {
 /// The other effects of a verdict's class, which its flights cannot tell from those that it names.
 pub fn others_of_class(found: &Found) -> Vec<EffectId> {
     found.class.iter().copied().filter(|id| !found.effects.contains(id)).collect()
+}
+
+/// What is stated of effects that probabilities leave open though they are not like what was named.
+pub const NOT_RULED_OUT: &str = "Not ruled out, alone or together with another effect";
+
+/// Those of them that these flights cannot tell from what was named, and those that only the probabilities leave open.
+pub fn near_and_far(found: &Found) -> [Vec<EffectId>; 2] {
+    let (far, near) =
+        others_of_class(found).into_iter().partition(|id| found.credible.contains(id));
+    [near, far]
 }
 
 /// Other effects that are named in the sentence of the cause itself, at most. Our choice: a longer list hides it.

@@ -20,7 +20,7 @@ use segmenter::TrimCriteria;
 
 use crate::failure::Failure;
 use crate::recorded_rows;
-use crate::tables::{plain, to_batch, to_csv};
+use crate::tables::{Zoneless, plain, to_batch, to_csv};
 use crate::warned::Warnings;
 use crate::work::{Caller, run};
 
@@ -170,7 +170,7 @@ impl Flights {
     fn from_state(py: Python<'_>, table: AnyRecordBatch, criteria: String) -> PyResult<Self> {
         let batches = batches_of(table)?;
         let flights = run(py, NonZeroUsize::new(1), move |_| {
-            let text = to_csv(&plain(batches)?)?;
+            let text = to_csv(&plain(batches)?, Zoneless::Utc)?;
             flights_table::read(&text).map_err(Failure::input)
         })?;
         Ok(Self::new(Reading { flights, ..Reading::default() }, criteria))
@@ -186,7 +186,7 @@ impl Flights {
     ) -> PyResult<Self> {
         let batches = batches_of(table)?;
         let flights = run(py, NonZeroUsize::new(1), move |_| {
-            let text = to_csv(&plain(batches)?)?;
+            let text = to_csv(&plain(batches)?, Zoneless::Utc)?;
             let segments = segments_table::read(&text).map_err(Failure::input)?;
             Ok(flights_table::from_segments(segments, &aircraft_type))
         })?;

@@ -139,6 +139,6 @@ fn cell(value: Value<'_>) -> PointCell<'_> {
         // Beyond 2^53 no flight point has a meaning: its limits refuse it, exact or not.
         Value::Whole(value) => PointCell::Number(value as f64),
         Value::Text(text) => PointCell::Text(text),
-        Value::Instant(instant) => PointCell::Instant(instant),
+        Value::Instant(instant) | Value::Local(instant) => PointCell::Instant(instant),
     }
 }

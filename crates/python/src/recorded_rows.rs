@@ -77,6 +77,9 @@ fn cells(array: &ArrayRef) -> Cells {
     let Ok(reader) = Reader::new("", array) else { return Cells::AsText };
     let values = (0..array.len()).map(|row| reader.value(row));
     let found = match array.data_type() {
+        DataType::Timestamp(_, None) => {
+            values.map(local_time).collect::<Option<_>>().map(Cells::LocalTimes)
+        }
         DataType::Timestamp(..) => values.map(instant).collect::<Option<_>>().map(Cells::Instants),
         DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => texts(values),
         _ => values.map(number).collect::<Option<_>>().map(Cells::Numbers),
@@ -91,12 +94,19 @@ fn instant(value: Value<'_>) -> Option<flight::Timestamp> {
     }
 }
 
+fn local_time(value: Value<'_>) -> Option<flight::Timestamp> {
+    match value {
+        Value::Local(time) => Some(time),
+        _ => None,
+    }
+}
+
 fn number(value: Value<'_>) -> Option<f64> {
     match value {
         Value::Missing => Some(f64::NAN),
         Value::Number(value) => value.is_finite().then_some(value),
         Value::Whole(value) => (value.abs() <= LARGEST_EXACT).then_some(value as f64),
-        Value::Text(_) | Value::Instant(_) => None,
+        Value::Text(_) | Value::Instant(_) | Value::Local(_) => None,
     }
 }
 

@@ -12,7 +12,7 @@ use report::mapping::first_mapping;
 
 use crate::failure::Failure;
 use crate::flights::batches_of;
-use crate::tables::{plain, to_csv};
+use crate::tables::{Zoneless, plain, to_csv};
 use crate::work::run;
 
 /// Rows of a table that a first mapping is made of: as many as tell how a column's values go. Our choice.
@@ -49,7 +49,7 @@ pub(crate) fn mapping_of_table(
                 batch.slice(0, rows)
             })
             .collect();
-        mapping_of(&to_csv(&plain(first)?)?, name)
+        mapping_of(&to_csv(&plain(first)?, Zoneless::Local)?, name)
     })
 }
 

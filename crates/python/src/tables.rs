@@ -13,6 +13,7 @@ use arrow_array::{Array, ArrayRef, Float64Array, Int64Array, RecordBatch, String
 use arrow_schema::{DataType, Field, Schema, TimeUnit};
 use flight::Timestamp;
 use pipeline::columns::{Cells, Columns};
+use report::mapping::local_text;
 
 use crate::failure::Failure;
 
@@ -110,6 +111,8 @@ pub(crate) enum Value<'a> {
     Text(&'a str),
     /// An instant; a date is its first instant in UTC.
     Instant(Timestamp),
+    /// A date and a time of day without a zone, as if they were UTC.
+    Local(Timestamp),
 }
 
 /// How the values of an array are read.
@@ -174,7 +177,10 @@ impl<'a> Reader<'a> {
                 let days = self.array.as_primitive::<Date32Type>().value(row);
                 instant(Timestamp::from_second(i64::from(days) * 86_400).ok())
             }
-            DataType::Timestamp(unit, _) => instant(self.timestamp(*unit, row)),
+            DataType::Timestamp(unit, zone) => match instant(self.timestamp(*unit, row)) {
+                Value::Instant(time) if zone.is_none() => Value::Local(time),
+                instant => instant,
+            },
             // `new` lets no other type pass; a column of nulls has no value.
             _ => Value::Missing,
         }
@@ -203,12 +209,21 @@ fn instant(found: Option<Timestamp>) -> Value<'static> {
     found.map_or(Value::Text("an instant outside the years -9999 to 9999"), Value::Instant)
 }
 
+/// What a time stamp without a zone is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Zoneless {
+    /// An instant in UTC: of tables of our own.
+    Utc,
+    /// A time on a clock that only the mapping of the recording knows: its text has no offset.
+    Local,
+}
+
 /// A table as comma-separated text with a header. A number is its shortest decimals that read back to the same bits; a
 /// null is an empty field.
 ///
 /// # Errors
 /// A column of a type that has no text.
-pub(crate) fn to_csv(batches: &[RecordBatch]) -> Result<Vec<u8>, Failure> {
+pub(crate) fn to_csv(batches: &[RecordBatch], zoneless: Zoneless) -> Result<Vec<u8>, Failure> {
     let mut text = String::new();
     for (place, batch) in batches.iter().enumerate() {
         let schema = batch.schema();
@@ -223,7 +238,7 @@ pub(crate) fn to_csv(batches: &[RecordBatch]) -> Result<Vec<u8>, Failure> {
             .map(|(field, array)| Reader::new(field.name(), array))
             .collect::<Result<Vec<_>, _>>()?;
         for row in 0..batch.num_rows() {
-            append_line(&mut text, &readers, row);
+            append_line(&mut text, &readers, row, zoneless);
             text.push('\n');
         }
     }
@@ -242,19 +257,25 @@ pub(crate) fn header(batch: &RecordBatch) -> String {
     text
 }
 
-/// The line of a row.
+/// The line of a row of a recording.
 pub(crate) fn line(readers: &[Reader<'_>], row: usize) -> String {
     let mut text = String::new();
-    append_line(&mut text, readers, row);
+    append_line(&mut text, readers, row, Zoneless::Local);
     text
 }
 
-fn append_line(text: &mut String, readers: &[Reader<'_>], row: usize) {
+fn append_line(text: &mut String, readers: &[Reader<'_>], row: usize, zoneless: Zoneless) {
     for (column, reader) in readers.iter().enumerate() {
         if column > 0 {
             text.push(',');
         }
-        append(text, reader.value(row));
+        append(
+            text,
+            match reader.value(row) {
+                Value::Local(time) if zoneless == Zoneless::Utc => Value::Instant(time),
+                value => value,
+            },
+        );
     }
 }
 
@@ -265,6 +286,7 @@ fn append(text: &mut String, value: Value<'_>) {
         Value::Number(value) => write!(text, "{value}"),
         Value::Whole(value) => write!(text, "{value}"),
         Value::Instant(value) => write!(text, "{value}"),
+        Value::Local(value) => write!(text, "{}", local_text(value)),
         Value::Text(value) => {
             append_text(text, value);
             Ok(())

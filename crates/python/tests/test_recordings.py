@@ -52,30 +52,75 @@ def recording(rows: int, wobble: float) -> dict[str, list]:
     return columns
 
 
-def text(value: object) -> str:
+def text(value: object, zone: str = "Z") -> str:
     """A cell as the text of a recording has it."""
     if value is None:
         return ""
     if isinstance(value, datetime.datetime):
-        return value.isoformat() + "Z"
+        return value.isoformat() + zone
     if isinstance(value, float):
         return repr(value).removesuffix(".0")
     written = str(value)
     return '"' + written.replace('"', '""') + '"' if "," in written or '"' in written else written
 
 
-def as_text(columns: dict[str, list]) -> bytes:
-    lines = [",".join(columns), *(",".join(map(text, row)) for row in zip(*columns.values()))]
+def as_text(columns: dict[str, list], zone: str = "") -> bytes:
+    cells = (",".join(text(value, zone) for value in row) for row in zip(*columns.values()))
+    lines = [",".join(columns), *cells]
     return ("\n".join(lines) + "\n").encode()
 
 
-def assert_same(table: object, columns: dict[str, list], mapping: str) -> cruisefit.Segments:
+def assert_same(table: object, columns: dict[str, list], mapping: str, zone: str = "") -> cruisefit.Segments:
     by_rows = cruisefit.segment(table, mapping=mapping, name="recording.csv")
-    by_text = cruisefit.segment(("recording.csv", as_text(columns)), mapping=mapping)
+    by_text = cruisefit.segment(("recording.csv", as_text(columns, zone)), mapping=mapping)
     # The content of a flight is a hash of every bit of every sample.
     assert by_rows.state().equals(by_text.state())
     assert by_rows.refused == by_text.refused
     return by_rows
+
+
+def test_a_flight_that_is_dropped_is_refused_by_its_name():
+    """One of two flights is too short for a level part, another has no tail: each is in ``refused``, the rest is used."""
+    columns = recording(1500, 1.0)  # XX1 has 1000 samples, XX,2 has 500
+    mapping = MAPPING.format(
+        more="cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),"
+    )
+    with pytest.warns(cruisefit.DataWarning, match="XX,2"):
+        read = cruisefit.segment(pa.table(columns), mapping=mapping, name="table")
+    assert read.flights.column("flight").to_pylist() == ["XX1"]
+    (refused,) = read.refused
+    assert (refused.path, refused.line) == ("table", None)
+    assert refused.reason.startswith("flight XX,2: found ") and "level" in refused.reason
+    assert refused.expected == "a level part of at least 720 s, as the mapping's cruise requires"
+    # With bad rows left out a flight whose every row is bad costs itself alone.
+    columns["mach"] = [None if flight == "XX,2" else mach for flight, mach in zip(columns["flight"], columns["mach"])]
+    with pytest.warns(cruisefit.DataWarning):
+        read = cruisefit.segment(pa.table(columns), mapping=MAPPING.format(more="bad_rows: LeaveRowOut,"))
+    assert [one.reason.split(":")[0] for one in read.refused] == ["flight XX,2"]
+
+
+def test_a_time_without_a_zone_is_taken_with_the_offset_of_the_mapping():
+    """Noon on a clock two hours ahead is ten o'clock in UTC, in a frame, a table and a text alike."""
+    columns = recording(900, 1.0)
+    mapping = MAPPING.format(more="").replace('utc_offset: "Z"', 'utc_offset: "+02:00"')
+    by_text = cruisefit.segment(("recording.csv", as_text(columns)), mapping=mapping)
+    assert by_text.flights.column("start").to_pylist()[0] == "2024-03-01T10:00:00Z"
+    for table in (pa.table(columns), pl.DataFrame(columns), pd.DataFrame(columns)):
+        found = cruisefit.segment(table, mapping=mapping, name="recording.csv")
+        assert found.state().equals(by_text.state())
+    # A zone in the table counts more than the mapping.
+    zoned = pa.table({**columns, "utc": pa.array(columns["utc"], pa.timestamp("us", "UTC"))})
+    found = cruisefit.segment(zoned, mapping=mapping, name="recording.csv")
+    assert found.flights.column("start").to_pylist()[0] == "2024-03-01T12:00:00Z"
+    # Nor is a clock guessed where the mapping does not say which it is.
+    unknown = MAPPING.format(more="").replace(', utc_offset: "Z"', "")
+    with pytest.warns(cruisefit.DataWarning):
+        refused = cruisefit.segment(pa.table(columns), mapping=unknown).refused
+    assert refused and "an offset" in refused[0].reason
+    assert cruisefit.segment(zoned, mapping=unknown, name="recording.csv").flights.num_rows == 2
+    # A first mapping marks the offset as a guess.
+    (time,) = [line for line in cruisefit.mapping(pa.table(columns)).splitlines() if "Timestamp" in line]
+    assert time.endswith("// ?")
 
 
 KINDS = {
@@ -134,7 +179,9 @@ def test_random_recordings_across_types(rows, wobble, kinds, instants, fault, pl
             held = table.column(name).to_pylist()
             columns[name] = [None if v is None else float(v) if kind == "float32" else v for v in held]
     table = pa.concat_tables([table.slice(0, cut), table.slice(cut)])
-    read = assert_same(table, columns, MAPPING.format(more=more))
+    # A time without a zone is a text without one, whose offset the mapping has.
+    zone = "Z" if instants in ("nanoseconds", "text") else ""
+    read = assert_same(table, columns, MAPPING.format(more=more), zone)
     if fault == "none" and "int32" not in kinds:
         assert read.flights.column("flight").to_pylist() == ["XX1", "XX,2"]
 

@@ -27,7 +27,7 @@ use plan::Plan;
 pub use source::{Batches, Source};
 pub use stream::{MappedFlight, MappedPoints, MappedReport, Stream};
 use table::Recording;
-pub use table::{Batch, BatchColumn, Rows, line_of_names};
+pub use table::{Batch, BatchColumn, Rows, line_of_names, local_text};
 
 /// A mapping file that was checked.
 #[derive(Clone, Debug)]

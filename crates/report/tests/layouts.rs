@@ -181,3 +181,64 @@ fn columns_are_known_by_their_values_where_names_leave_it_open() {
     let mapping = of("frame,label,zulu", "17,a:b:c,10:00:00");
     assert!(mapping.contains("TimeOfDay(column: \"zulu\""), "{mapping}");
 }
+
+/// Rows of three tails, 20 minutes apart within a flight, without the columns named.
+fn points_without(left_out: &[&str]) -> String {
+    let names = [
+        "tail", "flight", "utc", "alt_ft", "mach", "tas_kt", "gs_kt", "sat_degc", "ff_kg_h",
+        "gw_kg",
+    ];
+    let kept = |name: &&str| !left_out.contains(name);
+    let mut text = names.iter().copied().filter(kept).collect::<Vec<_>>().join(",") + "\n";
+    for tail in ["D-AAAA", "D-BBBB", "D-CCCC"] {
+        for row in 0..12 {
+            let (flight, minute) = (row / 3, 20 * (row % 3));
+            let utc = format!("2024-01-{:02}T08:{minute:02}:00Z", 1 + flight);
+            let cells = [
+                tail.to_owned(),
+                format!("{tail}{flight}"),
+                if left_out.contains(&"clock") { utc[..10].to_owned() } else { utc },
+                "35000".to_owned(),
+                "0.78".to_owned(),
+                format!("{}", 450 + row),
+                format!("{}", 460 - row),
+                "-56".to_owned(),
+                format!("{}", 2400 - row),
+                format!("{}", 65_000 - 800 * (row % 3)),
+            ];
+            let cells = names.iter().zip(cells).filter(|(name, _)| kept(name));
+            text += &(cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",") + "\n");
+        }
+    }
+    text
+}
+
+/// Averaged points are guessed as such, marked as a guess, even where the mapping needs something that no column has; samples
+/// are not.
+#[test]
+fn rows_minutes_apart_are_guessed_as_points() {
+    for left_out in [
+        &[][..],
+        &["flight"],
+        &["gs_kt"],
+        &["gw_kg"],
+        &["alt_ft"],
+        &["tail", "gs_kt"],
+        &["clock"],
+        &["utc", "gs_kt"],
+    ] {
+        let mapping = first_mapping(points_without(left_out).as_bytes()).unwrap();
+        let rows = mapping.lines().find(|line| line.trim().starts_with("rows: AveragedPoints"));
+        assert!(rows.is_some_and(|line| line.ends_with("// ?")), "{left_out:?}: {mapping}");
+        assert!(!mapping.contains("cruise:") && !mapping.contains("StartMass"), "{left_out:?}");
+        if !left_out.iter().any(|name| ["gs_kt", "alt_ft"].contains(name)) {
+            Mapping::from_ron(&mapping).unwrap();
+        }
+    }
+    for left_out in [&[][..], &["flight"], &["gs_kt"], &["alt_ft"], &["gw_kg"]] {
+        let seconds =
+            points_without(left_out).replace(":20:00Z", ":00:04Z").replace(":40:00Z", ":00:08Z");
+        let mapping = first_mapping(seconds.as_bytes()).unwrap();
+        assert!(!mapping.contains("AveragedPoints"), "{left_out:?}: {mapping}");
+    }
+}

@@ -150,6 +150,44 @@ fn a_table_gives_what_its_text_gives() {
 }
 
 #[test]
+fn a_time_without_a_zone_is_taken_with_the_offset_of_the_mapping() {
+    let table = table();
+    let flags = |flags: &[&str]| BatchColumn::Numbers(flags.iter().map(|_| 0.0).collect());
+    let plain = MAPPING.replace(", values: [(\"ON\", 1), (\"OFF\", 0)]", "");
+    let local = |mut batch: Batch| {
+        if let BatchColumn::Instants(times) = &mut batch.columns[0].1 {
+            batch.columns[0].1 = BatchColumn::LocalTimes(std::mem::take(times));
+        }
+        batch
+    };
+    let with_offset =
+        |offset: &str| Mapping::from_ron(&plain.replace("utc_offset: \"Z\"", offset)).unwrap();
+    let starts = |mapping: &Mapping, at_once: usize| -> Vec<i64> {
+        let batches = table.batches(at_once, &flags).into_iter().map(local).collect();
+        let read = read(mapping, table.names(), batches);
+        read.iter().map(|flight| flight.report.header().identity.start.as_second()).collect()
+    };
+    let utc = starts(&with_offset("utc_offset: \"Z\""), ROWS);
+    assert_eq!(utc[0], START_S);
+    // At 08:00 in a zone that is two hours ahead it is 06:00 UTC. One row at a time, row 25 without a time goes through text.
+    for at_once in [1, ROWS] {
+        for (offset, east_s) in [("+02:00", 7_200), ("-05:30", -19_800), ("+02:00", 7_200)] {
+            let found = starts(&with_offset(&format!("utc_offset: {offset:?}")), at_once);
+            let expected: Vec<i64> = utc.iter().map(|start| start - east_s).collect();
+            assert_eq!(found, expected, "{offset}, {at_once} rows at once");
+        }
+    }
+    // Without an offset in the mapping nobody knows which clock it is: refused, as in a text.
+    let strict =
+        plain.replace(", utc_offset: \"Z\"", "").replace("    bad_rows: LeaveRowOut,\n", "");
+    let mut batches = table.batches(ROWS, &flags).into_iter().map(local);
+    let mut source =
+        Source::table(table.names(), Vec::new(), Box::new(move |_: &[usize]| Ok(batches.next())));
+    let refusal = Mapping::from_ron(&strict).unwrap().each(&mut source, None, |_| ()).unwrap_err();
+    assert_eq!((refusal.line, refusal.kind.code()), (2, "source-instant-malformed"));
+}
+
+#[test]
 fn a_number_that_is_refused_is_refused_where_it_is() {
     let mut table = table();
     table.numbers[1].1[20] = f64::INFINITY;

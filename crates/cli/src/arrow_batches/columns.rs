@@ -134,11 +134,8 @@ impl Column {
                 let values = rows.map(|row| if self.has(row) { flag(row) } else { Some(f64::NAN) });
                 BatchColumn::Numbers(values.collect::<Option<_>>()?)
             }
-            Kind::Instant(each) => {
-                let instants = self.counts(rows, 8)?;
-                let instant = |count: Option<i64>| count.and_then(|count| count.checked_mul(each));
-                BatchColumn::Instants(instants.into_iter().map(instant).collect())
-            }
+            Kind::Instant(each) => BatchColumn::Instants(self.nanoseconds(rows, each)?),
+            Kind::LocalTime(each) => BatchColumn::LocalTimes(self.nanoseconds(rows, each)?),
             Kind::TimeOfDay(each, width) => {
                 texts_of(self.counts(rows, width)?, |count| time_of_day(count, each))
             }
@@ -225,6 +222,11 @@ impl Column {
             }
         }
         Some(values)
+    }
+
+    fn nanoseconds(&self, rows: Range<usize>, each: i64) -> Option<Vec<Option<i64>>> {
+        let nanoseconds = |count: Option<i64>| count.and_then(|count| count.checked_mul(each));
+        Some(self.counts(rows, 8)?.into_iter().map(nanoseconds).collect())
     }
 
     fn counts(&self, rows: Range<usize>, width: usize) -> Option<Vec<Option<i64>>> {

@@ -28,6 +28,8 @@ pub(super) enum Kind {
     Flag,
     /// With nanoseconds for each count.
     Instant(i64),
+    /// Likewise, on a clock of which the file does not say where it is.
+    LocalTime(i64),
     /// With nanoseconds for each count, and bytes of it.
     TimeOfDay(i64, usize),
     /// Days, or milliseconds in eight bytes.
@@ -184,7 +186,11 @@ fn kind(code: u8, form: Option<Table<'_>>) -> Kind {
             let bits = form.and_then(|form| form.int(1)).unwrap_or(32);
             unit(1).map(|each| Kind::TimeOfDay(each, if bits == 64 { 8 } else { 4 }))
         }
-        10 => unit(0).map(Kind::Instant),
+        // With a name of a zone, whichever it is, counts are of UTC.
+        10 => {
+            let has_zone = form.and_then(|form| form.text(1)).is_some_and(|zone| !zone.is_empty());
+            unit(0).map(if has_zone { Kind::Instant } else { Kind::LocalTime })
+        }
         _ => None,
     };
     found.unwrap_or(Kind::Other)

@@ -55,6 +55,18 @@ fn too_little_data_gets_no_name() {
     assert_eq!(diagnosis["tail"], "SIM-01");
     assert_eq!(diagnosis["verdict"]["kind"], "insufficient_data");
     assert!(diagnosis["verdict"]["effects"].as_array().unwrap().is_empty());
+    // Nothing was computed, and no number says that the model fits: not in the document, not in what prints it, not in a drawing.
+    let gap = diagnosis["gap"].as_object().unwrap();
+    assert_eq!(gap["detected"], false);
+    for (name, value) in gap.iter().filter(|(name, _)| *name != "detected") {
+        assert!(value.is_null(), "{name}: {value}");
+    }
+    let document = output.join("diagnosis.json");
+    let shown = cruisefit(&["show".as_ref(), document.as_os_str()]).expect(0);
+    assert!(shown.stdout.contains("Too little data: no gap was computed"), "{}", shown.stdout);
+    let drawing = scratch.path().join("gap.svg");
+    cruisefit(&["plot".as_ref(), document.as_os_str(), "-o".as_ref(), drawing.as_os_str()])
+        .expect(2);
     assert!(output.join("diagnosis.html").exists());
 }
 

@@ -125,6 +125,7 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
             if !found.class.contains(id) {
                 found.class.push(*id);
             }
+            found.credible.retain(|credible| credible != id);
         }
     }
     Verdict::Effects(found)
@@ -209,6 +210,7 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
     Found {
         effects,
         class,
+        credible: vec![],
         probability: table.probability,
         beside,
         closure: closed_unseen(findings.unseen),
@@ -217,31 +219,32 @@ fn found_with_table(findings: &Findings<'_>, table: &TableFinding) -> Found {
     }
 }
 
-/// What these flights cannot tell from a cause, and what their evidence leaves open, however far apart sizes typical of it
-/// would be.
-fn class_with_credible(
+/// What these flights cannot tell from a cause, and what their evidence leaves open all the same, however far away that is.
+fn class_and_credible(
     findings: &Findings<'_>,
     top: &Posterior,
     posteriors: &[&Posterior],
-) -> Vec<EffectId> {
+) -> [Vec<EffectId>; 2] {
     let &Findings { library, distances, .. } = findings;
-    let mut class = class_of(distances, library, top);
+    let class = class_of(distances, library, top);
+    let mut others = Vec::new();
     // What only the prior sizes decide is open as well.
     let by_size = posteriors.iter().copied().filter(|p| p.flat * SIZE_ALONE >= top.flat);
     for posterior in credible(posteriors).chain(by_size) {
         let id = id_of(library, posterior.effect);
-        if !class.contains(&id) {
-            class.push(id);
+        if !class.contains(&id) && !others.contains(&id) {
+            others.push(id);
         }
     }
-    class
+    [class, others]
 }
 
 /// The effects that the leading cause is of, and what it could be taken for.
 fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found {
     let &Findings { analysis, library, advisor, outside, posteriors, .. } = findings;
     let all: Vec<&Posterior> = posteriors.iter().collect();
-    let class = class_with_credible(findings, top, &all);
+    let [mut class, credible] = class_and_credible(findings, top, &all);
+    class.extend(&credible);
     Found {
         effects: set_of(analysis, library, top),
         probability: top.probability * (1.0 - outside.probability),
@@ -250,6 +253,7 @@ fn found(findings: &Findings<'_>, top: &Posterior, rest: Option<Rest>) -> Found 
         rest,
         separations: separations(advisor, library, top, &class),
         class,
+        credible,
     }
 }
 

@@ -72,6 +72,9 @@ pub struct Found {
     /// Effects that this data cannot tell from the first, itself first; where a table is off, then those that it cannot tell
     /// from what acts beside it.
     pub class: Vec<EffectId>,
+    /// Members of the class that are not like the first: alone, and at a size that is usual for them, they may be many standard
+    /// deviations away. The probabilities leave them open all the same, acting together with another effect for example.
+    pub credible: Vec<EffectId>,
     /// Probability of the first effect.
     pub probability: f64,
     /// What acts beside a guide's table that is off, and no table can hold, the most probable first.

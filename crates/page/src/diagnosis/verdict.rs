@@ -6,8 +6,8 @@ use diagnose::{Diagnosis, Magnitude, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_words::{
-    acts_on_words, advice, are_few, form_words, others_of_class, region_words, silent_words,
-    told_size, variable_words,
+    NOT_RULED_OUT, acts_on_words, advice, are_few, form_words, near_and_far, others_of_class,
+    region_words, silent_words, told_size, variable_words,
 };
 
 use super::Tail;
@@ -48,7 +48,7 @@ pub(super) fn card(diagnosis: &Diagnosis) -> Markup {
             @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) {
                 dt { "How sure" } dd { (how_sure(diagnosis)) }
             }
-            dt { "What to do" } dd { (advice(&diagnosis.verdict)) }
+            dt { "What to do" } dd { (advice(diagnosis)) }
         }
     }
 }
@@ -96,8 +96,13 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
                 @if found.probability < 0.5 { ": no cause stands out, do not act on it" }
                 ". "
                 // Of a few the answer itself says that they are open, and advice says why.
-                @if !few && !others.is_empty() {
-                    "These flights cannot tell it from: "
+                @let [near, far] = near_and_far(found);
+                @let told = [
+                    ("These flights cannot tell it from", near),
+                    (NOT_RULED_OUT, far),
+                ];
+                @for (words, others) in told.iter().filter(|(_, others)| !few && !others.is_empty()) {
+                    (words) ": "
                     @for (place, id) in others.iter().enumerate() { @if place > 0 { "; " } (effect(diagnosis, *id)) }
                     ". "
                 }
@@ -178,14 +183,17 @@ fn index_row(tail: &Tail<'_>) -> Markup {
     let diagnosis = &tail.diagnosed.diagnosis;
     let gap = &diagnosis.gap;
     let closure = diagnosis.verdict.closure();
+    let is_computed = !matches!(diagnosis.verdict, Verdict::InsufficientData(_));
     html! {
         tr {
             th scope="row" { a href=(format!("#{}", tail.id)) { (tail.diagnosed.name()) } }
             td style="text-align:left" { (short(diagnosis)) }
             td { @if let Some(found) = diagnosis.verdict.found() { (format!("{:.2}", found.probability)) } @else { "–" } }
-            td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
-            td data-v=(gap.rms_percent) { (format!("{:.2}", gap.rms_percent)) }
-            td data-v=(gap.noise_floor_rms_percent) { (format!("{:.2}", gap.noise_floor_rms_percent)) }
+            @if is_computed {
+                td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
+                td data-v=(gap.rms_percent) { (format!("{:.2}", gap.rms_percent)) }
+                td data-v=(gap.noise_floor_rms_percent) { (format!("{:.2}", gap.noise_floor_rms_percent)) }
+            } @else { td { "–" } td { "–" } td { "–" } }
             td { @if let Some(closure) = closure { (percent(closure.share)) } @else { "–" } }
         }
     }

@@ -75,17 +75,18 @@ pub struct HeldOutRecord {
     pub noise_rms_percent: f64,
 }
 
-/// The gap: ln recorded − ln predicted fuel flow, in per cent.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// The gap: ln recorded − ln predicted fuel flow, in per cent. Where the data were insufficient nothing was computed: numbers
+/// are `null`, and no gap is detected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GapRecord {
     /// Mean.
-    pub mean_percent: f64,
+    pub mean_percent: Option<f64>,
     /// Root mean square.
-    pub rms_percent: f64,
+    pub rms_percent: Option<f64>,
     /// 95 % interval of the rms, by flight.
-    pub rms_ci95: [f64; 2],
+    pub rms_ci95: Option<[f64; 2]>,
     /// Root mean square that noise alone makes: the propagated one.
-    pub noise_floor_rms_percent: f64,
+    pub noise_floor_rms_percent: Option<f64>,
     /// The same by replicates: what differs between like segments of one flight. `null` where closure is not measured, or
     /// for too few of them.
     #[serde(default)]
@@ -96,7 +97,7 @@ pub struct GapRecord {
     /// Whether there is more than noise.
     pub detected: bool,
     /// Probability of as large a deviation without any effect, all effects looked at.
-    pub p_value: f64,
+    pub p_value: Option<f64>,
 }
 
 /// A place where the gap lies.
@@ -201,7 +202,7 @@ pub struct VerdictRecord {
     pub kind: VerdictKind,
     /// Effects that act.
     pub effects: Vec<String>,
-    /// Effects that these data cannot distinguish from the first.
+    /// Effects that these data cannot distinguish from the first, and those that its probabilities leave open all the same.
     pub class: Vec<String>,
     /// Probability of the first effect.
     pub probability: f64,
@@ -367,7 +368,10 @@ impl From<&DiagnosedTail> for TailDiagnosis {
             compared: diagnosed.compared.clone(),
             flights: *flights,
             segments: *segments,
-            gap: GapRecord::from(gap),
+            gap: match verdict {
+                Verdict::InsufficientData(_) => GapRecord::default(),
+                _ => GapRecord::from(gap),
+            },
             months: diagnosed.months.clone(),
             r#where: places.iter().map(SliceRecord::from).collect(),
             causes: causes.iter().map(CauseRecord::from).collect(),
@@ -379,7 +383,10 @@ impl From<&DiagnosedTail> for TailDiagnosis {
                     needs: entry.needs.iter().map(|needed| needed.name().to_owned()).collect(),
                 })
                 .collect(),
-            verdict: VerdictRecord::from(verdict),
+            verdict: VerdictRecord {
+                advice: advice(&diagnosed.diagnosis),
+                ..VerdictRecord::from(verdict)
+            },
             addition: addition.as_ref().map(AdditionRecord::from),
             detectable: detectable.iter().map(DetectableRecord::from).collect(),
             outside: OutsideLibraryRecord::from(outside),
@@ -404,14 +411,14 @@ impl From<&HeldOutFlight> for HeldOutRecord {
 impl From<&Gap> for GapRecord {
     fn from(gap: &Gap) -> Self {
         Self {
-            mean_percent: gap.mean_percent,
-            rms_percent: gap.rms_percent,
-            rms_ci95: gap.rms_ci95,
-            noise_floor_rms_percent: gap.noise_floor_rms_percent,
+            mean_percent: Some(gap.mean_percent),
+            rms_percent: Some(gap.rms_percent),
+            rms_ci95: Some(gap.rms_ci95),
+            noise_floor_rms_percent: Some(gap.noise_floor_rms_percent),
             floor_by_replicates_rms_percent: gap.floor_by_replicates_rms_percent,
             floor_by_held_out_fit_rms_percent: gap.floor_by_held_out_fit_rms_percent,
             detected: gap.detected,
-            p_value: gap.p_value,
+            p_value: Some(gap.p_value),
         }
     }
 }
@@ -505,7 +512,8 @@ impl From<&Verdict> for VerdictRecord {
             }),
             closure: closure.map(|closure| closure.share),
             closure_ci95: closure.map(|closure| closure.ci95),
-            advice: advice(verdict),
+            // With the words for what was found, which the whole diagnosis has.
+            advice: String::new(),
             separations: verdict.found().map_or_else(Vec::new, |found| {
                 found.separations.iter().map(SeparationRecord::from).collect()
             }),

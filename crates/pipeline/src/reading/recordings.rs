@@ -4,9 +4,9 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use flight::{Finding, Report, ReportColumns};
-use report::Refusal;
+use flight::{Report, ReportColumns};
 use report::mapping::{MappedFlight, MappedReport, Mapping, Piece, Pieces, Rows, Source, Stream};
+use report::{Refusal, RefusalKind};
 use segmenter::TrimCriteria;
 
 use super::{FileRead, FlightRead, RefusedReport, reduce, reduce_points};
@@ -134,11 +134,8 @@ impl Read<'_> {
         }
         waiting.extend(stream.finish());
         self.finish(&mut stream, waiting, spread)?;
-        let findings = stream.end()?;
-        if let Some(first) = self.flights.first_mut() {
-            first.reduced.notes.extend(notes(self.mapped.path, findings));
-        }
-        Ok(())
+        // What it finds are flights without a report, each of which is refused by name already.
+        stream.end().map(drop)
     }
 
     /// The flights that are still waiting.
@@ -168,10 +165,26 @@ impl Read<'_> {
                 self.refused.push(RefusedReport::whole(self.mapped.path.to_owned(), reason));
             }
             Reduced::NoReport(report) => {
+                let dropped = stream.dropped(&report);
                 stream.count(report)?;
+                self.refused
+                    .extend(dropped.map(|(flight, refusal)| self.dropped(&flight, &refusal)));
             }
         }
         Ok(())
+    }
+}
+
+impl Read<'_> {
+    /// A flight without a report while the others of its recording are used.
+    fn dropped(&self, flight: &str, refusal: &Refusal) -> RefusedReport {
+        let mut refused = RefusedReport::at(self.mapped.path.to_owned(), refusal);
+        refused.reason = format!("flight {flight}: {}", refused.reason);
+        if let RefusalKind::NoLevelPart { .. } | RefusalKind::TooFewRows = refusal.kind {
+            // No row of it is at fault.
+            (refused.line, refused.column) = (None, None);
+        }
+        refused
     }
 }
 
@@ -202,16 +215,6 @@ fn reduced(flight: Result<FlightRead, String>) -> Reduced {
         Ok(flight) => Reduced::Flight(Box::new(flight)),
         Err(reason) => Reduced::Unusable(reason),
     }
-}
-
-fn notes(path: &Path, findings: Vec<Finding>) -> Vec<String> {
-    findings
-        .into_iter()
-        .map(|finding| {
-            tracing::warn!(file = %path.display(), "{}", finding.message);
-            finding.message
-        })
-        .collect()
 }
 
 /// By what a flight out of a recording is known again: header and every sample, to the bit.

@@ -36,7 +36,8 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True)
 class Gap:
-    """The gap, ln recorded − ln predicted fuel flow, in per cent, before anything is added to the model.
+    """The gap, ln recorded − ln predicted fuel flow, in per cent, before anything is added to the model. Of insufficient data
+    no gap is computed: its numbers are ``None``.
 
     Attributes:
         mean_percent: Mean.
@@ -47,12 +48,12 @@ class Gap:
         p_value: Probability of as large a deviation without any effect.
     """
 
-    mean_percent: float
-    rms_percent: float
-    rms_ci95: Interval
-    noise_floor_rms_percent: float
+    mean_percent: float | None
+    rms_percent: float | None
+    rms_ci95: Interval | None
+    noise_floor_rms_percent: float | None
     detected: bool
-    p_value: float
+    p_value: float | None
 
 
 @dataclass(frozen=True)

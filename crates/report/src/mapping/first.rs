@@ -2,13 +2,13 @@
 
 mod columns;
 mod names;
+mod points;
 
 use core::fmt::Write;
 
 use columns::Columns;
 use names::engine_of;
 
-use super::{MappedReport, Mapping, Source};
 use crate::decode;
 use crate::refusal::Refusal;
 
@@ -39,46 +39,15 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
         decimal = if columns.decimal == ',' { "    decimal: ',',\n" } else { "" },
         units_row = if columns.units_row { "    units_row: true,\n" } else { "" },
     );
-    let of_points = mapping.replace(LEVEL_CRUISE, AVERAGED_POINTS);
-    Ok(if is_of_points(&of_points, &text) { of_points } else { mapping })
+    let of_points = points::of_points(&mapping);
+    let far_apart = points::are_far_apart(&of_points, &text);
+    Ok(if far_apart.unwrap_or_else(|| columns.rows_are_far_apart()) { of_points } else { mapping })
 }
 
 const LEVEL_CRUISE: &str = "    // Level cruise; leave it away where the recording holds nothing else.\n    cruise: (minimum_pressure_altitude_ft: 25000, band_ft: 200, minimum_duration_s: 600, trim_s: 60),\n";
-const AVERAGED_POINTS: &str = "    // Rows too far apart for samples: means over stable frames.\n    rows: AveragedPoints(averaged_over_s: 60),   // ?\n";
-/// Rows of a flight farther apart than this are no samples: a track refuses them.
-const LONGEST_STEP_S: f64 = 90.0;
 
-/// Whether the rows of flights are too far apart for samples.
-fn is_of_points(mapping: &str, text: &str) -> bool {
-    let mut steps_s = Vec::new();
-    let mut points = 0;
-    let read = |flight: MappedReport| {
-        if let MappedReport::Points(flight) = flight {
-            let time_s = &flight.parsed.report.columns().time_s;
-            points += time_s.len();
-            steps_s.extend(time_s.windows(2).map(|pair| pair[1] - pair[0]));
-        }
-    };
-    if each_flight(mapping, text, read).is_none() {
-        return false;
-    }
-    steps_s.sort_by(f64::total_cmp);
-    // Flights of one row each have no step.
-    steps_s.get(steps_s.len() / 2).map_or(points >= 3, |step_s| *step_s > LONGEST_STEP_S)
-}
-
-/// Reads flights as far as they can be read; `None` where the mapping cannot read the text.
-fn each_flight(mapping: &str, text: &str, mut read: impl FnMut(MappedReport)) -> Option<()> {
-    let mut source = Source::text(text.as_bytes()).ok()?;
-    let mut stream = source.begin(&Mapping::from_ron(mapping).ok()?, Some("F")).ok()?;
-    while let Some(piece) = source.next_piece(&mut stream).ok()? {
-        let rows = stream.rows(piece);
-        let (flights, _) = stream.add(&rows);
-        flights.into_iter().map(|flight| stream.report(flight)).for_each(&mut read);
-    }
-    stream.finish().into_iter().map(|flight| stream.report(flight)).for_each(&mut read);
-    Some(())
-}
+/// Where no column holds a mass: a number to be replaced.
+const START_MASS: &str = "StartMass(gross_weight: Value(60000, \"kg\")),   // ?";
 
 /// A quantity that is one column in one unit.
 struct Rule {
@@ -172,6 +141,59 @@ const ENGINE_NAMES: [(&str, &[&str]); 4] = [
     ("N2", &["n2"]),
     ("WF", &["fuelflow", "ff", "wf", "ffuel"]),
     ("EGT", &["egt", "itt", "exhaustgastemperature"]),
+];
+
+/// Texts of the header: key, names of columns, what there is without one.
+const TEXTS: [(&str, &[&str], &str); 3] = [
+    (
+        "aircraft",
+        &["aircrafttype", "actype", "type", "typecode", "flplairctype"],
+        "Text(\"TYPE\"),   // ?",
+    ),
+    (
+        "tail",
+        &[
+            "tail",
+            "registration",
+            "reg",
+            "acident",
+            "tailnumber",
+            "tailno",
+            "acreg",
+            "acregistration",
+            "aircraftregistration",
+        ],
+        "Text(\"TAIL\"),   // ?",
+    ),
+    (
+        "flight",
+        &[
+            "flight",
+            "flightnumber",
+            "flightno",
+            "flightid",
+            "fltid",
+            "fltnum",
+            "flightnum",
+            "flt",
+            "fltno",
+            "callsign",
+            "systtrajid",
+        ],
+        "FileName,   // ? one flight; several in a file: Column(\"NAME\"), or new_flight_after_s",
+    ),
+];
+const TIME_NAMES: [&str; 10] = [
+    "timestamp",
+    "datetime",
+    "utcdatetime",
+    "utc",
+    "plotdate",
+    "time",
+    "ts",
+    "t",
+    "seconds",
+    "flighttime",
 ];
 
 impl Columns {
@@ -303,74 +325,35 @@ impl Columns {
 
     fn texts(&self) -> String {
         let mut text = String::new();
-        for (key, names, otherwise) in [
-            (
-                "aircraft",
-                &["aircrafttype", "actype", "type", "typecode", "flplairctype"][..],
-                "Text(\"TYPE\"),   // ?",
-            ),
-            (
-                "tail",
-                &[
-                    "tail",
-                    "registration",
-                    "reg",
-                    "acident",
-                    "tailnumber",
-                    "tailno",
-                    "acreg",
-                    "acregistration",
-                    "aircraftregistration",
-                ][..],
-                "Text(\"TAIL\"),   // ?",
-            ),
-            (
-                "flight",
-                &[
-                    "flight",
-                    "flightnumber",
-                    "flightno",
-                    "flightid",
-                    "fltid",
-                    "fltnum",
-                    "flightnum",
-                    "flt",
-                    "fltno",
-                    "callsign",
-                    "systtrajid",
-                ][..],
-                "FileName,   // ? one flight; several in a file: Column(\"NAME\"), or new_flight_after_s",
-            ),
-        ] {
-            let column =
-                names.iter().find_map(|wanted| self.names.iter().find(|name| name.is(wanted)));
-            let source = column
-                .map_or_else(|| otherwise.to_owned(), |name| format!("Column({:?}),", name.sent));
+        for (key, names, otherwise) in TEXTS {
+            let source = self.named(names).map_or_else(
+                || otherwise.to_owned(),
+                |column| format!("Column({:?}),", self.names[column].sent),
+            );
             let _ = writeln!(text, "    {key}: {source}");
         }
         text
     }
 
+    /// The column of the first of these names that is there.
+    fn named(&self, names: &[&str]) -> Option<usize> {
+        names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)))
+    }
+
+    fn time_column(&self) -> Option<usize> {
+        self.named(&TIME_NAMES).or_else(|| self.column_of_dates())
+    }
+
+    fn date_column(&self) -> Option<usize> {
+        self.names.iter().position(|name| name.is("date") || name.is("utcdate"))
+    }
+
     fn time(&self) -> String {
-        let names = [
-            "timestamp",
-            "datetime",
-            "utcdatetime",
-            "utc",
-            "plotdate",
-            "time",
-            "ts",
-            "t",
-            "seconds",
-            "flighttime",
-        ];
-        let found =
-            names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)));
-        let Some(column) = found.or_else(|| self.column_of_dates()) else {
+        let Some(column) = self.time_column() else {
             return "Seconds(column: \"TIME\", start: \"2000-01-01T00:00:00Z\"),   // ?".to_owned();
         };
         let name = &self.names[column].sent;
-        let date = self.names.iter().position(|name| name.is("date") || name.is("utcdate"));
+        let date = self.date_column();
         let sample = self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default();
         let form = self.date_form(column);
         let with_zone = sample.ends_with('Z') || sample.contains('+');
@@ -475,7 +458,7 @@ impl Columns {
                     mark(zero.2 || tanks.2)
                 )
             }
-            _ => "StartMass(gross_weight: Value(60000, \"kg\")),   // ?".to_owned(),
+            _ => START_MASS.to_owned(),
         }
     }
 }

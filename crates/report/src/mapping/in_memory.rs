@@ -28,6 +28,8 @@ pub enum Cells {
     Numbers(Vec<f64>),
     /// Instants.
     Instants(Vec<Timestamp>),
+    /// Dates and times of day without an offset, as if they were UTC: the mapping's offset makes instants of them.
+    LocalTimes(Vec<Timestamp>),
     /// Texts without blanks around them: from which row on which, beginning with row 0.
     Texts(Vec<(usize, String)>),
     /// Anything else: what the text of the row has.
@@ -66,7 +68,7 @@ impl Cells {
     pub(super) fn len(&self) -> Option<usize> {
         match self {
             Self::Numbers(values) => Some(values.len()),
-            Self::Instants(values) => Some(values.len()),
+            Self::Instants(values) | Self::LocalTimes(values) => Some(values.len()),
             Self::Texts(_) | Self::AsText => None,
         }
     }

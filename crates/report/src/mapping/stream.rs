@@ -173,6 +173,21 @@ impl Stream {
         }
     }
 
+    /// Of a flight that gave no report: its name, and why, as the recording would be refused for it had it no other flight.
+    #[must_use]
+    pub fn dropped(&self, report: &MappedReport) -> Option<(String, Refusal)> {
+        match report {
+            MappedReport::Report(_) | MappedReport::Points(_) => None,
+            MappedReport::WithoutCruise { flight, longest_s } => {
+                let refusal = self.refuse_without_level_part(*longest_s);
+                Some((flight.clone(), refusal))
+            }
+            MappedReport::Refused { flight, refusal } => {
+                Some((flight.clone(), refusal.as_ref().clone()))
+            }
+        }
+    }
+
     /// Counts a flight that gave a report.
     pub const fn count_report(&mut self) {
         self.tally.reports += 1;
@@ -219,7 +234,7 @@ impl Stream {
             return Err(
                 match self.assembly.most_are_bad().or_else(|| self.tally.first_refusal.clone()) {
                     Some(refusal) => refusal,
-                    None => self.refuse_without_report(),
+                    None => self.refuse_without_level_part(self.tally.longest_s),
                 },
             );
         }
@@ -238,14 +253,14 @@ impl Stream {
         Ok(findings)
     }
 
-    fn refuse_without_report(&self) -> Refusal {
+    fn refuse_without_level_part(&self, longest_s: f64) -> Refusal {
         match &self.layout.plan.cruise {
             None => {
                 let found = Found::Rows(self.assembly.longest);
                 self.assembly.refuse_end(found, RefusalKind::TooFewRows)
             }
             Some(criteria) => self.assembly.refuse_end(
-                Found::Number { value: self.tally.longest_s, unit: "s of level flight" },
+                Found::Number { value: longest_s, unit: "s of level flight" },
                 RefusalKind::NoLevelPart {
                     needed_s: criteria.minimum_duration_s + 2.0 * criteria.trim_s,
                 },

@@ -9,7 +9,7 @@ mod rows;
 use super::MappingError;
 use super::file::{MappingFile, TextSource};
 use super::plan::{Plan, TimeForm};
-pub use batch::{Batch, BatchColumn, line_of_names};
+pub use batch::{Batch, BatchColumn, line_of_names, local_text};
 pub(super) use flights::Assembly;
 pub(super) use recording::Recording;
 pub use rows::Rows;

@@ -123,8 +123,9 @@ fn chosen(group: &Group<'_>, diagnosis: &Diagnosis, outside: Outside) -> Choice 
     }
     if found.class.iter().any(|member| !found.effects.contains(member)) {
         return Choice::Refused(format!(
-            "tail {}: nothing applied, these flights cannot distinguish {}; name the right one with --effects",
+            "tail {}: nothing applied, these flights {} {}; name the right one with --effects",
             group.name,
+            if found.credible.is_empty() { "cannot distinguish" } else { "do not decide between" },
             joined(&found.class, ", ")
         ));
     }

@@ -48,14 +48,18 @@ fn append(diagnosis: &Value, text: &mut String) {
         counted(count(&compared["flights_learnt"]), "flight"),
     );
     let gap = &diagnosis["gap"];
-    let _ = writeln!(
-        text,
-        "  Gap {} % in the mean, {} % rms{}; noise alone makes {} %",
-        signed(&gap["mean_percent"], 2),
-        plain(&gap["rms_percent"], 2),
-        interval(&gap["rms_ci95"], 2),
-        plain(&gap["noise_floor_rms_percent"], 2)
-    );
+    if gap["rms_percent"].is_null() {
+        text.push_str("  Too little data: no gap was computed\n");
+    } else {
+        let _ = writeln!(
+            text,
+            "  Gap {} % in the mean, {} % rms{}; noise alone makes {} %",
+            signed(&gap["mean_percent"], 2),
+            plain(&gap["rms_percent"], 2),
+            interval(&gap["rms_ci95"], 2),
+            plain(&gap["noise_floor_rms_percent"], 2)
+        );
+    }
     let regions = diagnosis["where"].as_array().map_or(&[][..], Vec::as_slice);
     for region in regions.iter().take(REGIONS) {
         let _ = writeln!(

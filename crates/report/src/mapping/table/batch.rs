@@ -7,7 +7,9 @@
 use std::sync::Arc;
 
 use flight::Timestamp;
+use jiff::tz::TimeZone;
 
+use super::columns::{at_offset, seconds_east};
 use super::rows::{Event, FARTHEST_S, Rows, Times};
 use super::{Layout, Text};
 use crate::mapping::pieces::{Content, Piece};
@@ -31,6 +33,8 @@ pub enum BatchColumn {
     Numbers(Vec<f64>),
     /// Nanoseconds since 1970 in UTC, `None` where there is no instant.
     Instants(Vec<Option<i64>>),
+    /// Nanoseconds since 1970 on a clock of which only the mapping says how far it is from UTC, `None` where there is no time.
+    LocalTimes(Vec<Option<i64>>),
     /// Texts, each with the number of rows that it holds for; empty where there is none.
     Texts(Vec<(String, usize)>),
 }
@@ -79,6 +83,10 @@ impl Batch {
                 let instant = instant.and_then(instant_of);
                 instant.map_or_else(String::new, |instant| instant.to_string())
             })),
+            Some(BatchColumn::LocalTimes(times)) => Box::new(times.iter().map(|time| {
+                let time = time.and_then(instant_of);
+                time.map_or_else(String::new, local_text)
+            })),
             Some(BatchColumn::Texts(texts)) => Box::new(
                 texts.iter().flat_map(|(text, rows)| core::iter::repeat_n(text.clone(), *rows)),
             ),
@@ -99,6 +107,12 @@ type Cells<'a> = Box<dyn Iterator<Item = String> + 'a>;
 
 fn instant_of(nanoseconds: i64) -> Option<Timestamp> {
     Timestamp::from_nanosecond(i128::from(nanoseconds)).ok()
+}
+
+/// A local time that was read as if it were UTC, as text: without an offset, which the mapping has.
+#[must_use]
+pub fn local_text(time: Timestamp) -> String {
+    time.to_zoned(TimeZone::UTC).datetime().to_string()
 }
 
 impl Layout {
@@ -173,6 +187,15 @@ impl Layout {
                 BatchColumn::Instants(instants),
             ) => {
                 let instants = instants.iter().map(|instant| instant.and_then(instant_of));
+                Some(Times::Instants(instants.collect::<Option<_>>()?))
+            }
+            (
+                TimeForm::Timestamp { date_column: None, format: None, utc_offset },
+                BatchColumn::LocalTimes(times),
+            ) => {
+                let offset = utc_offset.as_deref().and_then(seconds_east)?;
+                let instants =
+                    times.iter().map(|time| at_offset(time.and_then(instant_of)?, offset));
                 Some(Times::Instants(instants.collect::<Option<_>>()?))
             }
             (TimeForm::Seconds { per_second, .. }, BatchColumn::Numbers(numbers)) => {

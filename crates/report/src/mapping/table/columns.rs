@@ -6,6 +6,7 @@ use flight::Timestamp;
 
 use super::rows::{Event, FARTHEST_S, Rows, Times};
 use super::{Layout, Text};
+use crate::cruise_text::parse_instant;
 use crate::mapping::in_memory::{Cells, TableRows};
 use crate::mapping::pieces::{Content, Piece};
 use crate::mapping::plan::TimeForm;
@@ -80,6 +81,13 @@ impl Layout {
             {
                 Some(Times::Instants(instants.clone()))
             }
+            (Cells::LocalTimes(times), TimeForm::Timestamp { format: None, utc_offset, .. })
+                if self.fields.date.is_none() && times.iter().all(can_be_text) =>
+            {
+                let offset = utc_offset.as_deref().and_then(seconds_east)?;
+                let instants = times.iter().map(|time| at_offset(*time, offset));
+                Some(Times::Instants(instants.collect::<Option<_>>()?))
+            }
             (Cells::Numbers(seconds), TimeForm::Seconds { per_second, .. }) => {
                 let times: Vec<f64> = seconds.iter().map(|time| time / per_second).collect();
                 let usual = |time: &f64| time.abs() <= FARTHEST_S;
@@ -130,6 +138,17 @@ impl Layout {
         }
         Some(events)
     }
+}
+
+/// The seconds that local time is ahead of UTC.
+pub(super) fn seconds_east(utc_offset: &str) -> Option<i64> {
+    // What is midnight there is earlier in UTC where the sun rises earlier.
+    parse_instant(&format!("1970-01-01T00:00:00{utc_offset}")).map(|instant| -instant.as_second())
+}
+
+/// The instant of a local time that was read as if it were UTC.
+pub(super) fn at_offset(local: Timestamp, seconds_east: i64) -> Option<Timestamp> {
+    Timestamp::new(local.as_second() - seconds_east, local.subsec_nanosecond()).ok()
 }
 
 /// Whether an instant's text is read back as that instant: with years of four digits.
