@@ -5,6 +5,8 @@ use flight::Timestamp;
 use monitor::Month;
 use serde::{Deserialize, Serialize};
 
+use crate::statistics::{ErrorStatistics, mean_half_width95_by_flight};
+
 /// The gap in one calendar month, UTC.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MonthGap {
@@ -24,9 +26,6 @@ pub struct MonthGap {
     pub after_ci95: Option<[f64; 2]>,
 }
 
-/// Half width of a 95 % interval in standard deviations: the normal distribution's 97.5 % quantile.
-const NORMAL_95: f64 = 1.96;
-
 /// The months in which a tail flew, in order.
 #[must_use]
 pub fn months(segments: &[SegmentGap]) -> Vec<MonthGap> {
@@ -42,50 +41,34 @@ pub fn months(segments: &[SegmentGap]) -> Vec<MonthGap> {
 }
 
 fn of_month(rows: &[(Month, &SegmentGap)]) -> MonthGap {
-    let before = Mean::of(rows, |segment| Some(segment.before_percent));
-    let after = Mean::of(rows, |segment| segment.after_percent.last().copied());
+    let flights: Vec<&[(Month, &SegmentGap)]> =
+        rows.chunk_by(|a, b| a.1.flight == b.1.flight).collect();
+    let before = mean(&flights, |segment| Some(segment.before_percent));
+    let after = mean(&flights, |segment| segment.after_percent.last().copied());
     MonthGap {
         month: rows.first().map_or_else(String::new, |(month, _)| month.to_string()),
-        flights: rows.chunk_by(|a, b| a.1.flight == b.1.flight).count(),
+        flights: flights.len(),
         segments: rows.len(),
-        mean_gap_percent: before.map_or(0.0, |before| before.mean),
-        ci95: before.and_then(|before| before.ci95),
-        after_percent: after.map(|after| after.mean),
-        after_ci95: after.and_then(|after| after.ci95),
+        mean_gap_percent: before.map_or(0.0, |(mean, _)| mean),
+        ci95: before.and_then(|(_, ci95)| ci95),
+        after_percent: after.map(|(mean, _)| mean),
+        after_ci95: after.and_then(|(_, ci95)| ci95),
     }
 }
 
-/// A mean over segments with its interval by flight.
-#[derive(Clone, Copy, Debug)]
-struct Mean {
-    mean: f64,
-    ci95: Option<[f64; 2]>,
-}
-
-impl Mean {
-    /// Mean over segments; its variance is that of the flights' sums about it, since segments of a flight err together.
-    ///
-    /// ```text
-    /// s² = F/(F − 1)·Σ_f (Σ_i g_i − n_f ḡ)² / n²
-    /// ```
-    fn of(
-        rows: &[(Month, &SegmentGap)],
-        value: impl Fn(&SegmentGap) -> Option<f64>,
-    ) -> Option<Self> {
-        let values = rows.iter().map(|(_, segment)| Some((segment.flight, value(segment)?)));
-        let values: Vec<(usize, f64)> = values.collect::<Option<_>>()?;
-        let count = values.len() as f64;
-        let mean = values.iter().map(|(_, value)| value).sum::<f64>() / count;
-        let flights: Vec<f64> = values
-            .chunk_by(|a, b| a.0 == b.0)
-            .map(|own| own.iter().map(|(_, value)| value - mean).sum::<f64>())
-            .collect();
-        let (of, squares) =
-            (flights.len() as f64, flights.iter().map(|sum| sum * sum).sum::<f64>());
-        let half = NORMAL_95 * (of / (of - 1.0) * squares).sqrt() / count;
-        let ci95 = (flights.len() > 1).then_some([mean - half, mean + half]);
-        Some(Self { mean, ci95 })
-    }
+/// Mean over segments, and its 95 % interval by flight: segments of a flight err together. `None` where a segment has no value.
+fn mean(
+    flights: &[&[(Month, &SegmentGap)]],
+    value: impl Fn(&SegmentGap) -> Option<f64>,
+) -> Option<(f64, Option<[f64; 2]>)> {
+    let of_flight = |own: &&[(Month, &SegmentGap)]| own.iter().map(|(_, one)| value(one)).collect();
+    let values: Vec<Vec<f64>> = flights.iter().map(of_flight).collect::<Option<_>>()?;
+    let all: Vec<f64> = values.iter().flatten().copied().collect();
+    let mean = ErrorStatistics::from_errors(&all).mean?;
+    let by_flight: Vec<ErrorStatistics> =
+        values.iter().map(|own| ErrorStatistics::from_errors(own)).collect();
+    let half = mean_half_width95_by_flight(&by_flight);
+    Some((mean, half.map(|half| [mean - half, mean + half])))
 }
 
 #[cfg(test)]
@@ -108,7 +91,7 @@ mod tests {
     }
 
     /// By hand: gaps of 1, 1 in one flight and 3, 3 in another have the mean 2, flights' sums ∓2, and a standard deviation of
-    /// √(2·8)/4 = 1.
+    /// √(2·8)/4 = 1; Student's quantile of two flights is 12.7062 (table).
     #[test]
     fn months_by_hand() {
         let segments = [
@@ -123,11 +106,8 @@ mod tests {
         let january = &found[0];
         assert_eq!((january.month.as_str(), january.flights, january.segments), ("2026-01", 2, 4));
         let [low, high] = january.ci95.unwrap();
-        let is = |value: f64, expected: f64| (value - expected).abs() < 1e-12;
-        assert!(
-            is(january.mean_gap_percent, 2.0) && is(low, 0.04) && is(high, 3.96),
-            "{january:?}"
-        );
+        assert!((january.mean_gap_percent - 2.0).abs() < 1e-12, "{january:?}");
+        assert!((low + 10.7062).abs() < 1e-4 && (high - 14.7062).abs() < 1e-4, "{january:?}");
         assert_eq!(january.after_ci95, Some([0.5, 0.5]));
         let february = &found[1];
         assert_eq!((february.after_percent, february.ci95), (Some(-0.25), None));
