@@ -187,7 +187,7 @@ impl Report {
         // Written so that NaN is refused too.
         let is_refused = |fuel_used_kg: &f64| {
             let mass_kg = ramp_mass_kg - fuel_used_kg;
-            mass_kg.is_nan() | (mass_kg <= 0.0)
+            mass_kg.is_nan() || mass_kg <= 0.0
         };
         let refused = columns.fuel_used_kg.iter().map(|used_kg| u64::from(is_refused(used_kg)));
         if refused.sum::<u64>() > 0

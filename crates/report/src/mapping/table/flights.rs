@@ -253,7 +253,7 @@ impl Recording {
         }
         let added = &self.time_s[before.saturating_sub(1)..];
         // Counted: without a way out of the loop, several are looked at in one instruction.
-        let follows = |earlier: f64, later: f64| (later > earlier) & (later - earlier <= longest_s);
+        let follows = |earlier: f64, later: f64| later > earlier && later - earlier <= longest_s;
         let pairs = added.iter().zip(&added[1..]);
         let others = pairs.map(|(earlier, later)| u64::from(!follows(*earlier, *later)));
         let follow = others.sum::<u64>() == 0;
