@@ -1,24 +1,24 @@
 //! Rows of a Parquet file, some thousands at a time and only the columns that are wanted: memory is that of a page of each.
 
+mod cells;
 mod footer;
+mod present;
 mod shared_file;
 
 use std::fs::File;
 use std::path::Path;
 
+use cells::{cells_of, skip, texts_by_places};
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as PhysicalType};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::{ByteArray, DataType, DoubleType, Int96};
+use parquet::column::reader::ColumnReader;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
+use present::Texts;
 use rayon::prelude::*;
 use report::mapping::{Batch, BatchColumn, Source};
 use shared_file::SharedFile;
 
-use crate::cells::{date, runs, time_of_day};
-
-const DAY_S: i64 = 86_400;
 /// Rows of a batch: enough that the work on its ends does not count, few enough that several fit into little memory.
 const ROWS_AT_ONCE: usize = 1 << 14;
 
@@ -70,6 +70,8 @@ struct Table {
     /// Columns of the group that is being read, and the rows that are left in it.
     columns: Vec<(usize, Column)>,
     left: usize,
+    /// Places of columns that lack values, or are otherwise not read as those in which all are there.
+    of_any_kind: Vec<usize>,
 }
 
 /// What a column's cells become.
@@ -90,10 +92,20 @@ enum Kind {
 
 /// A column of the group that is being read.
 struct Column {
-    reader: ColumnReader,
+    reading: Reading,
+    /// Rows that were read.
+    rows: usize,
     kind: Kind,
     is_optional: bool,
     levels: Vec<i16>,
+}
+
+/// How a column is read.
+enum Reading {
+    /// With values missing, or none.
+    Any(ColumnReader),
+    /// All values are there, as [`present`] reads them; of texts their places among these.
+    Present(ColumnReader, Option<Texts>),
 }
 
 impl Table {
@@ -101,7 +113,7 @@ impl Table {
         let file = SharedFile::new(file)?;
         footer::check(&file)?;
         let reader = SerializedFileReader::new(file)?;
-        Ok(Self { reader, group: 0, columns: Vec::new(), left: 0 })
+        Ok(Self { reader, group: 0, columns: Vec::new(), left: 0, of_any_kind: Vec::new() })
     }
 
     fn names(&self) -> Vec<String> {
@@ -125,17 +137,25 @@ impl Table {
         }
         let rows = self.left.min(ROWS_AT_ONCE);
         self.left -= rows;
+        let (reader, group) = (&self.reader, self.group - 1);
         let columns = self
             .columns
             .par_iter_mut()
-            .map(|(place, column)| Ok((*place, column.read(rows)?)))
+            .map(|(place, column)| {
+                let anew = || reader.get_row_group(group)?.get_column_reader(*place);
+                Ok((*place, column.read_present_or_any(rows, anew)?))
+            })
             .collect::<Result<Vec<_>, ParquetError>>()?;
         Ok(Some(Batch { first_row: 0, rows, columns }))
     }
 
     fn begin_group(&mut self, wanted: &[usize]) -> Result<(), ParquetError> {
         // Pages of the group before are given back before those of this one are taken.
-        self.columns.clear();
+        for (place, column) in self.columns.drain(..) {
+            if matches!(column.reading, Reading::Any(_)) && !self.of_any_kind.contains(&place) {
+                self.of_any_kind.push(place);
+            }
+        }
         let group = self.reader.get_row_group(self.group)?;
         let schema = self.reader.metadata().file_metadata().schema_descr();
         for place in wanted {
@@ -145,9 +165,15 @@ impl Table {
                 ParquetError::General(reason)
             })?;
             let is_optional = column.max_def_level() > 0;
-            let reader = group.get_column_reader(*place)?;
+            let reading = if self.of_any_kind.contains(place) {
+                Reading::Any(group.get_column_reader(*place)?)
+            } else {
+                let pages = group.get_column_page_reader(*place)?;
+                let (reader, texts) = present::reader(&column, pages)?;
+                Reading::Present(reader, texts)
+            };
             let levels = Vec::new();
-            self.columns.push((*place, Column { reader, kind, is_optional, levels }));
+            self.columns.push((*place, Column { reading, rows: 0, kind, is_optional, levels }));
         }
         self.left = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
         self.group += 1;
@@ -199,163 +225,120 @@ const fn nanoseconds(unit: TimeUnit) -> i64 {
 }
 
 impl Column {
-    fn read(&mut self, rows: usize) -> Result<BatchColumn, ParquetError> {
-        let Self { reader, kind, is_optional, levels } = self;
-        let levels = is_optional.then_some(levels);
-        match reader {
-            ColumnReader::DoubleColumnReader(reader) => doubles(reader, rows, levels),
-            ColumnReader::FloatColumnReader(reader) => {
-                numbers(reader, rows, levels, |value| f64::from(*value))
+    /// Where the column turns out to be one that lacks values, it is read `anew` from the first of these rows on.
+    fn read_present_or_any(
+        &mut self,
+        rows: usize,
+        anew: impl FnOnce() -> Result<ColumnReader, ParquetError>,
+    ) -> Result<BatchColumn, ParquetError> {
+        let before = self.rows;
+        self.rows += rows;
+        if let Reading::Present(reader, texts) = &mut self.reading {
+            let read = match (reader, texts) {
+                (ColumnReader::Int32ColumnReader(reader), Some(texts)) => {
+                    texts_by_places(reader, rows, texts)
+                }
+                (reader, _) => cells_of(reader, rows, None, self.kind),
+            };
+            if read.is_ok() {
+                return read;
             }
-            ColumnReader::BoolColumnReader(reader) => {
-                numbers(reader, rows, levels, |value| f64::from(u8::from(*value)))
+            let mut reader = anew()?;
+            if skip(&mut reader, before)? != before {
+                return Err(ParquetError::General("fewer rows than the file states".to_owned()));
             }
-            ColumnReader::Int32ColumnReader(reader) => {
-                counts(reader, rows, levels, *kind, |value| i64::from(*value))
-            }
-            ColumnReader::Int64ColumnReader(reader) => {
-                counts(reader, rows, levels, *kind, |value| *value)
-            }
-            ColumnReader::Int96ColumnReader(reader) => {
-                counts(reader, rows, levels, *kind, Int96::to_nanos)
-            }
-            ColumnReader::ByteArrayColumnReader(reader) => texts(reader, rows, levels),
-            ColumnReader::FixedLenByteArrayColumnReader(_) => {
-                Err(ParquetError::General("bytes of a fixed length are not read".to_owned()))
+            self.reading = Reading::Any(reader);
+        }
+        let levels = self.is_optional.then_some(&mut self.levels);
+        match &mut self.reading {
+            Reading::Any(reader) | Reading::Present(reader, _) => {
+                cells_of(reader, rows, levels, self.kind)
             }
         }
     }
 }
 
-/// Cells of a column of whole numbers.
-fn counts<T: DataType>(
-    reader: &mut ColumnReaderImpl<T>,
-    rows: usize,
-    levels: Option<&mut Vec<i16>>,
-    kind: Kind,
-    count: impl Fn(&T::T) -> i64,
-) -> Result<BatchColumn, ParquetError> {
-    let cells = cells(reader, rows, levels, None, |value| Some(count(value)))?;
-    let text = |text: fn(i64, i64) -> String, each: i64| {
-        let cells =
-            cells.iter().map(|cell| cell.map_or_else(String::new, |count| text(count, each)));
-        BatchColumn::Texts(runs(cells))
-    };
-    Ok(match kind {
-        #[expect(clippy::cast_precision_loss, reason = "counts of recorders are below 2^53")]
-        Kind::Number(factor) => BatchColumn::Numbers(
-            cells.iter().map(|cell| cell.map_or(f64::NAN, |count| count as f64 * factor)).collect(),
-        ),
-        Kind::Instant(each) => BatchColumn::Instants(
-            cells.iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
-        ),
-        Kind::LocalTime(each) => BatchColumn::LocalTimes(
-            cells.iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
-        ),
-        Kind::Date => text(|days, day_s| date(days.saturating_mul(day_s)), DAY_S),
-        Kind::Time(each) => text(time_of_day, each),
-        Kind::Text => BatchColumn::Texts(Vec::new()),
-    })
-}
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
 
-fn numbers<T: DataType>(
-    reader: &mut ColumnReaderImpl<T>,
-    rows: usize,
-    levels: Option<&mut Vec<i16>>,
-    number: impl Fn(&T::T) -> f64,
-) -> Result<BatchColumn, ParquetError> {
-    Ok(BatchColumn::Numbers(cells(reader, rows, levels, f64::NAN, number)?))
-}
+    use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
+    use parquet::file::properties::WriterProperties;
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::parser::parse_message_type;
 
-/// Numbers of double precision; nearly always there are as many as rows.
-fn doubles(
-    reader: &mut ColumnReaderImpl<DoubleType>,
-    rows: usize,
-    mut levels: Option<&mut Vec<i16>>,
-) -> Result<BatchColumn, ParquetError> {
-    let present = records(reader, rows, levels.as_deref_mut())?;
-    Ok(BatchColumn::Numbers(match levels {
-        Some(levels) if present.len() < rows => {
-            spaced(present.iter(), levels, &f64::NAN, |value| *value)
+    use super::*;
+
+    const ROWS: usize = 3 * ROWS_AT_ONCE + 7;
+
+    fn number(row: usize) -> f64 {
+        if row == 2 * ROWS_AT_ONCE + 1000 { f64::NAN } else { (row % 40) as f64 }
+    }
+
+    /// So many texts, from half of the rows on, that their dictionary is given up.
+    fn text(row: usize) -> String {
+        if row < ROWS / 2 { (row / 900).to_string() } else { format!("{row:050}") }
+    }
+
+    /// Two groups of a column that lacks one number, far from its beginning, and of texts whose dictionary does not last.
+    fn file() -> File {
+        let schema = Arc::new(
+            parse_message_type("message m { optional double x; optional binary t (UTF8); }")
+                .unwrap(),
+        );
+        let properties = WriterProperties::builder()
+            .set_data_page_row_count_limit(5000)
+            .set_dictionary_page_size_limit(4096)
+            .set_write_batch_size(500)
+            .build();
+        let file = tempfile::tempfile().unwrap();
+        let mut writer =
+            SerializedFileWriter::new(file.try_clone().unwrap(), schema, properties.into())
+                .unwrap();
+        for _ in 0..2 {
+            let mut group = writer.next_row_group().unwrap();
+            let mut column = group.next_column().unwrap().unwrap();
+            let levels: Vec<i16> = (0..ROWS).map(|row| i16::from(!number(row).is_nan())).collect();
+            let present: Vec<f64> = (0..ROWS).map(number).filter(|x| !x.is_nan()).collect();
+            column.typed::<DoubleType>().write_batch(&present, Some(&levels), None).unwrap();
+            column.close().unwrap();
+            let mut column = group.next_column().unwrap().unwrap();
+            let texts: Vec<ByteArray> =
+                (0..ROWS).map(|row| ByteArray::from(text(row).into_bytes())).collect();
+            column
+                .typed::<ByteArrayType>()
+                .write_batch(&texts, Some(&vec![1; ROWS]), None)
+                .unwrap();
+            column.close().unwrap();
+            group.close().unwrap();
         }
-        _ => present,
-    }))
-}
-
-/// Cells of a column, `missing` where there is none.
-fn cells<T: DataType, C: Clone>(
-    reader: &mut ColumnReaderImpl<T>,
-    rows: usize,
-    mut levels: Option<&mut Vec<i16>>,
-    missing: C,
-    cell: impl Fn(&T::T) -> C,
-) -> Result<Vec<C>, ParquetError> {
-    let present = records(reader, rows, levels.as_deref_mut())?;
-    match levels {
-        Some(levels) if present.len() < rows => Ok(spaced(present.iter(), levels, &missing, cell)),
-        _ => Ok(present.iter().map(cell).collect()),
+        writer.close().unwrap();
+        file
     }
-}
 
-/// Values where a level says that there is one, `missing` elsewhere.
-fn spaced<'v, V: 'v, C: Clone>(
-    mut present: impl Iterator<Item = &'v V>,
-    levels: &[i16],
-    missing: &C,
-    cell: impl Fn(&V) -> C,
-) -> Vec<C> {
-    let of_level = |level: &i16| {
-        let value = if *level > 0 { present.next() } else { None };
-        value.map_or_else(|| missing.clone(), &cell)
-    };
-    levels.iter().map(of_level).collect()
-}
-
-/// The values of the next rows: those that there are.
-fn records<T: DataType>(
-    reader: &mut ColumnReaderImpl<T>,
-    rows: usize,
-    mut levels: Option<&mut Vec<i16>>,
-) -> Result<Vec<T::T>, ParquetError> {
-    let mut present = Vec::with_capacity(rows);
-    if let Some(levels) = levels.as_deref_mut() {
-        levels.clear();
-    }
-    let mut read = 0;
-    while read < rows {
-        let (some, _, _) =
-            reader.read_records(rows - read, levels.as_deref_mut(), None, &mut present)?;
-        if some == 0 {
-            return Err(ParquetError::General("fewer rows than the file states".to_owned()));
-        }
-        read += some;
-    }
-    Ok(present)
-}
-
-/// Texts, each with the number of rows that it holds for.
-fn texts(
-    reader: &mut ColumnReaderImpl<parquet::data_type::ByteArrayType>,
-    rows: usize,
-    levels: Option<&mut Vec<i16>>,
-) -> Result<BatchColumn, ParquetError> {
-    let mut levels = levels;
-    let present = records(reader, rows, levels.as_deref_mut())?;
-    let nothing = ByteArray::from("");
-    let mut runs: Vec<(String, usize)> = Vec::new();
-    let mut add = |cell: &ByteArray| match runs.last_mut() {
-        Some((text, count)) if text.as_bytes() == cell.data() => *count += 1,
-        _ => runs.push((String::from_utf8_lossy(cell.data()).into_owned(), 1)),
-    };
-    match levels {
-        Some(levels) if present.len() < rows => {
-            let mut present = present.iter();
-            for level in levels.iter() {
-                let cell = if *level > 0 { present.next() } else { None };
-                add(cell.unwrap_or(&nothing));
+    /// Oracle: what was written.
+    #[test]
+    fn a_column_that_first_lacks_a_value_later_is_read_on_from_there() {
+        let mut table = Table::open(file()).unwrap();
+        let (mut numbers, mut texts) = (Vec::new(), Vec::new());
+        let mut began_present = false;
+        while let Some(batch) = table.next_batch(&[0, 1]).unwrap() {
+            began_present |= matches!(table.columns[0].1.reading, Reading::Present(..));
+            for (_, column) in batch.columns {
+                match column {
+                    BatchColumn::Numbers(values) => numbers.extend(values),
+                    BatchColumn::Texts(runs) => {
+                        texts.extend(runs.into_iter().flat_map(|(text, rows)| vec![text; rows]))
+                    }
+                    BatchColumn::Instants(_) => unreachable!(),
+                }
             }
         }
-        _ => present.iter().for_each(add),
+        assert!(began_present);
+        assert_eq!(table.of_any_kind, [0, 1]);
+        let rows: Vec<usize> = (0..ROWS).chain(0..ROWS).collect();
+        assert_eq!(texts, rows.iter().map(|row| text(*row)).collect::<Vec<_>>());
+        let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+        assert_eq!(bits(numbers), bits(rows.iter().map(|row| number(*row)).collect()));
     }
-    Ok(BatchColumn::Texts(runs))
 }

@@ -1,5 +1,7 @@
 //! The cruise report as sent.
 
+use std::borrow::Cow;
+
 use crate::column::Column;
 use crate::{MAXIMUM_ENGINES, OptionalColumn, OptionalColumns, ReportHeader};
 
@@ -26,6 +28,23 @@ impl FuelFlowColumns {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Total fuel flow of each sample, kg/s: the engines summed in their order, as [`FuelFlowColumns::total_kg_s`] does it.
+    #[must_use]
+    pub fn totals_kg_s(&self) -> Cow<'_, [f64]> {
+        match self {
+            Self::Total(total) => Cow::Borrowed(total),
+            Self::PerEngine(engines) => {
+                let mut totals = engines.first().cloned().unwrap_or_default();
+                for engine in engines.iter().skip(1) {
+                    for (total, flow) in totals.iter_mut().zip(engine) {
+                        *total += flow;
+                    }
+                }
+                Cow::Owned(totals)
+            }
+        }
     }
 
     /// Total fuel flow of one sample, kg/s: the engines summed in their order.
@@ -165,12 +184,17 @@ impl Report {
         check_columns(&columns)?;
         let ramp_mass_kg =
             header.zero_fuel_mass.to_kilograms() + header.fuel_on_board.to_kilograms();
-        for (sample, fuel_used_kg) in columns.fuel_used_kg.iter().enumerate() {
+        // Written so that NaN is refused too.
+        let is_refused = |fuel_used_kg: &f64| {
             let mass_kg = ramp_mass_kg - fuel_used_kg;
-            // Written so that NaN is refused too.
-            if mass_kg.is_nan() || mass_kg <= 0.0 {
-                return Err(ReportDataError::MassNotPositive { sample, mass_kg });
-            }
+            mass_kg.is_nan() || mass_kg <= 0.0
+        };
+        let refused = columns.fuel_used_kg.iter().map(|used_kg| u64::from(is_refused(used_kg)));
+        if refused.sum::<u64>() > 0
+            && let Some(sample) = columns.fuel_used_kg.iter().position(is_refused)
+        {
+            let mass_kg = ramp_mass_kg - columns.fuel_used_kg[sample];
+            return Err(ReportDataError::MassNotPositive { sample, mass_kg });
         }
         Ok(Self { header, columns })
     }
@@ -320,8 +344,8 @@ fn check_full(
     if values.len() != expected {
         return Err(ReportDataError::LengthsDiffer { column, found: values.len(), expected });
     }
-    // All of them together first: without a way out of the loop, several values are looked at in one instruction.
-    if values.iter().fold(true, |finite, value| finite & value.is_finite()) {
+    // All of them counted first: without a way out of the loop, several values are looked at in one instruction.
+    if values.iter().map(|value| u64::from(!value.is_finite())).sum::<u64>() == 0 {
         return Ok(());
     }
     match values.iter().position(|value| !value.is_finite()) {

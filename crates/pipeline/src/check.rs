@@ -78,29 +78,32 @@ pub struct FlightCheck {
 /// Checks one report by itself.
 #[must_use]
 pub fn check_report(report: &Report) -> FlightCheck {
+    let flow_kg_s = report.columns().fuel_flow.totals_kg_s();
     let drafts = [
-        load::check(report),
+        load::check(report, &flow_kg_s),
         air::check(report),
         ground::check(report),
-        fuel::check(report),
+        fuel::check(report, &flow_kg_s),
         channels::check(report),
     ];
-    checked(report, drafts.into_iter().flatten())
+    checked(report, &flow_kg_s, drafts.into_iter().flatten())
 }
 
 /// Checks averaged points: by what holds at each of them, not by what happens between them.
 #[must_use]
 pub fn check_points(report: &Report) -> FlightCheck {
+    let flow_kg_s = report.columns().fuel_flow.totals_kg_s();
     let drafts = [
-        load::check_point(report),
+        load::check_point(report, &flow_kg_s),
         air::check(report),
-        fuel::check(report),
+        fuel::check(report, &flow_kg_s),
         channels::check(report),
     ];
-    checked(report, drafts.into_iter().flatten())
+    checked(report, &flow_kg_s, drafts.into_iter().flatten())
 }
 
-fn checked(report: &Report, drafts: impl Iterator<Item = Draft>) -> FlightCheck {
+/// `flow_kg_s` is the total fuel flow of each sample.
+fn checked(report: &Report, flow_kg_s: &[f64], drafts: impl Iterator<Item = Draft>) -> FlightCheck {
     let identity = report.header().identity.clone();
     let time_s = &report.columns().time_s;
     let start_s = identity.start_s();
@@ -109,7 +112,7 @@ fn checked(report: &Report, drafts: impl Iterator<Item = Draft>) -> FlightCheck 
     let (first, last) = (time_s.first().copied(), time_s.last().copied());
     FlightCheck {
         instants_s: (start_s + first.unwrap_or(0.0), start_s + last.unwrap_or(0.0)),
-        fingerprint: fingerprint(report),
+        fingerprint: fingerprint(report, flow_kg_s),
         identity,
         findings,
     }
@@ -150,24 +153,31 @@ fn severity_word<S: serde::Serializer>(
     serializer.serialize_str(word(*severity))
 }
 
-fn fingerprint(report: &Report) -> u64 {
+fn fingerprint(report: &Report, flow_kg_s: &[f64]) -> u64 {
     let columns = report.columns();
     let mut hasher = DefaultHasher::new();
     for series in [
-        &columns.pressure_altitude_m,
+        columns.pressure_altitude_m.as_slice(),
         &columns.mach,
         &columns.ground_speed_m_s,
         &columns.true_airspeed_m_s,
+        flow_kg_s,
     ] {
-        for value in series {
-            hasher.write_u64(value.to_bits());
+        // The hasher takes bytes; many of them at a time cost it half of what as many numbers do.
+        for values in series.chunks(VALUES_AT_ONCE) {
+            let mut bytes = [0; 8 * VALUES_AT_ONCE];
+            let (eights, _) = bytes.as_chunks_mut::<8>();
+            for (eight, value) in eights.iter_mut().zip(values) {
+                *eight = value.to_bits().to_ne_bytes();
+            }
+            hasher.write(&bytes[..8 * values.len()]);
         }
-    }
-    for sample in 0..columns.time_s.len() {
-        hasher.write_u64(columns.fuel_flow.total_kg_s(sample).to_bits());
     }
     hasher.finish()
 }
+
+/// Numbers that are worked on together.
+const VALUES_AT_ONCE: usize = 64;
 
 /// Arithmetic mean; `None` of nothing.
 fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
@@ -175,6 +185,24 @@ fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     for value in values {
         sum += value;
         count += 1;
+    }
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+/// Mean of a function of two columns; `None` of nothing. Values are computed some at a time, in which several fit into one
+/// instruction, and added one by one in their order.
+fn mean_of_pairs(first: &[f64], second: &[f64], of: impl Fn(f64, f64) -> f64) -> Option<f64> {
+    let mut values = [0.0; VALUES_AT_ONCE];
+    let chunks = first.chunks(VALUES_AT_ONCE).zip(second.chunks(VALUES_AT_ONCE));
+    let (mut sum, mut count) = (0.0, 0_u32);
+    for (first, second) in chunks {
+        for ((value, first), second) in values.iter_mut().zip(first).zip(second) {
+            *value = of(*first, *second);
+        }
+        for value in &values[..first.len().min(second.len())] {
+            sum += value;
+            count += 1;
+        }
     }
     (count > 0).then(|| sum / f64::from(count))
 }

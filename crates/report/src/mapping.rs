@@ -241,9 +241,10 @@ fn parts(plan: &Plan, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f
         Some(criteria) => {
             let altitude = |(column, _): &&(Column, _)| *column == Column::PressureAltitude;
             let conversion = plan.recorded.iter().find(altitude);
-            let pressure_altitude_m: Vec<f64> = conversion
-                .map(|(_, conversion)| conversion.apply_to(&recording.numbers, 0..rows))
-                .unwrap_or_default();
+            let mut pressure_altitude_m = Vec::with_capacity(rows);
+            if let Some((_, conversion)) = conversion {
+                conversion.append_to(&mut pressure_altitude_m, &recording.numbers, 0..rows);
+            }
             level::level_parts(&recording.time_s, &pressure_altitude_m, criteria)
         }
     }

@@ -62,12 +62,12 @@ impl Means {
                 .and_then(|values| mean(values.iter().copied()))
                 .map(Temperature::kelvin),
             true_airspeed_ratio: recorded.and_then(|temperatures_k| {
-                mean(temperatures_k.iter().enumerate().map(|(sample, temperature_k)| {
-                    let expected = airspeed::mach_to_true_airspeed(
-                        Mach::new(columns.mach[sample]),
-                        Temperature::kelvin(*temperature_k),
-                    );
-                    columns.true_airspeed_m_s[sample] / expected.to_meters_per_second()
+                let samples =
+                    columns.mach.iter().zip(temperatures_k).zip(&columns.true_airspeed_m_s);
+                mean(samples.map(|((mach, temperature_k), true_airspeed_m_s)| {
+                    let temperature = Temperature::kelvin(*temperature_k);
+                    let expected = airspeed::mach_to_true_airspeed(Mach::new(*mach), temperature);
+                    true_airspeed_m_s / expected.to_meters_per_second()
                 }))
             }),
             true_airspeed_kt: units::TrueAirspeed::meters_per_second(mean(

@@ -132,15 +132,23 @@ impl Channel<'_> {
     /// First and last sample of the longest run of one value.
     fn longest_run(&self) -> (usize, usize) {
         let (mut best, mut first) = ((0, 0), 0);
-        for sample in 1..=self.values.len() {
-            let goes_on = sample < self.values.len()
-                && self.values[sample].to_bits() == self.values[first].to_bits();
-            if !goes_on {
-                if sample - 1 - first > best.1 - best.0 {
-                    best = (first, sample - 1);
+        // A longer run than the longest so far reaches beyond as many samples. Looked at backwards from there, most samples
+        // need not be looked at.
+        while let Some(needed) = self.values.get(first..=first + (best.1 - best.0) + 1) {
+            let value = needed[0].to_bits();
+            let differs = |value: &f64, from: u64| value.to_bits() != from;
+            let end = needed[needed.len() - 1].to_bits();
+            let others = needed.iter().rposition(|value| differs(value, end));
+            first += match others {
+                // The first run that can reach so far begins behind the last value that is another than there.
+                Some(last) => last + 1,
+                None => {
+                    let rest = self.values[first..].iter().position(|other| differs(other, value));
+                    let length = rest.unwrap_or(self.values.len() - first);
+                    best = (first, first + length - 1);
+                    length
                 }
-                first = sample;
-            }
+            };
         }
         best
     }

@@ -20,32 +20,26 @@ const ASYMMETRY_SHARE: f64 = 0.05;
 /// Rotor speeds that are called the same, % of rated speed.
 const SAME_ROTOR_SPEED_PERCENT: f64 = 0.6;
 
-pub(super) fn check(report: &Report) -> Vec<Draft> {
-    let mut findings: Vec<Draft> = used_against_flow(report).into_iter().collect();
-    findings.extend(quantity_against_flow(report));
-    findings.extend(asymmetry(report));
+pub(super) fn check(report: &Report, flow_kg_s: &[f64]) -> Vec<Draft> {
+    let mut findings: Vec<Draft> = used_against_flow(report, flow_kg_s).into_iter().collect();
+    findings.extend(quantity_against_flow(report, flow_kg_s));
+    findings.extend(asymmetry(report, flow_kg_s));
     findings
 }
 
-/// Fuel burnt between two samples by the meters: trapezoids, kg.
-fn integral_kg(report: &Report, first: usize, last: usize) -> f64 {
-    let columns = report.columns();
-    (first..last)
-        .map(|sample| {
-            let flow =
-                columns.fuel_flow.total_kg_s(sample) + columns.fuel_flow.total_kg_s(sample + 1);
-            0.5 * flow * (columns.time_s[sample + 1] - columns.time_s[sample])
-        })
-        .sum()
+/// Fuel burnt between the first and the last sample by the meters: trapezoids, kg.
+fn integral_kg(time_s: &[f64], flow_kg_s: &[f64]) -> f64 {
+    let steps = time_s.windows(2).zip(flow_kg_s.windows(2));
+    steps.map(|(time_s, flow)| 0.5 * (flow[0] + flow[1]) * (time_s[1] - time_s[0])).sum()
 }
 
-fn used_against_flow(report: &Report) -> Option<Draft> {
+fn used_against_flow(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
     let columns = report.columns();
     let last = report.len() - 1;
     if columns.time_s[last] - columns.time_s[0] < SHORTEST_S {
         return None;
     }
-    let by_flow_kg = integral_kg(report, 0, last);
+    let by_flow_kg = integral_kg(&columns.time_s, flow_kg_s);
     let by_counter_kg = columns.fuel_used_kg[last] - columns.fuel_used_kg[0];
     let ratio = by_counter_kg / by_flow_kg;
     let allowed = COUNTER_STEP_KG / by_flow_kg;
@@ -104,7 +98,7 @@ fn explain(ratio: f64, report: &Report) -> (String, String) {
 }
 
 /// Tank gauges against flow meters.
-fn quantity_against_flow(report: &Report) -> Option<Draft> {
+fn quantity_against_flow(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
     let columns = report.columns();
     let quantity = columns.optional.get(Column::FuelQuantity)?;
     let first = quantity.iter().position(Option::is_some)?;
@@ -113,7 +107,7 @@ fn quantity_against_flow(report: &Report) -> Option<Draft> {
         return None;
     }
     let by_gauges_kg = quantity[first]? - quantity[last]?;
-    let by_flow_kg = integral_kg(report, first, last);
+    let by_flow_kg = integral_kg(&columns.time_s[first..=last], &flow_kg_s[first..=last]);
     let ratio = by_gauges_kg / by_flow_kg;
     // Gauges are good to 1 % of what the tanks hold, which may be ten times what was burnt here.
     let allowed = 0.01 * quantity[first]? / by_flow_kg;
@@ -137,11 +131,11 @@ fn quantity_against_flow(report: &Report) -> Option<Draft> {
 }
 
 /// Engines that burn differently at the same rotor speed.
-fn asymmetry(report: &Report) -> Option<Draft> {
+fn asymmetry(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
     let columns = report.columns();
     let FuelFlowColumns::PerEngine(flows) = &columns.fuel_flow else { return None };
     let mut worst: Option<(f64, usize, &'static str)> = None;
-    let together = mean((0..report.len()).map(|sample| columns.fuel_flow.total_kg_s(sample)))?;
+    let together = mean(flow_kg_s.iter().copied())?;
     #[expect(clippy::cast_precision_loss, reason = "engines are at most four")]
     let average = together / flows.len() as f64;
     for (engine, flow) in flows.iter().enumerate() {

@@ -7,7 +7,7 @@ use flight::{Report, Severity};
 use units::convert::{METERS_PER_SECOND_PER_KNOT, RADIANS_PER_DEGREE};
 
 use super::slips::{self, SPEED};
-use super::{Draft, mean};
+use super::{Draft, mean, mean_of_pairs};
 
 /// Mean radius of the earth, m (IUGG: (2a + b)/3 of WGS 84). A sphere is within 0.5 % of the ellipsoid.
 const EARTH_RADIUS_M: f64 = 6_371_008.8;
@@ -143,21 +143,22 @@ fn wrapped(angle_deg: f64) -> f64 {
 /// Mean speed of the wind that ground speed, true airspeed and drift give, kt, and ground over true airspeed.
 fn wind(report: &Report) -> (f64, f64) {
     let columns = report.columns();
-    let cosine_of_drift = |sample: usize| {
-        columns.drift_deg.as_ref().map_or(1.0, |drift| (drift[sample] * RADIANS_PER_DEGREE).cos())
-    };
-    let speeds =
-        |sample: usize| (columns.ground_speed_m_s[sample], columns.true_airspeed_m_s[sample]);
-    let winds = (0..report.len()).map(|sample| {
-        let (ground, air) = speeds(sample);
-        let squared = ground * ground + air * air - 2.0 * ground * air * cosine_of_drift(sample);
+    let (ground, air) = (&columns.ground_speed_m_s, &columns.true_airspeed_m_s);
+    let wind = |ground: f64, air: f64, cosine_of_drift: f64| {
+        let squared = ground * ground + air * air - 2.0 * ground * air * cosine_of_drift;
         squared.max(0.0).sqrt() / METERS_PER_SECOND_PER_KNOT
-    });
-    let ratios = (0..report.len()).map(|sample| {
-        let (ground, air) = speeds(sample);
-        ground / air
-    });
-    (mean(winds).unwrap_or(0.0), mean(ratios).unwrap_or(1.0))
+    };
+    let winds = match &columns.drift_deg {
+        None => mean_of_pairs(ground, air, |ground, air| wind(ground, air, 1.0)),
+        Some(drift_deg) => {
+            let speeds = ground.iter().zip(air).zip(drift_deg);
+            mean(speeds.map(|((ground, air), drift)| {
+                wind(*ground, *air, (drift * RADIANS_PER_DEGREE).cos())
+            }))
+        }
+    };
+    let ratios = mean_of_pairs(ground, air, |ground, air| ground / air);
+    (winds.unwrap_or(0.0), ratios.unwrap_or(1.0))
 }
 
 fn speed(report: &Report, legs: &[Leg], (wind_kt, over_air): (f64, f64)) -> Option<Draft> {

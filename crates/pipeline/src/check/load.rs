@@ -19,16 +19,16 @@ const HOURLY_FUEL_PER_MASS: (f64, f64) = (0.020, 0.105);
 const FIRST_YEAR: i32 = 1975;
 const LAST_YEAR: i32 = 2100;
 
-pub(super) fn check(report: &Report) -> Vec<Draft> {
-    [heating_value(report), masses(report), date(report), duration(report)]
+pub(super) fn check(report: &Report, flow_kg_s: &[f64]) -> Vec<Draft> {
+    [heating_value(report), masses(report, flow_kg_s), date(report), duration(report)]
         .into_iter()
         .flatten()
         .collect()
 }
 
 /// Of averaged points, whose first and last may be of any two frames.
-pub(super) fn check_point(report: &Report) -> Vec<Draft> {
-    [heating_value(report), masses(report), date(report)].into_iter().flatten().collect()
+pub(super) fn check_point(report: &Report, flow_kg_s: &[f64]) -> Vec<Draft> {
+    [heating_value(report), masses(report, flow_kg_s), date(report)].into_iter().flatten().collect()
 }
 
 fn heating_value(report: &Report) -> Option<Draft> {
@@ -58,13 +58,13 @@ fn heating_value(report: &Report) -> Option<Draft> {
     })
 }
 
-fn masses(report: &Report) -> Option<Draft> {
+fn masses(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
     let header = report.header();
     let columns = report.columns();
     let (zero_fuel_kg, fuel_kg) =
         (header.zero_fuel_mass.to_kilograms(), header.fuel_on_board.to_kilograms());
     let gross_kg = zero_fuel_kg + fuel_kg - mean(columns.fuel_used_kg.iter().copied())?;
-    let flow_kg_s = mean((0..report.len()).map(|sample| columns.fuel_flow.total_kg_s(sample)))?;
+    let flow_kg_s = mean(flow_kg_s.iter().copied())?;
     let hourly = 3600.0 * flow_kg_s / gross_kg;
     let draft = |severity, code, size, unit, message, likely_cause: &str, remedy: &str| Draft {
         severity,

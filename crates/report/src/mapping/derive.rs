@@ -1,6 +1,7 @@
 //! From rows of a recording to a report: conversion, derivation, ranges.
 
 mod load;
+mod rows;
 
 use core::ops::Range;
 
@@ -13,14 +14,13 @@ use flight::{
 use jiff::SignedDuration;
 use units::{CalibratedAirspeed, Mach, Mass, PressureAltitude, Temperature, TrueAirspeed};
 
-use super::file::OutOfRange;
 use super::plan::{Conversion, MachSource, MassPlan, Plan, TemperatureSource, TrueAirspeedSource};
 use super::table::{Layout, Recording};
+use rows::{Limits, Surplus, UsedRows, rows_in_range};
+
 use crate::Parsed;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
-/// A limit is widened by this share of itself: a number exactly on it must not fail because of a conversion's rounding.
-const LIMIT_ROUNDING: f64 = 1e-12;
 const MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD: f64 = 1.02;
 
 /// The report of the level parts of a recording; of averaged points also their scatter.
@@ -44,8 +44,9 @@ pub(super) fn report(
     }
     let part = Part { plan, layout, recording, rows, level_rows, level_parts: parts.len() };
     let air = part.air_data()?;
-    let load = part.load()?;
-    let columns = part.columns(&air, &load)?;
+    let mut load = part.load()?;
+    let fuel_used_kg = core::mem::take(&mut load.fuel_used_kg);
+    let columns = part.columns(air, &load, fuel_used_kg)?;
     let mut notes = plan.notes.clone();
     let derived = part.derived(&load);
     if !derived.is_empty() {
@@ -109,81 +110,16 @@ struct Part<'p> {
     layout: &'p Layout,
     recording: &'p Recording,
     /// Rows of the recording, at least three (of averaged points one).
-    rows: Vec<usize>,
+    rows: UsedRows,
     /// Number of rows before any was left out for its range.
     level_rows: usize,
     /// Number of level parts that they come from.
     level_parts: usize,
 }
 
-/// A row that is left out, and the column that is out of range in it.
-type Surplus = (usize, Column);
-
-/// The rows to use, and those with a recorded number out of range where the mapping leaves such rows out. Where too few would be
-/// left it is the column that is wrong and not its rows: all are used, and the first number out of range is refused.
-fn rows_in_range(
-    plan: &Plan,
-    recording: &Recording,
-    parts: &[Range<usize>],
-    fewest: usize,
-) -> (Vec<usize>, Vec<Surplus>) {
-    let rows = || parts.iter().cloned().flatten();
-    if plan.out_of_range == OutOfRange::Refuse {
-        return (rows().collect(), Vec::new());
-    }
-    let (mut kept, mut surplus) = (Vec::new(), Vec::new());
-    for row in rows() {
-        let outside = plan.recorded.iter().find(|(column, conversion)| {
-            let value = conversion.apply(&recording.numbers, row);
-            !Limits::new(*column, None).admit(value)
-        });
-        match outside {
-            None => kept.push(row),
-            Some((column, _)) => surplus.push((row, *column)),
-        }
-    }
-    if kept.len() < fewest && !surplus.is_empty() {
-        return (rows().collect(), Vec::new());
-    }
-    (kept, surplus)
-}
-
-/// The range of a column in its stored unit.
-struct Limits {
-    column: Column,
-    minimum: f64,
-    low: f64,
-    maximum: f64,
-    high: f64,
-}
-
-impl Limits {
-    fn new(column: Column, maximum: Option<f64>) -> Self {
-        let range = column.range();
-        let minimum = range.minimum.unwrap_or(f64::MIN);
-        let maximum = maximum.or(range.maximum).unwrap_or(f64::MAX);
-        let low = if range.minimum_excluded {
-            f64::MIN_POSITIVE
-        } else {
-            minimum - minimum.abs() * LIMIT_ROUNDING
-        };
-        let high = (maximum + maximum.abs() * LIMIT_ROUNDING).min(f64::MAX);
-        Self { column, minimum, low, maximum, high }
-    }
-
-    /// NaN is "not available" in an optional column and outside every range elsewhere.
-    fn admit(&self, value: f64) -> bool {
-        if value.is_nan() {
-            return self.column.is_optional();
-        }
-        (self.low..=self.high).contains(&value)
-            && (self.column != Column::AntiIce || value.fract() == 0.0)
-    }
-}
-
 impl Part<'_> {
     fn start(&self) -> Result<Timestamp, Refusal> {
-        let seconds = self.recording.time_s[self.rows[0]];
+        let seconds = self.recording.time_s[self.rows.at(0)];
         SignedDuration::try_from_secs_f64(seconds)
             .ok()
             .and_then(|duration| self.recording.origin.checked_add(duration).ok())
@@ -195,7 +131,7 @@ impl Part<'_> {
 
     /// `row` counts from the part's first.
     fn refuse(&self, row: usize, input: usize, found: Found, kind: RefusalKind) -> Refusal {
-        self.layout.refuse(self.recording, (self.rows[row], input), found, kind)
+        self.layout.refuse(self.recording, (self.rows.at(row), input), found, kind)
     }
 
     /// `None` where the rows are samples.
@@ -206,13 +142,11 @@ impl Part<'_> {
     }
 
     fn convert(&self, conversion: &Conversion) -> Vec<f64> {
-        let numbers = &self.recording.numbers;
-        let (first, rows) = (self.rows[0], self.rows.len());
-        // Nearly always no row between the first and the last is left out.
-        if self.rows[rows - 1] + 1 == first + rows {
-            return conversion.apply_to(numbers, first..first + rows);
+        let mut values = Vec::with_capacity(self.rows.len());
+        for run in self.rows.runs() {
+            conversion.append_to(&mut values, &self.recording.numbers, run);
         }
-        self.rows.iter().map(|row| conversion.apply(numbers, *row)).collect()
+        values
     }
 
     fn recorded(&self, wanted: Column) -> Option<Series> {
@@ -256,6 +190,9 @@ impl Part<'_> {
         maximum: Option<f64>,
     ) -> Result<(), Refusal> {
         let limits = Limits::new(column, maximum);
+        if limits.admit_all(&series.values) {
+            return Ok(());
+        }
         match series.values.iter().position(|value| !limits.admit(*value)) {
             None => Ok(()),
             Some(row) => {
@@ -375,11 +312,20 @@ impl Part<'_> {
         self.refuse(row, series.input, found, RefusalKind::OutOfRange { column, limit, unit: "m" })
     }
 
-    fn columns(&self, air: &AirData, load: &Load) -> Result<ReportColumns, Refusal> {
+    fn columns(
+        &self,
+        air: AirData,
+        load: &Load,
+        fuel_used_kg: Vec<f64>,
+    ) -> Result<ReportColumns, Refusal> {
         let is_temperature_assumed = matches!(self.plan.temperature, TemperatureSource::Isa { .. });
-        let first_s = self.recording.time_s[self.rows[0]];
+        let first_s = self.recording.time_s[self.rows.at(0)];
         let fuel_quantity_kg =
             load.fuel_on_board.to_kilograms() * MAXIMUM_FUEL_QUANTITY_PER_FUEL_ON_BOARD;
+        let mut time_s = Vec::with_capacity(self.rows.len());
+        for run in self.rows.runs() {
+            time_s.extend(self.recording.time_s[run].iter().map(|time| time - first_s));
+        }
         let n2_percent = self.engines(Column::N2)?;
         let flows = self.engines(Column::FuelFlowEngine)?;
         let mut optional = OptionalColumns::default();
@@ -390,12 +336,12 @@ impl Part<'_> {
             }
         }
         Ok(ReportColumns {
-            time_s: self.rows.iter().map(|row| self.recording.time_s[*row] - first_s).collect(),
-            pressure_altitude_m: air.pressure_altitude_m.values.clone(),
+            time_s,
+            pressure_altitude_m: air.pressure_altitude_m.values,
             static_air_temperature_k: (!is_temperature_assumed)
-                .then(|| air.static_air_temperature_k.values.clone()),
-            mach: air.mach.values.clone(),
-            true_airspeed_m_s: air.true_airspeed_m_s.values.clone(),
+                .then_some(air.static_air_temperature_k.values),
+            mach: air.mach.values,
+            true_airspeed_m_s: air.true_airspeed_m_s.values,
             ground_speed_m_s: self.required(Column::GroundSpeed)?.values,
             roll_deg: self.all(Column::Roll)?,
             drift_deg: self.all(Column::Drift)?,
@@ -405,7 +351,7 @@ impl Part<'_> {
                 FuelFlowColumns::PerEngine(flows)
             },
             n2_percent: (!n2_percent.is_empty()).then_some(n2_percent),
-            fuel_used_kg: load.fuel_used_kg.clone(),
+            fuel_used_kg,
             optional,
         })
     }
@@ -465,7 +411,7 @@ impl Part<'_> {
     }
 
     fn findings(&self, derived: &[&'static str], load: &Load, surplus: &[Surplus]) -> Vec<Finding> {
-        let first_line = Some(self.recording.lines[self.rows[0]]);
+        let first_line = Some(self.recording.lines[self.rows.at(0)]);
         let note = |severity, code, message| Finding { severity, code, message, line: first_line };
         let mut findings = Vec::new();
         if !derived.is_empty() {
@@ -528,8 +474,8 @@ impl Part<'_> {
             });
         }
         let rows = self.recording.time_s.len();
-        if let (true, Some(last)) = (self.level_rows < rows, self.rows.last()) {
-            let last_line = self.recording.lines[*last];
+        if self.level_rows < rows {
+            let last_line = self.recording.lines[self.rows.at(self.rows.len() - 1)];
             let message = format!(
                 "level cruise: {} of {rows} rows{}, to line {last_line}; the rest is climb, descent or too short",
                 self.level_rows,

@@ -1,7 +1,6 @@
 //! The level parts of a recording: climb and descent are not cruise.
 
 use core::ops::Range;
-use std::collections::VecDeque;
 
 /// Differences of decimal altitudes in binary: a range of exactly the band's width is within it.
 const ROUNDING_M: f64 = 1e-9;
@@ -61,8 +60,7 @@ fn trim(time_s: &[f64], part: Range<usize>, trim_s: f64) -> Range<usize> {
     start..end.max(start)
 }
 
-/// Two indices that only move forward, with the indices of falling maxima and rising minima between them: each sample
-/// enters and leaves once.
+/// Two indices that only move forward: the longest of the windows between them, of equally long ones the first.
 fn longest_level_part(
     time_s: &[f64],
     pressure_altitude_m: &[f64],
@@ -71,43 +69,126 @@ fn longest_level_part(
 ) -> Option<Range<usize>> {
     let mut best: Option<Range<usize>> = None;
     let mut best_s = f64::NEG_INFINITY;
-    let mut start = range.start;
-    let mut highest: VecDeque<usize> = VecDeque::new();
-    let mut lowest: VecDeque<usize> = VecDeque::new();
-    let altitude = |sample: usize| pressure_altitude_m[sample];
-    for sample in range {
-        if altitude(sample) < criteria.minimum_pressure_altitude_m - ROUNDING_M {
-            start = sample + 1;
-            highest.clear();
-            lowest.clear();
-            continue;
+    // Time increases: of the windows that begin at one sample the last is the longest.
+    let mut ended = |window: Range<usize>| {
+        if window.is_empty() {
+            return;
         }
-        while highest.back().is_some_and(|&other| altitude(other) <= altitude(sample)) {
-            highest.pop_back();
-        }
-        highest.push_back(sample);
-        while lowest.back().is_some_and(|&other| altitude(other) >= altitude(sample)) {
-            lowest.pop_back();
-        }
-        lowest.push_back(sample);
-        while let (Some(&high), Some(&low)) = (highest.front(), lowest.front())
-            && altitude(high) - altitude(low) > criteria.band_m + ROUNDING_M
-        {
-            start += 1;
-            if high < start {
-                highest.pop_front();
-            }
-            if low < start {
-                lowest.pop_front();
-            }
-        }
-        let duration_s = time_s[sample] - time_s[start];
+        let duration_s = time_s[window.end - 1] - time_s[window.start];
         if duration_s > best_s {
             best_s = duration_s;
-            best = Some(start..sample + 1);
+            best = Some(window);
+        }
+    };
+    let minimum_m = criteria.minimum_pressure_altitude_m - ROUNDING_M;
+    let most_m = criteria.band_m + ROUNDING_M;
+    let mut window = Window::new(range.start);
+    let mut sample = range.start;
+    while sample < range.end {
+        // Most of a cruise is level: several samples together.
+        let chunk_end = (sample + SAMPLES_TOGETHER).min(range.end);
+        let chunk = Extremes::of(&pressure_altitude_m[sample..chunk_end]);
+        if chunk.lowest >= minimum_m && window.extremes.with(chunk).span() <= most_m {
+            window.take(chunk);
+            sample = chunk_end;
+            continue;
+        }
+        for sample in sample..chunk_end {
+            let altitude = pressure_altitude_m[sample];
+            if altitude < minimum_m {
+                ended(window.start..sample);
+                window = Window::new(sample + 1);
+                continue;
+            }
+            let one = Extremes { lowest: altitude, highest: altitude };
+            if window.extremes.with(one).span() > most_m {
+                ended(window.start..sample);
+            }
+            window.take(one);
+            while window.extremes.span() > most_m {
+                window.leave_first(pressure_altitude_m, sample);
+            }
+        }
+        sample = chunk_end;
+    }
+    ended(window.start..range.end);
+    best
+}
+
+/// Samples that are looked at together.
+const SAMPLES_TOGETHER: usize = 64;
+
+/// Lowest and highest of some samples.
+#[derive(Clone, Copy)]
+struct Extremes {
+    lowest: f64,
+    highest: f64,
+}
+
+impl Extremes {
+    const NONE: Self = Self { lowest: f64::INFINITY, highest: f64::NEG_INFINITY };
+
+    fn of(values: &[f64]) -> Self {
+        // Four of each side by side: one after the other would wait for each other.
+        let mut lanes = [Self::NONE; 4];
+        let (fours, rest) = values.as_chunks::<4>();
+        for four in fours {
+            for (lane, value) in lanes.iter_mut().zip(four) {
+                *lane = lane.with(Self { lowest: *value, highest: *value });
+            }
+        }
+        let all = lanes.into_iter().fold(Self::NONE, Self::with);
+        rest.iter().fold(all, |all, value| all.with(Self { lowest: *value, highest: *value }))
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            lowest: if other.lowest < self.lowest { other.lowest } else { self.lowest },
+            highest: if other.highest > self.highest { other.highest } else { self.highest },
         }
     }
-    best
+
+    fn span(self) -> f64 {
+        self.highest - self.lowest
+    }
+}
+
+/// Samples that follow each other, of which the first can leave: a queue with its extremes, as two stacks. Of the older samples
+/// the extremes from each to the last of them are known, of the newer ones those of all together. Where no older one is left
+/// the newer ones become older: each sample does so once.
+struct Window {
+    start: usize,
+    extremes: Extremes,
+    /// From each older sample to the last older one, the first sample last.
+    older: Vec<Extremes>,
+    newer: Extremes,
+}
+
+impl Window {
+    const fn new(start: usize) -> Self {
+        Self { start, extremes: Extremes::NONE, older: Vec::new(), newer: Extremes::NONE }
+    }
+
+    /// Adds samples at its end.
+    fn take(&mut self, samples: Extremes) {
+        self.newer = self.newer.with(samples);
+        self.extremes = self.extremes.with(samples);
+    }
+
+    /// Lets the first sample leave; `last` is the last one.
+    fn leave_first(&mut self, values: &[f64], last: usize) {
+        if self.older.is_empty() {
+            let mut to_last = Extremes::NONE;
+            self.older.extend(values[self.start..=last].iter().rev().map(|value| {
+                to_last = to_last.with(Extremes { lowest: *value, highest: *value });
+                to_last
+            }));
+            self.newer = Extremes::NONE;
+        }
+        self.older.pop();
+        self.start += 1;
+        self.extremes = self.older.last().map_or(self.newer, |older| older.with(self.newer));
+    }
 }
 
 #[cfg(test)]

@@ -94,14 +94,46 @@ impl Conversion {
         self.of(numbers[self.input][row], self.minus.map(|minus| numbers[minus][row]))
     }
 
-    /// The same for rows that follow each other.
-    pub(super) fn apply_to(&self, numbers: &[Vec<f64>], rows: core::ops::Range<usize>) -> Vec<f64> {
-        let values = numbers[self.input][rows.clone()].iter();
+    /// The same for rows that follow each other, behind what `values` holds.
+    pub(super) fn append_to(
+        &self,
+        values: &mut Vec<f64>,
+        numbers: &[Vec<f64>],
+        rows: core::ops::Range<usize>,
+    ) {
+        let sent = numbers[self.input][rows.clone()].iter();
         match self.minus {
-            None => values.map(|value| self.of(*value, None)).collect(),
+            None => {
+                // Known to stay as they are while values are written: several are computed in one instruction.
+                let Self { factor, offset, .. } = *self;
+                values.extend(sent.map(|value| value * factor + offset));
+            }
             Some(minus) => {
                 let less = &numbers[minus][rows];
-                values.zip(less).map(|(value, less)| self.of(*value, Some(*less))).collect()
+                values.extend(sent.zip(less).map(|(value, less)| self.of(*value, Some(*less))));
+            }
+        }
+    }
+
+    /// Whether all of these rows are so.
+    ///
+    /// All are looked at and counted, without a way out of the loop, so that several are compared in one instruction.
+    pub(super) fn all_are(
+        &self,
+        numbers: &[Vec<f64>],
+        rows: core::ops::Range<usize>,
+        is_so: impl Fn(f64) -> bool,
+    ) -> bool {
+        let sent = numbers[self.input][rows.clone()].iter();
+        match self.minus {
+            None => {
+                let Self { factor, offset, .. } = *self;
+                let others = |value: &f64| u64::from(!is_so(value * factor + offset));
+                sent.map(others).sum::<u64>() == 0
+            }
+            Some(minus) => {
+                let less = &numbers[minus][rows];
+                sent.zip(less).all(|(value, less)| is_so(self.of(*value, Some(*less))))
             }
         }
     }

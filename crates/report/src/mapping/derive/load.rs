@@ -56,7 +56,7 @@ impl Part<'_> {
             LoadSource::Known(mass) => return Ok(*mass),
             LoadSource::Column(conversion) => conversion,
         };
-        let value = conversion.apply(&self.recording.numbers, self.rows[0]);
+        let value = conversion.apply(&self.recording.numbers, self.rows.at(0));
         if value > 0.0 {
             return Ok(Mass::kilograms(value));
         }
@@ -92,7 +92,7 @@ impl Part<'_> {
             burnt_by_row_kg.push(burnt_kg);
         }
         let start_kg = self.mass_of(gross_mass)?.to_kilograms();
-        let last_kg = burnt_by_row_kg[self.rows[self.rows.len() - 1]];
+        let last_kg = burnt_by_row_kg[self.rows.at(self.rows.len() - 1)];
         let zero_fuel_kg = start_kg - last_kg;
         if zero_fuel_kg <= 0.0 || last_kg <= 0.0 {
             let kind = RefusalKind::MassNotPositive { mass: "gross mass" };
@@ -102,7 +102,11 @@ impl Part<'_> {
         Ok(Load {
             zero_fuel_mass: Mass::kilograms(zero_fuel_kg),
             fuel_on_board: Mass::kilograms(last_kg),
-            fuel_used_kg: self.rows.iter().map(|row| burnt_by_row_kg[*row]).collect(),
+            fuel_used_kg: self
+                .rows
+                .runs()
+                .flat_map(|run| burnt_by_row_kg[run].iter().copied())
+                .collect(),
             largest_rise_kg: None,
         })
     }

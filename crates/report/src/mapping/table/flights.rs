@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use flight::Timestamp;
 
+use super::batch::instant_of;
 use super::rows::{Event, Rows, Times};
 use super::{Layout, Recording};
 use crate::decode::MAXIMUM_TEXT_BYTES;
@@ -151,6 +152,12 @@ impl Assembly {
         if range.is_empty() {
             return Ok(());
         }
+        let longest_s = layout.plan.new_flight_after_s.unwrap_or(f64::INFINITY);
+        let recording = self.current(layout);
+        if recording.extend_times(layout, &rows.times, range.clone(), longest_s) {
+            recording.extend(rows, range);
+            return Ok(());
+        }
         let mut from = range.start;
         for row in range.clone() {
             let recording = self.current(layout);
@@ -215,6 +222,47 @@ impl Recording {
         }
     }
 
+    /// Adds the times of all these rows, if each is later than the one before, by `longest_s` at most: nearly always. Else none
+    /// is added.
+    fn extend_times(
+        &mut self,
+        layout: &Layout,
+        times: &Times,
+        range: core::ops::Range<usize>,
+        longest_s: f64,
+    ) -> bool {
+        let before = self.time_s.len();
+        // The first row sets the origin.
+        let first_s = match times {
+            Times::OfDay(_) => return false,
+            _ => self.seconds(layout, times, range.start),
+        };
+        self.time_s.push(first_s);
+        let rest = range.start + 1..range.end;
+        match times {
+            Times::OfDay(_) => {}
+            Times::Seconds(times) => self.time_s.extend_from_slice(&times[rest]),
+            Times::Instants(times) => {
+                self.time_s.extend(times[rest].iter().map(|time| since_s(*time, self.origin)));
+            }
+            Times::Nanoseconds(times) => {
+                let origin = self.origin_nanoseconds;
+                self.time_s
+                    .extend(times[rest].iter().map(|time| nanoseconds_since_s(*time, origin)));
+            }
+        }
+        let added = &self.time_s[before.saturating_sub(1)..];
+        // Counted: without a way out of the loop, several are looked at in one instruction.
+        let follows = |earlier: f64, later: f64| later > earlier && later - earlier <= longest_s;
+        let pairs = added.iter().zip(&added[1..]);
+        let others = pairs.map(|(earlier, later)| u64::from(!follows(*earlier, *later)));
+        let follow = others.sum::<u64>() == 0;
+        if !follow {
+            self.time_s.truncate(before);
+        }
+        follow
+    }
+
     /// Seconds since the flight's origin, which its first instant sets.
     fn seconds(&mut self, layout: &Layout, times: &Times, row: usize) -> f64 {
         match times {
@@ -229,6 +277,13 @@ impl Recording {
                     self.origin = times[row];
                 }
                 since_s(times[row], self.origin)
+            }
+            Times::Nanoseconds(times) => {
+                if self.time_s.is_empty() {
+                    self.origin_nanoseconds = times[row];
+                    self.origin = instant_of(times[row]).unwrap_or_default();
+                }
+                nanoseconds_since_s(times[row], self.origin_nanoseconds)
             }
             Times::OfDay(times) => {
                 if let TimeForm::TimeOfDay { midnight } = &layout.plan.time {
@@ -253,4 +308,17 @@ fn since_s(instant: Timestamp, origin: Timestamp) -> f64 {
         return seconds as f64;
     }
     (i128::from(seconds) * 1_000_000_000 + i128::from(nanoseconds)) as f64 / 1e9
+}
+
+/// The same of nanoseconds since 1970, to the bit.
+fn nanoseconds_since_s(instant: i64, origin: i64) -> f64 {
+    /// Up to here every whole number is one of double precision, so that its quotient is rounded once.
+    const EXACT: i64 = 1 << 53;
+    if let Some(since) = instant.checked_sub(origin)
+        && (-EXACT..EXACT).contains(&since)
+    {
+        return since as f64 / 1e9;
+    }
+    let [instant, origin] = [instant, origin].map(instant_of);
+    since_s(instant.unwrap_or_default(), origin.unwrap_or_default())
 }

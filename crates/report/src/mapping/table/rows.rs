@@ -50,6 +50,8 @@ pub(super) enum Times {
     /// Seconds of the day.
     OfDay(Vec<f64>),
     Instants(Vec<Timestamp>),
+    /// Nanoseconds since 1970.
+    Nanoseconds(Vec<i64>),
 }
 
 impl Times {
@@ -65,6 +67,7 @@ impl Times {
         match self {
             Self::Seconds(times) | Self::OfDay(times) => times.len(),
             Self::Instants(times) => times.len(),
+            Self::Nanoseconds(times) => times.len(),
         }
     }
 }

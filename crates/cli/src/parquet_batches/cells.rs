@@ -1,0 +1,211 @@
+//! The values of a column of a Parquet file as cells of a table.
+
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, DataType, DoubleType, Int32Type, Int96};
+use parquet::errors::ParquetError;
+use report::mapping::BatchColumn;
+
+use super::Kind;
+use super::present::Texts;
+use crate::cells::{date, runs, time_of_day};
+
+const DAY_S: i64 = 86_400;
+
+/// Goes past rows; gives how many there were.
+pub(super) fn skip(reader: &mut ColumnReader, rows: usize) -> Result<usize, ParquetError> {
+    match reader {
+        ColumnReader::BoolColumnReader(reader) => reader.skip_records(rows),
+        ColumnReader::Int32ColumnReader(reader) => reader.skip_records(rows),
+        ColumnReader::Int64ColumnReader(reader) => reader.skip_records(rows),
+        ColumnReader::Int96ColumnReader(reader) => reader.skip_records(rows),
+        ColumnReader::FloatColumnReader(reader) => reader.skip_records(rows),
+        ColumnReader::DoubleColumnReader(reader) => reader.skip_records(rows),
+        ColumnReader::ByteArrayColumnReader(reader) => reader.skip_records(rows),
+        ColumnReader::FixedLenByteArrayColumnReader(reader) => reader.skip_records(rows),
+    }
+}
+
+/// The cells of the next rows, whatever their type; `levels` where some may be missing.
+pub(super) fn cells_of(
+    reader: &mut ColumnReader,
+    rows: usize,
+    levels: Option<&mut Vec<i16>>,
+    kind: Kind,
+) -> Result<BatchColumn, ParquetError> {
+    match reader {
+        ColumnReader::DoubleColumnReader(reader) => doubles(reader, rows, levels),
+        ColumnReader::FloatColumnReader(reader) => {
+            numbers(reader, rows, levels, |value| f64::from(*value))
+        }
+        ColumnReader::BoolColumnReader(reader) => {
+            numbers(reader, rows, levels, |value| f64::from(u8::from(*value)))
+        }
+        ColumnReader::Int32ColumnReader(reader) => {
+            counts(reader, rows, levels, kind, |value| i64::from(*value))
+        }
+        ColumnReader::Int64ColumnReader(reader) => {
+            counts(reader, rows, levels, kind, |value| *value)
+        }
+        ColumnReader::Int96ColumnReader(reader) => {
+            counts(reader, rows, levels, kind, Int96::to_nanos)
+        }
+        ColumnReader::ByteArrayColumnReader(reader) => texts(reader, rows, levels),
+        ColumnReader::FixedLenByteArrayColumnReader(_) => {
+            Err(ParquetError::General("bytes of a fixed length are not read".to_owned()))
+        }
+    }
+}
+
+/// Texts by their places in a dictionary, each with the number of rows that it holds for.
+pub(super) fn texts_by_places(
+    reader: &mut ColumnReaderImpl<Int32Type>,
+    rows: usize,
+    texts: &Texts,
+) -> Result<BatchColumn, ParquetError> {
+    let places = records(reader, rows, None)?;
+    let mut runs: Vec<(String, usize)> = Vec::new();
+    for run in places.chunk_by(|place, next| place == next) {
+        let place = usize::try_from(run[0]).ok();
+        let text = place.and_then(|place| texts.get()?.get(place)).ok_or_else(|| {
+            ParquetError::General("a place that its dictionary does not have".to_owned())
+        })?;
+        match runs.last_mut() {
+            Some((last, count)) if last.as_bytes() == &text[..] => *count += run.len(),
+            _ => runs.push((String::from_utf8_lossy(text).into_owned(), run.len())),
+        }
+    }
+    Ok(BatchColumn::Texts(runs))
+}
+
+/// Cells of a column of whole numbers.
+fn counts<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: usize,
+    levels: Option<&mut Vec<i16>>,
+    kind: Kind,
+    count: impl Fn(&T::T) -> i64,
+) -> Result<BatchColumn, ParquetError> {
+    let cells = cells(reader, rows, levels, None, |value| Some(count(value)))?;
+    let text = |text: fn(i64, i64) -> String, each: i64| {
+        let cells =
+            cells.iter().map(|cell| cell.map_or_else(String::new, |count| text(count, each)));
+        BatchColumn::Texts(runs(cells))
+    };
+    Ok(match kind {
+        #[expect(clippy::cast_precision_loss, reason = "counts of recorders are below 2^53")]
+        Kind::Number(factor) => BatchColumn::Numbers(
+            cells.iter().map(|cell| cell.map_or(f64::NAN, |count| count as f64 * factor)).collect(),
+        ),
+        Kind::Instant(each) => BatchColumn::Instants(
+            cells.into_iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
+        ),
+        Kind::LocalTime(each) => BatchColumn::LocalTimes(
+            cells.into_iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
+        ),
+        Kind::Date => text(|days, day_s| date(days.saturating_mul(day_s)), DAY_S),
+        Kind::Time(each) => text(time_of_day, each),
+        Kind::Text => BatchColumn::Texts(Vec::new()),
+    })
+}
+
+fn numbers<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: usize,
+    levels: Option<&mut Vec<i16>>,
+    number: impl Fn(&T::T) -> f64,
+) -> Result<BatchColumn, ParquetError> {
+    Ok(BatchColumn::Numbers(cells(reader, rows, levels, f64::NAN, number)?))
+}
+
+/// Numbers of double precision; nearly always there are as many as rows.
+fn doubles(
+    reader: &mut ColumnReaderImpl<DoubleType>,
+    rows: usize,
+    mut levels: Option<&mut Vec<i16>>,
+) -> Result<BatchColumn, ParquetError> {
+    let present = records(reader, rows, levels.as_deref_mut())?;
+    Ok(BatchColumn::Numbers(match levels {
+        Some(levels) if present.len() < rows => {
+            spaced(present.iter(), levels, &f64::NAN, |value| *value)
+        }
+        _ => present,
+    }))
+}
+
+/// Cells of a column, `missing` where there is none.
+fn cells<T: DataType, C: Clone>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: usize,
+    mut levels: Option<&mut Vec<i16>>,
+    missing: C,
+    cell: impl Fn(&T::T) -> C,
+) -> Result<Vec<C>, ParquetError> {
+    let present = records(reader, rows, levels.as_deref_mut())?;
+    match levels {
+        Some(levels) if present.len() < rows => Ok(spaced(present.iter(), levels, &missing, cell)),
+        _ => Ok(present.iter().map(cell).collect()),
+    }
+}
+
+/// Values where a level says that there is one, `missing` elsewhere.
+fn spaced<'v, V: 'v, C: Clone>(
+    mut present: impl Iterator<Item = &'v V>,
+    levels: &[i16],
+    missing: &C,
+    cell: impl Fn(&V) -> C,
+) -> Vec<C> {
+    let of_level = |level: &i16| {
+        let value = if *level > 0 { present.next() } else { None };
+        value.map_or_else(|| missing.clone(), &cell)
+    };
+    levels.iter().map(of_level).collect()
+}
+
+/// The values of the next rows: those that there are.
+fn records<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: usize,
+    mut levels: Option<&mut Vec<i16>>,
+) -> Result<Vec<T::T>, ParquetError> {
+    let mut present = Vec::with_capacity(rows);
+    if let Some(levels) = levels.as_deref_mut() {
+        levels.clear();
+    }
+    let mut read = 0;
+    while read < rows {
+        let (some, _, _) =
+            reader.read_records(rows - read, levels.as_deref_mut(), None, &mut present)?;
+        if some == 0 {
+            return Err(ParquetError::General("fewer rows than the file states".to_owned()));
+        }
+        read += some;
+    }
+    Ok(present)
+}
+
+/// Texts, each with the number of rows that it holds for.
+fn texts(
+    reader: &mut ColumnReaderImpl<parquet::data_type::ByteArrayType>,
+    rows: usize,
+    levels: Option<&mut Vec<i16>>,
+) -> Result<BatchColumn, ParquetError> {
+    let mut levels = levels;
+    let present = records(reader, rows, levels.as_deref_mut())?;
+    let nothing = ByteArray::from("");
+    let mut runs: Vec<(String, usize)> = Vec::new();
+    let mut add = |cell: &ByteArray| match runs.last_mut() {
+        Some((text, count)) if text.as_bytes() == cell.data() => *count += 1,
+        _ => runs.push((String::from_utf8_lossy(cell.data()).into_owned(), 1)),
+    };
+    match levels {
+        Some(levels) if present.len() < rows => {
+            let mut present = present.iter();
+            for level in levels.iter() {
+                let cell = if *level > 0 { present.next() } else { None };
+                add(cell.unwrap_or(&nothing));
+            }
+        }
+        _ => present.iter().for_each(add),
+    }
+    Ok(BatchColumn::Texts(runs))
+}
