@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """A fleet on Spark beside the command line, in the same run: the same models and segments to the bit, and what it costs.
 
-    python crates/python/benches/fleet.py [--tails 400] [--flights 50] [--kill 0] [--master "local-cluster[2,1,2048]"]
+    python crates/python/benches/fleet.py [--tails 400] [--flights 50] [--kill 0] [--master "local-cluster[2,1,2048]"] [--archive FILE]
 
 Reports of virtual tails are written as files for the command line and as Parquet for Spark. Both read, learn and write all
-tails, on two processors. `--kill N` kills N executors of this run at random moments.
+tails, on two processors. `--kill N` kills N executors of this run at random moments. `--archive FILE` lets every Java process
+load Spark's classes from an archive (class-data sharing), which a small run makes where the file does not exist: as an image of
+a cluster would hold it, once for a version of Java and Spark. Making it is not counted.
 
 CPU seconds are those of every process of a run, executors that were killed and Python's workers among them: each side runs in
 a session of its own, whose processes are read five times a second. They are given by kind of process: driver and executors (Java), workers (Python), the command line. Wall-clock
@@ -31,6 +33,8 @@ import cruisefit
 
 ROOT = Path(__file__).resolve().parents[3]
 FIXTURE = ROOT / "fixtures" / "ghazi-2020"
+# A job of minutes on two processors: Java's second compiler and its parallel collectors cost more than they save.
+SHORT = "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC"
 
 
 def write_reports(folder, tails, flights):
@@ -127,18 +131,16 @@ def kill_some(application, count, done):
     print(f"{killed} executors killed")
 
 
-def on_spark(folder, master, kills):
+def on_spark(folder, master, kills, java):
     from pyspark.sql import SparkSession
 
     import cruisefit.spark
 
     os.environ["PYSPARK_PYTHON"] = os.environ["PYSPARK_DRIVER_PYTHON"] = sys.executable
-    # A job of minutes on two processors: Java's second compiler and its parallel collectors cost more than they save.
-    short = "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC"
     session = (
         SparkSession.builder.master(master)
-        .config("spark.driver.extraJavaOptions", short)
-        .config("spark.executor.extraJavaOptions", short)
+        .config("spark.driver.extraJavaOptions", java)
+        .config("spark.executor.extraJavaOptions", java)
         .config("spark.ui.enabled", "false")
         .config("spark.sql.shuffle.partitions", "8")
         .config("spark.executor.memory", "1g")
@@ -162,17 +164,30 @@ def on_spark(folder, master, kills):
     session.sparkContext._gateway.proc.wait()
 
 
+def make_archive(folder, archive):
+    """An archive of the classes that such a job loads: driver and executor are one process, which writes it when it ends."""
+    small = folder / "small"
+    (small / "parquet").mkdir(parents=True)
+    shutil.copy(min((folder / "parquet").iterdir()), small / "parquet")
+    java = f"{SHORT} -XX:ArchiveClassesAtExit={archive}"
+    command = [sys.executable, __file__, "--on-spark", small, "--master", "local[2]", f"--java={java}"]
+    # Java lists on standard output what it leaves out.
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--tails", type=int, default=400)
     parser.add_argument("--flights", type=int, default=50)
     parser.add_argument("--kill", type=int, default=0)
     parser.add_argument("--master", default="local-cluster[2,1,2048]")
+    parser.add_argument("--archive", type=Path)
+    parser.add_argument("--java", default=SHORT, help=argparse.SUPPRESS)
     parser.add_argument("--on-spark", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--program", type=Path, default=ROOT / "target" / "release" / "cruisefit")
     arguments = parser.parse_args()
     if arguments.on_spark:
-        on_spark(arguments.on_spark, arguments.master, arguments.kill)
+        on_spark(arguments.on_spark, arguments.master, arguments.kill, arguments.java)
         return
     folder = Path(tempfile.mkdtemp(prefix="cruisefit-fleet-"))
     write_reports(folder, arguments.tails, arguments.flights)
@@ -182,8 +197,14 @@ def main():
     two = ["taskset", "-c", ",".join(map(str, sorted(os.sched_getaffinity(0))[:2]))]
     adapt = [arguments.program, "adapt", folder / "reports", "--model", model, "-o", folder / "out", "--no-progress"]
     one = Session([*two, *adapt])
+    java = SHORT
+    if arguments.archive:
+        archive = arguments.archive.resolve()
+        if not archive.exists():
+            make_archive(folder, archive)
+        java += f" -XX:SharedArchiveFile={archive}"
     here = [sys.executable, __file__, "--on-spark", folder, "--master", arguments.master, "--kill", arguments.kill]
-    many = Session([*two, *here])
+    many = Session([*two, *here, f"--java={java}"])
     print(many.output, end="")
     rows = {row["tail"]: row for row in pq.read_table(folder / "adapted").to_pylist()}
     equal = 0

@@ -7,6 +7,7 @@ import datetime
 import pandas as pd
 import polars as pl
 import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -121,6 +122,23 @@ def test_a_time_without_a_zone_is_taken_with_the_offset_of_the_mapping():
     # A first mapping marks the offset as a guess.
     (time,) = [line for line in cruisefit.mapping(pa.table(columns)).splitlines() if "Timestamp" in line]
     assert time.endswith("// ?")
+
+
+def test_files_without_a_zone_are_read_as_the_frame_is(run, tmp_path):
+    """Parquet and Arrow by the command line: local times are marked as such in the files, and instants as instants."""
+    rule = tmp_path / "M.ron"
+    rule.write_text(MAPPING.format(more="").replace('utc_offset: "Z"', 'utc_offset: "-05:30"'))
+    columns = recording(900, 1.0)
+    for zone, start in ((None, "2024-03-01T17:30:00Z"), ("UTC", "2024-03-01T12:00:00Z")):
+        table = pa.table({**columns, "utc": pa.array(columns["utc"], pa.timestamp("us", zone))})
+        expected = cruisefit.segment(table, mapping=rule)
+        assert expected.flights.column("start").to_pylist()[0] == start
+        pq.write_table(table, tmp_path / "rows.parquet")
+        with pa.ipc.new_file(tmp_path / "rows.arrow", table.schema) as file:
+            file.write_table(table)
+        for name in ("rows.parquet", "rows.arrow"):
+            told = run("segment", "--mapping", rule, tmp_path / name)
+            assert told == expected.to_csv().decode(), (name, zone)
 
 
 KINDS = {
