@@ -330,7 +330,9 @@ mod tests {
                     BatchColumn::Texts(runs) => {
                         texts.extend(runs.into_iter().flat_map(|(text, rows)| vec![text; rows]))
                     }
-                    BatchColumn::Instants(_) => unreachable!(),
+                    BatchColumn::Instants(_) | BatchColumn::LocalTimes(_) => {
+                        unreachable!("columns of numbers and texts")
+                    }
                 }
             }
         }
