@@ -328,7 +328,7 @@ mod tests {
                 match column {
                     BatchColumn::Numbers(values) => numbers.extend(values),
                     BatchColumn::Texts(runs) => {
-                        texts.extend(runs.into_iter().flat_map(|(text, rows)| vec![text; rows]))
+                        texts.extend(runs.into_iter().flat_map(|(text, rows)| vec![text; rows]));
                     }
                     BatchColumn::Instants(_) | BatchColumn::LocalTimes(_) => {
                         unreachable!("columns of numbers and texts")

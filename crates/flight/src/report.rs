@@ -189,10 +189,7 @@ impl Report {
             let mass_kg = ramp_mass_kg - fuel_used_kg;
             mass_kg.is_nan() || mass_kg <= 0.0
         };
-        let refused = columns.fuel_used_kg.iter().map(|used_kg| u64::from(is_refused(used_kg)));
-        if refused.sum::<u64>() > 0
-            && let Some(sample) = columns.fuel_used_kg.iter().position(is_refused)
-        {
+        if let Some(sample) = columns.fuel_used_kg.iter().position(is_refused) {
             let mass_kg = ramp_mass_kg - columns.fuel_used_kg[sample];
             return Err(ReportDataError::MassNotPositive { sample, mass_kg });
         }
@@ -344,8 +341,8 @@ fn check_full(
     if values.len() != expected {
         return Err(ReportDataError::LengthsDiffer { column, found: values.len(), expected });
     }
-    // All of them counted first: without a way out of the loop, several values are looked at in one instruction.
-    if values.iter().map(|value| u64::from(!value.is_finite())).sum::<u64>() == 0 {
+    // All of them together first: without a way out of the loop, several values are looked at in one instruction.
+    if values.iter().fold(true, |finite, value| finite & value.is_finite()) {
         return Ok(());
     }
     match values.iter().position(|value| !value.is_finite()) {

@@ -139,15 +139,14 @@ impl Channel<'_> {
             let differs = |value: &f64, from: u64| value.to_bits() != from;
             let end = needed[needed.len() - 1].to_bits();
             let others = needed.iter().rposition(|value| differs(value, end));
-            first += match others {
+            first += if let Some(last) = others {
                 // The first run that can reach so far begins behind the last value that is another than there.
-                Some(last) => last + 1,
-                None => {
-                    let rest = self.values[first..].iter().position(|other| differs(other, value));
-                    let length = rest.unwrap_or(self.values.len() - first);
-                    best = (first, first + length - 1);
-                    length
-                }
+                last + 1
+            } else {
+                let rest = self.values[first..].iter().position(|other| differs(other, value));
+                let length = rest.unwrap_or(self.values.len() - first);
+                best = (first, first + length - 1);
+                length
             };
         }
         best

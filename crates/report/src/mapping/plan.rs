@@ -104,7 +104,7 @@ impl Conversion {
         let sent = numbers[self.input][rows.clone()].iter();
         match self.minus {
             None => {
-                // Known to stay as they are while values are written: several are computed in one instruction.
+                // Copied, since the compiler knows then that they stay as they are while values are written.
                 let Self { factor, offset, .. } = *self;
                 values.extend(sent.map(|value| value * factor + offset));
             }
@@ -115,9 +115,7 @@ impl Conversion {
         }
     }
 
-    /// Whether all of these rows are so.
-    ///
-    /// All are looked at and counted, without a way out of the loop, so that several are compared in one instruction.
+    /// Whether all of these rows are so. All are counted, without a way out of the loop: nearly always all are.
     pub(super) fn all_are(
         &self,
         numbers: &[Vec<f64>],

@@ -155,7 +155,7 @@ impl Layout {
     fn times_and_texts(&self, batch: &Batch) -> Option<(Times, Vec<(usize, Event)>)> {
         for (input, field) in self.plan.inputs.iter().zip(&self.fields.inputs) {
             let BatchColumn::Numbers(values) = batch.column(*field)? else { return None };
-            // Counted: without a way out of the loop, several are looked at in one instruction.
+            // Counted, without a way out of the loop: nearly always none is.
             let infinite = values.iter().map(|value| u64::from(value.is_infinite()));
             if !input.values.is_empty() || infinite.sum::<u64>() > 0 {
                 return None;

@@ -252,7 +252,7 @@ impl Recording {
             }
         }
         let added = &self.time_s[before.saturating_sub(1)..];
-        // Counted: without a way out of the loop, several are looked at in one instruction.
+        // Counted, without a way out of the loop: nearly always none is.
         let follows = |earlier: f64, later: f64| later > earlier && later - earlier <= longest_s;
         let pairs = added.iter().zip(&added[1..]);
         let others = pairs.map(|(earlier, later)| u64::from(!follows(*earlier, *later)));
