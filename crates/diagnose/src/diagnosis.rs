@@ -323,11 +323,7 @@ fn conclude(
         gap,
         r#where: places,
         causes: causes(&findings.of_causes(), &posteriors),
-        contributions: if gap.detected {
-            contributions(system, analysis, library, (scale, options.seed))
-        } else {
-            vec![]
-        },
+        contributions: contributions(problem, analysis, detected, (scale, options.seed)),
         not_testable: vec![],
         addition: Addition::named(analysis, library, verdict.effects(), *model.references())
             .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),

@@ -210,6 +210,11 @@ def test_results_show_themselves(initial, segments):
     tail = diagnosis.diagnoses[0]
     assert diagnosis[tail.tail] is not None and tail.verdict.advice
     assert tail.causes == sorted(tail.causes, key=lambda cause: -cause.probability)
+    assert [month.month for month in tail.months] == sorted(month.month for month in tail.months)
+    assert sum(month.segments for month in tail.months) == tail.segments
+    assert bool(tail.contributions) == tail.gap.detected
+    for one in tail.contributions:
+        assert one.rms_ci95[0] <= one.rms_percent <= one.rms_ci95[1] and 0 <= one.leads <= 1
 
 
 def test_warnings_of_the_library_reach_the_caller(initial):

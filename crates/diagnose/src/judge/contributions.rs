@@ -6,22 +6,25 @@
 use faer::Mat;
 
 use crate::judge::posterior::mean_square;
-use crate::library::{Library, Testable};
+use crate::library::Testable;
 use crate::math::horseshoe::{Candidate, Horseshoe, draw};
 use crate::math::quantile::central_95;
 use crate::output::{Contribution, Magnitude};
 use crate::priors::{CONTRIBUTING, PRIOR_SCALES};
 use crate::search::analyse::Analysis;
-use crate::search::system::WhitenedSystem;
+use crate::search::system::Problem;
 use crate::thresholds::CONTRIBUTION_SWEEPS;
 
-/// Contributions, the largest first; empty where nothing can be drawn.
+/// Contributions to a gap that was detected, the likeliest largest first; empty where none was, or nothing can be drawn.
 pub(crate) fn contributions(
-    system: &WhitenedSystem<'_>,
+    Problem { system, library, .. }: Problem<'_>,
     analysis: &Analysis,
-    library: &Library,
+    is_detected: bool,
     (noise_scale, seed): (f64, u64),
 ) -> Vec<Contribution> {
+    if !is_detected {
+        return vec![];
+    }
     let columns: Vec<usize> =
         library.effects.iter().map(|effect| likeliest_column(effect, analysis)).collect();
     let typical: Vec<f64> = library.effects.iter().map(|effect| effect.typical).collect();
