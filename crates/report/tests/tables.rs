@@ -149,6 +149,20 @@ fn a_table_gives_what_its_text_gives() {
     }
 }
 
+/// A batch without an instant goes through text, the batch behind it by columns: both are of one flight.
+#[test]
+fn a_flight_that_begins_in_text_goes_on_in_columns() {
+    let mut table = table();
+    table.instants[2] = None;
+    let flags = |flags: &[&str]| BatchColumn::Numbers(flags.iter().map(|_| 0.0).collect());
+    let plain = MAPPING.replace(", values: [(\"ON\", 1), (\"OFF\", 0)]", "");
+    let mapping = Mapping::from_ron(&plain).unwrap();
+    let text = table.text().replace(",ON\n", ",0\n").replace(",OFF\n", ",0\n");
+    let expected = mapping.read(text.as_bytes()).unwrap();
+    assert_eq!(expected.len(), 2);
+    assert_eq!(read(&mapping, table.names(), table.batches(7, &flags)), expected);
+}
+
 #[test]
 fn a_time_without_a_zone_is_taken_with_the_offset_of_the_mapping() {
     let table = table();

@@ -246,9 +246,8 @@ impl Recording {
                 self.time_s.extend(times[rest].iter().map(|time| since_s(*time, self.origin)));
             }
             Times::Nanoseconds(times) => {
-                let origin = self.origin_nanoseconds;
-                self.time_s
-                    .extend(times[rest].iter().map(|time| nanoseconds_since_s(*time, origin)));
+                let since_s = nanoseconds_since(self.origin);
+                self.time_s.extend(times[rest].iter().copied().map(since_s));
             }
         }
         let added = &self.time_s[before.saturating_sub(1)..];
@@ -280,10 +279,9 @@ impl Recording {
             }
             Times::Nanoseconds(times) => {
                 if self.time_s.is_empty() {
-                    self.origin_nanoseconds = times[row];
                     self.origin = instant_of(times[row]).unwrap_or_default();
                 }
-                nanoseconds_since_s(times[row], self.origin_nanoseconds)
+                nanoseconds_since(self.origin)(times[row])
             }
             Times::OfDay(times) => {
                 if let TimeForm::TimeOfDay { midnight } = &layout.plan.time {
@@ -310,15 +308,13 @@ fn since_s(instant: Timestamp, origin: Timestamp) -> f64 {
     (i128::from(seconds) * 1_000_000_000 + i128::from(nanoseconds)) as f64 / 1e9
 }
 
-/// The same of nanoseconds since 1970, to the bit.
-fn nanoseconds_since_s(instant: i64, origin: i64) -> f64 {
+/// The same of instants in nanoseconds since 1970, to the bit.
+fn nanoseconds_since(origin: Timestamp) -> impl Fn(i64) -> f64 {
     /// Up to here every whole number is one of double precision, so that its quotient is rounded once.
     const EXACT: i64 = 1 << 53;
-    if let Some(since) = instant.checked_sub(origin)
-        && (-EXACT..EXACT).contains(&since)
-    {
-        return since as f64 / 1e9;
+    let from = i64::try_from(origin.as_nanosecond()).ok();
+    move |instant| match from.and_then(|from| instant.checked_sub(from)) {
+        Some(since) if (-EXACT..EXACT).contains(&since) => since as f64 / 1e9,
+        _ => since_s(instant_of(instant).unwrap_or_default(), origin),
     }
-    let [instant, origin] = [instant, origin].map(instant_of);
-    since_s(instant.unwrap_or_default(), origin.unwrap_or_default())
 }

@@ -20,8 +20,6 @@ pub(in crate::mapping) struct Recording {
     pub(super) kept_bytes: usize,
     /// The instant from which `time_s` counts.
     pub(in crate::mapping) origin: Timestamp,
-    /// The same, of rows whose times are nanoseconds since 1970.
-    pub(super) origin_nanoseconds: i64,
     /// Strictly increasing.
     pub(in crate::mapping) time_s: Vec<f64>,
     /// `[input][row]`; NaN where an optional number is not available.
@@ -50,7 +48,6 @@ impl Recording {
             pieces: Vec::new(),
             kept_bytes: 0,
             origin: Timestamp::UNIX_EPOCH,
-            origin_nanoseconds: 0,
             time_s: Vec::new(),
             numbers: vec![Vec::new(); inputs],
             lines: Vec::new(),
