@@ -4,7 +4,6 @@
 //! that knows the size that is planted, how the rest varies and the noise; how often that is right is the ceiling of the
 //! score, and not 1.
 
-use effects::EffectModel;
 use flight::effect::{EffectId, EffectSign};
 
 use crate::hypotheses::backgrounds::{Level, TableBelief};
@@ -14,10 +13,9 @@ use crate::library::dates::DateGrid;
 use crate::library::{Library, Testable};
 use crate::math::eliminate::{Reduced, integrate_out};
 use crate::math::mixture::ln_sum;
-use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::system::{SmoothTerms, WhitenedSystem};
-use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::references::DiagnoseError;
 
 /// How faults vary of which none is looked for, and how large the one is that is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,14 +41,8 @@ pub fn attainable(
     input: &Input<'_>,
     clutter: KnownClutter,
 ) -> Result<Vec<(EffectId, f64)>, DiagnoseError> {
-    let references = match (input.references, input.baseline) {
-        (Some(given), _) => given,
-        (None, Some(baseline)) => *baseline.references(),
-        (None, None) => references_of(input.model, input.drag_table, input.flights)?,
-    };
-    let reference = Reference::from_baseline(input.baseline);
-    let model = EffectModel::new(input.model, input.drag_table, references)?
-        .between_nodes(reference.between_nodes());
+    let references = input.effect_references()?;
+    let (reference, model) = (input.reference(), input.effect_model(references)?);
     let (data, library) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {
             let dates = DateGrid::coarse(starts, input.events_s, None);

@@ -27,14 +27,13 @@ use crate::output::note::{LeftOutReason, Note};
 use crate::output::verdict::{Insufficient, Verdict};
 use crate::output::{Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
 use crate::place::find::{FoundPlaces, find};
-use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::outliers::outliers;
 use crate::search::outside::{Outside, compete};
 use crate::search::robust::outlier_weights;
 use crate::search::system::{Problem, WhitenedSystem};
-use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::references::DiagnoseError;
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
 use crate::thresholds::{CLEAN_PROBABILITY, CLOSER_DATES, WORTH_CLOSER_DATES};
 
@@ -44,20 +43,14 @@ use crate::thresholds::{CLEAN_PROBABILITY, CLOSER_DATES, WORTH_CLOSER_DATES};
 /// [`DiagnoseError`] where the model takes no effects or the numbers are degenerate. Too little data is a verdict, not
 /// an error.
 pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, DiagnoseError> {
-    let references = match (input.references, input.baseline) {
-        (Some(given), _) => given,
-        (None, Some(baseline)) => *baseline.references(),
-        (None, None) => match references_of(input.model, input.drag_table, input.flights) {
-            Ok(found) => found,
-            Err(DiagnoseError::Model(EffectModelError::NothingInside { segments })) => {
-                return Ok(insufficient(0, 0, Insufficient::NothingInside { segments }));
-            }
-            Err(error) => return Err(error),
-        },
+    let references = match input.effect_references() {
+        Ok(found) => found,
+        Err(DiagnoseError::Model(EffectModelError::NothingInside { segments })) => {
+            return Ok(insufficient(0, 0, Insufficient::NothingInside { segments }));
+        }
+        Err(error) => return Err(error),
     };
-    let reference = Reference::from_baseline(input.baseline);
-    let model = EffectModel::new(input.model, input.drag_table, references)?
-        .between_nodes(reference.between_nodes());
+    let model = input.effect_model(references)?;
     let chosen = |id: EffectId| {
         (options.effects.is_empty() || options.effects.contains(&id))
             && !options.without.contains(&id)
@@ -69,11 +62,10 @@ pub fn diagnose(input: &Input<'_>, options: &Options) -> Result<Diagnosis, Diagn
     let (mut dates, mut judged) = (None, JudgedSegments::default());
     for attempt in 0..=CLOSER_DATES {
         let kept = dates.take();
-        let reference = Reference::from_baseline(input.baseline);
         let (data, mut library) = PreparedFlights::prepare(
             &model,
             input.flights,
-            reference,
+            input.reference(),
             |points, engines, starts| {
                 let dates =
                     kept.unwrap_or_else(|| DateGrid::coarse(starts, input.events_s, right_at_s));

@@ -1,11 +1,12 @@
 //! What is diagnosed, against what, and what to look for.
 
-use effects::EffectReferences;
-use effects::ExtendedModel;
+use effects::{EffectModel, EffectReferences, ExtendedModel};
 use flight::effect::EffectId;
 
 use crate::baseline::Baseline;
+use crate::residuals::reference::Reference;
 use crate::signals::record::FlightRecord;
+use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::TableUncertainty;
 
 /// What is diagnosed, and against what.
@@ -40,6 +41,32 @@ impl<'a> Input<'a> {
             references: None,
             events_s: &[],
         }
+    }
+
+    /// The conditions that effects are zero at.
+    ///
+    /// # Errors
+    /// [`DiagnoseError`] where they are to be the means of flights of which none is inside the table.
+    pub fn effect_references(&self) -> Result<EffectReferences, DiagnoseError> {
+        match (self.references, self.baseline) {
+            (Some(given), _) => Ok(given),
+            (None, Some(baseline)) => Ok(*baseline.references()),
+            (None, None) => references_of(self.model, self.drag_table, self.flights),
+        }
+    }
+
+    /// What flights are compared with.
+    pub(crate) fn reference(&self) -> Reference<'a> {
+        Reference::from_baseline(self.baseline)
+    }
+
+    /// The model with effects, its table between the nodes what it was when the baseline was learnt.
+    pub(crate) fn effect_model(
+        &self,
+        references: EffectReferences,
+    ) -> Result<EffectModel<'a>, DiagnoseError> {
+        let model = EffectModel::new(self.model, self.drag_table, references)?;
+        Ok(model.between_nodes(self.reference().between_nodes()))
     }
 }
 

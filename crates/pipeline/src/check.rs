@@ -154,6 +154,7 @@ fn severity_word<S: serde::Serializer>(
 }
 
 fn fingerprint(report: &Report, flow_kg_s: &[f64]) -> u64 {
+    const VALUES_AT_ONCE: usize = 64;
     let columns = report.columns();
     let mut hasher = DefaultHasher::new();
     for series in [
@@ -176,33 +177,12 @@ fn fingerprint(report: &Report, flow_kg_s: &[f64]) -> u64 {
     hasher.finish()
 }
 
-/// Numbers that are worked on together.
-const VALUES_AT_ONCE: usize = 64;
-
 /// Arithmetic mean; `None` of nothing.
 fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0_u32);
     for value in values {
         sum += value;
         count += 1;
-    }
-    (count > 0).then(|| sum / f64::from(count))
-}
-
-/// Mean of a function of two columns; `None` of nothing. Values are computed some at a time, in which several fit into one
-/// instruction, and added one by one in their order.
-fn mean_of_pairs(first: &[f64], second: &[f64], of: impl Fn(f64, f64) -> f64) -> Option<f64> {
-    let mut values = [0.0; VALUES_AT_ONCE];
-    let chunks = first.chunks(VALUES_AT_ONCE).zip(second.chunks(VALUES_AT_ONCE));
-    let (mut sum, mut count) = (0.0, 0_u32);
-    for (first, second) in chunks {
-        for ((value, first), second) in values.iter_mut().zip(first).zip(second) {
-            *value = of(*first, *second);
-        }
-        for value in &values[..first.len().min(second.len())] {
-            sum += value;
-            count += 1;
-        }
     }
     (count > 0).then(|| sum / f64::from(count))
 }

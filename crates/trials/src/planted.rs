@@ -134,11 +134,7 @@ fn is_place(slice: &Slice) -> bool {
 fn gaps(inputs: &DiagnosisInputs, effects: &Effects) -> Result<BTreeMap<Key, f64>, CaseFailure> {
     let records = inputs.records();
     let input = inputs.input(&records);
-    let references = match input.references {
-        Some(references) => references,
-        None => diagnose::references_of(input.model, input.drag_table, input.flights)?,
-    };
-    let model = EffectModel::new(input.model, input.drag_table, references)?;
+    let model = EffectModel::new(input.model, input.drag_table, input.effect_references()?)?;
     let engines = model.aircraft().engines();
     let gap = |segment: &Segment| {
         let start_s = segment.identity.start_s();

@@ -69,10 +69,7 @@ pub(super) fn texts_by_places(
         let text = place.and_then(|place| texts.get()?.get(place)).ok_or_else(|| {
             ParquetError::General("a place that its dictionary does not have".to_owned())
         })?;
-        match runs.last_mut() {
-            Some((last, count)) if last.as_bytes() == &text[..] => *count += run.len(),
-            _ => runs.push((String::from_utf8_lossy(text).into_owned(), run.len())),
-        }
+        add_run(&mut runs, text, run.len());
     }
     Ok(BatchColumn::Texts(runs))
 }
@@ -96,16 +93,17 @@ fn counts<T: DataType>(
         Kind::Number(factor) => BatchColumn::Numbers(
             cells.iter().map(|cell| cell.map_or(f64::NAN, |count| count as f64 * factor)).collect(),
         ),
-        Kind::Instant(each) => BatchColumn::Instants(
-            cells.into_iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
-        ),
-        Kind::LocalTime(each) => BatchColumn::LocalTimes(
-            cells.into_iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect(),
-        ),
+        Kind::Instant(each) => BatchColumn::Instants(times(each, &cells)),
+        Kind::LocalTime(each) => BatchColumn::LocalTimes(times(each, &cells)),
         Kind::Date => text(|days, day_s| date(days.saturating_mul(day_s)), DAY_S),
         Kind::Time(each) => text(time_of_day, each),
         Kind::Text => BatchColumn::Texts(Vec::new()),
     })
+}
+
+/// Counts of these many nanoseconds as nanoseconds; none where that is more than a number holds.
+fn times(each: i64, cells: &[Option<i64>]) -> Vec<Option<i64>> {
+    cells.iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect()
 }
 
 fn numbers<T: DataType>(
@@ -191,21 +189,24 @@ fn texts(
 ) -> Result<BatchColumn, ParquetError> {
     let mut levels = levels;
     let present = records(reader, rows, levels.as_deref_mut())?;
-    let nothing = ByteArray::from("");
     let mut runs: Vec<(String, usize)> = Vec::new();
-    let mut add = |cell: &ByteArray| match runs.last_mut() {
-        Some((text, count)) if text.as_bytes() == cell.data() => *count += 1,
-        _ => runs.push((String::from_utf8_lossy(cell.data()).into_owned(), 1)),
-    };
     match levels {
         Some(levels) if present.len() < rows => {
             let mut present = present.iter();
             for level in levels.iter() {
                 let cell = if *level > 0 { present.next() } else { None };
-                add(cell.unwrap_or(&nothing));
+                add_run(&mut runs, cell.map_or(&[], ByteArray::data), 1);
             }
         }
-        _ => present.iter().for_each(add),
+        _ => present.iter().for_each(|cell| add_run(&mut runs, cell.data(), 1)),
     }
     Ok(BatchColumn::Texts(runs))
+}
+
+/// Adds rows that hold the same text.
+fn add_run(runs: &mut Vec<(String, usize)>, text: &[u8], rows: usize) {
+    match runs.last_mut() {
+        Some((last, count)) if last.as_bytes() == text => *count += rows,
+        _ => runs.push((String::from_utf8_lossy(text).into_owned(), rows)),
+    }
 }

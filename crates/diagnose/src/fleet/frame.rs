@@ -25,7 +25,7 @@ use crate::priors::{
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::{Frame as ChannelFrame, PreparedFlights};
 use crate::signals::record::FlightRecord;
-use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::references::DiagnoseError;
 use crate::thresholds::{FLEET_BASIS_FLIGHTS, FLEET_FRAME_FLIGHTS};
 
 /// What is common to the tails of one model: built from some flights of all of them, used for each.
@@ -88,11 +88,8 @@ impl<'a> FleetFrame<'a> {
     ) -> Result<Self, DiagnoseError> {
         let every = input.flights.len().div_ceil(FLEET_FRAME_FLIGHTS).max(1);
         let flights: Vec<FlightRecord<'a>> = input.flights.iter().step_by(every).copied().collect();
-        let references = match (input.references, input.baseline) {
-            (Some(given), _) => given,
-            (None, Some(baseline)) => *baseline.references(),
-            (None, None) => references_of(input.model, input.drag_table, &flights)?,
-        };
+        let thinned = Input { flights: &flights, ..input };
+        let references = thinned.effect_references()?;
         let model = EffectModel::new(input.model, input.drag_table, references)?;
         let chosen = |id: EffectId| {
             (options.effects.is_empty() || options.effects.contains(&id))
@@ -100,12 +97,15 @@ impl<'a> FleetFrame<'a> {
                 // `monitor` looks for what has dates of its own on every tail.
                 && !is_dated(id)
         };
-        let reference = Reference::from_baseline(input.baseline);
-        let (data, library) =
-            PreparedFlights::prepare(&model, &flights, reference, |points, engines, starts| {
+        let (data, library) = PreparedFlights::prepare(
+            &model,
+            &flights,
+            input.reference(),
+            |points, engines, starts| {
                 let dates = DateGrid::coarse(starts, &[], None);
                 Library::new(&model, points, engines, dates, chosen)
-            });
+            },
+        );
         let design = Design::new(&data, &references, input.baseline, input.table);
         let columns: Vec<usize> =
             library.effects.iter().map(|effect| effect.representative).collect();

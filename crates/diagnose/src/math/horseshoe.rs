@@ -102,12 +102,6 @@ impl Chain {
         Factor::new(candidate, &self.own.iter().map(of_prior).collect::<Vec<f64>>())
     }
 
-    /// ln of a candidate's evidence under the present scales, coefficients integrated out, but for what depends on the scales'
-    /// product alone.
-    fn ln_evidence(&self, candidate: &Candidate) -> Option<f64> {
-        Some(candidate.ln_weight + self.factored(candidate)?.ln_evidence())
-    }
-
     /// Lets the largest of the columns' own scales change places with one of the others, if that is no worse, or by chance; gives
     /// the factor under the scales that it leaves.
     ///
@@ -135,11 +129,11 @@ impl Chain {
         self.own_auxiliary.swap(one, other);
     }
 
-    /// Draws which candidate holds, coefficients integrated out.
+    /// Draws which candidate holds, coefficients integrated out; what depends on the scales alone is common to all.
     fn choose(&mut self, candidates: &[Candidate]) -> Option<()> {
         let mut lns = Vec::with_capacity(candidates.len());
         for candidate in candidates {
-            lns.push(self.ln_evidence(candidate)?);
+            lns.push(candidate.ln_weight + self.factored(candidate)?.ln_evidence());
         }
         let largest = lns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let weights = lns.iter().map(|ln| (ln - largest).exp());

@@ -5,7 +5,7 @@ use effects::{EffectModel, EffectPoint, Effects, Variable};
 use crate::input::Input;
 use crate::output::region::Region;
 use crate::signals::channels::mean_n2_percent;
-use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::references::DiagnoseError;
 
 /// Of every segment, flight by flight, whether it meets the conditions of a region. What the model cannot predict lies
 /// nowhere; which engine the region is of changes nothing: every segment is of all engines.
@@ -13,11 +13,7 @@ use crate::signals::references::{DiagnoseError, references_of};
 /// # Errors
 /// [`DiagnoseError`] for a model that takes no effects, or that knows none of the flights.
 pub fn region_members(input: &Input<'_>, region: &Region) -> Result<Vec<Vec<bool>>, DiagnoseError> {
-    let references = match (input.references, input.baseline) {
-        (Some(given), _) => given,
-        (None, Some(baseline)) => *baseline.references(),
-        (None, None) => references_of(input.model, input.drag_table, input.flights)?,
-    };
+    let references = input.effect_references()?;
     let model = EffectModel::new(input.model, input.drag_table, references)?;
     let engines = model.aircraft().engines();
     let is_member = |segment: &flight::Segment| {

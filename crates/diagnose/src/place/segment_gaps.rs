@@ -1,6 +1,6 @@
 //! The gap segment by segment, before and after effects are added: what a chart is drawn from.
 
-use effects::{EffectModel, Effects, Trial, Variable};
+use effects::{Effects, Trial, Variable};
 
 use crate::input::Input;
 use crate::library::Library;
@@ -9,10 +9,9 @@ use crate::output::addition::Addition;
 use crate::output::note::LeftOutReason;
 use crate::output::region::Region;
 use crate::place::find::engines_apart;
-use crate::residuals::reference::Reference;
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::PreparedFlights;
-use crate::signals::references::{DiagnoseError, references_of};
+use crate::signals::references::DiagnoseError;
 
 /// The gap at one segment: ln recorded − ln predicted total fuel flow, in per cent, as [`crate::diagnose()`] counts it.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,14 +56,8 @@ pub struct Shown<'a> {
 /// # Errors
 /// [`DiagnoseError`] for a model that takes no effects, or that knows none of the flights.
 pub fn segment_gaps(input: &Input<'_>, shown: Shown<'_>) -> Result<Vec<SegmentGap>, DiagnoseError> {
-    let references = match (input.references, input.baseline) {
-        (Some(given), _) => given,
-        (None, Some(baseline)) => *baseline.references(),
-        (None, None) => references_of(input.model, input.drag_table, input.flights)?,
-    };
-    let reference = Reference::from_baseline(input.baseline);
-    let model = EffectModel::new(input.model, input.drag_table, references)?
-        .between_nodes(reference.between_nodes());
+    let references = input.effect_references()?;
+    let (reference, model) = (input.reference(), input.effect_model(references)?);
     // No column of the library is needed: residuals do not depend on what is searched.
     let (mut data, _) =
         PreparedFlights::prepare(&model, input.flights, reference, |points, engines, starts| {

@@ -7,7 +7,7 @@ use flight::{Report, Severity};
 use units::convert::{METERS_PER_SECOND_PER_KNOT, RADIANS_PER_DEGREE};
 
 use super::slips::{self, SPEED};
-use super::{Draft, mean, mean_of_pairs};
+use super::{Draft, mean};
 
 /// Mean radius of the earth, m (IUGG: (2a + b)/3 of WGS 84). A sphere is within 0.5 % of the ellipsoid.
 const EARTH_RADIUS_M: f64 = 6_371_008.8;
@@ -149,7 +149,7 @@ fn wind(report: &Report) -> (f64, f64) {
         squared.max(0.0).sqrt() / METERS_PER_SECOND_PER_KNOT
     };
     let winds = match &columns.drift_deg {
-        None => mean_of_pairs(ground, air, |ground, air| wind(ground, air, 1.0)),
+        None => mean(ground.iter().zip(air).map(|(ground, air)| wind(*ground, *air, 1.0))),
         Some(drift_deg) => {
             let speeds = ground.iter().zip(air).zip(drift_deg);
             mean(speeds.map(|((ground, air), drift)| {
@@ -157,7 +157,7 @@ fn wind(report: &Report) -> (f64, f64) {
             }))
         }
     };
-    let ratios = mean_of_pairs(ground, air, |ground, air| ground / air);
+    let ratios = mean(ground.iter().zip(air).map(|(ground, air)| ground / air));
     (winds.unwrap_or(0.0), ratios.unwrap_or(1.0))
 }
 

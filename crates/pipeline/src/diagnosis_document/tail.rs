@@ -383,10 +383,7 @@ impl From<&DiagnosedTail> for TailDiagnosis {
                     needs: entry.needs.iter().map(|needed| needed.name().to_owned()).collect(),
                 })
                 .collect(),
-            verdict: VerdictRecord {
-                advice: advice(&diagnosed.diagnosis),
-                ..VerdictRecord::from(verdict)
-            },
+            verdict: VerdictRecord::from(&diagnosed.diagnosis),
             addition: addition.as_ref().map(AdditionRecord::from),
             detectable: detectable.iter().map(DetectableRecord::from).collect(),
             outside: OutsideLibraryRecord::from(outside),
@@ -495,8 +492,9 @@ impl From<&Verdict> for VerdictKind {
     }
 }
 
-impl From<&Verdict> for VerdictRecord {
-    fn from(verdict: &Verdict) -> Self {
+impl From<&Diagnosis> for VerdictRecord {
+    fn from(diagnosis: &Diagnosis) -> Self {
+        let verdict = &diagnosis.verdict;
         let closure: Option<Closure> = verdict.closure();
         Self {
             kind: VerdictKind::from(verdict),
@@ -512,8 +510,7 @@ impl From<&Verdict> for VerdictRecord {
             }),
             closure: closure.map(|closure| closure.share),
             closure_ci95: closure.map(|closure| closure.ci95),
-            // With the words for what was found, which the whole diagnosis has.
-            advice: String::new(),
+            advice: advice(diagnosis),
             separations: verdict.found().map_or_else(Vec::new, |found| {
                 found.separations.iter().map(SeparationRecord::from).collect()
             }),
