@@ -1,5 +1,7 @@
 //! Examples and exit statuses in the help of every command, for `--help`, the manual pages and completions alike.
 
+use std::ffi::OsString;
+
 use clap::builder::StyledStr;
 
 use super::Cli;
@@ -118,12 +120,22 @@ const EXAMPLES: [(&str, &[&str]); 26] = [
 
 /// The grammar of the command line with examples and exit statuses.
 pub(crate) fn command() -> clap::Command {
+    command_told(|_| true)
+}
+
+/// The grammar for a run with these arguments: what they do not name is not told about, for a start should not describe
+/// twenty-five other commands.
+pub(crate) fn command_for(arguments: &[OsString]) -> clap::Command {
+    command_told(|name| arguments.iter().any(|argument| argument == name))
+}
+
+fn command_told(is_told: impl Fn(&str) -> bool) -> clap::Command {
     let mut program = <Cli as clap::CommandFactory>::command()
         .after_help(StyledStr::from(format!("{STATUS_OF_PROGRAM}\n\n{STATUS}")));
     // In place: to take one out and put it back moves all others.
     for one in program.get_subcommands_mut() {
-        let Some((name, examples)) = EXAMPLES.iter().find(|(name, _)| *name == one.get_name())
-        else {
+        let of_this = |(name, _): &&(&str, _)| *name == one.get_name() && is_told(name);
+        let Some((name, examples)) = EXAMPLES.iter().find(of_this) else {
             continue;
         };
         let status = if *name == "monitor" { STATUS_OF_MONITOR } else { STATUS };
