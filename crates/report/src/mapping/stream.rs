@@ -143,6 +143,18 @@ impl Stream {
         (self.ended(), added)
     }
 
+    /// Holds flights up to the limits from the first row on: rows of this recording's flights come back
+    /// ([`RefusalKind::FlightCameBack`] with [`FlightLimit::KeptBytes`](crate::FlightLimit::KeptBytes)).
+    pub const fn expect_alternating(&mut self) {
+        self.assembly.expect_alternating();
+    }
+
+    /// The flights that are over where reading stops before the recording's end.
+    pub fn stop(&mut self) -> Vec<MappedFlight> {
+        self.assembly.stop();
+        self.ended()
+    }
+
     /// The flights that end with the recording.
     pub fn finish(&mut self) -> Vec<MappedFlight> {
         self.assembly.finish();
@@ -268,3 +280,6 @@ impl Stream {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
