@@ -454,13 +454,8 @@ impl fmt::Display for RefusalKind {
             ),
             Self::TableUnreadable { reason } => write!(f, "rows that can be read ({reason})"),
             Self::PointsForSamples => f.write_str(SAMPLES),
-            Self::FlightCameBack { last_line, limit } => write!(
-                f,
-                "no more rows of this flight, which ended in line {last_line} ({limit}): sort the table by tail, flight and time"
-            ),
-            Self::NoLevelPart { needed_s } => {
-                write!(f, "a level part of at least {needed_s} s, as the mapping's cruise requires")
-            }
+            Self::FlightCameBack { last_line, limit } => write_came_back(f, *last_line, *limit),
+            Self::NoLevelPart { needed_s } => write_level_part(f, *needed_s),
         }
     }
 }
@@ -468,6 +463,21 @@ impl fmt::Display for RefusalKind {
 const INSTANT: &str = "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping";
 const SAMPLES: &str =
     "samples, of which a cruise report consists; the mapping's rows are averaged points";
+
+fn write_came_back(
+    f: &mut fmt::Formatter<'_>,
+    last_line: usize,
+    limit: FlightLimit,
+) -> fmt::Result {
+    write!(
+        f,
+        "no more rows of this flight, which ended in line {last_line} ({limit}): sort the table by tail, flight and time"
+    )
+}
+
+fn write_level_part(f: &mut fmt::Formatter<'_>, needed_s: f64) -> fmt::Result {
+    write!(f, "a level part of at least {needed_s} s, as the mapping's cruise requires")
+}
 
 fn write_range(f: &mut fmt::Formatter<'_>, column: Column, limit: f64, unit: &str) -> fmt::Result {
     write!(f, "{} of {} (limit here {limit} {unit})", column.name(), column.range().words)

@@ -28,7 +28,8 @@ const BEGINNING_S: i64 = 1_709_280_000;
 
 /// A row of a flight of a tail, so many seconds after the beginning.
 fn row(tail: usize, flight: usize, second: usize) -> String {
-    let instant = flight::Timestamp::from_second(BEGINNING_S + second as i64).unwrap();
+    let instant =
+        flight::Timestamp::from_second(BEGINNING_S + i64::try_from(second).unwrap()).unwrap();
     let (altitude, mass) = (35_000 + (second + tail) % 3, 65_000.0 - 0.3 * second as f64 / 10.0);
     format!("{instant},T-{tail},F{flight},{altitude},-54.5,0.78,450,2400,{mass:.2}\n")
 }
