@@ -143,12 +143,6 @@ impl Stream {
         (self.ended(), added)
     }
 
-    /// Holds flights up to the limits from the first row on: rows of this recording's flights come back
-    /// ([`RefusalKind::FlightCameBack`] with [`FlightLimit::KeptBytes`](crate::FlightLimit::KeptBytes)).
-    pub const fn expect_alternating(&mut self) {
-        self.assembly.expect_alternating();
-    }
-
     /// The flights that are over where reading stops before the recording's end.
     pub fn stop(&mut self) -> Vec<MappedFlight> {
         self.assembly.stop();

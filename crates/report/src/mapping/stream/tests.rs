@@ -40,18 +40,10 @@ fn text<'t>(rows: impl IntoIterator<Item = &'t (usize, usize, usize)>) -> String
 }
 
 /// The reports in the order in which they are given out.
-fn read(
-    mapping: &str,
-    text: &str,
-    limits: Limits,
-    alternates: bool,
-) -> Result<Vec<Parsed>, Refusal> {
+fn read(mapping: &str, text: &str, limits: Limits) -> Result<Vec<Parsed>, Refusal> {
     let mut pieces = Pieces::new(text.as_bytes())?;
     let mut stream = Stream::begin(&Mapping::from_ron(mapping).unwrap(), &mut pieces, None)?;
     stream.assembly.limit(limits);
-    if alternates {
-        stream.expect_alternating();
-    }
     let (mut flights, mut refusal) = (Vec::new(), None);
     while let Some(piece) = stream.next_piece(&mut pieces)? {
         let (ended, added) = stream.add(&stream.rows(piece));
@@ -67,7 +59,7 @@ fn read(
 }
 
 fn read_plainly(text: &str) -> Result<Vec<Parsed>, Refusal> {
-    read(MAPPING, text, Limits::default(), false)
+    read(MAPPING, text, Limits::default())
 }
 
 type ByFlight = BTreeMap<(String, String, flight::Timestamp), flight::Report>;
@@ -109,17 +101,15 @@ fn alternating_rows_are_the_flights_of_the_sorted_recording() {
     let alternating = read_plainly(&text(&by_time(&fleet()))).unwrap();
     assert_eq!(alternating.len(), 6);
     assert_eq!(by_flight(&alternating), by_flight(&sorted));
-    // In blocks of 100 rows, larger than what is kept of finished flights: read by who expects it.
+    // In blocks of 100 rows, larger than what is kept of flights that seem to be over: never in halves.
     let mut blocks = fleet();
     blocks.sort_by_key(|(tail, _, second)| (second / 1000, *tail, *second));
     let limits = Limits { kept_bytes: 4000, ..Limits::default() };
-    let refusal = read(MAPPING, &text(&blocks), limits, false).unwrap_err();
+    let refusal = read(MAPPING, &text(&blocks), limits).unwrap_err();
     assert!(matches!(
         refusal.kind,
         RefusalKind::FlightCameBack { last_line: 101, limit: FlightLimit::KeptBytes(4000) }
     ));
-    let expected = read(MAPPING, &text(&blocks), limits, true).unwrap();
-    assert_eq!(by_flight(&expected), by_flight(&sorted));
 }
 
 /// The same name flies again after the gap: by the mapping's, or three hours.
@@ -132,7 +122,7 @@ fn after_the_gap_it_is_another_flight() {
     let count = |mapping: &str, pause| {
         let rows: Vec<_> = rows(pause).collect();
         let [blocks, alternating] = [rows.clone(), by_time(&rows)]
-            .map(|rows| read(mapping, &text(&rows), Limits::default(), false).unwrap().len());
+            .map(|rows| read(mapping, &text(&rows), Limits::default()).unwrap().len());
         assert_eq!(blocks, alternating);
         blocks
     };
@@ -141,6 +131,25 @@ fn after_the_gap_it_is_another_flight() {
     assert_eq!(count(MAPPING, 12_000), 4);
     assert_eq!(count(&shorter, 1500), 2);
     assert_eq!(count(&shorter, 2000), 4);
+}
+
+/// Out, back and out again under one name: three flights, for the tail flew another in between; sorted, or among others.
+#[test]
+fn a_tail_flies_one_flight_at_a_time() {
+    let legs = [(0, 1, 0), (0, 2, 3000), (0, 1, 6000), (1, 1, 0)];
+    let rows: Vec<_> = legs
+        .into_iter()
+        .flat_map(|(tail, flight, from)| (0..200).map(move |s| (tail, flight, from + 10 * s)))
+        .collect();
+    for limits in [Limits::default(), Limits { kept_bytes: 1000, ..Limits::default() }] {
+        let sorted = read(MAPPING, &text(&rows), limits).unwrap();
+        assert_eq!(sorted.len(), 4);
+        let alternating = read(MAPPING, &text(&by_time(&rows)), Limits::default()).unwrap();
+        assert_eq!(by_flight(&alternating), by_flight(&sorted));
+    }
+    // Without a column of tails nobody knows that one aircraft flies them.
+    let untold = MAPPING.replace("Column(\"reg\")", "Text(\"T\")");
+    assert_eq!(read(&untold, &text(&rows[..600]), Limits::default()).unwrap().len(), 2);
 }
 
 /// While two fly for hours, the flight that ended is given out; what comes back late is not read as another flight.
@@ -172,7 +181,7 @@ fn one_wrong_time_ends_no_other_flight_and_makes_no_halves() {
     assert_eq!(rows[301].0, 1);
     text = text.replace(&line, &wrong);
     let lenient = MAPPING.replace("format: 1,", "format: 1, bad_rows: LeaveRowOut,");
-    let refusal = read(&lenient, &text, Limits::default(), false).unwrap_err();
+    let refusal = read(&lenient, &text, Limits::default()).unwrap_err();
     assert_eq!(refusal.kind.code(), "flight-came-back");
     assert_eq!(refusal.line, 306);
     assert!(matches!(&refusal.found, crate::Found::Text(text) if text == "T-1 F1"));
@@ -181,12 +190,12 @@ fn one_wrong_time_ends_no_other_flight_and_makes_no_halves() {
 #[test]
 fn beyond_a_limit_a_flight_that_comes_back_is_refused() {
     let rows: Vec<_> = (0..40).flat_map(|s| (0..6).map(move |tail| (tail, 1, s))).collect();
-    let read = |limits| read(MAPPING, &text(&rows), limits, true);
+    let read = |limits| read(MAPPING, &text(&rows), limits);
     assert_eq!(read(Limits { flights: 5, ..Limits::default() }).unwrap().len(), 6);
     let refusal = read(Limits { flights: 4, ..Limits::default() }).unwrap_err();
     let limit = FlightLimit::OpenFlights(4);
-    assert_eq!(refusal.kind, RefusalKind::FlightCameBack { last_line: 2, limit });
-    assert_eq!(refusal.line, 8);
+    assert_eq!(refusal.kind, RefusalKind::FlightCameBack { last_line: 3, limit });
+    assert_eq!(refusal.line, 9);
     let refusal = read(Limits { bytes: 8000, ..Limits::default() }).unwrap_err();
     let limit = FlightLimit::OpenBytes(8000);
     assert!(

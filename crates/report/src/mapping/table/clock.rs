@@ -4,7 +4,7 @@ use flight::Timestamp;
 
 use super::batch::instant_of;
 use super::rows::Times;
-use super::{Layout, Recording};
+use super::{Layout, Recording, Text};
 use crate::mapping::plan::{Plan, TimeForm};
 
 const DAY_S: f64 = 86_400.0;
@@ -55,6 +55,11 @@ impl Clock {
 }
 
 impl Layout {
+    /// Whether a column tells the tails.
+    pub(super) const fn tells_tails(&self) -> bool {
+        matches!(self.fields.texts[1].1, Text::Field(_))
+    }
+
     /// The time of a row on the clock that all flights share.
     pub(super) fn clock_s(&self, times: &Times, row: usize) -> f64 {
         match (times, &self.plan.time) {

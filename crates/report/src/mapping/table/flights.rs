@@ -44,11 +44,6 @@ impl Assembly {
         Self { end: first.end(), ..Self::default() }
     }
 
-    /// Holds flights up to the limits from the first row on: those of this recording come back.
-    pub(in crate::mapping) const fn expect_alternating(&mut self) {
-        self.open.alternates = true;
-    }
-
     /// The same with other limits.
     #[cfg(test)]
     pub(in crate::mapping) const fn limit(&mut self, limits: Limits) {
@@ -172,6 +167,7 @@ impl Assembly {
             clock.change(time_s);
         }
         self.clock = Some(clock);
+        self.open.tails_are_told = layout.tells_tails();
         if let Some(before) = self.current.take() {
             self.open.stop(before, true, &clock);
         }

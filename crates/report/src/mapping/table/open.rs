@@ -4,6 +4,8 @@
 //! little is kept, and flights are given out in their order, so that a sorted recording takes no more memory than its longest
 //! flight. From the first flight that comes back on, a flight ends when it has had no row for the gap between flights, by the
 //! recording's own clock. What was given out is remembered by its times: a flight is never read as two without a word.
+//! One aircraft does not fly twice at a time: where a column tells the tails, a flight is over when its tail has flown the next one,
+//! and the same name behind that is another flight.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -29,6 +31,8 @@ pub(in crate::mapping) struct Limits {
 
 /// Text that flights which seem to be over may keep, for each byte of numbers.
 const TEXT_FOR_NUMBERS: usize = 8;
+/// Rows of a tail under another name for less than that are no flight that it has flown meanwhile, s. Our choice.
+const SHORTEST_FLIGHT_S: f64 = 600.0;
 /// What a flight takes without a row, about.
 const FLIGHT_BYTES: usize = 512;
 
@@ -55,6 +59,10 @@ pub(super) struct Open {
     text: usize,
     /// Whether a flight has come back.
     pub(super) alternates: bool,
+    /// Whether a column tells the tails.
+    pub(super) tails_are_told: bool,
+    /// The flight of each tail that stopped last.
+    of_tails: BTreeMap<String, Texts>,
     given_out: Vec<Recording>,
     gone: BTreeMap<Texts, Vec<Gone>>,
     /// The clock and the stops when it was last looked for flights that have ended.
@@ -115,6 +123,9 @@ impl Open {
     pub(super) fn stop(&mut self, recording: Recording, may_go_on: bool, clock: &Clock) {
         self.stops += 1;
         self.numbers += bytes_of(&recording);
+        if self.tails_are_told {
+            self.end_before_of_tail(&recording, clock);
+        }
         if may_go_on {
             self.places.insert(Arc::clone(&recording.texts), self.stops);
         } else {
@@ -245,6 +256,35 @@ impl Open {
         }
         self.given_out.push(recording);
         true
+    }
+
+    /// The flight of a tail that stopped before this one is over if this one began behind it, and was flown.
+    fn end_before_of_tail(&mut self, recording: &Recording, clock: &Clock) {
+        let Some((first_s, last_s)) = recording.span_s() else { return };
+        if clock.since_s(last_s, first_s) < SHORTEST_FLIGHT_S {
+            return;
+        }
+        let texts = &recording.texts;
+        let Some(before) = self.of_tails.insert(texts[1].clone(), Arc::clone(texts)) else {
+            return;
+        };
+        if before == *texts {
+            return;
+        }
+        let is_behind = |(_, last_s): (f64, f64)| clock.since_s(first_s, last_s) > 0.0;
+        if let Some(place) = self.places.get(&before)
+            && let Some(stopped) = self.order.get_mut(place)
+            && stopped.recording.span_s().is_some_and(is_behind)
+        {
+            stopped.may_go_on = false;
+            self.places.remove(&before);
+        }
+        if let Some(gone) = self.gone.get_mut(&before) {
+            gone.retain(|gone| !is_behind(gone.span_s));
+            if gone.is_empty() {
+                self.gone.remove(&before);
+            }
+        }
     }
 
     /// Keeps of a flight that is over what its rows are known by, should they come back.
