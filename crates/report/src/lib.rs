@@ -61,6 +61,6 @@ mod write;
 pub use cruise_text::{Head, Parsed, Reader, head};
 pub use decode::{MAXIMUM_TEXT_BYTES, unpack};
 pub use mapping::{Mapping, MappingError};
-pub use refusal::{Found, Refusal, RefusalKind, nearest};
+pub use refusal::{FlightLimit, Found, Refusal, RefusalKind, nearest};
 pub use text_layout::{Decimals, TextLayout, UnitUnknown};
 pub use write::{WriteError, write};

@@ -234,7 +234,7 @@ impl Mapping {
 /// was rejected.
 fn parts(plan: &Plan, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f64) {
     let rows = recording.time_s.len();
-    let fewest = if plan.points.is_some() { 1 } else { 3 };
+    let fewest = plan.fewest_rows();
     match &plan.cruise {
         None if rows < fewest => (Vec::new(), 0.0),
         None => (core::iter::once(0..rows).collect(), 0.0),

@@ -280,11 +280,50 @@ pub enum RefusalKind {
     },
     /// Averaged points where a report of samples is wanted.
     PointsForSamples,
+    /// Rows of a flight behind those with which it was taken to have ended.
+    FlightCameBack {
+        /// Line of its last row before.
+        last_line: usize,
+        /// Why it was not waited for.
+        limit: FlightLimit,
+    },
     /// A recording without a level part that is long enough.
     NoLevelPart {
         /// How long it must be, s.
         needed_s: f64,
     },
+}
+
+/// Why the rows of a flight are no longer waited for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FlightLimit {
+    /// So much of flights that seem to be over is kept while none has come back, bytes.
+    KeptBytes(usize),
+    /// So many flights may be open at once.
+    OpenFlights(usize),
+    /// So much of open flights may be held, bytes.
+    OpenBytes(usize),
+    /// The other flights are so much later than its last row.
+    Gap {
+        /// s.
+        gap_s: f64,
+    },
+}
+
+impl fmt::Display for FlightLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::KeptBytes(bytes) => {
+                write!(f, "{bytes} bytes of finished flights are kept")
+            }
+            Self::OpenFlights(flights) => write!(f, "at most {flights} flights are open at once"),
+            Self::OpenBytes(bytes) => write!(f, "at most {bytes} bytes of open flights are held"),
+            Self::Gap { gap_s } => {
+                write!(f, "the flights around are more than {gap_s} s past its last row")
+            }
+        }
+    }
 }
 
 impl RefusalKind {
@@ -333,6 +372,7 @@ impl RefusalKind {
             Self::GrossMassRises { .. } => "gross-mass-rises",
             Self::TableUnreadable { .. } => "table-unreadable",
             Self::PointsForSamples => "points-for-samples",
+            Self::FlightCameBack { .. } => "flight-came-back",
             Self::NoLevelPart { .. } => "no-level-part",
         }
     }
@@ -414,9 +454,8 @@ impl fmt::Display for RefusalKind {
             ),
             Self::TableUnreadable { reason } => write!(f, "rows that can be read ({reason})"),
             Self::PointsForSamples => f.write_str(SAMPLES),
-            Self::NoLevelPart { needed_s } => {
-                write!(f, "a level part of at least {needed_s} s, as the mapping's cruise requires")
-            }
+            Self::FlightCameBack { last_line, limit } => write_came_back(f, *last_line, *limit),
+            Self::NoLevelPart { needed_s } => write_level_part(f, *needed_s),
         }
     }
 }
@@ -424,6 +463,21 @@ impl fmt::Display for RefusalKind {
 const INSTANT: &str = "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping";
 const SAMPLES: &str =
     "samples, of which a cruise report consists; the mapping's rows are averaged points";
+
+fn write_came_back(
+    f: &mut fmt::Formatter<'_>,
+    last_line: usize,
+    limit: FlightLimit,
+) -> fmt::Result {
+    write!(
+        f,
+        "no more rows of this flight, which ended in line {last_line} ({limit}): sort the table by tail, flight and time"
+    )
+}
+
+fn write_level_part(f: &mut fmt::Formatter<'_>, needed_s: f64) -> fmt::Result {
+    write!(f, "a level part of at least {needed_s} s, as the mapping's cruise requires")
+}
 
 fn write_range(f: &mut fmt::Formatter<'_>, column: Column, limit: f64, unit: &str) -> fmt::Result {
     write!(f, "{} of {} (limit here {limit} {unit})", column.name(), column.range().words)

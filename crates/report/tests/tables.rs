@@ -230,3 +230,32 @@ fn a_table_that_breaks_off_says_why() {
     let refusal = mapping.each(&mut source, None, |_| ()).unwrap_err();
     assert!(refusal.to_string().contains("a page is missing"), "{refusal}");
 }
+
+/// Rows of two flights that alternate, by batches, by text, and sorted.
+#[test]
+fn flights_that_alternate_in_a_table_are_those_of_its_text() {
+    let mut table = table();
+    table.flights = (0..ROWS).map(|row| if row % 2 == 0 { "F1" } else { "F2" }).collect();
+    let flags = |flags: &[&str]| BatchColumn::Numbers(flags.iter().map(|_| 0.0).collect());
+    let plain = MAPPING.replace(", values: [(\"ON\", 1), (\"OFF\", 0)]", "");
+    let mapping = Mapping::from_ron(&plain).unwrap();
+    let text = table.text().replace(",ON\n", ",0\n").replace(",OFF\n", ",0\n");
+    let (names, rows) = text.split_once('\n').unwrap();
+    let of = |flight: &str| {
+        let rows = rows.lines().filter(|row| row.contains(flight)).map(|row| format!("{row}\n"));
+        rows.collect::<String>()
+    };
+    let sorted = format!("{names}\n{}{}", of(",F1,"), of(",F2,"));
+    let by_name = |parsed: Vec<Parsed>| {
+        let mut reports: Vec<_> = parsed.into_iter().map(|parsed| parsed.report).collect();
+        reports.sort_by(|a, b| a.header().identity.flight.cmp(&b.header().identity.flight));
+        reports
+    };
+    let expected = by_name(mapping.read(sorted.as_bytes()).unwrap());
+    assert_eq!(expected.len(), 2);
+    assert_eq!(by_name(mapping.read(text.as_bytes()).unwrap()), expected);
+    for at_once in [1, 7, ROWS] {
+        let found = by_name(read(&mapping, table.names(), table.batches(at_once, &flags)));
+        assert_eq!(found, expected, "{at_once} rows at once");
+    }
+}

@@ -189,3 +189,37 @@ fn a_packed_recording_is_read_as_it_is_unpacked() {
     // A folder's packed recordings are found.
     assert_eq!(read(folder.path()), expected);
 }
+
+/// Oracle: the same rows sorted by flight.
+#[test]
+fn flights_that_alternate_give_the_segments_of_the_sorted_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = folder.path().join("M.ron");
+    let text = layout("01_named_units.csv");
+    mapping_of(&text, &mapping);
+    let written = std::fs::read_to_string(&mapping).unwrap();
+    std::fs::write(&mapping, written.replace("FileName", "Column(\"leg\")")).unwrap();
+    let recorded = std::fs::read_to_string(&text).unwrap();
+    let (names, rows) = recorded.split_once('\n').unwrap();
+    let of = |leg: &str| -> Vec<String> {
+        rows.lines().map(|row| format!("{},{leg}\n", row.trim_end())).collect()
+    };
+    let (one, other) = (of("A"), of("B"));
+    let header = format!("{},leg\n", names.trim_end());
+    let alternating = one.iter().zip(&other).flat_map(|(one, other)| [one.as_str(), other]);
+    let alternating = header.clone() + &alternating.collect::<String>();
+    let sorted = header + &one.concat() + &other.concat();
+    // The file's name is in no segment.
+    let read = |text: &str, threads: &str| {
+        let path = folder.path().join("recording.csv");
+        std::fs::write(&path, text).unwrap();
+        let arguments = ["--threads".as_ref(), threads.as_ref(), "--mapping".as_ref()];
+        let all = [&arguments[..], &[mapping.as_os_str(), path.as_os_str()]].concat();
+        segments(&all)
+    };
+    let expected = read(&sorted, "1");
+    assert!(expected.contains(",A,") && expected.contains(",B,"), "{expected}");
+    for threads in ["1", "2"] {
+        assert_eq!(read(&alternating, threads), expected, "{threads} threads");
+    }
+}

@@ -128,6 +128,7 @@ impl Read<'_> {
                 }
             }
             if stopped.is_err() {
+                waiting.extend(stream.stop());
                 self.finish(&mut stream, waiting, spread)?;
                 return stopped;
             }

@@ -276,13 +276,17 @@ impl Piece {
             && line == self.end().0
     }
 
-    /// Bytes that it keeps.
-    pub(super) fn kept_bytes(&self) -> usize {
-        let text = match &self.content {
+    /// Bytes of its text.
+    pub(super) fn text_bytes(&self) -> usize {
+        match &self.content {
             Content::Text(text) => text.len(),
             Content::Rows(_) | Content::Lines { .. } => 0,
-        };
-        text + self.bytes
+        }
+    }
+
+    /// Bytes that it keeps.
+    pub(super) fn kept_bytes(&self) -> usize {
+        self.text_bytes() + self.bytes
     }
 
     /// Whether it has no line.

@@ -256,6 +256,11 @@ impl Plan {
         })
     }
 
+    /// Rows that make a flight.
+    pub(super) const fn fewest_rows(&self) -> usize {
+        if self.points.is_some() { 1 } else { 3 }
+    }
+
     /// The required columns of the report that this layout does not have.
     pub(super) fn missing(&self) -> Vec<MissingColumn> {
         let is_recorded = |wanted| self.recorded.iter().any(|(column, _)| *column == wanted);

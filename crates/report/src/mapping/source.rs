@@ -128,7 +128,17 @@ impl Mapping {
         mut give: impl FnMut(Parsed),
     ) -> Result<Vec<flight::Finding>, Refusal> {
         let mut stream = source.begin(self, file_name)?;
-        while let Some(piece) = source.next_piece(&mut stream)? {
+        loop {
+            let piece = match source.next_piece(&mut stream) {
+                Ok(Some(piece)) => piece,
+                Ok(None) => break,
+                Err(refusal) => {
+                    for flight in stream.stop() {
+                        stream.count(stream.report(flight))?.into_iter().for_each(&mut give);
+                    }
+                    return Err(refusal);
+                }
+            };
             let rows = stream.rows(piece);
             let (flights, added) = stream.add(&rows);
             for flight in flights {

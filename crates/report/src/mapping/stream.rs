@@ -143,6 +143,12 @@ impl Stream {
         (self.ended(), added)
     }
 
+    /// The flights that are over where reading stops before the recording's end.
+    pub fn stop(&mut self) -> Vec<MappedFlight> {
+        self.assembly.stop();
+        self.ended()
+    }
+
     /// The flights that end with the recording.
     pub fn finish(&mut self) -> Vec<MappedFlight> {
         self.assembly.finish();
@@ -268,3 +274,6 @@ impl Stream {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

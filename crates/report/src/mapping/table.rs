@@ -1,8 +1,10 @@
 //! Delimited text into recordings: where a recording has what its mapping names, and positions for refusals.
 
 mod batch;
+mod clock;
 mod columns;
 mod flights;
+mod open;
 mod recording;
 mod rows;
 
@@ -11,6 +13,8 @@ use super::file::{MappingFile, TextSource};
 use super::plan::{Plan, TimeForm};
 pub use batch::{Batch, BatchColumn, line_of_names, local_text};
 pub(super) use flights::Assembly;
+#[cfg(test)]
+pub(super) use open::Limits;
 pub(super) use recording::Recording;
 pub use rows::Rows;
 

@@ -235,26 +235,34 @@ impl Layout {
                 end += rows;
                 end
             }));
-            sources.push(runs);
+            sources.push(runs.into_iter());
         }
         changes.sort_unstable();
         changes.dedup();
+        let mut ends = [0; 3];
         let events = changes.into_iter().filter(|row| *row < batch.rows).map(|row| {
-            let texts: Vec<String> =
-                sources.iter().map(|runs| text_at(runs, row).to_owned()).collect();
-            let texts: [String; 3] = texts.try_into().unwrap_or_default();
+            let mut texts: [String; 3] = Default::default();
+            for ((text, runs), end) in texts.iter_mut().zip(&mut sources).zip(&mut ends) {
+                text_at(runs, end, row).clone_into(text);
+            }
             (row, Event::Texts(Arc::new(texts)))
         });
         Some(events.collect())
     }
 }
 
-/// The text that holds for a row.
-fn text_at<'t>(runs: &[(&'t str, usize)], row: usize) -> &'t str {
-    let mut end = 0;
-    let found = runs.iter().find(|(_, rows)| {
-        end += rows;
-        row < end
-    });
-    found.map_or("", |(text, _)| text)
+/// The text that holds for a row; runs before it are passed, the last of which ends at `end`.
+fn text_at<'t>(
+    runs: &mut std::vec::IntoIter<(&'t str, usize)>,
+    end: &mut usize,
+    row: usize,
+) -> &'t str {
+    while let Some((text, rows)) = runs.as_slice().first() {
+        if row < *end + rows {
+            return text;
+        }
+        *end += rows;
+        runs.next();
+    }
+    ""
 }

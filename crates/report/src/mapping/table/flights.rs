@@ -5,8 +5,12 @@ use std::sync::Arc;
 use flight::Timestamp;
 
 use super::batch::instant_of;
+use super::clock::Clock;
+#[cfg(test)]
+use super::open::Limits;
+use super::open::{Arrival, Gone, Open};
 use super::rows::{Event, Rows, Times};
-use super::{Layout, Recording};
+use super::{Layout, Recording, Text};
 use crate::decode::MAXIMUM_TEXT_BYTES;
 use crate::mapping::file::BadRows;
 use crate::mapping::pieces::Piece;
@@ -15,10 +19,13 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 
 const HALF_A_DAY_S: f64 = 43_200.0;
 
-/// The flight that is not yet at its end, and where the rows end.
+/// The flights that are not yet at their end, and where the rows end.
 #[derive(Debug, Default)]
 pub(in crate::mapping) struct Assembly {
     current: Option<Recording>,
+    open: Open,
+    /// `None` before the first change of flight.
+    clock: Option<Clock>,
     /// Flights that have ended.
     ended: Vec<Recording>,
     /// Number of the last line, and its length in characters.
@@ -37,11 +44,34 @@ impl Assembly {
         Self { end: first.end(), ..Self::default() }
     }
 
+    /// The same with other limits.
+    #[cfg(test)]
+    pub(in crate::mapping) const fn limit(&mut self, limits: Limits) {
+        self.open.limits = limits;
+    }
+
     /// Adds the rows of the next piece. The flights before a refusal are among the ended ones.
     ///
     /// # Errors
     /// The first row that is bad, where the mapping refuses such rows.
     pub(in crate::mapping) fn add(&mut self, layout: &Layout, rows: &Rows) -> Result<(), Refusal> {
+        let added = self.add_piece(layout, rows);
+        if added.is_err() {
+            self.stop();
+        }
+        added
+    }
+
+    /// Reading stops before the recording's end: gives out the flights that are over.
+    pub(in crate::mapping) fn stop(&mut self) {
+        if !self.open.alternates {
+            self.open.give_out_all();
+            self.end_given_out();
+        }
+    }
+
+    fn add_piece(&mut self, layout: &Layout, rows: &Rows) -> Result<(), Refusal> {
+        self.open.read(&rows.piece);
         if !rows.piece.is_empty() {
             self.end = rows.piece.end();
         } else if let Some(line) = rows.lines.last() {
@@ -51,11 +81,17 @@ impl Assembly {
             current.keep(&rows.piece)?;
         }
         let mut from = 0;
-        for (before, event) in &rows.events {
+        for (index, (before, event)) in rows.events.iter().enumerate() {
             self.add_rows(layout, rows, from..*before)?;
             from = *before;
             match event {
-                Event::Texts(texts) => self.begin_if_other(layout, texts, rows)?,
+                Event::Texts(texts) => {
+                    let mut behind = rows.events[index + 1..].iter();
+                    let next = behind.find(|(_, event)| matches!(event, Event::Texts(_)));
+                    let end = next.map_or(rows.times.len(), |next| next.0);
+                    let row = (end > *before).then_some(*before);
+                    self.go_on_with(layout, texts, (rows, row))?;
+                }
                 Event::WithoutTime(line) => {
                     let recording = self.current(layout);
                     recording.left_out += 1;
@@ -72,8 +108,10 @@ impl Assembly {
         core::mem::take(&mut self.ended)
     }
 
-    /// Ends the last flight.
+    /// Ends all flights.
     pub(in crate::mapping) fn finish(&mut self) {
+        self.open.give_out_all();
+        self.end_given_out();
         if let Some(current) = self.current.take() {
             self.end_flight(current);
         }
@@ -99,18 +137,52 @@ impl Assembly {
         self.ended.push(recording);
     }
 
-    fn begin_if_other(
+    fn end_given_out(&mut self) {
+        for recording in self.open.given_out() {
+            self.end_flight(recording);
+        }
+    }
+
+    /// The rows from here on are of the flight with these texts, the first of them at `row`.
+    fn go_on_with(
         &mut self,
         layout: &Layout,
         texts: &Arc<[String; 3]>,
-        rows: &Rows,
+        (rows, row): (&Rows, Option<usize>),
     ) -> Result<(), Refusal> {
-        if self.current.as_ref().is_some_and(|current| current.is_of(texts)) {
+        let same = self.current.as_ref().filter(|current| current.is_of(texts));
+        if same.is_some_and(|current| !current.time_s.is_empty()) {
             return Ok(());
         }
-        self.begin(layout, texts, rows)
+        let time_s = row.map(|row| layout.clock_s(&rows.times, row));
+        let mut clock = self.clock.unwrap_or_else(|| Clock::new(&layout.plan));
+        let fewest = layout.plan.fewest_rows();
+        let refused = |gone: Gone| refuse_coming_back(layout, (rows, row), texts, gone);
+        if same.is_some() {
+            // It began with lines without a time.
+            let arrival = Arrival { clock: &clock, time_s, fewest };
+            return self.open.refuse_gone(texts, arrival).map_err(refused);
+        }
+        if let Some(time_s) = time_s {
+            clock.change(time_s);
+        }
+        self.clock = Some(clock);
+        self.open.tails_are_told = layout.tells_tails();
+        if let Some(before) = self.current.take() {
+            self.open.stop(before, true, &clock);
+        }
+        let arrival = Arrival { clock: &clock, time_s, fewest };
+        let found = self.open.take(texts, arrival).map_err(refused)?;
+        let mut next =
+            found.unwrap_or_else(|| Recording::new(Arc::clone(texts), layout.plan.inputs.len()));
+        next.keep(&rows.piece)?;
+        self.open.settle(&clock, &next);
+        self.current = Some(next);
+        self.end_given_out();
+        Ok(())
     }
 
+    /// Another flight with the same texts, as long after the one before as the mapping asks for.
     fn begin(
         &mut self,
         layout: &Layout,
@@ -119,9 +191,13 @@ impl Assembly {
     ) -> Result<(), Refusal> {
         let mut next = Recording::new(Arc::clone(texts), layout.plan.inputs.len());
         next.keep(&rows.piece)?;
-        if let Some(before) = self.current.replace(next) {
-            self.end_flight(before);
+        if let Some(before) = self.current.take() {
+            let clock = self.clock.unwrap_or_else(|| Clock::new(&layout.plan));
+            self.open.stop(before, false, &clock);
+            self.open.settle(&clock, &next);
+            self.end_given_out();
         }
+        self.current = Some(next);
         Ok(())
     }
 
@@ -186,6 +262,25 @@ impl Assembly {
     }
 }
 
+/// Refuses a row of a flight that was given out, at the text by which the flight is known.
+fn refuse_coming_back(
+    layout: &Layout,
+    (rows, row): (&Rows, Option<usize>),
+    texts: &[String; 3],
+    gone: Gone,
+) -> Refusal {
+    // A row without a time is not refused.
+    let line = row.map_or(rows.piece.first_line, |row| rows.lines[row]);
+    let field = layout.fields.texts.iter().rev().find_map(|(_, text)| match text {
+        Text::Field(field) => Some(*field),
+        Text::Constant(_) => None,
+    });
+    let field = field.unwrap_or_default();
+    let found = Found::text(&format!("{} {}", texts[1], texts[2]));
+    let kind = RefusalKind::FlightCameBack { last_line: gone.line, limit: gone.limit };
+    layout.refuse_field((line, &rows.piece.line(line)), field, found, kind)
+}
+
 fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Refusal {
     let line = rows.lines[row];
     let text = rows.piece.line(line);
@@ -200,6 +295,12 @@ fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Re
 impl Recording {
     /// Keeps a piece that holds rows of this flight: a refusal needs the text of its line.
     fn keep(&mut self, piece: &Piece) -> Result<(), Refusal> {
+        let is_known = |last: &Piece| {
+            last.first_line == piece.first_line && last.kept_bytes() == piece.kept_bytes()
+        };
+        if self.pieces.last().is_some_and(is_known) {
+            return Ok(());
+        }
         self.kept_bytes += piece.kept_bytes();
         self.pieces.push(piece.clone());
         if self.kept_bytes > MAXIMUM_TEXT_BYTES {
