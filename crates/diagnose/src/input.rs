@@ -1,10 +1,9 @@
 //! What is diagnosed, against what, and what to look for.
 
-use effects::{EffectModel, EffectReferences, ExtendedModel};
+use effects::{EffectReferences, ExtendedModel};
 use flight::effect::EffectId;
 
 use crate::baseline::Baseline;
-use crate::residuals::reference::Reference;
 use crate::signals::record::FlightRecord;
 use crate::signals::references::{DiagnoseError, references_of};
 use crate::signals::table_uncertainty::TableUncertainty;
@@ -53,20 +52,6 @@ impl<'a> Input<'a> {
             (None, Some(baseline)) => Ok(*baseline.references()),
             (None, None) => references_of(self.model, self.drag_table, self.flights),
         }
-    }
-
-    /// What flights are compared with.
-    pub(crate) fn reference(&self) -> Reference<'a> {
-        Reference::from_baseline(self.baseline)
-    }
-
-    /// The model with effects, its table between the nodes what it was when the baseline was learnt.
-    pub(crate) fn effect_model(
-        &self,
-        references: EffectReferences,
-    ) -> Result<EffectModel<'a>, DiagnoseError> {
-        let model = EffectModel::new(self.model, self.drag_table, references)?;
-        Ok(model.between_nodes(self.reference().between_nodes()))
     }
 }
 

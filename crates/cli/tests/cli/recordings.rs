@@ -201,10 +201,11 @@ fn flights_that_alternate_give_the_segments_of_the_sorted_recording() {
     std::fs::write(&mapping, written.replace("FileName", "Column(\"leg\")")).unwrap();
     let recorded = std::fs::read_to_string(&text).unwrap();
     let (names, rows) = recorded.split_once('\n').unwrap();
-    let of = |leg: &str| -> Vec<String> {
-        rows.lines().map(|row| format!("{},{leg}\n", row.trim_end())).collect()
+    let of = |tail: &str, leg: &str| -> Vec<String> {
+        let rows = rows.lines().map(|row| row.trim_end().replace("F-AAAA", tail));
+        rows.map(|row| format!("{row},{leg}\n")).collect()
     };
-    let (one, other) = (of("A"), of("B"));
+    let (one, other) = (of("F-AAAA", "A"), of("F-BBBB", "B"));
     let header = format!("{},leg\n", names.trim_end());
     let alternating = one.iter().zip(&other).flat_map(|(one, other)| [one.as_str(), other]);
     let alternating = header.clone() + &alternating.collect::<String>();

@@ -1,10 +1,12 @@
 //! What flights are compared with.
 
-use effects::{BetweenNodes, EffectModel};
+use effects::{BetweenNodes, EffectModel, EffectReferences};
 use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 
 use crate::baseline::Baseline;
+use crate::input::Input;
 use crate::signals::noise::{NoiseFactors, Statistics};
+use crate::signals::references::DiagnoseError;
 
 /// What flights are compared with, which also decides where their noise is known from.
 #[derive(Clone, Copy, Debug)]
@@ -48,5 +50,21 @@ impl<'a> Reference<'a> {
                 FuelFlowDrift::default()
             },
         }
+    }
+}
+
+impl<'a> Input<'a> {
+    /// What flights are compared with.
+    pub(crate) fn reference(&self) -> Reference<'a> {
+        Reference::from_baseline(self.baseline)
+    }
+
+    /// The model with effects, its table between the nodes what it was when the baseline was learnt.
+    pub(crate) fn effect_model(
+        &self,
+        references: EffectReferences,
+    ) -> Result<EffectModel<'a>, DiagnoseError> {
+        let model = EffectModel::new(self.model, self.drag_table, references)?;
+        Ok(model.between_nodes(self.reference().between_nodes()))
     }
 }
