@@ -2,19 +2,22 @@
 
 mod cells;
 mod footer;
+mod pages;
 mod present;
 mod shared_file;
 
 use std::fs::File;
 use std::path::Path;
 
-use cells::{cells_of, skip, texts_by_places};
+use cells::{cells_of, skip};
+use pages::Pages;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as PhysicalType};
-use parquet::column::reader::ColumnReader;
+use parquet::column::reader::{ColumnReader, get_column_reader};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
-use present::Texts;
+use present::Present;
 use rayon::prelude::*;
 use report::mapping::{Batch, BatchColumn, Source};
 use shared_file::SharedFile;
@@ -34,7 +37,7 @@ pub(crate) fn source(file: File) -> Result<Source<'static>, String> {
     Ok(Source::table(names, unread, Box::new(batches)))
 }
 
-/// The rows of a Parquet file (of any codec but Brotli and LZO) as comma-separated text, below a line of the column names.
+/// The rows of a Parquet file (of any codec but LZO) as comma-separated text, below a line of the column names.
 /// Instants are written in UTC, flags as 0 and 1, nothing where there is no value.
 ///
 /// # Errors
@@ -62,8 +65,25 @@ fn csv_of(file: File, most_bytes: usize) -> Result<Vec<u8>, ParquetError> {
     Ok(text.into_bytes())
 }
 
+/// A file whose footer can be decoded.
+pub(crate) fn checked(file: File) -> Result<SharedFile, ParquetError> {
+    let file = SharedFile::new(file)?;
+    footer::check(&file)?;
+    Ok(file)
+}
+
+/// A reader of a column's values, whatever these are.
+pub(crate) fn column_reader(
+    file: &SharedFile,
+    column: &ColumnChunkMetaData,
+) -> Result<ColumnReader, ParquetError> {
+    let pages = Pages::new(file.clone(), column)?;
+    Ok(get_column_reader(column.column_descr_ptr(), Box::new(pages)))
+}
+
 /// A file, and how far it has been read.
 struct Table {
+    file: SharedFile,
     reader: SerializedFileReader<SharedFile>,
     /// The next group of rows.
     group: usize,
@@ -104,16 +124,15 @@ struct Column {
 enum Reading {
     /// With values missing, or none.
     Any(ColumnReader),
-    /// All values are there, as [`present`] reads them; of texts their places among these.
-    Present(ColumnReader, Option<Texts>),
+    /// All values are there.
+    Present(Present),
 }
 
 impl Table {
     fn open(file: File) -> Result<Self, ParquetError> {
-        let file = SharedFile::new(file)?;
-        footer::check(&file)?;
-        let reader = SerializedFileReader::new(file)?;
-        Ok(Self { reader, group: 0, columns: Vec::new(), left: 0, of_any_kind: Vec::new() })
+        let file = checked(file)?;
+        let reader = SerializedFileReader::new(file.clone())?;
+        Ok(Self { file, reader, group: 0, columns: Vec::new(), left: 0, of_any_kind: Vec::new() })
     }
 
     fn names(&self) -> Vec<String> {
@@ -137,12 +156,12 @@ impl Table {
         }
         let rows = self.left.min(ROWS_AT_ONCE);
         self.left -= rows;
-        let (reader, group) = (&self.reader, self.group - 1);
+        let (file, group) = (&self.file, self.reader.metadata().row_group(self.group - 1));
         let columns = self
             .columns
             .par_iter_mut()
             .map(|(place, column)| {
-                let anew = || reader.get_row_group(group)?.get_column_reader(*place);
+                let anew = || column_reader(file, group.column(*place));
                 Ok((*place, column.read_present_or_any(rows, anew)?))
             })
             .collect::<Result<Vec<_>, ParquetError>>()?;
@@ -156,7 +175,7 @@ impl Table {
                 self.of_any_kind.push(place);
             }
         }
-        let group = self.reader.get_row_group(self.group)?;
+        let group = self.reader.metadata().row_group(self.group);
         let schema = self.reader.metadata().file_metadata().schema_descr();
         for place in wanted {
             let column = schema.column(*place);
@@ -165,17 +184,20 @@ impl Table {
                 ParquetError::General(reason)
             })?;
             let is_optional = column.max_def_level() > 0;
-            let reading = if self.of_any_kind.contains(place) {
-                Reading::Any(group.get_column_reader(*place)?)
+            let chunk = group.column(*place);
+            let present = if self.of_any_kind.contains(place) {
+                None
             } else {
-                let pages = group.get_column_page_reader(*place)?;
-                let (reader, texts) = present::reader(&column, pages)?;
-                Reading::Present(reader, texts)
+                Present::new(&column, kind, Pages::new(self.file.clone(), chunk)?)
+            };
+            let reading = match present {
+                Some(present) => Reading::Present(present),
+                None => Reading::Any(column_reader(&self.file, chunk)?),
             };
             let levels = Vec::new();
             self.columns.push((*place, Column { reading, rows: 0, kind, is_optional, levels }));
         }
-        self.left = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        self.left = usize::try_from(group.num_rows()).unwrap_or(0);
         self.group += 1;
         Ok(())
     }
@@ -233,13 +255,8 @@ impl Column {
     ) -> Result<BatchColumn, ParquetError> {
         let before = self.rows;
         self.rows += rows;
-        if let Reading::Present(reader, texts) = &mut self.reading {
-            let read = match (reader, texts) {
-                (ColumnReader::Int32ColumnReader(reader), Some(texts)) => {
-                    texts_by_places(reader, rows, texts)
-                }
-                (reader, _) => cells_of(reader, rows, None, self.kind),
-            };
+        if let Reading::Present(present) = &mut self.reading {
+            let read = present.rows(rows);
             if read.is_ok() {
                 return read;
             }
@@ -251,9 +268,8 @@ impl Column {
         }
         let levels = self.is_optional.then_some(&mut self.levels);
         match &mut self.reading {
-            Reading::Any(reader) | Reading::Present(reader, _) => {
-                cells_of(reader, rows, levels, self.kind)
-            }
+            Reading::Any(reader) => cells_of(reader, rows, levels, self.kind),
+            Reading::Present(present) => present.rows(rows),
         }
     }
 }

@@ -8,6 +8,8 @@ use parquet::data_type::DoubleType;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
+use crate::parquet_batches::{checked, column_reader};
+
 /// Most values that are read: a small file can claim to hold billions. Our choice: 4 GiB in memory.
 const MOST_VALUES: usize = 1 << 29;
 /// Values that are decoded together.
@@ -26,7 +28,8 @@ pub(crate) fn columns_of_file(path: &Path) -> Result<Option<NumberColumns>, Stri
 }
 
 fn columns_of(file: std::fs::File) -> Result<Option<NumberColumns>, ParquetError> {
-    let reader = SerializedFileReader::new(file)?;
+    let file = checked(file)?;
+    let reader = SerializedFileReader::new(file.clone())?;
     let schema = reader.metadata().file_metadata().schema_descr();
     let is_plain = schema.columns().iter().all(|column| {
         column.physical_type() == PhysicalType::DOUBLE
@@ -47,9 +50,11 @@ fn columns_of(file: std::fs::File) -> Result<Option<NumberColumns>, ParquetError
     let mut columns: NumberColumns =
         schema.columns().iter().map(|column| (column.name().to_owned(), Vec::new())).collect();
     for group in 0..reader.num_row_groups() {
-        let group = reader.get_row_group(group)?;
+        let group = reader.metadata().row_group(group);
         for (place, (_, values)) in columns.iter_mut().enumerate() {
-            if let ColumnReader::DoubleColumnReader(column) = group.get_column_reader(place)? {
+            if let ColumnReader::DoubleColumnReader(column) =
+                column_reader(&file, group.column(place))?
+            {
                 let is_optional = schema.column(place).max_def_level() > 0;
                 append(column, is_optional, most_rows, values)?;
             }

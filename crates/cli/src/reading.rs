@@ -6,7 +6,7 @@ pub(crate) mod recording;
 
 use std::path::{Path, PathBuf};
 
-use pipeline::reading::recordings::{self, Done, Job, Mapped};
+use pipeline::reading::recordings::{self, Mapped, Workers};
 use pipeline::reading::{FileRead, FlightReader};
 use rayon::prelude::*;
 use report::MAXIMUM_TEXT_BYTES;
@@ -99,6 +99,7 @@ fn read_unmapped(path: &Path, bytes: &mut Vec<u8>) -> Result<(), String> {
     Ok(())
 }
 
-fn in_parallel(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> {
-    jobs.into_par_iter().map(work).collect()
+fn in_parallel(work: &(dyn Fn() + Sync), run: &mut dyn FnMut(&Workers<'_>)) {
+    let count = rayon::current_num_threads();
+    rayon::in_place_scope(|scope| run(&Workers { count, call: &|| scope.spawn(|_| work()) }));
 }

@@ -6,8 +6,7 @@ use std::path::Path;
 use arrow_array::{Array, ArrayRef, RecordBatch};
 use arrow_schema::DataType;
 use pipeline::reading::FileRead;
-use pipeline::reading::recordings::{self, Done, Job, Mapped};
-use rayon::prelude::*;
+use pipeline::reading::recordings::{self, Mapped, Workers};
 use report::mapping::{Cells, Lines, Mapping, Pieces, TableRows};
 use segmenter::TrimCriteria;
 
@@ -47,8 +46,9 @@ pub(crate) fn read(
     Ok(read)
 }
 
-fn in_parallel(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> {
-    jobs.into_par_iter().map(work).collect()
+fn in_parallel(work: &(dyn Fn() + Sync), run: &mut dyn FnMut(&Workers<'_>)) {
+    let count = rayon::current_num_threads();
+    rayon::in_place_scope(|scope| run(&Workers { count, call: &|| scope.spawn(|_| work()) }));
 }
 
 fn stretches(batch: RecordBatch) -> impl Iterator<Item = RecordBatch> {

@@ -3,6 +3,7 @@
 //! A mapping file (RON) states which column of a delimited text holds which quantity in which unit, what is derived,
 //! and which parts of the recording are level cruise. `docs/src/guides/mapping.md` describes it.
 
+mod converter;
 mod derive;
 mod file;
 mod first;
@@ -19,6 +20,7 @@ use units::OutOfDomain;
 
 use crate::cruise_text::Parsed;
 use crate::refusal::Refusal;
+pub use converter::Converter;
 use file::MappingFile;
 pub use first::first_mapping;
 pub use in_memory::{Cells, Lines, TableRows};

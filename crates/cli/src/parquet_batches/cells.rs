@@ -1,12 +1,11 @@
 //! The values of a column of a Parquet file as cells of a table.
 
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::{ByteArray, DataType, DoubleType, Int32Type, Int96};
+use parquet::data_type::{ByteArray, DataType, DoubleType, Int96};
 use parquet::errors::ParquetError;
 use report::mapping::BatchColumn;
 
 use super::Kind;
-use super::present::Texts;
 use crate::cells::{date, runs, time_of_day};
 
 const DAY_S: i64 = 86_400;
@@ -54,24 +53,6 @@ pub(super) fn cells_of(
             Err(ParquetError::General("bytes of a fixed length are not read".to_owned()))
         }
     }
-}
-
-/// Texts by their places in a dictionary, each with the number of rows that it holds for.
-pub(super) fn texts_by_places(
-    reader: &mut ColumnReaderImpl<Int32Type>,
-    rows: usize,
-    texts: &Texts,
-) -> Result<BatchColumn, ParquetError> {
-    let places = records(reader, rows, None)?;
-    let mut runs: Vec<(String, usize)> = Vec::new();
-    for run in places.chunk_by(|place, next| place == next) {
-        let place = usize::try_from(run[0]).ok();
-        let text = place.and_then(|place| texts.get()?.get(place)).ok_or_else(|| {
-            ParquetError::General("a place that its dictionary does not have".to_owned())
-        })?;
-        add_run(&mut runs, text, run.len());
-    }
-    Ok(BatchColumn::Texts(runs))
 }
 
 /// Cells of a column of whole numbers.
@@ -204,7 +185,7 @@ fn texts(
 }
 
 /// Adds rows that hold the same text.
-fn add_run(runs: &mut Vec<(String, usize)>, text: &[u8], rows: usize) {
+pub(super) fn add_run(runs: &mut Vec<(String, usize)>, text: &[u8], rows: usize) {
     match runs.last_mut() {
         Some((last, count)) if last.as_bytes() == text => *count += rows,
         _ => runs.push((String::from_utf8_lossy(text).into_owned(), rows)),

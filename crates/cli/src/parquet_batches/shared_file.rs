@@ -11,13 +11,13 @@ use parquet::file::reader::{ChunkReader, Length};
 /// A file whose readers each have a place of their own. Handles of one file share their place, so that columns which are
 /// read at the same time would take each other's pages.
 #[derive(Clone)]
-pub(super) struct SharedFile {
+pub(crate) struct SharedFile {
     file: Arc<Mutex<File>>,
     length: u64,
 }
 
 /// Reads on from a place.
-pub(super) struct Reader {
+pub(crate) struct Reader {
     file: SharedFile,
     place: u64,
 }
@@ -26,6 +26,11 @@ impl SharedFile {
     pub(super) fn new(file: File) -> io::Result<Self> {
         let length = file.metadata()?.len();
         Ok(Self { file: Arc::new(Mutex::new(file)), length })
+    }
+
+    /// Reads as many bytes as there is room for.
+    pub(super) fn read_whole(&self, place: u64, bytes: &mut [u8]) -> io::Result<()> {
+        Reader { file: self.clone(), place }.read_exact(bytes)
     }
 
     fn read_at(&self, place: u64, bytes: &mut [u8]) -> io::Result<usize> {

@@ -1,19 +1,28 @@
 //! A recording of another layout, read flight by flight: what is held at a time is some text and the flights in it, so
 //! that a month of a fleet fits into little memory.
 
+mod content;
+mod workers;
+
 use std::io::BufRead;
 use std::path::Path;
+use std::sync::mpsc::{self, Receiver};
 
-use flight::{Report, ReportColumns};
-use report::mapping::{MappedFlight, MappedReport, Mapping, Piece, Pieces, Rows, Source, Stream};
+use report::mapping::{Converter, MappedFlight, MappedReport, Mapping, Piece, Pieces, Rows};
+use report::mapping::{Source, Stream};
 use report::{Refusal, RefusalKind};
 use segmenter::TrimCriteria;
 
 use super::{FileRead, FlightRead, RefusedReport, reduce, reduce_points};
-use crate::checksum::sha256;
+use content::content_as_read;
+use workers::{Delivery, InOrder, Queue};
+pub use workers::{Spread, Workers, one_by_one};
 
-/// Pieces that are read into rows at a time, of about a megabyte each.
-pub const PIECES_AT_A_TIME: usize = 4;
+/// Pieces, and flights, that wait or are worked on for each worker: enough that none has nothing to do while the next is read, few
+/// enough that they fit into little memory.
+const WAITING_PER_WORKER: usize = 2;
+/// And however few workers there are.
+const WAITING_AT_LEAST: usize = 4;
 
 /// How a recording is read.
 #[derive(Clone, Copy, Debug)]
@@ -28,39 +37,31 @@ pub struct Mapped<'a> {
 
 /// Work that does not depend on other work.
 #[derive(Debug)]
-pub enum Job {
+enum Task {
     /// A piece to read into rows.
-    Piece(Piece),
+    Piece(usize, Piece),
     /// A flight to reduce.
-    Flight(Box<MappedFlight>),
+    Flight(usize, Box<MappedFlight>),
 }
 
-/// What came of a job.
+/// What came of a task.
 #[derive(Debug)]
-pub enum Done {
+enum Done {
     /// Rows of a piece.
-    Rows(Box<Rows>),
+    Rows(usize, Box<Rows>),
     /// A flight.
-    Flight(Box<Reduced>),
+    Flight(usize, Box<Reduced>),
 }
 
 /// What came of a flight.
 #[derive(Debug)]
-pub enum Reduced {
+enum Reduced {
     /// It is used.
     Flight(Box<FlightRead>),
     /// Its report cannot be reduced.
     Unusable(String),
     /// It gave no report.
     NoReport(MappedReport),
-}
-
-/// Does jobs, in any order, and gives what came of them in theirs.
-pub type Spread<'a> = dyn Fn(Vec<Job>, &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> + 'a;
-
-/// Does one job after the other.
-pub fn one_by_one(jobs: Vec<Job>, work: &(dyn Fn(Job) -> Done + Sync)) -> Vec<Done> {
-    jobs.into_iter().map(work).collect()
 }
 
 /// The flights in a recording, and what of it was refused. The result does not depend on `spread`.
@@ -93,90 +94,36 @@ struct Read<'a> {
 impl Read<'_> {
     fn all(&mut self, source: &mut Source<'_>, spread: &Spread<'_>) -> Result<(), Refusal> {
         let name = self.mapped.path.file_name().unwrap_or_default().to_string_lossy();
-        let mut stream = source.begin(self.mapped.mapping, Some(&name))?;
-        let mut waiting: Vec<MappedFlight> = Vec::new();
-        let mut has_ended = false;
-        while !has_ended {
-            let mut jobs: Vec<Job> = waiting.drain(..).map(Box::new).map(Job::Flight).collect();
-            let flights = jobs.len();
-            let mut stopped = Ok(());
-            while jobs.len() - flights < PIECES_AT_A_TIME {
-                match source.next_piece(&mut stream) {
-                    Ok(Some(piece)) => jobs.push(Job::Piece(piece)),
-                    Ok(None) => {
-                        has_ended = true;
-                        break;
-                    }
-                    Err(refusal) => {
-                        stopped = Err(refusal);
-                        break;
-                    }
-                }
+        let stream = source.begin(self.mapped.mapping, Some(&name))?;
+        let (mapped, converter, queue) = (self.mapped, stream.converter(), Queue::default());
+        let (sender, done) = mpsc::channel();
+        let work = || {
+            if let Some(task) = queue.take() {
+                let mut delivery = Delivery::of(&sender);
+                delivery.done = Some(mapped.work(&converter, task));
             }
-            // Refusals are those of the first line at fault: flights that ended before come first.
-            for done in spread(jobs, &|job| self.mapped.work(&stream, job)) {
-                match done {
-                    Done::Flight(reduced) => self.count(&mut stream, *reduced)?,
-                    Done::Rows(rows) => {
-                        let (ended, added) = stream.add(&rows);
-                        waiting.extend(ended);
-                        if let Err(refusal) = added {
-                            self.finish(&mut stream, waiting, spread)?;
-                            return Err(refusal);
-                        }
-                    }
-                }
+        };
+        let flow = Flow {
+            read: self,
+            stream,
+            queue: &queue,
+            done,
+            pieces: InOrder::default(),
+            flights: InOrder::default(),
+            stopped: Ok(()),
+            is_read: false,
+            has_refused_row: false,
+            is_lost: false,
+        };
+        let (mut flow, mut result) = (Some(flow), Ok(()));
+        spread(&work, &mut |workers| {
+            if let Some(flow) = flow.take() {
+                result = flow.run(source, workers, &work);
             }
-            if stopped.is_err() {
-                waiting.extend(stream.stop());
-                self.finish(&mut stream, waiting, spread)?;
-                return stopped;
-            }
-        }
-        waiting.extend(stream.finish());
-        self.finish(&mut stream, waiting, spread)?;
-        // What it finds are flights without a report, each of which is refused by name already.
-        stream.end().map(drop)
+        });
+        result
     }
 
-    /// The flights that are still waiting.
-    fn finish(
-        &mut self,
-        stream: &mut Stream,
-        waiting: Vec<MappedFlight>,
-        spread: &Spread<'_>,
-    ) -> Result<(), Refusal> {
-        let jobs = waiting.into_iter().map(Box::new).map(Job::Flight).collect();
-        for done in spread(jobs, &|job| self.mapped.work(stream, job)) {
-            if let Done::Flight(reduced) = done {
-                self.count(stream, *reduced)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn count(&mut self, stream: &mut Stream, reduced: Reduced) -> Result<(), Refusal> {
-        match reduced {
-            Reduced::Flight(flight) => {
-                stream.count_report();
-                self.flights.push(*flight);
-            }
-            Reduced::Unusable(reason) => {
-                stream.count_report();
-                self.refused.push(RefusedReport::whole(self.mapped.path.to_owned(), reason));
-            }
-            Reduced::NoReport(report) => {
-                let dropped = stream.dropped(&report);
-                stream.count(report)?;
-                self.refused
-                    .extend(dropped.map(|(flight, refusal)| self.dropped(&flight, &refusal)));
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Read<'_> {
     /// A flight without a report while the others of its recording are used.
     fn dropped(&self, flight: &str, refusal: &Refusal) -> RefusedReport {
         let mut refused = RefusedReport::at(self.mapped.path.to_owned(), refusal);
@@ -189,11 +136,142 @@ impl Read<'_> {
     }
 }
 
+/// A recording on its way through the workers: what has an order is done here in it, as soon as its turn has come.
+struct Flow<'f, 'a> {
+    read: &'f mut Read<'a>,
+    stream: Stream,
+    queue: &'f Queue<Task>,
+    /// What workers have done.
+    done: Receiver<Option<Done>>,
+    pieces: InOrder<Box<Rows>>,
+    flights: InOrder<Box<Reduced>>,
+    /// Why reading stops, if a row or the source is refused: flights that ended before come first.
+    stopped: Result<(), Refusal>,
+    /// Whether no piece follows.
+    is_read: bool,
+    /// Whether a row was refused, behind which none is used.
+    has_refused_row: bool,
+    /// Whether a worker has panicked, so that no result is to come.
+    is_lost: bool,
+}
+
+impl Flow<'_, '_> {
+    fn run(
+        mut self,
+        source: &mut Source<'_>,
+        workers: &Workers<'_>,
+        work: &dyn Fn(),
+    ) -> Result<(), Refusal> {
+        let most = (WAITING_PER_WORKER * workers.count).max(WAITING_AT_LEAST);
+        let mut has_finished = false;
+        while !self.is_lost {
+            while let Ok(done) = self.done.try_recv() {
+                self.sort_in(done);
+            }
+            self.use_in_order(workers)?;
+            if !self.is_read && self.pieces.missing() < most && self.flights.missing() < most {
+                self.read_piece(source, workers);
+            } else if self.pieces.missing() + self.flights.missing() > 0 {
+                self.wait(work);
+            } else if has_finished {
+                break;
+            } else {
+                // What is kept back ended before the refusal.
+                let stops = self.stopped.is_err();
+                let ended = if stops { self.stream.stop() } else { self.stream.finish() };
+                self.start_flights(ended, workers);
+                has_finished = true;
+            }
+        }
+        self.stopped?;
+        // What it finds are flights without a report, each of which is refused by name already.
+        self.stream.end().map(drop)
+    }
+
+    fn read_piece(&mut self, source: &mut Source<'_>, workers: &Workers<'_>) {
+        match source.next_piece(&mut self.stream) {
+            Ok(Some(piece)) => {
+                self.queue.add(Task::Piece(self.pieces.number(), piece));
+                (workers.call)();
+            }
+            Ok(None) => self.is_read = true,
+            Err(refusal) => {
+                self.is_read = true;
+                self.stopped = Err(refusal);
+            }
+        }
+    }
+
+    /// Does a task that nobody has begun; where there is none, others are at work, and the next result is theirs.
+    fn wait(&mut self, work: &dyn Fn()) {
+        if !self.queue.is_empty() {
+            work();
+        } else if let Ok(done) = self.done.recv() {
+            self.sort_in(done);
+        }
+    }
+
+    fn sort_in(&mut self, done: Option<Done>) {
+        match done {
+            Some(Done::Rows(number, rows)) => self.pieces.put(number, rows),
+            Some(Done::Flight(number, reduced)) => self.flights.put(number, reduced),
+            None => self.is_lost = true,
+        }
+    }
+
+    fn use_in_order(&mut self, workers: &Workers<'_>) -> Result<(), Refusal> {
+        while let Some(reduced) = self.flights.next() {
+            self.count(*reduced)?;
+        }
+        while let Some(rows) = self.pieces.next() {
+            if self.has_refused_row {
+                continue;
+            }
+            let (ended, added) = self.stream.add(&rows);
+            self.start_flights(ended, workers);
+            if let Err(refusal) = added {
+                (self.stopped, self.is_read, self.has_refused_row) = (Err(refusal), true, true);
+            }
+        }
+        Ok(())
+    }
+
+    fn start_flights(&mut self, ended: Vec<MappedFlight>, workers: &Workers<'_>) {
+        for flight in ended {
+            self.queue.add(Task::Flight(self.flights.number(), Box::new(flight)));
+            (workers.call)();
+        }
+    }
+
+    fn count(&mut self, reduced: Reduced) -> Result<(), Refusal> {
+        match reduced {
+            Reduced::Flight(flight) => {
+                self.stream.count_report();
+                self.read.flights.push(*flight);
+            }
+            Reduced::Unusable(reason) => {
+                self.stream.count_report();
+                let path = self.read.mapped.path.to_owned();
+                self.read.refused.push(RefusedReport::whole(path, reason));
+            }
+            Reduced::NoReport(report) => {
+                let dropped = self.stream.dropped(&report);
+                self.stream.count(report)?;
+                let dropped = dropped.map(|(flight, refusal)| self.read.dropped(&flight, &refusal));
+                self.read.refused.extend(dropped);
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Mapped<'_> {
-    fn work(&self, stream: &Stream, job: Job) -> Done {
-        match job {
-            Job::Piece(piece) => Done::Rows(Box::new(stream.rows(piece))),
-            Job::Flight(flight) => Done::Flight(Box::new(self.reduce(stream.report(*flight)))),
+    fn work(&self, converter: &Converter, task: Task) -> Done {
+        match task {
+            Task::Piece(number, piece) => Done::Rows(number, Box::new(converter.rows(piece))),
+            Task::Flight(number, flight) => {
+                Done::Flight(number, Box::new(self.reduce(converter.report(*flight))))
+            }
         }
     }
 
@@ -216,101 +294,4 @@ fn reduced(flight: Result<FlightRead, String>) -> Reduced {
         Ok(flight) => Reduced::Flight(Box::new(flight)),
         Err(reason) => Reduced::Unusable(reason),
     }
-}
-
-/// By what a flight out of a recording is known again: header and every sample, to the bit.
-fn content_as_read(report: &Report) -> String {
-    let header = report.header();
-    let mut content = format!(
-        "{}\n{}\n{}\n{}\n",
-        header.aircraft_type, header.identity.tail, header.identity.flight, header.identity.start
-    )
-    .into_bytes();
-    for (key, text) in &header.notes {
-        content.extend(format!("{key} {text}\n").into_bytes());
-    }
-    let heating_value = header.lower_heating_value_mj_kg.unwrap_or(f64::NAN);
-    let masses = [header.zero_fuel_mass, header.fuel_on_board].map(units::Mass::to_kilograms);
-    let numbers = [masses[0], masses[1], heating_value];
-    content.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
-    each_column(report.columns(), |name, values| {
-        content.extend_from_slice(name.as_bytes());
-        content.extend(values.iter().flat_map(|word| word.to_le_bytes()));
-    });
-    format!("flight:{}", sha256(&content))
-}
-
-/// Each column's name and two words that stand for its values.
-fn each_column(columns: &ReportColumns, mut each: impl FnMut(&str, [u64; 2])) {
-    // Each step of a sum waits for the one before: of several columns they are made side by side.
-    let mut together: Vec<(&str, &[f64])> = Vec::with_capacity(16);
-    let mut one = |name, values| together.push((name, values));
-    one("TIME", &columns.time_s);
-    one("ALT", &columns.pressure_altitude_m);
-    one("SAT", columns.static_air_temperature_k.as_deref().unwrap_or_default());
-    one("MACH", &columns.mach);
-    one("VTAS", &columns.true_airspeed_m_s);
-    one("GSPD", &columns.ground_speed_m_s);
-    one("ROLL", columns.roll_deg.as_deref().unwrap_or_default());
-    one("DRIFT", columns.drift_deg.as_deref().unwrap_or_default());
-    for speeds in columns.n2_percent.iter().flatten() {
-        one("N2", speeds);
-    }
-    match &columns.fuel_flow {
-        flight::FuelFlowColumns::Total(total) => one("WF", total),
-        flight::FuelFlowColumns::PerEngine(flows) => {
-            for flow in flows {
-                one("WF()", flow);
-            }
-        }
-    }
-    one("FU", &columns.fuel_used_kg);
-    for columns in together.chunks(COLUMNS_AT_ONCE) {
-        let words = folded_together(columns);
-        for ((name, _), words) in columns.iter().zip(words) {
-            each(name, words);
-        }
-    }
-    for (column, values) in columns.optional.iter() {
-        let values = values.iter().map(|value| value.unwrap_or(f64::NAN));
-        each(&column.name(), folded(values));
-    }
-}
-
-/// 128 bits that depend on every bit of every value and on their order: two sums, one multiplied by an odd number and
-/// rotated at each step, so that no exchange of values leaves both. Against accident, not against intent.
-fn folded(values: impl Iterator<Item = f64>) -> [u64; 2] {
-    values.fold([0; 2], with)
-}
-
-/// The same of a few columns; one that is shorter than the others by itself.
-fn folded_together(columns: &[(&str, &[f64])]) -> [[u64; 2]; COLUMNS_AT_ONCE] {
-    let mut words = [[0; 2]; COLUMNS_AT_ONCE];
-    let [(_, a), (_, b), (_, c)] = columns else {
-        for (words, (_, values)) in words.iter_mut().zip(columns) {
-            *words = folded(values.iter().copied());
-        }
-        return words;
-    };
-    let rows = a.len().min(b.len()).min(c.len());
-    for ((a, b), c) in a.iter().zip(*b).zip(*c) {
-        words = [with(words[0], *a), with(words[1], *b), with(words[2], *c)];
-    }
-    for (words, (_, values)) in words.iter_mut().zip(columns) {
-        *words = values[rows..].iter().copied().fold(*words, with);
-    }
-    words
-}
-
-/// Columns whose sums are made side by side: as many as the registers of a processor hold.
-const COLUMNS_AT_ONCE: usize = 3;
-
-fn with(words: [u64; 2], value: f64) -> [u64; 2] {
-    // The golden ratio and the square root of three, as odd 64-bit fractions.
-    const FACTORS: [u64; 2] = [0x9e37_79b9_7f4a_7c15, 0xbb67_ae85_84ca_a73b];
-    let bits = value.to_bits();
-    [
-        (words[0] ^ bits).wrapping_mul(FACTORS[0]).rotate_left(29),
-        words[1].wrapping_mul(FACTORS[1]).wrapping_add(bits ^ (bits >> 31)),
-    ]
 }

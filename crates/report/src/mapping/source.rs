@@ -128,26 +128,27 @@ impl Mapping {
         mut give: impl FnMut(Parsed),
     ) -> Result<Vec<flight::Finding>, Refusal> {
         let mut stream = source.begin(self, file_name)?;
+        let converter = stream.converter();
         loop {
             let piece = match source.next_piece(&mut stream) {
                 Ok(Some(piece)) => piece,
                 Ok(None) => break,
                 Err(refusal) => {
                     for flight in stream.stop() {
-                        stream.count(stream.report(flight))?.into_iter().for_each(&mut give);
+                        stream.count(converter.report(flight))?.into_iter().for_each(&mut give);
                     }
                     return Err(refusal);
                 }
             };
-            let rows = stream.rows(piece);
+            let rows = converter.rows(piece);
             let (flights, added) = stream.add(&rows);
             for flight in flights {
-                stream.count(stream.report(flight))?.into_iter().for_each(&mut give);
+                stream.count(converter.report(flight))?.into_iter().for_each(&mut give);
             }
             added?;
         }
         for flight in stream.finish() {
-            stream.count(stream.report(flight))?.into_iter().for_each(&mut give);
+            stream.count(converter.report(flight))?.into_iter().for_each(&mut give);
         }
         stream.end()
     }

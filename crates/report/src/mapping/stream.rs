@@ -6,10 +6,11 @@ use std::sync::Arc;
 use flight::column::Column;
 use flight::{Finding, Severity};
 
+use super::Mapping;
+use super::converter::Converter;
 use super::file::BadRows;
 use super::pieces::{Content, Piece, Pieces};
 use super::table::{Assembly, Layout, Recording, Rows};
-use super::{Mapping, derive, parts};
 use crate::Parsed;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
@@ -17,7 +18,7 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 /// time), and added in their order, which gives the flights that have ended.
 #[derive(Debug)]
 pub struct Stream {
-    layout: Layout,
+    layout: Arc<Layout>,
     /// What follows the line of names in the first piece.
     first: Option<Piece>,
     assembly: Assembly,
@@ -26,7 +27,7 @@ pub struct Stream {
 
 /// The rows of a flight.
 #[derive(Debug)]
-pub struct MappedFlight(Recording);
+pub struct MappedFlight(pub(super) Recording);
 
 /// Rows of a flight that are means over stable frames.
 #[derive(Debug)]
@@ -50,6 +51,8 @@ pub enum MappedReport {
     WithoutCruise {
         /// Its name.
         flight: String,
+        /// Its rows.
+        rows: usize,
         /// Duration of its longest level part, s.
         longest_s: f64,
     },
@@ -92,7 +95,7 @@ impl Stream {
         let text = Arc::new(text[below.byte..].to_owned());
         let content = Content::Text(text);
         let first = Some(Piece { content, first_line: below.line, ..Piece::default() });
-        Ok(Self { layout, first, assembly, tally: Tally::default() })
+        Ok(Self { layout: Arc::new(layout), first, assembly, tally: Tally::default() })
     }
 
     /// Begins to read a table whose columns have these names; its rows come as [`Batch`](super::Batch)es, made into
@@ -107,7 +110,7 @@ impl Stream {
     ) -> Result<Self, Refusal> {
         let layout = Layout::of_table(&mapping.comma_separated().file, names, file_name)?;
         let assembly = Assembly::new(&Piece::default());
-        Ok(Self { layout, first: None, assembly, tally: Tally::default() })
+        Ok(Self { layout: Arc::new(layout), first: None, assembly, tally: Tally::default() })
     }
 
     /// The places of the columns that are read, in increasing order.
@@ -130,10 +133,10 @@ impl Stream {
         }
     }
 
-    /// Reads the rows of a piece.
+    /// What reads its pieces and makes the reports of its flights.
     #[must_use]
-    pub fn rows(&self, piece: Piece) -> Rows {
-        self.layout.rows(piece)
+    pub fn converter(&self) -> Converter {
+        Converter { layout: Arc::clone(&self.layout) }
     }
 
     /// Adds the rows of the next piece; gives the flights that have ended and, where the mapping refuses bad rows, the
@@ -159,33 +162,13 @@ impl Stream {
         self.assembly.take_ended().into_iter().map(MappedFlight).collect()
     }
 
-    /// The report of a flight.
-    #[must_use]
-    pub fn report(&self, MappedFlight(mut recording): MappedFlight) -> MappedReport {
-        let plan = &self.layout.plan;
-        recording.settle(plan);
-        let flight = recording.flight().to_owned();
-        let (parts, longest_s) = parts(plan, &recording);
-        if parts.is_empty() {
-            return MappedReport::WithoutCruise { flight, longest_s };
-        }
-        match derive::report(&self.layout, &recording, &parts) {
-            Ok((report, None)) => MappedReport::Report(Box::new(report)),
-            Ok((parsed, Some(scatter))) => {
-                let averaged_over_s = plan.points.as_ref().map_or(0.0, |plan| plan.averaged_over_s);
-                MappedReport::Points(Box::new(MappedPoints { parsed, averaged_over_s, scatter }))
-            }
-            Err(refusal) => MappedReport::Refused { flight, refusal: Box::new(refusal) },
-        }
-    }
-
     /// Of a flight that gave no report: its name, and why, as the recording would be refused for it had it no other flight.
     #[must_use]
     pub fn dropped(&self, report: &MappedReport) -> Option<(String, Refusal)> {
         match report {
             MappedReport::Report(_) | MappedReport::Points(_) => None,
-            MappedReport::WithoutCruise { flight, longest_s } => {
-                let refusal = self.refuse_without_level_part(*longest_s);
+            MappedReport::WithoutCruise { flight, rows, longest_s } => {
+                let refusal = self.refuse_without_level_part(*rows, *longest_s);
                 Some((flight.clone(), refusal))
             }
             MappedReport::Refused { flight, refusal } => {
@@ -215,7 +198,7 @@ impl Stream {
                 let kind = RefusalKind::PointsForSamples;
                 return Err(Refusal { line, column: 1, found, kind });
             }
-            MappedReport::WithoutCruise { flight, longest_s } => {
+            MappedReport::WithoutCruise { flight, longest_s, .. } => {
                 self.tally.longest_s = self.tally.longest_s.max(longest_s);
                 self.tally.without_cruise.push(flight);
             }
@@ -240,7 +223,9 @@ impl Stream {
             return Err(
                 match self.assembly.most_are_bad().or_else(|| self.tally.first_refusal.clone()) {
                     Some(refusal) => refusal,
-                    None => self.refuse_without_level_part(self.tally.longest_s),
+                    None => {
+                        self.refuse_without_level_part(self.assembly.longest, self.tally.longest_s)
+                    }
                 },
             );
         }
@@ -259,12 +244,9 @@ impl Stream {
         Ok(findings)
     }
 
-    fn refuse_without_level_part(&self, longest_s: f64) -> Refusal {
+    fn refuse_without_level_part(&self, rows: usize, longest_s: f64) -> Refusal {
         match &self.layout.plan.cruise {
-            None => {
-                let found = Found::Rows(self.assembly.longest);
-                self.assembly.refuse_end(found, RefusalKind::TooFewRows)
-            }
+            None => self.assembly.refuse_end(Found::Rows(rows), RefusalKind::TooFewRows),
             Some(criteria) => self.assembly.refuse_end(
                 Found::Number { value: longest_s, unit: "s of level flight" },
                 RefusalKind::NoLevelPart {

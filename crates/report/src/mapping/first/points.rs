@@ -42,12 +42,13 @@ pub(super) fn are_far_apart(mapping: &str, text: &str) -> Option<bool> {
 fn each_flight(mapping: &str, text: &str, mut read: impl FnMut(MappedReport)) -> Option<()> {
     let mut source = Source::text(text.as_bytes()).ok()?;
     let mut stream = source.begin(&Mapping::from_ron(mapping).ok()?, Some("F")).ok()?;
+    let converter = stream.converter();
     while let Some(piece) = source.next_piece(&mut stream).ok()? {
-        let rows = stream.rows(piece);
+        let rows = converter.rows(piece);
         let (flights, _) = stream.add(&rows);
-        flights.into_iter().map(|flight| stream.report(flight)).for_each(&mut read);
+        flights.into_iter().map(|flight| converter.report(flight)).for_each(&mut read);
     }
-    stream.finish().into_iter().map(|flight| stream.report(flight)).for_each(&mut read);
+    stream.finish().into_iter().map(|flight| converter.report(flight)).for_each(&mut read);
     Some(())
 }
 

@@ -46,12 +46,12 @@ fn read(mapping: &str, text: &str, limits: Limits) -> Result<Vec<Parsed>, Refusa
     stream.assembly.limit(limits);
     let (mut flights, mut refusal) = (Vec::new(), None);
     while let Some(piece) = stream.next_piece(&mut pieces)? {
-        let (ended, added) = stream.add(&stream.rows(piece));
+        let (ended, added) = stream.add(&stream.converter().rows(piece));
         flights.extend(ended);
         refusal = refusal.or(added.err());
     }
     flights.extend(stream.finish());
-    let reports = flights.into_iter().map(|flight| match stream.report(flight) {
+    let reports = flights.into_iter().map(|flight| match stream.converter().report(flight) {
         MappedReport::Report(parsed) => *parsed,
         other => panic!("{other:?}"),
     });
