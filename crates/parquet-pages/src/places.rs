@@ -1,5 +1,5 @@
-//! Places in a dictionary: runs of one place, and places packed bit by bit (`Encodings.md`, "Dictionary Encoding" and "Run Length
-//! Encoding / Bit-Packing Hybrid").
+//! Places in a dictionary: runs of one place, and places packed bit by bit (the format's specification, "Dictionary Encoding" and
+//! "Run Length Encoding / Bit-Packing Hybrid").
 //!
 //! Millions of values come this way. Packed places are taken 32 at a time, by a function for each of the widths that columns of
 //! measured values have, and looked up in a table that has an entry for whatever 16 bits are, so that none is looked for in vain.
@@ -102,7 +102,7 @@ impl<T: Copy + Default> Dictionary<T> {
     ) -> Result<(), Damage> {
         let mut place = range.start;
         // Eight places end with a byte.
-        while place < range.end && place % 8 != 0 {
+        while place < range.end && !place.is_multiple_of(8) {
             values.push(self.value(one(width, packed, place)?)?);
             place += 1;
         }
@@ -242,6 +242,7 @@ fn unpacker(width: u32) -> Option<Unpack> {
     })
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "a place of a width up to 16 bits")]
 fn unpack<const WIDTH: usize>(packed: &[u8], places: &mut [u16; BLOCK]) {
     let mut words = [0_u32; WIDTH];
     let (fours, _) = packed.as_chunks::<4>();
@@ -266,7 +267,7 @@ mod tests {
 
     use super::*;
 
-    /// By hand, of the specification's example: 0 to 7 in three bits each are the bytes 0x88 0xc6 0xfa; before them 100 times 4.
+    /// By hand, of the format's example: 0 to 7 in three bits each are the bytes 0x88 0xc6 0xfa; before them 100 times 4.
     #[test]
     fn runs_by_hand() {
         let page = [3, 200, 1, 4, 3, 0x88, 0xc6, 0xfa];
@@ -284,7 +285,7 @@ mod tests {
         assert_eq!(refused, Err(Damage::PlaceUnknown { length: 7 }));
     }
 
-    /// Places bit by bit, as the specification has them: the lowest bit first.
+    /// Places bit by bit, as the format has them: the lowest bit first.
     fn packed(width: u32, places: &[u32]) -> Vec<u8> {
         let bits: Vec<bool> = places
             .iter()

@@ -78,7 +78,7 @@ pub fn without_controls_as(
     let acts = |letter: char| is_obeyed(letter) && !stays(letter);
     let mut plain = String::new();
     let mut rest = text;
-    while let Some((at, letter)) = first(rest, &acts) {
+    while let Some((at, letter)) = first(rest, acts) {
         plain.push_str(&rest[..at]);
         plain.push_str(&write(u32::from(letter)));
         rest = &rest[at + letter.len_utf8()..];

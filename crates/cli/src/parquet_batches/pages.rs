@@ -73,11 +73,11 @@ impl Pages {
         let (Some((levels, values)), Some(stated)) =
             (self.packed.split_at_checked(levels), header.unpacked_bytes.checked_sub(levels))
         else {
-            return Err(refused(Damage::EndsEarly));
+            return Err(refused(&Damage::EndsEarly));
         };
         page.resize(page.len().max(levels.len()), 0);
         page[..levels.len()].copy_from_slice(levels);
-        unpack(codec, values, stated, page, levels.len()).map_err(refused)?;
+        unpack(codec, values, stated, page, levels.len()).map_err(|damage| refused(&damage))?;
         Ok(Some(header.kind))
     }
 
@@ -95,7 +95,7 @@ impl Pages {
             if let Some((header, length)) = header(&self.head) {
                 let length = length as u64;
                 if length.saturating_add(header.packed_bytes as u64) > self.left {
-                    return Err(refused(Damage::EndsEarly));
+                    return Err(refused(&Damage::EndsEarly));
                 }
                 self.met = Some((header, length));
                 return Ok(self.met);
@@ -160,7 +160,7 @@ impl Iterator for Pages {
 }
 
 /// What is wrong with a page, as an error of the decoder.
-pub(super) fn refused(damage: Damage) -> ParquetError {
+pub(super) fn refused(damage: &Damage) -> ParquetError {
     ParquetError::General(damage.to_string())
 }
 

@@ -44,11 +44,12 @@ impl Present {
         let mut values = self.column.values(rows);
         let mut missing = rows;
         while missing > 0 {
-            missing -= self.column.append(missing, &mut values).map_err(refused)?;
+            missing -=
+                self.column.append(missing, &mut values).map_err(|damage| refused(&damage))?;
             if missing > 0 {
                 let kind = self.pages.next(self.column.page())?;
-                let kind = kind.ok_or_else(|| refused(Damage::EndsEarly))?;
-                self.column.begin(kind).map_err(refused)?;
+                let kind = kind.ok_or_else(|| refused(&Damage::EndsEarly))?;
+                self.column.begin(kind).map_err(|damage| refused(&damage))?;
             }
         }
         Ok(match values {
