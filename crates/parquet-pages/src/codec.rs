@@ -204,7 +204,7 @@ mod tests {
 
     fn brotli() -> Vec<u8> {
         // Bits, the lowest first: window 0; not last 0; four nibbles 00; length 40 in 16 bits; not packed 1; to the byte's end.
-        let head: u32 = ((TEXT.len() as u32 - 1) << 4) | (1 << 20);
+        let head: u32 = ((u32::try_from(TEXT.len()).unwrap() - 1) << 4) | (1 << 20);
         let mut bytes = head.to_le_bytes()[..3].to_vec();
         bytes.extend(TEXT);
         bytes.push(0x03);

@@ -1,4 +1,5 @@
 //! What is read of a recording does not depend on who does the work, and in which order.
+#![expect(clippy::unwrap_used, reason = "a test")]
 
 use std::fmt::Write;
 use std::path::Path;
