@@ -11,6 +11,9 @@ use crate::levels::number;
 const BLOCK: usize = 32;
 /// Entries of the table of a dictionary: one for each number of 16 bits.
 const ENTRIES: usize = 1 << 16;
+/// Of a short one, which most columns have: one for each number of 12 bits.
+const FEW: usize = 1 << 12;
+const BITS_OF_FEW: u32 = FEW.ilog2();
 
 /// How far the places of a page have been read.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +36,7 @@ enum Run {
 /// The values that places stand for.
 #[derive(Clone, Debug)]
 pub(crate) struct Dictionary<T> {
-    /// One for each number of 16 bits at least; those behind the dictionary's length are none.
+    /// One for each number of 12 bits at least, or of 16; those behind the dictionary's length are none.
     table: Vec<T>,
     length: usize,
 }
@@ -42,7 +45,8 @@ impl<T: Copy + Default> Dictionary<T> {
     /// Of these values.
     pub(crate) fn new(mut values: Vec<T>) -> Self {
         let length = values.len();
-        values.resize(length.max(ENTRIES), T::default());
+        let entries = if length <= FEW { FEW } else { ENTRIES };
+        values.resize(length.max(entries), T::default());
         Self { table: values, length }
     }
 
@@ -106,28 +110,47 @@ impl<T: Copy + Default> Dictionary<T> {
             values.push(self.value(one(width, packed, place)?)?);
             place += 1;
         }
-        if let (Some(unpack), Some(table)) = (unpacker(width), self.table.first_chunk::<ENTRIES>())
-        {
-            let bytes = width as usize * BLOCK / 8;
-            let blocks = (range.end - place) / BLOCK;
-            let from = width as usize * (place / 8);
-            let packed = packed.get(from..from + blocks * bytes).ok_or(Damage::EndsEarly)?;
-            let mut places = [0; BLOCK];
-            let mut farthest = 0;
-            for block in packed.chunks_exact(bytes.max(1)) {
-                unpack(block, &mut places);
-                farthest = places.iter().fold(farthest, |most: u16, place| most.max(*place));
-                values.extend_from_slice(&places.map(|place| table[usize::from(place)]));
-            }
-            if blocks > 0 {
-                self.value(farthest.into())?;
-            }
-            place += blocks * BLOCK;
-        }
+        let blocks = (range.end - place) / BLOCK;
+        let places = (packed, place, blocks);
+        let looked_up = if width <= BITS_OF_FEW {
+            self.append_blocks::<FEW>(width, places, values)?
+        } else {
+            self.append_blocks::<ENTRIES>(width, places, values)?
+        };
+        place += looked_up * BLOCK;
         for place in place..range.end {
             values.push(self.value(one(width, packed, place)?)?);
         }
         Ok(())
+    }
+
+    /// Adds the values of whole blocks of packed places from one of them on, which begins a byte; gives the number of blocks: none
+    /// where the table is too short for a place of this width, or the width is not one of a table.
+    fn append_blocks<const TABLE: usize>(
+        &self,
+        width: u32,
+        (packed, place, blocks): (&[u8], usize, usize),
+        values: &mut Vec<T>,
+    ) -> Result<usize, Damage> {
+        let (Some(unpack), Some(table)) = (unpacker(width), self.table.first_chunk::<TABLE>())
+        else {
+            return Ok(0);
+        };
+        let bytes = width as usize * BLOCK / 8;
+        let from = width as usize * (place / 8);
+        let packed = packed.get(from..from + blocks * bytes).ok_or(Damage::EndsEarly)?;
+        let mut places = [0; BLOCK];
+        let mut farthest = 0;
+        for block in packed.chunks_exact(bytes.max(1)) {
+            unpack(block, &mut places);
+            farthest = places.iter().fold(farthest, |most: u16, place| most.max(*place));
+            // The mask changes nothing: it tells the compiler that the table has the entry.
+            values.extend_from_slice(&places.map(|place| table[usize::from(place) & (TABLE - 1)]));
+        }
+        if blocks > 0 {
+            self.value(farthest.into())?;
+        }
+        Ok(blocks)
     }
 }
 
