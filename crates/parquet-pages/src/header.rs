@@ -1,5 +1,7 @@
 //! The header of a page.
 
+use crate::compact::Compact;
+
 /// What a page is, and how long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Header {
@@ -61,7 +63,7 @@ const DEEPEST: usize = 16;
 /// The header at the beginning of these bytes, and its length; `None` where there is none, or none that ends within them.
 #[must_use]
 pub fn header(bytes: &[u8]) -> Option<(Header, usize)> {
-    let mut rest = Rest(bytes);
+    let mut rest = Compact(bytes);
     let (mut kind, mut unpacked, mut packed) = (None, None, None);
     let (mut data, mut dictionary, mut data_v2) = (None, None, None);
     rest.structure(0, &mut |rest, field, of_type| {
@@ -72,7 +74,7 @@ pub fn header(bytes: &[u8]) -> Option<(Header, usize)> {
             5 => data = Some(rest.counts(of_type)?),
             7 => dictionary = Some(rest.counts(of_type)?),
             8 => data_v2 = Some(rest.counts(of_type)?),
-            _ => rest.skip(of_type, 0)?,
+            _ => rest.skip_value(of_type, 0)?,
         }
         Some(())
     })?;
@@ -122,31 +124,19 @@ struct Fields {
     truth: Option<bool>,
 }
 
-/// What is left of the bytes; `None` where they do not go on as they have to.
-struct Rest<'b>(&'b [u8]);
-
 /// Takes the value of a field: its number, and its type.
-type Each<'a, 'b> = dyn FnMut(&mut Rest<'b>, i64, u8) -> Option<()> + 'a;
+type Each<'a, 'b> = dyn FnMut(&mut Compact<'b>, i64, u8) -> Option<()> + 'a;
 
-impl<'b> Rest<'b> {
+impl<'b> Compact<'b> {
     fn structure(&mut self, depth: usize, each: &mut Each<'_, 'b>) -> Option<()> {
         if depth > DEEPEST {
             return None;
         }
         let mut field = 0;
         loop {
-            let head = self.byte()?;
-            if head == 0 {
-                return Some(());
-            }
-            field = match head >> 4 {
-                0 => self.signed()?,
-                more => field + i64::from(more),
-            };
-            if !(1..=i64::from(i16::MAX)).contains(&field) {
-                return None;
-            }
-            each(self, field, head & 0x0f)?;
+            let Some((next, of_type)) = self.field(field)? else { return Some(()) };
+            field = next;
+            each(self, field, of_type)?;
         }
     }
 
@@ -161,7 +151,7 @@ impl<'b> Rest<'b> {
             match (of_type, number) {
                 (TRUE | FALSE, _) => fields.truth = Some(of_type == TRUE),
                 (NUMBER, Some(number)) => *number = Some(rest.count(of_type)?),
-                _ => rest.skip(of_type, 1)?,
+                _ => rest.skip_value(of_type, 1)?,
             }
             Some(())
         })?;
@@ -176,52 +166,21 @@ impl<'b> Rest<'b> {
         u32::try_from(self.signed()?).ok().filter(|count| i32::try_from(*count).is_ok())
     }
 
-    /// Zigzag: 0, −1, 1, −2, 2 …
-    fn signed(&mut self) -> Option<i64> {
-        let number = self.number()?;
-        i64::try_from(number >> 1).ok().map(|half| half ^ -i64::from(number & 1 == 1))
-    }
-
-    fn skip(&mut self, of_type: u8, depth: usize) -> Option<()> {
+    fn skip_value(&mut self, of_type: u8, depth: usize) -> Option<()> {
         match of_type {
             TRUE | FALSE => Some(()),
-            3 => self.bytes(1),
+            3 => self.skip(1),
             4..=6 => self.number().map(drop),
-            7 => self.bytes(8),
+            7 => self.skip(8),
             8 => {
                 let length = self.number()?;
-                self.bytes(usize::try_from(length).ok()?)
+                self.skip(usize::try_from(length).ok()?)
             }
-            STRUCTURE => {
-                self.structure(depth + 1, &mut |rest, _, of_type| rest.skip(of_type, depth + 1))
-            }
+            STRUCTURE => self
+                .structure(depth + 1, &mut |rest, _, of_type| rest.skip_value(of_type, depth + 1)),
             // No field of a page's header is a list or a map.
             _ => None,
         }
-    }
-
-    /// Seven bits a byte, the lowest first.
-    fn number(&mut self) -> Option<u64> {
-        let mut number = 0;
-        for place in 0..10 {
-            let byte = self.byte()?;
-            number |= u64::from(byte & 0x7f).checked_shl(7 * place)?;
-            if byte < 0x80 {
-                return Some(number);
-            }
-        }
-        None
-    }
-
-    fn byte(&mut self) -> Option<u8> {
-        let (first, rest) = self.0.split_first()?;
-        self.0 = rest;
-        Some(*first)
-    }
-
-    fn bytes(&mut self, count: usize) -> Option<()> {
-        self.0 = self.0.get(count..)?;
-        Some(())
     }
 }
 
@@ -272,7 +231,8 @@ mod tests {
             bytes[at] = byte;
             header(&bytes)
         };
-        // A length below zero; one that is a truth value; a page without its own structure; a kind that there is not.
+        // A field of the type that ends a structure; a length below zero; one that is a truth value; a page without its own structure; a kind that there is not.
+        assert_eq!(with(2, 0x10), None);
         assert_eq!(with(5, 0x13), None);
         assert_eq!(with(4, 0x11), None);
         assert_eq!(with(1, 0x00), None);

@@ -6,12 +6,14 @@
 
 mod codec;
 mod column;
+mod compact;
 mod header;
 mod levels;
 mod places;
 
 pub use codec::{Codec, MOST_PAGE_BYTES, unpack};
 pub use column::{Column, Form, Values};
+pub use compact::Compact;
 pub use header::{Header, Kind, header};
 use levels::without_levels;
 

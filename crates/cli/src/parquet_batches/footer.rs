@@ -9,6 +9,7 @@ mod fields;
 
 use parquet::errors::ParquetError;
 use parquet::file::reader::{ChunkReader, Length};
+use parquet_pages::Compact;
 
 use self::fields::{FILE, Kind, Structure};
 use super::shared_file::SharedFile;
@@ -27,7 +28,7 @@ pub(super) fn check(file: &SharedFile) -> Result<(), ParquetError> {
     let Some(start) = end.checked_sub(length) else { return Ok(()) };
     let Ok(count) = usize::try_from(length) else { return Ok(()) };
     let footer = file.get_bytes(start, count)?;
-    match (Walk { rest: &footer }).structure(FILE, 0) {
+    match (Walk { rest: Compact(&footer) }).structure(FILE, 0) {
         Some(()) => Ok(()),
         None => Err(ParquetError::General("its footer is damaged".to_owned())),
     }
@@ -35,7 +36,7 @@ pub(super) fn check(file: &SharedFile) -> Result<(), ParquetError> {
 
 /// What is left of a footer; `None` where it does not go on as it has to.
 struct Walk<'f> {
-    rest: &'f [u8],
+    rest: Compact<'f>,
 }
 
 impl Walk<'_> {
@@ -45,21 +46,10 @@ impl Walk<'_> {
         }
         let mut field = 0;
         loop {
-            let head = self.byte()?;
-            if head == 0 {
-                return Some(());
-            }
-            field = match head >> 4 {
-                // Zigzag: 0, −1, 1, −2, 2 …
-                0 => i64::try_from(self.number()?).ok().map(|n| (n >> 1) ^ -(n & 1))?,
-                more => field + i64::from(more),
-            };
-            // The decoder cuts a number to sixteen bits.
-            if !(1..=i64::from(i16::MAX)).contains(&field) {
-                return None;
-            }
+            let Some((next, of_type)) = self.rest.field(field)? else { return Some(()) };
+            field = next;
             let kind = known.iter().find(|(id, _)| *id == field).map(|(_, kind)| kind);
-            self.field(head & 0x0f, kind, depth)?;
+            self.field(of_type, kind, depth)?;
         }
     }
 
@@ -75,12 +65,12 @@ impl Walk<'_> {
     /// A value of a type, as an element of a list has it.
     fn value(&mut self, of_type: u8, kind: Option<&Kind>, depth: usize) -> Option<()> {
         match (of_type, kind) {
-            (3, None | Some(Kind::Byte)) => self.skip(1),
-            (4..=6, None | Some(Kind::Number)) => self.number().map(|_| ()),
-            (7, None | Some(Kind::Double)) => self.skip(8),
+            (3, None | Some(Kind::Byte)) => self.rest.skip(1),
+            (4..=6, None | Some(Kind::Number)) => self.rest.number().map(|_| ()),
+            (7, None | Some(Kind::Double)) => self.rest.skip(8),
             (8, None | Some(Kind::Bytes)) => {
-                let length = self.number()?;
-                self.skip(usize::try_from(length).ok()?)
+                let length = self.rest.number()?;
+                self.rest.skip(usize::try_from(length).ok()?)
             }
             (9 | 10, None) => self.list(None, depth),
             (9, Some(Kind::List(of))) => self.list(Some(of), depth),
@@ -96,39 +86,15 @@ impl Walk<'_> {
         if depth > DEEPEST {
             return None;
         }
-        let head = self.byte()?;
+        let head = self.rest.byte()?;
         let count = match head >> 4 {
-            15 => usize::try_from(self.number()?).ok()?,
+            15 => usize::try_from(self.rest.number()?).ok()?,
             count => usize::from(count),
         };
-        if count > self.rest.len() {
+        if count > self.rest.0.len() {
             return None;
         }
         (0..count).try_for_each(|_| self.value(head & 0x0f, kind, depth + 1))
-    }
-
-    /// Seven bits a byte, the lowest first.
-    fn number(&mut self) -> Option<u64> {
-        let mut number = 0;
-        for place in 0..10 {
-            let byte = self.byte()?;
-            number |= u64::from(byte & 0x7f).checked_shl(7 * place)?;
-            if byte < 0x80 {
-                return Some(number);
-            }
-        }
-        None
-    }
-
-    fn byte(&mut self) -> Option<u8> {
-        let (first, rest) = self.rest.split_first()?;
-        self.rest = rest;
-        Some(*first)
-    }
-
-    fn skip(&mut self, count: usize) -> Option<()> {
-        self.rest = self.rest.get(count..)?;
-        Some(())
     }
 }
 
@@ -137,7 +103,7 @@ mod tests {
     use super::*;
 
     fn walked(footer: &[u8]) -> bool {
-        (Walk { rest: footer }).structure(FILE, 0).is_some()
+        (Walk { rest: Compact(footer) }).structure(FILE, 0).is_some()
     }
 
     /// By the compact protocol: field 1 as a number (0x15), 3, and the end; a list of three numbers; a text; a structure within.

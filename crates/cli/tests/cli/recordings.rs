@@ -14,11 +14,11 @@ fn mapping_of(recording: &Path, mapping: &Path) {
     made.expect(0).says("it reads 1 flight with");
 }
 
-/// The same for one flight that is not called as its file.
-fn mapping_of_flight(recording: &Path, mapping: &Path) {
+/// The same where the flight is not called as its file.
+fn mapping_of_flight(recording: &Path, mapping: &Path, flight: &str) {
     mapping_of(recording, mapping);
     let written = std::fs::read_to_string(mapping).unwrap();
-    std::fs::write(mapping, written.replace("FileName", "Text(\"F\")")).unwrap();
+    std::fs::write(mapping, written.replace("FileName", flight)).unwrap();
 }
 
 /// Segments of what these arguments read.
@@ -133,7 +133,7 @@ fn arrow_is_read_as_the_text_it_was_made_of() {
     let folder = tempfile::tempdir().unwrap();
     let mapping = folder.path().join("M.ron");
     let text = layout("01_named_units.csv");
-    mapping_of_flight(&text, &mapping);
+    mapping_of_flight(&text, &mapping, "Text(\"F\")");
     let read =
         |path: &Path| segments(&["--mapping".as_ref(), mapping.as_os_str(), path.as_os_str()]);
     let expected = read(&text);
@@ -173,7 +173,7 @@ fn a_packed_recording_is_read_as_it_is_unpacked() {
     let folder = tempfile::tempdir().unwrap();
     let mapping = folder.path().join("M.ron");
     let text = layout("01_named_units.csv");
-    mapping_of_flight(&text, &mapping);
+    mapping_of_flight(&text, &mapping, "Text(\"F\")");
     let read =
         |path: &Path| segments(&["--mapping".as_ref(), mapping.as_os_str(), path.as_os_str()]);
     let expected = read(&text);
@@ -192,9 +192,7 @@ fn flights_that_alternate_give_the_segments_of_the_sorted_recording() {
     let folder = tempfile::tempdir().unwrap();
     let mapping = folder.path().join("M.ron");
     let text = layout("01_named_units.csv");
-    mapping_of(&text, &mapping);
-    let written = std::fs::read_to_string(&mapping).unwrap();
-    std::fs::write(&mapping, written.replace("FileName", "Column(\"leg\")")).unwrap();
+    mapping_of_flight(&text, &mapping, "Column(\"leg\")");
     let recorded = std::fs::read_to_string(&text).unwrap();
     let (names, rows) = recorded.split_once('\n').unwrap();
     let of = |tail: &str, leg: &str| -> Vec<String> {
