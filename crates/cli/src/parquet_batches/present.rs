@@ -55,7 +55,6 @@ impl Present {
         Ok(match values {
             Values::Numbers(numbers) => BatchColumn::Numbers(numbers),
             Values::Nanoseconds(times) => {
-                let times = times.into_iter().map(Some).collect();
                 if self.is_local {
                     BatchColumn::LocalTimes(times)
                 } else {

@@ -46,7 +46,7 @@ fn read(mapping: &str, text: &str, limits: Limits) -> Result<Vec<Parsed>, Refusa
     stream.assembly.limit(limits);
     let (mut flights, mut refusal) = (Vec::new(), None);
     while let Some(piece) = stream.next_piece(&mut pieces)? {
-        let (ended, added) = stream.add(&stream.converter().rows(piece));
+        let (ended, added) = stream.add(stream.converter().rows(piece));
         flights.extend(ended);
         refusal = refusal.or(added.err());
     }

@@ -13,6 +13,7 @@ use super::rows::{Event, Rows, Times};
 use super::{Layout, Recording, Text};
 use crate::decode::MAXIMUM_TEXT_BYTES;
 use crate::mapping::file::BadRows;
+use crate::mapping::numbers::Block;
 use crate::mapping::pieces::Piece;
 use crate::mapping::plan::TimeForm;
 use crate::refusal::{Found, Refusal, RefusalKind};
@@ -26,6 +27,8 @@ pub(in crate::mapping) struct Assembly {
     open: Open,
     /// `None` before the first change of flight.
     clock: Option<Clock>,
+    /// The numbers of the piece that is being added.
+    numbers: Arc<Block>,
     /// Flights that have ended.
     ended: Vec<Recording>,
     /// Number of the last line, and its length in characters.
@@ -54,8 +57,13 @@ impl Assembly {
     ///
     /// # Errors
     /// The first row that is bad, where the mapping refuses such rows.
-    pub(in crate::mapping) fn add(&mut self, layout: &Layout, rows: &Rows) -> Result<(), Refusal> {
-        let added = self.add_piece(layout, rows);
+    pub(in crate::mapping) fn add(
+        &mut self,
+        layout: &Layout,
+        mut rows: Rows,
+    ) -> Result<(), Refusal> {
+        self.numbers = Arc::new(core::mem::take(&mut rows.block));
+        let added = self.add_piece(layout, &rows);
         if added.is_err() {
             self.stop();
         }
@@ -75,7 +83,7 @@ impl Assembly {
         if !rows.piece.is_empty() {
             self.end = rows.piece.end();
         } else if let Some(line) = rows.lines.last() {
-            self.end = (*line, 0);
+            self.end = (line, 0);
         }
         if let Some(current) = &mut self.current {
             current.keep(&rows.piece)?;
@@ -229,9 +237,11 @@ impl Assembly {
             return Ok(());
         }
         let longest_s = layout.plan.new_flight_after_s.unwrap_or(f64::INFINITY);
+        let numbers = Arc::clone(&self.numbers);
+        let read = (rows, &numbers);
         let recording = self.current(layout);
         if recording.extend_times(layout, &rows.times, range.clone(), longest_s) {
-            recording.extend(rows, range);
+            recording.extend(read, range);
             return Ok(());
         }
         let mut from = range.start;
@@ -241,7 +251,7 @@ impl Assembly {
             let previous_s = recording.time_s.last().copied();
             let gap_s = previous_s.map_or(0.0, |previous| time_s - previous);
             if layout.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s) {
-                recording.extend(rows, from..row);
+                recording.extend(read, from..row);
                 from = row;
                 let texts = Arc::clone(&recording.texts);
                 self.begin(layout, &texts, rows)?;
@@ -249,7 +259,7 @@ impl Assembly {
             } else if let Some(previous) = previous_s
                 && time_s <= previous
             {
-                recording.extend(rows, from..row);
+                recording.extend(read, from..row);
                 from = row + 1;
                 let refusal = not_increasing(layout, rows, row, previous);
                 self.leave_out(layout, refusal)?;
@@ -257,7 +267,7 @@ impl Assembly {
             }
             self.current(layout).time_s.push(time_s);
         }
-        self.current(layout).extend(rows, from..range.end);
+        self.current(layout).extend(read, from..range.end);
         Ok(())
     }
 }
@@ -270,7 +280,7 @@ fn refuse_coming_back(
     gone: Gone,
 ) -> Refusal {
     // A row without a time is not refused.
-    let line = row.map_or(rows.piece.first_line, |row| rows.lines[row]);
+    let line = row.map_or(rows.piece.first_line, |row| rows.lines.at(row));
     let field = layout.fields.texts.iter().rev().find_map(|(_, text)| match text {
         Text::Field(field) => Some(*field),
         Text::Constant(_) => None,
@@ -282,7 +292,7 @@ fn refuse_coming_back(
 }
 
 fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Refusal {
-    let line = rows.lines[row];
+    let line = rows.lines.at(row);
     let text = rows.piece.line(line);
     let field = layout.fields.time;
     let mut reader = super::reader(layout.form(), &text);
@@ -316,11 +326,9 @@ impl Recording {
     }
 
     /// Everything but the times of rows.
-    fn extend(&mut self, rows: &Rows, range: core::ops::Range<usize>) {
-        self.lines.extend_from_slice(&rows.lines[range.clone()]);
-        for (column, numbers) in self.numbers.iter_mut().zip(&rows.numbers) {
-            column.extend_from_slice(&numbers[range.clone()]);
-        }
+    fn extend(&mut self, (rows, numbers): (&Rows, &Arc<Block>), range: core::ops::Range<usize>) {
+        self.lines.extend(&rows.lines, range.clone());
+        self.numbers.extend(numbers, range);
     }
 
     /// Adds the times of all these rows, if each is later than the one before, by `longest_s` at most: nearly always. Else none

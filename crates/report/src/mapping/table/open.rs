@@ -290,7 +290,7 @@ impl Open {
     /// Keeps of a flight that is over what its rows are known by, should they come back.
     fn remember(&mut self, recording: &Recording, limit: FlightLimit) {
         if let (Some(span_s), Some(line)) = (recording.span_s(), recording.lines.last()) {
-            let gone = Gone { span_s, rows: recording.time_s.len(), line: *line, limit };
+            let gone = Gone { span_s, rows: recording.time_s.len(), line, limit };
             self.gone.entry(Arc::clone(&recording.texts)).or_default().push(gone);
         }
     }
@@ -316,6 +316,8 @@ impl Open {
 }
 
 fn bytes_of(recording: &Recording) -> usize {
-    let rows = recording.time_s.len() * (recording.numbers.len() + 2) * size_of::<f64>();
+    // A time and, of rows that alternate, a run of lines.
+    let each = recording.numbers.bytes_of_row() + 3 * size_of::<f64>();
+    let rows = recording.time_s.len() * each;
     FLIGHT_BYTES + rows + recording.pieces.len() * size_of::<Piece>()
 }
