@@ -154,7 +154,7 @@ fn a_table_gives_what_its_text_gives() {
 #[test]
 fn a_flight_that_begins_in_text_goes_on_in_columns() {
     let mut table = table();
-    table.instants[2] = None;
+    table.instants[2] = NO_INSTANT;
     let flags = |flags: &[&str]| BatchColumn::Numbers(flags.iter().map(|_| 0.0).collect());
     let plain = MAPPING.replace(", values: [(\"ON\", 1), (\"OFF\", 0)]", "");
     let mapping = Mapping::from_ron(&plain).unwrap();

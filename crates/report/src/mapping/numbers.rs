@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     fn block(from: usize, rows: usize) -> Arc<Block> {
-        let column = |input: usize| (from..from + rows).map(|row| (10 * row + input) as f64);
+        let column = |input: usize| (from..from + rows).map(move |row| (10 * row + input) as f64);
         Arc::new(Block::new(vec![column(0).collect(), column(1).collect()]))
     }
 

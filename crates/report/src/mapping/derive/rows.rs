@@ -166,7 +166,7 @@ impl Limits {
     /// Whether a number lies between the two limits, without a branch: what asks of many numbers compares several in one instruction.
     fn contain(&self) -> impl Fn(f64) -> bool + use<> {
         let Self { low, high, is_optional, .. } = *self;
-        move |value| (low <= value && value <= high) || (value.is_nan() && is_optional)
+        move |value| ((low <= value) & (value <= high)) | (value.is_nan() & is_optional)
     }
 
     /// Whether all of them are certainly admitted: a quick look, of which `false` means that each has to be looked at.

@@ -33,6 +33,8 @@ pub struct Batch {
 pub enum BatchColumn {
     /// Numbers, NaN where there is none.
     Numbers(Vec<f64>),
+    /// Numbers of which it is known that each is there and finite.
+    Finite(Vec<f64>),
     /// Nanoseconds since 1970 in UTC, [`NO_INSTANT`] where there is none.
     Instants(Vec<i64>),
     /// Nanoseconds since 1970 on a clock of which only the mapping says how far it is from UTC, [`NO_INSTANT`] where there is no
@@ -82,7 +84,7 @@ impl Batch {
     fn cells(&self, place: usize) -> Cells<'_> {
         match self.column(place) {
             None => Box::new(core::iter::repeat_n(String::new(), self.rows)),
-            Some(BatchColumn::Numbers(numbers)) => Box::new(
+            Some(BatchColumn::Numbers(numbers) | BatchColumn::Finite(numbers)) => Box::new(
                 numbers
                     .iter()
                     .map(|number| if number.is_nan() { String::new() } else { number.to_string() }),
@@ -173,7 +175,11 @@ impl Layout {
     ) -> Option<(Vec<bool>, Vec<(usize, Event)>, Times)> {
         let mut lacks = Vec::with_capacity(self.plan.inputs.len());
         for (input, field) in self.plan.inputs.iter().zip(&self.fields.inputs) {
-            let BatchColumn::Numbers(values) = batch.column(*field)? else { return None };
+            let values = match batch.column(*field)? {
+                BatchColumn::Numbers(values) => values.as_slice(),
+                BatchColumn::Finite(_) => &[],
+                _ => return None,
+            };
             // Counted, without a way out of the loop: nearly always none is.
             let not_finite = values.iter().map(|value| u64::from(!value.is_finite())).sum::<u64>();
             if !input.values.is_empty()
@@ -194,10 +200,13 @@ impl Layout {
         for (index, field) in inputs.iter().enumerate() {
             let column = batch.columns.iter_mut().find(|(known, _)| known == field);
             numbers.push(match column {
-                Some((_, BatchColumn::Numbers(values))) if inputs[index + 1..].contains(field) => {
-                    values.clone()
+                Some((_, BatchColumn::Numbers(values) | BatchColumn::Finite(values))) => {
+                    if inputs[index + 1..].contains(field) {
+                        values.clone()
+                    } else {
+                        core::mem::take(values)
+                    }
                 }
-                Some((_, BatchColumn::Numbers(values))) => core::mem::take(values),
                 // Every input was found to be one of numbers.
                 _ => vec![f64::NAN; batch.rows],
             });
@@ -226,7 +235,10 @@ impl Layout {
                 times.iter_mut().for_each(|time| *time -= ahead);
                 Some(Times::Nanoseconds(core::mem::take(times)))
             }
-            (TimeForm::Seconds { per_second, .. }, BatchColumn::Numbers(numbers)) => {
+            (
+                TimeForm::Seconds { per_second, .. },
+                BatchColumn::Numbers(numbers) | BatchColumn::Finite(numbers),
+            ) => {
                 let seconds: Vec<f64> = numbers.iter().map(|number| number / per_second).collect();
                 let is_near = |seconds: &f64| seconds.abs() <= FARTHEST_S;
                 seconds.iter().all(is_near).then_some(Times::Seconds(seconds))
