@@ -97,6 +97,20 @@ impl Numbers {
         self.push_own(own, before);
     }
 
+    /// Takes the last row away.
+    pub(super) fn pop(&mut self) {
+        let Some(last) = self.stretches.last_mut() else { return };
+        last.rows.end -= 1;
+        if last.is_own
+            && let Some(own) = Arc::get_mut(&mut last.block)
+        {
+            own.columns.iter_mut().for_each(|column| column.truncate(last.rows.end));
+        }
+        if last.rows.is_empty() {
+            self.stretches.pop();
+        }
+    }
+
     fn empty(&self) -> Block {
         Block { columns: vec![Vec::new(); self.inputs], lacks: vec![false; self.inputs] }
     }
@@ -194,6 +208,11 @@ mod tests {
                 let (start, end) = (share(one.min(other), rows), share(one.max(other), rows));
                 numbers.extend(&block, start..end);
                 expected.extend(&block.columns[1][start..end]);
+            }
+            if ends.0 > 0.5 && expected.pop().is_some() {
+                numbers.pop();
+                numbers.extend(&block(7, 30), 3..4);
+                expected.push(101.0);
             }
             let rows = expected.len();
             for (row, value) in expected.iter().enumerate() {

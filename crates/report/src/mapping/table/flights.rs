@@ -19,6 +19,9 @@ use crate::mapping::plan::TimeForm;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
 const HALF_A_DAY_S: f64 = 43_200.0;
+/// Where a recording goes back behind a step of more than this, it is the time before which is wrong and not those behind, s: clocks
+/// are set back by less. Our choice.
+const FAR_AHEAD_S: f64 = 600.0;
 
 /// The flights that are not yet at their end, and where the rows end.
 #[derive(Debug, Default)]
@@ -250,7 +253,13 @@ impl Assembly {
             let mut time_s = recording.seconds(layout, &rows.times, row);
             let previous_s = recording.time_s.last().copied();
             let gap_s = previous_s.map_or(0.0, |previous| time_s - previous);
-            if layout.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s) {
+            let is_gap = layout.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s);
+            // A gap behind which the next row goes back is none: its row is left out with that one.
+            let mut next_s = || {
+                let next = (row + 1 < range.end).then_some(row + 1)?;
+                Some(recording.seconds(layout, &rows.times, next))
+            };
+            if is_gap && next_s().is_none_or(|next_s| next_s > time_s) {
                 recording.extend(read, from..row);
                 from = row;
                 let texts = Arc::clone(&recording.texts);
@@ -261,9 +270,14 @@ impl Assembly {
             {
                 recording.extend(read, from..row);
                 from = row + 1;
-                let refusal = not_increasing(layout, rows, row, previous);
+                if !recording.last_is_ahead_of(time_s, layout) {
+                    let refusal = not_increasing(layout, rows, row, previous);
+                    self.leave_out(layout, refusal)?;
+                    continue;
+                }
+                from = row;
+                let refusal = recording.take_last(layout, time_s);
                 self.leave_out(layout, refusal)?;
-                continue;
             }
             self.current(layout).time_s.push(time_s);
         }
@@ -295,11 +309,15 @@ fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Re
     let line = rows.lines.at(row);
     let text = rows.piece.line(line);
     let field = layout.fields.time;
-    let mut reader = super::reader(layout.form(), &text);
-    let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
-    let found = Found::text(record.get(field).unwrap_or_default());
+    let found = Found::text(&field_of(layout, &text, field));
     let kind = RefusalKind::TimeNotIncreasing { previous, unit: "s" };
     layout.refuse_field((line, &text), field, found, kind)
+}
+
+fn field_of(layout: &Layout, line: &str, field: usize) -> String {
+    let mut reader = super::reader(layout.form(), line);
+    let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
+    record.get(field).unwrap_or_default().to_owned()
 }
 
 impl Recording {
@@ -323,6 +341,30 @@ impl Recording {
             });
         }
         Ok(())
+    }
+
+    /// Whether the last row is far ahead of the one before, and of this time, which follows that one.
+    fn last_is_ahead_of(&self, time_s: f64, layout: &Layout) -> bool {
+        // A time of day that is ahead may have passed midnight.
+        let is_of_day = matches!(layout.plan.time, TimeForm::TimeOfDay { .. });
+        match self.time_s.as_slice() {
+            [.., before, last] if !is_of_day && layout.plan.bad_rows == BadRows::LeaveRowOut => {
+                last - before > FAR_AHEAD_S && time_s > *before
+            }
+            _ => false,
+        }
+    }
+
+    /// Takes the last row away, behind which the flight goes on at a time before it.
+    fn take_last(&mut self, layout: &Layout, next_s: f64) -> Refusal {
+        let line = self.lines.last().unwrap_or_default();
+        let text = self.line(line).into_owned();
+        let found = Found::text(&field_of(layout, &text, layout.fields.time));
+        self.time_s.pop();
+        self.numbers.pop();
+        self.lines.pop();
+        let kind = RefusalKind::TimeAhead { next: next_s, unit: "s" };
+        layout.refuse_field((line, &text), layout.fields.time, found, kind)
     }
 
     /// Everything but the times of rows.

@@ -51,6 +51,12 @@ impl LineNumbers {
         self.rows.checked_sub(1).map(|row| self.at(row))
     }
 
+    /// Takes the last row away.
+    pub(super) fn pop(&mut self) {
+        self.rows = self.rows.saturating_sub(1);
+        self.runs.pop_if(|(first, _)| *first >= self.rows);
+    }
+
     /// Keeps some of the rows, as many as there are.
     pub(super) fn retain(&mut self, keep: &[bool]) {
         let mut kept = Self::default();
@@ -81,6 +87,10 @@ mod tests {
             let all = |numbers: &LineNumbers| (0..numbers.rows).map(|row| numbers.at(row)).collect::<Vec<_>>();
             prop_assert_eq!(all(&some), lines.clone());
             prop_assert_eq!(some.last(), lines.last().copied());
+            let mut fewer = some.clone();
+            fewer.pop();
+            fewer.push(1000);
+            prop_assert_eq!(all(&fewer), [&lines[..lines.len() - 1], &[1000]].concat());
             let (one, other) = (ends.0.min(lines.len()), ends.1.min(lines.len()));
             let range = one.min(other)..one.max(other);
             let mut more = LineNumbers::from_line(7, 2);

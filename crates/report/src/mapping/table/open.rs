@@ -75,6 +75,8 @@ struct Stopped {
     /// The clock when it stopped: the end of a flight without a row.
     clock_s: Option<f64>,
     may_go_on: bool,
+    /// Whether a row that is not of it has its texts: a wrong time, behind which it goes on.
+    may_come_back: bool,
 }
 
 /// A flight that was given out.
@@ -131,7 +133,8 @@ impl Open {
         } else {
             self.remember(&recording, FlightLimit::Gap { gap_s: clock.gap_s });
         }
-        let stopped = Stopped { recording, clock_s: clock.now_s(), may_go_on };
+        let clock_s = clock.now_s();
+        let stopped = Stopped { recording, clock_s, may_go_on, may_come_back: false };
         self.order.insert(self.stops, stopped);
     }
 
@@ -157,13 +160,33 @@ impl Open {
             }
             // It is over, whether or not it was given out.
             if let Some(mut stopped) = self.order.remove(&place) {
-                stopped.may_go_on = false;
+                (stopped.may_go_on, stopped.may_come_back) = (false, true);
                 let limit = FlightLimit::Gap { gap_s: arrival.clock.gap_s };
                 self.remember(&stopped.recording, limit);
                 self.order.insert(place, stopped);
             }
         }
-        self.refuse_gone(texts, arrival).map(|()| None)
+        match self.refuse_gone(texts, arrival) {
+            Ok(()) => Ok(None),
+            Err(gone) => self.come_back(texts, arrival).map(Some).ok_or(gone),
+        }
+    }
+
+    /// The flight with these texts that seemed to be over by a row with a wrong time, if it is still held and goes on with this one.
+    fn come_back(&mut self, texts: &Texts, arrival: Arrival<'_>) -> Option<Recording> {
+        let goes_on = |stopped: &Stopped| {
+            let recording = &stopped.recording;
+            let span_s = recording.span_s().filter(|_| recording.texts == *texts);
+            stopped.may_come_back
+                && span_s.is_some_and(|span_s| arrival.is_of(span_s, recording.time_s.len()))
+        };
+        let place = *self.order.iter().rev().find(|(_, stopped)| goes_on(stopped))?.0;
+        let recording = self.remove(place)?.recording;
+        if let (Some(gone), Some(line)) = (self.gone.get_mut(texts), recording.lines.last()) {
+            gone.retain(|gone| gone.line != line);
+        }
+        self.alternates = true;
+        Some(recording)
     }
 
     /// Refuses a row of a flight that was given out.
@@ -228,7 +251,7 @@ impl Open {
         let has_ended = |stopped: &Stopped| {
             let last_s = stopped.recording.span_s().map(|(_, last_s)| last_s).or(stopped.clock_s);
             let is_past = |last_s| clock.since_s(now_s, last_s) > clock.gap_s;
-            !stopped.may_go_on || last_s.is_some_and(is_past)
+            !(stopped.may_go_on || stopped.may_come_back) || last_s.is_some_and(is_past)
         };
         if is_soon {
             return;
