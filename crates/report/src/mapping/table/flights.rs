@@ -26,7 +26,7 @@ const FAR_AHEAD_S: f64 = 600.0;
 /// The flights that are not yet at their end, and where the rows end.
 #[derive(Debug, Default)]
 pub(in crate::mapping) struct Assembly {
-    current: Option<Recording>,
+    current: Option<Box<Recording>>,
     open: Open,
     /// `None` before the first change of flight.
     clock: Option<Clock>,
@@ -124,7 +124,7 @@ impl Assembly {
         self.open.give_out_all();
         self.end_given_out();
         if let Some(current) = self.current.take() {
-            self.end_flight(current);
+            self.end_flight(*current);
         }
     }
 

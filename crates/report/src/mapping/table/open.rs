@@ -71,7 +71,8 @@ pub(super) struct Open {
 
 #[derive(Debug)]
 struct Stopped {
-    recording: Recording,
+    /// Of rows that alternate, one stops with each of them: it stays where it is.
+    recording: Box<Recording>,
     /// The clock when it stopped: the end of a flight without a row.
     clock_s: Option<f64>,
     may_go_on: bool,
@@ -122,7 +123,7 @@ impl Open {
     }
 
     /// A flight stops being the current one, for good or not.
-    pub(super) fn stop(&mut self, recording: Recording, may_go_on: bool, clock: &Clock) {
+    pub(super) fn stop(&mut self, recording: Box<Recording>, may_go_on: bool, clock: &Clock) {
         self.stops += 1;
         self.numbers += bytes_of(&recording);
         if self.tails_are_told {
@@ -146,7 +147,7 @@ impl Open {
         &mut self,
         texts: &Texts,
         arrival: Arrival<'_>,
-    ) -> Result<Option<Recording>, Gone> {
+    ) -> Result<Option<Box<Recording>>, Gone> {
         if let Some(place) = self.places.remove(texts) {
             let goes_on = self.order.get(&place).is_some_and(|stopped| {
                 let recording = &stopped.recording;
@@ -173,7 +174,7 @@ impl Open {
     }
 
     /// The flight with these texts that seemed to be over by a row with a wrong time, if it is still held and goes on with this one.
-    fn come_back(&mut self, texts: &Texts, arrival: Arrival<'_>) -> Option<Recording> {
+    fn come_back(&mut self, texts: &Texts, arrival: Arrival<'_>) -> Option<Box<Recording>> {
         let goes_on = |stopped: &Stopped| {
             let recording = &stopped.recording;
             let span_s = recording.span_s().filter(|_| recording.texts == *texts);
@@ -277,7 +278,7 @@ impl Open {
             self.places.remove(&recording.texts);
             self.remember(&recording, limit);
         }
-        self.given_out.push(recording);
+        self.given_out.push(*recording);
         true
     }
 
@@ -326,7 +327,7 @@ impl Open {
 
     /// Bytes of text from the first piece on that a flight holds.
     fn held_text(&mut self, current: &Recording) -> usize {
-        let stopped = self.order.values().map(|stopped| &stopped.recording);
+        let stopped = self.order.values().map(|stopped| &*stopped.recording);
         let firsts = stopped.chain([current]).filter_map(|recording| recording.pieces.first());
         let first = firsts.map(|piece| piece.first_line).min().unwrap_or(usize::MAX);
         while let Some(piece) = self.texts.first_entry()

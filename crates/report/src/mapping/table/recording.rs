@@ -44,8 +44,8 @@ pub(in crate::mapping) struct Recording {
 }
 
 impl Recording {
-    pub(super) fn new(texts: Arc<[String; 3]>, inputs: usize) -> Self {
-        Self {
+    pub(super) fn new(texts: Arc<[String; 3]>, inputs: usize) -> Box<Self> {
+        Box::new(Self {
             texts,
             pieces: Vec::new(),
             kept_bytes: 0,
@@ -61,7 +61,7 @@ impl Recording {
             first_bad: None,
             days: 0.0,
             last_time_of_day_s: f64::NEG_INFINITY,
-        }
+        })
     }
 
     pub(super) fn is_of(&self, texts: &[String; 3]) -> bool {
