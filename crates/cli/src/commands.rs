@@ -31,6 +31,7 @@ use std::path::Path;
 
 use pipeline::distinct::distinct;
 use pipeline::monitoring::{Event, read_events};
+use pipeline::reading::Checks;
 use report::mapping::Mapping;
 
 use crate::args::ReportsArgs;
@@ -94,19 +95,23 @@ fn tell_serious(findings: &str) {
 }
 
 /// How a command reads its reports.
-fn source_of(arguments: &ReportsArgs) -> Result<Source, Failure> {
+fn source_of(arguments: &ReportsArgs, checks: Checks) -> Result<Source, Failure> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
-    Ok(Source { mapping, criteria: arguments.criteria.limits })
+    Ok(Source { mapping, criteria: arguments.criteria.limits, checks })
 }
 
-/// Collects, reads and segments the reports of a command; each flight once.
+/// Collects, reads and segments the reports of a command that tells nothing of what is wrong with them; each flight once.
 fn prepare(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failure> {
-    read_reports(arguments, progress).map(distinct)
+    read_reports(arguments, Checks::LeftOut, progress).map(distinct)
 }
 
 /// Collects, reads and segments the reports of a command, whatever they are to each other.
-fn read_reports(arguments: &ReportsArgs, progress: Progress) -> Result<Reading, Failure> {
-    let source = source_of(arguments)?;
+fn read_reports(
+    arguments: &ReportsArgs,
+    checks: Checks,
+    progress: Progress,
+) -> Result<Reading, Failure> {
+    let source = source_of(arguments, checks)?;
     let inputs = inputs::collect(&arguments.reports, source.mapping.is_some())?;
     let bar = progress.bar(inputs.files.len(), "reading reports");
     let mut reading = source.read_all(&inputs.files, &bar);

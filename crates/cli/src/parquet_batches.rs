@@ -342,7 +342,9 @@ mod tests {
             began_present |= matches!(table.columns[0].1.reading, Reading::Present(..));
             for (_, column) in batch.columns {
                 match column {
-                    BatchColumn::Numbers(values) => numbers.extend(values),
+                    BatchColumn::Numbers(values) | BatchColumn::Finite(values) => {
+                        numbers.extend(values)
+                    }
                     BatchColumn::Texts(runs) => {
                         texts.extend(runs.into_iter().flat_map(|(text, rows)| vec![text; rows]));
                     }

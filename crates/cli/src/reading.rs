@@ -7,7 +7,7 @@ pub(crate) mod recording;
 use std::path::{Path, PathBuf};
 
 use pipeline::reading::recordings::{self, Mapped, Workers};
-use pipeline::reading::{FileRead, FlightReader};
+use pipeline::reading::{Checks, FileRead, FlightReader};
 use rayon::prelude::*;
 use report::MAXIMUM_TEXT_BYTES;
 use report::mapping::Mapping;
@@ -27,6 +27,8 @@ pub(crate) struct Source {
     pub(crate) mapping: Option<Mapping>,
     /// Which samples are steady.
     pub(crate) criteria: TrimCriteria,
+    /// Whether flights are checked.
+    pub(crate) checks: Checks,
 }
 
 /// Buffers that a worker reuses from file to file.
@@ -72,11 +74,15 @@ impl Source {
         let refused = |reason| (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]);
         let Some(mapping) = &self.mapping else {
             return match read_unmapped(path, &mut buffers.raw) {
-                Ok(()) => buffers.reader.read(path, &buffers.raw, None, &self.criteria),
+                Ok(()) => {
+                    let reader = buffers.reader.with_checks(self.checks);
+                    reader.read(path, &buffers.raw, None, &self.criteria)
+                }
                 Err(reason) => refused(reason),
             };
         };
-        let mapped = Mapped { path, mapping, criteria: &self.criteria };
+        let (criteria, checks) = (&self.criteria, self.checks);
+        let mapped = Mapped { path, mapping, criteria, checks };
         match open(path) {
             Ok(mut source) => recordings::read(&mapped, &mut source, &in_parallel),
             Err(reason) => refused(reason),

@@ -42,6 +42,8 @@ pub struct Column {
     page: Vec<u8>,
     /// Values of the page that were not taken.
     left: usize,
+    /// Whether every number of the dictionary is finite.
+    is_finite: bool,
     way: Way,
     dictionary: Entries,
 }
@@ -74,7 +76,15 @@ impl Column {
     #[must_use]
     pub const fn new(form: Form, has_levels: bool) -> Self {
         let way = Way::Plain(0);
-        Self { form, has_levels, page: Vec::new(), left: 0, way, dictionary: Entries::None }
+        Self {
+            form,
+            has_levels,
+            page: Vec::new(),
+            left: 0,
+            is_finite: false,
+            way,
+            dictionary: Entries::None,
+        }
     }
 
     /// The next page, unpacked, is written here before it is begun.
@@ -119,6 +129,12 @@ impl Column {
         Ok(())
     }
 
+    /// Whether every number of the page is known to be finite: each of its dictionary is.
+    #[must_use]
+    pub const fn is_finite(&self) -> bool {
+        self.is_finite && matches!(self.way, Way::Places(_))
+    }
+
     fn begin_dictionary(&mut self, values: u32, encoding: u32) -> Result<(), Damage> {
         if !matches!(self.dictionary, Entries::None)
             || !matches!(encoding, PLAIN | PLAIN_DICTIONARY)
@@ -139,6 +155,7 @@ impl Column {
             form => {
                 let mut entries = Vec::new();
                 append_numbers(form, first(&self.page, count * form.bytes())?, &mut entries);
+                self.is_finite = entries.iter().all(|value| value.is_finite());
                 Entries::Numbers(Dictionary::new(entries))
             }
         };

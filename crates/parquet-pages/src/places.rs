@@ -9,6 +9,8 @@ use crate::levels::number;
 
 /// Places that are unpacked together.
 const BLOCK: usize = 32;
+/// Blocks that are unpacked before any is looked up: few enough that they are still at hand. Our choice.
+const BLOCKS_AT_ONCE: usize = 32;
 /// Entries of the table of a dictionary: one for each number of 16 bits.
 const ENTRIES: usize = 1 << 16;
 /// Of a short one, which most columns have: one for each number of 12 bits.
@@ -139,16 +141,19 @@ impl<T: Copy + Default> Dictionary<T> {
         let bytes = width as usize * BLOCK / 8;
         let from = width as usize * (place / 8);
         let packed = packed.get(from..from + blocks * bytes).ok_or(Damage::EndsEarly)?;
-        let mut places = [0; BLOCK];
-        let mut farthest = 0;
-        for block in packed.chunks_exact(bytes.max(1)) {
-            unpack(block, &mut places);
-            farthest = places.iter().fold(farthest, |most: u16, place| most.max(*place));
-            // The mask changes nothing: it tells the compiler that the table has the entry.
-            values.extend_from_slice(&places.map(|place| table[usize::from(place) & (TABLE - 1)]));
-        }
-        if blocks > 0 {
+        let mut places = [[0; BLOCK]; BLOCKS_AT_ONCE];
+        for several in packed.chunks((bytes * BLOCKS_AT_ONCE).max(1)) {
+            let blocks = several.chunks_exact(bytes.max(1));
+            let count = blocks.len();
+            for (block, places) in blocks.zip(&mut places) {
+                unpack(block, places);
+            }
+            // Only now, since a processor waits where it loads several together of what it has just stored one by one.
+            let places = places[..count].as_flattened();
+            let farthest = places.iter().fold(0, |most: u16, place| most.max(*place));
             self.value(farthest.into())?;
+            // The mask changes nothing: it tells the compiler that the table has the entry.
+            values.extend(places.iter().map(|place| table[usize::from(*place) & (TABLE - 1)]));
         }
         Ok(blocks)
     }

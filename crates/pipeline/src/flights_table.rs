@@ -90,7 +90,7 @@ pub fn from_segments(segments: Vec<Segment>, aircraft_type: &str) -> Vec<FlightR
             content_of_file: content.clone(),
             content,
             reduced: ReducedFlight {
-                check: not_checked(&identity),
+                check: Some(not_checked(&identity)),
                 identity,
                 aircraft_type: aircraft_type.to_owned(),
                 engines: None,
@@ -189,7 +189,7 @@ impl Row<'_> {
             content_of_file: self.text("content_of_file")?.to_owned(),
             end: self.parse("end")?,
             reduced: ReducedFlight {
-                check: not_checked(&identity),
+                check: Some(not_checked(&identity)),
                 identity: Arc::new(identity),
                 aircraft_type: self.plain("aircraft_type")?,
                 engines: self.optional("engines")?,

@@ -39,11 +39,12 @@ pub fn check_document(
 }
 
 /// What is wrong with flights, each by itself and with each other. `now_s` is the present, s since 1970; without it a
-/// result does not depend on the day.
+/// result does not depend on the day. Of flights that were read without checks it knows nothing.
 pub fn findings(flights: &[FlightRead], now_s: Option<f64>) -> Vec<DataFinding> {
     let mut ordered: Vec<&FlightRead> = flights.iter().collect();
     ordered.sort_by(|one, other| one.order(other));
-    let checks: Vec<&FlightCheck> = ordered.iter().map(|flight| &flight.reduced.check).collect();
+    let checks: Vec<&FlightCheck> =
+        ordered.iter().filter_map(|flight| flight.reduced.check.as_ref()).collect();
     let mut findings: Vec<DataFinding> =
         checks.iter().flat_map(|check| check.findings.iter().cloned()).collect();
     findings.extend(check_flights(&checks, now_s));

@@ -11,6 +11,7 @@ use report::mapping::{MappedPoints, Mapping, Source};
 use report::{Parsed, Reader, Refusal};
 use segmenter::TrimCriteria;
 
+use crate::check::{check_points, check_report};
 use crate::checksum::sha256;
 use crate::learnt_flights::instant_after;
 use crate::models::TYPE_NOT_STATED;
@@ -131,11 +132,23 @@ impl Reading {
 /// What a file came to: its flights, and what was refused of it.
 pub type FileRead = (Vec<FlightRead>, Vec<RefusedReport>);
 
+/// Whether flights are checked for what is wrong with their data while their samples are at hand: it takes a sixth of the time in
+/// which a recording is read, and most commands have no use for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Checks {
+    /// They are.
+    #[default]
+    Made,
+    /// They are not: [`ReducedFlight::check`] is `None`.
+    LeftOut,
+}
+
 /// Reads one report after the other into the same buffers.
 #[derive(Default)]
 pub struct FlightReader {
     unpacked: Vec<u8>,
     reader: Reader,
+    checks: Checks,
 }
 
 impl std::fmt::Debug for FlightReader {
@@ -145,6 +158,12 @@ impl std::fmt::Debug for FlightReader {
 }
 
 impl FlightReader {
+    /// From here on flights are checked, or are not.
+    pub const fn with_checks(&mut self, checks: Checks) -> &mut Self {
+        self.checks = checks;
+        self
+    }
+
     /// The flights in the bytes of a cruise report, of a table of segments or, with a mapping, of a recording (plain or gzip),
     /// and what of them was refused. `path` is what results call the bytes; a mapping may take a text of the header from its file name.
     pub fn read(
@@ -157,7 +176,7 @@ impl FlightReader {
         if let Some(mapping) = mapping {
             return match Source::text(bytes) {
                 Ok(mut source) => {
-                    let mapped = Mapped { path, mapping, criteria };
+                    let mapped = Mapped { path, mapping, criteria, checks: self.checks };
                     recordings::read(&mapped, &mut source, &recordings::one_by_one)
                 }
                 Err(refusal) => (Vec::new(), vec![RefusedReport::at(path.to_owned(), &refusal)]),
@@ -175,7 +194,7 @@ impl FlightReader {
                 return (Vec::new(), vec![RefusedReport::at(path.to_owned(), &refusal)]);
             }
         };
-        match reduce(path, parsed, content, criteria) {
+        match reduce(path, parsed, content, (criteria, self.checks)) {
             Ok(flight) => (vec![flight], Vec::new()),
             Err(reason) => (Vec::new(), vec![RefusedReport::whole(path.to_owned(), reason)]),
         }
@@ -215,28 +234,32 @@ fn reduce(
     path: &Path,
     parsed: Parsed,
     content: String,
-    criteria: &TrimCriteria,
+    (criteria, checks): (&TrimCriteria, Checks),
 ) -> Result<FlightRead, String> {
     let Parsed { report, findings } = parsed;
     let notes = notes_of(path, findings);
     let end = end_of(&report)?;
+    let check = (checks == Checks::Made).then(|| check_report(&report));
     let reduced =
         ReducedFlight::from_report(report, criteria, notes).map_err(|error| error.to_string())?;
+    let reduced = ReducedFlight { check, ..reduced };
     flight_read(path, content, end, reduced)
 }
 
 fn reduce_points(
     path: &Path,
     mut points: MappedPoints,
-    criteria: &TrimCriteria,
+    (criteria, checks): (&TrimCriteria, Checks),
     content_of: fn(&Report) -> String,
 ) -> Result<FlightRead, String> {
     let notes = notes_of(path, std::mem::take(&mut points.parsed.findings));
     let end = end_of(&points.parsed.report)?;
     // With another averaging time the same numbers say something else.
     let content = format!("{}:{}", content_of(&points.parsed.report), points.averaged_over_s);
+    let check = (checks == Checks::Made).then(|| check_points(&points.parsed.report));
     let reduced =
         ReducedFlight::from_points(points, criteria, notes).map_err(|error| error.to_string())?;
+    let reduced = ReducedFlight { check, ..reduced };
     flight_read(path, content, end, reduced)
 }
 

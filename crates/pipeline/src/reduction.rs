@@ -9,7 +9,7 @@ use report::mapping::MappedPoints;
 use segmenter::{Criterion, Scatter, Segmentation, Tally, TrimCriteria};
 use track::TrackError;
 
-use crate::check::{FlightCheck, check_points, check_report};
+use crate::check::FlightCheck;
 
 /// One flight, reduced to its segments.
 #[derive(Clone, Debug)]
@@ -30,8 +30,8 @@ pub struct ReducedFlight {
     pub tally: Tally,
     /// What is worth knowing, each a sentence.
     pub notes: Vec<String>,
-    /// What is wrong with the data.
-    pub check: FlightCheck,
+    /// What is wrong with the data; `None` where that was not asked for.
+    pub check: Option<FlightCheck>,
 }
 
 impl ReducedFlight {
@@ -45,7 +45,6 @@ impl ReducedFlight {
         criteria: &TrimCriteria,
         mut notes: Vec<String>,
     ) -> Result<Self, TrackError> {
-        let check = check_report(&report);
         let engines = report.engines();
         let aircraft_type = report.header().aircraft_type.clone();
         let samples = report.len();
@@ -62,7 +61,7 @@ impl ReducedFlight {
             ));
         }
         let gauges = GaugeBurn::of_track(&track);
-        let of = Reduced { check, aircraft_type, engines, samples, gauges, notes };
+        let of = Reduced { aircraft_type, engines, samples, gauges, notes };
         Ok(of.into_flight(&track, segmentation))
     }
 
@@ -77,7 +76,6 @@ impl ReducedFlight {
     ) -> Result<Self, TrackError> {
         let MappedPoints { parsed, averaged_over_s, scatter } = points;
         let report = parsed.report;
-        let check = check_points(&report);
         let engines = report.engines();
         let aircraft_type = report.header().aircraft_type.clone();
         let samples = report.len();
@@ -89,7 +87,7 @@ impl ReducedFlight {
             "each row is the mean of {averaged_over_s} s, as stated; trim criteria not judged, for want of samples: {}",
             segmentation.not_evaluated()
         ));
-        let of = Reduced { check, aircraft_type, engines, samples, gauges: None, notes };
+        let of = Reduced { aircraft_type, engines, samples, gauges: None, notes };
         Ok(of.into_flight(&track, segmentation))
     }
 }
@@ -99,7 +97,6 @@ const HEATING_VALUE_NOT_APPLIED: &str = "the stated heating value (LHV) is check
 
 /// What is known of a flight apart from its segments.
 struct Reduced {
-    check: FlightCheck,
     aircraft_type: String,
     engines: Option<usize>,
     samples: usize,
@@ -109,7 +106,7 @@ struct Reduced {
 
 impl Reduced {
     fn into_flight(self, track: &Track, segmentation: Segmentation) -> ReducedFlight {
-        let Self { check, aircraft_type, engines, samples, gauges, notes } = self;
+        let Self { aircraft_type, engines, samples, gauges, notes } = self;
         ReducedFlight {
             identity: Arc::new(track.report().header().identity.clone()),
             aircraft_type,
@@ -119,7 +116,7 @@ impl Reduced {
             gauges,
             tally: segmentation.tally,
             notes,
-            check,
+            check: None,
         }
     }
 }

@@ -4,8 +4,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use pipeline::reading::FileRead;
 use pipeline::reading::recordings::{self, Mapped, Spread, Workers};
+use pipeline::reading::{Checks, FileRead};
 use report::mapping::{Mapping, Source};
 use segmenter::TrimCriteria;
 
@@ -52,7 +52,8 @@ fn recording() -> String {
 fn read(text: &str, spread: &Spread<'_>) -> FileRead {
     let mapping = Mapping::from_ron(MAPPING).unwrap();
     let criteria = TrimCriteria::ghazi_2020_table_4();
-    let mapped = Mapped { path: Path::new("R.csv"), mapping: &mapping, criteria: &criteria };
+    let path = Path::new("R.csv");
+    let mapped = Mapped { path, mapping: &mapping, criteria: &criteria, checks: Checks::Made };
     recordings::read(&mapped, &mut Source::text(text.as_bytes()).unwrap(), spread)
 }
 

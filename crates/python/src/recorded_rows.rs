@@ -5,8 +5,8 @@ use std::path::Path;
 
 use arrow_array::{Array, ArrayRef, RecordBatch};
 use arrow_schema::DataType;
-use pipeline::reading::FileRead;
 use pipeline::reading::recordings::{self, Mapped, Workers};
+use pipeline::reading::{Checks, FileRead};
 use report::mapping::{Cells, Lines, Mapping, Pieces, TableRows};
 use segmenter::TrimCriteria;
 
@@ -40,7 +40,7 @@ pub(crate) fn read(
         waiting.still_waits().is_ok()
     });
     let pieces = Pieces::of_table(names, rows.map(rows_of));
-    let mapped = Mapped { path: name, mapping: &mapping, criteria };
+    let mapped = Mapped { path: name, mapping: &mapping, criteria, checks: Checks::Made };
     let read = recordings::read_pieces(&mapped, Ok(pieces), &in_parallel);
     caller.still_waits()?;
     Ok(read)

@@ -9,6 +9,7 @@ mod file;
 mod first;
 mod in_memory;
 mod level;
+mod numbers;
 mod pieces;
 mod plan;
 mod source;
@@ -29,7 +30,7 @@ use plan::Plan;
 pub use source::{Batches, Source};
 pub use stream::{MappedFlight, MappedPoints, MappedReport, Stream};
 use table::Recording;
-pub use table::{Batch, BatchColumn, Rows, line_of_names, local_text};
+pub use table::{Batch, BatchColumn, NO_INSTANT, Rows, line_of_names, local_text};
 
 /// A mapping file that was checked.
 #[derive(Clone, Debug)]
@@ -245,7 +246,8 @@ fn parts(plan: &Plan, recording: &Recording) -> (Vec<core::ops::Range<usize>>, f
             let conversion = plan.recorded.iter().find(altitude);
             let mut pressure_altitude_m = Vec::with_capacity(rows);
             if let Some((_, conversion)) = conversion {
-                conversion.append_to(&mut pressure_altitude_m, &recording.numbers, 0..rows);
+                conversion
+                    .append_to(&mut pressure_altitude_m, &recording.numbers, 0..rows, |_| true);
             }
             level::level_parts(&recording.time_s, &pressure_altitude_m, criteria)
         }

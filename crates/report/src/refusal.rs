@@ -194,6 +194,13 @@ pub enum RefusalKind {
         /// That unit.
         unit: &'static str,
     },
+    /// Time far ahead of the row before, which the rows behind go on from.
+    TimeAhead {
+        /// Time of the row behind, in the unit of the file.
+        next: f64,
+        /// That unit.
+        unit: &'static str,
+    },
     /// Fuel used that falls by more than the counter's step.
     FuelUsedFalls {
         /// Its largest value so far, in the unit of the file.
@@ -351,6 +358,7 @@ impl RefusalKind {
             Self::NotANumber { .. } => "not-a-number",
             Self::OutOfRange { .. } => "out-of-range",
             Self::TimeNotIncreasing { .. } => "time-not-increasing",
+            Self::TimeAhead { .. } => "time-ahead",
             Self::FuelUsedFalls { .. } => "fuel-used-falls",
             Self::MassNotPositive { .. } => "mass-not-positive",
             Self::LastRowUnfinished { .. } => "last-row-unfinished",
@@ -420,6 +428,9 @@ impl fmt::Display for RefusalKind {
             Self::OutOfRange { column, limit, unit } => write_range(f, *column, *limit, unit),
             Self::TimeNotIncreasing { previous, unit } => {
                 write!(f, "TIME above that of the row before, {previous} {unit}")
+            }
+            Self::TimeAhead { next, unit } => {
+                write!(f, "TIME below that of the next row of its flight, {next} {unit}")
             }
             Self::FuelUsedFalls { largest, tolerance, unit } => write!(
                 f,

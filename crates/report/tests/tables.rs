@@ -4,7 +4,7 @@
 
 use core::fmt::Write;
 
-use report::mapping::{Batch, BatchColumn, Source};
+use report::mapping::{Batch, BatchColumn, NO_INSTANT, Source};
 use report::{Mapping, Parsed};
 
 const MAPPING: &str = r#"(
@@ -31,7 +31,7 @@ const START_S: i64 = 1_700_000_000;
 
 /// Instants, flights and numbers of a recording in which some are missing.
 struct Table {
-    instants: Vec<Option<i64>>,
+    instants: Vec<i64>,
     flights: Vec<&'static str>,
     numbers: Vec<(&'static str, Vec<f64>)>,
     flags: Vec<&'static str>,
@@ -45,9 +45,9 @@ fn table() -> Table {
     sat[3] = f64::NAN;
     let mut gw = column(&|row| 64_000.0 - 2.5 * row);
     gw[30] = f64::NAN;
-    let mut instants: Vec<Option<i64>> =
-        (START_S..).step_by(60).take(ROWS).map(|second| Some(second * 1_000_000_000)).collect();
-    instants[25] = None;
+    let mut instants: Vec<i64> =
+        (START_S..).step_by(60).take(ROWS).map(|second| second * 1_000_000_000).collect();
+    instants[25] = NO_INSTANT;
     Table {
         instants,
         flights: rows.clone().map(|row| if row < 17 { "F1" } else { "F2" }).collect(),
@@ -77,7 +77,8 @@ impl Table {
     fn text(&self) -> String {
         let mut text = self.names().join(",") + "\n";
         for row in 0..ROWS {
-            let instant = self.instants[row].map_or_else(String::new, |count| {
+            let count = Some(self.instants[row]).filter(|count| *count != NO_INSTANT);
+            let instant = count.map_or_else(String::new, |count| {
                 flight::Timestamp::from_nanosecond(i128::from(count)).unwrap().to_string()
             });
             let numbers: Vec<String> = self
@@ -153,7 +154,7 @@ fn a_table_gives_what_its_text_gives() {
 #[test]
 fn a_flight_that_begins_in_text_goes_on_in_columns() {
     let mut table = table();
-    table.instants[2] = None;
+    table.instants[2] = NO_INSTANT;
     let flags = |flags: &[&str]| BatchColumn::Numbers(flags.iter().map(|_| 0.0).collect());
     let plain = MAPPING.replace(", values: [(\"ON\", 1), (\"OFF\", 0)]", "");
     let mapping = Mapping::from_ron(&plain).unwrap();

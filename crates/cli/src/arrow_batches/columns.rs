@@ -4,7 +4,7 @@ use core::ops::Range;
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use report::mapping::BatchColumn;
+use report::mapping::{BatchColumn, NO_INSTANT};
 
 use super::fields::{Field, Kind, Number};
 use super::flatbuffer::{Table, Vector};
@@ -224,8 +224,9 @@ impl Column {
         Some(values)
     }
 
-    fn nanoseconds(&self, rows: Range<usize>, each: i64) -> Option<Vec<Option<i64>>> {
-        let nanoseconds = |count: Option<i64>| count.and_then(|count| count.checked_mul(each));
+    fn nanoseconds(&self, rows: Range<usize>, each: i64) -> Option<Vec<i64>> {
+        let nanoseconds = |count: i64| count.checked_mul(each);
+        let nanoseconds = |count: Option<i64>| count.and_then(nanoseconds).unwrap_or(NO_INSTANT);
         Some(self.counts(rows, 8)?.into_iter().map(nanoseconds).collect())
     }
 

@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pipeline::adaptation::{LawAsked, Start, Starts};
 use pipeline::distinct::warn_of_copies;
+use pipeline::reading::Checks;
 use rayon::prelude::*;
 
 use crate::args::{AdaptArgs, LawName};
@@ -44,7 +45,7 @@ struct Run<'a> {
 pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models = read_models(&arguments.models.models)?;
     check_threshold(arguments)?;
-    let source = source_of(&arguments.reports)?;
+    let source = source_of(&arguments.reports, Checks::Made)?;
     let inputs = inputs::collect(&arguments.reports.reports, source.mapping.is_some())?;
     let files = inputs.files.len() + inputs.refused.len();
     let bar = progress.bar(inputs.files.len(), "reading headers");

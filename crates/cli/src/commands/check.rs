@@ -3,6 +3,7 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use pipeline::plausibility;
+use pipeline::reading::Checks;
 
 use crate::args::CheckArgs;
 use crate::commands::{Outcome, check_refused, read_reports};
@@ -17,7 +18,7 @@ use crate::progress::Progress;
 pub(crate) fn run(arguments: &CheckArgs, progress: Progress) -> Result<Outcome, Failure> {
     let models =
         if arguments.models.is_empty() { None } else { Some(read_models(&arguments.models)?) };
-    let reading = read_reports(&arguments.reports, progress)?;
+    let reading = read_reports(&arguments.reports, Checks::Made, progress)?;
     let files = reading.files();
     let nothing_left = reading.flights.is_empty();
     check_refused(&reading.refused, files, arguments.reports.strict, nothing_left)?;

@@ -13,7 +13,9 @@ use rayon::prelude::*;
 
 use self::apply::Outside;
 use crate::args::DiagnoseArgs;
-use crate::commands::{Outcome, check_refused, events_of, prepare, tell_serious, warn_of_events};
+use crate::commands::{
+    Outcome, check_refused, events_of, read_reports, tell_serious, warn_of_events,
+};
 use crate::failure::{Failure, show};
 use crate::files::{make_folder, write_atomically};
 use crate::models::read_models;
@@ -26,8 +28,10 @@ use pipeline::diagnosis_document::DiagnosisDocument;
 use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::diagnosis_groups::{Group, NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
+use pipeline::distinct::distinct;
 use pipeline::gaps_table;
 use pipeline::plausibility::{self, Absurd};
+use pipeline::reading::Checks;
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 
 /// Runs the command.
@@ -43,7 +47,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
         ..Options::default()
     };
     let models = read_models(&arguments.models.models)?;
-    let mut reading = prepare(&arguments.reports, progress)?;
+    let mut reading = distinct(read_reports(&arguments.reports, Checks::Made, progress)?);
     let files = reading.files();
     let book_of = |flight: &FlightRead| {
         let model = models.for_flight(flight).ok()?;

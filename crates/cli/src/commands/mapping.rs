@@ -12,7 +12,7 @@ use crate::failure::{Failure, show};
 use crate::files::outputs::check_replaceable;
 use crate::files::write_atomically;
 use crate::reading::{Buffers, Source, open};
-use pipeline::reading::RefusedReport;
+use pipeline::reading::{Checks, RefusedReport};
 use pipeline::summary::counted;
 
 /// What marks a guess in a mapping file.
@@ -116,7 +116,7 @@ fn tried(text: &str, path: &Path) -> Tried {
     let read = Mapping::from_ron(text).map_err(|error| error.to_string()).and_then(|mapping| {
         if mapping.is_of_points() {
             let criteria = NamedCriteria::default().limits;
-            let source = Source { mapping: Some(mapping), criteria };
+            let source = Source { mapping: Some(mapping), criteria, checks: Checks::LeftOut };
             let (read, refused) = source.read_file(path, &mut Buffers::default());
             flights = read.len();
             rows = read.iter().map(|flight| flight.reduced.samples).sum();

@@ -19,6 +19,7 @@ use crate::{parquet_batches, parquet_numbers};
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
 use pipeline::prediction::{Predictor, columns_of_segments, measured_kg_s, point_of_segment};
+use pipeline::reading::Checks;
 use pipeline::segments_table;
 use pipeline::whole_model::Predicts;
 use report::MAXIMUM_TEXT_BYTES;
@@ -168,7 +169,8 @@ fn predict_segments(
     predictor: &Predictor<'_>,
 ) -> Result<Outcome, Failure> {
     let mapping = arguments.mapping.as_deref().map(read_mapping).transpose()?;
-    let source = Source { mapping, criteria: NamedCriteria::default().limits };
+    let source =
+        Source { mapping, criteria: NamedCriteria::default().limits, checks: Checks::LeftOut };
     let (mut flights, mut refused) = source.read_file(&arguments.points, &mut Buffers::default());
     check_refused(&refused, 1, false, flights.is_empty())?;
     flights.sort_by(FlightRead::order);

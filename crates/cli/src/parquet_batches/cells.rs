@@ -3,7 +3,7 @@
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType, DoubleType, Int96};
 use parquet::errors::ParquetError;
-use report::mapping::BatchColumn;
+use report::mapping::{BatchColumn, NO_INSTANT};
 
 use super::Kind;
 use crate::cells::{date, runs, time_of_day};
@@ -83,8 +83,9 @@ fn counts<T: DataType>(
 }
 
 /// Counts of these many nanoseconds as nanoseconds; none where that is more than a number holds.
-fn times(each: i64, cells: &[Option<i64>]) -> Vec<Option<i64>> {
-    cells.iter().map(|cell| cell.and_then(|count| count.checked_mul(each))).collect()
+fn times(each: i64, cells: &[Option<i64>]) -> Vec<i64> {
+    let time = |count: i64| count.checked_mul(each);
+    cells.iter().map(|cell| cell.and_then(time).unwrap_or(NO_INSTANT)).collect()
 }
 
 fn numbers<T: DataType>(

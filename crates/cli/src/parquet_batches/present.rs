@@ -42,10 +42,12 @@ impl Present {
     /// The next rows.
     pub(super) fn rows(&mut self, rows: usize) -> Result<BatchColumn, ParquetError> {
         let mut values = self.column.values(rows);
-        let mut missing = rows;
+        let (mut missing, mut are_finite) = (rows, true);
         while missing > 0 {
-            missing -=
+            let appended =
                 self.column.append(missing, &mut values).map_err(|damage| refused(&damage))?;
+            are_finite &= appended == 0 || self.column.is_finite();
+            missing -= appended;
             if missing > 0 {
                 let kind = self.pages.next(self.column.page())?;
                 let kind = kind.ok_or_else(|| refused(&Damage::EndsEarly))?;
@@ -53,9 +55,9 @@ impl Present {
             }
         }
         Ok(match values {
+            Values::Numbers(numbers) if are_finite => BatchColumn::Finite(numbers),
             Values::Numbers(numbers) => BatchColumn::Numbers(numbers),
             Values::Nanoseconds(times) => {
-                let times = times.into_iter().map(Some).collect();
                 if self.is_local {
                     BatchColumn::LocalTimes(times)
                 } else {

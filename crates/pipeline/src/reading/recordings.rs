@@ -13,7 +13,7 @@ use report::mapping::{Source, Stream};
 use report::{Refusal, RefusalKind};
 use segmenter::TrimCriteria;
 
-use super::{FileRead, FlightRead, RefusedReport, reduce, reduce_points};
+use super::{Checks, FileRead, FlightRead, RefusedReport, reduce, reduce_points};
 use content::content_as_read;
 use workers::{Delivery, InOrder, Queue};
 pub use workers::{Spread, Workers, one_by_one};
@@ -33,6 +33,8 @@ pub struct Mapped<'a> {
     pub mapping: &'a Mapping,
     /// Which samples are steady.
     pub criteria: &'a TrimCriteria,
+    /// Whether its flights are checked.
+    pub checks: Checks,
 }
 
 /// Work that does not depend on other work.
@@ -227,7 +229,7 @@ impl Flow<'_, '_> {
             if self.has_refused_row {
                 continue;
             }
-            let (ended, added) = self.stream.add(&rows);
+            let (ended, added) = self.stream.add(*rows);
             self.start_flights(ended, workers);
             if let Err(refusal) = added {
                 (self.stopped, self.is_read, self.has_refused_row) = (Err(refusal), true, true);
@@ -279,10 +281,11 @@ impl Mapped<'_> {
         match mapped {
             MappedReport::Report(parsed) => {
                 let content = content_as_read(&parsed.report);
-                reduced(reduce(self.path, *parsed, content, self.criteria))
+                reduced(reduce(self.path, *parsed, content, (self.criteria, self.checks)))
             }
             MappedReport::Points(points) => {
-                reduced(reduce_points(self.path, *points, self.criteria, content_as_read))
+                let how = (self.criteria, self.checks);
+                reduced(reduce_points(self.path, *points, how, content_as_read))
             }
             other => Reduced::NoReport(other),
         }

@@ -16,7 +16,7 @@ use units::{CalibratedAirspeed, Mach, Mass, PressureAltitude, Temperature, TrueA
 
 use super::plan::{Conversion, MachSource, MassPlan, Plan, TemperatureSource, TrueAirspeedSource};
 use super::table::{Layout, Recording};
-use rows::{Limits, Surplus, UsedRows, rows_in_range};
+use rows::{Converted, Limits, Surplus, Used, UsedRows};
 
 use crate::Parsed;
 use crate::refusal::{Found, Refusal, RefusalKind};
@@ -33,7 +33,7 @@ pub(super) fn report(
     let fewest = if plan.points.is_some() { 1 } else { 3 };
     let level_rows = parts.iter().map(Range::len).sum();
     let first = parts.first().map_or(0, |part| part.start);
-    let (rows, surplus) = rows_in_range(plan, recording, parts, fewest);
+    let Used { rows, surplus, converted } = Used::new(plan, recording, parts, fewest);
     let refuse_inconsistent = |error| {
         let found = Found::Rows(level_rows - surplus.len());
         layout.refuse(recording, (first, 0), found, RefusalKind::Inconsistent(error))
@@ -42,7 +42,8 @@ pub(super) fn report(
         let error = ReportDataError::TooFewSamples { found: rows.len() };
         return Err(refuse_inconsistent(error));
     }
-    let part = Part { plan, layout, recording, rows, level_rows, level_parts: parts.len() };
+    let level_parts = parts.len();
+    let mut part = Part { plan, layout, recording, rows, converted, level_rows, level_parts };
     let air = part.air_data()?;
     let mut load = part.load()?;
     let fuel_used_kg = core::mem::take(&mut load.fuel_used_kg);
@@ -88,6 +89,16 @@ type PointScatter = Vec<(Column, Vec<f64>)>;
 struct Series {
     values: Vec<f64>,
     input: usize,
+    /// The column in whose range all are known to be.
+    within: Option<Column>,
+}
+
+impl Series {
+    const fn new(values: Vec<f64>, input: usize) -> Self {
+        Self { values, input, within: None }
+    }
+
+    const EMPTY: Self = Self::new(Vec::new(), 0);
 }
 
 struct AirData {
@@ -111,6 +122,8 @@ struct Part<'p> {
     recording: &'p Recording,
     /// Rows of the recording, at least three (of averaged points one).
     rows: UsedRows,
+    /// What is recorded of them, until it is used.
+    converted: Vec<Converted>,
     /// Number of rows before any was left out for its range.
     level_rows: usize,
     /// Number of level parts that they come from.
@@ -144,24 +157,31 @@ impl Part<'_> {
     fn convert(&self, conversion: &Conversion) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.rows.len());
         for run in self.rows.runs() {
-            conversion.append_to(&mut values, &self.recording.numbers, run);
+            conversion.append_to(&mut values, &self.recording.numbers, run, |_| true);
         }
         values
     }
 
-    fn recorded(&self, wanted: Column) -> Option<Series> {
+    fn recorded(&mut self, wanted: Column) -> Option<Series> {
         let (_, conversion) = self.plan.recorded.iter().find(|(column, _)| *column == wanted)?;
-        Some(Series { values: self.convert(conversion), input: conversion.input })
+        let converted = self.converted.iter().position(|one| one.column == wanted);
+        Some(match converted.map(|place| self.converted.swap_remove(place)) {
+            Some(Converted { values, is_within, .. }) => {
+                Series { values, input: conversion.input, within: is_within.then_some(wanted) }
+            }
+            // Some are asked for twice.
+            None => Series::new(self.convert(conversion), conversion.input),
+        })
     }
 
     /// The column, inside its range; empty where it is absent, which the plan has excluded for required ones.
-    fn required(&self, column: Column) -> Result<Series, Refusal> {
-        let series = self.recorded(column).unwrap_or(Series { values: Vec::new(), input: 0 });
+    fn required(&mut self, column: Column) -> Result<Series, Refusal> {
+        let series = self.recorded(column).unwrap_or(Series::EMPTY);
         self.check_range(column, &series, None)?;
         Ok(series)
     }
 
-    fn all(&self, column: Column) -> Result<Option<Vec<f64>>, Refusal> {
+    fn all(&mut self, column: Column) -> Result<Option<Vec<f64>>, Refusal> {
         match self.recorded(column) {
             None => Ok(None),
             Some(series) => {
@@ -172,7 +192,7 @@ impl Part<'_> {
     }
 
     fn optional(
-        &self,
+        &mut self,
         column: Column,
         maximum: Option<f64>,
     ) -> Result<Option<OptionalColumn>, Refusal> {
@@ -190,7 +210,8 @@ impl Part<'_> {
         maximum: Option<f64>,
     ) -> Result<(), Refusal> {
         let limits = Limits::new(column, maximum);
-        if limits.admit_all(&series.values) {
+        if (maximum.is_none() && series.within == Some(column)) || limits.admit_all(&series.values)
+        {
             return Ok(());
         }
         match series.values.iter().position(|value| !limits.admit(*value)) {
@@ -205,7 +226,7 @@ impl Part<'_> {
         }
     }
 
-    fn air_data(&self) -> Result<AirData, Refusal> {
+    fn air_data(&mut self) -> Result<AirData, Refusal> {
         let pressure_altitude_m = self.required(Column::PressureAltitude)?;
         // In an order in which each is derived after its inputs: the plan has excluded circles.
         let mut mach = match &self.plan.mach {
@@ -231,7 +252,7 @@ impl Part<'_> {
                 let values = mach.values.iter().zip(temperatures()).map(|(mach, sat)| {
                     airspeed::mach_to_true_airspeed(Mach::new(*mach), sat).to_meters_per_second()
                 });
-                let series = Series { values: values.collect(), input: mach.input };
+                let series = Series::new(values.collect(), mach.input);
                 self.check_range(Column::TrueAirspeed, &series, None)?;
                 series
             }
@@ -242,11 +263,11 @@ impl Part<'_> {
                 airspeed::true_airspeed_to_mach(TrueAirspeed::meters_per_second(*speed), sat)
                     .value()
             });
-            let series = Series { values: values.collect(), input: true_airspeed_m_s.input };
+            let series = Series::new(values.collect(), true_airspeed_m_s.input);
             self.check_range(Column::Mach, &series, None)?;
             mach = Some(series);
         }
-        let mach = mach.unwrap_or(Series { values: Vec::new(), input: 0 });
+        let mach = mach.unwrap_or(Series::EMPTY);
         Ok(AirData { pressure_altitude_m, mach, static_air_temperature_k, true_airspeed_m_s })
     }
 
@@ -264,7 +285,7 @@ impl Part<'_> {
             let speed = CalibratedAirspeed::meters_per_second(*value);
             *value = airspeed::calibrated_airspeed_to_mach(speed, pressure).value();
         }
-        let series = Series { values, input: conversion.input };
+        let series = Series::new(values, conversion.input);
         self.check_range(Column::Mach, &series, None)?;
         Ok(series)
     }
@@ -280,13 +301,13 @@ impl Part<'_> {
                 .map_err(|error| self.outside_atmosphere(row, pressure_altitude_m, error))?;
             values.push(temperature.to_kelvin() + deviation_k);
         }
-        let series = Series { values, input: pressure_altitude_m.input };
+        let series = Series::new(values, pressure_altitude_m.input);
         self.check_range(Column::StaticAirTemperature, &series, None)?;
         Ok(series)
     }
 
     fn temperature_of_total_temperature(
-        &self,
+        &mut self,
         recovery_factor: f64,
         mach: Option<&Series>,
     ) -> Result<Series, Refusal> {
@@ -313,7 +334,7 @@ impl Part<'_> {
     }
 
     fn columns(
-        &self,
+        &mut self,
         air: AirData,
         load: &Load,
         fuel_used_kg: Vec<f64>,
@@ -356,7 +377,7 @@ impl Part<'_> {
         })
     }
 
-    fn engines(&self, column: fn(u8) -> Column) -> Result<Vec<Vec<f64>>, Refusal> {
+    fn engines(&mut self, column: fn(u8) -> Column) -> Result<Vec<Vec<f64>>, Refusal> {
         let mut engines = Vec::new();
         for engine in (1..).take(MAXIMUM_ENGINES) {
             engines.extend(self.all(column(engine))?);
@@ -365,10 +386,10 @@ impl Part<'_> {
     }
 
     /// Where nothing determines the number of engines, the range of four is used.
-    fn total_fuel_flow(&self, engines: usize) -> Result<Vec<f64>, Refusal> {
+    fn total_fuel_flow(&mut self, engines: usize) -> Result<Vec<f64>, Refusal> {
         let column = Column::FuelFlowTotal;
         let engines = if engines == 0 { MAXIMUM_ENGINES } else { engines };
-        let series = self.recorded(column).unwrap_or(Series { values: Vec::new(), input: 0 });
+        let series = self.recorded(column).unwrap_or(Series::EMPTY);
         let maximum = column.range().maximum.map(|one| one * engines as f64);
         self.check_range(column, &series, maximum)?;
         Ok(series.values)
@@ -411,7 +432,7 @@ impl Part<'_> {
     }
 
     fn findings(&self, derived: &[&'static str], load: &Load, surplus: &[Surplus]) -> Vec<Finding> {
-        let first_line = Some(self.recording.lines[self.rows.at(0)]);
+        let first_line = Some(self.recording.lines.at(self.rows.at(0)));
         let note = |severity, code, message| Finding { severity, code, message, line: first_line };
         let mut findings = Vec::new();
         if !derived.is_empty() {
@@ -470,12 +491,12 @@ impl Part<'_> {
                     surplus.len(),
                     column.name()
                 ),
-                line: Some(self.recording.lines[*row]),
+                line: Some(self.recording.lines.at(*row)),
             });
         }
         let rows = self.recording.time_s.len();
         if self.level_rows < rows {
-            let last_line = self.recording.lines[self.rows.at(self.rows.len() - 1)];
+            let last_line = self.recording.lines.at(self.rows.at(self.rows.len() - 1));
             let message = format!(
                 "level cruise: {} of {rows} rows{}, to line {last_line}; the rest is climb, descent or too short",
                 self.level_rows,

@@ -2,6 +2,8 @@
 
 mod mass;
 
+use core::ops::Range;
+
 use flight::column::{Column, ColumnUnit};
 use flight::{MAXIMUM_ENGINES, MissingColumn, Timestamp};
 use units::convert::METERS_PER_FOOT;
@@ -13,6 +15,7 @@ use super::file::{
     TimeSource,
 };
 use super::level::LevelCriteria;
+use super::numbers::Numbers;
 use crate::cruise_text::parse_instant;
 use crate::refusal::nearest;
 
@@ -79,6 +82,9 @@ pub(super) enum Fill {
     Line(f64),
 }
 
+/// Values that are converted, then looked at: few enough that they are still at hand.
+const VALUES_TOGETHER: usize = 1024;
+
 /// From a number of the recording to the stored unit of a quantity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conversion {
@@ -90,50 +96,40 @@ pub(super) struct Conversion {
 }
 
 impl Conversion {
-    pub(super) fn apply(&self, numbers: &[Vec<f64>], row: usize) -> f64 {
-        self.of(numbers[self.input][row], self.minus.map(|minus| numbers[minus][row]))
+    pub(super) fn apply(&self, numbers: &Numbers, row: usize) -> f64 {
+        self.of(numbers.at(self.input, row), self.minus.map(|minus| numbers.at(minus, row)))
     }
 
-    /// The same for rows that follow each other, behind what `values` holds.
+    /// The same for rows that follow each other, behind what `values` holds. Gives how many of them are not so.
     pub(super) fn append_to(
         &self,
         values: &mut Vec<f64>,
-        numbers: &[Vec<f64>],
-        rows: core::ops::Range<usize>,
-    ) {
-        let sent = numbers[self.input][rows.clone()].iter();
-        match self.minus {
-            None => {
-                // Copied, since the compiler knows then that they stay as they are while values are written.
-                let Self { factor, offset, .. } = *self;
-                values.extend(sent.map(|value| value * factor + offset));
-            }
-            Some(minus) => {
-                let less = &numbers[minus][rows];
-                values.extend(sent.zip(less).map(|(value, less)| self.of(*value, Some(*less))));
-            }
-        }
-    }
-
-    /// Whether all of these rows are so. All are counted, without a way out of the loop: nearly always all are.
-    pub(super) fn all_are(
-        &self,
-        numbers: &[Vec<f64>],
-        rows: core::ops::Range<usize>,
+        numbers: &Numbers,
+        rows: Range<usize>,
         is_so: impl Fn(f64) -> bool,
-    ) -> bool {
-        let sent = numbers[self.input][rows.clone()].iter();
-        match self.minus {
-            None => {
-                let Self { factor, offset, .. } = *self;
-                let others = |value: &f64| u64::from(!is_so(value * factor + offset));
-                sent.map(others).sum::<u64>() == 0
-            }
-            Some(minus) => {
-                let less = &numbers[minus][rows];
-                sent.zip(less).all(|(value, less)| is_so(self.of(*value, Some(*less))))
+    ) -> u64 {
+        let mut others = 0;
+        for (columns, rows) in numbers.slices(rows) {
+            let sent = columns[self.input][rows.clone()].chunks(VALUES_TOGETHER);
+            let mut less = self.minus.map(|minus| columns[minus][rows].chunks(VALUES_TOGETHER));
+            for sent in sent {
+                let from = values.len();
+                match less.as_mut().and_then(Iterator::next) {
+                    None => {
+                        // Copied, since the compiler knows then that they stay as they are while values are written.
+                        let Self { factor, offset, .. } = *self;
+                        values.extend(sent.iter().map(|value| value * factor + offset));
+                    }
+                    Some(less) => {
+                        let both = sent.iter().zip(less);
+                        values.extend(both.map(|(value, less)| self.of(*value, Some(*less))));
+                    }
+                }
+                // Counted, without a way out of the loop: nearly always all are so.
+                others += values[from..].iter().map(|value| u64::from(!is_so(*value))).sum::<u64>();
             }
         }
+        others
     }
 
     /// Of a number, or of the angle between two.

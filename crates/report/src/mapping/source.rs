@@ -141,7 +141,7 @@ impl Mapping {
                 }
             };
             let rows = converter.rows(piece);
-            let (flights, added) = stream.add(&rows);
+            let (flights, added) = stream.add(rows);
             for flight in flights {
                 stream.count(converter.report(flight))?.into_iter().for_each(&mut give);
             }

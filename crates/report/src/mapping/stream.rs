@@ -141,7 +141,7 @@ impl Stream {
 
     /// Adds the rows of the next piece; gives the flights that have ended and, where the mapping refuses bad rows, the
     /// first bad one.
-    pub fn add(&mut self, rows: &Rows) -> (Vec<MappedFlight>, Result<(), Refusal>) {
+    pub fn add(&mut self, rows: Rows) -> (Vec<MappedFlight>, Result<(), Refusal>) {
         let added = self.assembly.add(&self.layout, rows);
         (self.ended(), added)
     }

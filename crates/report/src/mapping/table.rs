@@ -4,6 +4,7 @@ mod batch;
 mod clock;
 mod columns;
 mod flights;
+mod line_numbers;
 mod open;
 mod recording;
 mod rows;
@@ -11,7 +12,7 @@ mod rows;
 use super::MappingError;
 use super::file::{MappingFile, TextSource};
 use super::plan::{Plan, TimeForm};
-pub use batch::{Batch, BatchColumn, line_of_names, local_text};
+pub use batch::{Batch, BatchColumn, NO_INSTANT, line_of_names, local_text};
 pub(super) use flights::Assembly;
 #[cfg(test)]
 pub(super) use open::Limits;
@@ -121,7 +122,7 @@ impl Layout {
         found: Found,
         kind: RefusalKind,
     ) -> Refusal {
-        let line = recording.lines[row];
+        let line = recording.lines.at(row);
         let text = recording.line(line);
         let column = column_of(self.form(), &text, self.fields.inputs[input]);
         Refusal { line, column, found, kind }

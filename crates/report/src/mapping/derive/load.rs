@@ -15,7 +15,7 @@ impl Part<'_> {
     pub(super) fn load(&self) -> Result<Load, Refusal> {
         match &self.plan.mass {
             MassPlan::GrossMass { mass, zero_fuel_mass, largest_rise_kg } => {
-                let masses_kg = Series { values: self.convert(mass), input: mass.input };
+                let masses_kg = Series::new(self.convert(mass), mass.input);
                 let zero_fuel_mass =
                     zero_fuel_mass.or_else(|| self.zero_fuel_mass_by_gauges(&masses_kg));
                 self.load_of_gross_mass(&masses_kg, zero_fuel_mass, *largest_rise_kg)
@@ -29,14 +29,14 @@ impl Part<'_> {
                     }
                 }
                 let input = tanks.first().map_or(0, |tank| tank.input);
-                let masses_kg = Series { values, input };
+                let masses_kg = Series::new(values, input);
                 self.load_of_gross_mass(&masses_kg, Some(zero_fuel_mass), *largest_rise_kg)
             }
             MassPlan::StartMass { gross_mass } => self.load_of_integrated_flow(gross_mass),
             MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
                 let zero_fuel_mass = self.mass_of(zero_fuel_mass)?;
                 let fuel_on_board = self.mass_of(fuel_on_board)?;
-                let series = Series { values: self.convert(fuel_used), input: fuel_used.input };
+                let series = Series::new(self.convert(fuel_used), fuel_used.input);
                 let maximum = Some(fuel_on_board.to_kilograms());
                 self.check_range(Column::FuelUsed, &series, maximum)?;
                 self.check_fuel_used_series(&series)?;
@@ -66,7 +66,9 @@ impl Part<'_> {
 
     /// Zero-fuel mass where gross mass and the contents of the tanks are recorded, at the report's first row.
     fn zero_fuel_mass_by_gauges(&self, masses_kg: &Series) -> Option<Mass> {
-        let quantity_kg = *self.recorded(Column::FuelQuantity)?.values.first()?;
+        let is_quantity = |(column, _): &&(Column, _)| *column == Column::FuelQuantity;
+        let (_, quantity) = self.plan.recorded.iter().find(is_quantity)?;
+        let quantity_kg = quantity.apply(&self.recording.numbers, self.rows.at(0));
         let zero_fuel_kg = masses_kg.values.first()? - quantity_kg;
         (zero_fuel_kg > 0.0).then(|| Mass::kilograms(zero_fuel_kg))
     }

@@ -5,7 +5,7 @@ use core::ops::Range;
 use flight::column::Column;
 
 use crate::mapping::file::OutOfRange;
-use crate::mapping::plan::Plan;
+use crate::mapping::plan::{Conversion, Plan};
 use crate::mapping::table::Recording;
 
 /// A limit is widened by this share of itself: a number exactly on it must not fail because of a conversion's rounding.
@@ -62,42 +62,71 @@ impl UsedRows {
 /// A row that is left out, and the column that is out of range in it.
 pub(super) type Surplus = (usize, Column);
 
-/// The rows to use, and those with a recorded number out of range where the mapping leaves such rows out. Where too few would be
-/// left it is the column that is wrong and not its rows: all are used, and the first number out of range is refused.
-pub(super) fn rows_in_range(
-    plan: &Plan,
-    recording: &Recording,
-    parts: &[Range<usize>],
-    fewest: usize,
-) -> (UsedRows, Vec<Surplus>) {
-    let all = UsedRows::new(parts.to_vec());
-    if plan.out_of_range == OutOfRange::Refuse {
-        return (all, Vec::new());
-    }
-    // Column by column, and row by row only where a column has something to leave out.
-    let mut outside: Vec<(usize, usize)> = Vec::new();
-    for (place, (column, conversion)) in plan.recorded.iter().enumerate() {
-        let limits = Limits::new(*column, None);
-        for run in all.runs() {
-            let numbers = &recording.numbers;
-            let is_simple =
-                limits.is_simple() && conversion.all_are(numbers, run.clone(), limits.contain());
-            if is_simple {
-                continue;
-            }
-            let is_outside = |row: &usize| !limits.admit(conversion.apply(numbers, *row));
-            outside.extend(run.filter(is_outside).map(|row| (row, place)));
+/// What is recorded of the rows that are used, in the stored unit of its column.
+pub(super) struct Converted {
+    pub(super) column: Column,
+    pub(super) values: Vec<f64>,
+    /// Whether all are known to be in its range.
+    pub(super) is_within: bool,
+}
+
+/// The rows to use.
+pub(super) struct Used {
+    pub(super) rows: UsedRows,
+    /// Rows with a recorded number out of range where the mapping leaves such rows out.
+    pub(super) surplus: Vec<Surplus>,
+    /// What is recorded of the rows, as far as it is converted already.
+    pub(super) converted: Vec<Converted>,
+}
+
+impl Used {
+    /// The rows of these level parts. Where too few would be left it is the column that is wrong and not its rows: all are used,
+    /// and the first number out of range is refused.
+    pub(super) fn new(
+        plan: &Plan,
+        recording: &Recording,
+        parts: &[Range<usize>],
+        fewest: usize,
+    ) -> Self {
+        let rows = UsedRows::new(parts.to_vec());
+        let converted = converted(plan, recording, &rows);
+        if plan.out_of_range == OutOfRange::Refuse {
+            return Self { rows, surplus: Vec::new(), converted };
         }
+        // Row by row only where a column has something to leave out.
+        let mut outside: Vec<(usize, usize)> = Vec::new();
+        for (place, one) in converted.iter().enumerate().filter(|(_, one)| !one.is_within) {
+            let limits = Limits::new(one.column, None);
+            let found = rows.runs().flatten().zip(&one.values);
+            let found = found.filter(|(_, value)| !limits.admit(**value));
+            outside.extend(found.map(|(row, _)| (row, place)));
+        }
+        // Of a row that is outside in several columns, the first of them.
+        outside.sort_unstable();
+        outside.dedup_by_key(|(row, _)| *row);
+        let surplus: Vec<Surplus> =
+            outside.into_iter().map(|(row, place)| (row, converted[place].column)).collect();
+        if surplus.is_empty() || rows.len() - surplus.len() < fewest {
+            return Self { rows, surplus: Vec::new(), converted };
+        }
+        Self { rows: rows.without(&surplus), surplus, converted: Vec::new() }
     }
-    // Of a row that is outside in several columns, the first of them.
-    outside.sort_unstable();
-    outside.dedup_by_key(|(row, _)| *row);
-    let surplus: Vec<Surplus> =
-        outside.into_iter().map(|(row, place)| (row, plan.recorded[place].0)).collect();
-    if surplus.is_empty() || all.len() - surplus.len() < fewest {
-        return (all, Vec::new());
-    }
-    (all.without(&surplus), surplus)
+}
+
+/// Each recorded quantity of these rows, in the order of the plan.
+fn converted(plan: &Plan, recording: &Recording, rows: &UsedRows) -> Vec<Converted> {
+    let of_column = |(column, conversion): &(Column, Conversion)| {
+        let limits = Limits::new(*column, None);
+        let mut values = Vec::with_capacity(rows.len());
+        let mut others = 0;
+        for run in rows.runs() {
+            let is_within = limits.contain();
+            others += conversion.append_to(&mut values, &recording.numbers, run, is_within);
+        }
+        let is_within = limits.is_simple() && others == 0;
+        Converted { column: *column, values, is_within }
+    };
+    plan.recorded.iter().map(of_column).collect()
 }
 
 /// The range of a column in its stored unit.
@@ -137,7 +166,7 @@ impl Limits {
     /// Whether a number lies between the two limits, without a branch: what asks of many numbers compares several in one instruction.
     fn contain(&self) -> impl Fn(f64) -> bool + use<> {
         let Self { low, high, is_optional, .. } = *self;
-        move |value| (low <= value && value <= high) || (value.is_nan() && is_optional)
+        move |value| ((low <= value) & (value <= high)) | (value.is_nan() & is_optional)
     }
 
     /// Whether all of them are certainly admitted: a quick look, of which `false` means that each has to be looked at.

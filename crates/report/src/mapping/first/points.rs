@@ -45,7 +45,7 @@ fn each_flight(mapping: &str, text: &str, mut read: impl FnMut(MappedReport)) ->
     let converter = stream.converter();
     while let Some(piece) = source.next_piece(&mut stream).ok()? {
         let rows = converter.rows(piece);
-        let (flights, _) = stream.add(&rows);
+        let (flights, _) = stream.add(rows);
         flights.into_iter().map(|flight| converter.report(flight)).for_each(&mut read);
     }
     stream.finish().into_iter().map(|flight| converter.report(flight)).for_each(&mut read);

@@ -46,7 +46,7 @@ fn read(mapping: &str, text: &str, limits: Limits) -> Result<Vec<Parsed>, Refusa
     stream.assembly.limit(limits);
     let (mut flights, mut refusal) = (Vec::new(), None);
     while let Some(piece) = stream.next_piece(&mut pieces)? {
-        let (ended, added) = stream.add(&stream.converter().rows(piece));
+        let (ended, added) = stream.add(stream.converter().rows(piece));
         flights.extend(ended);
         refusal = refusal.or(added.err());
     }
@@ -181,10 +181,57 @@ fn one_wrong_time_ends_no_other_flight_and_makes_no_halves() {
     assert_eq!(rows[301].0, 1);
     text = text.replace(&line, &wrong);
     let lenient = MAPPING.replace("format: 1,", "format: 1, bad_rows: LeaveRowOut,");
-    let refusal = read(&lenient, &text, Limits::default()).unwrap_err();
-    assert_eq!(refusal.kind.code(), "flight-came-back");
-    assert_eq!(refusal.line, 306);
-    assert!(matches!(&refusal.found, crate::Found::Text(text) if text == "T-1 F1"));
+    let without: Vec<_> =
+        rows.iter().enumerate().filter(|(at, _)| *at != 301).map(|(_, r)| *r).collect();
+    let expected = by_flight(&read(&lenient, &self::text(&without), Limits::default()).unwrap());
+    let mut pieces = Pieces::new(text.as_bytes()).unwrap();
+    let mapping = Mapping::from_ron(&lenient).unwrap();
+    let mut stream = Stream::begin(&mapping, &mut pieces, None).unwrap();
+    let mut flights = Vec::new();
+    while let Some(piece) = stream.next_piece(&mut pieces).unwrap() {
+        let (ended, added) = stream.add(stream.converter().rows(piece));
+        added.unwrap();
+        flights.extend(ended);
+    }
+    flights.extend(stream.finish());
+    let (mut reports, mut others) = (Vec::new(), 0);
+    for flight in flights {
+        match stream.converter().report(flight) {
+            MappedReport::Report(parsed) => reports.push(*parsed),
+            MappedReport::WithoutCruise { rows: 1, .. } => others += 1,
+            other => panic!("{other:?}"),
+        }
+    }
+    assert_eq!((by_flight(&reports), others), (expected, 1));
+}
+
+/// Two hours ahead, or a year: the row is left out and named, and the rows behind it are not; sorted, alternating, and where the mapping
+/// begins another flight after a gap.
+#[test]
+fn a_row_far_ahead_costs_itself() {
+    let lenient = MAPPING.replace("format: 1,", "format: 1, bad_rows: LeaveRowOut,");
+    let split = lenient.replace("format: 1,", "format: 1, new_flight_after_s: 1800,");
+    let mut rows = fleet();
+    rows.retain(|(_, flight, _)| *flight == 1);
+    for (mapping, rows, later_s) in [
+        (&lenient, rows.clone(), 7_200),
+        (&lenient, rows.clone(), 31_536_000),
+        (&split, rows.clone(), 7_200),
+        (&lenient, by_time(&rows), 7_200),
+    ] {
+        let at = 1201;
+        let (tail, flight, second) = rows[at];
+        let mut lines: Vec<String> = text(&rows).lines().map(str::to_owned).collect();
+        lines[1 + at] = row(tail, flight, second + later_s).trim_end().to_owned();
+        let found = read(mapping, &(lines.join("\n") + "\n"), Limits::default()).unwrap();
+        let mut without = rows.clone();
+        without.remove(at);
+        let expected = read(mapping, &text(&without), Limits::default()).unwrap();
+        assert_eq!(by_flight(&found), by_flight(&expected));
+        let findings = found.iter().flat_map(|parsed| &parsed.findings);
+        let line = findings.filter(|one| one.code == "mapped-rows-bad").map(|one| one.line);
+        assert_eq!(line.collect::<Vec<_>>(), [Some(at + 2)]);
+    }
 }
 
 #[test]

@@ -9,9 +9,11 @@ use std::sync::Arc;
 use flight::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::columns::{at_offset, seconds_east};
+use super::columns::seconds_east;
+use super::line_numbers::LineNumbers;
 use super::rows::{Event, FARTHEST_S, Rows, Times};
 use super::{Layout, Text};
+use crate::mapping::numbers::Block;
 use crate::mapping::pieces::{Content, Piece};
 use crate::mapping::plan::TimeForm;
 
@@ -31,13 +33,21 @@ pub struct Batch {
 pub enum BatchColumn {
     /// Numbers, NaN where there is none.
     Numbers(Vec<f64>),
-    /// Nanoseconds since 1970 in UTC, `None` where there is no instant.
-    Instants(Vec<Option<i64>>),
-    /// Nanoseconds since 1970 on a clock of which only the mapping says how far it is from UTC, `None` where there is no time.
-    LocalTimes(Vec<Option<i64>>),
+    /// Numbers of which it is known that each is there and finite.
+    Finite(Vec<f64>),
+    /// Nanoseconds since 1970 in UTC, [`NO_INSTANT`] where there is none.
+    Instants(Vec<i64>),
+    /// Nanoseconds since 1970 on a clock of which only the mapping says how far it is from UTC, [`NO_INSTANT`] where there is no
+    /// time.
+    LocalTimes(Vec<i64>),
     /// Texts, each with the number of rows that it holds for; empty where there is none.
     Texts(Vec<(String, usize)>),
 }
+
+/// Stands where there is no instant: the first of all, in the year 1677, which pandas and numpy take for the same.
+pub const NO_INSTANT: i64 = i64::MIN;
+
+const SECOND_NS: i64 = 1_000_000_000;
 
 /// The line on which a table's first row would be in a text: below the names.
 const FIRST_LINE: usize = 2;
@@ -74,19 +84,17 @@ impl Batch {
     fn cells(&self, place: usize) -> Cells<'_> {
         match self.column(place) {
             None => Box::new(core::iter::repeat_n(String::new(), self.rows)),
-            Some(BatchColumn::Numbers(numbers)) => Box::new(
+            Some(BatchColumn::Numbers(numbers) | BatchColumn::Finite(numbers)) => Box::new(
                 numbers
                     .iter()
                     .map(|number| if number.is_nan() { String::new() } else { number.to_string() }),
             ),
             Some(BatchColumn::Instants(instants)) => Box::new(instants.iter().map(|instant| {
-                let instant = instant.and_then(instant_of);
-                instant.map_or_else(String::new, |instant| instant.to_string())
+                instant_of(*instant).map_or_else(String::new, |instant| instant.to_string())
             })),
-            Some(BatchColumn::LocalTimes(times)) => Box::new(times.iter().map(|time| {
-                let time = time.and_then(instant_of);
-                time.map_or_else(String::new, local_text)
-            })),
+            Some(BatchColumn::LocalTimes(times)) => Box::new(
+                times.iter().map(|time| instant_of(*time).map_or_else(String::new, local_text)),
+            ),
             Some(BatchColumn::Texts(texts)) => Box::new(
                 texts.iter().flat_map(|(text, rows)| core::iter::repeat_n(text.clone(), *rows)),
             ),
@@ -105,8 +113,11 @@ pub fn line_of_names(names: &[String]) -> String {
 
 type Cells<'a> = Box<dyn Iterator<Item = String> + 'a>;
 
-/// The instant that is so many nanoseconds after 1970: there is one for each, from 1677 to 2262.
+/// The instant that is so many nanoseconds after 1970: there is one for each, from 1677 to 2262, but for the first.
 pub(super) fn instant_of(nanoseconds: i64) -> Option<Timestamp> {
+    if nanoseconds == NO_INSTANT {
+        return None;
+    }
     Timestamp::from_nanosecond(i128::from(nanoseconds)).ok()
 }
 
@@ -114,6 +125,11 @@ pub(super) fn instant_of(nanoseconds: i64) -> Option<Timestamp> {
 #[must_use]
 pub fn local_text(time: Timestamp) -> String {
     time.to_zoned(TimeZone::UTC).datetime().to_string()
+}
+
+/// Whether each row has an instant.
+fn are_there(instants: &[i64]) -> bool {
+    instants.iter().map(|instant| u64::from(*instant == NO_INSTANT)).sum::<u64>() == 0
 }
 
 impl Layout {
@@ -137,31 +153,44 @@ impl Layout {
 
     /// Reads the rows of a batch.
     pub(super) fn rows_of_batch(&self, mut batch: Batch) -> Rows {
-        if let Some((times, events)) = self.times_and_texts(&batch) {
+        if let Some((lacks, events, times)) = self.columns_of_rows(&mut batch) {
             let piece = Piece { first_line: batch.first_line(), ..Piece::default() };
             let mut rows = Rows::new(self, piece);
             rows.times = times;
-            rows.numbers = self.numbers(&mut batch);
-            rows.lines = (batch.first_line()..batch.first_line() + batch.rows).collect();
+            rows.block = Block::of(self.numbers(&mut batch), lacks);
+            rows.lines = LineNumbers::from_line(batch.first_line(), batch.rows);
             rows.events = events;
             return rows;
         }
         let text = Arc::new(batch.to_text(self.columns));
         let content = Content::Text(text);
-        self.rows(Piece { content, first_line: batch.first_line(), ..Piece::default() })
+        self.read_rows(Piece { content, first_line: batch.first_line(), ..Piece::default() })
     }
 
-    /// `None` where a column is of another kind than the mapping asks for, or holds what has to be refused.
-    fn times_and_texts(&self, batch: &Batch) -> Option<(Times, Vec<(usize, Event)>)> {
+    /// Which inputs lack a number, where the texts change, and the times, which it takes out of the batch. `None` where a column
+    /// is of another kind than the mapping asks for, or holds what has to be refused.
+    fn columns_of_rows(
+        &self,
+        batch: &mut Batch,
+    ) -> Option<(Vec<bool>, Vec<(usize, Event)>, Times)> {
+        let mut lacks = Vec::with_capacity(self.plan.inputs.len());
         for (input, field) in self.plan.inputs.iter().zip(&self.fields.inputs) {
-            let BatchColumn::Numbers(values) = batch.column(*field)? else { return None };
+            let values = match batch.column(*field)? {
+                BatchColumn::Numbers(values) => values.as_slice(),
+                BatchColumn::Finite(_) => &[],
+                _ => return None,
+            };
             // Counted, without a way out of the loop: nearly always none is.
-            let infinite = values.iter().map(|value| u64::from(value.is_infinite()));
-            if !input.values.is_empty() || infinite.sum::<u64>() > 0 {
+            let not_finite = values.iter().map(|value| u64::from(!value.is_finite())).sum::<u64>();
+            if !input.values.is_empty()
+                || (not_finite > 0 && values.iter().any(|x| x.is_infinite()))
+            {
                 return None;
             }
+            lacks.push(not_finite > 0);
         }
-        Some((self.times(batch)?, self.texts_of_rows(batch)?))
+        let events = self.texts_of_rows(batch)?;
+        Some((lacks, events, self.times(batch)?))
     }
 
     /// The numbers of each input, taken out of the batch.
@@ -171,10 +200,13 @@ impl Layout {
         for (index, field) in inputs.iter().enumerate() {
             let column = batch.columns.iter_mut().find(|(known, _)| known == field);
             numbers.push(match column {
-                Some((_, BatchColumn::Numbers(values))) if inputs[index + 1..].contains(field) => {
-                    values.clone()
+                Some((_, BatchColumn::Numbers(values) | BatchColumn::Finite(values))) => {
+                    if inputs[index + 1..].contains(field) {
+                        values.clone()
+                    } else {
+                        core::mem::take(values)
+                    }
                 }
-                Some((_, BatchColumn::Numbers(values))) => core::mem::take(values),
                 // Every input was found to be one of numbers.
                 _ => vec![f64::NAN; batch.rows],
             });
@@ -182,23 +214,31 @@ impl Layout {
         numbers
     }
 
-    fn times(&self, batch: &Batch) -> Option<Times> {
-        let column = batch.column(self.fields.time)?;
-        match (&self.plan.time, column) {
+    fn times(&self, batch: &mut Batch) -> Option<Times> {
+        let place = self.fields.time;
+        let found = batch.columns.iter_mut().find(|(known, _)| *known == place);
+        match (&self.plan.time, &mut found?.1) {
             (
                 TimeForm::Timestamp { date_column: None, format: None, .. },
                 BatchColumn::Instants(instants),
-            ) => Some(Times::Nanoseconds(instants.iter().copied().collect::<Option<_>>()?)),
+            ) => are_there(instants).then(|| Times::Nanoseconds(core::mem::take(instants))),
             (
                 TimeForm::Timestamp { date_column: None, format: None, utc_offset },
                 BatchColumn::LocalTimes(times),
             ) => {
-                let offset = utc_offset.as_deref().and_then(seconds_east)?;
-                let instants =
-                    times.iter().map(|time| at_offset(time.and_then(instant_of)?, offset));
-                Some(Times::Instants(instants.collect::<Option<_>>()?))
+                let ahead = utc_offset.as_deref().and_then(seconds_east)?.checked_mul(SECOND_NS)?;
+                // Of those that are too near to the ends of what can be counted the text is read.
+                let can_be_shifted = |time: &i64| time.checked_sub(ahead).is_some();
+                if !are_there(times) || !times.iter().all(can_be_shifted) {
+                    return None;
+                }
+                times.iter_mut().for_each(|time| *time -= ahead);
+                Some(Times::Nanoseconds(core::mem::take(times)))
             }
-            (TimeForm::Seconds { per_second, .. }, BatchColumn::Numbers(numbers)) => {
+            (
+                TimeForm::Seconds { per_second, .. },
+                BatchColumn::Numbers(numbers) | BatchColumn::Finite(numbers),
+            ) => {
                 let seconds: Vec<f64> = numbers.iter().map(|number| number / per_second).collect();
                 let is_near = |seconds: &f64| seconds.abs() <= FARTHEST_S;
                 seconds.iter().all(is_near).then_some(Times::Seconds(seconds))

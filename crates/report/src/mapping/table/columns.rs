@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use flight::Timestamp;
 
+use super::line_numbers::LineNumbers;
 use super::rows::{Event, FARTHEST_S, Rows, Times};
 use super::{Layout, Text};
 use crate::cruise_text::parse_instant;
@@ -20,7 +21,7 @@ impl Layout {
             return rows;
         }
         let text = Arc::new(table.text.text(0..table.rows));
-        self.rows(Piece { content: Content::Text(text), first_line, ..Piece::default() })
+        self.read_rows(Piece { content: Content::Text(text), first_line, ..Piece::default() })
     }
 
     fn rows_of_columns(&self, table: &mut TableRows, first_line: usize) -> Option<Rows> {
@@ -54,7 +55,7 @@ impl Layout {
         Some(Rows {
             numbers: numbers.collect(),
             times,
-            lines: (first_line..first_line + table.rows).collect(),
+            lines: LineNumbers::from_line(first_line, table.rows),
             events,
             ..Rows::new(self, piece)
         })

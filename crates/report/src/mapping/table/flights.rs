@@ -13,19 +13,25 @@ use super::rows::{Event, Rows, Times};
 use super::{Layout, Recording, Text};
 use crate::decode::MAXIMUM_TEXT_BYTES;
 use crate::mapping::file::BadRows;
+use crate::mapping::numbers::Block;
 use crate::mapping::pieces::Piece;
 use crate::mapping::plan::TimeForm;
 use crate::refusal::{Found, Refusal, RefusalKind};
 
 const HALF_A_DAY_S: f64 = 43_200.0;
+/// Where a recording goes back behind a step of more than this, it is the time before which is wrong and not those behind, s: clocks
+/// are set back by less. Our choice.
+const FAR_AHEAD_S: f64 = 600.0;
 
 /// The flights that are not yet at their end, and where the rows end.
 #[derive(Debug, Default)]
 pub(in crate::mapping) struct Assembly {
-    current: Option<Recording>,
+    current: Option<Box<Recording>>,
     open: Open,
     /// `None` before the first change of flight.
     clock: Option<Clock>,
+    /// The numbers of the piece that is being added.
+    numbers: Arc<Block>,
     /// Flights that have ended.
     ended: Vec<Recording>,
     /// Number of the last line, and its length in characters.
@@ -54,8 +60,13 @@ impl Assembly {
     ///
     /// # Errors
     /// The first row that is bad, where the mapping refuses such rows.
-    pub(in crate::mapping) fn add(&mut self, layout: &Layout, rows: &Rows) -> Result<(), Refusal> {
-        let added = self.add_piece(layout, rows);
+    pub(in crate::mapping) fn add(
+        &mut self,
+        layout: &Layout,
+        mut rows: Rows,
+    ) -> Result<(), Refusal> {
+        self.numbers = Arc::new(core::mem::take(&mut rows.block));
+        let added = self.add_piece(layout, &rows);
         if added.is_err() {
             self.stop();
         }
@@ -75,7 +86,7 @@ impl Assembly {
         if !rows.piece.is_empty() {
             self.end = rows.piece.end();
         } else if let Some(line) = rows.lines.last() {
-            self.end = (*line, 0);
+            self.end = (line, 0);
         }
         if let Some(current) = &mut self.current {
             current.keep(&rows.piece)?;
@@ -113,7 +124,7 @@ impl Assembly {
         self.open.give_out_all();
         self.end_given_out();
         if let Some(current) = self.current.take() {
-            self.end_flight(current);
+            self.end_flight(*current);
         }
     }
 
@@ -229,9 +240,11 @@ impl Assembly {
             return Ok(());
         }
         let longest_s = layout.plan.new_flight_after_s.unwrap_or(f64::INFINITY);
+        let numbers = Arc::clone(&self.numbers);
+        let read = (rows, &numbers);
         let recording = self.current(layout);
         if recording.extend_times(layout, &rows.times, range.clone(), longest_s) {
-            recording.extend(rows, range);
+            recording.extend(read, range);
             return Ok(());
         }
         let mut from = range.start;
@@ -240,8 +253,14 @@ impl Assembly {
             let mut time_s = recording.seconds(layout, &rows.times, row);
             let previous_s = recording.time_s.last().copied();
             let gap_s = previous_s.map_or(0.0, |previous| time_s - previous);
-            if layout.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s) {
-                recording.extend(rows, from..row);
+            let is_gap = layout.plan.new_flight_after_s.is_some_and(|longest_s| gap_s > longest_s);
+            // A gap behind which the next row goes back is none: its row is left out with that one.
+            let mut next_s = || {
+                let next = (row + 1 < range.end).then_some(row + 1)?;
+                Some(recording.seconds(layout, &rows.times, next))
+            };
+            if is_gap && next_s().is_none_or(|next_s| next_s > time_s) {
+                recording.extend(read, from..row);
                 from = row;
                 let texts = Arc::clone(&recording.texts);
                 self.begin(layout, &texts, rows)?;
@@ -249,15 +268,20 @@ impl Assembly {
             } else if let Some(previous) = previous_s
                 && time_s <= previous
             {
-                recording.extend(rows, from..row);
+                recording.extend(read, from..row);
                 from = row + 1;
-                let refusal = not_increasing(layout, rows, row, previous);
+                if !recording.last_is_ahead_of(time_s, layout) {
+                    let refusal = not_increasing(layout, rows, row, previous);
+                    self.leave_out(layout, refusal)?;
+                    continue;
+                }
+                from = row;
+                let refusal = recording.take_last(layout, time_s);
                 self.leave_out(layout, refusal)?;
-                continue;
             }
             self.current(layout).time_s.push(time_s);
         }
-        self.current(layout).extend(rows, from..range.end);
+        self.current(layout).extend(read, from..range.end);
         Ok(())
     }
 }
@@ -270,7 +294,7 @@ fn refuse_coming_back(
     gone: Gone,
 ) -> Refusal {
     // A row without a time is not refused.
-    let line = row.map_or(rows.piece.first_line, |row| rows.lines[row]);
+    let line = row.map_or(rows.piece.first_line, |row| rows.lines.at(row));
     let field = layout.fields.texts.iter().rev().find_map(|(_, text)| match text {
         Text::Field(field) => Some(*field),
         Text::Constant(_) => None,
@@ -282,14 +306,18 @@ fn refuse_coming_back(
 }
 
 fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Refusal {
-    let line = rows.lines[row];
+    let line = rows.lines.at(row);
     let text = rows.piece.line(line);
     let field = layout.fields.time;
-    let mut reader = super::reader(layout.form(), &text);
-    let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
-    let found = Found::text(record.get(field).unwrap_or_default());
+    let found = Found::text(&field_of(layout, &text, field));
     let kind = RefusalKind::TimeNotIncreasing { previous, unit: "s" };
     layout.refuse_field((line, &text), field, found, kind)
+}
+
+fn field_of(layout: &Layout, line: &str, field: usize) -> String {
+    let mut reader = super::reader(layout.form(), line);
+    let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
+    record.get(field).unwrap_or_default().to_owned()
 }
 
 impl Recording {
@@ -315,12 +343,34 @@ impl Recording {
         Ok(())
     }
 
-    /// Everything but the times of rows.
-    fn extend(&mut self, rows: &Rows, range: core::ops::Range<usize>) {
-        self.lines.extend_from_slice(&rows.lines[range.clone()]);
-        for (column, numbers) in self.numbers.iter_mut().zip(&rows.numbers) {
-            column.extend_from_slice(&numbers[range.clone()]);
+    /// Whether the last row is far ahead of the one before, and of this time, which follows that one.
+    fn last_is_ahead_of(&self, time_s: f64, layout: &Layout) -> bool {
+        // A time of day that is ahead may have passed midnight.
+        let is_of_day = matches!(layout.plan.time, TimeForm::TimeOfDay { .. });
+        match self.time_s.as_slice() {
+            [.., before, last] if !is_of_day && layout.plan.bad_rows == BadRows::LeaveRowOut => {
+                last - before > FAR_AHEAD_S && time_s > *before
+            }
+            _ => false,
         }
+    }
+
+    /// Takes the last row away, behind which the flight goes on at a time before it.
+    fn take_last(&mut self, layout: &Layout, next_s: f64) -> Refusal {
+        let line = self.lines.last().unwrap_or_default();
+        let text = self.line(line).into_owned();
+        let found = Found::text(&field_of(layout, &text, layout.fields.time));
+        self.time_s.pop();
+        self.numbers.pop();
+        self.lines.pop();
+        let kind = RefusalKind::TimeAhead { next: next_s, unit: "s" };
+        layout.refuse_field((line, &text), layout.fields.time, found, kind)
+    }
+
+    /// Everything but the times of rows.
+    fn extend(&mut self, (rows, numbers): (&Rows, &Arc<Block>), range: core::ops::Range<usize>) {
+        self.lines.extend(&rows.lines, range.clone());
+        self.numbers.extend(numbers, range);
     }
 
     /// Adds the times of all these rows, if each is later than the one before, by `longest_s` at most: nearly always. Else none

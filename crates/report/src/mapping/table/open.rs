@@ -71,10 +71,13 @@ pub(super) struct Open {
 
 #[derive(Debug)]
 struct Stopped {
-    recording: Recording,
+    /// Of rows that alternate, one stops with each of them: it stays where it is.
+    recording: Box<Recording>,
     /// The clock when it stopped: the end of a flight without a row.
     clock_s: Option<f64>,
     may_go_on: bool,
+    /// Whether a row that is not of it has its texts: a wrong time, behind which it goes on.
+    may_come_back: bool,
 }
 
 /// A flight that was given out.
@@ -120,7 +123,7 @@ impl Open {
     }
 
     /// A flight stops being the current one, for good or not.
-    pub(super) fn stop(&mut self, recording: Recording, may_go_on: bool, clock: &Clock) {
+    pub(super) fn stop(&mut self, recording: Box<Recording>, may_go_on: bool, clock: &Clock) {
         self.stops += 1;
         self.numbers += bytes_of(&recording);
         if self.tails_are_told {
@@ -131,7 +134,8 @@ impl Open {
         } else {
             self.remember(&recording, FlightLimit::Gap { gap_s: clock.gap_s });
         }
-        let stopped = Stopped { recording, clock_s: clock.now_s(), may_go_on };
+        let clock_s = clock.now_s();
+        let stopped = Stopped { recording, clock_s, may_go_on, may_come_back: false };
         self.order.insert(self.stops, stopped);
     }
 
@@ -143,7 +147,7 @@ impl Open {
         &mut self,
         texts: &Texts,
         arrival: Arrival<'_>,
-    ) -> Result<Option<Recording>, Gone> {
+    ) -> Result<Option<Box<Recording>>, Gone> {
         if let Some(place) = self.places.remove(texts) {
             let goes_on = self.order.get(&place).is_some_and(|stopped| {
                 let recording = &stopped.recording;
@@ -157,13 +161,33 @@ impl Open {
             }
             // It is over, whether or not it was given out.
             if let Some(mut stopped) = self.order.remove(&place) {
-                stopped.may_go_on = false;
+                (stopped.may_go_on, stopped.may_come_back) = (false, true);
                 let limit = FlightLimit::Gap { gap_s: arrival.clock.gap_s };
                 self.remember(&stopped.recording, limit);
                 self.order.insert(place, stopped);
             }
         }
-        self.refuse_gone(texts, arrival).map(|()| None)
+        match self.refuse_gone(texts, arrival) {
+            Ok(()) => Ok(None),
+            Err(gone) => self.come_back(texts, arrival).map(Some).ok_or(gone),
+        }
+    }
+
+    /// The flight with these texts that seemed to be over by a row with a wrong time, if it is still held and goes on with this one.
+    fn come_back(&mut self, texts: &Texts, arrival: Arrival<'_>) -> Option<Box<Recording>> {
+        let goes_on = |stopped: &Stopped| {
+            let recording = &stopped.recording;
+            let span_s = recording.span_s().filter(|_| recording.texts == *texts);
+            stopped.may_come_back
+                && span_s.is_some_and(|span_s| arrival.is_of(span_s, recording.time_s.len()))
+        };
+        let place = *self.order.iter().rev().find(|(_, stopped)| goes_on(stopped))?.0;
+        let recording = self.remove(place)?.recording;
+        if let (Some(gone), Some(line)) = (self.gone.get_mut(texts), recording.lines.last()) {
+            gone.retain(|gone| gone.line != line);
+        }
+        self.alternates = true;
+        Some(recording)
     }
 
     /// Refuses a row of a flight that was given out.
@@ -228,7 +252,7 @@ impl Open {
         let has_ended = |stopped: &Stopped| {
             let last_s = stopped.recording.span_s().map(|(_, last_s)| last_s).or(stopped.clock_s);
             let is_past = |last_s| clock.since_s(now_s, last_s) > clock.gap_s;
-            !stopped.may_go_on || last_s.is_some_and(is_past)
+            !(stopped.may_go_on || stopped.may_come_back) || last_s.is_some_and(is_past)
         };
         if is_soon {
             return;
@@ -254,7 +278,7 @@ impl Open {
             self.places.remove(&recording.texts);
             self.remember(&recording, limit);
         }
-        self.given_out.push(recording);
+        self.given_out.push(*recording);
         true
     }
 
@@ -290,7 +314,7 @@ impl Open {
     /// Keeps of a flight that is over what its rows are known by, should they come back.
     fn remember(&mut self, recording: &Recording, limit: FlightLimit) {
         if let (Some(span_s), Some(line)) = (recording.span_s(), recording.lines.last()) {
-            let gone = Gone { span_s, rows: recording.time_s.len(), line: *line, limit };
+            let gone = Gone { span_s, rows: recording.time_s.len(), line, limit };
             self.gone.entry(Arc::clone(&recording.texts)).or_default().push(gone);
         }
     }
@@ -303,7 +327,7 @@ impl Open {
 
     /// Bytes of text from the first piece on that a flight holds.
     fn held_text(&mut self, current: &Recording) -> usize {
-        let stopped = self.order.values().map(|stopped| &stopped.recording);
+        let stopped = self.order.values().map(|stopped| &*stopped.recording);
         let firsts = stopped.chain([current]).filter_map(|recording| recording.pieces.first());
         let first = firsts.map(|piece| piece.first_line).min().unwrap_or(usize::MAX);
         while let Some(piece) = self.texts.first_entry()
@@ -316,6 +340,8 @@ impl Open {
 }
 
 fn bytes_of(recording: &Recording) -> usize {
-    let rows = recording.time_s.len() * (recording.numbers.len() + 2) * size_of::<f64>();
+    // A time and, of rows that alternate, a run of lines.
+    let each = recording.numbers.bytes_of_row() + 3 * size_of::<f64>();
+    let rows = recording.time_s.len() * each;
     FLIGHT_BYTES + rows + recording.pieces.len() * size_of::<Piece>()
 }

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use flight::Timestamp;
 
+use super::line_numbers::LineNumbers;
+use crate::mapping::numbers::{Numbers, retain};
 use crate::mapping::pieces::Piece;
 use crate::mapping::plan::{Fill, Plan};
 use crate::refusal::Refusal;
@@ -22,10 +24,10 @@ pub(in crate::mapping) struct Recording {
     pub(in crate::mapping) origin: Timestamp,
     /// Strictly increasing.
     pub(in crate::mapping) time_s: Vec<f64>,
-    /// `[input][row]`; NaN where an optional number is not available.
-    pub(in crate::mapping) numbers: Vec<Vec<f64>>,
+    /// NaN where an optional number is not available.
+    pub(in crate::mapping) numbers: Numbers,
     /// Physical line of each row.
-    pub(in crate::mapping) lines: Vec<usize>,
+    pub(in crate::mapping) lines: LineNumbers,
     /// Rows that lack a number that the report needs.
     pub(in crate::mapping) left_out: usize,
     pub(in crate::mapping) first_left_out: Option<usize>,
@@ -42,15 +44,15 @@ pub(in crate::mapping) struct Recording {
 }
 
 impl Recording {
-    pub(super) fn new(texts: Arc<[String; 3]>, inputs: usize) -> Self {
-        Self {
+    pub(super) fn new(texts: Arc<[String; 3]>, inputs: usize) -> Box<Self> {
+        Box::new(Self {
             texts,
             pieces: Vec::new(),
             kept_bytes: 0,
             origin: Timestamp::UNIX_EPOCH,
             time_s: Vec::new(),
-            numbers: vec![Vec::new(); inputs],
-            lines: Vec::new(),
+            numbers: Numbers::new(inputs),
+            lines: LineNumbers::default(),
             left_out: 0,
             first_left_out: None,
             lacking: None,
@@ -59,7 +61,7 @@ impl Recording {
             first_bad: None,
             days: 0.0,
             last_time_of_day_s: f64::NEG_INFINITY,
-        }
+        })
     }
 
     pub(super) fn is_of(&self, texts: &[String; 3]) -> bool {
@@ -79,7 +81,14 @@ impl Recording {
 
     /// Fills slow parameters, then leaves out the rows that lack a number.
     pub(in crate::mapping) fn settle(&mut self, plan: &Plan) {
-        for (input, numbers) in plan.inputs.iter().zip(&mut self.numbers) {
+        let asked = |input: usize| {
+            plan.inputs[input].is_required || !matches!(plan.inputs[input].fill, Fill::Not)
+        };
+        if !self.numbers.may_lack(asked) {
+            return;
+        }
+        let columns = self.numbers.make_own();
+        for (input, numbers) in plan.inputs.iter().zip(&mut *columns) {
             let filled = match input.fill {
                 Fill::Not => 0,
                 Fill::Hold(age_s) => hold(&self.time_s, numbers, age_s),
@@ -89,15 +98,14 @@ impl Recording {
                 self.filled.push((input.name.clone(), filled));
             }
         }
-        let required =
-            || plan.inputs.iter().zip(&self.numbers).filter(|(input, _)| input.is_required);
+        let required = || plan.inputs.iter().zip(&*columns).filter(|(input, _)| input.is_required);
         if !required().any(|(_, numbers)| numbers.iter().any(|number| number.is_nan())) {
             return;
         }
         let lacks = |row: usize| {
             plan.inputs
                 .iter()
-                .zip(&self.numbers)
+                .zip(&*columns)
                 .position(|(input, numbers)| input.is_required && numbers[row].is_nan())
         };
         let missing: Vec<Option<usize>> = (0..self.time_s.len()).map(lacks).collect();
@@ -107,22 +115,15 @@ impl Recording {
         }
         self.left_out += counts.iter().sum::<usize>();
         if let Some(row) = missing.iter().position(Option::is_some) {
-            self.first_left_out = Some(self.lines[row]);
+            self.first_left_out = Some(self.lines.at(row));
             let most = (0..counts.len()).max_by_key(|input| (counts[*input], usize::MAX - input));
             self.lacking = most.map(|input| plan.inputs[input].name.clone());
         }
         let keep: Vec<bool> = missing.iter().map(Option::is_none).collect();
-        for numbers in &mut self.numbers {
-            retain(numbers, &keep);
-        }
+        self.numbers.retain(&keep);
         retain(&mut self.time_s, &keep);
-        retain(&mut self.lines, &keep);
+        self.lines.retain(&keep);
     }
-}
-
-fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
-    let mut kept = keep.iter();
-    values.retain(|_| kept.next().copied().unwrap_or(true));
 }
 
 /// The last value, where it is no older than `age_s`; how many rows it stands in.

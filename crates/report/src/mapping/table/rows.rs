@@ -7,9 +7,11 @@ use std::sync::Arc;
 
 use flight::Timestamp;
 
+use super::line_numbers::LineNumbers;
 use super::{Layout, Text, line_of, means_nothing, reader, settle};
 use crate::cruise_text::parse_instant;
 use crate::mapping::file::BadRows;
+use crate::mapping::numbers::Block;
 use crate::mapping::pieces::{Content, Piece};
 use crate::mapping::plan::{Input, TimeForm};
 use crate::number;
@@ -20,10 +22,12 @@ use crate::refusal::{Found, Refusal, RefusalKind};
 pub struct Rows {
     pub(super) piece: Piece,
     pub(super) times: Times,
-    /// `[input][row]`; NaN where there is no number.
+    /// `[input][row]`, while rows are read; NaN where there is no number.
     pub(super) numbers: Vec<Vec<f64>>,
+    /// The same when all are read.
+    pub(super) block: Block,
     /// Physical line of each row.
-    pub(super) lines: Vec<usize>,
+    pub(super) lines: LineNumbers,
     /// What comes before a row, in order.
     pub(super) events: Vec<(usize, Event)>,
     /// The last flight met, for its texts.
@@ -74,7 +78,16 @@ impl Times {
 
 impl Layout {
     /// Reads the rows of a piece. With a mapping that refuses bad rows, it ends at the first one.
-    pub(in crate::mapping) fn rows(&self, mut piece: Piece) -> Rows {
+    pub(in crate::mapping) fn rows(&self, piece: Piece) -> Rows {
+        let mut rows = self.read_rows(piece);
+        let numbers = core::mem::take(&mut rows.numbers);
+        if numbers.iter().any(|column| !column.is_empty()) {
+            rows.block = Block::new(numbers);
+        }
+        rows
+    }
+
+    pub(super) fn read_rows(&self, mut piece: Piece) -> Rows {
         if let Some(batch) = piece.batch.take().and_then(Arc::into_inner) {
             // What is kept of a piece is counted, whatever its form.
             let bytes = batch.bytes();
@@ -141,7 +154,8 @@ impl Rows {
             piece,
             times: Times::new(&layout.plan.time),
             numbers: vec![Vec::new(); layout.plan.inputs.len()],
-            lines: Vec::new(),
+            block: Block::default(),
+            lines: LineNumbers::default(),
             events: Vec::new(),
             texts: None,
             cache: InstantCache::default(),
