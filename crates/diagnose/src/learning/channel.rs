@@ -51,7 +51,7 @@ pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<Lear
         let sums = ChannelSums::new(&reduced, &weights);
         let mut evidence = Evidence::new(&sums, &prior);
         dials = evidence.likeliest(dials, if weighing == 1 { &FIRST_STEPS } else { &STEPS });
-        let left = reduced.left(&evidence.solved(&dials)?.mean);
+        let left = reduced.left(&evidence.mean(&dials)?);
         let next = weights.after(&reduced, &left, &dials);
         if next.settled(&weights) || weighing == MOST_WEIGHINGS {
             let unseen = raise_scatter(&reduced, &weights, &mut evidence, &mut dials)?;

@@ -8,7 +8,7 @@ use faer::Mat;
 
 use crate::learning::dials::{Dials, MOST_DIALS, NOISE_DIALS, SCALES};
 use crate::learning::sums::ChannelSums;
-use crate::math::cholesky::Cholesky;
+use crate::math::lower::Lower;
 use crate::priors::{
     PRIOR_LEVEL_ALONE, SCALE_LN_DEVIATIONS, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
 };
@@ -39,7 +39,9 @@ pub(super) struct Evidence<'a> {
     /// The Gram matrix formed last, with Σ ln(1 + ρ²λ), and its ratio.
     gram: Option<(f64, Mat<f64>, f64)>,
     /// The prior precision formed last, with `ln|K|`, and its scales.
-    precision: Option<([f64; SCALES], Mat<f64>, f64)>,
+    precision: Option<([f64; SCALES], Lower, f64)>,
+    /// Cholesky factor of the posterior precision that was looked at last.
+    factor: Lower,
 }
 
 /// Posterior of the columns at one point: mean, and a root of the covariance.
@@ -49,8 +51,8 @@ pub(super) struct Solved {
 }
 
 impl<'a> Evidence<'a> {
-    pub(super) const fn new(sums: &'a ChannelSums, prior: &'a [Mat<f64>]) -> Self {
-        Self { sums, prior, gram: None, precision: None }
+    pub(super) fn new(sums: &'a ChannelSums, prior: &'a [Mat<f64>]) -> Self {
+        Self { sums, prior, gram: None, precision: None, factor: Lower::default() }
     }
 
     /// Factors that this channel has.
@@ -73,23 +75,25 @@ impl<'a> Evidence<'a> {
             return f64::NEG_INFINITY;
         }
         let square = dials.within * dials.within;
-        let Some(factor) = self.factor(dials) else { return f64::NEG_INFINITY };
+        if self.factor(dials).is_none() {
+            return f64::NEG_INFINITY;
+        }
         let (Some((_, gram, ln_common)), Some((_, _, ln_prior))) = (&self.gram, &self.precision)
         else {
             return f64::NEG_INFINITY;
         };
-        let width = gram.nrows() - 1;
+        let width = self.factor.size();
         let mut projected = right_side(gram);
-        factor.solve_lower(&mut projected);
-        let explained: f64 = projected.col_as_slice(0).iter().map(|value| value * value).sum();
+        self.factor.solve_lower(&mut projected);
+        let explained: f64 = projected.iter().map(|value| value * value).sum();
         let left = (gram[(width, width)] - explained / square) / square;
         let ln_noise = self.sums.values * square.ln() + ln_common;
-        let likelihood = -0.5 * (ln_noise + ln_prior + factor.ln_determinant() + left);
+        let likelihood = -0.5 * (ln_noise + ln_prior + self.factor.ln_determinant() + left);
         likelihood + self.ln_prior(dials)
     }
 
-    /// Cholesky factor of the posterior precision K⁻¹ + G/w²; Gram matrix and prior are then at hand.
-    fn factor(&mut self, dials: &Dials) -> Option<Cholesky> {
+    /// Factors the posterior precision K⁻¹ + G/w²; Gram matrix and prior are then at hand.
+    fn factor(&mut self, dials: &Dials) -> Option<()> {
         let ratio = dials.ratio();
         if self.gram.as_ref().is_none_or(|(at, ..)| at.to_bits() != ratio.to_bits()) {
             let (gram, ln_common) = self.sums.gram(ratio);
@@ -97,17 +101,17 @@ impl<'a> Evidence<'a> {
         }
         let bits = |scales: [f64; SCALES]| scales.map(f64::to_bits);
         if self.precision.as_ref().is_none_or(|(at, ..)| bits(*at) != bits(dials.scales)) {
-            let factor = Cholesky::in_place(self.prior_covariance(dials.scales))?;
-            let size = factor.lower().nrows();
-            let mut precision = Mat::identity(size, size);
-            factor.solve(&mut precision);
+            let mut factor = self.prior_covariance(dials.scales);
+            if !factor.factor() {
+                return None;
+            }
+            let precision = factor.inverse().transposed_times_itself();
             self.precision = Some((dials.scales, precision, factor.ln_determinant()));
         }
         let ((_, gram, _), (_, prior, _)) = (self.gram.as_ref()?, self.precision.as_ref()?);
-        let share = 1.0 / (dials.within * dials.within);
-        let mut precision = prior.clone();
-        add_lower(&mut precision, share, gram);
-        Cholesky::in_place(precision)
+        self.factor.copy_from(prior);
+        self.factor.add(1.0 / (dials.within * dials.within), gram);
+        self.factor.factor().then_some(())
     }
 
     /// Factors are log-normal about what is usual: a few flights do not make noise vanish.
@@ -122,11 +126,12 @@ impl<'a> Evidence<'a> {
         scales.map(|(scale, deviation)| ln_log_normal(*scale, 1.0, deviation)).sum()
     }
 
-    /// Lower triangle of the prior covariance of the columns at scales.
-    pub(super) fn prior_covariance(&self, scales: [f64; SCALES]) -> Mat<f64> {
-        let mut covariance = self.prior[0].clone();
+    /// Prior covariance of the columns at scales.
+    pub(super) fn prior_covariance(&self, scales: [f64; SCALES]) -> Lower {
+        let mut covariance = Lower::zeros(self.prior[0].nrows());
+        covariance.add(1.0, &self.prior[0]);
         for (part, scale) in self.prior[1..].iter().zip(scales) {
-            add_lower(&mut covariance, scale * scale, part);
+            covariance.add(scale * scale, part);
         }
         covariance
     }
@@ -260,16 +265,33 @@ impl<'a> Evidence<'a> {
         (points, deviations)
     }
 
-    /// The posterior at one point; `None` where matrices are not positive definite.
-    pub(super) fn solved(&mut self, dials: &Dials) -> Option<Solved> {
-        let factor = self.factor(dials)?;
+    /// The posterior mean at one point; `None` where matrices are not positive definite.
+    pub(super) fn mean(&mut self, dials: &Dials) -> Option<Mat<f64>> {
+        self.factor(dials)?;
         let (_, gram, _) = self.gram.as_ref()?;
-        let mut mean = faer::Scale(1.0 / (dials.within * dials.within)) * right_side(gram);
-        factor.solve(&mut mean);
-        let size = mean.nrows();
-        let mut root = Mat::identity(size, size);
-        factor.solve_upper(&mut root);
-        Some(Solved { mean, root })
+        let square = dials.within * dials.within;
+        let mut mean = right_side(gram);
+        for value in &mut mean {
+            *value /= square;
+        }
+        self.factor.solve_lower(&mut mean);
+        self.factor.solve_upper(&mut mean);
+        Some(Mat::from_fn(mean.len(), 1, |k, _| mean[k]))
+    }
+
+    /// The same with the covariance.
+    pub(super) fn mean_and_covariance(&mut self, dials: &Dials) -> Option<(Mat<f64>, Lower)> {
+        let mean = self.mean(dials)?;
+        Some((mean, self.factor.inverse().transposed_times_itself()))
+    }
+
+    /// The posterior at one point; `None` as for [`mean`](Self::mean).
+    pub(super) fn solved(&mut self, dials: &Dials) -> Option<Solved> {
+        let mean = self.mean(dials)?;
+        let inverse = self.factor.inverse();
+        let size = inverse.size();
+        let entry = |row, column| if row <= column { inverse.at(column, row) } else { 0.0 };
+        Some(Solved { mean, root: Mat::from_fn(size, size, entry) })
     }
 }
 
@@ -279,20 +301,10 @@ fn ln_log_normal(value: f64, center: f64, ln_deviation: f64) -> f64 {
     -0.5 * z * z
 }
 
-/// `C += share·A`, lower triangle only; A may have more rows and columns.
-fn add_lower(into: &mut Mat<f64>, share: f64, from: &Mat<f64>) {
-    for column in 0..into.ncols() {
-        let from = &from.col_as_slice(column)[column..];
-        for (into, from) in into.col_as_slice_mut(column)[column..].iter_mut().zip(from) {
-            *into += share * from;
-        }
-    }
-}
-
 /// Products of the columns with the residual: the last row of a lower triangle.
-fn right_side(gram: &Mat<f64>) -> Mat<f64> {
+fn right_side(gram: &Mat<f64>) -> Vec<f64> {
     let width = gram.nrows() - 1;
-    Mat::from_fn(width, 1, |column, _| gram[(width, column)])
+    (0..width).map(|column| gram[(width, column)]).collect()
 }
 
 #[cfg(test)]
@@ -300,6 +312,7 @@ mod tests {
     use super::*;
     use crate::learning::outliers::Weights;
     use crate::learning::rows::ChannelRows;
+    use crate::math::cholesky::Cholesky;
     use crate::priors::SCALE_OF_NOTHING;
 
     /// A level and a slope over five values of two flights, all of them by hand as one normal distribution: the density of

@@ -39,11 +39,10 @@ impl ChannelPosterior {
         let mut means = Vec::with_capacity(points.len());
         let mut squares = [0.0; MOST_DIALS];
         for Weighted { dials, weight } in points {
-            let solved = evidence.solved(dials)?;
-            let part = faer::Scale(weight.sqrt()) * &solved.root;
-            add_gram(&mut spread, part.transpose());
-            mean += faer::Scale(*weight) * &solved.mean;
-            means.push(solved.mean);
+            let (found, covariance) = evidence.mean_and_covariance(dials)?;
+            covariance.add_to(*weight, &mut spread);
+            mean += faer::Scale(*weight) * &found;
+            means.push(found);
             let [smooth, products, straight] = dials.scales;
             let all = [dials.within, dials.between, smooth, products, straight];
             for (sum, value) in squares.iter_mut().zip(all) {
@@ -57,7 +56,7 @@ impl ChannelPosterior {
         let [within, between, smooth, products, straight] = squares.map(f64::sqrt);
         let dials = Dials { within, between, scales: [smooth, products, straight] };
         let variance = prior_variances(groups, dials.scales);
-        let root = Cholesky::new(&evidence.prior_covariance(dials.scales))?;
+        let root = Cholesky::in_place(evidence.prior_covariance(dials.scales).to_mat())?;
         // Yᵀ = R⁻¹TΛ, and K⁻¹TΛ.
         let mut turned = Mat::from_fn(rank, width, |k, column| {
             reduction.transfer[(k, column)] * variance[column]
