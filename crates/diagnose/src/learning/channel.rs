@@ -5,7 +5,7 @@ use faer::Mat;
 use crate::learning::dials::Dials;
 use crate::learning::evidence::Evidence;
 use crate::learning::outliers::Weights;
-use crate::learning::posterior::{ChannelPosterior, prior_parts};
+use crate::learning::posterior::{ChannelPosterior, Prior};
 use crate::learning::rows::ChannelRows;
 use crate::learning::sums::ChannelSums;
 use crate::learning::unseen::{Unseen, scatter_by_unseen, unseen};
@@ -44,7 +44,7 @@ pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<Lear
     let mut weights = Weights::before(rows);
     // Few columns hold all others, whatever the weights: from here on they alone are looked at.
     let reduction = reduction(&ChannelSums::own(rows, &Weights::of_one(rows)), groups.len());
-    let prior = prior_parts(&reduction, groups);
+    let prior = Prior::of(&reduction, groups);
     let reduced = rows.only(&reduction.pivots);
     let mut dials = Dials::usual();
     for weighing in 1.. {

@@ -46,7 +46,8 @@ pub(super) fn unseen(
     dials: &Dials,
 ) -> Vec<Unseen> {
     let errors = rows.left(&solved.mean);
-    let spread = rows.learnt_columns() * &solved.root;
+    // One column per row: what a row spreads over the posterior's root.
+    let spread = solved.root.transpose() * rows.learnt_columns().transpose();
     let (within, between) = (dials.within.powi(2), dials.between.powi(2));
     let groups = rows.groups.iter().enumerate();
     groups
@@ -64,8 +65,11 @@ pub(super) fn unseen(
                 }
             }
             let mut factor = noise.clone();
-            for column in 0..spread.ncols() {
-                factor.subtract_square(&spread.col_as_slice(column)[range.clone()]);
+            for j in 0..count {
+                let known = spread.col_as_slice(range.start + j);
+                for i in j..count {
+                    *factor.at_mut(i, j) -= dot(known, spread.col_as_slice(range.start + i));
+                }
             }
             if !factor.factor() {
                 return None;

@@ -7,6 +7,8 @@ use faer::Mat;
 
 /// Partial sums of a product.
 const LANES: usize = 8;
+/// Rows below which no wider vectors are asked for. Our choice: asking costs as much as their arithmetic.
+const FEW: usize = 16;
 
 /// A square matrix by its lower triangle, column after column; what is above the diagonal has no meaning.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +22,13 @@ impl Lower {
     /// All of it zero.
     pub(crate) fn zeros(size: usize) -> Self {
         Self { size, values: vec![0.0; size * size] }
+    }
+
+    /// The lower triangle of a matrix.
+    pub(crate) fn of(matrix: &Mat<f64>) -> Self {
+        let mut lower = Self::zeros(matrix.nrows());
+        lower.add(1.0, matrix);
+        lower
     }
 
     pub(crate) const fn size(&self) -> usize {
@@ -40,10 +49,52 @@ impl Lower {
         &self.values[column * self.size + column..(column + 1) * self.size]
     }
 
-    /// Becomes a copy of another one.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        self.size = other.size;
-        self.values.clone_from(&other.values);
+    /// Becomes `B + share·A`, A with as many rows and columns or more.
+    pub(crate) fn set_sum(&mut self, base: &Self, share: f64, added: &Mat<f64>) {
+        self.size = base.size;
+        self.values.resize(base.size * base.size, 0.0);
+        for column in 0..self.size {
+            let count = self.size - column;
+            let at = column * self.size + column;
+            let (base, added) =
+                (&base.values[at..][..count], &added.col_as_slice(column)[column..]);
+            let (into, added) = (&mut self.values[at..][..count], &added[..count]);
+            for i in 0..count {
+                into[i] = base[i] + share * added[i];
+            }
+        }
+    }
+
+    /// Becomes `1 + Σ share·C`.
+    pub(crate) fn set_one_and_sum<'a>(&mut self, parts: impl Iterator<Item = (f64, &'a Self)>) {
+        self.values.fill(0.0);
+        for (share, part) in parts {
+            self.size = part.size;
+            self.values.resize(part.values.len(), 0.0);
+            for column in 0..self.size {
+                let (at, count) = (column * self.size + column, self.size - column);
+                let (into, from) = (&mut self.values[at..][..count], &part.values[at..][..count]);
+                for i in 0..count {
+                    into[i] += share * from[i];
+                }
+            }
+        }
+        for k in 0..self.size {
+            *self.at_mut(k, k) += 1.0;
+        }
+    }
+
+    /// `C·v`.
+    pub(crate) fn times(&self, vector: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.size];
+        for column in 0..self.size {
+            let values = self.column(column);
+            product[column] += dot(values, &vector[column..]);
+            for (into, value) in product[column + 1..].iter_mut().zip(&values[1..]) {
+                *into += value * vector[column];
+            }
+        }
+        product
     }
 
     /// `C += share·A`, A with as many rows and columns or more.
@@ -70,18 +121,6 @@ impl Lower {
         }
     }
 
-    /// `C −= v·vᵀ`.
-    pub(crate) fn subtract_square(&mut self, of: &[f64]) {
-        let size = self.size;
-        for column in 0..size {
-            let (by, of) = (of[column], &of[column..size]);
-            let into = &mut self.values[column * size + column..][..of.len()];
-            for i in 0..of.len() {
-                into[i] -= by * of[i];
-            }
-        }
-    }
-
     /// The triangle, with zeros above it.
     pub(crate) fn to_mat(&self) -> Mat<f64> {
         let mut matrix = Mat::zeros(self.size, self.size);
@@ -102,7 +141,11 @@ impl Lower {
 
     /// L⁻¹·b in place.
     pub(crate) fn solve_lower(&self, right: &mut [f64]) {
-        solve_lower(self, right, 0);
+        if self.size < FEW {
+            solve_lower(self, right, 0);
+        } else {
+            pulp::Arch::new().dispatch(Solve { factor: self, right });
+        }
     }
 
     /// L⁻ᵀ·b in place.
@@ -125,7 +168,7 @@ impl Lower {
     }
 }
 
-/// Cholesky's factor column by column, four earlier columns at a time.
+/// Cholesky's factor, two columns at a time and four earlier ones into both: what is read is used more than once.
 struct Factor<'a> {
     size: usize,
     values: &'a mut [f64],
@@ -138,42 +181,111 @@ impl pulp::NullaryFnOnce for Factor<'_> {
     #[inline(always)]
     fn call(self) -> bool {
         let Self { size, values } = self;
-        for column in 0..size {
+        let mut column = 0;
+        while column < size {
             let (known, rest) = values.split_at_mut(column * size);
-            let into = &mut rest[column..size];
-            let count = into.len();
-            let mut k = 0;
-            while k + 4 <= column {
-                let a = &known[k * size + column..][..count];
-                let b = &known[(k + 1) * size + column..][..count];
-                let c = &known[(k + 2) * size + column..][..count];
-                let d = &known[(k + 3) * size + column..][..count];
-                let by = [a[0], b[0], c[0], d[0]];
-                for i in 0..count {
-                    into[i] -= (by[0] * a[i] + by[1] * b[i]) + (by[2] * c[i] + by[3] * d[i]);
+            let count = size - column;
+            if count == 1 {
+                let own = &mut rest[column];
+                for k in 0..column {
+                    let by = known[k * size + column];
+                    *own -= by * by;
                 }
-                k += 4;
+                return finish(core::slice::from_mut(own));
             }
-            while k < column {
-                let a = &known[k * size + column..][..count];
-                let by = a[0];
-                for i in 0..count {
-                    into[i] -= by * a[i];
-                }
-                k += 1;
-            }
-            let pivot = into[0];
-            if !(pivot > 0.0 && pivot.is_finite()) {
+            let (first, second) = rest.split_at_mut(size);
+            let first = &mut first[column..size];
+            let second = &mut second[column + 1..size];
+            take_earlier(known, (size, column), first, second);
+            if !finish(first) {
                 return false;
             }
-            let root = pivot.sqrt();
-            let share = 1.0 / root;
-            for value in &mut *into {
-                *value *= share;
+            let below = &first[1..][..second.len()];
+            let by = below[0];
+            for i in 0..below.len() {
+                second[i] -= by * below[i];
             }
-            into[0] = root;
+            if !finish(second) {
+                return false;
+            }
+            column += 2;
         }
         true
+    }
+}
+
+/// Takes what earlier columns explain from two columns, each from its diagonal on.
+#[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+#[inline(always)]
+fn take_earlier(
+    known: &[f64],
+    (size, column): (usize, usize),
+    first: &mut [f64],
+    second: &mut [f64],
+) {
+    let count = size - column;
+    let (head, tail) = first.split_at_mut(1);
+    let tail = &mut tail[..count - 1];
+    let second = &mut second[..count - 1];
+    let of = |k: usize| &known[k * size + column..][..count];
+    let mut k = 0;
+    while k + 4 <= column {
+        let (a, b, c, d) = (of(k), of(k + 1), of(k + 2), of(k + 3));
+        let by = [a[0], b[0], c[0], d[0]];
+        head[0] -= (by[0] * by[0] + by[1] * by[1]) + (by[2] * by[2] + by[3] * by[3]);
+        let (a, b, c, d) = (&a[1..], &b[1..], &c[1..], &d[1..]);
+        let (a, b) = (&a[..count - 1], &b[..count - 1]);
+        let (c, d) = (&c[..count - 1], &d[..count - 1]);
+        let next = [a[0], b[0], c[0], d[0]];
+        for i in 0..count - 1 {
+            tail[i] -= (by[0] * a[i] + by[1] * b[i]) + (by[2] * c[i] + by[3] * d[i]);
+            second[i] -= (next[0] * a[i] + next[1] * b[i]) + (next[2] * c[i] + next[3] * d[i]);
+        }
+        k += 4;
+    }
+    while k < column {
+        let a = of(k);
+        let by = a[0];
+        head[0] -= by * by;
+        let a = &a[1..][..count - 1];
+        let next = a[0];
+        for i in 0..count - 1 {
+            tail[i] -= by * a[i];
+            second[i] -= next * a[i];
+        }
+        k += 1;
+    }
+}
+
+/// Divides a column by the root of its first entry; `false` where that is not positive.
+#[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+#[inline(always)]
+fn finish(column: &mut [f64]) -> bool {
+    let pivot = column[0];
+    if !(pivot > 0.0 && pivot.is_finite()) {
+        return false;
+    }
+    let root = pivot.sqrt();
+    let share = 1.0 / root;
+    for value in &mut *column {
+        *value *= share;
+    }
+    column[0] = root;
+    true
+}
+
+struct Solve<'a> {
+    factor: &'a Lower,
+    right: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Solve<'_> {
+    type Output = ();
+
+    #[expect(clippy::inline_always, reason = "as the factor")]
+    #[inline(always)]
+    fn call(self) {
+        solve_lower(self.factor, self.right, 0);
     }
 }
 
