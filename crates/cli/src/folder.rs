@@ -20,13 +20,11 @@ use std::path::{Path, PathBuf};
 
 use pipeline::adaptation::StoredTail;
 use pipeline::learnt_flights::KnownFlight;
-use pipeline::monitoring::curve_of_flights;
-use pipeline::segments_table;
 
 use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
 use contents::flights_of;
-pub(crate) use contents::{deviations_of, is_superseded, models_of, warn_of_strangers};
+pub(crate) use contents::{deviations_of, is_superseded, models_of, stored_of, warn_of_strangers};
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
 use state::{FileState, State, TailState};
@@ -143,26 +141,7 @@ impl Folder {
         let Some(entry) = self.state.tails.get(tail) else {
             return Err(Failure::bad_file(&self.path, format!("holds no tail {tail:?}")));
         };
-        let path = self.path.join(&entry.model.file);
-        let bytes = state::bytes_of(&self.state, &self.path, &entry.model)?;
-        let model = crate::models::model_of_bytes(&path, &bytes)?;
-        let path = self.path.join(&entry.segments.file);
-        let bytes = state::bytes_of(&self.state, &self.path, &entry.segments)?;
-        let segments =
-            segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
-        let flights = flights_of(&self.path, &self.state, tail, entry)?;
-        let curve = match &entry.deviations {
-            Some(of) => match deviations_of(&self.state, &self.path, of, None) {
-                Ok(flights) => Some(curve_of_flights(&flights)),
-                // Nothing is lost with it: all that it holds follows from model and segments.
-                Err(failure) => {
-                    tracing::warn!("{failure}; it is made anew");
-                    None
-                }
-            },
-            None => None,
-        };
-        Ok(StoredTail { model, segments, flights, curve })
+        contents::stored_tail(&self.path, &self.state, tail, entry)
     }
 
     /// Whether the folder has a file at this path now.

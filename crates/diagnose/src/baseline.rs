@@ -74,6 +74,11 @@ pub struct BaselineRecord {
 }
 
 impl BaselineRecord {
+    /// Takes the longest list out of it, the factor of the covariance: for those who write it themselves.
+    pub fn take_factor(&mut self) -> Vec<f64> {
+        core::mem::take(&mut self.factor)
+    }
+
     /// Nodes of the drag table whose covariances its loadings need ([`TableUncertainty::pivots`]); none where the table was
     /// taken as exact.
     #[must_use]

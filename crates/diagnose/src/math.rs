@@ -7,6 +7,7 @@ pub(crate) mod gram;
 pub(crate) mod horseshoe;
 pub(crate) mod lanes;
 pub(crate) mod linear;
+pub(crate) mod lower;
 pub(crate) mod mixture;
 pub(crate) mod pivoted;
 pub(crate) mod quantile;

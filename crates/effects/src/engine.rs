@@ -63,7 +63,8 @@ pub(crate) fn recorded_fuel_flow(
     let mut each = [0.0; MAXIMUM_ENGINES];
     let mut total = 0.0;
     for (engine, flow) in each.iter_mut().enumerate().take(engines) {
-        let own: f64 = layers.iter().map(|terms| 1.0 + terms.tsfc_engine[engine]).product();
+        let factor_of = |terms: &Terms| 1.0 + terms.tsfc_engine[engine];
+        let own = layers.contained.iter().map(factor_of).product::<f64>() * factor_of(layers.trial);
         // Meters belong to the trial layer alone: the meter errors that the model contains were corrected in the
         // recordings before.
         let meter = 1.0 + layers.trial.fuel_flow_gain[engine];

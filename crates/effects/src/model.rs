@@ -29,6 +29,8 @@ pub struct EffectModel<'a> {
     applied: Option<&'a AppliedEffects>,
     contained: &'a [Terms],
     recorded: &'a [Terms],
+    /// No trial effects.
+    nothing: Terms,
 }
 
 impl<'a> EffectModel<'a> {
@@ -61,6 +63,7 @@ impl<'a> EffectModel<'a> {
             applied: prepared.map(Prepared::effects),
             contained: prepared.map_or(&[], |prepared| &prepared.physical),
             recorded: prepared.map_or(&[], |prepared| &prepared.recorded),
+            nothing: Terms::new(&Effects::none(), &references),
         })
     }
 
@@ -163,8 +166,14 @@ impl<'a> EffectModel<'a> {
         point: &EffectPoint,
         effects: &Effects,
     ) -> Result<Response, EffectError> {
-        let trial = Terms::new(effects, &self.references);
-        let layers = Layers { contained: self.contained, trial: &trial };
+        let own;
+        let trial = if effects.as_slice().is_empty() {
+            &self.nothing
+        } else {
+            own = Terms::new(effects, &self.references);
+            &own
+        };
+        let layers = Layers { contained: self.contained, trial };
         evaluate(&self.bare, point, layers, Edge::Continue, None).map(|(response, _)| response)
     }
 
@@ -179,8 +188,7 @@ impl<'a> EffectModel<'a> {
         mass_kg: f64,
         acceleration_m_s2: f64,
     ) -> Result<Response, EffectError> {
-        let trial = Terms::new(&Effects::none(), &self.references);
-        let layers = Layers { contained: self.contained, trial: &trial };
+        let layers = Layers { contained: self.contained, trial: &self.nothing };
         let point = EffectPoint { acceleration_m_s2, mass_kg, ..at.point };
         let same = mass_kg.to_bits() == at.point.mass_kg.to_bits();
         let known = if same { at.known } else { at.known.with_mass_kg(mass_kg) };
@@ -202,8 +210,7 @@ impl<'a> EffectModel<'a> {
     /// # Errors
     /// As for [`response`](Self::response) without effects.
     pub fn known_point(&self, point: &EffectPoint) -> Result<(KnownPoint, Response), EffectError> {
-        let trial = Terms::new(&Effects::none(), &self.references);
-        let layers = Layers { contained: self.contained, trial: &trial };
+        let layers = Layers { contained: self.contained, trial: &self.nothing };
         let (response, known) = evaluate(&self.bare, point, layers, Edge::under(layers), None)?;
         Ok((KnownPoint { point: *point, known }, response))
     }

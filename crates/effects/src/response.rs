@@ -152,10 +152,15 @@ pub(crate) fn evaluate(
     let (total_kg_s, engines_kg_s) = engine::recorded_fuel_flow(&thrust, point, &flown, layers);
     let by_outside = outside.ln_fuel_flow;
     let mut ln_fuel_flow_engine = [f64::NEG_INFINITY; MAXIMUM_ENGINES];
+    let mut before = (f64::NAN, f64::NAN);
     for (ln, flow_kg_s) in
         ln_fuel_flow_engine.iter_mut().zip(engines_kg_s).take(bare.aircraft.engines())
     {
-        *ln = flow_kg_s.ln() + by_outside;
+        // Engines that burn alike have one logarithm, which is most of what a response costs.
+        if flow_kg_s.to_bits() != before.0.to_bits() {
+            before = (flow_kg_s, flow_kg_s.ln() + by_outside);
+        }
+        *ln = before.1;
     }
     let response = Response {
         ln_fuel_flow_total: total_kg_s.ln() + by_outside,

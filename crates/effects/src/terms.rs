@@ -21,7 +21,7 @@ impl<'t> Layers<'t> {
     }
 
     pub(crate) fn sum(self, value: impl Fn(&Terms) -> f64) -> f64 {
-        self.iter().map(value).sum()
+        self.contained.iter().map(&value).sum::<f64>() + value(self.trial)
     }
 
     /// Whether anything outside the library acts.

@@ -7,13 +7,14 @@ mod new_flights;
 mod sorting;
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 
 use effects::ExtendedModel;
 use flight::Segment;
 
 use crate::evaluation::{TailCounts, TailData, TailResult};
 use crate::known_flights::entry_of;
-use crate::learning::{self, FlightToLearn, LearningCurve, LearningError};
+use crate::learning::{self, FlightToLearn, LawChoice, LearningCurve, LearningError, LnFuelFlows};
 use crate::learnt_flights::KnownFlight;
 use crate::model_file::{Learnt, LedgerEntry, ModelFile};
 use crate::reading::{FlightRead, RefusedReport};
@@ -34,6 +35,16 @@ pub struct StoredTail {
     pub flights: Vec<KnownFlight>,
     /// How far off it was on each of them before it learnt it; `None` where a program stored the tail that did not keep this.
     pub curve: Option<LearningCurve>,
+    /// What its model predicts for each segment, where that was computed when it was learnt.
+    pub predicted: Option<LnFuelFlows>,
+}
+
+impl StoredTail {
+    /// Whether the segments of every flight are at hand.
+    fn has_all_segments(&self) -> bool {
+        let learnt: u64 = self.flights.iter().map(|known| known.entry.segments).sum();
+        learnt == self.segments.len() as u64
+    }
 }
 
 /// A flight with its segments: what a model is rebuilt from.
@@ -43,6 +54,24 @@ pub struct Material {
     pub known: KnownFlight,
     /// Its segments.
     pub segments: Vec<Segment>,
+}
+
+impl Material {
+    /// Whether all segments that the flight had when it was learnt are at hand.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.segments.len() as u64 == self.known.entry.segments
+    }
+
+    /// The order of flying.
+    pub(crate) fn order(&self, other: &Self) -> Ordering {
+        let entries = (&self.known.entry, &other.known.entry);
+        let tails = entries.0.tail.cmp(&entries.1.tail);
+        self.known
+            .start
+            .cmp(&other.known.start)
+            .then(tails)
+            .then(entries.0.flight.cmp(&entries.1.flight))
+    }
 }
 
 /// Whether a model learns what no table can hold.
@@ -78,10 +107,13 @@ pub fn learn(
     stored: Option<StoredTail>,
     remainder: RemainderChoice,
 ) -> Result<Learning, LearningError> {
+    let late = sorting.late
+        && learns_in_any_order(start)
+        && stored.as_ref().is_some_and(StoredTail::has_all_segments);
     let mut work = Work { notes: sorting.warnings, refused: sorting.refused, flights_new: 0 };
     let learnt = if sorting.new.is_empty() {
         None
-    } else if sorting.replaced.is_empty() {
+    } else if sorting.replaced.is_empty() && !late {
         let new = sorting.new.into_iter().map(|(flight, _)| flight).collect();
         work.continued(start, tail, stored, new)?
     } else {
@@ -93,16 +125,22 @@ pub fn learn(
     Ok(Learning { learnt, flights_new, notes, refused })
 }
 
+/// Whether what a tail learns does not depend on when its flights arrive: then those that arrive late are learnt in their place.
+const fn learns_in_any_order(start: &Start<'_>) -> bool {
+    matches!(start.law(), LawChoice::Bayes(_))
+}
+
 /// The figures of a tail.
 pub fn result_of(stored: StoredTail, flights_new: usize, notes: Vec<String>) -> TailResult {
-    let StoredTail { model, segments, flights, curve } = stored;
+    let StoredTail { model, segments, flights, curve, predicted } = stored;
     let tail = model.tail().unwrap_or_default().to_owned();
     let counts = TailCounts {
         flights: flights.len(),
         flights_new,
         samples: flights.iter().map(|flight| flight.entry.samples).sum(),
     };
-    TailResult::adapted(TailData { tail, model, segments, counts, notes, curve })
+    let data = TailData { tail, model, segments, counts, notes, curve };
+    TailResult::adapted_as_predicted(data, predicted.as_deref())
 }
 
 /// Brings the model up to date with what it has learnt.
@@ -118,7 +156,7 @@ pub fn settled(
         tracing::error!(tail = learnt.tail, "{error}");
     }
     if remainder == RemainderChoice::Learn {
-        learning::remember_remainder(&model.initial, learnt, &stored.segments);
+        stored.predicted = learning::remember_remainder(&model.initial, learnt, &stored.segments);
     } else if learnt.baseline.take().is_some() {
         notes.push(
             "the remainder of an earlier run is dropped: it belonged to the table before these flights"
@@ -149,7 +187,7 @@ pub fn rebuild(mut model: ModelFile, flights: Vec<Material>) -> Result<StoredTai
         segments.extend(flight.segments);
     }
     let curve = new.curve(&model, LearningCurve::new(), &segments);
-    Ok(StoredTail { model, segments, flights: known, curve })
+    Ok(StoredTail { model, segments, flights: known, curve, predicted: None })
 }
 
 /// A tail's learning in this run.
@@ -174,8 +212,10 @@ impl Work {
         } else {
             let model = start.fresh(tail)?;
             let curve = Some(LearningCurve::new());
-            StoredTail { model, segments: Vec::new(), flights: Vec::new(), curve }
+            let (segments, flights) = (Vec::new(), Vec::new());
+            StoredTail { model, segments, flights, curve, predicted: None }
         };
+        stored.predicted = None;
         let mut learning = NewFlights::after(&stored.model);
         self.notes.extend(stored.model.note_of_effects());
         let dated = Dates::of_learnt_and_new(&stored.model, &new);
@@ -201,7 +241,7 @@ impl Work {
         Ok(Some(stored))
     }
 
-    /// The tail from its first flight on, with other versions of some.
+    /// The tail from its first flight on, with other versions of some, or with flights that arrive late.
     fn relearnt(
         &mut self,
         start: &Start<'_>,
@@ -227,7 +267,10 @@ impl Work {
                 None => last.push(material),
             }
         }
-        let flights = slots.into_iter().flatten().chain(last).collect();
+        let mut flights: Vec<Material> = slots.into_iter().flatten().chain(last).collect();
+        if learns_in_any_order(start) {
+            flights.sort_by(Material::order);
+        }
         match rebuild(start.fresh(tail)?, flights) {
             Ok(rebuilt) => {
                 self.notes.extend(rebuilt.model.note_of_effects());

@@ -67,10 +67,17 @@ pub struct TailData {
 impl TailResult {
     /// The result of an adaptation: errors of the initial table before, of the whole learnt model after.
     pub fn adapted(data: TailData) -> Self {
+        Self::adapted_as_predicted(data, None)
+    }
+
+    /// The same, given what the whole model predicts for each segment where that is known already.
+    pub(crate) fn adapted_as_predicted(data: TailData, predicted: Option<&[Option<f64>]>) -> Self {
         let before = evaluate(&data.model.initial, data.model.initial.drag_table(), &data.segments);
         let after = match data.model.whole(Predicts::WholeModel) {
             // It refers to the initial table.
-            Some(whole) => evaluate_whole(&whole, &data.model, &data.segments, before.clone()),
+            Some(whole) => {
+                evaluate_whole((&whole, predicted), &data.model, &data.segments, before.clone())
+            }
             None => evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments),
         };
         let mut summary = summary_of(&data, &before);
@@ -163,12 +170,12 @@ pub fn evaluate_model(
 ) -> Vec<Option<Evaluated>> {
     let by_table = evaluate(&model.initial, model.drag_coefficient(), segments);
     let Some(whole) = model.whole(predicts) else { return by_table };
-    evaluate_whole(&whole, model, segments, by_table)
+    evaluate_whole((&whole, None), model, segments, by_table)
 }
 
-/// The same, given what a table predicts.
+/// The same, given what a table predicts, and of some segments what the whole model does.
 fn evaluate_whole(
-    whole: &WholeModel<'_>,
+    (whole, predicted): (&WholeModel<'_>, Option<&[Option<f64>]>),
     model: &ModelFile,
     segments: &[Segment],
     by_table: Vec<Option<Evaluated>>,
@@ -176,11 +183,13 @@ fn evaluate_whole(
     segments
         .iter()
         .zip(by_table)
-        .map(|(segment, by_table)| {
+        .enumerate()
+        .map(|(place, (segment, by_table))| {
             let by_table = by_table?;
+            let known = predicted.and_then(|predicted| *predicted.get(place)?);
             let error = by_table
                 .error_percent
-                .and_then(|_| error_percent_of(whole, &model.initial, segment));
+                .and_then(|_| error_percent_of(whole, &model.initial, segment, known));
             let share = |error: f64| 1.0 - error / 100.0;
             Some(Evaluated {
                 predicted_fuel_flow_kg_s: error

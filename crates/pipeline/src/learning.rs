@@ -179,21 +179,30 @@ pub fn settle(learnt: &mut Learnt) -> Result<(), LearningError> {
     Ok(())
 }
 
+/// ln of the fuel flow, kg/s, that a model with all that it has learnt predicts for each of its segments; `None` of those that it
+/// did not learn from.
+pub type LnFuelFlows = Vec<Option<f64>>;
+
 /// Learns, from every segment of a tail, everything that flights show of it, the table included, in one posterior (law
-/// `bayes`). From fewer than five flights nothing is learnt.
-pub fn remember_remainder(initial: &ExtendedModel, learnt: &mut Learnt, segments: &[Segment]) {
-    let LawState::Bayes { state, .. } = &learnt.law else { return };
+/// `bayes`). From fewer than five flights nothing is learnt. Returns what the model then predicts for each segment.
+pub fn remember_remainder(
+    initial: &ExtendedModel,
+    learnt: &mut Learnt,
+    segments: &[Segment],
+) -> Option<LnFuelFlows> {
+    let LawState::Bayes { state, .. } = &learnt.law else { return None };
     let flights: Vec<FlightRecord<'_>> = segments
         .chunk_by(|one, other| one.identity == other.identity)
         .map(|segments| FlightRecord { segments, gauges: None })
         .collect();
-    learnt.baseline = match baseline_of(initial, *state.settings(), &flights) {
-        Ok(baseline) => Some(baseline),
-        Err(reason) => {
+    let (baseline, predicted) = baseline_of(initial, *state.settings(), &flights)
+        .inspect_err(|reason| {
             tracing::info!(tail = learnt.tail, "no remainder is remembered: {reason}");
-            None
-        }
-    };
+        })
+        .ok()
+        .unzip();
+    learnt.baseline = baseline;
+    predicted
 }
 
 /// Everything that flights say of a model, against its initial table.
@@ -201,11 +210,12 @@ fn baseline_of(
     initial: &ExtendedModel,
     settings: BayesSettings,
     flights: &[FlightRecord<'_>],
-) -> Result<Baseline, String> {
+) -> Result<(Baseline, LnFuelFlows), String> {
     let table = initial.drag_table();
     let visited = visited_nodes(initial, table, flights).map_err(|error| error.to_string())?;
     let belief = belief_before_flights(initial, settings, &visited).map_err(|e| e.to_string())?;
-    Baseline::learn(initial, table, Some(belief), flights, settings.values().half_life_days)
+    let half_life_days = settings.values().half_life_days;
+    Baseline::learn_and_predict(initial, table, Some(belief), flights, half_life_days)
         .map_err(|error| error.to_string())
 }
 

@@ -1,10 +1,37 @@
-//! What models of one initial model have learnt, added up.
+//! What models of one initial model have learnt, put together.
+//!
+//! Where the segments of all of them are at hand, all flights are learnt again in the order of flying: what comes out is what
+//! learning all of them at once gives, to the bit. Without segments the sums of law `bayes` are added: nearly the same table,
+//! because each flight keeps the outlier weight that it got among the flights of its own model, and nothing beside it.
 
 use std::collections::BTreeSet;
 
 use adapt::bayes::MergeError as StateMergeError;
+use diagnose::Baseline;
 
+use crate::adaptation::{Material, RemainderChoice, materials, rebuild, settled};
+use crate::learning::{self, LearningError};
+use crate::learnt_flights::KnownFlight;
 use crate::model_file::{LawState, Learnt, LedgerEntry, ModelFile};
+use flight::Segment;
+
+/// A model to merge.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The model.
+    pub model: ModelFile,
+    /// The flights that it has learnt with their segments, where they are at hand.
+    pub flights: Option<(Vec<KnownFlight>, Vec<Segment>)>,
+}
+
+/// How models were put together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Merging {
+    /// All flights were learnt again, as if they had been learnt at once.
+    LearntAgain,
+    /// Sums were added: the table alone, with the outlier weights that each flight got among the flights of its own model.
+    Added,
+}
 
 /// Why two models do not add up.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +72,80 @@ pub enum MergeError {
     /// States of law `bayes` that do not add up.
     #[error(transparent)]
     State(#[from] StateMergeError),
+    /// What was learnt cannot be learnt again, or solved.
+    #[error(transparent)]
+    Learning(#[from] LearningError),
+}
+
+/// Puts together what models have learnt: by learning all flights again where all of their segments are at hand, otherwise by
+/// adding sums. The order of the models does not matter, up to rounding of sums.
+///
+/// # Errors
+/// [`MergeError`], with the place of the model that it is about.
+pub fn merge(parts: Vec<Part>) -> Result<(ModelFile, Merging), (usize, MergeError)> {
+    let Some((first, others)) = parts.split_first() else {
+        return Err((0, MergeError::NothingLearnt));
+    };
+    if first.model.learnt.is_none() {
+        return Err((0, MergeError::NothingLearnt));
+    }
+    let mut merged = first.model.clone();
+    for (place, other) in others.iter().enumerate() {
+        add(&mut merged, &other.model).map_err(|error| (place + 1, error))?;
+    }
+    let remainder = remainder_of(&parts);
+    let finish = match flights_of(parts) {
+        Some(flights) => {
+            learn_again(merged, flights, remainder).map(|model| (model, Merging::LearntAgain))
+        }
+        None => settle(merged).map(|model| (model, Merging::Added)),
+    };
+    finish.map_err(|error| (0, error))
+}
+
+/// All flights with their segments; `None` where those of one are not at hand, or not all of them.
+fn flights_of(parts: Vec<Part>) -> Option<Vec<Material>> {
+    let mut all = Vec::new();
+    for part in parts {
+        let (flights, segments) = part.flights?;
+        all.extend(materials(flights, segments));
+    }
+    all.iter().all(Material::is_whole).then_some(all)
+}
+
+/// A sum brought up to date, its flights in the order of flying.
+fn settle(mut merged: ModelFile) -> Result<ModelFile, MergeError> {
+    if let Some(learnt) = &mut merged.learnt {
+        learnt
+            .ledger
+            .sort_by(|one, other| (&one.start, &one.flight).cmp(&(&other.start, &other.flight)));
+        learning::settle(learnt)?;
+    }
+    Ok(merged)
+}
+
+/// Whether more than the table is learnt: not where a part with flights enough knows nothing beside its table, on purpose.
+fn remainder_of(parts: &[Part]) -> RemainderChoice {
+    let is_table_alone = |part: &Part| {
+        let learnt = part.model.learnt.as_ref();
+        learnt.is_some_and(|learnt| {
+            learnt.baseline.is_none() && learnt.ledger.len() >= Baseline::FEWEST_FLIGHTS
+        })
+    };
+    let alone = parts.iter().any(is_table_alone);
+    if alone { RemainderChoice::Leave } else { RemainderChoice::Learn }
+}
+
+/// Flights learnt in the order of flying by a model that has learnt nothing.
+fn learn_again(
+    merged: ModelFile,
+    mut flights: Vec<Material>,
+    remainder: RemainderChoice,
+) -> Result<ModelFile, MergeError> {
+    flights.sort_by(Material::order);
+    let learnt = learning::begin_again(&merged)?;
+    let rebuilt = rebuild(ModelFile { learnt, ..merged }, flights)?;
+    Ok(settled(rebuilt, remainder, &mut Vec::new()).model)
 }
 
 /// Adds what another model has learnt. The remainder is left out: it is learnt from segments, which a model does not keep.
@@ -52,7 +153,7 @@ pub enum MergeError {
 ///
 /// # Errors
 /// [`MergeError`]; the model then is as it was.
-pub fn add(merged: &mut ModelFile, other: &ModelFile) -> Result<(), MergeError> {
+fn add(merged: &mut ModelFile, other: &ModelFile) -> Result<(), MergeError> {
     if let Some((what, difference)) = merged.difference_of_initial(other) {
         return Err(MergeError::Initial { what, difference });
     }
@@ -81,8 +182,9 @@ fn add_learnt(learnt: &mut Learnt, more: &Learnt) -> Result<(), MergeError> {
         return Err(MergeError::LawPaper);
     };
     state.merge(other)?;
+    let tails: BTreeSet<&str> = learnt.tail.split('+').chain(more.tail.split('+')).collect();
     if learnt.tail != more.tail {
-        learnt.tail = format!("{}+{}", learnt.tail, more.tail);
+        learnt.tail = tails.into_iter().collect::<Vec<_>>().join("+");
     }
     learnt.references.merge(&more.references);
     learnt.baseline = None;

@@ -208,21 +208,27 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Segment>, SegmentsTableError> {
     let header = reader.headers()?.clone();
     let places = Places::find(&header)?;
     let mut segments = Vec::new();
-    let mut identity: Option<Arc<FlightIdentity>> = None;
-    for record in reader.records() {
-        let record = record?;
+    // The flight of the row before, as it is written and as what it is: rows of one flight follow each other.
+    let mut last: Option<(csv::StringRecord, Arc<FlightIdentity>)> = None;
+    let mut record = csv::StringRecord::new();
+    while reader.read_record(&mut record)? {
         let row = Row { places: &places, record: &record };
-        let this = FlightIdentity {
-            tail: csv_cell::read(row.text("tail")?).into_owned(),
-            start: row.parse("start", "an instant")?,
-            flight: csv_cell::read(row.text("flight")?).into_owned(),
+        let is_same = |known: &csv::StringRecord| {
+            places.identity.iter().all(|&place| known.get(place) == record.get(place))
         };
-        let shared = match &identity {
-            Some(last) if **last == this => Arc::clone(last),
-            _ => Arc::new(this),
+        let identity = match &last {
+            Some((known, identity)) if is_same(known) => Arc::clone(identity),
+            _ => {
+                let this = Arc::new(FlightIdentity {
+                    tail: csv_cell::read(row.text("tail")?).into_owned(),
+                    start: row.parse("start", "an instant")?,
+                    flight: csv_cell::read(row.text("flight")?).into_owned(),
+                });
+                last = Some((record.clone(), Arc::clone(&this)));
+                this
+            }
         };
-        identity = Some(Arc::clone(&shared));
-        segments.push(row.segment(shared)?);
+        segments.push(row.segment(identity)?);
     }
     Ok(segments)
 }
@@ -230,6 +236,10 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Segment>, SegmentsTableError> {
 /// The names of the columns, in file order, and where those of the engines are.
 struct Places {
     names: Vec<String>,
+    /// Of tail, flight and START.
+    identity: [usize; 3],
+    required: [usize; REQUIRED.len()],
+    optional: [Option<usize>; OPTIONAL.len()],
     fuel_flow: ByEngine,
     n2: ByEngine,
     n1: ByEngine,
@@ -245,17 +255,25 @@ impl Places {
         let by_engine = |name: fn(usize) -> String| -> ByEngine {
             core::array::from_fn(|k| names.iter().position(|known| *known == name(k + 1)))
         };
+        let place = |name: &'static str| {
+            let found = names.iter().position(|known| known == name);
+            found.ok_or(SegmentsTableError::MissingColumn { column: name })
+        };
+        let mut required = [0; REQUIRED.len()];
+        for (slot, (name, _, _)) in required.iter_mut().zip(REQUIRED) {
+            *slot = place(name)?;
+        }
         let places = Self {
+            identity: [place("tail")?, place("flight")?, place("start")?],
+            required,
+            optional: OPTIONAL.map(|(name, _, _)| place(name).ok()),
             fuel_flow: by_engine(|k| format!("fuel_flow_{k}_kg_s")),
             n2: by_engine(|k| format!("n2_{k}_percent")),
             n1: by_engine(|k| format!("n1_{k}_percent")),
             exhaust_gas_temperature: by_engine(|k| format!("exhaust_gas_temperature_{k}_k")),
             names,
         };
-        for name in ["tail", "flight", "start", "temperature_assumed", "rows"]
-            .into_iter()
-            .chain(REQUIRED.iter().map(|(name, _, _)| *name))
-        {
+        for name in ["temperature_assumed", "rows"] {
             if places.index_of(name).is_none() {
                 return Err(SegmentsTableError::MissingColumn { column: name });
             }
@@ -297,14 +315,6 @@ impl Row<'_> {
     ) -> Result<T, SegmentsTableError> {
         let text = self.text(name)?;
         text.parse().map_err(|_| self.wrong(name, text, expected))
-    }
-
-    fn number(&self, name: &str) -> Result<f64, SegmentsTableError> {
-        self.optional(name)?.ok_or_else(|| self.wrong(name, "", "a finite number"))
-    }
-
-    fn optional(&self, name: &str) -> Result<Option<f64>, SegmentsTableError> {
-        self.at(self.places.index_of(name))
     }
 
     /// The number in a column; `None` where there is no such column, or nothing in it.
@@ -369,11 +379,12 @@ impl Row<'_> {
             fuel_quantity_kg: None,
             anti_ice: None,
         };
-        for (name, _, set) in REQUIRED {
-            set(&mut means, self.number(name)?);
+        for ((name, _, set), place) in REQUIRED.iter().zip(self.places.required) {
+            let value = self.at(Some(place))?;
+            set(&mut means, value.ok_or_else(|| self.wrong(name, "", "a finite number"))?);
         }
-        for (name, _, set) in OPTIONAL {
-            set(&mut means, self.optional(name)?);
+        for ((_, _, set), place) in OPTIONAL.iter().zip(self.places.optional) {
+            set(&mut means, self.at(place)?);
         }
         let rows = self.text("rows")?;
         let rows = rows

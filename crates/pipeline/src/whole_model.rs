@@ -81,19 +81,28 @@ pub enum BeliefError {
     Covariance(#[from] TableUncertaintyError),
 }
 
-/// 100 (recorded − predicted)/recorded fuel flow of a segment, without an interval; `None` outside its table or a domain.
+/// 100 (recorded − predicted)/recorded fuel flow of a segment, without an interval; `None` outside its table or a domain. `known`
+/// is ln of what is predicted, where that was computed already.
 pub fn error_percent_of(
     whole: &WholeModel<'_>,
     model: &ExtendedModel,
     segment: &Segment,
+    known: Option<f64>,
 ) -> Option<f64> {
-    ln_gap_of(whole, model, segment).map(error_percent)
+    let predicted = match known {
+        Some(ln) => ln,
+        None => whole.ln_fuel_flow_of_segment(segment).ok()?,
+    };
+    gap_to(predicted, model, segment).map(error_percent)
 }
 
 /// ln of recorded over predicted fuel flow of a segment, without an interval: to the same bits as [`SegmentHeld`] at a fraction
 /// of its cost; `None` outside its table or a domain.
 pub fn ln_gap_of(whole: &WholeModel<'_>, model: &ExtendedModel, segment: &Segment) -> Option<f64> {
-    let predicted = whole.ln_fuel_flow_of_segment(segment).ok()?;
+    gap_to(whole.ln_fuel_flow_of_segment(segment).ok()?, model, segment)
+}
+
+fn gap_to(predicted: f64, model: &ExtendedModel, segment: &Segment) -> Option<f64> {
     let corrected = model.corrected_means(&segment.means).ok()?;
     let gap = corrected.fuel_flow_total_kg_s.ln() - predicted;
     gap.is_finite().then_some(gap)

@@ -54,7 +54,7 @@ impl Tail {
     pub(crate) fn stored(self) -> StoredTail {
         let segments = self.result.rows.into_iter().map(|row| row.segment).collect();
         let TailResult { model, curve, .. } = self.result;
-        StoredTail { model, segments, flights: self.flights, curve }
+        StoredTail { model, segments, flights: self.flights, curve, predicted: None }
     }
 
     fn segments_csv(&self) -> Vec<u8> {
@@ -224,6 +224,7 @@ fn stored_tail(
         flights,
         // Not among what is kept from night to night here; made again where it is needed.
         curve: None,
+        predicted: None,
     };
     Ok(Tail::learnt(stored, begun, 0, Vec::new()))
 }

@@ -13,11 +13,11 @@ use pipeline::adaptation::{
 use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::known_flights::KnownFlights;
+use pipeline::merging::{self, Part};
 use pipeline::model_file::ModelFile;
 use pipeline::models::{Models, check_engines};
 use pipeline::plausibility::{self, Absurd};
 use pipeline::reading::{FlightRead, Reading, RefusedReport};
-use pipeline::{learning, merging};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -101,23 +101,14 @@ pub(crate) fn evaluate(
 pub(crate) fn merge(py: Python<'_>, models: Vec<Py<Model>>) -> PyResult<Model> {
     let models: Vec<Model> = models.iter().map(|model| model.get().clone()).collect();
     let file = run(py, NonZeroUsize::new(1), move |_| {
-        let Some((first, others)) = models.split_first() else {
+        if models.is_empty() {
             return Err(Failure::input("models: none given, expected two or more"));
-        };
-        let named = |model: &Model, error: &dyn std::fmt::Display| {
-            Failure::input(error).in_file(model.name.display().to_string())
-        };
-        let mut merged = first.file.as_ref().clone();
-        for other in others {
-            merging::add(&mut merged, &other.file).map_err(|error| named(other, &error))?;
         }
-        let Some(learnt) = &mut merged.learnt else {
-            return Err(named(first, &"has not learnt anything"));
-        };
-        learnt
-            .ledger
-            .sort_by(|one, other| (&one.start, &one.flight).cmp(&(&other.start, &other.flight)));
-        learning::settle(learnt).map_err(|error| named(first, &error))?;
+        let part = |model: &Model| Part { model: model.file.as_ref().clone(), flights: None };
+        let merged = merging::merge(models.iter().map(part).collect());
+        let (merged, _) = merged.map_err(|(place, error)| {
+            Failure::input(&error).in_file(models[place].name.display().to_string())
+        })?;
         Ok(merged)
     })?;
     let name = PathBuf::from(file.tail().unwrap_or_default());

@@ -46,8 +46,11 @@ impl DragTables {
         // One by one: to the last bit a column must not depend on which other nodes are touched in the end, so that a table is
         // the same whether its flights were learnt at once or night by night.
         let mut prior = Mat::zeros(grid.nodes(), touched.len());
+        let mut unit = vec![0.0; grid.nodes()];
         for (column, node) in touched.iter().enumerate() {
-            prior.col_mut(column).copy_from(factor.inverse_columns(&[*node]).col(0));
+            unit[*node] = 1.0;
+            prior.col_as_slice_mut(column).copy_from_slice(&factor.solve(&unit));
+            unit[*node] = 0.0;
         }
         Ok(Self { columns, prior })
     }

@@ -1,11 +1,14 @@
-//! `cruisefit merge`: the sum of what several models of one initial model have learnt.
+//! `cruisefit merge`: what several models of one initial model have learnt, in one.
+
+use std::path::Path;
 
 use crate::args::MergeArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
+use crate::folder::stored_of;
 use crate::models::{check_model_replaceable, read_model, write_model};
+use pipeline::merging::{self, Merging, Part};
 use pipeline::model_file::ModelFile;
-use pipeline::{learning, merging};
 
 /// Runs the command.
 ///
@@ -13,28 +16,14 @@ use pipeline::{learning, merging};
 /// Models that do not add up: different initial models, laws, settings or trim criteria, or a flight that two have
 /// learnt.
 pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
-    let mut models = Vec::with_capacity(arguments.models.len());
+    let mut parts = Vec::with_capacity(arguments.models.len());
     for path in &arguments.models {
-        models.push((path, read_model(path)?));
+        parts.push(part_of(path)?);
     }
-    let Some(((_, first), others)) = models.split_first() else {
-        return Err(Failure::BadArgument {
-            argument: "MODEL.ron",
-            reason: "none given".to_owned(),
-        });
-    };
-    let mut merged = first.clone();
-    for (path, other) in others {
-        merging::add(&mut merged, other).map_err(|error| Failure::bad_file(path, error))?;
-    }
-    let Some(learnt) = &mut merged.learnt else {
-        return Err(Failure::bad_file(&arguments.models[0], "has not learnt anything"));
-    };
-    learnt
-        .ledger
-        .sort_by(|one, other| (&one.start, &one.flight).cmp(&(&other.start, &other.flight)));
-    learning::settle(learnt).map_err(|error| Failure::bad_file(&arguments.models[0], error))?;
-    let flights = learnt.ledger.len();
+    let bare = parts.iter().position(|part| part.flights.is_none());
+    let (merged, how) = merging::merge(parts)
+        .map_err(|(place, error)| Failure::bad_file(&arguments.models[place], error))?;
+    let flights = merged.learnt.as_ref().map_or(0, |learnt| learnt.ledger.len());
     // A sum may be made again; anything else would be lost.
     check_model_replaceable(&arguments.output, arguments.force, Some(&merged), |known| {
         let sum = |model: &ModelFile| {
@@ -43,13 +32,31 @@ pub(crate) fn run(arguments: &MergeArgs) -> Result<Outcome, Failure> {
         sum(known) == sum(&merged) && known.difference_of_initial(&merged).is_none()
     })?;
     write_model(&merged, &arguments.output)?;
+    let by = match (how, bare) {
+        (Merging::Added, Some(place)) => format!(
+            "Added up, the table alone: the segments of {} are not at hand. From folders of `adapt` all flights are learnt again.\n",
+            show(&arguments.models[place])
+        ),
+        _ => "All flights were learnt again from their segments, as if at once.\n".to_owned(),
+    };
     let text = format!(
-        "{flights} flights of {} models merged, written to {}\n",
+        "{flights} flights of {} models merged, written to {}\n{by}",
         arguments.models.len(),
         show(&arguments.output)
     );
     let figures = serde_json::json!({
-        "models": arguments.models.len(), "flights": flights, "written": [show(&arguments.output)],
+        "models": arguments.models.len(),
+        "flights": flights,
+        "learnt_again": how == Merging::LearntAgain,
+        "written": [show(&arguments.output)],
     });
     Ok(Outcome::with_figures(text, figures))
+}
+
+/// A model with its flights and segments, where it is one of a folder of `adapt`.
+fn part_of(path: &Path) -> Result<Part, Failure> {
+    if let Some(stored) = stored_of(path)? {
+        return Ok(Part { model: stored.model, flights: Some((stored.flights, stored.segments)) });
+    }
+    Ok(Part { model: read_model(path)?, flights: None })
 }

@@ -4,9 +4,11 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use flight::Timestamp;
+use pipeline::adaptation::StoredTail;
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::ModelFile;
-use pipeline::monitoring::{MonitoredFlight, read_flights};
+use pipeline::monitoring::{MonitoredFlight, curve_of_flights, read_flights};
+use pipeline::segments_table;
 
 use super::state::{self, DeviationsState, State, TailState};
 use crate::failure::Failure;
@@ -56,6 +58,64 @@ pub(crate) fn deviations_of(
     let bytes = state::bytes_of(state, folder, &of.file)?;
     read_flights(&bytes, since)
         .map_err(|reason| Failure::bad_file(&folder.join(&of.file.file), reason))
+}
+
+/// A tail's model, segments and flights.
+///
+/// # Errors
+/// A file that is damaged.
+pub(super) fn stored_tail(
+    folder: &Path,
+    state: &State,
+    tail: &str,
+    entry: &TailState,
+) -> Result<StoredTail, Failure> {
+    let path = folder.join(&entry.model.file);
+    let bytes = state::bytes_of(state, folder, &entry.model)?;
+    let model = crate::models::model_of_bytes(&path, &bytes)?;
+    let path = folder.join(&entry.segments.file);
+    let bytes = state::bytes_of(state, folder, &entry.segments)?;
+    let segments = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
+    let flights = flights_of(folder, state, tail, entry)?;
+    let curve = match &entry.deviations {
+        Some(of) => match deviations_of(state, folder, of, None) {
+            Ok(flights) => Some(curve_of_flights(&flights)),
+            // Nothing is lost with it: all that it holds follows from model and segments.
+            Err(failure) => {
+                tracing::warn!("{failure}; it is made anew");
+                None
+            }
+        },
+        None => None,
+    };
+    Ok(StoredTail { model, segments, flights, curve, predicted: None })
+}
+
+/// A model file of a folder that has a state, with the segments and flights that it learnt; `None` of any other file.
+///
+/// # Errors
+/// A file that is damaged.
+pub(crate) fn stored_of(model: &Path) -> Result<Option<StoredTail>, Failure> {
+    let name = |path: Option<&Path>| path.and_then(Path::file_name).map(ToOwned::to_owned);
+    let models = model.parent().filter(|models| name(Some(models)).is_some_and(|n| n == "models"));
+    let (Some(above), Some(file)) = (models.and_then(Path::parent), name(Some(model))) else {
+        return Ok(None);
+    };
+    let folder = if above.as_os_str().is_empty() { Path::new(".") } else { above };
+    let file = format!("models/{}", file.to_string_lossy());
+    loop {
+        let Some(state) = state::read(folder)? else { return Ok(None) };
+        let Some((tail, entry)) = state.tails.iter().find(|(_, entry)| entry.model.file == file)
+        else {
+            return Ok(None);
+        };
+        match stored_tail(folder, &state, tail, entry) {
+            Ok(stored) => return Ok(Some(stored)),
+            // Another process may have stored a newer generation in the meantime.
+            Err(_) if is_superseded(folder, &state) => {}
+            Err(failure) => return Err(failure),
+        }
+    }
 }
 
 /// The flights that a tail has learnt.

@@ -47,7 +47,7 @@ pub(super) fn read(folder: &Path) -> Result<BTreeMap<String, StoredTail>, Failur
         let segments = segments_of(folder, learnt)?;
         let flights = learnt_flights::of_ledger(&learnt.ledger, &segments)
             .map_err(|reason| Failure::bad_file(&path, reason))?;
-        tails.insert(tail, StoredTail { model, segments, flights, curve: None });
+        tails.insert(tail, StoredTail { model, segments, flights, curve: None, predicted: None });
     }
     Ok(tails)
 }

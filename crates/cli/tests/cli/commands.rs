@@ -297,51 +297,6 @@ fn a_simulated_fleet_has_its_events_and_one_truth() {
 }
 
 #[test]
-fn merged_models_are_the_model_of_all_flights() {
-    let scratch = tempfile::tempdir().unwrap();
-    let model = initial_model(scratch.path());
-    let reports: Vec<_> =
-        (1..=12).map(|flight| fixture(&format!("reports/{flight:04}.txt"))).collect();
-    let learn = |name: &str, reports: &[std::path::PathBuf]| {
-        let output = scratch.path().join(name);
-        adapt(&model, &output, reports, &[]).expect(0);
-        output.join("models/SIM-01.ron")
-    };
-    let (whole, first, second) =
-        (learn("whole", &reports), learn("first", &reports[..7]), learn("second", &reports[7..]));
-    let merge = |one: &std::path::Path, other: &std::path::Path, name: &str| {
-        let merged = scratch.path().join(name);
-        let ran = cruisefit(&[
-            "merge".as_ref(),
-            one.as_os_str(),
-            other.as_os_str(),
-            "-o".as_ref(),
-            merged.as_os_str(),
-        ]);
-        (ran, merged)
-    };
-    let table = |model: &std::path::Path| {
-        let csv = scratch.path().join("table.csv");
-        cruisefit(&["export".as_ref(), model.as_os_str(), "-o".as_ref(), csv.as_os_str()])
-            .expect(0);
-        numbers(&csv_columns(&csv), "drag_coefficient")
-    };
-    let (ran, merged) = merge(&first, &second, "merged.ron");
-    ran.expect(0);
-    let (ran, turned) = merge(&second, &first, "turned.ron");
-    ran.expect(0);
-    for (one, other) in table(&merged).iter().zip(table(&turned)) {
-        assert!((one - other).abs() <= 1e-9 * other, "order: {one} {other}");
-    }
-    // Outlier weights are judged against what a model knows: the two halves know less than the whole.
-    for (merged, whole) in table(&merged).iter().zip(table(&whole)) {
-        assert!((merged - whole).abs() <= 3e-3 * whole, "{merged} {whole}");
-    }
-    let (ran, _) = merge(&whole, &first, "twice.ron");
-    ran.expect(2).says("it would count twice");
-}
-
-#[test]
 fn tuned_settings_are_kept_by_the_model() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());

@@ -23,6 +23,7 @@ mod folder;
 mod guide;
 mod hostile_system;
 mod json_schema;
+mod merging;
 mod monitor;
 mod optimum;
 mod pages;

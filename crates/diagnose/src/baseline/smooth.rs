@@ -37,6 +37,8 @@ pub(crate) struct Smooth {
     text: SmoothText,
     /// Lower Cholesky factor of the kernel at the knots.
     root: Mat<f64>,
+    /// The same row by row, each row ending in the inverse of its diagonal.
+    rows: Vec<f64>,
 }
 
 /// A smooth function as it is written.
@@ -148,16 +150,41 @@ impl Smooth {
     pub(crate) fn write(&self, value: f64, into: &mut [f64]) -> f64 {
         let z = self.at(value);
         into[0] = z;
-        let mut held = 0.0;
-        for k in 0..self.text.count {
-            let mut sum = kernel(z, self.knot(k));
-            for j in 0..k {
-                sum -= self.root[(k, j)] * into[1 + j];
+        let terms = &mut into[1..=self.text.count];
+        self.write_kernels(z, terms);
+        let (mut held, mut rest) = (0.0, self.rows.as_slice());
+        for k in 0..terms.len() {
+            let (row, behind) = rest.split_at(k + 1);
+            let (below, from_here) = terms.split_at_mut(k);
+            let mut term = from_here[0];
+            for (l, other) in row.iter().zip(below.iter()) {
+                term -= l * other;
             }
-            into[1 + k] = sum / self.root[(k, k)];
-            held += into[1 + k] * into[1 + k];
+            term *= row[k];
+            held += term * term;
+            from_here[0] = term;
+            rest = behind;
         }
         self.text.left_of_variance(z, held)
+    }
+
+    /// The kernel at all knots: from knot to knot as far as that holds.
+    fn write_kernels(&self, z: f64, into: &mut [f64]) {
+        let (from_first, distance) = (z - self.text.knots.0, self.text.distance());
+        if from_first.abs() <= REACH {
+            let mut now = (-0.5 * from_first * from_first).exp();
+            let mut ratio = (from_first * distance - 0.5 * distance * distance).exp();
+            let ratio_falls = (-distance * distance).exp();
+            for value in into {
+                *value = now;
+                now *= ratio;
+                ratio *= ratio_falls;
+            }
+        } else {
+            for (k, value) in into.iter_mut().enumerate() {
+                *value = kernel(z, self.knot(k));
+            }
+        }
     }
 
     fn knot(&self, k: usize) -> f64 {
@@ -198,13 +225,9 @@ impl Smooth {
             }
             weights[k] /= self.root[(k, k)];
         }
-        let mut root = Vec::with_capacity(count * (count + 1) / 2);
-        for k in 0..count {
-            root.extend((0..k).map(|j| self.root[(k, j)]));
-            root.push(1.0 / self.root[(k, k)]);
-        }
         let distance = self.text.distance();
         let ratio_falls = (-distance * distance).exp();
+        let root = self.rows.clone();
         Prepared { text: self.text, distance, ratio_falls, slope, weights, root }
     }
 }
@@ -320,12 +343,16 @@ impl TryFrom<SmoothText> for Smooth {
         if !finite || !spread || !(2..=SMOOTH_MOST_KNOTS).contains(&count) {
             return Err(wrong);
         }
-        let mut smooth = Self { text, root: Mat::zeros(0, 0) };
+        let mut smooth = Self { text, root: Mat::zeros(0, 0), rows: Vec::new() };
         let kernel = Mat::from_fn(count, count, |a, b| {
             let own = if a == b { JITTER } else { 0.0 };
             kernel(smooth.knot(a), smooth.knot(b)) + own
         });
         smooth.root = Cholesky::new(&kernel).ok_or(wrong)?.lower().to_owned();
+        for k in 0..count {
+            smooth.rows.extend((0..k).map(|j| smooth.root[(k, j)]));
+            smooth.rows.push(1.0 / smooth.root[(k, k)]);
+        }
         Ok(smooth)
     }
 }

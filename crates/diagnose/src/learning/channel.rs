@@ -5,7 +5,7 @@ use faer::Mat;
 use crate::learning::dials::Dials;
 use crate::learning::evidence::Evidence;
 use crate::learning::outliers::Weights;
-use crate::learning::posterior::{ChannelPosterior, prior_parts};
+use crate::learning::posterior::{ChannelPosterior, Prior};
 use crate::learning::rows::ChannelRows;
 use crate::learning::sums::ChannelSums;
 use crate::learning::unseen::{Unseen, scatter_by_unseen, unseen};
@@ -44,14 +44,14 @@ pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<Lear
     let mut weights = Weights::before(rows);
     // Few columns hold all others, whatever the weights: from here on they alone are looked at.
     let reduction = reduction(&ChannelSums::own(rows, &Weights::of_one(rows)), groups.len());
-    let prior = prior_parts(&reduction, groups);
+    let prior = Prior::of(&reduction, groups);
     let reduced = rows.only(&reduction.pivots);
     let mut dials = Dials::usual();
     for weighing in 1.. {
         let sums = ChannelSums::new(&reduced, &weights);
         let mut evidence = Evidence::new(&sums, &prior);
         dials = evidence.likeliest(dials, if weighing == 1 { &FIRST_STEPS } else { &STEPS });
-        let left = reduced.left(&evidence.solved(&dials)?.mean);
+        let left = reduced.left(&evidence.mean(&dials)?);
         let next = weights.after(&reduced, &left, &dials);
         if next.settled(&weights) || weighing == MOST_WEIGHINGS {
             let unseen = raise_scatter(&reduced, &weights, &mut evidence, &mut dials)?;

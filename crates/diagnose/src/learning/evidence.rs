@@ -7,8 +7,10 @@
 use faer::Mat;
 
 use crate::learning::dials::{Dials, MOST_DIALS, NOISE_DIALS, SCALES};
+use crate::learning::posterior::Prior;
 use crate::learning::sums::ChannelSums;
-use crate::math::cholesky::Cholesky;
+use crate::math::linear::add_gram;
+use crate::math::lower::{Lower, dot};
 use crate::priors::{
     PRIOR_LEVEL_ALONE, SCALE_LN_DEVIATIONS, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
 };
@@ -34,12 +36,30 @@ pub(super) struct Weighted {
 /// The marginal likelihood of a channel.
 pub(super) struct Evidence<'a> {
     sums: &'a ChannelSums,
-    /// Prior covariances of the columns: the one that stays, and those that scales multiply.
-    prior: &'a [Mat<f64>],
+    prior: &'a Prior,
     /// The Gram matrix formed last, with Σ ln(1 + ρ²λ), and its ratio.
     gram: Option<(f64, Mat<f64>, f64)>,
     /// The prior precision formed last, with `ln|K|`, and its scales.
-    precision: Option<([f64; SCALES], Mat<f64>, f64)>,
+    precision: Option<([f64; SCALES], Lower, f64)>,
+    /// Cholesky factor of the posterior precision that was looked at last.
+    factor: Lower,
+    /// What makes scales cheap to move, at a ratio.
+    by_scales: Option<ByScales>,
+    /// Room for what is factored there.
+    seen: Lower,
+}
+
+/// The likelihood as a function of the scales alone, at one ratio of the noise: no prior has to be inverted.
+///
+/// ```text
+/// G = LLᵀ,  h = L⁻¹g,  C = Σ_i s_i²/w² LᵀP_iL,  K = Σ_i s_i² P_i:
+/// ln|K| + ln|K⁻¹ + G/w²| = ln|1 + C|,   gᵀ(K⁻¹ + G/w²)⁻¹g/w² = hᵀC(1 + C)⁻¹h                 [diagnosis.17]
+/// ```
+struct ByScales {
+    ratio: f64,
+    /// LᵀP_iL and its product with h.
+    parts: Vec<(Lower, Vec<f64>)>,
+    right: Vec<f64>,
 }
 
 /// Posterior of the columns at one point: mean, and a root of the covariance.
@@ -49,8 +69,9 @@ pub(super) struct Solved {
 }
 
 impl<'a> Evidence<'a> {
-    pub(super) const fn new(sums: &'a ChannelSums, prior: &'a [Mat<f64>]) -> Self {
-        Self { sums, prior, gram: None, precision: None }
+    pub(super) fn new(sums: &'a ChannelSums, prior: &'a Prior) -> Self {
+        let (factor, seen) = (Lower::default(), Lower::default());
+        Self { sums, prior, gram: None, precision: None, factor, by_scales: None, seen }
     }
 
     /// Factors that this channel has.
@@ -60,7 +81,7 @@ impl<'a> Evidence<'a> {
 
     /// Scales among them: the first part of the prior covariance has none.
     fn scales(&self) -> usize {
-        self.prior.len() - 1
+        self.prior.parts.len() - 1
     }
 
     /// ln of the marginal likelihood and of the prior of the factors, up to a constant.
@@ -72,42 +93,111 @@ impl<'a> Evidence<'a> {
         if !dials.is_allowed() {
             return f64::NEG_INFINITY;
         }
-        let square = dials.within * dials.within;
-        let Some(factor) = self.factor(dials) else { return f64::NEG_INFINITY };
-        let (Some((_, gram, ln_common)), Some((_, _, ln_prior))) = (&self.gram, &self.precision)
-        else {
-            return f64::NEG_INFINITY;
+        let found = match self.seen_by_scales(dials) {
+            Some(found) => Some(found),
+            None => self.seen_by_precision(dials),
         };
+        let Some((ln_determinants, explained)) = found else { return f64::NEG_INFINITY };
+        let Some((_, gram, ln_common)) = &self.gram else { return f64::NEG_INFINITY };
+        let square = dials.within * dials.within;
         let width = gram.nrows() - 1;
-        let mut projected = right_side(gram);
-        factor.solve_lower(&mut projected);
-        let explained: f64 = projected.col_as_slice(0).iter().map(|value| value * value).sum();
-        let left = (gram[(width, width)] - explained / square) / square;
+        let left = (gram[(width, width)] - explained) / square;
         let ln_noise = self.sums.values * square.ln() + ln_common;
-        let likelihood = -0.5 * (ln_noise + ln_prior + factor.ln_determinant() + left);
+        let likelihood = -0.5 * (ln_noise + ln_determinants + left);
         likelihood + self.ln_prior(dials)
     }
 
-    /// Cholesky factor of the posterior precision K⁻¹ + G/w²; Gram matrix and prior are then at hand.
-    fn factor(&mut self, dials: &Dials) -> Option<Cholesky> {
+    /// ln|K| + ln|K⁻¹ + G/w²| and gᵀ(K⁻¹ + G/w²)⁻¹g/w², by the precision.
+    fn seen_by_precision(&mut self, dials: &Dials) -> Option<(f64, f64)> {
+        self.factor(dials)?;
+        let ((_, gram, _), (.., ln_prior)) = (self.gram.as_ref()?, self.precision.as_ref()?);
+        let mut projected = right_side(gram);
+        self.factor.solve_lower(&mut projected);
+        let explained = dot(&projected, &projected) / (dials.within * dials.within);
+        Some((ln_prior + self.factor.ln_determinant(), explained))
+    }
+
+    /// The same where scales are being moved at this ratio.
+    fn seen_by_scales(&mut self, dials: &Dials) -> Option<(f64, f64)> {
         let ratio = dials.ratio();
+        let by = self.by_scales.as_ref().filter(|by| by.ratio.to_bits() == ratio.to_bits())?;
+        // The Gram matrix at hand is that of this ratio: another one drops what was prepared.
+        let square = dials.within * dials.within;
+        let shares: Vec<f64> = core::iter::once(1.0)
+            .chain(dials.scales.iter().map(|scale| scale * scale))
+            .map(|share| share / square)
+            .collect();
+        let parts = || shares.iter().copied().zip(&by.parts);
+        self.seen.set_one_and_sum(parts().map(|(share, (part, _))| (share, part)));
+        if !self.seen.factor() {
+            return None;
+        }
+        let mut moved = vec![0.0; by.right.len()];
+        for (share, (_, with_right)) in parts() {
+            for (sum, value) in moved.iter_mut().zip(with_right) {
+                *sum += share * value;
+            }
+        }
+        let mut right = by.right.clone();
+        self.seen.solve_lower(&mut moved);
+        self.seen.solve_lower(&mut right);
+        Some((self.seen.ln_determinant(), dot(&moved, &right)))
+    }
+
+    /// Gets ready for moves of the scales at the ratio of these factors. Where the Gram matrix has no factor they are moved by the
+    /// precision.
+    fn prepare_scales(&mut self, dials: &Dials) {
+        let ratio = dials.ratio();
+        if self.by_scales.as_ref().is_some_and(|by| by.ratio.to_bits() == ratio.to_bits()) {
+            return;
+        }
+        self.by_scales = None;
+        self.form_gram(ratio);
+        let Some((_, gram, _)) = &self.gram else { return };
+        let mut factor = Lower::zeros(gram.nrows() - 1);
+        factor.add(1.0, gram);
+        if !factor.factor() {
+            return;
+        }
+        let mut right = right_side(gram);
+        factor.solve_lower(&mut right);
+        let lower = factor.to_mat();
+        let part = |root: &Mat<f64>| {
+            let turned = lower.transpose() * root;
+            let mut part = Mat::<f64>::zeros(turned.nrows(), turned.nrows());
+            add_gram(&mut part, turned.transpose());
+            let part = Lower::of(&part);
+            let with_right = part.times(&right);
+            (part, with_right)
+        };
+        let parts = self.prior.roots.iter().map(part).collect();
+        self.by_scales = Some(ByScales { ratio, parts, right });
+    }
+
+    /// The Gram matrix at a ratio.
+    fn form_gram(&mut self, ratio: f64) {
         if self.gram.as_ref().is_none_or(|(at, ..)| at.to_bits() != ratio.to_bits()) {
             let (gram, ln_common) = self.sums.gram(ratio);
             self.gram = Some((ratio, gram, ln_common));
+            self.by_scales = None;
         }
+    }
+
+    /// Factors the posterior precision K⁻¹ + G/w²; Gram matrix and prior are then at hand.
+    fn factor(&mut self, dials: &Dials) -> Option<()> {
+        self.form_gram(dials.ratio());
         let bits = |scales: [f64; SCALES]| scales.map(f64::to_bits);
         if self.precision.as_ref().is_none_or(|(at, ..)| bits(*at) != bits(dials.scales)) {
-            let factor = Cholesky::in_place(self.prior_covariance(dials.scales))?;
-            let size = factor.lower().nrows();
-            let mut precision = Mat::identity(size, size);
-            factor.solve(&mut precision);
+            let mut factor = self.prior_covariance(dials.scales);
+            if !factor.factor() {
+                return None;
+            }
+            let precision = factor.inverse().transposed_times_itself();
             self.precision = Some((dials.scales, precision, factor.ln_determinant()));
         }
         let ((_, gram, _), (_, prior, _)) = (self.gram.as_ref()?, self.precision.as_ref()?);
-        let share = 1.0 / (dials.within * dials.within);
-        let mut precision = prior.clone();
-        add_lower(&mut precision, share, gram);
-        Cholesky::in_place(precision)
+        self.factor.set_sum(prior, 1.0 / (dials.within * dials.within), gram);
+        self.factor.factor().then_some(())
     }
 
     /// Factors are log-normal about what is usual: a few flights do not make noise vanish.
@@ -122,11 +212,13 @@ impl<'a> Evidence<'a> {
         scales.map(|(scale, deviation)| ln_log_normal(*scale, 1.0, deviation)).sum()
     }
 
-    /// Lower triangle of the prior covariance of the columns at scales.
-    pub(super) fn prior_covariance(&self, scales: [f64; SCALES]) -> Mat<f64> {
-        let mut covariance = self.prior[0].clone();
-        for (part, scale) in self.prior[1..].iter().zip(scales) {
-            add_lower(&mut covariance, scale * scale, part);
+    /// Prior covariance of the columns at scales.
+    pub(super) fn prior_covariance(&self, scales: [f64; SCALES]) -> Lower {
+        let parts = &self.prior.parts;
+        let mut covariance = Lower::zeros(parts[0].nrows());
+        covariance.add(1.0, &parts[0]);
+        for (part, scale) in parts[1..].iter().zip(scales) {
+            covariance.add(scale * scale, part);
         }
         covariance
     }
@@ -141,6 +233,9 @@ impl<'a> Evidence<'a> {
         let mut best = (start.coordinates(), self.ln_evidence(&start));
         for &step in steps {
             for coordinate in 0..coordinates {
+                if coordinate == NOISE_DIALS {
+                    self.prepare_scales(&Dials::at(&best.0));
+                }
                 self.move_along(&mut best, coordinate, step);
             }
         }
@@ -231,6 +326,9 @@ impl<'a> Evidence<'a> {
         let mut points = Vec::with_capacity(2 * dimensions + 1);
         let mut deviations = [0.0; MOST_DIALS];
         for coordinate in 0..dimensions {
+            if coordinate == NOISE_DIALS {
+                self.prepare_scales(&Dials::at(&center));
+            }
             let mut value_at = |by: f64| {
                 let mut moved = center;
                 moved[coordinate] += by;
@@ -260,16 +358,33 @@ impl<'a> Evidence<'a> {
         (points, deviations)
     }
 
-    /// The posterior at one point; `None` where matrices are not positive definite.
-    pub(super) fn solved(&mut self, dials: &Dials) -> Option<Solved> {
-        let factor = self.factor(dials)?;
+    /// The posterior mean at one point; `None` where matrices are not positive definite.
+    pub(super) fn mean(&mut self, dials: &Dials) -> Option<Mat<f64>> {
+        self.factor(dials)?;
         let (_, gram, _) = self.gram.as_ref()?;
-        let mut mean = faer::Scale(1.0 / (dials.within * dials.within)) * right_side(gram);
-        factor.solve(&mut mean);
-        let size = mean.nrows();
-        let mut root = Mat::identity(size, size);
-        factor.solve_upper(&mut root);
-        Some(Solved { mean, root })
+        let square = dials.within * dials.within;
+        let mut mean = right_side(gram);
+        for value in &mut mean {
+            *value /= square;
+        }
+        self.factor.solve_lower(&mut mean);
+        self.factor.solve_upper(&mut mean);
+        Some(Mat::from_fn(mean.len(), 1, |k, _| mean[k]))
+    }
+
+    /// The same with the covariance.
+    pub(super) fn mean_and_covariance(&mut self, dials: &Dials) -> Option<(Mat<f64>, Lower)> {
+        let mean = self.mean(dials)?;
+        Some((mean, self.factor.inverse().transposed_times_itself()))
+    }
+
+    /// The posterior at one point; `None` as for [`mean`](Self::mean).
+    pub(super) fn solved(&mut self, dials: &Dials) -> Option<Solved> {
+        let mean = self.mean(dials)?;
+        let inverse = self.factor.inverse();
+        let size = inverse.size();
+        let entry = |row, column| if row <= column { inverse.at(column, row) } else { 0.0 };
+        Some(Solved { mean, root: Mat::from_fn(size, size, entry) })
     }
 }
 
@@ -279,20 +394,10 @@ fn ln_log_normal(value: f64, center: f64, ln_deviation: f64) -> f64 {
     -0.5 * z * z
 }
 
-/// `C += share·A`, lower triangle only; A may have more rows and columns.
-fn add_lower(into: &mut Mat<f64>, share: f64, from: &Mat<f64>) {
-    for column in 0..into.ncols() {
-        let from = &from.col_as_slice(column)[column..];
-        for (into, from) in into.col_as_slice_mut(column)[column..].iter_mut().zip(from) {
-            *into += share * from;
-        }
-    }
-}
-
 /// Products of the columns with the residual: the last row of a lower triangle.
-fn right_side(gram: &Mat<f64>) -> Mat<f64> {
+fn right_side(gram: &Mat<f64>) -> Vec<f64> {
     let width = gram.nrows() - 1;
-    Mat::from_fn(width, 1, |column, _| gram[(width, column)])
+    (0..width).map(|column| gram[(width, column)]).collect()
 }
 
 #[cfg(test)]
@@ -300,6 +405,7 @@ mod tests {
     use super::*;
     use crate::learning::outliers::Weights;
     use crate::learning::rows::ChannelRows;
+    use crate::math::cholesky::Cholesky;
     use crate::priors::SCALE_OF_NOTHING;
 
     /// A level and a slope over five values of two flights, all of them by hand as one normal distribution: the density of
@@ -321,10 +427,10 @@ mod tests {
             shares: vec![1.0; 2],
         };
         let sums = ChannelSums::new(&rows, &Weights::of_one(&rows));
-        let prior = [
+        let prior = Prior::of_roots(vec![
             Mat::from_fn(2, 2, |i, j| if i == j && i == 0 { 1.0 } else { 0.0 }),
             Mat::from_fn(2, 2, |i, j| if i == j && i == 1 { 1.0 } else { 0.0 }),
-        ];
+        ]);
         let density = |dials: &Dials| {
             let covariance = Mat::from_fn(5, 5, |i, j| {
                 let own = if i == j { dials.within.powi(2) * rows.variance[i] } else { 0.0 };
@@ -348,6 +454,17 @@ mod tests {
         for (within, between, scale) in [(0.3, 0.4, 2.0), (1.5, 0.1, 0.2), (0.6, 0.9, 1.1)] {
             let (other, other_known) = found(within, between, scale);
             assert!(((other - at) - (other_known - known)).abs() < 1e-10);
+        }
+        // With scales made cheap to move, at one ratio of the noise.
+        let start = Dials { within: 0.6, between: 0.9, scales: [0.8, 1.0, 1.0] };
+        evidence.prepare_scales(&start);
+        for (within, scale) in [(0.6, 0.8), (0.6, 2.0), (0.6, 0.01), (1.2, 0.3)] {
+            let scales = [scale, 1.0, 1.0];
+            let dials = Dials { within, between: within * start.ratio(), scales };
+            let (likelihood, _) = evidence.seen_by_scales(&dials).unwrap();
+            assert!(likelihood.is_finite(), "the other form was taken");
+            let other = evidence.ln_evidence(&dials) - evidence.ln_prior(&dials);
+            assert!(((other - at) - (density(&dials) - known)).abs() < 1e-10);
         }
     }
 
@@ -376,7 +493,7 @@ mod tests {
     #[test]
     fn level_alone_is_as_probable_as_by_integration() {
         let part = |at: usize| Mat::from_fn(2, 2, |i, j| f64::from(u8::from(i == j && i == at)));
-        let prior = [part(0), part(1)];
+        let prior = Prior::of_roots(vec![part(0), part(1)]);
         let mut between = 0;
         for slope in [0.0, 0.15, 0.25, 0.4, 1.5] {
             let rows = flights_with_slope(slope);

@@ -11,7 +11,7 @@ use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::priors::REMAINDER_LENGTHS;
 use crate::residuals::reference::Reference;
-use crate::residuals::rows::FlightRows;
+use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::noise::NoiseFactors;
 use crate::signals::record::FlightRecord;
@@ -34,6 +34,9 @@ const VARIABLES: [Variable; 6] = [
 ];
 
 impl Baseline {
+    /// Fewest flights from which anything is learnt.
+    pub const FEWEST_FLIGHTS: usize = FEWEST_FLIGHTS_OF_A_BASELINE;
+
     /// Learns from clean flights against a model and a drag table. `table` is what is believed of that table before the
     /// flights; without it the table is taken as exact. With a half-life a flight counts by its age at the newest one,
     /// 2^(−age/half-life).
@@ -47,6 +50,53 @@ impl Baseline {
         flights: &[FlightRecord<'_>],
         half_life_days: Option<f64>,
     ) -> Result<Self, DiagnoseError> {
+        let (baseline, _) = Self::learnt(model, drag_table, table, flights, half_life_days)?;
+        Ok(baseline)
+    }
+
+    /// The same with ln of the fuel flow, kg/s, that the model with all of it predicts for each segment, in the order of flights:
+    /// the bits of [`WholeModel::ln_fuel_flow_of_segment`](crate::WholeModel::ln_fuel_flow_of_segment) at a fraction of its cost,
+    /// because learning has looked at every segment already. `None` of those that were left out.
+    ///
+    /// # Errors
+    /// As for [`learn`](Self::learn).
+    pub fn learn_and_predict(
+        model: &ExtendedModel,
+        drag_table: &lut::Table,
+        table: Option<TableUncertainty>,
+        flights: &[FlightRecord<'_>],
+        half_life_days: Option<f64>,
+    ) -> Result<(Self, Vec<Option<f64>>), DiagnoseError> {
+        let (baseline, rows) = Self::learnt(model, drag_table, table, flights, half_life_days)?;
+        let mut predicted = vec![None; flights.iter().map(|flight| flight.segments.len()).sum()];
+        for row in &rows {
+            predicted[row.place] = Some(baseline.ln_fuel_flow_of(row));
+        }
+        Ok((baseline, predicted))
+    }
+
+    /// What the model with all of it predicts for a segment that it was learnt from: ln of fuel flow.
+    fn ln_fuel_flow_of(&self, row: &SegmentRow) -> f64 {
+        let mut carried = 0.0;
+        for (k, effect) in STANDING_EFFECTS.iter().enumerate() {
+            let lacks = row.standing_unknown[k] || effect.lacks_input(&row.point);
+            carried += if lacks {
+                self.parts.standing_means[k]
+            } else {
+                row.standing_effects[k][0] * self.parts.standing_effects[k]
+            };
+        }
+        let learnt = self.drag_at(&row.response) + self.mean_at(&row.response);
+        row.response.ln_fuel_flow_total + learnt + carried
+    }
+
+    fn learnt(
+        model: &ExtendedModel,
+        drag_table: &lut::Table,
+        table: Option<TableUncertainty>,
+        flights: &[FlightRecord<'_>],
+        half_life_days: Option<f64>,
+    ) -> Result<(Self, Vec<SegmentRow>), DiagnoseError> {
         let references = references_of(model, drag_table, flights)?;
         let effect_model =
             EffectModel::new(model, drag_table, references)?.between_nodes(BetweenNodes::Smooth);
@@ -74,7 +124,7 @@ impl Baseline {
         count_by_age(&mut data.flights, half_life_days);
         let mut baseline = Self::prior(&data, &references, table);
         baseline.fit(&data)?;
-        Ok(baseline)
+        Ok((baseline, data.segments))
     }
 
     /// The baseline before it has learnt.

@@ -39,11 +39,10 @@ impl ChannelPosterior {
         let mut means = Vec::with_capacity(points.len());
         let mut squares = [0.0; MOST_DIALS];
         for Weighted { dials, weight } in points {
-            let solved = evidence.solved(dials)?;
-            let part = faer::Scale(weight.sqrt()) * &solved.root;
-            add_gram(&mut spread, part.transpose());
-            mean += faer::Scale(*weight) * &solved.mean;
-            means.push(solved.mean);
+            let (found, covariance) = evidence.mean_and_covariance(dials)?;
+            covariance.add_to(*weight, &mut spread);
+            mean += faer::Scale(*weight) * &found;
+            means.push(found);
             let [smooth, products, straight] = dials.scales;
             let all = [dials.within, dials.between, smooth, products, straight];
             for (sum, value) in squares.iter_mut().zip(all) {
@@ -57,7 +56,7 @@ impl ChannelPosterior {
         let [within, between, smooth, products, straight] = squares.map(f64::sqrt);
         let dials = Dials { within, between, scales: [smooth, products, straight] };
         let variance = prior_variances(groups, dials.scales);
-        let root = Cholesky::new(&evidence.prior_covariance(dials.scales))?;
+        let root = Cholesky::in_place(evidence.prior_covariance(dials.scales).to_mat())?;
         // Yᵀ = R⁻¹TΛ, and K⁻¹TΛ.
         let mut turned = Mat::from_fn(rank, width, |k, column| {
             reduction.transfer[(k, column)] * variance[column]
@@ -84,17 +83,28 @@ fn prior_variances(groups: &[usize], scales: [f64; SCALES]) -> Vec<f64> {
     groups.iter().map(of).collect()
 }
 
-/// Prior covariances of the pivots: the part of each group of columns.
-pub(super) fn prior_parts(reduction: &Pivoted, groups: &[usize]) -> Vec<Mat<f64>> {
-    let rank = reduction.pivots.len();
-    let last = groups.iter().copied().max().unwrap_or(0);
-    (0..=last)
-        .map(|group| {
+/// Prior covariance of the pivots by groups of columns: the one that stays, and those that scales multiply.
+pub(super) struct Prior {
+    /// Each of its parts, and a root of it.
+    pub(super) parts: Vec<Mat<f64>>,
+    pub(super) roots: Vec<Mat<f64>>,
+}
+
+impl Prior {
+    /// Of columns in these groups.
+    pub(super) fn of(reduction: &Pivoted, groups: &[usize]) -> Self {
+        let rank = reduction.pivots.len();
+        let last = groups.iter().copied().max().unwrap_or(0);
+        let root = |group: usize| {
             let columns: Vec<usize> =
                 (0..groups.len()).filter(|&column| groups[column] == group).collect();
-            let part =
-                Mat::from_fn(rank, columns.len(), |k, at| reduction.transfer[(k, columns[at])]);
-            &part * part.transpose()
-        })
-        .collect()
+            Mat::from_fn(rank, columns.len(), |k, at| reduction.transfer[(k, columns[at])])
+        };
+        Self::of_roots((0..=last).map(root).collect())
+    }
+
+    /// Of roots of its parts.
+    pub(super) fn of_roots(roots: Vec<Mat<f64>>) -> Self {
+        Self { parts: roots.iter().map(|root| root * root.transpose()).collect(), roots }
+    }
 }

@@ -18,8 +18,10 @@ use faer::{Mat, Side};
 
 use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
-use crate::math::gram::Sum;
-use crate::math::linear::subtract_gram;
+use crate::math::linear::{add_gram, subtract_gram, symmetrize};
+
+/// Rows that are multiplied together. Our choice: products are fast, and what waits for them is small.
+const ROWS_TOGETHER: usize = 384;
 
 /// Sums over rows whose noise has factors of 1.
 pub(super) struct ChannelSums {
@@ -37,43 +39,49 @@ impl ChannelSums {
     pub(super) fn new(rows: &ChannelRows, weights: &Weights) -> Self {
         let size = rows.columns.ncols();
         let rank = rows.loadings.len();
-        let mut own = Sum::new(size);
+        let mut own = Mat::<f64>::zeros(size, size);
         let mut common = Mat::<f64>::zeros(size, rank * rows.groups.len());
         let mut eigenvalues = vec![(0.0, 0.0); rank * rows.groups.len()];
-        let mut values = 0.0;
-        for (group, range) in rows.groups.iter().enumerate() {
-            let share = rows.shares[group];
-            values += share * range.len() as f64;
-            let scale = scales(rows, weights, group);
-            let white = whitened(rows, range, &scale);
-            own.add(&white, range.len() as f64);
-            let of_group = 1.0 / (share * weights.groups[group]).sqrt();
-            let loadings = Mat::from_fn(range.len(), rank, |at, r| {
-                rows.loadings[r][range.start + at] * scale[at] * of_group
-            });
-            let Ok(eigen) = (loadings.transpose() * &loadings).self_adjoint_eigen(Side::Lower)
-            else {
-                continue;
-            };
-            let rotated = &loadings * eigen.U();
-            let projected = white.transpose() * &rotated;
-            for r in 0..rank {
-                let column = rank * group + r;
-                eigenvalues[column] = (eigen.S().column_vector()[r].max(0.0), share);
-                common.col_as_slice_mut(column).copy_from_slice(projected.col_as_slice(r));
+        let scales = scales(rows, weights);
+        for together in together(rows) {
+            let first = rows.groups[together.start].start;
+            let white = whitened(rows, &together, &scales);
+            add_gram(&mut own, white.as_ref());
+            for group in together {
+                let range = rows.groups[group].clone();
+                let share = rows.shares[group];
+                let of_group = 1.0 / (share * weights.groups[group]).sqrt();
+                let (turned, lengths) = turned_loadings(rows, &range, &scales, of_group);
+                for (r, (loading, length)) in turned.iter().zip(lengths).enumerate() {
+                    eigenvalues[rank * group + r] = (length.max(0.0), share);
+                    let into = common.col_as_slice_mut(rank * group + r);
+                    for (column, into) in into.iter_mut().enumerate() {
+                        let values = &white.col_as_slice(column)[range.start - first..];
+                        let mut sum = 0.0;
+                        for (at, u) in loading.iter().enumerate() {
+                            sum += values[at] * u;
+                        }
+                        *into = sum;
+                    }
+                }
             }
         }
-        Self { own: own.finish().matrix, common, eigenvalues, values }
+        symmetrize(&mut own);
+        let counted = |(range, share): (&Range<usize>, &f64)| share * range.len() as f64;
+        let values = rows.groups.iter().zip(&rows.shares).map(counted).sum();
+        Self { own, common, eigenvalues, values }
     }
 
     /// Σ XᵀD⁻¹X alone, the residual as last column.
     pub(super) fn own(rows: &ChannelRows, weights: &Weights) -> Mat<f64> {
-        let mut own = Sum::new(rows.columns.ncols());
-        for (group, range) in rows.groups.iter().enumerate() {
-            let white = whitened(rows, range, &scales(rows, weights, group));
-            own.add(&white, range.len() as f64);
+        let size = rows.columns.ncols();
+        let mut own = Mat::<f64>::zeros(size, size);
+        let scales = scales(rows, weights);
+        for together in together(rows) {
+            add_gram(&mut own, whitened(rows, &together, &scales).as_ref());
         }
-        own.finish().matrix
+        symmetrize(&mut own);
+        own
     }
 
     /// Gram matrix at a ratio ρ of the noise between flights over that within, times w²; lower triangle. And Σ ln(1 + ρ²λ).
@@ -94,24 +102,76 @@ impl ChannelSums {
     }
 }
 
-/// One over the standard deviation of each row of a group.
-fn scales(rows: &ChannelRows, weights: &Weights, group: usize) -> Vec<f64> {
-    let share = rows.shares[group];
-    let of_row = |row: usize| (share * weights.rows[row] / rows.variance[row]).sqrt();
-    rows.groups[group].clone().map(of_row).collect()
+/// One over the standard deviation of each row.
+fn scales(rows: &ChannelRows, weights: &Weights) -> Vec<f64> {
+    let mut scales = vec![0.0; rows.variance.len()];
+    for (range, share) in rows.groups.iter().zip(&rows.shares) {
+        for row in range.clone() {
+            scales[row] = (share * weights.rows[row] / rows.variance[row]).sqrt();
+        }
+    }
+    scales
 }
 
-/// The rows of a group, each times its scale.
-fn whitened(rows: &ChannelRows, range: &Range<usize>, scale: &[f64]) -> Mat<f64> {
+/// Groups whose rows are multiplied together: a flight alone has too few for fast products.
+fn together(rows: &ChannelRows) -> Vec<Range<usize>> {
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    let mut first_row = 0;
+    for (group, range) in rows.groups.iter().enumerate() {
+        match ranges.last_mut() {
+            Some(last) if range.end - first_row <= ROWS_TOGETHER => last.end = group + 1,
+            _ => {
+                first_row = range.start;
+                ranges.push(group..group + 1);
+            }
+        }
+    }
+    ranges
+}
+
+/// The rows of neighbouring groups, each times its scale.
+fn whitened(rows: &ChannelRows, groups: &Range<usize>, scales: &[f64]) -> Mat<f64> {
+    let range = rows.groups[groups.start].start..rows.groups[groups.end - 1].end;
+    let scales = &scales[range.clone()];
     let mut white = Mat::<f64>::zeros(range.len(), rows.columns.ncols());
     for column in 0..white.ncols() {
         let from = &rows.columns.col_as_slice(column)[range.clone()];
         let into = white.col_as_slice_mut(column);
-        for ((into, from), scale) in into.iter_mut().zip(from).zip(scale) {
-            *into = from * scale;
+        for (at, scale) in scales.iter().enumerate() {
+            into[at] = from[at] * scale;
         }
     }
     white
+}
+
+/// Loadings of a group, whitened, times the eigenvectors of their products; and the eigenvalues.
+fn turned_loadings(
+    rows: &ChannelRows,
+    range: &Range<usize>,
+    scales: &[f64],
+    of_group: f64,
+) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let of = |loading: &Vec<f64>| -> Vec<f64> {
+        range.clone().map(|row| loading[row] * scales[row] * of_group).collect()
+    };
+    let loadings: Vec<Vec<f64>> = rows.loadings.iter().map(of).collect();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    if let [only] = &loadings[..] {
+        let length = product(only, only);
+        return (loadings, vec![length]);
+    }
+    let rank = loadings.len();
+    let gram = Mat::from_fn(rank, rank, |i, j| product(&loadings[i], &loadings[j]));
+    // Not to be expected of numbers: then nothing is taken as common, as where nothing is loaded.
+    let Ok(eigen) = gram.self_adjoint_eigen(Side::Lower) else {
+        return (vec![vec![0.0; range.len()]; rank], vec![0.0; rank]);
+    };
+    let turned = |r: usize| -> Vec<f64> {
+        let sum = |at: usize| (0..rank).map(|k| loadings[k][at] * eigen.U()[(k, r)]).sum();
+        (0..range.len()).map(sum).collect()
+    };
+    let lengths = (0..rank).map(|r| eigen.S().column_vector()[r]).collect();
+    ((0..rank).map(turned).collect(), lengths)
 }
 
 #[cfg(test)]

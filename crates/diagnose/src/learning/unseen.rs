@@ -3,13 +3,11 @@
 //! Every flight is predicted from all others, in closed form, and judged by its mean (how much flights differ) and value by
 //! value (how far stated intervals reach).
 
-use faer::{Mat, MatRef};
-
 use crate::learning::dials::Dials;
 use crate::learning::evidence::Solved;
 use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
-use crate::math::cholesky::Cholesky;
+use crate::math::lower::{Lower, dot};
 use crate::math::quantile::{QuantileType, quantile};
 use crate::priors::NOISE_LIMITS;
 use crate::thresholds::{FACTOR_LIMITS, ORDINARY_SEGMENTS};
@@ -48,37 +46,55 @@ pub(super) fn unseen(
     dials: &Dials,
 ) -> Vec<Unseen> {
     let errors = rows.left(&solved.mean);
-    let spread = rows.learnt_columns() * &solved.root;
+    // One column per row: what a row spreads over the posterior's root.
+    let spread = solved.root.transpose() * rows.learnt_columns().transpose();
     let (within, between) = (dials.within.powi(2), dials.between.powi(2));
     let groups = rows.groups.iter().enumerate();
     groups
         .filter_map(|(group, range)| {
             let count = range.len();
-            let spread: MatRef<'_, f64> = spread.subrows(range.start, count);
-            let known = spread * spread.transpose();
             let share = rows.shares[group];
-            let noise = Mat::from_fn(count, count, |i, j| {
-                let (a, b) = (range.start + i, range.start + j);
-                let own = if i == j { rows.variance[a] / weights.rows[a] } else { 0.0 };
-                let common: f64 = rows.loadings.iter().map(|u| u[a] * u[b]).sum();
-                (within * own + between * common / weights.groups[group]) / share
-            });
-            let factor = Cholesky::in_place(&noise - known)?;
+            let mut noise = Lower::zeros(count);
+            for j in 0..count {
+                for i in j..count {
+                    let (a, b) = (range.start + i, range.start + j);
+                    let own = if i == j { rows.variance[a] / weights.rows[a] } else { 0.0 };
+                    let common: f64 = rows.loadings.iter().map(|u| u[a] * u[b]).sum();
+                    *noise.at_mut(i, j) =
+                        (within * own + between * common / weights.groups[group]) / share;
+                }
+            }
+            let mut factor = noise.clone();
+            for j in 0..count {
+                let known = spread.col_as_slice(range.start + j);
+                for i in j..count {
+                    *factor.at_mut(i, j) -= dot(known, spread.col_as_slice(range.start + i));
+                }
+            }
+            if !factor.factor() {
+                return None;
+            }
             // With Q = LLᵀ and T = L⁻¹C: e = Tᵀ·L⁻¹(y − Zα), cov e − C = TᵀT − C.
-            let mut turned = Mat::from_fn(count, count + 1, |row, column| {
-                if column < count { noise[(row, column)] } else { errors[range.start + row] }
-            });
-            factor.solve_lower(&mut turned);
-            let (column, left) = (|k: usize| turned.col_as_slice(k), turned.col_as_slice(count));
+            let full = |i: usize, j: usize| noise.at(i.max(j), i.min(j));
+            let mut left = errors[range.clone()].to_vec();
+            factor.solve_lower(&mut left);
+            let mut sums = vec![0.0; count];
             let values: Vec<(f64, f64, usize)> = (0..count)
                 .map(|k| {
-                    let of_model = dot(column(k), column(k)) - noise[(k, k)];
-                    (dot(column(k), left), of_model.max(0.0), range.start + k)
+                    let mut turned: Vec<f64> = (0..count).map(|i| full(i, k)).collect();
+                    factor.solve_lower(&mut turned);
+                    for (sum, value) in sums.iter_mut().zip(&turned) {
+                        *sum += value;
+                    }
+                    let of_model = dot(&turned, &turned) - full(k, k);
+                    (dot(&turned, &left), of_model.max(0.0), range.start + k)
                 })
                 .collect();
-            let row_sums = (0..count).map(|i| (0..count).map(|k| turned[(i, k)]).sum::<f64>());
-            let of_total = row_sums.map(|sum| sum * sum).sum::<f64>()
-                - (0..count).flat_map(|k| noise.col_as_slice(k)).sum::<f64>();
+            let of_noise: f64 = (0..count)
+                .flat_map(|i| (0..count).map(move |k| (i, k)))
+                .map(|(i, k)| full(i, k))
+                .sum();
+            let of_total = dot(&sums, &sums) - of_noise;
             let square = (count * count) as f64;
             let own: f64 = range.clone().map(|row| rows.variance[row]).sum();
             let common: f64 = rows
@@ -96,10 +112,6 @@ pub(super) fn unseen(
             })
         })
         .collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The factor between flights at which the mean errors of unseen flights are as large as announced, if that is more.
@@ -166,11 +178,12 @@ fn factor_of(mut distances: Vec<f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use faer::Side;
     use faer::linalg::solvers::{DenseSolveCore, Solve};
+    use faer::{Mat, Side};
     use statrs::distribution::ContinuousCDF;
 
     use super::*;
+    use crate::math::cholesky::Cholesky;
 
     /// Numbers without order, from −½ to ½: the golden ratio's multiples.
     fn number(k: usize) -> f64 {

@@ -40,7 +40,8 @@ impl PreparedFlights<'_> {
         for &point in points {
             let (known, response) = model.known_point(&point).ok()?;
             let means = Cow::Owned(self.means(&point, &response));
-            let mut kept = Inside { means, rows: &samples, point, known, response };
+            let place = segments.len();
+            let mut kept = Inside { means, rows: &samples, point, known, response, place };
             kept.look_up_n2(&self.predictor);
             segments.push(self.row(model, &kept, library, &differences, &statistics).ok()?);
         }

@@ -23,6 +23,10 @@ pub(crate) struct SegmentRow {
     pub(crate) noise: SegmentNoise,
     /// ∂channel/∂θ of the effects that a baseline carries; 0 where an input is not recorded.
     pub(crate) standing_effects: [ByChannel; STANDING_EFFECTS.len()],
+    /// Whether it could not be computed.
+    pub(crate) standing_unknown: [bool; STANDING_EFFECTS.len()],
+    /// Its place among all segments that were given.
+    pub(crate) place: usize,
     /// Deck terms at the prediction.
     pub(crate) deck: [f64; DECK_TERMS],
     /// ∂(N2 channel)/∂(ln F).

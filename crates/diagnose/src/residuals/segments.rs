@@ -56,6 +56,8 @@ pub(crate) struct Inside<'a> {
     pub(crate) point: EffectPoint,
     pub(crate) known: KnownPoint,
     pub(crate) response: Response,
+    /// Its place among all segments that were given.
+    pub(crate) place: usize,
 }
 
 impl Inside<'_> {
@@ -88,14 +90,15 @@ fn inside<'a>(
 ) -> Vec<FlightInside<'a>> {
     let engines = model.aircraft().engines();
     let mut all = Vec::with_capacity(flights.len());
+    let mut places = 0..;
     for flight in flights {
         let mut kept = Vec::with_capacity(flight.segments.len());
-        for segment in flight.segments {
+        for (segment, place) in flight.segments.iter().zip(&mut places) {
             let start_s = segment.identity.start_s();
             let found = model.corrected_means(&segment.means).and_then(|means| {
                 let point = EffectPoint::from_means(&means, start_s, engines);
                 let (known, response) = model.known_point(&point)?;
-                Ok(Inside { means, rows: &segment.rows, point, known, response })
+                Ok(Inside { means, rows: &segment.rows, point, known, response, place })
             });
             let flow_kg_s = segment.means.fuel_flow_total_kg_s;
             match found {
@@ -235,6 +238,8 @@ impl<'a> PreparedFlights<'a> {
             known: kept.known,
             response: kept.response,
             standing_effects: [[0.0; MAXIMUM_CHANNELS]; STANDING_EFFECTS.len()],
+            standing_unknown: [false; STANDING_EFFECTS.len()],
+            place: kept.place,
             is_recorded,
             residual,
             signatures: vec![],
@@ -253,10 +258,12 @@ impl<'a> PreparedFlights<'a> {
             chords: chord_errors(model, &kept.response),
         };
         let untaught = self.predictor.untaught();
-        for (slot, carried) in row.standing_effects.iter_mut().zip(&differences.standing_effects) {
-            *slot = carried
-                .signature(model, &row.known, row.is_recorded, &untaught)
-                .unwrap_or([0.0; MAXIMUM_CHANNELS]);
+        let standing = row.standing_effects.iter_mut().zip(&mut row.standing_unknown);
+        for ((slot, unknown), carried) in standing.zip(&differences.standing_effects) {
+            match carried.signature(model, &row.known, row.is_recorded, &untaught) {
+                Ok(slope) => *slot = slope,
+                Err(_) => *unknown = true,
+            }
         }
         if let Some(baseline) = self.predictor.baseline {
             for (slope, carried) in row.standing_effects.iter().zip(baseline.standing_effects()) {

@@ -31,6 +31,11 @@ pub struct Start<'a> {
 }
 
 impl Start<'_> {
+    /// The law by which tails learn.
+    pub(crate) const fn law(&self) -> &LawChoice {
+        &self.law
+    }
+
     /// A model of a tail that has learnt nothing.
     ///
     /// # Errors

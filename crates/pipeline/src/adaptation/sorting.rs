@@ -17,7 +17,7 @@ pub enum Contradictions {
 /// What happens to a flight older than the newest one learnt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OlderFlights {
-    /// It is learnt after newer ones, with a warning.
+    /// It is learnt, with a warning: by law `bayes` in its place, all flights again; by law `paper` after newer ones.
     Learn,
     /// It is refused.
     Refuse,
@@ -49,6 +49,8 @@ pub struct Sorting {
     pub first_copy: Option<(String, String)>,
     /// What is worth knowing about the order of flights.
     pub warnings: Vec<String>,
+    /// Whether a flight to learn is older than the newest stored one.
+    pub(super) late: bool,
 }
 
 impl Sorting {
@@ -68,6 +70,7 @@ impl Sorting {
             copies: 0,
             first_copy: None,
             warnings: Vec::new(),
+            late: false,
         }
     }
 
@@ -138,8 +141,9 @@ impl Sorting {
             self.refused.push(RefusedReport::whole(flight.path.clone(), finding));
             return false;
         }
-        tracing::warn!("{finding}; it is learnt now, after newer ones");
-        self.warnings.push(format!("{finding}; it was learnt after newer ones"));
+        tracing::warn!("{finding}");
+        self.warnings.push(finding);
+        self.late = true;
         true
     }
 }

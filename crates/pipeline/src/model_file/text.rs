@@ -1,5 +1,6 @@
 //! The text of `MODEL.ron`, both ways.
 
+use std::fmt::Write as _;
 use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, BayesStateData};
@@ -25,6 +26,9 @@ use crate::whole_model::belief_before_flights;
 
 /// Begins the last line but one; everything before it is what the checksum is of.
 const CHECKSUM: &str = "\n    checksum: \"";
+
+/// The factor of a baseline's covariance before its numbers are put in.
+const EMPTY_FACTOR: &str = "\n            factor: []";
 
 /// The format of models without a baseline.
 const FIRST_FORMAT: u32 = 1;
@@ -97,13 +101,46 @@ enum LawText {
 
 /// The text of a model file.
 pub(super) fn print(model: &ModelFile) -> Result<String, ron::Error> {
-    let document = document_of(model);
+    let mut document = document_of(model);
+    // Most of a learnt model is one list of numbers, which is written here in a third of the time.
+    let baseline = document.learnt.as_mut().and_then(|learnt| learnt.baseline.as_mut());
+    let factor = baseline.map(BaselineRecord::take_factor).unwrap_or_default();
     let config = PrettyConfig::new().compact_arrays(true).new_line("\n");
-    let text = ron::ser::to_string_pretty(&document, config)?;
+    let text = with_factor(ron::ser::to_string_pretty(&document, config)?, &factor);
     // The checksum field is written empty and last; the text before it is what is summed.
     let Some(end) = text.rfind(CHECKSUM) else { return Ok(text) };
     let body = &text[..end];
     Ok(format!("{body}{CHECKSUM}{}\",\n)\n", checksum_of(body)))
+}
+
+/// A text with the list in the place where it was left out.
+fn with_factor(text: String, factor: &[f64]) -> String {
+    let Some(place) = text.rfind(EMPTY_FACTOR).filter(|_| !factor.is_empty()) else { return text };
+    let (before, after) = text.split_at(place + EMPTY_FACTOR.len() - 1);
+    let mut whole = String::with_capacity(text.len() + 25 * factor.len());
+    whole.push_str(before);
+    for (k, number) in factor.iter().enumerate() {
+        whole.push_str(if k == 0 { "" } else { ", " });
+        push_debug(*number, &mut whole);
+    }
+    whole.push_str(after);
+    whole
+}
+
+/// Appends a number as `Debug` writes it, and RON with it.
+fn push_debug(value: f64, text: &mut String) {
+    if value.is_finite() {
+        let mut buffer = zmij::Buffer::new();
+        let printed = buffer.format_finite(value);
+        // Where `Debug` begins to write exponents the other writer may not have begun yet.
+        let is_plain = value == 0.0 || (1e-4..1e15).contains(&value.abs());
+        if is_plain || printed.bytes().any(|byte| byte == b'e') {
+            text.push_str(printed);
+            return;
+        }
+    }
+    // Writing to a string cannot fail.
+    let _ = write!(text, "{value:?}");
 }
 
 /// A model from its text.
@@ -328,4 +365,34 @@ fn flags_from_text(
 
 fn value(field: &'static str, reason: impl Into<ModelValueError>) -> ModelTextError {
     ModelTextError::Value { field, reason: reason.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The oracle is `Debug`: over numbers of every size, and where one of the writers changes to exponents.
+    #[test]
+    fn numbers_are_written_as_debug_writes_them() {
+        let mut numbers = vec![0.0, -0.0, 1.0, -1.0, 0.1, f64::MIN_POSITIVE, f64::MAX, 5e-324];
+        for exponent in -20..=20 {
+            for digits in [1.0, 1.5, 9.999_999_999_999_998, 1.234_567_890_123_456_7] {
+                numbers.push(digits * 10_f64.powi(exponent));
+            }
+        }
+        let mut bits = 0x9E37_79B9_7F4A_7C15_u64;
+        for _ in 0..20_000 {
+            bits = bits
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            numbers.push(f64::from_bits(bits));
+            // Sizes that models hold.
+            numbers.push(1e-6 * (bits >> 11) as f64 / (1_u64 << 53) as f64);
+        }
+        for number in numbers.into_iter().filter(|number| number.is_finite()) {
+            let mut written = String::new();
+            push_debug(number, &mut written);
+            assert_eq!(written, format!("{number:?}"));
+        }
+    }
 }
