@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::learning::dials::Dials;
-use crate::learning::evidence::Evidence;
+use crate::learning::evidence::{Evidence, Weighted};
 use crate::learning::outliers::Weights;
 use crate::learning::posterior::{ChannelPosterior, prior_parts};
 use crate::learning::rows::ChannelRows;
@@ -54,14 +54,26 @@ pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<Lear
         let left = reduced.left(&evidence.solved(&dials)?.mean);
         let next = weights.after(&reduced, &left, &dials);
         if next.settled(&weights) || weighing == MOST_WEIGHINGS {
+            let before = dials;
             let unseen = raise_scatter(&reduced, &weights, &mut evidence, &mut dials)?;
-            let points = evidence.points(dials);
+            let points = points_raised(&mut evidence, &before, &dials);
             let posterior = ChannelPosterior::averaged(&mut evidence, &points, &reduction, groups)?;
             return Some(LearntChannel { posterior, weights, unseen, left });
         }
         weights = next;
     }
     None
+}
+
+/// The points that the posterior is averaged over. What flights leave open is about the likeliest scatter; what unseen flights add
+/// to it they add to every point. About the raised scatter the likelihood falls, and averaging would take back half of it.
+fn points_raised(evidence: &mut Evidence<'_>, likeliest: &Dials, raised: &Dials) -> Vec<Weighted> {
+    let mut points = evidence.points(*likeliest);
+    let raise = raised.between / likeliest.between;
+    for point in &mut points {
+        point.dials.between *= raise;
+    }
+    points
 }
 
 /// Raises the scatter between flights to what unseen flights show, and returns those.
