@@ -1,0 +1,189 @@
+//! What is learnt is held to physics: fuel flow does not fall where an aircraft is heavier, nor drag with Mach number where its
+//! drag rises.
+//!
+//! Both are asked on a mesh over the table at the fleet's mean level and temperature, as linear inequalities of the
+//! coefficients. Only what is in doubt is held; what flights have shown stays.
+
+use core::ops::RangeInclusive;
+
+use atmos::constants::{RATIO_OF_SPECIFIC_HEATS, SEA_LEVEL_PRESSURE_PA};
+use effects::{EffectModel, EffectPoint, Effects, Response, Variable};
+use faer::Mat;
+use perf_model::FlightPoint;
+use units::convert::STANDARD_GRAVITY_M_S2;
+use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
+
+use crate::baseline::Baseline;
+use crate::baseline::standing_effects::STANDING_EFFECTS;
+use crate::residuals::rows::SegmentRow;
+use crate::residuals::segments::PreparedFlights;
+use crate::residuals::signatures::Difference;
+use crate::signals::channels::MAXIMUM_CHANNELS;
+use crate::signals::variables::flown;
+use crate::thresholds::{DRAG_RISE_SLOPE, MASSES_BEYOND, PHYSICAL_LIFT_STEP, PHYSICAL_MACH_STEP};
+
+/// Inequalities `slopesᵀβ + offset ≥ 0` of the coefficients β.
+pub(super) struct Physics {
+    /// One row per inequality.
+    pub(super) slopes: Mat<f64>,
+    pub(super) offsets: Vec<f64>,
+}
+
+/// A point of the mesh.
+struct Node {
+    response: Response,
+    /// Slopes of ln fuel flow along the coefficients.
+    slopes: Vec<f64>,
+    /// ln of the initial drag coefficient.
+    ln_drag: f64,
+}
+
+/// The conditions of the mesh.
+struct Conditions {
+    altitude: PressureAltitude,
+    isa_deviation: TemperatureDifference,
+    masses_kg: RangeInclusive<f64>,
+}
+
+impl Physics {
+    /// What holds of a model near the conditions of its flights.
+    pub(super) fn of(
+        model: &EffectModel<'_>,
+        baseline: &Baseline,
+        data: &PreparedFlights<'_>,
+    ) -> Self {
+        let conditions = Conditions::of(baseline, data);
+        let grid = model.drag_table().grid();
+        let lifts = mesh(grid.x().first(), grid.x().last(), PHYSICAL_LIFT_STEP);
+        let machs = mesh(grid.y().first(), grid.y().last(), PHYSICAL_MACH_STEP);
+        let differences: Vec<Difference> = STANDING_EFFECTS
+            .iter()
+            .map(|effect| {
+                let step = 0.5 * baseline.references().typical_size(effect.id);
+                Difference::new(model, &Effects::none(), effect.id, effect.hidden, step)
+            })
+            .collect();
+        let at = |lift: &f64, mach: &f64| {
+            let point = conditions.point(model, *lift, *mach)?;
+            Node::new(model, baseline, data, &differences, &point)
+        };
+        let nodes: Vec<Vec<Option<Node>>> =
+            machs.iter().map(|mach| lifts.iter().map(|lift| at(lift, mach)).collect()).collect();
+        let stated = model.aircraft().drag_divergence_mach().map(Mach::value);
+        let mut pairs = Vec::new();
+        for (row, column) in nodes.iter().enumerate() {
+            for (place, node) in column.iter().enumerate() {
+                let Some(node) = node else { continue };
+                if let Some(Some(heavier)) = column.get(place + 1)
+                    && heavier.ln_drag > node.ln_drag
+                {
+                    pairs.push((node, heavier));
+                }
+                if let Some(Some(faster)) = nodes.get(row + 1).map(|column| &column[place])
+                    && node.is_in_drag_rise(faster, stated)
+                {
+                    pairs.push((node, faster));
+                }
+            }
+        }
+        let width = baseline.layout().len();
+        Self {
+            slopes: Mat::from_fn(pairs.len(), width, |k, j| {
+                pairs[k].1.slopes[j] - pairs[k].0.slopes[j]
+            }),
+            offsets: pairs.iter().map(|(from, to)| to.ln_drag - from.ln_drag).collect(),
+        }
+    }
+}
+
+impl Conditions {
+    fn of(baseline: &Baseline, data: &PreparedFlights<'_>) -> Self {
+        let mean = |variable| {
+            let of = |row: &SegmentRow| flown(variable, &row.response, baseline.references());
+            data.segments.iter().map(of).sum::<f64>() / data.segments.len().max(1) as f64
+        };
+        let masses = || data.segments.iter().map(|row| row.response.mass_kg);
+        let low = masses().fold(f64::INFINITY, f64::min);
+        let high = masses().fold(f64::NEG_INFINITY, f64::max);
+        Self {
+            altitude: PressureAltitude::meters(mean(Variable::PressureAltitude)),
+            isa_deviation: TemperatureDifference::kelvin(mean(Variable::IsaDeviation)),
+            masses_kg: low * (1.0 - MASSES_BEYOND)..=high * (1.0 + MASSES_BEYOND),
+        }
+    }
+
+    /// The flight point of a lift coefficient and a Mach number; `None` at masses far from those that were flown.
+    fn point(&self, model: &EffectModel<'_>, lift: f64, mach: f64) -> Option<EffectPoint> {
+        let pressure = atmos::isa::pressure(self.altitude).ok()?.to_pascals();
+        let area_m2 = model.aircraft().wing_area().to_square_meters();
+        let mass_kg = lift * force_n(pressure, mach, area_m2) / STANDARD_GRAVITY_M_S2;
+        if !self.masses_kg.contains(&mass_kg) {
+            return None;
+        }
+        let point = FlightPoint {
+            isa_deviation: self.isa_deviation,
+            ..FlightPoint::new(Mass::kilograms(mass_kg), self.altitude, Mach::new(mach))
+        };
+        EffectPoint::from_flight_point(&point, model.aircraft().engines()).ok()
+    }
+}
+
+impl Node {
+    /// `None` outside the table or a domain.
+    fn new(
+        model: &EffectModel<'_>,
+        baseline: &Baseline,
+        data: &PreparedFlights<'_>,
+        differences: &[Difference],
+        point: &EffectPoint,
+    ) -> Option<Self> {
+        let date_s = baseline.references().date_s;
+        let (known, response) = model.known_point(&EffectPoint { date_s, ..*point }).ok()?;
+        let layout = baseline.layout();
+        let mut slopes = vec![0.0; layout.len()];
+        baseline.write_remainder(&response, &mut slopes[layout.remainder.clone()]);
+        baseline.write_drag(&response, &mut slopes[layout.drag.clone()]);
+        for slope in &mut slopes[layout.drag] {
+            *slope *= response.drag_over_thrust;
+        }
+        let mut recorded = [false; MAXIMUM_CHANNELS];
+        recorded[0] = true;
+        let untaught = data.predictor.untaught();
+        for (k, effect) in STANDING_EFFECTS.iter().enumerate() {
+            // What lacks an input is the same everywhere on the mesh.
+            if !effect.lacks_input(point) {
+                let found = differences[k].signature(model, &known, recorded, &untaught).ok()?;
+                slopes[layout.standing_effects.start + k] = found[0];
+            }
+        }
+        // Level and unaccelerated: thrust is drag.
+        let area_m2 = model.aircraft().wing_area().to_square_meters();
+        let ln_force = force_n(SEA_LEVEL_PRESSURE_PA, response.mach, area_m2).ln();
+        Some(Self { ln_drag: response.ln_corrected_thrust - ln_force, response, slopes })
+    }
+
+    /// Whether drag rises from here to a higher Mach number: beyond the drag-divergence Mach number of the aircraft file, and
+    /// where the initial drag does.
+    fn is_in_drag_rise(&self, faster: &Self, stated: Option<f64>) -> bool {
+        let rise = faster.ln_drag.exp() - self.ln_drag.exp();
+        let slope = rise / (faster.response.mach - self.response.mach);
+        let is_stated = stated.is_some_and(|stated| self.response.mach >= stated);
+        slope >= DRAG_RISE_SLOPE || (is_stated && rise >= 0.0)
+    }
+}
+
+/// Dynamic pressure times area, N: the force at a coefficient of 1.
+fn force_n(static_pressure_pa: f64, mach: f64, area_m2: f64) -> f64 {
+    0.5 * RATIO_OF_SPECIFIC_HEATS * static_pressure_pa * mach * mach * area_m2
+}
+
+/// Evenly from the first to the last value, in steps of at most one.
+fn mesh(first: f64, last: f64, step: f64) -> Vec<f64> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small positive number"
+    )]
+    let intervals = ((last - first) / step - 1e-9).ceil().max(1.0) as usize;
+    (0..=intervals).map(|k| first + (last - first) * k as f64 / intervals as f64).collect()
+}
