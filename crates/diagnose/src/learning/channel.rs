@@ -101,3 +101,31 @@ fn reduction(own: &Mat<f64>, width: usize) -> Pivoted {
     let quiet = Mat::from_fn(width, width, |i, j| own[(i, j)] / (QUIET * QUIET));
     pivoted(&quiet, width, NEGLIGIBLE)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eight flights that differ four times as much as stated. What is believed of scatter draws the likeliest towards the
+    /// statement; unseen flights raise it, and averaging leaves it raised: they err no more than announced.
+    #[test]
+    fn averaging_keeps_the_scatter_that_unseen_flights_showed() {
+        let (flights, each) = (8, 3);
+        let count = flights * each;
+        let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let rows = ChannelRows {
+            columns: Mat::from_fn(count, 2, |row, column| {
+                if column == 0 { 1.0 } else { 0.1 * number(row) + 14.0 * number(row / each + 40) }
+            }),
+            variance: vec![0.01; count],
+            loadings: vec![vec![1.0; count]],
+            groups: (0..flights).map(|flight| flight * each..(flight + 1) * each).collect(),
+            shares: vec![1.0; flights],
+        };
+        let found = learn_channel(&rows, &[0]).unwrap();
+        let between = found.posterior.dials.between;
+        assert!(between > 2.0, "{between}");
+        let needed = scatter_by_unseen(&found.unseen, between);
+        assert!(needed <= between, "{between}, and {needed} needed");
+    }
+}

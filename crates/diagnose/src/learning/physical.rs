@@ -187,3 +187,123 @@ fn mesh(first: f64, last: f64, step: f64) -> Vec<f64> {
     let intervals = ((last - first) / step - 1e-9).ceil().max(1.0) as usize;
     (0..=intervals).map(|k| first + (last - first) * k as f64 / intervals as f64).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use effects::BetweenNodes;
+    use test_support::fleet::{Background, Setup, exact_model, fly};
+
+    use super::*;
+    use crate::library::Library;
+    use crate::library::dates::DateGrid;
+    use crate::math::half_spaces::{Doubt, hold};
+    use crate::residuals::reference::Reference;
+    use crate::residuals::whole::WholeModel;
+    use crate::signals::record::FlightRecord;
+
+    const DOUBT: Doubt = Doubt { most: 2.0, least: -2.0 };
+
+    /// A baseline of a few flights, its physics, and what `work` finds with them.
+    fn with_physics(
+        work: impl FnOnce(&EffectModel<'_>, &Baseline, &PreparedFlights<'_>, &Physics),
+    ) {
+        let fleet = fly(94, &Setup { flights: 6, ..Setup::default() }, &[], &Background::default());
+        let records: Vec<FlightRecord<'_>> =
+            fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
+        let model = exact_model();
+        let taught = Baseline::learn(&model, model.drag_table(), None, &records, None).unwrap();
+        let effects = EffectModel::new(&model, model.drag_table(), *taught.references())
+            .unwrap()
+            .between_nodes(BetweenNodes::Smooth);
+        let (data, _) = PreparedFlights::prepare(
+            &effects,
+            &records,
+            Reference::Untaught,
+            |points, engines, starts| {
+                let dates = DateGrid::coarse(starts, &[], None);
+                Library::new(&effects, points, engines, dates, |_| false)
+            },
+        );
+        let physics = Physics::of(&effects, &taught, &data);
+        work(&effects, &taught, &data, &physics);
+    }
+
+    /// The oracle is the whole model at two flight points: what it makes of the initial prediction differs by the slopes.
+    #[test]
+    fn slopes_are_those_of_predictions() {
+        with_physics(|effects, taught, data, _| {
+            let model = exact_model();
+            let whole = WholeModel::new(&model, taught).unwrap();
+            let layout = taught.layout();
+            let mut learnt = vec![0.0; layout.len()];
+            let parts = &taught.parts;
+            learnt[layout.remainder.clone()].copy_from_slice(&parts.mean[layout.remainder]);
+            learnt[layout.standing_effects].copy_from_slice(&parts.standing_effects);
+            let conditions = Conditions::of(taught, data);
+            let differences: Vec<Difference> = STANDING_EFFECTS
+                .iter()
+                .map(|effect| {
+                    let step = 0.5 * taught.references().typical_size(effect.id);
+                    Difference::new(effects, &Effects::none(), effect.id, effect.hidden, step)
+                })
+                .collect();
+            let grid = effects.drag_table().grid();
+            let mut before: Option<(f64, f64)> = None;
+            let mut count = 0;
+            for node in 0..grid.nodes() {
+                let (lift, mach) = grid.coordinates(node);
+                let Some(point) = conditions.point(effects, lift, mach) else { continue };
+                let found = Node::new(effects, taught, data, &differences, &point).unwrap();
+                let drag = effects.drag_table().value_at_node(node);
+                assert!((found.ln_drag.exp() / drag - 1.0).abs() < 1e-9, "{lift} {mach}");
+                let flight_point = FlightPoint {
+                    isa_deviation: conditions.isa_deviation,
+                    ..FlightPoint::new(
+                        Mass::kilograms(point.mass_kg),
+                        conditions.altitude,
+                        Mach::new(mach),
+                    )
+                };
+                let predicted = whole.of_point(&flight_point).unwrap().ln_fuel_flow;
+                let expected = predicted - found.response.ln_fuel_flow_total;
+                let by_slopes: f64 = found.slopes.iter().zip(&learnt).map(|(s, c)| s * c).sum();
+                if let Some((expected_before, before)) = before {
+                    let off = (expected - expected_before) - (by_slopes - before);
+                    assert!(off.abs() < 1e-9, "{lift} {mach}: {off}");
+                    count += 1;
+                }
+                before = Some((expected, by_slopes));
+            }
+            assert!(count > 20, "{count}");
+        });
+    }
+
+    /// Beliefs as wide as before any flight allow a drag that falls; held, no mean does. Where all is known nothing moves.
+    #[test]
+    fn what_is_in_doubt_is_held_and_what_is_known_stays() {
+        with_physics(|_, taught, _, physics| {
+            let width = taught.layout().len();
+            let deviations: Vec<f64> = (0..width).map(|k| taught.prior_deviation(k)).collect();
+            let count = physics.offsets.len();
+            assert!(count > 20, "{count}");
+            let gaps = |mean: &[f64]| -> Vec<f64> {
+                let along =
+                    |k: usize| (0..width).map(|j| physics.slopes[(k, j)] * mean[j]).sum::<f64>();
+                (0..count).map(|k| physics.offsets[k] + along(k)).collect()
+            };
+            let prior = |share: f64| {
+                Mat::from_fn(width, width, |i, j| {
+                    if i == j { (share * deviations[i]).powi(2) } else { 0.0 }
+                })
+            };
+            let (mut mean, mut wide) = (vec![0.0; width], prior(3.0));
+            let held = hold(&mut mean, &mut wide, &physics.slopes, &physics.offsets, DOUBT);
+            assert!(!held.rows.is_empty() && held.against == 0, "{held:?}");
+            assert!(gaps(&mean).iter().all(|gap| *gap > 0.0), "{:?}", gaps(&mean));
+            let (mut mean, mut narrow) = (vec![0.0; width], prior(1e-3));
+            let held = hold(&mut mean, &mut narrow, &physics.slopes, &physics.offsets, DOUBT);
+            assert!(held.rows.is_empty() && narrow == prior(1e-3));
+            assert!(mean.iter().all(|value| value.to_bits() == 0.0_f64.to_bits()));
+        });
+    }
+}
