@@ -67,6 +67,12 @@ pub struct BaselineRecord {
     pub(crate) smooth_table: bool,
     /// Segments that counted less than half.
     pub(crate) outliers: usize,
+    /// Inequalities of physics that were in doubt and to which the coefficients are held.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub(crate) held_to_physics: usize,
+    /// Those that flights speak against.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub(crate) against_physics: usize,
     /// Factor on stated standard deviations, by flights that were left out.
     pub(crate) interval_factor: f64,
     /// Remaining rms of ln fuel flow over the flights that it was learnt from.
@@ -170,6 +176,13 @@ impl Baseline {
     #[must_use]
     pub const fn outliers(&self) -> usize {
         self.parts.outliers
+    }
+
+    /// Inequalities of physics (fuel flow does not fall with mass, nor drag with Mach number in the drag rise) that were in doubt
+    /// and to which it is held, and those that its flights speak against, which are left as flights have them.
+    #[must_use]
+    pub const fn physics(&self) -> (usize, usize) {
+        (self.parts.held_to_physics, self.parts.against_physics)
     }
 
     /// Root mean square of ln fuel flow that it leaves over the flights that it was learnt from.
@@ -318,6 +331,11 @@ impl Baseline {
         let effect = &STANDING_EFFECTS[carried];
         effect.deviation * self.parts.references.typical_size(effect.id)
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+const fn is_none(count: &usize) -> bool {
+    *count == 0
 }
 
 const fn pairs(of: usize) -> usize {

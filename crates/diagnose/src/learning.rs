@@ -6,6 +6,7 @@ mod evidence;
 mod fit;
 mod learn;
 mod outliers;
+mod physical;
 mod posterior;
 mod rows;
 mod sums;

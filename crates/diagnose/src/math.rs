@@ -4,6 +4,7 @@ pub(crate) mod bootstrap;
 pub(crate) mod cholesky;
 pub(crate) mod eliminate;
 pub(crate) mod gram;
+pub(crate) mod half_spaces;
 pub(crate) mod horseshoe;
 pub(crate) mod lanes;
 pub(crate) mod linear;

@@ -47,6 +47,23 @@ deciding_numbers! {
             "how far from its middle a variable is followed in products of the remainder",
             OurChoice "Hardly anything is flown beyond; a product would grow there like a square.";
     }
+    "Physical drag" {
+        PHYSICAL_LIFT_STEP: f64 = 0.05, "",
+            "largest step along lift coefficient over which fuel flow is asked not to fall",
+            OurChoice "Half the length over which a remainder bends.";
+        PHYSICAL_MACH_STEP: f64 = 0.02, "Mach",
+            "largest step along Mach number over which drag is asked not to fall in the drag rise",
+            OurChoice "The length over which a remainder bends.";
+        MASSES_BEYOND: f64 = 0.2, "of the mass",
+            "how far beyond the masses that were flown this is asked",
+            OurChoice "From empty to full where a fleet flew half loaded.";
+        DRAG_RISE_SLOPE: f64 = 0.05, "dCD/dM",
+            "slope of the initial drag coefficient from which its drag rises with Mach number",
+            OurChoice "Half of the 0.1 that defines drag divergence.";
+        DOUBTFUL_PHYSICS: f64 = 2.0, "standard deviations",
+            "distance from an inequality up to which it is in doubt: held on either side, left alone beyond",
+            OurChoice "The interval that is stated: nothing in it is unphysical, and flights that say otherwise are believed.";
+    }
     "Gap or no gap" {
         CLEAN_PROBABILITY: f64 = 0.05, "",
             "probability of no effect below which a gap is real",

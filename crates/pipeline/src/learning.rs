@@ -196,6 +196,7 @@ pub fn remember_remainder(
         .map(|segments| FlightRecord { segments, gauges: None })
         .collect();
     let (baseline, predicted) = baseline_of(initial, *state.settings(), &flights)
+        .inspect(|(baseline, _)| tell_of_physics(&learnt.tail, baseline))
         .inspect_err(|reason| {
             tracing::info!(tail = learnt.tail, "no remainder is remembered: {reason}");
         })
@@ -203,6 +204,21 @@ pub fn remember_remainder(
         .unzip();
     learnt.baseline = baseline;
     predicted
+}
+
+/// Says where flights did not settle that drag is physical, and where they speak against it.
+fn tell_of_physics(tail: &str, baseline: &Baseline) {
+    let (held, against) = baseline.physics();
+    if held > 0 {
+        tracing::info!(tail, held, "drag that was in doubt was held to what is physical");
+    }
+    if against > 0 {
+        tracing::warn!(
+            tail,
+            against,
+            "flights speak against drag that rises with lift coefficient, or with Mach number in the drag rise: it is left as they have it"
+        );
+    }
 }
 
 /// Everything that flights say of a model, against its initial table.

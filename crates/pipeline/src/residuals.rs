@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use diagnose::WholePrediction;
 use flight::{FlightIdentity, Segment};
 
 use crate::columns::Columns;
@@ -14,6 +15,8 @@ use crate::evaluation::evaluate;
 use crate::learning::{LearningAgain, LearningError};
 use crate::model_file::{LedgerEntry, ModelFile};
 use crate::segments_table::Evaluated;
+use crate::statistics::NORMAL_95;
+use crate::whole_model::{Predicts, SegmentHeld};
 
 /// What the model that predicted a flight knew of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,10 +59,53 @@ pub struct FlightResiduals {
     pub knowledge: Knowledge,
     /// What it says of each segment.
     pub evaluated: Vec<Option<Evaluated>>,
+    /// How far it expects to err; `None` where a table alone predicts.
+    pub expected: Option<ExpectedErrors>,
+}
+
+/// How far the whole model expects to err on one new flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExpectedErrors {
+    /// Of each segment; `None` outside its table or a domain.
+    pub segments: Vec<Option<ExpectedError>>,
+    /// Half the width of the 95 % interval of the flight's mean error, %.
+    pub flight_half_width95_percent: Option<f64>,
+}
+
+/// How far the whole model expects to err on one new segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExpectedError {
+    /// Half the width of the 95 % interval of its error, %.
+    pub half_width95_percent: f64,
+    /// Whether it lies beyond what the flights that were learnt have flown.
+    pub beyond_flights: bool,
+}
+
+impl ExpectedErrors {
+    /// Of the segments of one flight; `None` where a table alone predicts.
+    fn new(model: &ModelFile, predicts: Predicts, segments: &[Segment]) -> Option<Self> {
+        let whole = model.whole(predicts)?;
+        let held: Vec<Option<SegmentHeld>> =
+            segments.iter().map(|one| SegmentHeld::new(&whole, &model.initial, one)).collect();
+        let half = |variance: f64| 100.0 * NORMAL_95 * variance.sqrt();
+        let of_segment = |held: &SegmentHeld| ExpectedError {
+            half_width95_percent: half(held.prediction.variance()),
+            beyond_flights: held.prediction.beyond_flights,
+        };
+        let of_flight = || {
+            let predictions = || held.iter().flatten().map(|held| &held.prediction);
+            predictions().next()?;
+            Some(half(WholePrediction::variance_of_flight(predictions())))
+        };
+        Some(Self {
+            segments: held.iter().map(|held| held.as_ref().map(of_segment)).collect(),
+            flight_half_width95_percent: of_flight(),
+        })
+    }
 }
 
 /// The residuals of flights by the model before it learnt each of them, as far as the flights given allow it. `as_given`
-/// is what the model as given says of each segment of each flight.
+/// is what the model as given says of each segment of each flight, `predicts` with which of its parts.
 ///
 /// # Errors
 /// As for [`learn_flight`](crate::learning::learn_flight), which do not happen on flights that were learnt before.
@@ -67,6 +113,7 @@ pub fn before_learning(
     model: &ModelFile,
     flights: &[GivenFlight<'_>],
     as_given: Vec<Vec<Option<Evaluated>>>,
+    predicts: Predicts,
 ) -> Result<Vec<FlightResiduals>, LearningError> {
     let ledger = model.learnt.as_ref().map_or(&[][..], |learnt| &learnt.ledger);
     let mut found: Vec<FlightResiduals> = flights
@@ -79,6 +126,7 @@ pub fn before_learning(
                 Knowledge::NotLearnt
             },
             evaluated,
+            expected: ExpectedErrors::new(model, predicts, flight.segments),
         })
         .collect();
     let Some(mut again) = LearningAgain::new(model)? else { return Ok(found) };
@@ -98,6 +146,7 @@ pub fn before_learning(
         found[*at] = FlightResiduals {
             knowledge: Knowledge::BeforeLearning,
             evaluated: evaluate(&model.initial, &table, segments),
+            expected: None,
         };
         drop(table);
         again.learn(segments)?;
@@ -117,19 +166,26 @@ pub fn columns(flights: &[(&[Segment], &FlightResiduals)]) -> Columns {
     struct Row<'a> {
         segment: &'a Segment,
         evaluated: Option<Evaluated>,
+        expected: Option<ExpectedError>,
         knowledge: Knowledge,
         flight: Option<f64>,
+        flight_half_width95: Option<f64>,
     }
     let rows: Vec<Row<'_>> = flights
         .iter()
         .flat_map(|(segments, residuals)| {
             let flight = mean_error(&residuals.evaluated);
-            segments.iter().zip(&residuals.evaluated).map(move |(segment, evaluated)| Row {
-                segment,
-                evaluated: *evaluated,
-                knowledge: residuals.knowledge,
-                flight,
-            })
+            let expected = residuals.expected.as_ref();
+            segments.iter().zip(&residuals.evaluated).enumerate().map(
+                move |(place, (segment, evaluated))| Row {
+                    segment,
+                    evaluated: *evaluated,
+                    expected: expected.and_then(|of| of.segments.get(place).copied().flatten()),
+                    knowledge: residuals.knowledge,
+                    flight,
+                    flight_half_width95: expected.and_then(|of| of.flight_half_width95_percent),
+                },
+            )
         })
         .collect();
     let mut columns = Columns::default();
@@ -150,7 +206,12 @@ pub fn columns(flights: &[(&[Segment], &FlightResiduals)]) -> Columns {
     columns.number("fuel_flow_kg_s", mean(|means| means.fuel_flow_total_kg_s));
     columns.number("predicted_fuel_flow_kg_s", said(|e| e.predicted_fuel_flow_kg_s));
     columns.number("error_percent", said(|e| e.error_percent));
+    let expected = |of: fn(ExpectedError) -> f64| rows.iter().map(move |row| row.expected.map(of));
+    columns.number("error_half_width95_percent", expected(|e| e.half_width95_percent));
+    columns.number("beyond_flights", expected(|e| f64::from(u8::from(e.beyond_flights))));
     columns.number("flight_mean_error_percent", rows.iter().map(|row| row.flight));
+    columns
+        .number("flight_mean_half_width95_percent", rows.iter().map(|row| row.flight_half_width95));
     columns.text("predicted_by", rows.iter().map(|row| row.knowledge.id().to_owned()));
     columns
 }

@@ -102,6 +102,7 @@ struct EvaluatedTail {
     result: TailResult,
     /// Identity, content and number of segments of each flight, in the order of the result's rows.
     flights: Vec<(Arc<FlightIdentity>, String, usize)>,
+    predicts: Predicts,
 }
 
 impl EvaluatedTail {
@@ -119,7 +120,8 @@ impl EvaluatedTail {
                 (Arc::clone(&reduced.identity), flight.content.clone(), reduced.segments.len())
             })
             .collect();
-        Self { result: TailResult::of_flights(tail, model, flights, predicts), flights: given }
+        let result = TailResult::of_flights(tail, model, flights, predicts);
+        Self { result, flights: given, predicts }
     }
 
     /// All segments, flight by flight.
@@ -144,9 +146,10 @@ impl EvaluatedTail {
             as_given.push(rows.iter().map(|row| row.evaluated).collect());
             first += count;
         }
-        let found =
-            residuals::before_learning(&self.result.model, &given, as_given).map_err(|error| {
-                Failure::BadArgument { argument: "--model", reason: error.to_string() }
+        let found = residuals::before_learning(&self.result.model, &given, as_given, self.predicts)
+            .map_err(|error| Failure::BadArgument {
+                argument: "--model",
+                reason: error.to_string(),
             })?;
         Ok(of_flight.into_iter().zip(found).collect())
     }

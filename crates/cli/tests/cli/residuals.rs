@@ -101,3 +101,39 @@ fn fuel_factors_are_against_the_book() {
     assert!(numbers(&factors, "error_percent_of_recorded")[0] < factor);
     assert!(numbers(&factors, "specific_range_deviation_percent")[0] < 0.0);
 }
+
+/// How far the whole model expects to err: the share of errors within it is the coverage that the summary states; a flight's mean
+/// is expected nearer than a lone segment of it, and not nearer than its segments' common part allows.
+#[test]
+fn residuals_state_how_far_the_whole_model_expects_to_err() {
+    let scratch = tempfile::tempdir().unwrap();
+    let initial = initial_model(scratch.path());
+    let output = scratch.path().join("out");
+    let reports: Vec<PathBuf> = (1..=12).map(report).collect();
+    adapt(&initial, &output, &reports[..8], &[]).expect(0);
+    let model = output.join("models/SIM-01.ron");
+    let (table, json) = (scratch.path().join("residuals.csv"), scratch.path().join("summary.json"));
+    let mut arguments: Vec<std::ffi::OsString> = vec!["evaluate".into()];
+    arguments.extend(reports[8..].iter().map(|path| path.as_os_str().to_owned()));
+    for (option, path) in [("--model", &model), ("-o", &table), ("--json", &json)] {
+        arguments.extend([option.into(), path.as_os_str().to_owned()]);
+    }
+    cruisefit(&arguments).expect(0);
+    let columns = csv_columns(&table);
+    let (errors, halves) =
+        (numbers(&columns, "error_percent"), numbers(&columns, "error_half_width95_percent"));
+    let flights = numbers(&columns, "flight_mean_half_width95_percent");
+    let inside = errors.iter().zip(&halves).filter(|(error, half)| error.abs() <= **half).count();
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&json).unwrap()).unwrap();
+    let stated = summary["tails"][0]["interval95_coverage"].as_f64().unwrap();
+    assert!((inside as f64 / errors.len() as f64 - stated).abs() < 1e-9, "{inside} {stated}");
+    for (flight, of_flight) in columns["flight"].iter().zip(&flights) {
+        let of_segments = columns["flight"].iter().zip(&halves).filter(|(name, _)| *name == flight);
+        let widest = of_segments.map(|(_, half)| *half).fold(0.0, f64::max);
+        assert!(*of_flight > 0.0 && *of_flight <= widest + 1e-9, "{flight}: {of_flight} {widest}");
+    }
+    assert!(columns["beyond_flights"].iter().all(|flag| flag == "0" || flag == "1"));
+    evaluate(&initial, &reports[8..], "-o", &table);
+    assert!(csv_columns(&table)["error_half_width95_percent"].iter().all(String::is_empty));
+}

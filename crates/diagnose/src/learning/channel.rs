@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::learning::dials::Dials;
-use crate::learning::evidence::Evidence;
+use crate::learning::evidence::{Evidence, Weighted};
 use crate::learning::outliers::Weights;
 use crate::learning::posterior::{ChannelPosterior, Prior};
 use crate::learning::rows::ChannelRows;
@@ -54,14 +54,26 @@ pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<Lear
         let left = reduced.left(&evidence.mean(&dials)?);
         let next = weights.after(&reduced, &left, &dials);
         if next.settled(&weights) || weighing == MOST_WEIGHINGS {
+            let before = dials;
             let unseen = raise_scatter(&reduced, &weights, &mut evidence, &mut dials)?;
-            let points = evidence.points(dials);
+            let points = points_raised(&mut evidence, &before, &dials);
             let posterior = ChannelPosterior::averaged(&mut evidence, &points, &reduction, groups)?;
             return Some(LearntChannel { posterior, weights, unseen, left });
         }
         weights = next;
     }
     None
+}
+
+/// The points that the posterior is averaged over. What flights leave open is about the likeliest scatter; what unseen flights add
+/// to it they add to every point. About the raised scatter the likelihood falls, and averaging would take back half of it.
+fn points_raised(evidence: &mut Evidence<'_>, likeliest: &Dials, raised: &Dials) -> Vec<Weighted> {
+    let mut points = evidence.points(*likeliest);
+    let raise = raised.between / likeliest.between;
+    for point in &mut points {
+        point.dials.between *= raise;
+    }
+    points
 }
 
 /// Raises the scatter between flights to what unseen flights show, and returns those.
@@ -88,4 +100,32 @@ fn raise_scatter(
 fn reduction(own: &Mat<f64>, width: usize) -> Pivoted {
     let quiet = Mat::from_fn(width, width, |i, j| own[(i, j)] / (QUIET * QUIET));
     pivoted(&quiet, width, NEGLIGIBLE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eight flights that differ four times as much as stated. What is believed of scatter draws the likeliest towards the
+    /// statement; unseen flights raise it, and averaging leaves it raised: they err no more than announced.
+    #[test]
+    fn averaging_keeps_the_scatter_that_unseen_flights_showed() {
+        let (flights, each) = (8, 3);
+        let count = flights * each;
+        let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let rows = ChannelRows {
+            columns: Mat::from_fn(count, 2, |row, column| {
+                if column == 0 { 1.0 } else { 0.1 * number(row) + 14.0 * number(row / each + 40) }
+            }),
+            variance: vec![0.01; count],
+            loadings: vec![vec![1.0; count]],
+            groups: (0..flights).map(|flight| flight * each..(flight + 1) * each).collect(),
+            shares: vec![1.0; flights],
+        };
+        let found = learn_channel(&rows, &[0]).unwrap();
+        let between = found.posterior.dials.between;
+        assert!(between > 2.0, "{between}");
+        let needed = scatter_by_unseen(&found.unseen, between);
+        assert!(needed <= between, "{between}, and {needed} needed");
+    }
 }

@@ -7,12 +7,15 @@ use faer::Mat;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::channel::{LearntChannel, learn_channel};
+use crate::learning::physical::Physics;
 use crate::learning::rows::{ChannelRows, GivenThrust, fuel_flow_columns};
 use crate::learning::sums::ChannelSums;
 use crate::learning::unseen::factor_by_unseen;
 use crate::math::cholesky::Cholesky;
+use crate::math::half_spaces::{Doubt, hold};
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::references::DiagnoseError;
+use crate::thresholds::DOUBTFUL_PHYSICS;
 
 /// Share of a variance that is added to it: a covariance that was computed may miss definiteness by rounding.
 const ROUNDING: f64 = 1e-9;
@@ -27,7 +30,11 @@ struct Joint {
 
 impl Baseline {
     /// Learns every channel.
-    pub(super) fn fit(&mut self, data: &PreparedFlights<'_>) -> Result<(), DiagnoseError> {
+    pub(super) fn fit(
+        &mut self,
+        data: &PreparedFlights<'_>,
+        physics: &Physics,
+    ) -> Result<(), DiagnoseError> {
         let layout = self.layout();
         let width = layout.len();
         let deviations: Vec<f64> = (0..width).map(|column| self.prior_deviation(column)).collect();
@@ -57,6 +64,7 @@ impl Baseline {
         if data.channels.n2 {
             self.fit_deck(data, &mut joint)?;
         }
+        self.hold_to_physics(physics, &mut joint, &deviations);
         self.keep(data, &joint, &deviations)?;
         self.summarize(data, &fuel.left);
         Ok(())
@@ -123,6 +131,18 @@ impl Baseline {
             }
         }
         Ok(())
+    }
+
+    /// Holds what is in doubt to physics, the deck as far as it follows from it.
+    fn hold_to_physics(&mut self, physics: &Physics, joint: &mut Joint, deviations: &[f64]) {
+        let slopes = &physics.slopes;
+        let rows =
+            Mat::from_fn(slopes.nrows(), slopes.ncols(), |k, j| slopes[(k, j)] * deviations[j]);
+        let doubt = Doubt { most: DOUBTFUL_PHYSICS, least: -DOUBTFUL_PHYSICS };
+        let Joint { mean, covariance } = joint;
+        let held = hold(mean, covariance, &rows, &physics.offsets, doubt);
+        self.parts.held_to_physics = held.rows.len();
+        self.parts.against_physics = held.against;
     }
 
     /// Which scale multiplies a column's prior standard deviation: 0 none, that of the level.

@@ -7,6 +7,7 @@ use units::convert::SECONDS_PER_DAY;
 use crate::baseline::smooth::Smooth;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, BaselineRecord};
+use crate::learning::physical::Physics;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::priors::REMAINDER_LENGTHS;
@@ -123,7 +124,8 @@ impl Baseline {
         }
         count_by_age(&mut data.flights, half_life_days);
         let mut baseline = Self::prior(&data, &references, table);
-        baseline.fit(&data)?;
+        let physics = Physics::of(&effect_model, &baseline, &data);
+        baseline.fit(&data, &physics)?;
         Ok((baseline, data.segments))
     }
 
@@ -154,6 +156,8 @@ impl Baseline {
             standing_variances: Vec::new(),
             smooth_table: true,
             outliers: 0,
+            held_to_physics: 0,
+            against_physics: 0,
             interval_factor: 1.0,
             rms: f64::NAN,
         };

@@ -17,7 +17,8 @@ const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// A flight predicted from all others.
 pub(super) struct Unseen {
-    /// Mean error, and the model's part and the segments' part of its variance.
+    /// Mean error, and the model's part and the segments' part of its variance, outliers weighed down: they do not make every
+    /// flight doubtful.
     mean: f64,
     of_model: f64,
     within: f64,
@@ -96,12 +97,13 @@ pub(super) fn unseen(
                 .sum();
             let of_total = dot(&sums, &sums) - of_noise;
             let square = (count * count) as f64;
-            let own: f64 = range.clone().map(|row| rows.variance[row]).sum();
+            let own: f64 = range.clone().map(|row| rows.variance[row] / weights.rows[row]).sum();
             let common: f64 = rows
                 .loadings
                 .iter()
                 .map(|u| (u[range.clone()].iter().sum::<f64>() / count as f64).powi(2))
-                .sum();
+                .sum::<f64>()
+                / weights.groups[group];
             Some(Unseen {
                 mean: values.iter().map(|(error, ..)| error).sum::<f64>() / count as f64,
                 of_model: of_total.max(0.0) / square,
