@@ -103,6 +103,7 @@ impl Baseline {
             standing_means: vec![0.0; STANDING_EFFECTS.len()],
             standing_variances: Vec::new(),
             smooth_table: true,
+            thrust_share: 0.0,
             outliers: 0,
             interval_factor: 1.0,
             rms: f64::NAN,
