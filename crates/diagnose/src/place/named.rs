@@ -11,7 +11,9 @@ use crate::place::find::gaps;
 use crate::place::regions::{BinnedRegion, intervals};
 use crate::place::told::Told;
 use crate::search::system::WhitenedSystem;
-use crate::thresholds::{FEWEST_FLIGHTS_OF_A_REGION, REGION_P_VALUE, REGION_SHARES};
+use crate::thresholds::{
+    FEWEST_FLIGHTS_OF_A_REGION, REGION_P_VALUE, REGION_SHARES, SMALLEST_GAP_PERCENT,
+};
 
 /// Falls of squares that differ by less are of one place and its complement.
 const EQUAL: f64 = 1e-6;
@@ -38,7 +40,7 @@ struct Fit {
 impl NamedGap {
     /// The region of one driving variable over which a step fits the gap of what is named best, of regions that fit alike the one
     /// with the larger gap; its p-value is the probability that nothing acts which the variable drives. `None` where that is too
-    /// large for every variable.
+    /// large for every variable, and where the gap of what is named is nearly the same everywhere.
     ///
     /// ```text
     /// max (Σ_{i in place} (g_i − ḡ))²/(n(1 − n/N)),   g what the named effect makes                        [diagnosis.56]
@@ -49,6 +51,9 @@ impl NamedGap {
         variances: &[f64],
         seed: u64,
     ) -> Option<Slice> {
+        if self.variance() < (SMALLEST_GAP_PERCENT / 100.0).powi(2) {
+            return None;
+        }
         let places = places(&system.data.segments, system.design.references());
         let gaps = gaps(system);
         let told = Told { system, places: &places, gaps: &gaps, variances };
@@ -68,6 +73,16 @@ impl NamedGap {
         best.map(|best| told.slice(&best.region, &best.members, best.p_value, seed))
     }
 
+    fn mean(&self) -> f64 {
+        self.gap.iter().sum::<f64>() / self.gap.len().max(1) as f64
+    }
+
+    fn variance(&self) -> f64 {
+        let mean = self.mean();
+        let squares = self.gap.iter().map(|gap| (gap - mean).powi(2));
+        squares.sum::<f64>() / self.gap.len().max(1) as f64
+    }
+
     /// `None` for a region that holds too few or too many segments, or too few flights.
     fn fit(&self, region: BinnedRegion, p_value: f64, told: &Told<'_>) -> Option<Fit> {
         let all = self.gap.len();
@@ -78,7 +93,7 @@ impl NamedGap {
         {
             return None;
         }
-        let mean = self.gap.iter().sum::<f64>() / all as f64;
+        let mean = self.mean();
         let sum: f64 = members.iter().map(|&k| self.gap[k] - mean).sum();
         let fall = sum * sum / (members.len() as f64 * (1.0 - share));
         let size = told.mean(&region, &members).abs();
