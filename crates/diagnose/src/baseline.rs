@@ -65,6 +65,9 @@ pub struct BaselineRecord {
     /// Whether the drag table was smooth between its nodes; it was not for older programs.
     #[serde(default)]
     pub(crate) smooth_table: bool,
+    /// Share of the remainder that is thrust, so that N2 answers to it, and not fuel alone; 0 in files of older programs.
+    #[serde(default)]
+    pub(crate) thrust_share: f64,
     /// Segments that counted less than half.
     pub(crate) outliers: usize,
     /// Inequalities of physics that were in doubt and to which the coefficients are held.
@@ -209,6 +212,18 @@ impl Baseline {
         self.write_drag(response, &mut loadings);
         let drag: f64 = loadings.iter().zip(&self.parts.drag).map(|(l, mean)| l * mean).sum();
         response.drag_over_thrust * drag
+    }
+
+    /// Mean change of ln net thrust by all that it has learnt: drag, and the remainder's share that is thrust.
+    pub(crate) fn thrust_at(&self, response: &Response) -> f64 {
+        let drag = self.drag_at(response);
+        let share = self.parts.thrust_share;
+        // Files of older programs: to the same bits.
+        if share == 0.0 { drag } else { drag + share * self.mean_at(response) }
+    }
+
+    pub(crate) const fn thrust_share(&self) -> f64 {
+        self.parts.thrust_share
     }
 
     /// Sizes of effects that its fleet shows at all times, each in its unit: local gravity, rotating Earth and

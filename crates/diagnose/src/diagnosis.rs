@@ -18,7 +18,7 @@ use crate::judge::noise_floors::{held_out_floor, replicate_floor};
 use crate::judge::posterior::{causes, dominant};
 use crate::judge::sufficiency::{insufficient, too_little};
 use crate::judge::table::is_table_off;
-use crate::judge::verdict::{Findings, advisor, level_like, verdict};
+use crate::judge::verdict::{Findings, advisor, level_like, named_gap, verdict};
 use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::output::addition::Addition;
@@ -287,7 +287,6 @@ fn conclude(
     if unseen.is_some() {
         add_floors(&mut gap, problem, &own, scale);
     }
-    let places = places.map_or_else(Vec::new, |places| places.of_gap(detected));
     let classes = distances.classes(library);
     let advisor = advisor(problem, &distances, &classes, &posteriors, gap.detected);
     let findings = Findings {
@@ -304,6 +303,14 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
+    let places = places.map_or_else(Vec::new, |mut places| {
+        if let Some(named) = named_gap(&findings, system, &verdict)
+            && let Some(place) = named.place(system, &places.variances, options.seed)
+        {
+            places.lead_with(place, &named.drivers);
+        }
+        places.of_gap(detected)
+    });
     let found_forms = match &verdict {
         Verdict::OutsideLibrary(_) => forms
             .unwrap_or_else(|| leading_forms(problem, analysis, &outside, (scale, options.seed))),

@@ -1,6 +1,7 @@
 //! How a baseline is learnt from the residuals of clean flights.
 
 mod channel;
+mod deck;
 mod dials;
 mod evidence;
 mod fit;

@@ -37,6 +37,7 @@ use crate::signals::references::references_of;
 mod attainable;
 mod forms;
 mod places;
+mod taught;
 
 /// The linear system of a fleet against the model that flew it.
 fn with_system(flights: &[Vec<Segment>], check: impl FnOnce(&Problem<'_>)) {

@@ -190,6 +190,9 @@ deciding_numbers! {
         DECK_DEVIATION: f64 = 0.02, "of N2",
             "prior standard deviation of a deck coefficient about its least-squares value",
             OurChoice "Wide: least squares over the same flights is only a start.";
+        THRUST_SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0], "",
+            "shares of a remainder that may be thrust, as likely beforehand",
+            OurChoice "From fuel alone to thrust alone; N2 says which, and hardly more finely.";
         CARRIED_DEVIATION: f64 = 1.0, "of typical size",
             "prior standard deviation of an effect that a fleet shows at all times",
             Measured "JSBSim, SIM-02: closure on unseen flights 0.90; at 3.0 it was 0.69, with 22 counts of trim drag.";

@@ -287,8 +287,9 @@ impl<'a> Design<'a> {
         if let Some(baseline) = parts.baseline {
             let terms = &mut scratch[..layout.remainder.len()];
             baseline.write_remainder(&row.response, terms);
+            let unit = rows.of_remainder(baseline.thrust_share());
             for (column, value) in columns(&layout.remainder).zip(&*terms) {
-                rows.put_fuel_flow(column, *value);
+                rows.put_white(column, &unit, *value);
             }
         }
         for (column, contrast) in columns(&layout.contrasts).zip(1..) {
@@ -486,6 +487,20 @@ impl<'a> RowsOfSegment<'a> {
         let fuel_flow = whiten_within_segment(row, &on_fuel, channels.count());
         let thrust = whiten_within_segment(row, &on_thrust, channels.count());
         Self { row, channels, first, matrix, fuel_flow, thrust }
+    }
+
+    /// Whitened: a change of fuel flow, of which N2 sees a share.
+    fn of_remainder(&self, thrust_share: f64) -> ByChannel {
+        let (row, channels) = (self.row, self.channels);
+        if thrust_share == 0.0 {
+            return self.fuel_flow;
+        }
+        let mut values = [0.0; MAXIMUM_CHANNELS];
+        values[0] = 1.0;
+        if channels.n2 && row.is_recorded[channels.n2_row()] {
+            values[channels.n2_row()] = thrust_share * row.n2_slope;
+        }
+        whiten_within_segment(row, &values, channels.count())
     }
 
     fn put(&mut self, column: usize, values: &ByChannel) {

@@ -1,6 +1,7 @@
 //! The conclusion: an effect, its class, advice; or that nothing in the library fits.
 
-use flight::effect::EffectId;
+use effects::Variable;
+use flight::effect::{DrivingVariable, EffectId};
 
 use crate::advice::advisor::{Advisor, best_first};
 use crate::advice::distances::Distances;
@@ -11,6 +12,7 @@ use crate::library::{Library, Testable};
 use crate::output::measurement::Separation;
 use crate::output::note::Note;
 use crate::output::verdict::{Beside, Found, Rest, RestKind, Unexplained, Verdict};
+use crate::place::named::NamedGap;
 use crate::search::analyse::Analysis;
 use crate::search::outside::{Companion, Outside};
 use crate::search::system::{Problem, WhitenedSystem};
@@ -129,6 +131,29 @@ pub(crate) fn verdict(findings: &Findings<'_>, notes: &mut Vec<Note>) -> Verdict
         }
     }
     Verdict::Effects(found)
+}
+
+/// The gap of the leading effect where it is named and no guide's table is off, and the variables that drive it: each with the
+/// probability that no effect acts which the variable drives, so that members of a class count together.
+pub(crate) fn named_gap(
+    findings: &Findings<'_>,
+    system: &WhitenedSystem<'_>,
+    verdict: &Verdict,
+) -> Option<NamedGap> {
+    let &Findings { library, outside, posteriors, .. } = findings;
+    let named = !verdict.effects().is_empty() && !verdict.is_of_table();
+    let top = posteriors.first().filter(|_| named)?;
+    let (column, size) = top.column_and_size()?;
+    let segments = &system.data.segments;
+    let gap = segments.iter().map(|row| size * row.signatures[column][0]).collect();
+    let drivers = |posterior: &Posterior| id_of(library, posterior.effect).entry().driven_by;
+    let inside = 1.0 - outside.probability;
+    let doubt = |driver: &DrivingVariable| {
+        let driven = posteriors.iter().filter(|posterior| drivers(posterior).contains(driver));
+        1.0 - inside * driven.map(|posterior| posterior.probability).sum::<f64>()
+    };
+    let drivers = drivers(top).iter().map(|driver| (Variable::from(*driver), doubt(driver)));
+    Some(NamedGap { gap, drivers: drivers.collect() })
 }
 
 /// What changes drag or fuel flow nearly alike everywhere.

@@ -76,6 +76,19 @@ fn points_raised(evidence: &mut Evidence<'_>, likeliest: &Dials, raised: &Dials)
     points
 }
 
+/// ln of the marginal likelihood of what was recorded, at the likeliest noise, with these weights; of no use where matrices are
+/// not positive definite.
+pub(super) fn ln_evidence(rows: &ChannelRows, groups: &[usize], weights: &Weights) -> f64 {
+    let reduction = reduction(&ChannelSums::own(rows, &Weights::of_one(rows)), groups.len());
+    let prior = Prior::of(&reduction, groups);
+    let reduced = rows.only(&reduction.pivots);
+    let sums = ChannelSums::new(&reduced, weights);
+    let mut evidence = Evidence::new(&sums, &prior);
+    let usual = evidence.likeliest(Dials::usual(), &FIRST_STEPS);
+    let likeliest = evidence.likeliest(usual, &STEPS);
+    evidence.ln_evidence(&likeliest)
+}
+
 /// Raises the scatter between flights to what unseen flights show, and returns those.
 fn raise_scatter(
     rows: &ChannelRows,

@@ -89,7 +89,7 @@ impl<'a> Evidence<'a> {
     /// ```text
     /// −½ Σ_f ln|C_f| − ½ ln|K| − ½ ln|K⁻¹ + G| − ½ (y² − gᵀ(K⁻¹ + G)⁻¹g),   K the prior covariance     [diagnosis.17]
     /// ```
-    fn ln_evidence(&mut self, dials: &Dials) -> f64 {
+    pub(super) fn ln_evidence(&mut self, dials: &Dials) -> f64 {
         if dials.is_allowed() { self.ln_density(dials) } else { f64::NEG_INFINITY }
     }
 

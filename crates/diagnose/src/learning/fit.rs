@@ -1,15 +1,12 @@
 //! The channels learnt one after the other, and put together into one baseline.
 
-use core::ops::Range;
-
 use faer::Mat;
 
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::channel::{LearntChannel, learn_channel};
 use crate::learning::physical::Physics;
-use crate::learning::rows::{ChannelRows, GivenThrust, fuel_flow_columns};
-use crate::learning::sums::ChannelSums;
+use crate::learning::rows::{ChannelRows, fuel_flow_columns};
 use crate::learning::unseen::factor_by_unseen;
 use crate::math::cholesky::Cholesky;
 use crate::math::half_spaces::{Doubt, hold};
@@ -19,13 +16,11 @@ use crate::thresholds::DOUBTFUL_PHYSICS;
 
 /// Share of a variance that is added to it: a covariance that was computed may miss definiteness by rounding.
 const ROUNDING: f64 = 1e-9;
-/// Times that the deck is learnt: what effects do to N2 is taken by the slopes of the deck before.
-const DECK_PASSES: usize = 2;
 
 /// Mean and covariance of all coefficients, in their prior standard deviations.
-struct Joint {
-    mean: Vec<f64>,
-    covariance: Mat<f64>,
+pub(super) struct Joint {
+    pub(super) mean: Vec<f64>,
+    pub(super) covariance: Mat<f64>,
 }
 
 impl Baseline {
@@ -62,74 +57,11 @@ impl Baseline {
             }
         }
         if data.channels.n2 {
-            self.fit_deck(data, &mut joint)?;
+            self.fit_deck(data, &mut joint, &deviations)?;
         }
         self.hold_to_physics(physics, &mut joint, &deviations);
         self.keep(data, &joint, &deviations)?;
         self.summarize(data, &fuel.left);
-        Ok(())
-    }
-
-    /// The deck, given what fuel flow says of thrust.
-    ///
-    /// ```text
-    /// d = V_d (D C⁻¹y − D C⁻¹B β),   cov d = V_d + A cov(β) Aᵀ,   cov(d, β) = −A cov(β),   A = V_d D C⁻¹B        [baseline.4]
-    /// ```
-    ///
-    /// # Source
-    /// Liu, Bayarri and Berger 2009, doi 10.1214/09-BA404: modularization.
-    fn fit_deck(
-        &mut self,
-        data: &PreparedFlights<'_>,
-        joint: &mut Joint,
-    ) -> Result<(), DiagnoseError> {
-        let layout = self.layout();
-        let terms = layout.deck.len();
-        let given: Vec<usize> =
-            layout.standing_effects.clone().chain(layout.drag.clone()).collect();
-        let deviations = |columns: &Range<usize>| -> Vec<f64> {
-            columns
-                .clone()
-                .map(|column| joint.mean[column] * self.prior_deviation(column))
-                .collect()
-        };
-        let (drag, standing) = (deviations(&layout.drag), deviations(&layout.standing_effects));
-        let mut at = data.predictor.deck.clone();
-        let mut learnt = None;
-        for _ in 0..DECK_PASSES {
-            let given = GivenThrust { drag: &drag, standing_effects: &standing, deck: &at };
-            let all = ChannelRows::of_n2(self, data, &given);
-            let rows = all.only(&(0..terms).collect::<Vec<_>>());
-            let deck = learn_channel(&rows, &vec![0; terms]).ok_or(DiagnoseError::Degenerate)?;
-            for (k, column) in layout.deck.clone().enumerate() {
-                at.coefficients[k] = data.predictor.deck.coefficients[k]
-                    + deck.posterior.mean[k] * self.prior_deviation(column);
-            }
-            learnt = Some((all, deck));
-        }
-        let (all, deck) = learnt.ok_or(DiagnoseError::Degenerate)?;
-        self.set_noise(2, &deck);
-        let dials = deck.posterior.dials;
-        let (gram, _) = ChannelSums::new(&all, &deck.weights).gram(dials.ratio());
-        let square = dials.within * dials.within;
-        // The lower triangle: rows of what is given, columns of the deck.
-        let informed = Mat::from_fn(terms, given.len(), |i, k| gram[(terms + k, i)] / square);
-        let leaning = &deck.posterior.covariance * &informed;
-        let width = joint.mean.len();
-        let of_given = Mat::from_fn(given.len(), width, |k, j| joint.covariance[(given[k], j)]);
-        let cross = &leaning * &of_given;
-        let among = Mat::from_fn(given.len(), terms, |k, i| cross[(i, given[k])]);
-        let added = &leaning * &among;
-        joint.put(&layout.deck.clone().collect::<Vec<_>>(), &deck);
-        for (i, row) in layout.deck.clone().enumerate() {
-            for column in (0..width).filter(|column| !layout.deck.contains(column)) {
-                joint.covariance[(row, column)] = -cross[(i, column)];
-                joint.covariance[(column, row)] = -cross[(i, column)];
-            }
-            for (j, column) in layout.deck.clone().enumerate() {
-                joint.covariance[(row, column)] += added[(i, j)];
-            }
-        }
         Ok(())
     }
 
@@ -167,7 +99,7 @@ impl Baseline {
         2
     }
 
-    fn set_noise(&mut self, kind: usize, of: &LearntChannel) {
+    pub(super) fn set_noise(&mut self, kind: usize, of: &LearntChannel) {
         self.parts.noise.within[kind] = of.posterior.dials.within;
         self.parts.noise.between[kind] = of.posterior.dials.between;
     }
@@ -220,7 +152,7 @@ impl Baseline {
 
 impl Joint {
     /// Puts what a channel says of some columns in place.
-    fn put(&mut self, columns: &[usize], found: &LearntChannel) {
+    pub(super) fn put(&mut self, columns: &[usize], found: &LearntChannel) {
         for (i, &row) in columns.iter().enumerate() {
             self.mean[row] = found.posterior.mean[i];
             for (j, &column) in columns.iter().enumerate() {

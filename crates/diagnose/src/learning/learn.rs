@@ -155,6 +155,7 @@ impl Baseline {
             standing_means: vec![0.0; STANDING_EFFECTS.len()],
             standing_variances: Vec::new(),
             smooth_table: true,
+            thrust_share: 0.0,
             outliers: 0,
             held_to_physics: 0,
             against_physics: 0,

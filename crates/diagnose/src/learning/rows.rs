@@ -42,6 +42,9 @@ pub(super) struct Unheld {
 pub(super) struct GivenThrust<'a> {
     pub(super) drag: &'a [f64],
     pub(super) standing_effects: &'a [f64],
+    pub(super) remainder: &'a [f64],
+    /// Share of the remainder that is thrust.
+    pub(super) share: f64,
     pub(super) deck: &'a Deck,
 }
 
@@ -102,26 +105,32 @@ impl ChannelRows {
         Self::of_channel(data, at, 1, |_, into| into[0] = deviation)
     }
 
-    /// N2: the deck, then, not to be learnt, what effects and drag change in it. The residual is what the deck at hand leaves
+    /// N2: the deck, then, not to be learnt, what effects, drag and remainder change in it. The residual is what the deck at hand leaves
     /// at the thrust that is given. A deck bends, so that its slope is another at another thrust, and so is what effects do.
     pub(super) fn of_n2(
         baseline: &Baseline,
         data: &PreparedFlights<'_>,
+        deviations: &[f64],
         given: &GivenThrust<'_>,
     ) -> Self {
         let layout = baseline.layout();
         let (deck, standing) = (layout.deck.len(), layout.standing_effects.len());
+        let remainder = deck + standing + layout.drag.len();
         let channel = data.channels.n2_row();
-        let columns = layout.deck.clone().chain(layout.standing_effects.clone());
-        let deviations: Vec<f64> =
-            columns.chain(layout.drag.clone()).map(|k| baseline.prior_deviation(k)).collect();
+        let columns = layout.deck.clone().chain(given_columns(&layout));
+        let deviations: Vec<f64> = columns.map(|k| deviations[k]).collect();
         let at_hand = &data.predictor.deck;
         let mut loadings = vec![0.0; layout.drag.len()];
+        let mut terms = vec![0.0; layout.remainder.len()];
         let mut residuals = Vec::with_capacity(data.segments.len());
         let mut rows = Self::of_channel(data, channel, deviations.len(), |row, into| {
             baseline.write_drag(&row.response, &mut loadings);
-            let drag: f64 = loadings.iter().zip(given.drag).map(|(l, mean)| l * mean).sum();
-            let response = with_thrust(&row.response, row.drag_over_thrust * drag);
+            let mut thrust = row.drag_over_thrust * dot(&loadings, given.drag);
+            if given.share > 0.0 {
+                baseline.write_remainder(&row.response, &mut terms);
+                thrust += given.share * dot(&terms, given.remainder);
+            }
+            let response = with_thrust(&row.response, thrust);
             let (before, slope) = (row.n2_slope, given.deck.slope(&response));
             let by = if before == 0.0 { 0.0 } else { slope / before };
             into[..deck].copy_from_slice(&at_hand.terms(&response));
@@ -135,6 +144,9 @@ impl ChannelRows {
             residuals.push(residual);
             for (slot, loading) in into[deck + standing..].iter_mut().zip(&loadings) {
                 *slot = loading * slope * row.drag_over_thrust;
+            }
+            for (slot, term) in into[remainder..].iter_mut().zip(&terms) {
+                *slot = term * slope * given.share;
             }
             for (slot, deviation) in into.iter_mut().zip(&deviations) {
                 *slot *= deviation;
@@ -216,6 +228,18 @@ impl ChannelRows {
     pub(super) fn common_variance(&self, row: usize) -> f64 {
         self.loadings.iter().map(|loading| loading[row] * loading[row]).sum()
     }
+}
+
+/// Columns of a baseline that N2 is given, in the order of its rows behind the deck.
+pub(super) fn given_columns(
+    layout: &NuisanceLayout,
+) -> impl Iterator<Item = usize> + Clone + use<> {
+    let standing = layout.standing_effects.clone();
+    standing.chain(layout.drag.clone()).chain(layout.remainder.clone())
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Columns of a baseline that fuel flow informs, in the order of its rows.

@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use effects::{BetweenNodes, EffectModel};
 use flight::Segment;
-use test_support::fleet::{Background, Setup, exact_model, fly};
+use flight::effect::EffectId;
+use test_support::fleet::{Background, Planted, Setup, exact_model, fly, typical};
 
 use super::rows::{ChannelRows, GivenThrust};
 use crate::baseline::Baseline;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
 use crate::residuals::reference::Reference;
+use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::record::FlightRecord;
 use crate::signals::table_uncertainty::TableUncertainty;
@@ -80,14 +82,18 @@ fn columns_of_drag_in_n2_are_its_finite_differences() {
     with_far_too_little_drag((92, 6), false, |taught, data| {
         let layout = taught.layout();
         let none = vec![0.0; layout.standing_effects.len()];
+        let remainder = &taught.parts.mean[layout.remainder.clone()];
+        let deviations = deviations_of(taught);
         let rows_at = |drag: &[f64]| {
             let deck = &data.predictor.deck;
-            ChannelRows::of_n2(taught, data, &GivenThrust { drag, standing_effects: &none, deck })
+            let standing_effects = &none;
+            let given = GivenThrust { drag, standing_effects, remainder, share: 0.7, deck };
+            ChannelRows::of_n2(taught, data, &deviations, &given)
         };
         let learnt = &taught.parts.drag;
         let found = rows_at(learnt);
         let first = layout.deck.len() + layout.standing_effects.len();
-        assert!(!learnt.is_empty() && found.width() == first + learnt.len());
+        assert!(!learnt.is_empty());
         for loading in 0..learnt.len() {
             let moved = |by: f64| {
                 let mut drag = learnt.clone();
@@ -104,6 +110,114 @@ fn columns_of_drag_in_n2_are_its_finite_differences() {
                 assert!((value - expected).abs() < 1e-6 * largest, "{loading}: {value} {expected}");
             }
         }
+    });
+}
+
+/// What the remainder changes in N2, in the same way: its share that is thrust.
+#[test]
+fn columns_of_the_remainder_in_n2_are_its_finite_differences() {
+    const STEP: f64 = 1e-4;
+    with_far_too_little_drag((92, 6), false, |taught, data| {
+        let layout = taught.layout();
+        let none = vec![0.0; layout.standing_effects.len()];
+        let deviations = deviations_of(taught);
+        let (drag, deck) = (&taught.parts.drag, &data.predictor.deck);
+        let rows_at = |remainder: &[f64], share: f64| {
+            let standing_effects = &none;
+            let given = GivenThrust { drag, standing_effects, remainder, share, deck };
+            ChannelRows::of_n2(taught, data, &deviations, &given)
+        };
+        let learnt = &taught.parts.mean[layout.remainder.clone()];
+        let first = layout.deck.len() + layout.standing_effects.len() + drag.len();
+        let (found, of_fuel) = (rows_at(learnt, 0.7), rows_at(learnt, 0.0));
+        assert_eq!(found.width(), first + learnt.len());
+        let mut seen = 0;
+        for term in 0..learnt.len() {
+            let moved = |by: f64| {
+                let mut remainder = learnt.to_vec();
+                remainder[term] += by;
+                rows_at(&remainder, 0.7)
+            };
+            let (up, down) = (moved(STEP), moved(-STEP));
+            let column = found.columns.col_as_slice(first + term);
+            let deviation = deviations[layout.remainder.start + term];
+            let largest = column.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+            seen += usize::from(largest > 0.0);
+            for ((up, down), value) in up.residual().iter().zip(down.residual()).zip(column) {
+                let expected = -(up - down) / (2.0 * STEP) * deviation;
+                assert!((value - expected).abs() <= 1e-6 * largest, "{term}: {value} {expected}");
+            }
+            // What is fuel alone changes nothing in N2.
+            assert!(of_fuel.columns.col_as_slice(first + term).iter().all(|value| *value == 0.0));
+        }
+        assert!(2 * seen > learnt.len(), "{seen} of {}", learnt.len());
+    });
+}
+
+/// Prior standard deviations of all coefficients, as flights have scaled them.
+fn deviations_of(taught: &Baseline) -> Vec<f64> {
+    (0..taught.layout().len()).map(|column| taught.prior_deviation(column)).collect()
+}
+
+/// Thirty flights with an effect, or without any.
+fn flights_with(planted: Option<(EffectId, f64)>) -> Vec<Vec<Segment>> {
+    let setup = Setup { flights: 30, ..Setup::default() };
+    let plant = |(id, times)| Planted { id, size: times * typical(id) };
+    let planted: Vec<Planted> = planted.map(plant).into_iter().collect();
+    fly(94, &setup, &planted, &Background::default()).flights
+}
+
+/// The baseline of flights against the table of the model that flew them, which is believed to be exact, and the flights held
+/// against it.
+fn with_exact_table<T>(
+    flights: &[Vec<Segment>],
+    work: impl FnOnce(&Baseline, &PreparedFlights<'_>) -> T,
+) -> T {
+    let records = records(flights);
+    let model = exact_model();
+    let table = model.drag_table();
+    let taught = Baseline::learn(&model, table, None, &records, None).unwrap();
+    let effects = EffectModel::new(&model, table, *taught.references())
+        .unwrap()
+        .between_nodes(BetweenNodes::Smooth);
+    let nothing = |points: &[_], engines: bool, starts: &[f64]| {
+        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
+    };
+    let (data, _) =
+        PreparedFlights::prepare(&effects, &records, Reference::Baseline(&taught), nothing);
+    work(&taught, &data)
+}
+
+/// `[baseline.6]`: drag that grows with lift coefficient is thrust, and N2 answers to it. The same fuel flow where N2 has not
+/// answered is fuel alone.
+#[test]
+fn n2_says_how_much_of_a_remainder_is_thrust() {
+    let drag = flights_with(Some((EffectId::InducedDrag, 3.0)));
+    let mut fuel = flights_with(None);
+    for (fuel, drag) in fuel.iter_mut().flatten().zip(drag.iter().flatten()) {
+        fuel.means.fuel_flow_total_kg_s = drag.means.fuel_flow_total_kg_s;
+        fuel.means.fuel_flow_engine_kg_s.clone_from(&drag.means.fuel_flow_engine_kg_s);
+    }
+    let share =
+        |flights: &[Vec<Segment>]| with_exact_table(flights, |taught, _| taught.thrust_share());
+    let (of_drag, of_fuel) = (share(&drag), share(&fuel));
+    assert!(of_drag > 0.5 && of_fuel < 0.5, "{of_drag} {of_fuel}");
+}
+
+/// Least squares leave the mean of what taught them at zero, and so does the learnt deck where it is used: at the thrust that burns
+/// the fuel that is predicted, whatever scales flights have given to the remainder. (Taught at a remainder that was scaled
+/// once more, N2 was off by 0.0005 on all later flights.)
+#[test]
+fn the_deck_holds_at_the_remainder_that_is_learnt() {
+    with_exact_table(&flights_with(Some((EffectId::ReynoldsNumber, 6.0))), |taught, data| {
+        let n2 = data.channels.n2_row();
+        let count = data.segments.len() as f64;
+        let mean = data.segments.iter().map(|row| row.residual[n2]).sum::<f64>() / count;
+        let of = |row: &SegmentRow| taught.thrust_at(&row.response).powi(2);
+        let thrust = (data.segments.iter().map(of).sum::<f64>() / count).sqrt();
+        assert!(taught.parts.scales.iter().any(|scale| (scale - 1.0).abs() > 0.2));
+        assert!(thrust > 0.005, "{thrust}");
+        assert!(mean.abs() < 1.5e-4, "{mean} {thrust}");
     });
 }
 

@@ -1,8 +1,11 @@
 //! What the search for places is given, by hand.
 
 use super::{fleet, with_system};
+use effects::Variable;
+
 use crate::hypotheses::design::Design;
 use crate::place::find::{expected_errors_removed, gaps};
+use crate::place::named::NamedGap;
 use crate::search::system::WhitenedSystem;
 
 /// A segment of weight w counts w times in the search for places, with what is expected of the error of its acceleration:
@@ -23,5 +26,40 @@ fn segments_that_are_weighed_down_count_less_in_places() {
             assert!(whole.abs() > 1e-9, "{whole}");
             assert!((found - weight * whole).abs() < 1e-12, "{found} {whole} {weight}");
         }
+    });
+}
+
+/// `[diagnosis.56]`: what is named makes 1 % at the fastest tenth, and nothing else: the region is the fastest fifth, the nearest
+/// that bins of fifths have. Not along a variable that is less sure than a place must be, nor where none is sure.
+#[test]
+fn the_place_of_a_name_is_where_its_gap_is_largest() {
+    with_system(&fleet(81, 20), |problem| {
+        let system = problem.system;
+        let machs: Vec<f64> = system.data.segments.iter().map(|row| row.point.mach).collect();
+        let mut sorted = machs.clone();
+        sorted.sort_by(f64::total_cmp);
+        let fast = sorted[sorted.len() * 9 / 10];
+        let gap: Vec<f64> =
+            machs.iter().map(|mach| if *mach >= fast { 0.01 } else { 0.0 }).collect();
+        let variances = vec![1e-6; gap.len()];
+        let scaled = |drivers: &[(Variable, f64)], by: f64| {
+            let gap = gap.iter().map(|gap| 0.02 + by * gap).collect();
+            NamedGap { gap, drivers: drivers.to_vec() }.place(system, &variances, 1)
+        };
+        let place = |drivers: &[(Variable, f64)]| scaled(drivers, 1.0);
+        let found = place(&[(Variable::FuelUsed, 0.06), (Variable::Mach, 0.03)]).unwrap();
+        assert!((found.p_value - 0.03).abs() < 1e-15);
+        let [condition] = &found.region.conditions[..] else { panic!("{:?}", found.region) };
+        assert_eq!(condition.variable, Variable::Mach);
+        assert!(condition.to.is_none());
+        // Edges move by up to 2 % of the segments to numbers of few digits.
+        let inside = machs.iter().filter(|mach| condition.holds(**mach)).count() as f64;
+        let share = inside / machs.len() as f64;
+        assert!((share - 0.2).abs() <= 0.02 + 1e-9, "{condition:?} {share}");
+        assert!(place(&[(Variable::Mach, 0.051)]).is_none());
+        assert!(place(&[]).is_none());
+        // 1 % of a tenth has a standard deviation of 0.3 %: half of that is 0.15 %.
+        assert!(scaled(&[(Variable::Mach, 0.0)], 0.55).is_some());
+        assert!(scaled(&[(Variable::Mach, 0.0)], 0.45).is_none());
     });
 }

@@ -99,6 +99,10 @@ impl BinnedVariable {
         Some(Self { variable, edges, before, bins })
     }
 
+    pub(crate) const fn variable(&self) -> Variable {
+        self.variable
+    }
+
     /// On or off, and nothing between.
     pub(crate) const fn is_switch(&self) -> bool {
         matches!(self.variable, Variable::AntiIce)

@@ -4,6 +4,7 @@
 //! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
 //! is linear in segments.
 
+use effects::Variable;
 use faer::Mat;
 
 use crate::math::random::RandomStream;
@@ -33,9 +34,23 @@ const EQUAL: f64 = 1e-6;
 pub(crate) struct FoundPlaces {
     regions: Vec<Slice>,
     everywhere: Option<Slice>,
+    /// Variance that noise gives each segment's fuel flow.
+    pub(crate) variances: Vec<f64>,
 }
 
 impl FoundPlaces {
+    /// Puts the place of what is named first, unless one of its driving variables leads already.
+    pub(crate) fn lead_with(&mut self, named: Slice, drivers: &[(Variable, f64)]) {
+        let is_driver = |variable| drivers.iter().any(|(driver, _)| *driver == variable);
+        let leads = self.regions.first().is_some_and(|first| {
+            first.region.conditions.iter().any(|condition| is_driver(condition.variable))
+        });
+        if !leads {
+            self.regions.insert(0, named);
+            self.regions.truncate(MOST_REGIONS);
+        }
+    }
+
     /// What is said of a gap: its places, everywhere where it has none. Nothing is said of what is no gap.
     pub(crate) fn of_gap(self, is_gap: bool) -> Vec<Slice> {
         if !is_gap {
@@ -110,7 +125,7 @@ pub(crate) fn find(
         }
         _ => None,
     };
-    FoundPlaces { regions: found, everywhere }
+    FoundPlaces { regions: found, everywhere, variances }
 }
 
 /// Noise as the best model finds it, never less than announced.

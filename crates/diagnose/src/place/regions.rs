@@ -33,6 +33,12 @@ pub(crate) struct BinnedRegion {
 }
 
 impl BinnedRegion {
+    /// Bins of one variable, in fuel flow.
+    pub(crate) const fn of_bins(variable: usize, (low, high): (usize, usize)) -> Self {
+        let ranges = [Some((variable, low, high)), None];
+        Self { series: Series::FuelFlow, ranges, table: 0, share: 0.0 }
+    }
+
     pub(crate) fn holds(&self, places: &[BinnedVariable], segment: usize) -> bool {
         self.ranges.iter().flatten().all(|&(place, low, high)| {
             let bin = usize::from(places[place].bins[segment]);
@@ -254,7 +260,7 @@ impl<'a> Search<'a> {
 }
 
 /// Ranges of bins, all of them together left out unless there is only this one.
-fn intervals(bins: usize, is_variable: bool) -> Vec<(usize, usize)> {
+pub(super) fn intervals(bins: usize, is_variable: bool) -> Vec<(usize, usize)> {
     if !is_variable {
         return vec![(0, 1)];
     }

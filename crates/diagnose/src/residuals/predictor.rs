@@ -23,23 +23,23 @@ impl Predictor<'_> {
 
     /// The response with the thrust that a baseline has learnt, at which the deck holds.
     pub(crate) fn at_learnt_thrust(&self, response: &Response) -> Response {
-        with_thrust(response, self.learnt_drag(response))
+        with_thrust(response, self.learnt_thrust(response))
     }
 
     /// The corrected thrust that a recorded N2 stands for, N, as the table alone would have it: less what a baseline has learnt
-    /// of drag, like everything that thrusts are compared with.
+    /// of thrust, like everything that thrusts are compared with.
     pub(crate) fn corrected_thrust_by_n2_n(
         &self,
         n2_percent: f64,
         response: &Response,
     ) -> Option<f64> {
-        let drag = self.learnt_drag(response);
-        let found = self.deck.corrected_thrust_n(n2_percent, &with_thrust(response, drag))?;
-        Some(found * (-drag).exp())
+        let learnt = self.learnt_thrust(response);
+        let found = self.deck.corrected_thrust_n(n2_percent, &with_thrust(response, learnt))?;
+        Some(found * (-learnt).exp())
     }
 
-    fn learnt_drag(&self, response: &Response) -> f64 {
-        self.baseline.map_or(0.0, |baseline| baseline.drag_at(response))
+    fn learnt_thrust(&self, response: &Response) -> f64 {
+        self.baseline.map_or(0.0, |baseline| baseline.thrust_at(response))
     }
 
     pub(crate) fn predict(&self, response: &Response) -> ByChannel {
@@ -47,12 +47,15 @@ impl Predictor<'_> {
         let mut predicted = [0.0; MAXIMUM_CHANNELS];
         predicted[0] = response.ln_fuel_flow_total;
         contrasts(&response.ln_fuel_flow_engine, &mut predicted[1..=channels.contrasts]);
-        let drag = self.learnt_drag(response);
+        let (drag, remainder, share) = self.baseline.map_or((0.0, 0.0, 0.0), |baseline| {
+            (baseline.drag_at(response), baseline.mean_at(response), baseline.thrust_share())
+        });
         if channels.n2 {
-            predicted[channels.n2_row()] = self.deck.value(&with_thrust(response, drag));
+            let thrust = drag + share * remainder;
+            predicted[channels.n2_row()] = self.deck.value(&with_thrust(response, thrust));
         }
         if let Some(baseline) = self.baseline {
-            predicted[0] += drag + baseline.mean_at(response);
+            predicted[0] += drag + remainder;
             #[expect(
                 clippy::needless_range_loop,
                 reason = "a contrast is a channel and a number of the baseline"

@@ -1,0 +1,109 @@
+//! The place of what is named: where the gap of the named effect is largest, along a variable that drives it.
+//!
+//! Steps over regions see fuel flow alone. A name is found in all channels and against all that is uncertain about the model, so
+//! that it may be certain where no step stands out.
+
+use effects::Variable;
+
+use crate::output::Slice;
+use crate::place::binned_variable::{BinnedVariable, places};
+use crate::place::find::gaps;
+use crate::place::regions::{BinnedRegion, intervals};
+use crate::place::told::Told;
+use crate::search::system::WhitenedSystem;
+use crate::thresholds::{
+    FEWEST_FLIGHTS_OF_A_REGION, REGION_P_VALUE, REGION_SHARES, SMALLEST_GAP_PERCENT,
+};
+
+/// Falls of squares that differ by less are of one place and its complement.
+const EQUAL: f64 = 1e-6;
+
+/// What the verdict names, as its place is found.
+#[derive(Clone, Debug)]
+pub(crate) struct NamedGap {
+    /// What it makes of ln fuel flow, segment by segment.
+    pub(crate) gap: Vec<f64>,
+    /// Variables that drive it, each with the probability that nothing acts which the variable drives.
+    pub(crate) drivers: Vec<(Variable, f64)>,
+}
+
+/// How well a step over a region fits the gap of what is named.
+struct Fit {
+    region: BinnedRegion,
+    members: Vec<usize>,
+    fall: f64,
+    /// Mean of the gap that was recorded there, whatever its sign.
+    size: f64,
+    p_value: f64,
+}
+
+impl NamedGap {
+    /// The region of one driving variable over which a step fits the gap of what is named best, of regions that fit alike the one
+    /// with the larger gap; its p-value is the probability that nothing acts which the variable drives. `None` where that is too
+    /// large for every variable, and where the gap of what is named is nearly the same everywhere.
+    ///
+    /// ```text
+    /// max (Σ_{i in place} (g_i − ḡ))²/(n(1 − n/N)),   g what the named effect makes                        [diagnosis.56]
+    /// ```
+    pub(crate) fn place(
+        &self,
+        system: &WhitenedSystem<'_>,
+        variances: &[f64],
+        seed: u64,
+    ) -> Option<Slice> {
+        if self.variance() < (SMALLEST_GAP_PERCENT / 100.0).powi(2) {
+            return None;
+        }
+        let places = places(&system.data.segments, system.design.references());
+        let gaps = gaps(system);
+        let told = Told { system, places: &places, gaps: &gaps, variances };
+        let mut best: Option<Fit> = None;
+        for (driver, p_value) in self.drivers.iter().filter(|(_, p)| *p <= REGION_P_VALUE) {
+            let of_driver = |place: &BinnedVariable| place.variable() == *driver;
+            let Some(place) = places.iter().position(of_driver) else { continue };
+            for bins in intervals(places[place].count(), true) {
+                let region = BinnedRegion::of_bins(place, bins);
+                let fit = self.fit(region, *p_value, &told);
+                let Some(fit) = fit else { continue };
+                if best.as_ref().is_none_or(|best| fit.is_better_than(best)) {
+                    best = Some(fit);
+                }
+            }
+        }
+        best.map(|best| told.slice(&best.region, &best.members, best.p_value, seed))
+    }
+
+    fn mean(&self) -> f64 {
+        self.gap.iter().sum::<f64>() / self.gap.len().max(1) as f64
+    }
+
+    fn variance(&self) -> f64 {
+        let mean = self.mean();
+        let squares = self.gap.iter().map(|gap| (gap - mean).powi(2));
+        squares.sum::<f64>() / self.gap.len().max(1) as f64
+    }
+
+    /// `None` for a region that holds too few or too many segments, or too few flights.
+    fn fit(&self, region: BinnedRegion, p_value: f64, told: &Told<'_>) -> Option<Fit> {
+        let all = self.gap.len();
+        let members: Vec<usize> = (0..all).filter(|&k| region.holds(told.places, k)).collect();
+        let share = members.len() as f64 / all as f64;
+        if !(REGION_SHARES[0]..=REGION_SHARES[1]).contains(&share)
+            || told.flights_of(&members) < FEWEST_FLIGHTS_OF_A_REGION
+        {
+            return None;
+        }
+        let mean = self.mean();
+        let sum: f64 = members.iter().map(|&k| self.gap[k] - mean).sum();
+        let fall = sum * sum / (members.len() as f64 * (1.0 - share));
+        let size = told.mean(&region, &members).abs();
+        Some(Fit { region, members, fall, size, p_value })
+    }
+}
+
+impl Fit {
+    fn is_better_than(&self, other: &Self) -> bool {
+        self.fall > other.fall * (1.0 + EQUAL)
+            || (self.fall >= other.fall * (1.0 - EQUAL) && self.size > other.size)
+    }
+}
