@@ -49,6 +49,8 @@ impl Display for Codec {
 ///
 /// # Errors
 /// [`Damage`] where they are others; before memory is taken for what they cannot become.
+// Inlined into a caller that is compiled for size, the codec would be compiled so too.
+#[inline(never)]
 pub fn unpack(
     codec: Codec,
     packed: &[u8],

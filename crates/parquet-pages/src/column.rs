@@ -185,6 +185,8 @@ impl Column {
     ///
     /// # Errors
     /// [`Damage`] for a page that is damaged.
+    // Inlined into a caller that is compiled for size, as ours are, it would be compiled so too: twice the instructions.
+    #[inline(never)]
     pub fn append(&mut self, most: usize, values: &mut Values) -> Result<usize, Damage> {
         let count = most.min(self.left);
         let page = self.page.as_slice();
