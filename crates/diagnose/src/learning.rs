@@ -1,5 +1,6 @@
 //! How a baseline is learnt from the residuals of clean flights.
 
+mod by_scales;
 mod channel;
 mod dials;
 mod evidence;
@@ -7,6 +8,7 @@ mod fit;
 mod learn;
 mod outliers;
 mod posterior;
+mod prior;
 mod rows;
 mod sums;
 mod unseen;
