@@ -1,5 +1,6 @@
 //! How a baseline is learnt from the residuals of clean flights.
 
+mod by_scales;
 mod channel;
 mod deck;
 mod dials;
@@ -9,6 +10,7 @@ mod learn;
 mod outliers;
 mod physical;
 mod posterior;
+mod prior;
 mod rows;
 mod sums;
 mod unseen;

@@ -2,7 +2,7 @@
 //!
 //! Where the segments of all of them are at hand, all flights are learnt again in the order of flying: what comes out is what
 //! learning all of them at once gives, to the bit. Without segments the sums of law `bayes` are added: nearly the same table,
-//! because each flight keeps the outlier weight that it got among the flights of its own model, and nothing beside it.
+//! because each flight keeps the outlier weight that it got among the flights of its own model, and nothing more.
 
 use std::collections::BTreeSet;
 
@@ -124,7 +124,7 @@ fn settle(mut merged: ModelFile) -> Result<ModelFile, MergeError> {
     Ok(merged)
 }
 
-/// Whether more than the table is learnt: not where a part with flights enough knows nothing beside its table, on purpose.
+/// Whether more than the table is learnt: not where a part with flights enough knows its table alone, on purpose.
 fn remainder_of(parts: &[Part]) -> RemainderChoice {
     let is_table_alone = |part: &Part| {
         let learnt = part.model.learnt.as_ref();

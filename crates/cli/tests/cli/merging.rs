@@ -31,7 +31,7 @@ fn drag(model: &Path, scratch: &Path) -> Vec<f64> {
     numbers(&csv_columns(&csv), "drag_coefficient")
 }
 
-/// The oracle is one run over all flights: the merged model has its bytes, table and all that is learnt beside it.
+/// The oracle is one run over all flights: the merged model has its bytes, table and all that is learnt in addition.
 #[test]
 fn merged_models_are_the_model_of_all_flights() {
     let scratch = tempfile::tempdir().unwrap();
@@ -58,7 +58,7 @@ fn merged_models_are_the_model_of_all_flights() {
     merge(&[&odd, &first], &scratch.join("twice.ron")).expect(2).says("it would count twice");
 }
 
-/// Without their segments the sums of two models are added: nearly the same table, whatever the order, and nothing beside it.
+/// Without their segments the sums of two models are added: nearly the same table, whatever the order, and nothing more.
 #[test]
 fn models_out_of_their_folders_add_up() {
     let scratch = tempfile::tempdir().unwrap();

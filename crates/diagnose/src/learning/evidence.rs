@@ -6,10 +6,10 @@
 
 use faer::Mat;
 
+use crate::learning::by_scales::ByScales;
 use crate::learning::dials::{Dials, MOST_DIALS, NOISE_DIALS, SCALES};
-use crate::learning::posterior::Prior;
-use crate::learning::sums::ChannelSums;
-use crate::math::linear::add_gram;
+use crate::learning::prior::Prior;
+use crate::learning::sums::{ChannelSums, right_side};
 use crate::math::lower::{Lower, dot};
 use crate::priors::{
     PRIOR_LEVEL_ALONE, SCALE_LN_DEVIATIONS, USUAL_NOISE, USUAL_NOISE_LN_DEVIATION,
@@ -45,21 +45,6 @@ pub(super) struct Evidence<'a> {
     factor: Lower,
     /// What makes scales cheap to move, at a ratio.
     by_scales: Option<ByScales>,
-    /// Room for what is factored there.
-    seen: Lower,
-}
-
-/// The likelihood as a function of the scales alone, at one ratio of the noise: no prior has to be inverted.
-///
-/// ```text
-/// G = LLᵀ,  h = L⁻¹g,  C = Σ_i s_i²/w² LᵀP_iL,  K = Σ_i s_i² P_i:
-/// ln|K| + ln|K⁻¹ + G/w²| = ln|1 + C|,   gᵀ(K⁻¹ + G/w²)⁻¹g/w² = hᵀC(1 + C)⁻¹h                 [diagnosis.17]
-/// ```
-struct ByScales {
-    ratio: f64,
-    /// LᵀP_iL and its product with h.
-    parts: Vec<(Lower, Vec<f64>)>,
-    right: Vec<f64>,
 }
 
 /// Posterior of the columns at one point: mean, and a root of the covariance.
@@ -70,8 +55,8 @@ pub(super) struct Solved {
 
 impl<'a> Evidence<'a> {
     pub(super) fn new(sums: &'a ChannelSums, prior: &'a Prior) -> Self {
-        let (factor, seen) = (Lower::default(), Lower::default());
-        Self { sums, prior, gram: None, precision: None, factor, by_scales: None, seen }
+        let factor = Lower::default();
+        Self { sums, prior, gram: None, precision: None, factor, by_scales: None }
     }
 
     /// Factors that this channel has.
@@ -95,7 +80,8 @@ impl<'a> Evidence<'a> {
 
     /// The same, of factors beyond their limits too.
     fn ln_density(&mut self, dials: &Dials) -> f64 {
-        let found = match self.seen_by_scales(dials) {
+        let by_scales = self.by_scales.as_mut().filter(|by| by.is_at(dials.ratio()));
+        let found = match by_scales.and_then(|by| by.seen(dials)) {
             Some(found) => Some(found),
             None => self.seen_by_precision(dials),
         };
@@ -119,61 +105,15 @@ impl<'a> Evidence<'a> {
         Some((ln_prior + self.factor.ln_determinant(), explained))
     }
 
-    /// The same where scales are being moved at this ratio.
-    fn seen_by_scales(&mut self, dials: &Dials) -> Option<(f64, f64)> {
-        let ratio = dials.ratio();
-        let by = self.by_scales.as_ref().filter(|by| by.ratio.to_bits() == ratio.to_bits())?;
-        // The Gram matrix at hand is that of this ratio: another one drops what was prepared.
-        let square = dials.within * dials.within;
-        let shares: Vec<f64> = core::iter::once(1.0)
-            .chain(dials.scales.iter().map(|scale| scale * scale))
-            .map(|share| share / square)
-            .collect();
-        let parts = || shares.iter().copied().zip(&by.parts);
-        self.seen.set_one_and_sum(parts().map(|(share, (part, _))| (share, part)));
-        if !self.seen.factor() {
-            return None;
-        }
-        let mut moved = vec![0.0; by.right.len()];
-        for (share, (_, with_right)) in parts() {
-            for (sum, value) in moved.iter_mut().zip(with_right) {
-                *sum += share * value;
-            }
-        }
-        let mut right = by.right.clone();
-        self.seen.solve_lower(&mut moved);
-        self.seen.solve_lower(&mut right);
-        Some((self.seen.ln_determinant(), dot(&moved, &right)))
-    }
-
-    /// Gets ready for moves of the scales at the ratio of these factors. Where the Gram matrix has no factor they are moved by the
-    /// precision.
+    /// Gets ready for moves of the scales at the ratio of these factors; where that cannot be, they are moved by the precision.
     fn prepare_scales(&mut self, dials: &Dials) {
         let ratio = dials.ratio();
-        if self.by_scales.as_ref().is_some_and(|by| by.ratio.to_bits() == ratio.to_bits()) {
+        if self.by_scales.as_ref().is_some_and(|by| by.is_at(ratio)) {
             return;
         }
-        self.by_scales = None;
         self.form_gram(ratio);
-        let Some((_, gram, _)) = &self.gram else { return };
-        let mut factor = Lower::zeros(gram.nrows() - 1);
-        factor.add(1.0, gram);
-        if !factor.factor() {
-            return;
-        }
-        let mut right = right_side(gram);
-        factor.solve_lower(&mut right);
-        let lower = factor.to_mat();
-        let part = |root: &Mat<f64>| {
-            let turned = lower.transpose() * root;
-            let mut part = Mat::<f64>::zeros(turned.nrows(), turned.nrows());
-            add_gram(&mut part, turned.transpose());
-            let part = Lower::of(&part);
-            let with_right = part.times(&right);
-            (part, with_right)
-        };
-        let parts = self.prior.roots.iter().map(part).collect();
-        self.by_scales = Some(ByScales { ratio, parts, right });
+        let gram = self.gram.as_ref();
+        self.by_scales = gram.and_then(|(_, gram, _)| ByScales::new(ratio, gram, self.prior));
     }
 
     /// The Gram matrix at a ratio.
@@ -398,12 +338,6 @@ fn ln_log_normal(value: f64, center: f64, ln_deviation: f64) -> f64 {
     -0.5 * z * z
 }
 
-/// Products of the columns with the residual: the last row of a lower triangle.
-fn right_side(gram: &Mat<f64>) -> Vec<f64> {
-    let width = gram.nrows() - 1;
-    (0..width).map(|column| gram[(width, column)]).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -465,8 +399,8 @@ mod tests {
         for (within, scale) in [(0.6, 0.8), (0.6, 2.0), (0.6, 0.01), (1.2, 0.3)] {
             let scales = [scale, 1.0, 1.0];
             let dials = Dials { within, between: within * start.ratio(), scales };
-            let (likelihood, _) = evidence.seen_by_scales(&dials).unwrap();
-            assert!(likelihood.is_finite(), "the other form was taken");
+            let by_scales = evidence.by_scales.as_mut().unwrap();
+            assert!(by_scales.is_at(dials.ratio()) && by_scales.seen(&dials).is_some());
             let other = evidence.ln_evidence(&dials) - evidence.ln_prior(&dials);
             assert!(((other - at) - (density(&dials) - known)).abs() < 1e-10);
         }

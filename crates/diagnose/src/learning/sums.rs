@@ -102,6 +102,12 @@ impl ChannelSums {
     }
 }
 
+/// Products of the columns with the residual: the last row of the lower triangle of a Gram matrix.
+pub(super) fn right_side(gram: &Mat<f64>) -> Vec<f64> {
+    let width = gram.nrows() - 1;
+    (0..width).map(|column| gram[(width, column)]).collect()
+}
+
 /// One over the standard deviation of each row.
 fn scales(rows: &ChannelRows, weights: &Weights) -> Vec<f64> {
     let mut scales = vec![0.0; rows.variance.len()];

@@ -66,12 +66,7 @@ pub(super) fn unseen(
                 }
             }
             let mut factor = noise.clone();
-            for j in 0..count {
-                let known = spread.col_as_slice(range.start + j);
-                for i in j..count {
-                    *factor.at_mut(i, j) -= dot(known, spread.col_as_slice(range.start + i));
-                }
-            }
+            factor.subtract_products(&spread, range.start);
             if !factor.factor() {
                 return None;
             }
