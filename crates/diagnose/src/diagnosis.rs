@@ -307,7 +307,7 @@ fn conclude(
         if let Some(named) = named_gap(&findings, system, &verdict)
             && let Some(place) = named.place(system, &places.variances, options.seed)
         {
-            places.lead_with(place, &named.drivers);
+            places.lead_with(place, &named.variables(), named.is_level());
         }
         places.of_gap(detected)
     });

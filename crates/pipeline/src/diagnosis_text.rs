@@ -162,7 +162,13 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
         .enumerate()
         .map(|(rank, place)| {
             if place.region.is_everywhere() {
-                return "It has no place: it is everywhere.".to_owned();
+                let alone = diagnosis.r#where.len() == 1;
+                let words = if alone {
+                    "It has no place: it is everywhere."
+                } else {
+                    "It is everywhere, but not alike."
+                };
+                return words.to_owned();
             }
             format!(
                 "{} at {}: {:+.2} % there ({:+.2} to {:+.2}), {} of the explainable gap, p {:.3}.",

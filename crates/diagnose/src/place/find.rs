@@ -39,15 +39,20 @@ pub(crate) struct FoundPlaces {
 }
 
 impl FoundPlaces {
-    /// Puts the place of what is named first, unless one of its driving variables leads already.
-    pub(crate) fn lead_with(&mut self, named: Slice, drivers: &[(Variable, f64)]) {
-        let is_driver = |variable| drivers.iter().any(|(driver, _)| *driver == variable);
+    /// Puts the place of what is named first, unless one of its driving variables leads already. A level that varies is everywhere,
+    /// and more so there.
+    pub(crate) fn lead_with(&mut self, named: Slice, drivers: &[Variable], is_level: bool) {
         let leads = self.regions.first().is_some_and(|first| {
-            first.region.conditions.iter().any(|condition| is_driver(condition.variable))
+            first.region.conditions.iter().any(|condition| drivers.contains(&condition.variable))
         });
-        if !leads {
-            self.regions.insert(0, named);
-            self.regions.truncate(MOST_REGIONS);
+        if leads {
+            return;
+        }
+        let everywhere = self.everywhere.take().filter(|_| is_level && self.regions.is_empty());
+        self.regions.insert(0, named);
+        self.regions.truncate(MOST_REGIONS);
+        if let Some(everywhere) = everywhere {
+            self.regions.insert(0, everywhere);
         }
     }
 
@@ -370,6 +375,7 @@ fn error_share(deviation_m_s2: f64, recorded_variance: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::region::{Condition, Region};
 
     #[test]
     fn engines_apart_by_hand() {
@@ -382,6 +388,44 @@ mod tests {
         for (found, expected) in four.iter().zip([0.03, -0.01, -0.01, -0.01]) {
             assert!((found - expected).abs() < 1e-15, "{four:?}");
         }
+    }
+
+    /// A place by a name comes first, after everywhere where it is of a level; not where a variable that drives it leads.
+    #[test]
+    fn a_name_leads_unless_its_variable_does() {
+        let slice = |variables: &[Variable]| Slice {
+            region: Region {
+                engine: None,
+                conditions: variables
+                    .iter()
+                    .map(|&variable| Condition { variable, from: None, to: None })
+                    .collect(),
+            },
+            segments: 1,
+            mean_gap_percent: 1.0,
+            ci95: [0.5, 1.5],
+            share_of_gap: 1.0,
+            p_value: 0.01,
+        };
+        let led = |regions: &[&[Variable]], is_level: bool| {
+            let mut found = FoundPlaces {
+                regions: regions.iter().map(|variables| slice(variables)).collect(),
+                everywhere: Some(slice(&[])),
+                variances: vec![],
+            };
+            found.lead_with(slice(&[Variable::Mach]), &[Variable::Mach, Variable::Mass], is_level);
+            let places = found.of_gap(true);
+            places
+                .iter()
+                .map(|p| p.region.conditions.first().map(|c| c.variable))
+                .collect::<Vec<_>>()
+        };
+        let (mach, roll) = (Some(Variable::Mach), Some(Variable::Roll));
+        assert_eq!(led(&[], false), [mach]);
+        assert_eq!(led(&[], true), [None, mach]);
+        assert_eq!(led(&[&[Variable::Roll]], true), [mach, roll]);
+        assert_eq!(led(&[&[Variable::Roll]; 3], false), [mach, roll, roll]);
+        assert_eq!(led(&[&[Variable::Mass]], true), [Some(Variable::Mass)]);
     }
 
     /// Monte Carlo: of accelerations with a standard deviation of 3, recorded with errors of 4, the error is 16/25 of what is

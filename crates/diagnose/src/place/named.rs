@@ -12,7 +12,7 @@ use crate::place::regions::{BinnedRegion, intervals};
 use crate::place::told::Told;
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
-    FEWEST_FLIGHTS_OF_A_REGION, REGION_P_VALUE, REGION_SHARES, SMALLEST_GAP_PERCENT,
+    FEWEST_FLIGHTS_OF_A_REGION, LEVEL_LIKE, REGION_P_VALUE, REGION_SHARES, SMALLEST_GAP_PERCENT,
 };
 
 /// Falls of squares that differ by less are of one place and its complement.
@@ -71,6 +71,16 @@ impl NamedGap {
             }
         }
         best.map(|best| told.slice(&best.region, &best.members, best.p_value, seed))
+    }
+
+    /// Whether it has nearly the same sign and size everywhere: its mean exceeds its standard deviation.
+    pub(crate) fn is_level(&self) -> bool {
+        self.mean().powi(2) > LEVEL_LIKE * LEVEL_LIKE * self.variance()
+    }
+
+    /// The variables that drive it, however sure they are.
+    pub(crate) fn variables(&self) -> Vec<Variable> {
+        self.drivers.iter().map(|(variable, _)| *variable).collect()
     }
 
     fn mean(&self) -> f64 {

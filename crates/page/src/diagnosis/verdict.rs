@@ -37,7 +37,10 @@ pub(super) fn card(diagnosis: &Diagnosis) -> Markup {
             @if let Some(place) = diagnosis.r#where.first() {
                 dt { "Where" }
                 dd {
-                    @if place.region.is_everywhere() { "Everywhere that was flown: it has no place." }
+                    @if place.region.is_everywhere() {
+                        @if diagnosis.r#where.len() == 1 { "Everywhere that was flown: it has no place." }
+                        @else { "Everywhere that was flown, but not alike." }
+                    }
                     @else {
                         (capitalised(&region_words(&place.region))) ": " (signed(Some(place.mean_gap_percent)))
                         " % there (" (signed(Some(place.ci95[0]))) " to " (signed(Some(place.ci95[1]))) " %), "
