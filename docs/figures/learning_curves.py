@@ -86,7 +86,8 @@ class Runner:
         folder = self.work / "adapted" / re.sub(r"[^\w.-]", "_", name)
         shutil.rmtree(folder, ignore_errors=True)
         folder.parent.mkdir(exist_ok=True)
-        self("adapt", *reports, "--model", model, *law, "-o", folder)
+        # Guides of other aircraft are meant.
+        self("adapt", *reports, "--model", model, *law, "--accept", "-o", folder)
         return next((folder / "models").glob("*.ron"))
 
     def judge(self, model, reports):
