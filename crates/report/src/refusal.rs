@@ -429,9 +429,7 @@ impl fmt::Display for RefusalKind {
             Self::TimeNotIncreasing { previous, unit } => {
                 write!(f, "TIME above that of the row before, {previous} {unit}")
             }
-            Self::TimeAhead { next, unit } => {
-                write!(f, "TIME below that of the next row of its flight, {next} {unit}")
-            }
+            Self::TimeAhead { next, unit } => write_time_below(f, *next, unit),
             Self::FuelUsedFalls { largest, tolerance, unit } => write!(
                 f,
                 "FU no more than {tolerance} {unit} below its largest value so far, {largest} {unit}"
@@ -474,6 +472,10 @@ impl fmt::Display for RefusalKind {
 const INSTANT: &str = "an instant like 2018-05-20 14:14:21, with an offset or one in the mapping";
 const SAMPLES: &str =
     "samples, of which a cruise report consists; the mapping's rows are averaged points";
+
+fn write_time_below(f: &mut fmt::Formatter<'_>, next: f64, unit: &str) -> fmt::Result {
+    write!(f, "TIME below that of the next row of its flight, {next} {unit}")
+}
 
 fn write_came_back(
     f: &mut fmt::Formatter<'_>,

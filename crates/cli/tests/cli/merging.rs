@@ -52,7 +52,7 @@ fn merged_models_are_the_model_of_all_flights() {
     ];
     for (place, case) in cases.into_iter().enumerate() {
         let merged = scratch.join(format!("merged-{place}.ron"));
-        merge(case, &merged).expect(0).says("All flights were learnt again");
+        merge(case, &merged).expect(0).prints("All flights were learnt again");
         assert_eq!(std::fs::read_to_string(merged).unwrap(), whole, "case {place}");
     }
     merge(&[&odd, &first], &scratch.join("twice.ron")).expect(2).says("it would count twice");
@@ -71,7 +71,7 @@ fn models_out_of_their_folders_add_up() {
     };
     let (first, second) = (alone("first", &|k| k <= 7), alone("second", &|k| k > 7));
     let (merged, turned) = (scratch.join("merged.ron"), scratch.join("turned.ron"));
-    merge(&[&first, &second], &merged).expect(0).says("the segments of");
+    merge(&[&first, &second], &merged).expect(0).prints("the segments of");
     merge(&[&second, &first], &turned).expect(0);
     for (one, other) in drag(&merged, scratch).iter().zip(drag(&turned, scratch)) {
         assert!((one - other).abs() <= 1e-9 * other, "order: {one} {other}");

@@ -50,6 +50,13 @@ impl Ran {
         assert!(flat.contains(&flatten(words)), "{words:?} is not in:\n{}", self.stderr);
         self
     }
+
+    /// The same of standard output.
+    pub(crate) fn prints(&self, words: &str) -> &Self {
+        let flat = flatten(&self.stdout);
+        assert!(flat.contains(&flatten(words)), "{words:?} is not in:\n{}", self.stdout);
+        self
+    }
 }
 
 /// Text without line breaks, frames of the terminal's error printer, or repeated blanks.
