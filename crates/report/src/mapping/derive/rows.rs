@@ -164,6 +164,7 @@ impl Limits {
     }
 
     /// Whether a number lies between the two limits, without a branch: what asks of many numbers compares several in one instruction.
+    #[expect(clippy::needless_bitwise_bool, reason = "lazy operators are branches")]
     fn contain(&self) -> impl Fn(f64) -> bool + use<> {
         let Self { low, high, is_optional, .. } = *self;
         move |value| ((low <= value) & (value <= high)) | (value.is_nan() & is_optional)

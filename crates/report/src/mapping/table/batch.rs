@@ -111,6 +111,9 @@ pub fn line_of_names(names: &[String]) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
+/// The rows from which on texts are others.
+type Changes = Vec<(usize, Event)>;
+
 type Cells<'a> = Box<dyn Iterator<Item = String> + 'a>;
 
 /// The instant that is so many nanoseconds after 1970: there is one for each, from 1677 to 2262, but for the first.
@@ -169,10 +172,7 @@ impl Layout {
 
     /// Which inputs lack a number, where the texts change, and the times, which it takes out of the batch. `None` where a column
     /// is of another kind than the mapping asks for, or holds what has to be refused.
-    fn columns_of_rows(
-        &self,
-        batch: &mut Batch,
-    ) -> Option<(Vec<bool>, Vec<(usize, Event)>, Times)> {
+    fn columns_of_rows(&self, batch: &mut Batch) -> Option<(Vec<bool>, Changes, Times)> {
         let mut lacks = Vec::with_capacity(self.plan.inputs.len());
         for (input, field) in self.plan.inputs.iter().zip(&self.fields.inputs) {
             let values = match batch.column(*field)? {
@@ -232,7 +232,9 @@ impl Layout {
                 if !are_there(times) || !times.iter().all(can_be_shifted) {
                     return None;
                 }
-                times.iter_mut().for_each(|time| *time -= ahead);
+                for time in times.iter_mut() {
+                    *time -= ahead;
+                }
                 Some(Times::Nanoseconds(core::mem::take(times)))
             }
             (
