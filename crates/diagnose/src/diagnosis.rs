@@ -303,13 +303,8 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let places = places.map_or_else(Vec::new, |mut places| {
-        if let Some(named) = named_gap(&findings, system, &verdict)
-            && let Some(place) = named.place(system, &places.variances, options.seed)
-        {
-            places.lead_with(place, &named.variables(), named.is_level());
-        }
-        places.of_gap(detected)
+    let places = places.map_or_else(Vec::new, |places| {
+        led_by_name(places, &findings, system, &verdict, options.seed).of_gap(detected)
     });
     let found_forms = match &verdict {
         Verdict::OutsideLibrary(_) => forms
@@ -334,6 +329,22 @@ fn conclude(
         outliers: vec![],
         notes: vec![],
     })
+}
+
+/// The places, that of what the verdict names first where it has one.
+fn led_by_name(
+    mut places: FoundPlaces,
+    findings: &Findings<'_>,
+    system: &WhitenedSystem<'_>,
+    verdict: &Verdict,
+    seed: u64,
+) -> FoundPlaces {
+    if let Some(named) = named_gap(findings, system, verdict)
+        && let Some(place) = named.place(system, &places.variances, seed)
+    {
+        places.lead_with(place, &named.variables(), named.is_level());
+    }
+    places
 }
 
 /// Adds the two estimates of the noise floor that need no sensor's standard deviation.

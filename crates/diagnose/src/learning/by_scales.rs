@@ -16,7 +16,7 @@ use crate::math::lower::{Lower, dot};
 /// ```
 pub(super) struct ByScales {
     ratio: f64,
-    /// LᵀP_iL and its product with h.
+    /// `LᵀP_iL` and its product with h.
     parts: Vec<(Lower, Vec<f64>)>,
     right: Vec<f64>,
     /// Room for what is factored.

@@ -21,7 +21,6 @@ pub(crate) struct Lower {
     values: Vec<f64>,
 }
 
-#[expect(clippy::needless_range_loop, reason = "columns of one length, which compilers see so")]
 impl Lower {
     /// All of it zero.
     pub(crate) fn zeros(size: usize) -> Self {
@@ -171,7 +170,7 @@ impl Lower {
         pulp::Arch::new().dispatch(Inverse { factor: self })
     }
 
-    /// LᵀL of a lower triangle: of the inverse of a factor it is the inverse of the matrix.
+    /// `LᵀL` of a lower triangle: of the inverse of a factor it is the inverse of the matrix.
     pub(crate) fn transposed_times_itself(&self) -> Self {
         pulp::Arch::new().dispatch(TransposedTimesItself { of: self })
     }

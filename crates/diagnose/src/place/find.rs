@@ -424,7 +424,10 @@ mod tests {
         assert_eq!(led(&[], false), [mach]);
         assert_eq!(led(&[], true), [None, mach]);
         assert_eq!(led(&[&[Variable::Roll]], true), [mach, roll]);
-        assert_eq!(led(&[&[Variable::Roll][..]; 3], false), [mach, roll, roll]);
+        assert_eq!(
+            led(&[&[Variable::Roll], &[Variable::Roll], &[Variable::Roll]], false),
+            [mach, roll, roll]
+        );
         assert_eq!(led(&[&[Variable::Mass]], true), [Some(Variable::Mass)]);
     }
 

@@ -1,7 +1,5 @@
 //! The loops over small lower triangles, compiled for the vectors that a processor has.
 
-#![expect(clippy::needless_range_loop, reason = "columns of one length, which compilers see so")]
-
 use faer::Mat;
 
 use super::Lower;
