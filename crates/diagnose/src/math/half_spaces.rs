@@ -88,9 +88,9 @@ pub(crate) fn hold(
         for (value, by) in mean.iter_mut().zip(&along) {
             *value += ratio * by;
         }
-        for j in 0..width {
-            for i in 0..width {
-                covariance[(i, j)] -= fall * along[i] * along[j];
+        for (j, by) in along.iter().enumerate() {
+            for (i, other) in along.iter().enumerate() {
+                covariance[(i, j)] -= fall * by * other;
             }
         }
     }
@@ -128,15 +128,11 @@ mod tests {
     }
 
     /// Mean and variance of every component over draws that meet all half-spaces.
-    fn by_draws(
-        mean: &[f64],
-        covariance: &Mat<f64>,
-        rows: &Mat<f64>,
-    ) -> (Vec<f64>, Vec<f64>, usize) {
+    fn by_draws(mean: &[f64], covariance: &Mat<f64>, rows: &Mat<f64>) -> (Vec<f64>, Vec<f64>, u32) {
         let root = Cholesky::new(covariance).unwrap().lower().to_owned();
         let width = mean.len();
         let mut random = ChaCha8Rng::seed_from_u64(11);
-        let (mut sums, mut squares, mut kept) = (vec![0.0; width], vec![0.0; width], 0);
+        let (mut sums, mut squares, mut kept) = (vec![0.0; width], vec![0.0; width], 0_u32);
         for _ in 0..200_000 {
             let normal: Vec<f64> = (0..width).map(|_| StandardNormal.sample(&mut random)).collect();
             let drawn: Vec<f64> = (0..width)
@@ -155,7 +151,7 @@ mod tests {
         let count = f64::from(kept);
         let means: Vec<f64> = sums.iter().map(|sum| sum / count).collect();
         let variances = squares.iter().zip(&means).map(|(s, m)| s / count - m * m).collect();
-        (means, variances, kept as usize)
+        (means, variances, kept)
     }
 
     /// One half-space, by hand from tables: φ(½) = 0.352 065 327, Φ(½) = 0.691 462 461, λ = 0.509 160 434.
@@ -168,7 +164,8 @@ mod tests {
         assert!((mean[0] - 0.509_160_43).abs() < 1e-7, "{}", mean[0]);
         assert!((covariance[(0, 0)] - 0.486_175_44).abs() < 1e-7, "{}", covariance[(0, 0)]);
         // What has nothing to do with it stays to the bit.
-        assert!(mean[1].to_bits() == 1.0_f64.to_bits() && covariance[(1, 1)] == 1.0);
+        let one = 1.0_f64.to_bits();
+        assert_eq!([mean[1], covariance[(1, 1)]].map(f64::to_bits), [one; 2]);
     }
 
     /// Several that hang together, against draws: means within a quarter of a standard deviation, deviations within 30 %.
@@ -186,7 +183,6 @@ mod tests {
             for k in 0..8 {
                 let off = (mean[k] - means[k]) / variances[k].sqrt();
                 let ratio = (held_covariance[(k, k)] / variances[k]).sqrt();
-                println!("length {length} node {k}: off by {off:.3}, deviation {ratio:.3}");
                 assert!(off.abs() < 0.25, "length {length} node {k}: {off}");
                 assert!((ratio - 1.0).abs() < 0.3, "length {length} node {k}: {ratio}");
             }
