@@ -151,11 +151,6 @@ impl Shrinkage {
         self.leaves_less_than(&nothing)
     }
 
-    /// Whether it surely shrinks the gap, and by this root mean square or more.
-    pub(crate) fn closes_at_least(&self, rms: f64) -> bool {
-        self.before() - self.after() >= rms * rms && self.closes()
-    }
-
     /// Whether it surely leaves less of the gap than another explanation of the same flights: by an interval of 95 % over flights.
     ///
     /// ```text
@@ -312,8 +307,5 @@ mod tests {
         assert!(of(4000).closes());
         let same = shrinkage(&[2.0; 8], &[2.0; 8], &[1.0]);
         assert!(!same.closes());
-        // 0.1 is the square of 0.316.
-        assert!(of(4000).closes_at_least(0.316) && !of(4000).closes_at_least(0.317));
-        assert!(!of(40).closes_at_least(0.1));
     }
 }

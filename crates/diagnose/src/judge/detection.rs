@@ -1,7 +1,5 @@
 //! Whether a gap is reported, and how much of each probability other flights bear out.
 
-use core::cell::LazyCell;
-
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
 use crate::judge::forms::leading_forms;
@@ -18,7 +16,7 @@ use crate::search::outside::Outside;
 use crate::search::system::Problem;
 use crate::thresholds::{
     LARGEST_REST, LEAST_OF_A_FORM, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM,
-    OUTSIDE_PROBABILITY, SMALLEST_GAP_PERCENT, UNPROVEN_SHARE,
+    OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
 };
 
 /// What a decision is made from.
@@ -89,13 +87,10 @@ pub(crate) fn detect(
         .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
     let announced = taught && !input.exceeds_uncertainty && !input.lies_at_an_engine;
     let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
-    let smooth = LazyCell::new(|| smooth_on_unseen(problem, own));
     let stands_out = something
         && !own_error
-        && !is_vague(gap, outside, top, taught && makes_worse(unseen))
-        && (is_large(system, gap, top)
-            || (outside.probability > OUTSIDE_PROBABILITY
-                && is_large_without_name(smooth.as_ref())));
+        && is_large(system, gap, top)
+        && !is_vague(gap, outside, top, taught && makes_worse(unseen));
     // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
     // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
     // functions, and may be all of a large gap: the form that describes it is asked then.
@@ -103,7 +98,7 @@ pub(crate) fn detect(
         && taught
         && !input.lies_at_an_engine
         && is_unnamed(outside, named)
-        && smooth.as_ref().is_some_and(|smooth| !smooth.closes());
+        && smooth_predicts_nothing(problem, own);
     let forms = has_no_witness
         .then(|| leading_forms(problem, input.analysis, outside, (input.noise_scale, own.seed())));
     let is_borne_out =
@@ -118,15 +113,10 @@ fn is_unnamed(outside: &Outside, named: f64) -> bool {
         || named * (1.0 - outside.probability) <= MORE_PROBABLE_THAN_NOT
 }
 
-/// How far smooth functions that were fitted to other flights shrink the gap.
-fn smooth_on_unseen(problem: Problem<'_>, own: &Shrinkage) -> Option<Shrinkage> {
-    held_out_smooth(problem.system).map(|fitted| own.with_change(problem.system, &fitted))
-}
-
-/// Whether functions without a name surely shrink the gap on flights that they were not fitted to, by enough to be a gap: the size
-/// of a cause that has no name.
-fn is_large_without_name(smooth: Option<&Shrinkage>) -> bool {
-    smooth.is_some_and(|smooth| smooth.closes_at_least(SMALLEST_GAP_PERCENT / 100.0))
+/// Whether smooth functions that were fitted to other flights do not surely predict a flight better than no gap at all does.
+fn smooth_predicts_nothing(problem: Problem<'_>, own: &Shrinkage) -> bool {
+    held_out_smooth(problem.system)
+        .is_some_and(|fitted| !own.with_change(problem.system, &fitted).closes())
 }
 
 /// Whether a form surely closes more than half of the gap on flights that its parameters have not seen.
