@@ -303,9 +303,8 @@ fn conclude(
         unseen: unseen.as_ref(),
     };
     let verdict = verdict(&findings, notes);
-    let places = places.map_or_else(Vec::new, |places| {
-        led_by_name(places, &findings, system, &verdict, options.seed).of_gap(detected)
-    });
+    let led = |places| led_by_name(places, &findings, system, &verdict, options.seed);
+    let places = places.map_or_else(Vec::new, |places| led(places).of_gap(detected));
     let found_forms = match &verdict {
         Verdict::OutsideLibrary(_) => forms
             .unwrap_or_else(|| leading_forms(problem, analysis, &outside, (scale, options.seed))),
@@ -319,8 +318,7 @@ fn conclude(
         causes: causes(&findings.of_causes(), &posteriors),
         contributions: contributions(problem, analysis, detected, (scale, options.seed)),
         not_testable: vec![],
-        addition: Addition::named(analysis, library, verdict.effects(), *model.references())
-            .filter(|_| !verdict.effects().is_empty() && !verdict.is_of_table()),
+        addition: named_addition(analysis, library, &verdict, *model.references()),
         verdict,
         detectable: detectable(library, &distances, &classes, &advisor),
         outside: outside_library(&outside, found_forms, *model.references()),
@@ -329,6 +327,18 @@ fn conclude(
         outliers: vec![],
         notes: vec![],
     })
+}
+
+/// What the named effects add to the model; nothing where it is its table that is off.
+fn named_addition(
+    analysis: &Analysis,
+    library: &Library,
+    verdict: &Verdict,
+    references: EffectReferences,
+) -> Option<Addition> {
+    let named = verdict.effects();
+    Addition::named(analysis, library, named, references)
+        .filter(|_| !named.is_empty() && !verdict.is_of_table())
 }
 
 /// The places, that of what the verdict names first where it has one.
