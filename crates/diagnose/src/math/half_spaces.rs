@@ -30,7 +30,7 @@ pub(crate) struct Held {
 ///
 /// ```text
 /// g = aᵀm + b,  s² = aᵀVa,  z = g/s,  λ = φ(z)/Φ(z)
-/// m ← m + Va·λ/s,   V ← V − Va·aᵀV·λ(λ + z)/s²                                                       [baseline.6]
+/// m ← m + Va·λ/s,   V ← V − Va·aᵀV·λ(λ + z)/s²                                                       [baseline.7]
 /// ```
 ///
 /// One that hangs together with another which was held is held too only where its mean lies outside.
