@@ -196,7 +196,7 @@ fn nasa_dashlink() {
     assert!((850..=882).contains(&reduced.samples), "{}", reduced.samples);
 }
 
-/// Rows of two aircraft in the order of time, as a query of OpenSky's state vectors gives them: altitude in steps of 25 ft in metres,
+/// Rows of two aircraft in the order of time, as a query of `OpenSky`'s state vectors gives them: altitude in steps of 25 ft in metres,
 /// speed in m/s, call signs filled up with blanks, moments without a position; TAS, mass and fuel flow joined to them.
 #[test]
 fn opensky_state_vectors() {
