@@ -343,7 +343,7 @@ mod tests {
             for (_, column) in batch.columns {
                 match column {
                     BatchColumn::Numbers(values) | BatchColumn::Finite(values) => {
-                        numbers.extend(values)
+                        numbers.extend(values);
                     }
                     BatchColumn::Texts(runs) => {
                         texts.extend(runs.into_iter().flat_map(|(text, rows)| vec![text; rows]));

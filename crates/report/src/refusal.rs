@@ -429,9 +429,7 @@ impl fmt::Display for RefusalKind {
             Self::TimeNotIncreasing { previous, unit } => {
                 write!(f, "TIME above that of the row before, {previous} {unit}")
             }
-            Self::TimeAhead { next, unit } => {
-                write!(f, "TIME below that of the next row of its flight, {next} {unit}")
-            }
+            Self::TimeAhead { next, unit } => write!(f, "TIME below that behind it, {next} {unit}"),
             Self::FuelUsedFalls { largest, tolerance, unit } => write!(
                 f,
                 "FU no more than {tolerance} {unit} below its largest value so far, {largest} {unit}"

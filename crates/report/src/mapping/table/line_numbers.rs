@@ -83,7 +83,9 @@ mod tests {
         ) {
             let lines: Vec<usize> = steps.iter().scan(0, |line, step| { *line += step; Some(*line) }).collect();
             let mut some = LineNumbers::default();
-            lines.iter().for_each(|line| some.push(*line));
+            for line in &lines {
+                some.push(*line);
+            }
             let all = |numbers: &LineNumbers| (0..numbers.rows).map(|row| numbers.at(row)).collect::<Vec<_>>();
             prop_assert_eq!(all(&some), lines.clone());
             prop_assert_eq!(some.last(), lines.last().copied());
