@@ -185,7 +185,7 @@ impl Column {
     ///
     /// # Errors
     /// [`Damage`] for a page that is damaged.
-    // Inlined into a caller that is compiled for size, as ours are, it would be compiled so too: twice the instructions.
+    // Inlined into a caller that is compiled for size, it would be compiled so too: 2 % more instructions of a whole run.
     #[inline(never)]
     pub fn append(&mut self, most: usize, values: &mut Values) -> Result<usize, Damage> {
         let count = most.min(self.left);
