@@ -7,6 +7,7 @@ mod dials;
 mod evidence;
 mod fit;
 mod learn;
+mod n2_rows;
 mod outliers;
 mod physical;
 mod posterior;
@@ -16,4 +17,4 @@ mod sums;
 mod unseen;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -5,11 +5,12 @@ use faer::Mat;
 use crate::learning::dials::Dials;
 use crate::learning::evidence::{Evidence, Weighted};
 use crate::learning::outliers::Weights;
-use crate::learning::posterior::ChannelPosterior;
+use crate::learning::posterior::{ChannelPosterior, prior_variances};
 use crate::learning::prior::Prior;
 use crate::learning::rows::ChannelRows;
 use crate::learning::sums::ChannelSums;
 use crate::learning::unseen::{Unseen, scatter_by_unseen, unseen};
+use crate::math::lower::dot;
 use crate::math::pivoted::{Pivoted, pivoted};
 
 /// How often the scatter between flights is raised. Our choice: raising it changes the fit that it is judged by, so that once is
@@ -42,28 +43,95 @@ pub(super) struct LearntChannel {
 /// Learns a channel. `groups` are the scales of its columns: 0 none, 1 and on those of [`Dials::scales`]. `None` where matrices
 /// are not positive definite.
 pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<LearntChannel> {
-    let mut weights = Weights::before(rows);
-    // Few columns hold all others, whatever the weights: from here on they alone are looked at.
-    let reduction = reduction(&ChannelSums::own(rows, &Weights::of_one(rows)), groups.len());
-    let prior = Prior::of(&reduction, groups);
-    let reduced = rows.only(&reduction.pivots);
-    let mut dials = Dials::usual();
-    for weighing in 1.. {
-        let sums = ChannelSums::new(&reduced, &weights);
-        let mut evidence = Evidence::new(&sums, &prior);
-        dials = evidence.likeliest(dials, if weighing == 1 { &FIRST_STEPS } else { &STEPS });
-        let left = reduced.left(&evidence.mean(&dials)?);
-        let next = weights.after(&reduced, &left, &dials);
-        if next.settled(&weights) || weighing == MOST_WEIGHINGS {
-            let before = dials;
-            let unseen = raise_scatter(&reduced, &weights, &mut evidence, &mut dials)?;
-            let points = points_raised(&mut evidence, &before, &dials);
-            let posterior = ChannelPosterior::averaged(&mut evidence, &points, &reduction, groups)?;
-            return Some(LearntChannel { posterior, weights, unseen, left });
-        }
-        weights = next;
+    let few = FewColumns::of(rows, groups);
+    let Weighed { weights, sums, dials: before, left, .. } = few.weigh(Weights::before(rows))?;
+    let mut evidence = Evidence::new(&sums, &few.prior);
+    let mut dials = before;
+    let unseen = raise_scatter(&few.rows, &weights, &mut evidence, &mut dials)?;
+    let points = points_raised(&mut evidence, &before, &dials);
+    let posterior = ChannelPosterior::averaged(&mut evidence, &points, &few.reduction, groups)?;
+    Some(LearntChannel { posterior, weights, unseen, left })
+}
+
+/// Few columns of a channel that hold all others, whatever the weights.
+pub(super) struct FewColumns {
+    reduction: Pivoted,
+    prior: Prior,
+    rows: ChannelRows,
+}
+
+/// A fit with outliers weighed: at the likeliest noise, with nothing raised and nothing averaged.
+pub(super) struct Weighed {
+    pub(super) weights: Weights,
+    sums: ChannelSums,
+    dials: Dials,
+    left: Vec<f64>,
+    mean: Mat<f64>,
+}
+
+impl FewColumns {
+    pub(super) fn of(rows: &ChannelRows, groups: &[usize]) -> Self {
+        let width = groups.len();
+        let own = ChannelSums::own(rows, &Weights::of_one(rows));
+        let quiet = Mat::from_fn(width, width, |i, j| own[(i, j)] / (QUIET * QUIET));
+        let reduction = pivoted(&quiet, width, NEGLIGIBLE);
+        let prior = Prior::of(&reduction, groups);
+        let rows = rows.only(&reduction.pivots);
+        Self { reduction, prior, rows }
     }
-    None
+
+    /// Fits, and weighs what lies far from the fit, until weights stay. All factors are sought before and after; in between only the
+    /// noise within flights, which falls as outliers are weighed down.
+    pub(super) fn weigh(&self, mut weights: Weights) -> Option<Weighed> {
+        let mut dials = Dials::usual();
+        for weighing in 1.. {
+            let sums = ChannelSums::new(&self.rows, &weights);
+            let mut evidence = Evidence::new(&sums, &self.prior);
+            dials = match weighing {
+                1 => evidence.likeliest(dials, &FIRST_STEPS),
+                _ => evidence.likeliest_within(dials, STEPS[0]),
+            };
+            let next = weights.after(&self.rows, &self.rows.left(&evidence.mean(&dials)?), &dials);
+            if next.settled(&weights) || weighing == MOST_WEIGHINGS {
+                dials = evidence.likeliest(dials, &STEPS);
+                let mean = evidence.mean(&dials)?;
+                let left = self.rows.left(&mean);
+                return Some(Weighed { weights, sums, dials, left, mean });
+            }
+            weights = next;
+        }
+        None
+    }
+
+    /// Coefficients of all columns at a fit, in their prior standard deviations.
+    ///
+    /// ```text
+    /// β = ΛTᵀK⁻¹α,   α the few columns' coefficients, T all columns in terms of them, K = TΛTᵀ
+    /// ```
+    pub(super) fn coefficients(&self, fit: &Weighed, groups: &[usize]) -> Option<Vec<f64>> {
+        let mut covariance = self.prior.covariance(fit.dials.scales);
+        let mut solved = fit.mean.col_as_slice(0).to_vec();
+        if !covariance.factor() {
+            return None;
+        }
+        covariance.solve_lower(&mut solved);
+        covariance.solve_upper(&mut solved);
+        let variances = prior_variances(groups, fit.dials.scales);
+        let of = |(column, variance): (usize, f64)| {
+            variance * dot(self.reduction.transfer.col_as_slice(column), &solved)
+        };
+        Some(variances.into_iter().enumerate().map(of).collect())
+    }
+
+    /// ln of the marginal likelihood of what was recorded, at the likeliest noise, with these weights; of no use where matrices
+    /// are not positive definite.
+    pub(super) fn ln_evidence(&self, weights: &Weights) -> f64 {
+        let sums = ChannelSums::new(&self.rows, weights);
+        let mut evidence = Evidence::new(&sums, &self.prior);
+        let usual = evidence.likeliest(Dials::usual(), &FIRST_STEPS);
+        let likeliest = evidence.likeliest(usual, &STEPS);
+        evidence.ln_evidence(&likeliest)
+    }
 }
 
 /// The points that the posterior is averaged over. What flights leave open is about the likeliest scatter; what unseen flights add
@@ -75,19 +143,6 @@ fn points_raised(evidence: &mut Evidence<'_>, likeliest: &Dials, raised: &Dials)
         point.dials.between *= raise;
     }
     points
-}
-
-/// ln of the marginal likelihood of what was recorded, at the likeliest noise, with these weights; of no use where matrices are
-/// not positive definite.
-pub(super) fn ln_evidence(rows: &ChannelRows, groups: &[usize], weights: &Weights) -> f64 {
-    let reduction = reduction(&ChannelSums::own(rows, &Weights::of_one(rows)), groups.len());
-    let prior = Prior::of(&reduction, groups);
-    let reduced = rows.only(&reduction.pivots);
-    let sums = ChannelSums::new(&reduced, weights);
-    let mut evidence = Evidence::new(&sums, &prior);
-    let usual = evidence.likeliest(Dials::usual(), &FIRST_STEPS);
-    let likeliest = evidence.likeliest(usual, &STEPS);
-    evidence.ln_evidence(&likeliest)
 }
 
 /// Raises the scatter between flights to what unseen flights show, and returns those.
@@ -108,12 +163,6 @@ fn raise_scatter(
         }
     }
     Some(others)
-}
-
-/// Few columns in which all others can be written.
-fn reduction(own: &Mat<f64>, width: usize) -> Pivoted {
-    let quiet = Mat::from_fn(width, width, |i, j| own[(i, j)] / (QUIET * QUIET));
-    pivoted(&quiet, width, NEGLIGIBLE)
 }
 
 #[cfg(test)]

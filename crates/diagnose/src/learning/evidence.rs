@@ -130,7 +130,7 @@ impl<'a> Evidence<'a> {
         self.form_gram(dials.ratio());
         let bits = |scales: [f64; SCALES]| scales.map(f64::to_bits);
         if self.precision.as_ref().is_none_or(|(at, ..)| bits(*at) != bits(dials.scales)) {
-            let mut factor = self.prior_covariance(dials.scales);
+            let mut factor = self.prior.covariance(dials.scales);
             if !factor.factor() {
                 return None;
             }
@@ -154,20 +154,19 @@ impl<'a> Evidence<'a> {
         scales.map(|(scale, deviation)| ln_log_normal(*scale, 1.0, deviation)).sum()
     }
 
-    /// Prior covariance of the columns at scales.
-    pub(super) fn prior_covariance(&self, scales: [f64; SCALES]) -> Lower {
-        let parts = &self.prior.parts;
-        let mut covariance = Lower::zeros(parts[0].nrows());
-        covariance.add(1.0, &parts[0]);
-        for (part, scale) in parts[1..].iter().zip(scales) {
-            covariance.add(scale * scale, part);
-        }
-        covariance
+    /// What is believed before the flights.
+    pub(super) const fn prior(&self) -> &'a Prior {
+        self.prior
     }
 
     /// The likeliest factors, from a start in ever smaller steps.
     pub(super) fn likeliest(&mut self, start: Dials, steps: &[f64]) -> Dials {
         self.likeliest_of(self.dimensions(), start, steps)
+    }
+
+    /// The likeliest noise within flights, with the ratio of that between them, and all scales, as they are.
+    pub(super) fn likeliest_within(&mut self, start: Dials, step: f64) -> Dials {
+        self.likeliest_of(1, start, &[step])
     }
 
     /// The same of the first few factors; the others stay.

@@ -57,7 +57,7 @@ impl Baseline {
             }
         }
         if data.channels.n2 {
-            self.fit_deck(data, &mut joint, &deviations)?;
+            self.fit_deck(data, &mut joint, &deviations, &rows)?;
         }
         self.hold_to_physics(physics, &mut joint, &deviations);
         self.keep(data, &joint, &deviations)?;

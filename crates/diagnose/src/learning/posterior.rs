@@ -56,7 +56,7 @@ impl ChannelPosterior {
         let [within, between, smooth, products, straight] = squares.map(f64::sqrt);
         let dials = Dials { within, between, scales: [smooth, products, straight] };
         let variance = prior_variances(groups, dials.scales);
-        let root = Cholesky::in_place(evidence.prior_covariance(dials.scales).to_mat())?;
+        let root = Cholesky::in_place(evidence.prior().covariance(dials.scales).to_mat())?;
         // Yᵀ = R⁻¹TΛ, and K⁻¹TΛ.
         let mut turned = Mat::from_fn(rank, width, |k, column| {
             reduction.transfer[(k, column)] * variance[column]
@@ -78,7 +78,7 @@ impl ChannelPosterior {
 }
 
 /// Prior variances of columns: 1, or the square of the scale of their group.
-fn prior_variances(groups: &[usize], scales: [f64; SCALES]) -> Vec<f64> {
+pub(super) fn prior_variances(groups: &[usize], scales: [f64; SCALES]) -> Vec<f64> {
     let of = |group: &usize| group.checked_sub(1).map_or(1.0, |at| scales[at] * scales[at]);
     groups.iter().map(of).collect()
 }

@@ -2,6 +2,8 @@
 
 use faer::Mat;
 
+use crate::learning::dials::SCALES;
+use crate::math::lower::Lower;
 use crate::math::pivoted::Pivoted;
 
 /// Prior covariance of the pivots by groups of columns: the one that stays, and those that scales multiply.
@@ -22,6 +24,16 @@ impl Prior {
             Mat::from_fn(rank, columns.len(), |k, at| reduction.transfer[(k, columns[at])])
         };
         Self::of_roots((0..=last).map(root).collect())
+    }
+
+    /// Covariance of the pivots at scales.
+    pub(super) fn covariance(&self, scales: [f64; SCALES]) -> Lower {
+        let mut covariance = Lower::zeros(self.parts[0].nrows());
+        covariance.add(1.0, &self.parts[0]);
+        for (part, scale) in self.parts[1..].iter().zip(scales) {
+            covariance.add(scale * scale, part);
+        }
+        covariance
     }
 
     /// Of roots of its parts.

@@ -9,10 +9,8 @@ use faer::{Mat, MatRef};
 
 use crate::baseline::Baseline;
 use crate::baseline::layout::NuisanceLayout;
-use crate::residuals::predictor::with_thrust;
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::PreparedFlights;
-use crate::signals::n2_deck::Deck;
 
 /// Rows of one kind of channel. Columns are in prior standard deviations; noise is that of factors of 1.
 pub(super) struct ChannelRows {
@@ -37,17 +35,6 @@ pub(super) struct Unheld {
     pub(super) drag: f64,
 }
 
-/// What N2 is learnt at: means of what fuel flow has said, each in its own unit, and the deck whose slopes hold.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct GivenThrust<'a> {
-    pub(super) drag: &'a [f64],
-    pub(super) standing_effects: &'a [f64],
-    pub(super) remainder: &'a [f64],
-    /// Share of the remainder that is thrust.
-    pub(super) share: f64,
-    pub(super) deck: &'a Deck,
-}
-
 impl ChannelRows {
     /// Columns that are learnt.
     pub(super) fn width(&self) -> usize {
@@ -56,11 +43,6 @@ impl ChannelRows {
 
     pub(super) fn residual(&self) -> &[f64] {
         self.columns.col_as_slice(self.width())
-    }
-
-    pub(super) fn residual_mut(&mut self) -> &mut [f64] {
-        let width = self.width();
-        self.columns.col_as_slice_mut(width)
     }
 
     /// Fuel flow: the remainder, the effects that a fleet shows at all times, the drag table; and what no column holds.
@@ -105,57 +87,6 @@ impl ChannelRows {
         Self::of_channel(data, at, 1, |_, into| into[0] = deviation)
     }
 
-    /// N2: the deck, then, not to be learnt, what effects, drag and remainder change in it. The residual is what the deck at hand leaves
-    /// at the thrust that is given. A deck bends, so that its slope is another at another thrust, and so is what effects do.
-    pub(super) fn of_n2(
-        baseline: &Baseline,
-        data: &PreparedFlights<'_>,
-        deviations: &[f64],
-        given: &GivenThrust<'_>,
-    ) -> Self {
-        let layout = baseline.layout();
-        let (deck, standing) = (layout.deck.len(), layout.standing_effects.len());
-        let remainder = deck + standing + layout.drag.len();
-        let channel = data.channels.n2_row();
-        let columns = layout.deck.clone().chain(given_columns(&layout));
-        let deviations: Vec<f64> = columns.map(|k| deviations[k]).collect();
-        let at_hand = &data.predictor.deck;
-        let mut loadings = vec![0.0; layout.drag.len()];
-        let mut terms = vec![0.0; layout.remainder.len()];
-        let mut residuals = Vec::with_capacity(data.segments.len());
-        let mut rows = Self::of_channel(data, channel, deviations.len(), |row, into| {
-            baseline.write_drag(&row.response, &mut loadings);
-            let mut thrust = row.drag_over_thrust * dot(&loadings, given.drag);
-            if given.share > 0.0 {
-                baseline.write_remainder(&row.response, &mut terms);
-                thrust += given.share * dot(&terms, given.remainder);
-            }
-            let response = with_thrust(&row.response, thrust);
-            let (before, slope) = (row.n2_slope, given.deck.slope(&response));
-            let by = if before == 0.0 { 0.0 } else { slope / before };
-            into[..deck].copy_from_slice(&at_hand.terms(&response));
-            let mut residual =
-                row.residual[channel] + at_hand.value(&row.response) - at_hand.value(&response);
-            let effects = row.standing_effects.iter().zip(given.standing_effects);
-            for (slot, (of, size)) in into[deck..].iter_mut().zip(effects) {
-                *slot = by * of[channel];
-                residual -= size * *slot;
-            }
-            residuals.push(residual);
-            for (slot, loading) in into[deck + standing..].iter_mut().zip(&loadings) {
-                *slot = loading * slope * row.drag_over_thrust;
-            }
-            for (slot, term) in into[remainder..].iter_mut().zip(&terms) {
-                *slot = term * slope * given.share;
-            }
-            for (slot, deviation) in into.iter_mut().zip(&deviations) {
-                *slot *= deviation;
-            }
-        });
-        rows.residual_mut().copy_from_slice(&residuals);
-        rows
-    }
-
     /// Rows of the segments in which a channel is recorded.
     fn of_channel(
         data: &PreparedFlights<'_>,
@@ -163,6 +94,25 @@ impl ChannelRows {
         width: usize,
         mut write: impl FnMut(&SegmentRow, &mut [f64]),
     ) -> Self {
+        let (segments, bare) = Self::without_columns(data, channel);
+        let mut columns = Mat::<f64>::zeros(segments.len(), width + 1);
+        let mut values = vec![0.0; width];
+        for (at, segment) in segments.iter().enumerate() {
+            let row = &data.segments[*segment];
+            write(row, &mut values);
+            for (column, value) in values.iter().enumerate() {
+                columns[(at, column)] = *value;
+            }
+            columns[(at, width)] = row.residual[channel];
+        }
+        Self { columns, ..bare }
+    }
+
+    /// Which segments have a channel, and the noise of their rows.
+    pub(super) fn without_columns(
+        data: &PreparedFlights<'_>,
+        channel: usize,
+    ) -> (Vec<usize>, Self) {
         let mut segments = Vec::with_capacity(data.segments.len());
         let mut groups = Vec::with_capacity(data.flights.len());
         let mut shares = Vec::with_capacity(data.flights.len());
@@ -177,15 +127,6 @@ impl ChannelRows {
             }
         }
         let rows: Vec<&SegmentRow> = segments.iter().map(|&at| &data.segments[at]).collect();
-        let mut columns = Mat::<f64>::zeros(rows.len(), width + 1);
-        let mut values = vec![0.0; width];
-        for (at, row) in rows.iter().enumerate() {
-            write(row, &mut values);
-            for (column, value) in values.iter().enumerate() {
-                columns[(at, column)] = *value;
-            }
-            columns[(at, width)] = row.residual[channel];
-        }
         let own = |row: &&SegmentRow| {
             row.noise.factor[channel][..=channel].iter().map(|l| l * l).sum::<f64>()
         };
@@ -195,7 +136,8 @@ impl ChannelRows {
             .filter(|loading| loading.iter().any(|value| *value != 0.0))
             .collect();
         let variance = rows.iter().map(own).collect();
-        Self { columns, variance, loadings, groups, shares }
+        let columns = Mat::<f64>::zeros(segments.len(), 0);
+        (segments, Self { columns, variance, loadings, groups, shares })
     }
 
     /// Only some columns.
@@ -204,8 +146,13 @@ impl ChannelRows {
         for (into, from) in columns.iter().copied().chain([self.width()]).enumerate() {
             kept.col_as_slice_mut(into).copy_from_slice(self.columns.col_as_slice(from));
         }
+        self.with_columns(kept)
+    }
+
+    /// The same noise under other columns, the residual last.
+    pub(super) fn with_columns(&self, columns: Mat<f64>) -> Self {
         Self {
-            columns: kept,
+            columns,
             variance: self.variance.clone(),
             loadings: self.loadings.clone(),
             groups: self.groups.clone(),
@@ -228,18 +175,6 @@ impl ChannelRows {
     pub(super) fn common_variance(&self, row: usize) -> f64 {
         self.loadings.iter().map(|loading| loading[row] * loading[row]).sum()
     }
-}
-
-/// Columns of a baseline that N2 is given, in the order of its rows behind the deck.
-pub(super) fn given_columns(
-    layout: &NuisanceLayout,
-) -> impl Iterator<Item = usize> + Clone + use<> {
-    let standing = layout.standing_effects.clone();
-    standing.chain(layout.drag.clone()).chain(layout.remainder.clone())
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Columns of a baseline that fuel flow informs, in the order of its rows.

@@ -102,6 +102,37 @@ impl ChannelSums {
     }
 }
 
+/// Rows through the inverse of their noise: w²C⁻¹X of the columns without the residual, at a ratio ρ of the noise between flights
+/// over that within.
+pub(super) fn through_noise(rows: &ChannelRows, weights: &Weights, ratio: f64) -> Mat<f64> {
+    let square = ratio * ratio;
+    let scales = scales(rows, weights);
+    let mut through = Mat::<f64>::zeros(rows.variance.len(), rows.width());
+    for (group, range) in rows.groups.iter().enumerate() {
+        let of_group = 1.0 / (rows.shares[group] * weights.groups[group]).sqrt();
+        let (turned, lengths) = turned_loadings(rows, range, &scales, of_group);
+        let scales = &scales[range.clone()];
+        for column in 0..rows.width() {
+            let from = &rows.columns.col_as_slice(column)[range.clone()];
+            let into = &mut through.col_as_slice_mut(column)[range.clone()];
+            for ((slot, value), scale) in into.iter_mut().zip(from).zip(scales) {
+                *slot = value * scale;
+            }
+            for (loading, length) in turned.iter().zip(&lengths) {
+                let common: f64 = loading.iter().zip(&*into).map(|(u, x)| u * x).sum();
+                let by = common * square / (square * length.max(0.0) + 1.0);
+                for (slot, u) in into.iter_mut().zip(loading) {
+                    *slot -= by * u;
+                }
+            }
+            for (slot, scale) in into.iter_mut().zip(scales) {
+                *slot *= scale;
+            }
+        }
+    }
+    through
+}
+
 /// Products of the columns with the residual: the last row of the lower triangle of a Gram matrix.
 pub(super) fn right_side(gram: &Mat<f64>) -> Vec<f64> {
     let width = gram.nrows() - 1;
@@ -225,6 +256,12 @@ mod tests {
                 expected += faer::Scale(share) * (part.transpose() * inverse);
             }
             let (gram, ln_common) = sums.gram(between / within);
+            let through = through_noise(&rows, &weights, between / within);
+            let by_rows = through.transpose() * rows.columns.subcols(0, columns - 1);
+            for (i, j) in (0..columns - 1).flat_map(|i| (0..columns - 1).map(move |j| (i, j))) {
+                let found = by_rows[(i, j)] / (within * within);
+                assert!((found - expected[(i, j)]).abs() < 1e-9 * (1.0 + found.abs()));
+            }
             for column in 0..columns {
                 for row in column..columns {
                     let found = gram[(row, column)] / (within * within);

@@ -7,7 +7,8 @@ use flight::Segment;
 use flight::effect::EffectId;
 use test_support::fleet::{Background, Planted, Setup, exact_model, fly, typical};
 
-use super::rows::{ChannelRows, GivenThrust};
+use super::n2_rows::{GivenThrust, LearntFuelFlow, N2Rows, given_columns};
+use super::rows::ChannelRows;
 use crate::baseline::Baseline;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
@@ -74,83 +75,69 @@ fn the_deck_holds_at_the_thrust_that_is_learnt() {
     });
 }
 
-/// What drag changes in N2: differences of the residual over either side of what is learnt of drag, along each loading. No effect
-/// is carried, whose slopes would change with thrust too.
-#[test]
-fn columns_of_drag_in_n2_are_its_finite_differences() {
-    const STEP: f64 = 1e-4;
-    with_far_too_little_drag((92, 6), false, |taught, data| {
-        let layout = taught.layout();
-        let none = vec![0.0; layout.standing_effects.len()];
-        let remainder = &taught.parts.mean[layout.remainder.clone()];
-        let deviations = deviations_of(taught);
-        let rows_at = |drag: &[f64]| {
-            let deck = &data.predictor.deck;
-            let standing_effects = &none;
-            let given = GivenThrust { drag, standing_effects, remainder, share: 0.7, deck };
-            ChannelRows::of_n2(taught, data, &deviations, &given)
-        };
-        let learnt = &taught.parts.drag;
-        let found = rows_at(learnt);
-        let first = layout.deck.len() + layout.standing_effects.len();
-        assert!(!learnt.is_empty());
-        for loading in 0..learnt.len() {
-            let moved = |by: f64| {
-                let mut drag = learnt.clone();
-                drag[loading] += by;
-                rows_at(&drag)
-            };
-            let (up, down) = (moved(STEP), moved(-STEP));
-            let column = found.columns.col_as_slice(first + loading);
-            let deviation = taught.prior_deviation(layout.drag.start + loading);
-            let largest = column.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            assert!(largest > 0.0, "{loading}");
-            for ((up, down), value) in up.residual().iter().zip(down.residual()).zip(column) {
-                let expected = -(up - down) / (2.0 * STEP) * deviation;
-                assert!((value - expected).abs() < 1e-6 * largest, "{loading}: {value} {expected}");
-            }
-        }
-    });
+/// What N2 has to say at means in prior standard deviations: residual of the deck, and columns of what is given.
+fn n2_at(
+    taught: &Baseline,
+    data: &PreparedFlights<'_>,
+    means: &[f64],
+    share: f64,
+) -> (Vec<f64>, faer::Mat<f64>) {
+    let (rows, _) = ChannelRows::of_fuel_flow(taught, data);
+    let (layout, deviations) = (taught.layout(), deviations_of(taught));
+    let fuel = LearntFuelFlow { layout: &layout, rows: &rows, deviations: &deviations, means };
+    let n2 = N2Rows::new(data, fuel);
+    let given = GivenThrust { share, deck: &data.predictor.deck };
+    (n2.of_deck(&given).residual().to_vec(), n2.of_given(&given))
 }
 
-/// What the remainder changes in N2, in the same way: its share that is thrust.
+/// What drag and the remainder change in N2: differences of the residual over either side of what is learnt, along each coefficient.
+/// No effect is carried, whose slopes would change with thrust too.
 #[test]
-fn columns_of_the_remainder_in_n2_are_its_finite_differences() {
+fn columns_of_n2_are_its_finite_differences() {
     const STEP: f64 = 1e-4;
+    const SHARE: f64 = 0.7;
     with_far_too_little_drag((92, 6), false, |taught, data| {
-        let layout = taught.layout();
-        let none = vec![0.0; layout.standing_effects.len()];
-        let deviations = deviations_of(taught);
-        let (drag, deck) = (&taught.parts.drag, &data.predictor.deck);
-        let rows_at = |remainder: &[f64], share: f64| {
-            let standing_effects = &none;
-            let given = GivenThrust { drag, standing_effects, remainder, share, deck };
-            ChannelRows::of_n2(taught, data, &deviations, &given)
+        let (layout, deviations) = (taught.layout(), deviations_of(taught));
+        let mut means = vec![0.0; layout.len()];
+        let learnt = |columns: core::ops::Range<usize>, of: &[f64], means: &mut [f64]| {
+            for (column, value) in columns.zip(of) {
+                means[column] = value / deviations[column];
+            }
         };
-        let learnt = &taught.parts.mean[layout.remainder.clone()];
-        let first = layout.deck.len() + layout.standing_effects.len() + drag.len();
-        let (found, of_fuel) = (rows_at(learnt, 0.7), rows_at(learnt, 0.0));
-        assert_eq!(found.width(), first + learnt.len());
-        let mut seen = 0;
-        for term in 0..learnt.len() {
+        learnt(layout.drag.clone(), &taught.parts.drag, &mut means);
+        learnt(layout.remainder.clone(), &taught.parts.mean, &mut means);
+        let (_, found) = n2_at(taught, data, &means, SHARE);
+        let (_, of_fuel) = n2_at(taught, data, &means, 0.0);
+        let columns: Vec<usize> = given_columns(&layout).collect();
+        assert_eq!(found.ncols(), columns.len());
+        let (mut seen, mut terms) = (0, 0);
+        for (at, &coefficient) in columns.iter().enumerate() {
+            if layout.standing_effects.contains(&coefficient) {
+                continue;
+            }
             let moved = |by: f64| {
-                let mut remainder = learnt.to_vec();
-                remainder[term] += by;
-                rows_at(&remainder, 0.7)
+                let mut means = means.clone();
+                means[coefficient] += by / deviations[coefficient];
+                n2_at(taught, data, &means, SHARE).0
             };
             let (up, down) = (moved(STEP), moved(-STEP));
-            let column = found.columns.col_as_slice(first + term);
-            let deviation = deviations[layout.remainder.start + term];
+            let column = found.col_as_slice(at);
+            let deviation = deviations[coefficient];
             let largest = column.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            seen += usize::from(largest > 0.0);
-            for ((up, down), value) in up.residual().iter().zip(down.residual()).zip(column) {
+            for ((up, down), value) in up.iter().zip(&down).zip(column) {
                 let expected = -(up - down) / (2.0 * STEP) * deviation;
-                assert!((value - expected).abs() <= 1e-6 * largest, "{term}: {value} {expected}");
+                assert!((value - expected).abs() <= 1e-6 * largest, "{at}: {value} {expected}");
             }
-            // What is fuel alone changes nothing in N2.
-            assert!(of_fuel.columns.col_as_slice(first + term).iter().all(|value| *value == 0.0));
+            if layout.drag.contains(&coefficient) {
+                assert!(largest > 0.0, "{at}");
+            } else {
+                // What is fuel alone changes nothing in N2.
+                assert!(of_fuel.col_as_slice(at).iter().all(|value| *value == 0.0));
+                terms += 1;
+                seen += usize::from(largest > 0.0);
+            }
         }
-        assert!(2 * seen > learnt.len(), "{seen} of {}", learnt.len());
+        assert!(!layout.drag.is_empty() && 2 * seen > terms, "{seen} of {terms}");
     });
 }
 
@@ -169,7 +156,7 @@ fn flights_with(planted: Option<(EffectId, f64)>) -> Vec<Vec<Segment>> {
 
 /// The baseline of flights against the table of the model that flew them, which is believed to be exact, and the flights held
 /// against it.
-fn with_exact_table<T>(
+pub(crate) fn with_exact_table<T>(
     flights: &[Vec<Segment>],
     work: impl FnOnce(&Baseline, &PreparedFlights<'_>) -> T,
 ) -> T {

@@ -6,8 +6,7 @@ use test_support::fleet::{Background, Planted, Setup, exact_model, fly, typical}
 
 use crate::baseline::Baseline;
 use crate::hypotheses::design::Design;
-use crate::library::Library;
-use crate::library::dates::DateGrid;
+use crate::learning::tests::with_exact_table;
 use crate::residuals::predictor::with_thrust;
 use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
@@ -20,20 +19,7 @@ fn taught_by_thinner_air(work: impl FnOnce(&Baseline, &PreparedFlights<'_>)) {
     let size = 6.0 * typical(EffectId::ReynoldsNumber);
     let planted = Planted { id: EffectId::ReynoldsNumber, size };
     let fleet = fly(95, &setup, &[planted], &Background::default());
-    let records: Vec<FlightRecord<'_>> =
-        fleet.flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
-    let model = exact_model();
-    let table = model.drag_table();
-    let taught = Baseline::learn(&model, table, None, &records, None).unwrap();
-    let effects = EffectModel::new(&model, table, *taught.references())
-        .unwrap()
-        .between_nodes(BetweenNodes::Smooth);
-    let nothing = |points: &[_], engines: bool, starts: &[f64]| {
-        Library::new(&effects, points, engines, DateGrid::coarse(starts, &[], None), |_| false)
-    };
-    let (data, _) =
-        PreparedFlights::prepare(&effects, &records, Reference::Baseline(&taught), nothing);
-    work(&taught, &data);
+    with_exact_table(&fleet.flights, work);
 }
 
 /// What is uncertain about a baseline, as the design has it: moved along any one of its directions, fuel flow and N2 change as the

@@ -74,9 +74,12 @@ impl Deck {
 
     /// ln N2 that the deck predicts.
     pub(crate) fn value(&self, response: &Response) -> f64 {
-        let terms = self.terms(response);
-        let deck: f64 = terms.iter().zip(&self.coefficients).map(|(t, c)| t * c).sum();
-        deck + half_ln_total_temperature_ratio(response)
+        self.of_terms(&self.terms(response)) + half_ln_total_temperature_ratio(response)
+    }
+
+    /// ln(N2/√θt) at these terms.
+    pub(crate) fn of_terms(&self, terms: &[f64; DECK_TERMS]) -> f64 {
+        terms.iter().zip(&self.coefficients).map(|(t, c)| t * c).sum()
     }
 
     pub(crate) fn slope(&self, response: &Response) -> f64 {
