@@ -17,7 +17,7 @@ use crate::error::{EffectError, EffectModelError, ObserveError, PredictError};
 use crate::point::EffectPoint;
 use crate::recorded::corrected_by;
 use crate::references::EffectReferences;
-use crate::response::{Bare, BetweenNodes, Edge, Response, evaluate};
+use crate::response::{Bare, Edge, Response, evaluate};
 use crate::set::Effects;
 use crate::terms::{Layers, Terms};
 
@@ -308,8 +308,7 @@ impl ExtendedModel {
         contained: &[Terms],
     ) -> Result<Response, EffectError> {
         let polar = self.prepared().map_or(*self.polynomial(), |prepared| prepared.polar);
-        let between_nodes = BetweenNodes::Straight;
-        let bare = Bare { aircraft: self.aircraft(), drag_table, polar, between_nodes };
+        let bare = Bare { aircraft: self.aircraft(), drag_table, polar, smooth: None };
         // References are for trial effects, and there are none.
         let trial = Terms::new(&Effects::none(), &EffectReferences::UNUSED);
         let layers = Layers { contained, trial: &trial };

@@ -7,7 +7,7 @@ use perf_model::Aircraft;
 use crate::error::EffectModelError;
 use crate::point::EffectPoint;
 use crate::references::EffectReferences;
-use crate::response::{Bare, BetweenNodes, Edge, evaluate};
+use crate::response::{Bare, Edge, evaluate};
 use crate::set::Effects;
 use crate::terms::{Layers, Terms};
 
@@ -24,7 +24,7 @@ pub fn mean_references(
         aircraft,
         drag_table,
         polar: Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] },
-        between_nodes: BetweenNodes::Straight,
+        smooth: None,
     };
     let none = Terms::new(&Effects::none(), &EffectReferences::UNUSED);
     let layers = Layers { contained: &[], trial: &none };

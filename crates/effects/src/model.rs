@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use flight::SegmentMeans;
 use flight::effect::EffectId;
-use lut::Table;
+use lut::{SmoothTable, Table};
 use perf_model::Aircraft;
 
 use crate::applied::{AppliedEffects, Prepared};
@@ -57,7 +57,7 @@ impl<'a> EffectModel<'a> {
                 aircraft: model.aircraft(),
                 drag_table,
                 polar: fit_polar(drag_table)?,
-                between_nodes: BetweenNodes::Straight,
+                smooth: None,
             },
             references,
             applied: prepared.map(Prepared::effects),
@@ -69,15 +69,16 @@ impl<'a> EffectModel<'a> {
 
     /// The same with another surface between the nodes of its drag table; bilinear where this is not called.
     #[must_use]
-    pub const fn between_nodes(mut self, between_nodes: BetweenNodes) -> Self {
-        self.bare.between_nodes = between_nodes;
+    pub fn between_nodes(mut self, between_nodes: BetweenNodes) -> Self {
+        let is_smooth = between_nodes == BetweenNodes::Smooth;
+        self.bare.smooth = is_smooth.then(|| SmoothTable::new(self.bare.drag_table));
         self
     }
 
     /// Whether the drag table is bilinear between its nodes.
     #[must_use]
-    pub fn is_bilinear(&self) -> bool {
-        self.bare.between_nodes == BetweenNodes::Straight
+    pub const fn is_bilinear(&self) -> bool {
+        self.bare.smooth.is_none()
     }
 
     /// Whether the model contains an effect already.

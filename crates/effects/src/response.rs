@@ -2,7 +2,7 @@
 
 use flight::MAXIMUM_ENGINES;
 use lut::surface::{Basis, FitError, Surface, fit};
-use lut::{Axis, Outside, SmoothCell, Table};
+use lut::{Axis, Outside, SmoothTable, Table};
 use perf_model::Aircraft;
 use perf_model::tsfc::tsfc;
 use units::Mach;
@@ -44,13 +44,14 @@ pub struct Response {
 }
 
 /// A model without any effect: what effects act upon.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Bare<'a> {
     pub(crate) aircraft: &'a Aircraft,
     pub(crate) drag_table: &'a Table,
     /// CD0(M) and K(M), of which some effects are a share.
     pub(crate) polar: Surface,
-    pub(crate) between_nodes: BetweenNodes,
+    /// The surface between the table's nodes, where that is smooth.
+    pub(crate) smooth: Option<SmoothTable>,
 }
 
 /// What a drag table is between its nodes.
@@ -59,7 +60,7 @@ pub enum BetweenNodes {
     /// Bilinear: as every table of this program is read.
     #[default]
     Straight,
-    /// The smooth surface through the nodes ([`SmoothCell`]): a polynomial of the second degree that a table was made of comes
+    /// The smooth surface through the nodes ([`SmoothTable`]): a polynomial of the second degree that a table was made of comes
     /// back exactly, whatever the grid.
     Smooth,
 }
@@ -122,7 +123,7 @@ pub(crate) fn evaluate(
     let surface_n = flown.dynamic_pressure_pa * bare.aircraft.wing_area().to_square_meters();
     let lift_coefficient = flown.mass_kg * gravity_m_s2 / surface_n;
     let cached = uncorrected.filter(|_| !layers.trial.moves_the_point());
-    let surface = (bare.drag_table, bare.between_nodes);
+    let surface = (bare.drag_table, bare.smooth.as_ref());
     let table = match cached.and_then(|known| known.table) {
         Some(table) => table,
         None => table_value(surface, lift_coefficient, flown.mach, edge)?,
@@ -207,10 +208,11 @@ fn of_forms(
     if change.is_finite() { Ok(change) } else { Err(EffectError::FormUndefined) }
 }
 
-/// A table's drag coefficient, continued in a straight line beyond its edge; `None` where a coordinate is no number.
+/// A table's drag coefficient, on the smooth surface through its nodes where that is given, continued in a straight line beyond its
+/// edge; `None` where a coordinate is no number.
 #[must_use]
 pub fn value_continued(
-    surface: (&Table, BetweenNodes),
+    surface: (&Table, Option<&SmoothTable>),
     lift_coefficient: f64,
     mach: f64,
 ) -> Option<f64> {
@@ -219,20 +221,16 @@ pub fn value_continued(
 
 /// The table's drag coefficient, continued in a straight line beyond the edge where an effect moved the point there.
 fn table_value(
-    (drag_table, between_nodes): (&Table, BetweenNodes),
+    (drag_table, smooth): (&Table, Option<&SmoothTable>),
     lift_coefficient: f64,
     mach: f64,
     edge: Edge,
 ) -> Result<f64, EffectError> {
     let grid = drag_table.grid();
     let outside = |_| EffectError::OutsideTable { lift_coefficient, mach };
-    let value = |lift_coefficient: f64, mach: f64| match between_nodes {
-        BetweenNodes::Straight => grid
-            .locate(lift_coefficient, mach, Outside::Error)
-            .map(|cell| drag_table.interpolate(&cell)),
-        BetweenNodes::Smooth => {
-            SmoothCell::locate(grid, lift_coefficient, mach).map(|cell| cell.value_of(drag_table))
-        }
+    let value = |lift_coefficient: f64, mach: f64| {
+        let cell = grid.locate(lift_coefficient, mach, Outside::Error)?;
+        Ok(smooth.map_or_else(|| drag_table.interpolate(&cell), |smooth| smooth.value(&cell)))
     };
     let held = |value: f64, axis: &Axis| value.clamp(axis.first(), axis.last());
     let (held_lift, held_mach) = (held(lift_coefficient, grid.x()), held(mach, grid.y()));

@@ -7,24 +7,32 @@ mod kernels;
 
 use faer::Mat;
 
-use kernels::{Factor, Inverse, Solve, SubtractProducts, TransposedTimesItself, solve_lower};
+use kernels::{Factor, Invert, Solve, SubtractProducts, TransposedTimesItself, solve_lower};
 
 pub(crate) use kernels::dot;
 
+/// Numbers of a column that lie, and are computed, together: two of the widest vectors that are compiled for.
+const LANES: usize = 8;
 /// Rows below which no wider vectors are asked for. Our choice: asking costs as much as their arithmetic.
 const FEW: usize = 16;
 
-/// A square matrix by its lower triangle, column after column; what is above the diagonal has no meaning.
+type Block = [f64; LANES];
+
+/// A square matrix by its lower triangle, column after column in blocks of rows. Above the diagonal, and behind the last row, it is
+/// zero.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lower {
     size: usize,
-    values: Vec<f64>,
+    /// Blocks of a column.
+    blocks: usize,
+    values: Vec<Block>,
 }
 
 impl Lower {
     /// All of it zero.
     pub(crate) fn zeros(size: usize) -> Self {
-        Self { size, values: vec![0.0; size * size] }
+        let blocks = size.div_ceil(LANES);
+        Self { size, blocks, values: vec![[0.0; LANES]; size * blocks] }
     }
 
     /// The lower triangle of a matrix.
@@ -34,51 +42,41 @@ impl Lower {
         lower
     }
 
-    pub(crate) const fn size(&self) -> usize {
-        self.size
-    }
-
     /// An entry on the diagonal or below.
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
-        self.values[column * self.size + row]
+        self.values[column * self.blocks + row / LANES][row % LANES]
     }
 
     pub(crate) fn at_mut(&mut self, row: usize, column: usize) -> &mut f64 {
-        &mut self.values[column * self.size + row]
+        &mut self.values[column * self.blocks + row / LANES][row % LANES]
     }
 
     /// A column from its diagonal on.
     fn column(&self, column: usize) -> &[f64] {
-        &self.values[column * self.size + column..(column + 1) * self.size]
+        let blocks = &self.values[column * self.blocks..][..self.blocks];
+        &blocks.as_flattened()[column..self.size]
+    }
+
+    fn column_mut(&mut self, column: usize) -> &mut [f64] {
+        let blocks = &mut self.values[column * self.blocks..][..self.blocks];
+        &mut blocks.as_flattened_mut()[column..self.size]
     }
 
     /// Becomes `B + share·A`, A with as many rows and columns or more.
     pub(crate) fn set_sum(&mut self, base: &Self, share: f64, added: &Mat<f64>) {
-        self.size = base.size;
-        self.values.resize(base.size * base.size, 0.0);
-        for column in 0..self.size {
-            let count = self.size - column;
-            let at = column * self.size + column;
-            let (base, added) =
-                (&base.values[at..][..count], &added.col_as_slice(column)[column..]);
-            let (into, added) = (&mut self.values[at..][..count], &added[..count]);
-            for i in 0..count {
-                into[i] = base[i] + share * added[i];
-            }
-        }
+        self.clone_from(base);
+        self.add(share, added);
     }
 
-    /// Becomes `1 + Σ share·C`.
+    /// Becomes `1 + Σ share·C`, of matrices of one size.
     pub(crate) fn set_one_and_sum<'a>(&mut self, parts: impl Iterator<Item = (f64, &'a Self)>) {
-        self.values.fill(0.0);
+        self.values.fill([0.0; LANES]);
         for (share, part) in parts {
-            self.size = part.size;
-            self.values.resize(part.values.len(), 0.0);
-            for column in 0..self.size {
-                let (at, count) = (column * self.size + column, self.size - column);
-                let (into, from) = (&mut self.values[at..][..count], &part.values[at..][..count]);
-                for i in 0..count {
-                    into[i] += share * from[i];
+            (self.size, self.blocks) = (part.size, part.blocks);
+            self.values.resize(part.values.len(), [0.0; LANES]);
+            for (into, from) in self.values.iter_mut().zip(&part.values) {
+                for lane in 0..LANES {
+                    into[lane] += share * from[lane];
                 }
             }
         }
@@ -103,11 +101,10 @@ impl Lower {
     /// `C += share·A`, A with as many rows and columns or more.
     pub(crate) fn add(&mut self, share: f64, from: &Mat<f64>) {
         for column in 0..self.size {
-            let count = self.size - column;
-            let from = &from.col_as_slice(column)[column..][..count];
-            let into = &mut self.values[column * self.size + column..][..count];
-            for i in 0..count {
-                into[i] += share * from[i];
+            let into = self.column_mut(column);
+            let from = &from.col_as_slice(column)[column..][..into.len()];
+            for (into, from) in into.iter_mut().zip(from) {
+                *into += share * from;
             }
         }
     }
@@ -115,11 +112,10 @@ impl Lower {
     /// `A += share·C`.
     pub(crate) fn add_to(&self, share: f64, into: &mut Mat<f64>) {
         for column in 0..self.size {
-            let count = self.size - column;
-            let into = &mut into.col_as_slice_mut(column)[column..][..count];
             let from = self.column(column);
-            for i in 0..count {
-                into[i] += share * from[i];
+            let into = &mut into.col_as_slice_mut(column)[column..][..from.len()];
+            for (into, from) in into.iter_mut().zip(from) {
+                *into += share * from;
             }
         }
     }
@@ -139,7 +135,7 @@ impl Lower {
     /// Becomes its Cholesky factor; `false` where it is not positive definite, and what it is then has no meaning.
     #[must_use]
     pub(crate) fn factor(&mut self) -> bool {
-        pulp::Arch::new().dispatch(Factor { size: self.size, values: &mut self.values })
+        pulp::Arch::new().dispatch(Factor { of: self })
     }
 
     /// ln of the determinant of the matrix of which this is the factor.
@@ -150,7 +146,7 @@ impl Lower {
     /// L⁻¹·b in place.
     pub(crate) fn solve_lower(&self, right: &mut [f64]) {
         if self.size < FEW {
-            solve_lower(self, right, 0);
+            solve_lower(self, right);
         } else {
             pulp::Arch::new().dispatch(Solve { factor: self, right });
         }
@@ -166,12 +162,31 @@ impl Lower {
     }
 
     /// L⁻¹ of a factor.
-    pub(crate) fn inverse(&self) -> Self {
-        pulp::Arch::new().dispatch(Inverse { factor: self })
+    pub(crate) fn inverse(&self) -> Inverse {
+        pulp::Arch::new().dispatch(Invert { factor: self })
+    }
+}
+
+/// The inverse of a factor, row after row in blocks of columns.
+#[derive(Clone, Debug)]
+pub(crate) struct Inverse {
+    size: usize,
+    blocks: usize,
+    rows: Vec<Block>,
+}
+
+impl Inverse {
+    pub(crate) const fn size(&self) -> usize {
+        self.size
     }
 
-    /// `LᵀL` of a lower triangle: of the inverse of a factor it is the inverse of the matrix.
-    pub(crate) fn transposed_times_itself(&self) -> Self {
+    /// An entry on the diagonal or below.
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
+        self.rows[row * self.blocks + column / LANES][column % LANES]
+    }
+
+    /// Its transpose times itself: the inverse of the matrix that was factored.
+    pub(crate) fn transposed_times_itself(&self) -> Lower {
         pulp::Arch::new().dispatch(TransposedTimesItself { of: self })
     }
 }
@@ -184,7 +199,7 @@ mod tests {
     /// faer's factor, solutions and inverse of the same matrices, of sizes that are multiples of lanes and are not.
     #[test]
     fn factor_solutions_and_inverse_are_those_of_faer() {
-        for size in [1, 2, 5, 8, 17, 40] {
+        for size in [1, 2, 3, 4, 5, 7, 8, 15, 17, 31, 40, 63] {
             let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
             let raw = Mat::from_fn(size + 3, size, |i, j| number(7 * i + 13 * j + 1));
             let mut matrix = raw.transpose() * &raw;

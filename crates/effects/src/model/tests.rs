@@ -310,8 +310,9 @@ fn a_plane_is_continued_as_the_plane() {
     let plane = |(lift, mach): (f64, f64)| 0.01 + 0.04 * lift + 0.02 * mach;
     let values = (0..grid.nodes()).map(|node| plane(grid.coordinates(node))).collect();
     let table = Table::new(grid, values).unwrap();
-    for between_nodes in [BetweenNodes::Straight, BetweenNodes::Smooth] {
-        let continued = |lift, mach| value_continued((&table, between_nodes), lift, mach);
+    let smooth = lut::SmoothTable::new(&table);
+    for surface in [None, Some(&smooth)] {
+        let continued = |lift, mach| value_continued((&table, surface), lift, mach);
         for lift in [0.15, 0.25, 0.41, 0.6] {
             for mach in [0.55, 0.62, 0.74, 0.9] {
                 let found = continued(lift, mach).unwrap();

@@ -1,116 +1,145 @@
 //! The loops over small lower triangles, compiled for the vectors that a processor has.
+//!
+//! They go block by block over arrays of [`LANES`] numbers that are loaded, changed and stored as a whole: slices whose ends a
+//! compiler has to find out become one number at a time.
+
+#![expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+#![expect(clippy::needless_range_loop, reason = "iterators are calls of their own there")]
 
 use faer::Mat;
 
-use super::Lower;
+use super::{Block, Inverse, LANES, Lower};
 
-/// Partial sums of a product.
-const LANES: usize = 8;
+/// Columns that are looked at together: what is read serves them all.
+const TOGETHER: usize = 4;
 
-/// Cholesky's factor, two columns at a time and four earlier ones into both: what is read is used more than once.
+/// Cholesky's factor, four columns at a time: what they explain is taken from two later ones at once.
 pub(super) struct Factor<'a> {
-    pub(super) size: usize,
-    pub(super) values: &'a mut [f64],
+    pub(super) of: &'a mut Lower,
 }
 
 impl pulp::NullaryFnOnce for Factor<'_> {
     type Output = bool;
 
-    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
     fn call(self) -> bool {
-        let Self { size, values } = self;
-        let mut column = 0;
-        while column < size {
-            let (known, rest) = values.split_at_mut(column * size);
-            let count = size - column;
-            if count == 1 {
-                let own = &mut rest[column];
-                for k in 0..column {
-                    let by = known[k * size + column];
-                    *own -= by * by;
-                }
-                return finish(core::slice::from_mut(own));
-            }
-            let (first, second) = rest.split_at_mut(size);
-            let first = &mut first[column..size];
-            let second = &mut second[column + 1..size];
-            take_earlier(known, (size, column), first, second);
-            if !finish(first) {
+        let Lower { size, blocks, values } = self.of;
+        let (size, blocks) = (*size, *blocks);
+        for first in (0..size).step_by(TOGETHER) {
+            let count = (size - first).min(TOGETHER);
+            let (known, later) = values.split_at_mut((first + count) * blocks);
+            let panel = &mut known[first * blocks..];
+            if !factor_panel(panel, blocks, first) {
                 return false;
             }
-            let below = &first[1..][..second.len()];
-            let by = below[0];
-            for i in 0..below.len() {
-                second[i] -= by * below[i];
+            let mut column = first + count;
+            let mut pairs = later.chunks_exact_mut(2 * blocks);
+            for pair in &mut pairs {
+                take_from_pair(panel, pair, blocks, column);
+                column += 2;
             }
-            if !finish(second) {
-                return false;
+            let last = pairs.into_remainder();
+            if !last.is_empty() {
+                take_from_one(panel, last, blocks, column);
             }
-            column += 2;
         }
+        clear_above(values, size, blocks);
         true
     }
 }
 
-/// Takes what earlier columns explain from two columns, each from its diagonal on.
-#[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+/// Factors a few neighbouring columns from which all earlier ones are taken; `false` where one has no positive pivot.
 #[inline(always)]
-fn take_earlier(
-    known: &[f64],
-    (size, column): (usize, usize),
-    first: &mut [f64],
-    second: &mut [f64],
-) {
-    let count = size - column;
-    let (head, tail) = first.split_at_mut(1);
-    let tail = &mut tail[..count - 1];
-    let second = &mut second[..count - 1];
-    let of = |k: usize| &known[k * size + column..][..count];
-    let mut k = 0;
-    while k + 4 <= column {
-        let (a, b, c, d) = (of(k), of(k + 1), of(k + 2), of(k + 3));
-        let by = [a[0], b[0], c[0], d[0]];
-        head[0] -= (by[0] * by[0] + by[1] * by[1]) + (by[2] * by[2] + by[3] * by[3]);
-        let (a, b, c, d) = (&a[1..], &b[1..], &c[1..], &d[1..]);
-        let (a, b) = (&a[..count - 1], &b[..count - 1]);
-        let (c, d) = (&c[..count - 1], &d[..count - 1]);
-        let next = [a[0], b[0], c[0], d[0]];
-        for i in 0..count - 1 {
-            tail[i] -= (by[0] * a[i] + by[1] * b[i]) + (by[2] * c[i] + by[3] * d[i]);
-            second[i] -= (next[0] * a[i] + next[1] * b[i]) + (next[2] * c[i] + next[3] * d[i]);
+fn factor_panel(panel: &mut [Block], blocks: usize, first: usize) -> bool {
+    for own in 0..panel.len() / blocks {
+        let (before, rest) = panel.split_at_mut(own * blocks);
+        let column = &mut rest[..blocks];
+        let (start, lane) = ((first + own) / LANES, (first + own) % LANES);
+        for earlier in 0..own {
+            let earlier = &before[earlier * blocks..][..blocks];
+            let by = earlier[start][lane];
+            for block in start..blocks {
+                let known = earlier[block];
+                let mut values = column[block];
+                for lane in 0..LANES {
+                    values[lane] -= by * known[lane];
+                }
+                column[block] = values;
+            }
         }
-        k += 4;
+        let pivot = column[start][lane];
+        if !(pivot > 0.0 && pivot.is_finite()) {
+            return false;
+        }
+        let root = pivot.sqrt();
+        let share = 1.0 / root;
+        for block in start..blocks {
+            let mut values = column[block];
+            for lane in 0..LANES {
+                values[lane] *= share;
+            }
+            column[block] = values;
+        }
+        column[start][lane] = root;
     }
-    while k < column {
-        let a = of(k);
-        let by = a[0];
-        head[0] -= by * by;
-        let a = &a[1..][..count - 1];
-        let next = a[0];
-        for i in 0..count - 1 {
-            tail[i] -= by * a[i];
-            second[i] -= next * a[i];
+    true
+}
+
+/// Takes what four columns explain from two later ones.
+#[inline(always)]
+fn take_from_pair(panel: &[Block], pair: &mut [Block], blocks: usize, column: usize) {
+    let start = column / LANES;
+    let a = &panel[..blocks];
+    let b = &panel[blocks..][..blocks];
+    let c = &panel[2 * blocks..][..blocks];
+    let d = &panel[3 * blocks..][..blocks];
+    let (one, two) = pair.split_at_mut(blocks);
+    let two = &mut two[..blocks];
+    let (row, lane) = (start, column % LANES);
+    let first = [a[row][lane], b[row][lane], c[row][lane], d[row][lane]];
+    let (row, lane) = ((column + 1) / LANES, (column + 1) % LANES);
+    let second = [a[row][lane], b[row][lane], c[row][lane], d[row][lane]];
+    for block in start..blocks {
+        let (a, b, c, d) = (a[block], b[block], c[block], d[block]);
+        let (mut x, mut y) = (one[block], two[block]);
+        for lane in 0..LANES {
+            x[lane] -= (first[0] * a[lane] + first[1] * b[lane])
+                + (first[2] * c[lane] + first[3] * d[lane]);
         }
-        k += 1;
+        for lane in 0..LANES {
+            y[lane] -= (second[0] * a[lane] + second[1] * b[lane])
+                + (second[2] * c[lane] + second[3] * d[lane]);
+        }
+        (one[block], two[block]) = (x, y);
     }
 }
 
-/// Divides a column by the root of its first entry; `false` where that is not positive.
-#[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+/// Takes what four columns explain from the last one.
 #[inline(always)]
-fn finish(column: &mut [f64]) -> bool {
-    let pivot = column[0];
-    if !(pivot > 0.0 && pivot.is_finite()) {
-        return false;
+fn take_from_one(panel: &[Block], last: &mut [Block], blocks: usize, column: usize) {
+    let (start, lane) = (column / LANES, column % LANES);
+    for known in panel.chunks_exact(blocks) {
+        let by = known[start][lane];
+        for block in start..blocks {
+            let known = known[block];
+            let mut values = last[block];
+            for lane in 0..LANES {
+                values[lane] -= by * known[lane];
+            }
+            last[block] = values;
+        }
     }
-    let root = pivot.sqrt();
-    let share = 1.0 / root;
-    for value in &mut *column {
-        *value *= share;
+}
+
+/// Entries above the diagonal are zero, as the loops take for granted.
+#[inline(always)]
+fn clear_above(values: &mut [Block], size: usize, blocks: usize) {
+    for column in 0..size {
+        // The second of a pair begins in the block of the first.
+        for row in column.saturating_sub(1) / LANES * LANES..column {
+            values[column * blocks + row / LANES][row % LANES] = 0.0;
+        }
     }
-    column[0] = root;
-    true
 }
 
 pub(super) struct Solve<'a> {
@@ -121,31 +150,66 @@ pub(super) struct Solve<'a> {
 impl pulp::NullaryFnOnce for Solve<'_> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "as the factor")]
     #[inline(always)]
     fn call(self) {
-        solve_lower(self.factor, self.right, 0);
+        solve_lower(self.factor, self.right);
     }
 }
 
-pub(super) struct Inverse<'a> {
+/// L⁻¹·b in place.
+#[inline(always)]
+pub(super) fn solve_lower(factor: &Lower, right: &mut [f64]) {
+    let size = factor.size;
+    for row in 0..size {
+        let column = &factor.values[row * factor.blocks..][..factor.blocks];
+        let column = &column.as_flattened()[row..size];
+        let right = &mut right[row..size];
+        let value = right[0] / column[0];
+        right[0] = value;
+        for i in 1..column.len() {
+            right[i] -= value * column[i];
+        }
+    }
+}
+
+pub(super) struct Invert<'a> {
     pub(super) factor: &'a Lower,
 }
 
-impl pulp::NullaryFnOnce for Inverse<'_> {
-    type Output = Lower;
+impl pulp::NullaryFnOnce for Invert<'_> {
+    type Output = Inverse;
 
-    #[expect(clippy::inline_always, reason = "as the factor")]
+    /// Row after row, a block of columns at a time: each row lacks what all rows before explain of it.
     #[inline(always)]
-    fn call(self) -> Lower {
-        let size = self.factor.size;
-        let mut inverse = Lower::zeros(size);
-        for column in 0..size {
-            let values = &mut inverse.values[column * size..][..size];
-            values[column] = 1.0;
-            solve_lower(self.factor, values, column);
+    fn call(self) -> Inverse {
+        let Lower { size, blocks, values: ref known } = *self.factor;
+        let mut rows = vec![[0.0; LANES]; size * blocks];
+        for block in 0..blocks {
+            let first = block * LANES;
+            for lane in 0..LANES.min(size - first) {
+                rows[(first + lane) * blocks + block][lane] = 1.0;
+            }
+            for row in first..size {
+                let column = &known[row * blocks..][..blocks].as_flattened()[..size];
+                let share = 1.0 / column[row];
+                let mut own = rows[row * blocks + block];
+                for lane in 0..LANES {
+                    own[lane] *= share;
+                }
+                rows[row * blocks + block] = own;
+                let mut at = (row + 1) * blocks + block;
+                for later in row + 1..size {
+                    let by = column[later];
+                    let mut values = rows[at];
+                    for lane in 0..LANES {
+                        values[lane] -= by * own[lane];
+                    }
+                    rows[at] = values;
+                    at += blocks;
+                }
+            }
         }
-        inverse
+        Inverse { size, blocks, rows }
     }
 }
 
@@ -158,78 +222,107 @@ pub(super) struct SubtractProducts<'a> {
 impl pulp::NullaryFnOnce for SubtractProducts<'_> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "as the factor")]
     #[inline(always)]
     fn call(self) {
         let Self { from, of, first } = self;
         for column in 0..from.size {
             let known = of.col_as_slice(first + column);
             for row in column..from.size {
-                from.values[column * from.size + row] -= dot(of.col_as_slice(first + row), known);
+                *from.at_mut(row, column) -= dot(of.col_as_slice(first + row), known);
             }
         }
     }
 }
 
 pub(super) struct TransposedTimesItself<'a> {
-    pub(super) of: &'a Lower,
+    pub(super) of: &'a Inverse,
 }
 
 impl pulp::NullaryFnOnce for TransposedTimesItself<'_> {
     type Output = Lower;
 
-    #[expect(clippy::inline_always, reason = "as the factor")]
+    /// The sum of every row's product with itself, four rows at a time into two columns.
     #[inline(always)]
     fn call(self) -> Lower {
-        let size = self.of.size;
+        let Inverse { size, blocks, ref rows } = *self.of;
         let mut product = Lower::zeros(size);
-        for row in 0..size {
-            let own = &self.of.values[row * size + row..][..size - row];
-            for column in 0..=row {
-                let other = &self.of.values[column * size + row..][..size - row];
-                product.values[column * size + row] = dot(own, other);
+        let whole = size / TOGETHER * TOGETHER;
+        for row in (0..whole).step_by(TOGETHER) {
+            let rows = &rows[row * blocks..][..TOGETHER * blocks];
+            let mut column = 0;
+            for pair in product.values[..(row + TOGETHER) * blocks].chunks_exact_mut(2 * blocks) {
+                add_to_pair(rows, pair, (row + TOGETHER - 1) / LANES + 1, column);
+                column += 2;
             }
         }
+        for row in whole..size {
+            let own = &rows[row * blocks..][..blocks];
+            for column in 0..=row {
+                let by = own[column / LANES][column % LANES];
+                let into = &mut product.values[column * blocks..][..blocks];
+                for block in column / LANES..=row / LANES {
+                    let own = own[block];
+                    let mut values = into[block];
+                    for lane in 0..LANES {
+                        values[lane] += by * own[lane];
+                    }
+                    into[block] = values;
+                }
+            }
+        }
+        clear_above(&mut product.values, size, blocks);
         product
     }
 }
 
-/// L⁻¹·b in place, b zero before `first`.
-#[expect(clippy::inline_always, reason = "compiled for the vectors of its callers")]
+/// Adds the products of four rows, up to a block, to two columns that lie in one block of rows.
 #[inline(always)]
-pub(super) fn solve_lower(factor: &Lower, right: &mut [f64], first: usize) {
-    let size = factor.size;
-    for row in first..size {
-        let count = size - row;
-        let column = &factor.values[row * size + row..][..count];
-        let right = &mut right[row..][..count];
-        let value = right[0] / column[0];
-        right[0] = value;
-        for i in 1..count {
-            right[i] -= value * column[i];
+fn add_to_pair(rows: &[Block], pair: &mut [Block], end: usize, column: usize) {
+    let blocks = rows.len() / TOGETHER;
+    let (start, lane) = (column / LANES, column % LANES);
+    let a = &rows[start..end];
+    let b = &rows[blocks..][start..end];
+    let c = &rows[2 * blocks..][start..end];
+    let d = &rows[3 * blocks..][start..end];
+    let first = [a[0][lane], b[0][lane], c[0][lane], d[0][lane]];
+    let second = [a[0][lane + 1], b[0][lane + 1], c[0][lane + 1], d[0][lane + 1]];
+    let (one, two) = pair.split_at_mut(blocks);
+    let (one, two) = (&mut one[start..end], &mut two[start..end]);
+    for block in 0..end - start {
+        let (a, b, c, d) = (a[block], b[block], c[block], d[block]);
+        let (mut x, mut y) = (one[block], two[block]);
+        for lane in 0..LANES {
+            x[lane] += (first[0] * a[lane] + first[1] * b[lane])
+                + (first[2] * c[lane] + first[3] * d[lane]);
         }
+        for lane in 0..LANES {
+            y[lane] += (second[0] * a[lane] + second[1] * b[lane])
+                + (second[2] * c[lane] + second[3] * d[lane]);
+        }
+        (one[block], two[block]) = (x, y);
     }
 }
 
+#[inline(always)]
+fn sum([a, b, c, d, e, f, g, h]: Block) -> f64 {
+    ((a + b) + (c + d)) + ((e + f) + (g + h))
+}
+
 /// Σ a·b.
-#[expect(clippy::inline_always, reason = "compiled for the vectors of its callers")]
 #[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let count = a.len();
-    let b = &b[..count];
+    let (a, a_rest) = a.as_chunks::<LANES>();
+    let (b, b_rest) = b[..a.len() * LANES + a_rest.len()].as_chunks::<LANES>();
     let mut sums = [0.0; LANES];
-    let mut at = 0;
-    while at + LANES <= count {
-        let (a, b) = (&a[at..][..LANES], &b[at..][..LANES]);
+    for k in 0..a.len() {
+        let (a, b) = (a[k], b[k]);
         for lane in 0..LANES {
             sums[lane] += a[lane] * b[lane];
         }
-        at += LANES;
     }
     let mut rest = 0.0;
-    for k in at..count {
-        rest += a[k] * b[k];
+    for k in 0..a_rest.len() {
+        rest += a_rest[k] * b_rest[k];
     }
-    let [a, b, c, d, e, f, g, h] = sums;
-    ((a + b) + (c + d)) + ((e + f) + (g + h)) + rest
+    sum(sums) + rest
 }

@@ -78,8 +78,8 @@ impl Drag {
             let learnt = self.learnt.as_ref().map_or(0.0, |learnt| learnt.mean.interpolate(&cell));
             return Some((coefficient, learnt));
         }
-        let coefficient =
-            value_continued((&self.table, self.between_nodes), lift_coefficient, mach)?;
+        let smooth = (self.between_nodes == BetweenNodes::Smooth).then_some(&self.smooth);
+        let coefficient = value_continued((&self.table, smooth), lift_coefficient, mach)?;
         let learnt = match &self.learnt {
             Some(learnt) => {
                 learnt.mean.interpolate(&grid.locate(lift_coefficient, mach, Outside::Hold).ok()?)
