@@ -18,12 +18,16 @@ use crate::math::pivoted::{Pivoted, pivoted};
 const INFLATIONS: usize = 3;
 /// How often outliers are weighed. Our choice: a bound on time; clean flights need one.
 const MOST_WEIGHINGS: usize = 5;
+/// How often by noise alone before scales are sought. Our choice: absurd values are down after two.
+const MOST_WEIGHINGS_BY_NOISE: usize = 2;
 /// Growth of the scatter below which it is not raised again. Our choice: noise need not be known better.
 const SETTLED_SCATTER: f64 = 1.02;
 /// Steps of the search in ln of a factor, before outliers are weighed and after. Our choice: a factor of two, down to a fifth;
 /// a parabola through three values finds what lies between them, and flights leave some tens of per cent open.
 const FIRST_STEPS: [f64; 2] = [0.6, 0.2];
 const STEPS: [f64; 1] = [0.12];
+/// The same from what was likeliest of rows that are nearly the same.
+const NEARBY_STEPS: [f64; 2] = [0.2, 0.12];
 /// Noise within flights at which columns are chosen, over that of the aircraft file. Our choice: about the least that is ever
 /// found, where the most columns can be told apart.
 const QUIET: f64 = 0.2;
@@ -64,7 +68,7 @@ pub(super) struct FewColumns {
 pub(super) struct Weighed {
     pub(super) weights: Weights,
     sums: ChannelSums,
-    dials: Dials,
+    pub(super) dials: Dials,
     left: Vec<f64>,
     mean: Mat<f64>,
 }
@@ -80,22 +84,33 @@ impl FewColumns {
         Self { reduction, prior, rows }
     }
 
-    /// Fits, and weighs what lies far from the fit, until weights stay. All factors are sought before and after; in between only the
-    /// noise within flights, which falls as outliers are weighed down.
+    /// Fits, and weighs what lies far from the fit, until weights stay. The first times only noise is sought: scales that are sought
+    /// among outliers are large enough to follow them, and then nothing lies far.
     pub(super) fn weigh(&self, mut weights: Weights) -> Option<Weighed> {
         let mut dials = Dials::usual();
+        // Weighings by noise alone.
+        let mut before = if self.prior.has_scales() { 0 } else { MOST_WEIGHINGS_BY_NOISE };
+        let mut steps: &[f64] = &FIRST_STEPS;
         for weighing in 1.. {
             let sums = ChannelSums::new(&self.rows, &weights);
             let mut evidence = Evidence::new(&sums, &self.prior);
-            dials = match weighing {
-                1 => evidence.likeliest(dials, &FIRST_STEPS),
-                _ => evidence.likeliest_within(dials, STEPS[0]),
+            let by_noise = before < MOST_WEIGHINGS_BY_NOISE;
+            dials = if by_noise {
+                evidence.likeliest_noise(dials, steps)
+            } else {
+                evidence.likeliest(dials, steps)
             };
-            let next = weights.after(&self.rows, &self.rows.left(&evidence.mean(&dials)?), &dials);
-            if next.settled(&weights) || weighing == MOST_WEIGHINGS {
-                dials = evidence.likeliest(dials, &STEPS);
-                let mean = evidence.mean(&dials)?;
-                let left = self.rows.left(&mean);
+            let mean = evidence.mean(&dials)?;
+            let left = self.rows.left(&mean);
+            let next = weights.after(&self.rows, &left, &dials);
+            let is_settled = next.settled(&weights);
+            steps = &STEPS;
+            if by_noise {
+                before = if is_settled { MOST_WEIGHINGS_BY_NOISE } else { before + 1 };
+                if before == MOST_WEIGHINGS_BY_NOISE {
+                    steps = &FIRST_STEPS;
+                }
+            } else if is_settled || weighing >= MOST_WEIGHINGS {
                 return Some(Weighed { weights, sums, dials, left, mean });
             }
             weights = next;
@@ -123,14 +138,13 @@ impl FewColumns {
         Some(variances.into_iter().enumerate().map(of).collect())
     }
 
-    /// ln of the marginal likelihood of what was recorded, at the likeliest noise, with these weights; of no use where matrices
-    /// are not positive definite.
-    pub(super) fn ln_evidence(&self, weights: &Weights) -> f64 {
+    /// ln of the marginal likelihood of what was recorded, with these weights, at the likeliest noise from a start; of no use where
+    /// matrices are not positive definite. With that noise.
+    pub(super) fn ln_evidence(&self, weights: &Weights, start: Dials) -> (f64, Dials) {
         let sums = ChannelSums::new(&self.rows, weights);
         let mut evidence = Evidence::new(&sums, &self.prior);
-        let usual = evidence.likeliest(Dials::usual(), &FIRST_STEPS);
-        let likeliest = evidence.likeliest(usual, &STEPS);
-        evidence.ln_evidence(&likeliest)
+        let likeliest = evidence.likeliest(start, &NEARBY_STEPS);
+        (evidence.ln_evidence(&likeliest), likeliest)
     }
 }
 

@@ -5,7 +5,7 @@ use core::ops::Range;
 use faer::Mat;
 
 use crate::baseline::Baseline;
-use crate::learning::channel::{FewColumns, LearntChannel, learn_channel};
+use crate::learning::channel::{FewColumns, LearntChannel, Weighed, learn_channel};
 use crate::learning::fit::Joint;
 use crate::learning::n2_rows::{GivenThrust, LearntFuelFlow, N2Rows, given_columns};
 use crate::learning::outliers::Weights;
@@ -87,11 +87,13 @@ fn first_deck(of_deck: &ChannelRows) -> Option<Vec<f64>> {
 fn share_that_is_thrust(rows: &N2Rows<'_>, deck: &Deck) -> Option<f64> {
     let of_none = rows.of_deck(&GivenThrust { share: THRUST_SHARES[0], deck });
     // The same weights for all shares, or each would choose its own outliers.
-    let weights = FewColumns::of(&of_none, &GROUPS).weigh(Weights::before(&of_none))?.weights;
+    let Weighed { weights, mut dials, .. } =
+        FewColumns::of(&of_none, &GROUPS).weigh(Weights::before(&of_none))?;
     let (mut sum, mut shares, mut largest) = (0.0, 0.0, f64::NEG_INFINITY);
     for share in THRUST_SHARES {
         let of_deck = rows.of_deck(&GivenThrust { share, deck });
-        let ln = FewColumns::of(&of_deck, &GROUPS).ln_evidence(&weights);
+        let ln;
+        (ln, dials) = FewColumns::of(&of_deck, &GROUPS).ln_evidence(&weights, dials);
         // Relative to the largest so far.
         let by = (largest - ln.max(largest)).exp();
         largest = largest.max(ln);

@@ -164,9 +164,9 @@ impl<'a> Evidence<'a> {
         self.likeliest_of(self.dimensions(), start, steps)
     }
 
-    /// The likeliest noise within flights, with the ratio of that between them, and all scales, as they are.
-    pub(super) fn likeliest_within(&mut self, start: Dials, step: f64) -> Dials {
-        self.likeliest_of(1, start, &[step])
+    /// The likeliest noise, with all scales as they are.
+    pub(super) fn likeliest_noise(&mut self, start: Dials, steps: &[f64]) -> Dials {
+        self.likeliest_of(NOISE_DIALS, start, steps)
     }
 
     /// The same of the first few factors; the others stay.
@@ -231,9 +231,7 @@ impl<'a> Evidence<'a> {
         if scales == 0 {
             return points;
         }
-        // Noise as likely as it can be either way: unseen flights may have raised it.
-        let all = self.likeliest_of(NOISE_DIALS, likeliest, &NOISE_STEPS);
-        let of_all = self.ln_evidence(&all);
+        let of_all = self.ln_evidence(&likeliest);
         let level_alone = self.likeliest_of(NOISE_DIALS, likeliest.of_level_alone(), &NOISE_STEPS);
         let of_level = self.ln_evidence(&level_alone) - self.ln_prior_of_scales(&level_alone);
         let open = deviations[NOISE_DIALS..].iter().zip(SCALE_LN_DEVIATIONS).take(scales);

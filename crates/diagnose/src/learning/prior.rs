@@ -26,6 +26,11 @@ impl Prior {
         Self::of_roots((0..=last).map(root).collect())
     }
 
+    /// Whether scales multiply anything.
+    pub(super) const fn has_scales(&self) -> bool {
+        self.parts.len() > 1
+    }
+
     /// Covariance of the pivots at scales.
     pub(super) fn covariance(&self, scales: [f64; SCALES]) -> Lower {
         let mut covariance = Lower::zeros(self.parts[0].nrows());

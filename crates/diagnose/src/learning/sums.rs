@@ -199,6 +199,14 @@ fn turned_loadings(
     }
     let rank = loadings.len();
     let gram = Mat::from_fn(rank, rank, |i, j| product(&loadings[i], &loadings[j]));
+    if rank == 2 {
+        let (rotation, lengths) = of_two(gram[(0, 0)], gram[(1, 0)], gram[(1, 1)]);
+        let turned = |by: &[f64; 2]| -> Vec<f64> {
+            let pairs = loadings[0].iter().zip(&loadings[1]);
+            pairs.map(|(one, other)| one * by[0] + other * by[1]).collect()
+        };
+        return (rotation.iter().map(turned).collect(), lengths.to_vec());
+    }
     // Not to be expected of numbers: then nothing is taken as common, as where nothing is loaded.
     let Ok(eigen) = gram.self_adjoint_eigen(Side::Lower) else {
         return (vec![vec![0.0; range.len()]; rank], vec![0.0; rank]);
@@ -211,6 +219,21 @@ fn turned_loadings(
     ((0..rank).map(turned).collect(), lengths)
 }
 
+/// Eigenvectors and eigenvalues of the symmetric matrix `[[a, b], [b, c]]`: by one rotation of Jacobi.
+///
+/// # Source
+/// Golub and Van Loan 2013, Matrix computations, section 8.5.2.
+fn of_two(a: f64, b: f64, c: f64) -> ([[f64; 2]; 2], [f64; 2]) {
+    if b == 0.0 {
+        return ([[1.0, 0.0], [0.0, 1.0]], [a, c]);
+    }
+    let half = (c - a) / (2.0 * b);
+    let tangent = half.signum() / (half.abs() + half.hypot(1.0));
+    let cosine = 1.0 / tangent.hypot(1.0);
+    let sine = tangent * cosine;
+    ([[cosine, -sine], [sine, cosine]], [a - tangent * b, c + tangent * b])
+}
+
 #[cfg(test)]
 mod tests {
     use faer::linalg::solvers::Solve;
@@ -221,6 +244,27 @@ mod tests {
     fn number(k: &mut f64) -> f64 {
         *k += 1.0;
         (*k * 0.618_033_988_749_895).fract() - 0.5
+    }
+
+    /// faer's decomposition of the same matrices.
+    #[test]
+    fn two_loadings_are_turned_as_by_faer() {
+        for (a, b, c) in [(2.0, 0.3, 1.0), (1.0, -0.9, 1.0), (0.0, 0.0, 3.0), (1e-9, 2e-6, 5.0)] {
+            let (vectors, values) = of_two(a, b, c);
+            let matrix = Mat::from_fn(2, 2, |i, j| [[a, b], [b, c]][i][j]);
+            let eigen = matrix.self_adjoint_eigen(Side::Lower).unwrap();
+            let mut sorted = values;
+            sorted.sort_by(f64::total_cmp);
+            for (k, value) in sorted.iter().enumerate() {
+                assert!((value - eigen.S().column_vector()[k]).abs() < 1e-14 * c);
+            }
+            for (vector, value) in vectors.iter().zip(values) {
+                let turned = [a * vector[0] + b * vector[1], b * vector[0] + c * vector[1]];
+                for k in 0..2 {
+                    assert!((turned[k] - value * vector[k]).abs() < 1e-14 * c, "{a} {b} {c}");
+                }
+            }
+        }
     }
 
     /// The same by the covariance of each flight, inverted (faer's Cholesky solver).

@@ -1,17 +1,14 @@
 //! What a baseline is uncertain about, in the design.
 
-use effects::{BetweenNodes, EffectModel};
 use flight::effect::EffectId;
-use test_support::fleet::{Background, Planted, Setup, exact_model, fly, typical};
+use test_support::fleet::{Background, Planted, Setup, fly, typical};
 
 use crate::baseline::Baseline;
 use crate::hypotheses::design::Design;
 use crate::learning::tests::with_exact_table;
 use crate::residuals::predictor::with_thrust;
-use crate::residuals::reference::Reference;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::channels::MAXIMUM_CHANNELS;
-use crate::signals::record::FlightRecord;
 
 /// A baseline of thirty flights whose drag follows Reynolds number, which no table does, and those flights held against it.
 fn taught_by_thinner_air(work: impl FnOnce(&Baseline, &PreparedFlights<'_>)) {
