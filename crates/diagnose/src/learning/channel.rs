@@ -138,8 +138,8 @@ impl FewColumns {
         Some(variances.into_iter().enumerate().map(of).collect())
     }
 
-    /// ln of the marginal likelihood of what was recorded, with these weights, at the likeliest noise from a start; of no use where
-    /// matrices are not positive definite. With that noise.
+    /// ln of the marginal likelihood of what was recorded, with these weights, at the likeliest noise from a start, and that noise; of
+    /// no use where matrices are not positive definite.
     pub(super) fn ln_evidence(&self, weights: &Weights, start: Dials) -> (f64, Dials) {
         let sums = ChannelSums::new(&self.rows, weights);
         let mut evidence = Evidence::new(&sums, &self.prior);
@@ -181,6 +181,9 @@ fn raise_scatter(
 
 #[cfg(test)]
 mod tests {
+    use faer::Side;
+    use faer::linalg::solvers::Solve;
+
     use super::*;
 
     /// Eight flights that differ four times as much as stated. What is believed of scatter draws the likeliest towards the
@@ -204,5 +207,41 @@ mod tests {
         assert!(between > 2.0, "{between}");
         let needed = scatter_by_unseen(&found.unseen, between);
         assert!(needed <= between, "{between}, and {needed} needed");
+    }
+
+    /// Ridge regression with the covariance of each flight written out (faer's Cholesky solver), at the noise that was found.
+    #[test]
+    fn coefficients_are_those_of_a_dense_regression() {
+        let (flights, each, width) = (6, 4, 3);
+        let count = flights * each;
+        let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let rows = ChannelRows {
+            columns: Mat::from_fn(count, width + 1, |i, j| number(7 * i + 11 * j + 2)),
+            variance: (0..count).map(|i| 0.1 + 0.1 * (number(i) + 0.5)).collect(),
+            loadings: vec![(0..count).map(|i| 0.2 + number(i + 9)).collect()],
+            groups: (0..flights).map(|flight| flight * each..(flight + 1) * each).collect(),
+            shares: vec![1.0; flights],
+        };
+        let groups = [0; 3];
+        let few = FewColumns::of(&rows, &groups);
+        let fit = few.weigh(Weights::of_one(&rows)).unwrap();
+        assert!(fit.weights.rows.iter().chain(&fit.weights.groups).all(|weight| *weight > 0.99));
+        let covariance = Mat::from_fn(count, count, |i, j| {
+            let own = if i == j { rows.variance[i] } else { 0.0 };
+            let is_common = i / each == j / each;
+            let common = if is_common { rows.loadings[0][i] * rows.loadings[0][j] } else { 0.0 };
+            fit.dials.within.powi(2) * own + fit.dials.between.powi(2) * common
+        });
+        let columns = rows.columns.subcols(0, width);
+        let solved = covariance.llt(Side::Lower).unwrap().solve(&rows.columns);
+        let products = columns.transpose() * solved;
+        let precision =
+            Mat::from_fn(width, width, |i, j| products[(i, j)] + if i == j { 1.0 } else { 0.0 });
+        let right = Mat::from_fn(width, 1, |i, _| products[(i, width)]);
+        let expected = precision.llt(Side::Lower).unwrap().solve(&right);
+        for (k, found) in few.coefficients(&fit, &groups).unwrap().into_iter().enumerate() {
+            let known: f64 = expected[(k, 0)];
+            assert!((found - known).abs() < 1e-9 * (1.0 + known.abs()), "{k}: {found} {known}");
+        }
     }
 }
