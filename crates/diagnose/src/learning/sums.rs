@@ -40,8 +40,9 @@ impl ChannelSums {
         let size = rows.columns.ncols();
         let rank = rows.loadings.len();
         let mut own = Mat::<f64>::zeros(size, size);
-        let mut common = Mat::<f64>::zeros(size, rank * rows.groups.len());
-        let mut eigenvalues = vec![(0.0, 0.0); rank * rows.groups.len()];
+        let turned_of = |range: &Range<usize>| rank.min(range.len());
+        let mut common = Mat::<f64>::zeros(size, rows.groups.iter().map(turned_of).sum());
+        let mut eigenvalues = Vec::with_capacity(common.ncols());
         let scales = scales(rows, weights);
         for together in together(rows) {
             let first = rows.groups[together.start].start;
@@ -52,9 +53,9 @@ impl ChannelSums {
                 let share = rows.shares[group];
                 let of_group = 1.0 / (share * weights.groups[group]).sqrt();
                 let (turned, lengths) = turned_loadings(rows, &range, &scales, of_group);
-                for (r, (loading, length)) in turned.iter().zip(lengths).enumerate() {
-                    eigenvalues[rank * group + r] = (length.max(0.0), share);
-                    let into = common.col_as_slice_mut(rank * group + r);
+                for (loading, length) in turned.iter().zip(lengths) {
+                    let into = common.col_as_slice_mut(eigenvalues.len());
+                    eigenvalues.push((length.max(0.0), share));
                     for (column, into) in into.iter_mut().enumerate() {
                         let values = &white.col_as_slice(column)[range.start - first..];
                         let mut sum = 0.0;
@@ -181,7 +182,8 @@ fn whitened(rows: &ChannelRows, groups: &Range<usize>, scales: &[f64]) -> Mat<f6
     white
 }
 
-/// Loadings of a group, whitened, times the eigenvectors of their products; and the eigenvalues.
+/// Loadings of a group, whitened, times the eigenvectors of their products; and the eigenvalues. Of more loadings than rows as many as
+/// there are rows hold all: the eigenvectors of the rows' products, each times the root of its eigenvalue.
 fn turned_loadings(
     rows: &ChannelRows,
     range: &Range<usize>,
@@ -198,6 +200,9 @@ fn turned_loadings(
         return (loadings, vec![length]);
     }
     let rank = loadings.len();
+    if rank > range.len() {
+        return turned_rows(&loadings, range.len());
+    }
     let gram = Mat::from_fn(rank, rank, |i, j| product(&loadings[i], &loadings[j]));
     if rank == 2 {
         let (rotation, lengths) = of_two(gram[(0, 0)], gram[(1, 0)], gram[(1, 1)]);
@@ -217,6 +222,30 @@ fn turned_loadings(
     };
     let lengths = (0..rank).map(|r| eigen.S().column_vector()[r]).collect();
     ((0..rank).map(turned).collect(), lengths)
+}
+
+/// Of fewer rows than loadings.
+fn turned_rows(loadings: &[Vec<f64>], count: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let mut products = Mat::<f64>::zeros(count, count);
+    for loading in loadings {
+        for column in 0..count {
+            let by = loading[column];
+            let into = &mut products.col_as_slice_mut(column)[column..];
+            for (into, value) in into.iter_mut().zip(&loading[column..]) {
+                *into += by * value;
+            }
+        }
+    }
+    // As where nothing is loaded, as below.
+    let Ok(eigen) = products.self_adjoint_eigen(Side::Lower) else {
+        return (vec![vec![0.0; count]; count], vec![0.0; count]);
+    };
+    let length = |r: usize| eigen.S().column_vector()[r].max(0.0);
+    let turned = |r: usize| -> Vec<f64> {
+        let root = length(r).sqrt();
+        (0..count).map(|at| root * eigen.U()[(at, r)]).collect()
+    };
+    ((0..count).map(turned).collect(), (0..count).map(length).collect())
 }
 
 /// Eigenvectors and eigenvalues of the symmetric matrix `[[a, b], [b, c]]`: by one rotation of Jacobi.
@@ -270,11 +299,18 @@ mod tests {
     /// The same by the covariance of each flight, inverted (faer's Cholesky solver).
     #[test]
     fn gram_is_that_of_the_inverse_covariance_at_any_noise() {
+        // One, two and more loadings; more than rows of a flight.
+        for loadings in [1, 2, 3, 5] {
+            gram_is_that_of_the_inverse_covariance(loadings);
+        }
+    }
+
+    fn gram_is_that_of_the_inverse_covariance(of: usize) {
         let (count, columns, mut k) = (11, 4, 0.0);
         let rows = ChannelRows {
             columns: Mat::from_fn(count, columns, |_, _| number(&mut k)),
             variance: (0..count).map(|_| 1.0 + number(&mut k)).collect(),
-            loadings: (0..2).map(|_| (0..count).map(|_| number(&mut k)).collect()).collect(),
+            loadings: (0..of).map(|_| (0..count).map(|_| number(&mut k)).collect()).collect(),
             groups: vec![0..4, 4..5, 5..11],
             shares: vec![0.3, 1.0, 0.8],
         };
