@@ -32,7 +32,7 @@ impl Given {
 }
 
 impl Baseline {
-    /// The deck, given what fuel flow says of thrust. `deviations` are those that fuel flow was learnt with, before it scaled any.
+    /// The deck, given what fuel flow says of thrust, and what it came to. `deviations` are those that fuel flow was learnt with, before it scaled any.
     ///
     /// ```text
     /// d = V_d (D C⁻¹y − D C⁻¹B β),   cov d = V_d + A cov(β) Aᵀ,   cov(d, β) = −A cov(β),   A = V_d D C⁻¹B        [baseline.4]
@@ -45,7 +45,7 @@ impl Baseline {
         data: &PreparedFlights<'_>,
         joint: &mut Joint,
         deviations: &[f64],
-    ) -> Result<(), DiagnoseError> {
+    ) -> Result<LearntChannel, DiagnoseError> {
         let layout = self.layout();
         let terms = layout.deck.len();
         let means = |columns: Range<usize>| -> Vec<f64> {
@@ -78,7 +78,7 @@ impl Baseline {
         // The lower triangle: rows of what is given, columns of the deck.
         let informed = Mat::from_fn(terms, given.len(), |i, k| gram[(terms + k, i)] / square);
         joint.put_deck(layout.deck, &given, &deck, &informed);
-        Ok(())
+        Ok(deck)
     }
 
     /// How much of the remainder is thrust: the mean over shares that are as likely before, by the marginal likelihood of N2.
