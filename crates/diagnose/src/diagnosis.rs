@@ -202,8 +202,9 @@ fn with_table_off(
         return Ok(None);
     }
     // What is compared is what is left of the gap; the noise in it is the same.
-    let judge =
-        |system: &WhitenedSystem<'_>| nested(Problem { system, model, library }, 1.0, options.seed);
+    let judge = |system: &WhitenedSystem<'_>| {
+        nested(Problem { system, model, library }, false, 1.0, options.seed)
+    };
     let named = judge(system);
     let levels = system.levels.clone();
     system.rule_out_right_table();
@@ -266,7 +267,8 @@ fn conclude(
     let mut gap = gap_of(system, analysis, &own, scale);
     let exceeds = exceeds_uncertainty(&gap, unknown_square(system));
     let real = exceeds || is_real(analysis, &outside);
-    let unseen = (!options.skip_closure && real).then(|| nested(problem, scale, options.seed));
+    let unseen =
+        (!options.skip_closure && real).then(|| nested(problem, exceeds, scale, options.seed));
     let places = (!options.skip_where).then(|| find(system, analysis, scale, options.seed));
     let detection_input = DetectionInput {
         analysis,

@@ -2,6 +2,7 @@
 
 mod by_scales;
 mod channel;
+mod correlation;
 mod deck;
 mod dials;
 mod evidence;

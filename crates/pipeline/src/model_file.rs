@@ -27,8 +27,9 @@ use crate::condition_means::ConditionMeans;
 /// The format that this program writes.
 ///
 /// 2: a baseline is one posterior over drag table and remainder; the remainder of format 1 is not read. Models without a
-/// baseline are written as format 1.
-pub const FORMAT: u32 = 2;
+/// baseline are written as format 1. 3: factors of the noise multiply what the aircraft file states of flights and of drift, too;
+/// those of format 2 stand for it.
+pub const FORMAT: u32 = 3;
 
 /// A model, and what it has learnt.
 #[derive(Clone, Debug)]

@@ -49,7 +49,7 @@ const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
     (Variable::Mach, Variable::Date),
 ];
 /// Without acceleration: its own error is in the residual, which depends on it in every recording.
-pub(crate) const AGNOSTIC_VARIABLES: [Variable; 18] = [
+pub(crate) const AGNOSTIC_VARIABLES: [Variable; 19] = [
     Variable::Mach,
     Variable::LiftCoefficient,
     Variable::PressureAltitude,
@@ -68,6 +68,7 @@ pub(crate) const AGNOSTIC_VARIABLES: [Variable; 18] = [
     Variable::CenterOfGravityLift,
     Variable::MachLift,
     Variable::MachExcess,
+    Variable::AntiIce,
 ];
 
 /// How a smooth function acts: on fuel flow alone, or on thrust, so that N2 sees it too.
@@ -535,10 +536,12 @@ fn agnostic_blocks(
     let mut blocks = Vec::new();
     let mut at = first;
     for variable in AGNOSTIC_VARIABLES {
-        let Some(hats) = values(variable).and_then(|v| Hats::at_quantiles(&v, &AGNOSTIC_QUANTILES))
-        else {
-            continue;
-        };
+        let hats = values(variable).and_then(|values| match variable {
+            // A switch has no values between off and on that a bend could be at.
+            Variable::AntiIce => Hats::at_quantiles(&values, &[0.0, 1.0]),
+            _ => Hats::at_quantiles(&values, &AGNOSTIC_QUANTILES),
+        });
+        let Some(hats) = hats else { continue };
         for acts in [Acts::FuelFlow, Acts::Thrust] {
             if acts == Acts::Thrust && !data.channels.n2 {
                 continue;

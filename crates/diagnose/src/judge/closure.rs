@@ -176,10 +176,17 @@ pub(crate) fn in_sample(
     shrinkage(problem, noise_scale, seed, |_| &choice)
 }
 
-/// Before and after on flights that neither choice nor fit has seen.
-pub(crate) fn nested(problem: Problem<'_>, noise_scale: f64, seed: u64) -> Shrinkage {
-    let choices: Vec<Choice> =
-        (0..CLOSURE_FOLDS).map(|fold| chosen(problem, fold).unwrap_or_default()).collect();
+/// Before and after on flights that neither choice nor fit has seen. Where the size of the gap alone shows that it is one
+/// (`is_certain`), the other flights name what explains them best, however probable no effect is.
+pub(crate) fn nested(
+    problem: Problem<'_>,
+    is_certain: bool,
+    noise_scale: f64,
+    seed: u64,
+) -> Shrinkage {
+    let choices: Vec<Choice> = (0..CLOSURE_FOLDS)
+        .map(|fold| chosen(problem, fold, is_certain).unwrap_or_default())
+        .collect();
     shrinkage(problem, noise_scale, seed, |fold| &choices[fold])
 }
 
@@ -192,7 +199,7 @@ struct Choice {
     table: Option<FittedTable>,
 }
 
-fn chosen(problem: Problem<'_>, fold: usize) -> Option<Choice> {
+fn chosen(problem: Problem<'_>, fold: usize, is_certain: bool) -> Option<Choice> {
     let analysis = analyse(problem, Some(fold))?;
     let Problem { system, library, .. } = problem;
     if system.is_book() && is_table_off(&analysis) {
@@ -207,9 +214,10 @@ fn chosen(problem: Problem<'_>, fold: usize) -> Option<Choice> {
         return Some(Choice { columns, sizes, table: Some(table) });
     }
     let Analysis { scorer, backgrounds, space, models, clean, .. } = analysis;
-    // The verdict's own rule: where nothing at all is improbable, the best named set, be it no more probable than none.
+    // The verdict's own rule: where nothing at all is improbable, or the gap too large for it, the best named set, be it no more
+    // probable than none.
     let named = models.iter().map(|(scored, _)| scored).find(|s| !s.hypothesis.columns.is_empty());
-    let Some(best) = named.filter(|_| clean <= CLEAN_PROBABILITY) else {
+    let Some(best) = named.filter(|_| is_certain || clean <= CLEAN_PROBABILITY) else {
         return Some(Choice::default());
     };
     let at = &backgrounds[best.background];

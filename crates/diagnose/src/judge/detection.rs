@@ -16,7 +16,7 @@ use crate::search::outside::Outside;
 use crate::search::system::Problem;
 use crate::thresholds::{
     LARGEST_REST, LEAST_OF_A_FORM, LEAST_OF_A_TABLE, MORE_PROBABLE_THAN_NOT, OTHER_FORM,
-    OUTSIDE_PROBABILITY, UNPROVEN_SHARE,
+    OUTSIDE_PROBABILITY, SMALLEST_GAP_PERCENT, UNPROVEN_SHARE,
 };
 
 /// What a decision is made from.
@@ -87,22 +87,28 @@ pub(crate) fn detect(
         .is_some_and(|top| top.probability * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT);
     let announced = taught && !input.exceeds_uncertainty && !input.lies_at_an_engine;
     let own_error = announced && !is_named && !closes_more_than(0.0, unseen);
-    let stands_out = something
+    let is_outside = is_unnamed(outside, named);
+    let leading =
+        || leading_forms(problem, input.analysis, outside, (input.noise_scale, own.seed()));
+    let mut forms = None;
+    // What no name explains is as large as the form that describes it.
+    let is_seen = something
         && !own_error
-        && is_large(system, gap, top)
-        && !is_vague(gap, outside, top, taught && makes_worse(unseen));
+        && (is_large(system, gap, top)
+            || is_outside && is_large_form(forms.get_or_insert_with(leading)));
+    let stands_out = is_seen && !is_vague(gap, outside, top, taught && makes_worse(unseen));
     // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
     // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
     // functions, and may be all of a large gap: the form that describes it is asked then.
     let has_no_witness = stands_out
         && taught
         && !input.lies_at_an_engine
-        && is_unnamed(outside, named)
+        && is_outside
         && smooth_predicts_nothing(problem, own);
-    let forms = has_no_witness
-        .then(|| leading_forms(problem, input.analysis, outside, (input.noise_scale, own.seed())));
-    let is_borne_out =
-        forms.as_ref().is_none_or(|forms| bears_out(forms.first().and_then(|best| best.closure)));
+    let is_borne_out = !has_no_witness || {
+        let best = forms.get_or_insert_with(leading).first();
+        bears_out(best.and_then(|best| best.closure))
+    };
     let detected = input.is_real && (table.is_some() || (stands_out && is_borne_out));
     Detection { detected, table: table.filter(|_| detected), smooth_term, forms }
 }
@@ -117,6 +123,11 @@ fn is_unnamed(outside: &Outside, named: f64) -> bool {
 fn smooth_predicts_nothing(problem: Problem<'_>, own: &Shrinkage) -> bool {
     held_out_smooth(problem.system)
         .is_some_and(|fitted| !own.with_change(problem.system, &fitted).closes())
+}
+
+/// Whether the form that describes a gap best explains enough to be a gap at all.
+fn is_large_form(forms: &[FoundForm]) -> bool {
+    forms.first().is_some_and(|best| best.rms_percent >= SMALLEST_GAP_PERCENT)
 }
 
 /// Whether a form surely closes more than half of the gap on flights that its parameters have not seen.

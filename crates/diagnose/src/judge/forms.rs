@@ -71,6 +71,7 @@ fn forms(
                 variable: of.variable,
                 acts_on: if of.acts == Acts::Thrust { ActsOn::Thrust } else { ActsOn::FuelFlow },
                 size,
+                rms_percent: fits.rms_percent(kind.best),
                 size_ci95: [size - NORMAL_95 * deviation, size + NORMAL_95 * deviation],
                 place_ci95: fits.places(kind),
                 scale: [of.mean, of.deviation],
@@ -183,6 +184,11 @@ impl Fits {
     fn size(&self, index: usize) -> (f64, f64) {
         let (size, deviation) = self.sizes[index];
         (size * self.units[index], deviation * self.units[index])
+    }
+
+    /// Root mean square of what a candidate changes fuel flow by, %: sizes are those of functions of 1 %.
+    fn rms_percent(&self, index: usize) -> f64 {
+        self.sizes[index].0.abs()
     }
 
     /// Between which places of a kind 95 % of its probability lie.

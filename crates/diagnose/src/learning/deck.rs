@@ -20,8 +20,8 @@ use crate::signals::references::DiagnoseError;
 const GROUPS: [usize; DECK_TERMS] = [0; DECK_TERMS];
 
 impl Baseline {
-    /// The deck, given what fuel flow says of thrust. `deviations` are those that fuel flow was learnt with, before it scaled any,
-    /// `fuel` its rows.
+    /// The deck, given what fuel flow says of thrust, and what it came to. `deviations` are those that fuel flow was learnt with,
+    /// before it scaled any, `fuel` its rows.
     ///
     /// ```text
     /// d = V_d (D C⁻¹y − D C⁻¹B β),   cov d = V_d + A cov(β) Aᵀ,   cov(d, β) = −A cov(β),   A = V_d D C⁻¹B        [baseline.4]
@@ -37,7 +37,7 @@ impl Baseline {
         joint: &mut Joint,
         deviations: &[f64],
         fuel: &ChannelRows,
-    ) -> Result<(), DiagnoseError> {
+    ) -> Result<LearntChannel, DiagnoseError> {
         let layout = self.layout();
         let before = &data.predictor.deck;
         let learnt = LearntFuelFlow { layout: &layout, rows: fuel, deviations, means: &joint.mean };
@@ -57,7 +57,7 @@ impl Baseline {
         let informed = faer::Scale(1.0 / square) * (through.transpose() * rows.of_given(&given));
         let columns: Vec<usize> = given_columns(&layout).collect();
         joint.put_deck(layout.deck, &columns, &deck, &informed);
-        Ok(())
+        Ok(deck)
     }
 }
 

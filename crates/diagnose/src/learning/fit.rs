@@ -5,6 +5,7 @@ use faer::Mat;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::baseline::{Baseline, lower_triangle};
 use crate::learning::channel::{LearntChannel, learn_channel};
+use crate::learning::correlation::{Left, correlation_factor};
 use crate::learning::physical::Physics;
 use crate::learning::rows::{ChannelRows, fuel_flow_columns};
 use crate::learning::unseen::factor_by_unseen;
@@ -57,7 +58,9 @@ impl Baseline {
             }
         }
         if data.channels.n2 {
-            self.fit_deck(data, &mut joint, &deviations, &rows)?;
+            let deck = self.fit_deck(data, &mut joint, &deviations, &rows)?;
+            let channels = (Left::of(0, &fuel), Left::of(data.channels.n2_row(), &deck));
+            self.parts.noise.fuel_flow_with_n2 = correlation_factor(data, channels.0, channels.1);
         }
         self.hold_to_physics(physics, &mut joint, &deviations);
         self.keep(data, &joint, &deviations)?;
@@ -77,10 +80,14 @@ impl Baseline {
         self.parts.against_physics = held.against;
     }
 
-    /// Which scale multiplies a column's prior standard deviation: 0 none, that of the level.
+    /// Which scale multiplies a column's prior standard deviation: 0 none, that of the level and of effects whose size physics
+    /// knows.
     fn scale_group(&self, column: usize) -> usize {
         let layout = self.layout();
-        if column == 0 {
+        let standing = layout.standing_effects.clone();
+        // How far a model is off says nothing of the Earth.
+        let is_known = |column: usize| STANDING_EFFECTS[column - standing.start].id.is_known();
+        if column == 0 || (standing.contains(&column) && is_known(column)) {
             return 0;
         }
         if !layout.remainder.contains(&column) {

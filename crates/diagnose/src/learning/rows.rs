@@ -130,9 +130,12 @@ impl ChannelRows {
         let own = |row: &&SegmentRow| {
             row.noise.factor[channel][..=channel].iter().map(|l| l * l).sum::<f64>()
         };
-        let count = rows.iter().map(|row| row.noise.common.len()).min().unwrap_or(0);
+        let count = rows.iter().map(|row| row.noise.common.len()).max().unwrap_or(0);
         let loadings = (0..count)
-            .map(|r| rows.iter().map(|row| row.noise.common[r][channel]).collect::<Vec<f64>>())
+            .map(|r| {
+                let of = |row: &&SegmentRow| row.noise.common.get(r).map_or(0.0, |u| u[channel]);
+                rows.iter().map(of).collect::<Vec<f64>>()
+            })
             .filter(|loading| loading.iter().any(|value| *value != 0.0))
             .collect();
         let variance = rows.iter().map(own).collect();

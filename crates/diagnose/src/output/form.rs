@@ -31,6 +31,8 @@ pub struct FoundForm {
     pub size: f64,
     /// 95 % interval of the size.
     pub size_ci95: [f64; 2],
+    /// Root mean square of what it changes fuel flow by over the flights, %.
+    pub rms_percent: f64,
     /// Where a hinge, step, logistic or bump lies: 95 % of the belief over the places that were tried.
     pub place_ci95: Option<[f64; 2]>,
     /// Mean and standard deviation of the variable over the flights: what linear forms are in.

@@ -28,6 +28,7 @@ use crate::residuals::level::covariance::{Covariance, TOGETHER};
 use crate::residuals::level::drag::Drag;
 use crate::residuals::level::functions::Functions;
 use crate::residuals::level::noise::{At, Noise, Sides};
+use crate::signals::noise::Statistics;
 
 /// A whole model, prepared for many such points.
 #[derive(Clone, Debug)]
@@ -97,6 +98,9 @@ impl WholeModelOfLevels {
         let aircraft = model.aircraft();
         let sensors = *aircraft.sensors();
         let meter = sensors.fuel_flow_percent / 100.0;
+        let heating_value = sensors.lower_heating_value_percent / 100.0;
+        let statistics = Statistics::of(baseline.noise(), &sensors);
+        let drift = statistics.fuel_flow_drift.percent / 100.0;
         let of = |values: &[f64]| -> f64 {
             without_input.iter().filter_map(|place| values.get(*place)).sum()
         };
@@ -109,7 +113,7 @@ impl WholeModelOfLevels {
             covariance: Covariance::new(baseline, &places)?,
             noise: Noise {
                 sensors,
-                factors: *baseline.noise(),
+                statistics,
                 acceleration_m_s2: mean_acceleration_deviation_m_s2(
                     sensors.acceleration_m_s2,
                     samples,
@@ -119,6 +123,8 @@ impl WholeModelOfLevels {
                     &[],
                     aircraft.engines(),
                 ),
+                level_variance: heating_value * heating_value
+                    + drift * drift / aircraft.engines().max(1) as f64,
                 mach_exponent: aircraft.tsfc_law().mach_exponent,
             },
             stated: baseline.interval_factor(),

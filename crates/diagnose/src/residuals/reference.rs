@@ -1,7 +1,6 @@
 //! What flights are compared with.
 
 use effects::{BetweenNodes, EffectModel, EffectReferences};
-use perf_model::aircraft::{FlightBias, FuelFlowDrift};
 
 use crate::baseline::Baseline;
 use crate::input::Input;
@@ -38,18 +37,8 @@ impl<'a> Reference<'a> {
     }
 
     pub(crate) fn statistics(self, model: &EffectModel<'_>) -> Statistics {
-        let sensors = model.aircraft().sensors();
-        let stated = matches!(self, Self::Table);
-        Statistics {
-            factors: self.baseline().map_or_else(NoiseFactors::default, |b| *b.noise()),
-            // What a flight keeps is learnt as a factor on mass, heating value and split, what wanders as one on the rest.
-            flight_bias: if stated { sensors.flight_bias } else { FlightBias::none() },
-            fuel_flow_drift: if stated {
-                sensors.fuel_flow_drift
-            } else {
-                FuelFlowDrift::default()
-            },
-        }
+        let factors = self.baseline().map_or_else(NoiseFactors::default, |b| *b.noise());
+        Statistics::of(&factors, model.aircraft().sensors())
     }
 }
 

@@ -12,7 +12,7 @@ use crate::residuals::reference::Reference;
 use crate::residuals::signatures::Difference;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::n2_deck::Deck;
-use crate::signals::noise::{NoiseModel, Statistics};
+use crate::signals::noise::{NoiseModel, Statistics, add_wander};
 use crate::signals::references::DiagnoseError;
 
 /// Samples of the segment that an interval at a flight point is of.
@@ -220,13 +220,15 @@ impl<'a> WholeModel<'a> {
                 stated * sum
             })
             .collect();
-        let noise = NoiseModel {
+        let mut noise = NoiseModel {
             model: &self.model,
             channels: self.predictor.channels,
             statistics: &self.statistics,
             predict: &predict,
         }
         .segment_noise(&known, samples, recorded)?;
+        let engines = self.model.aircraft().engines();
+        add_wander(&mut [&mut noise], &[0.0], self.statistics.drift(), engines);
         let square = |values: &ByChannel| values[0] * values[0];
         Ok(WholePrediction {
             ln_fuel_flow: without + carried.mean,

@@ -9,7 +9,7 @@ use flight::effect::EffectSign;
 use crate::hypotheses::backgrounds::Background;
 use crate::hypotheses::evidence::{Hypothesis, ScoredHypothesis, Scorer, sign_factor};
 use crate::math::vector_ln_exp::{exp, ln};
-use crate::priors::NOISE_FREEDOM;
+use crate::priors::{LARGEST_OF_TWO, NOISE_FREEDOM};
 
 /// A model this much less probable than the best one, in ln, is left out: all together they hold less than 1e-13.
 const NEGLIGIBLE: f64 = 40.0;
@@ -91,7 +91,8 @@ pub(crate) fn search(
                 }
             }
             let signs = [scorer.priors[a].sign, scorer.priors[b].sign];
-            if let Some(scored) = scratch.scored(model, signs, uncertain_table) {
+            let scored = scratch.scored(model, signs, uncertain_table);
+            if let Some(scored) = scored.filter(|scored| is_possible(scorer, scored)) {
                 if scored.ln_weight > best {
                     best = scored.ln_weight;
                     scratch.limit(best - NEGLIGIBLE);
@@ -101,6 +102,15 @@ pub(crate) fn search(
         }
     }
     models
+}
+
+/// Whether neither of two effects is larger than any such effect is.
+fn is_possible(scorer: &Scorer, scored: &ScoredHypothesis) -> bool {
+    let is_usual = |(&column, size): (&usize, &f64)| {
+        let prior = &scorer.priors[column];
+        (size - prior.mean).abs() <= LARGEST_OF_TWO * prior.scales[0].0
+    };
+    scored.hypothesis.columns.iter().zip(&scored.sizes).all(is_usual)
 }
 
 /// One number per background, `rest` where there is none.
@@ -376,5 +386,36 @@ mod tests {
                 .is_empty()
         );
         assert_eq!(search(&scorer, &backgrounds, Context { best, ..context }).len(), found.len());
+    }
+
+    /// By hand: eleven typical sizes of one of two are more than ten, nine are not; of a known coefficient, mean 1 and deviation
+    /// 0.15, 2.4 is within ten deviations.
+    #[test]
+    fn a_pair_with_an_impossible_size_is_not_believed() {
+        let of = |mean: f64, deviation: f64| Prior {
+            mean,
+            scales: [(deviation, 0.0); 3],
+            count: 1,
+            sign: EffectSign::Either,
+        };
+        let scorer = Scorer {
+            priors: vec![of(0.0, 2.0), of(1.0, 0.15)],
+            effect_of: vec![0, 1],
+            ln_choices: vec![0.0; 2],
+            effects: 2,
+            held: vec![false; 2],
+            rows: 60.0,
+        };
+        let with = |sizes: [f64; 2]| ScoredHypothesis {
+            hypothesis: Hypothesis { columns: vec![0, 1], flight_scatter_percent: None },
+            ln_weight: 0.0,
+            sizes: sizes.to_vec(),
+            deviations: vec![0.1; 2],
+            background: 0,
+            table_share: 0.0,
+        };
+        assert!(is_possible(&scorer, &with([-18.0, 2.4])));
+        assert!(!is_possible(&scorer, &with([-22.0, 1.0])));
+        assert!(!is_possible(&scorer, &with([1.0, 2.6])));
     }
 }

@@ -1,7 +1,7 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
 use effects::{EffectError, EffectModel, EffectPoint, Effects, KnownPoint, Response};
-use perf_model::aircraft::{FlightBias, FuelFlowDrift};
+use perf_model::aircraft::{FlightBias, FuelFlowDrift, SensorDeviations};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +9,8 @@ use crate::math::cholesky::small_cholesky;
 use crate::priors::FLIGHT_SPLIT_DEVIATION;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 
+/// Largest correlation of fuel flow and N2 within a flight. Our choice: a covariance has to be positive definite.
+const MOST_CORRELATED: f64 = 0.99;
 /// Place of the heating value among a segment's common loadings.
 pub(crate) const HEATING_VALUE_LOADING: usize = 1;
 
@@ -20,12 +22,39 @@ pub struct NoiseFactors {
     pub within: [f64; 3],
     /// Of what all segments of one flight have in common, in the same order.
     pub between: [f64; 3],
+    /// Of what fuel flow and N2 have in common from segment to segment, on their covariance in addition to these factors.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub fuel_flow_with_n2: f64,
+    /// Whether what the aircraft file states of errors that a flight keeps and of drifting meters is noise in addition, which the
+    /// factors multiply; factors of older files stand for it.
+    #[serde(default, skip_serializing_if = "is_not")]
+    pub with_flight_bias: bool,
 }
 
 impl Default for NoiseFactors {
     fn default() -> Self {
-        Self { within: [1.0; 3], between: [1.0; 3] }
+        Self {
+            within: [1.0; 3],
+            between: [1.0; 3],
+            fuel_flow_with_n2: one(),
+            with_flight_bias: true,
+        }
     }
+}
+
+/// What files of older programs state.
+const fn one() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+const fn is_not(value: &bool) -> bool {
+    !*value
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+fn is_one(factor: &f64) -> bool {
+    factor.to_bits() == one().to_bits()
 }
 
 /// What is known of the noise in addition to the sensors' deviations from segment to segment.
@@ -34,6 +63,25 @@ pub(crate) struct Statistics {
     pub(crate) factors: NoiseFactors,
     pub(crate) flight_bias: FlightBias,
     pub(crate) fuel_flow_drift: FuelFlowDrift,
+}
+
+impl Statistics {
+    /// What factors multiply of what the aircraft file states.
+    pub(crate) fn of(factors: &NoiseFactors, sensors: &SensorDeviations) -> Self {
+        // Factors of older files stand for what a flight keeps, and for what drifts.
+        let (flight_bias, fuel_flow_drift) = if factors.with_flight_bias {
+            (sensors.flight_bias, sensors.fuel_flow_drift)
+        } else {
+            (FlightBias::none(), FuelFlowDrift::default())
+        };
+        Self { factors: *factors, flight_bias, fuel_flow_drift }
+    }
+
+    /// The drift of fuel flow, as large as the factors make it.
+    pub(crate) fn drift(&self) -> FuelFlowDrift {
+        let stated = self.fuel_flow_drift;
+        FuelFlowDrift { percent: self.factors.between[0] * stated.percent, ..stated }
+    }
 }
 
 /// Covariance of one segment's residuals: its own part, and its loadings on what the flight has in common.
@@ -186,6 +234,13 @@ impl NoiseModel<'_> {
                     factors.within[channels.kind(a)] * factors.within[channels.kind(b)];
             }
         }
+        if channels.n2 {
+            let n2 = channels.n2_row();
+            let limit = MOST_CORRELATED * (covariance[0][0] * covariance[n2][n2]).sqrt();
+            let both = (covariance[0][n2] * factors.fuel_flow_with_n2).clamp(-limit, limit);
+            covariance[0][n2] = both;
+            covariance[n2][0] = both;
+        }
         for channel in 0..count {
             if !recorded[channel] {
                 for other in 0..count {
@@ -316,5 +371,28 @@ mod tests {
         ] {
             assert!((found - expected).abs() < 1e-11, "{found} {expected}");
         }
+    }
+
+    /// A file that an older program wrote has neither field: its factors were learnt over sensors' errors from segment to segment,
+    /// mass, heating value and split alone. Text and figures by hand.
+    #[test]
+    fn factors_of_older_files_stand_for_what_a_flight_keeps() {
+        let old = "(within: (1.0, 2.0, 3.0), between: (4.0, 5.0, 6.0))";
+        let old: NoiseFactors = ron::from_str(old).unwrap();
+        assert_eq!((old.fuel_flow_with_n2, old.with_flight_bias), (1.0, false));
+        let sensors = SensorDeviations {
+            flight_bias: FlightBias { mach: 0.001, ..FlightBias::none() },
+            fuel_flow_drift: FuelFlowDrift { percent: 0.2, time_s: 1200.0 },
+            ..SensorDeviations::default()
+        };
+        let of_old = Statistics::of(&old, &sensors);
+        assert_eq!((of_old.flight_bias.mach, of_old.drift().percent), (0.0, 0.0));
+        let new = NoiseFactors { with_flight_bias: true, ..old };
+        let of_new = Statistics::of(&new, &sensors);
+        // 4 × 0.2 %.
+        assert!((of_new.drift().percent - 0.8).abs() < 1e-15);
+        assert!((of_new.flight_bias.mach - 0.001).abs() < 1e-15);
+        let text = ron::to_string(&new).unwrap();
+        assert_eq!(ron::from_str::<NoiseFactors>(&text).unwrap(), new);
     }
 }

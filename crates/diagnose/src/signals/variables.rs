@@ -41,7 +41,8 @@ pub(crate) struct Hats {
 }
 
 impl Hats {
-    /// Knots at quantiles of the values; `None` where they do not spread over at least three knots.
+    /// Knots at quantiles of the values; `None` where they do not spread over at least three knots, or two if no more are asked
+    /// for.
     pub(crate) fn at_quantiles(values: &[f64], quantiles: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -57,7 +58,7 @@ impl Hats {
                 knots.push(knot);
             }
         }
-        if knots.len() < 3 {
+        if knots.len() < quantiles.len().min(3) {
             return None;
         }
         let mut hats = Self { means: vec![0.0; knots.len()], knots };

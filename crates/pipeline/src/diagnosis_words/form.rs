@@ -148,6 +148,7 @@ mod tests {
             acts_on: ActsOn::Thrust,
             size: 9.61,
             size_ci95: [8.81, 10.41],
+            rms_percent: 0.4,
             place_ci95: Some([0.779, 0.784]),
             scale: [0.78, 0.02],
             probability: 0.97,

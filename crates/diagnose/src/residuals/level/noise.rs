@@ -10,7 +10,7 @@ use crate::math::vector_ln_exp::ln;
 use crate::residuals::level::block::{Block, ln_ratio};
 use crate::residuals::level::drag::{Drag, Found};
 use crate::residuals::level::functions::{self, Functions, States, Values};
-use crate::signals::noise::NoiseFactors;
+use crate::signals::noise::Statistics;
 
 /// Relative step of the mass, and step of the acceleration (m/s²), of the slopes of the noise.
 const MASS_STEP: f64 = 1e-3;
@@ -20,9 +20,11 @@ const ACCELERATION_STEP_M_S2: f64 = 1e-4;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Noise {
     pub(super) sensors: SensorDeviations,
-    pub(super) factors: NoiseFactors,
+    pub(super) statistics: Statistics,
     pub(super) acceleration_m_s2: f64,
     pub(super) fuel_flow_variance: f64,
+    /// Of drift, heating value: what a flight has in common whatever it flies.
+    pub(super) level_variance: f64,
     /// Exponent of 1 + M in the TSFC law.
     pub(super) mach_exponent: f64,
 }
@@ -97,7 +99,7 @@ impl Noise {
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
     pub(super) fn variance(&self, functions: &Functions, at: &At<'_>, sides: &Sides) -> Lanes {
-        let Self { sensors, factors, .. } = self;
+        let Self { sensors, statistics: Statistics { factors, flight_bias, .. }, .. } = self;
         let (mach_step, temperature_step_k, altitude_step_m) = self.steps();
         let mut of_mach = difference(functions, at, &sides.mach, &functions::MACH);
         for (slope, mach) in of_mach.iter_mut().zip(&at.states.mach) {
@@ -112,7 +114,6 @@ impl Noise {
             let slope = difference / (2.0 * step);
             slope * slope * deviation * deviation
         };
-        let heating_value = sensors.lower_heating_value_percent / 100.0;
         let (within, between) = (factors.within[0].powi(2), factors.between[0].powi(2));
         let mut variance = [0.0; LANES];
         for (place, variance) in variance.iter_mut().enumerate() {
@@ -123,7 +124,15 @@ impl Noise {
                 + squared(of_altitude[place], altitude_step_m, sensors.pressure_altitude_m)
                 + squared(of_acceleration[place], ACCELERATION_STEP_M_S2, self.acceleration_m_s2);
             let mass = sensors.mass.relative_to(Mass::kilograms(at.states.mass_kg[place]));
-            let common = squared(of_mass[place], MASS_STEP, mass) + heating_value * heating_value;
+            let common = self.level_variance
+                + squared(of_mass[place], MASS_STEP, mass)
+                + squared(of_mach[place], mach_step, flight_bias.mach)
+                + squared(
+                    of_temperature[place],
+                    temperature_step_k,
+                    flight_bias.static_air_temperature_k,
+                )
+                + squared(of_altitude[place], altitude_step_m, flight_bias.pressure_altitude_m);
             *variance = own * within + common * between;
         }
         variance
