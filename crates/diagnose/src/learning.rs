@@ -15,6 +15,7 @@ mod posterior;
 mod prior;
 mod rows;
 mod sums;
+mod turned;
 mod unseen;
 
 #[cfg(test)]

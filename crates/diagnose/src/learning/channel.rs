@@ -9,6 +9,7 @@ use crate::learning::posterior::{ChannelPosterior, prior_variances};
 use crate::learning::prior::Prior;
 use crate::learning::rows::ChannelRows;
 use crate::learning::sums::ChannelSums;
+use crate::learning::turned::TurnedFlights;
 use crate::learning::unseen::{Unseen, scatter_by_unseen, unseen};
 use crate::math::lower::dot;
 use crate::math::pivoted::{Pivoted, pivoted};
@@ -46,9 +47,14 @@ pub(super) struct LearntChannel {
 
 /// Learns a channel. `groups` are the scales of its columns: 0 none, 1 and on those of [`Dials::scales`]. `None` where matrices
 /// are not positive definite.
-pub(super) fn learn_channel(rows: &ChannelRows, groups: &[usize]) -> Option<LearntChannel> {
+pub(super) fn learn_channel(
+    rows: &ChannelRows,
+    groups: &[usize],
+    turned: &mut TurnedFlights,
+) -> Option<LearntChannel> {
     let few = FewColumns::of(rows, groups);
-    let Weighed { weights, sums, dials: before, left, .. } = few.weigh(Weights::before(rows))?;
+    let Weighed { weights, sums, dials: before, left, .. } =
+        few.weigh(Weights::before(rows), turned)?;
     let mut evidence = Evidence::new(&sums, &few.prior);
     let mut dials = before;
     let unseen = raise_scatter(&few.rows, &weights, &mut evidence, &mut dials)?;
@@ -86,13 +92,17 @@ impl FewColumns {
 
     /// Fits, and weighs what lies far from the fit, until weights stay. The first times only noise is sought: scales that are sought
     /// among outliers are large enough to follow them, and then nothing lies far.
-    pub(super) fn weigh(&self, mut weights: Weights) -> Option<Weighed> {
+    pub(super) fn weigh(
+        &self,
+        mut weights: Weights,
+        turned: &mut TurnedFlights,
+    ) -> Option<Weighed> {
         let mut dials = Dials::usual();
         // Weighings by noise alone.
         let mut before = if self.prior.has_scales() { 0 } else { MOST_WEIGHINGS_BY_NOISE };
         let mut steps: &[f64] = &FIRST_STEPS;
         for weighing in 1.. {
-            let sums = ChannelSums::new(&self.rows, &weights);
+            let sums = ChannelSums::new(&self.rows, &weights, turned);
             let mut evidence = Evidence::new(&sums, &self.prior);
             let by_noise = before < MOST_WEIGHINGS_BY_NOISE;
             dials = if by_noise {
@@ -140,8 +150,13 @@ impl FewColumns {
 
     /// ln of the marginal likelihood of what was recorded, with these weights, at the likeliest noise from a start, and that noise; of
     /// no use where matrices are not positive definite.
-    pub(super) fn ln_evidence(&self, weights: &Weights, start: Dials) -> (f64, Dials) {
-        let sums = ChannelSums::new(&self.rows, weights);
+    pub(super) fn ln_evidence(
+        &self,
+        weights: &Weights,
+        start: Dials,
+        turned: &mut TurnedFlights,
+    ) -> (f64, Dials) {
+        let sums = ChannelSums::new(&self.rows, weights, turned);
         let mut evidence = Evidence::new(&sums, &self.prior);
         let likeliest = evidence.likeliest(start, &NEARBY_STEPS);
         (evidence.ln_evidence(&likeliest), likeliest)
@@ -202,7 +217,7 @@ mod tests {
             groups: (0..flights).map(|flight| flight * each..(flight + 1) * each).collect(),
             shares: vec![1.0; flights],
         };
-        let found = learn_channel(&rows, &[0]).unwrap();
+        let found = learn_channel(&rows, &[0], &mut TurnedFlights::default()).unwrap();
         let between = found.posterior.dials.between;
         assert!(between > 2.0, "{between}");
         let needed = scatter_by_unseen(&found.unseen, between);
@@ -224,7 +239,7 @@ mod tests {
         };
         let groups = [0; 3];
         let few = FewColumns::of(&rows, &groups);
-        let fit = few.weigh(Weights::of_one(&rows)).unwrap();
+        let fit = few.weigh(Weights::of_one(&rows), &mut TurnedFlights::default()).unwrap();
         assert!(fit.weights.rows.iter().chain(&fit.weights.groups).all(|weight| *weight > 0.99));
         let covariance = Mat::from_fn(count, count, |i, j| {
             let own = if i == j { rows.variance[i] } else { 0.0 };

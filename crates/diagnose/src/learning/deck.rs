@@ -11,6 +11,7 @@ use crate::learning::n2_rows::{GivenThrust, LearntFuelFlow, N2Rows, given_column
 use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
 use crate::learning::sums::through_noise;
+use crate::learning::turned::TurnedFlights;
 use crate::priors::THRUST_SHARES;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::n2_deck::{DECK_TERMS, Deck};
@@ -42,17 +43,21 @@ impl Baseline {
         let before = &data.predictor.deck;
         let learnt = LearntFuelFlow { layout: &layout, rows: fuel, deviations, means: &joint.mean };
         let rows = N2Rows::new(data, learnt);
-        let share = share_that_is_thrust(&rows, before).ok_or(DiagnoseError::Degenerate)?;
+        // N2 errs alike, whatever it is asked.
+        let mut turned = TurnedFlights::default();
+        let share = share_that_is_thrust(&rows, before, &mut turned);
+        let share = share.ok_or(DiagnoseError::Degenerate)?;
         self.parts.thrust_share = share;
-        let found = first_deck(&rows.of_deck(&GivenThrust { share, deck: before }));
+        let found = first_deck(&rows.of_deck(&GivenThrust { share, deck: before }), &mut turned);
         let found = found.ok_or(DiagnoseError::Degenerate)?;
         let first = moved(before, &found, &deviations[layout.deck.clone()]);
         let given = GivenThrust { share, deck: &first };
         let of_deck = rows.of_deck(&given);
-        let deck = learn_channel(&of_deck, &GROUPS).ok_or(DiagnoseError::Degenerate)?;
+        let deck =
+            learn_channel(&of_deck, &GROUPS, &mut turned).ok_or(DiagnoseError::Degenerate)?;
         self.set_noise(2, &deck);
         let dials = deck.posterior.dials;
-        let through = through_noise(&of_deck, &deck.weights, dials.ratio());
+        let through = through_noise(&of_deck, &deck.weights, dials.ratio(), &mut turned);
         let square = dials.within * dials.within;
         let informed = faer::Scale(1.0 / square) * (through.transpose() * rows.of_given(&given));
         let columns: Vec<usize> = given_columns(&layout).collect();
@@ -71,9 +76,9 @@ fn moved(from: &Deck, by: &[f64], deviations: &[f64]) -> Deck {
 }
 
 /// Coefficients of the deck at the likeliest noise, in prior standard deviations.
-fn first_deck(of_deck: &ChannelRows) -> Option<Vec<f64>> {
+fn first_deck(of_deck: &ChannelRows, turned: &mut TurnedFlights) -> Option<Vec<f64>> {
     let few = FewColumns::of(of_deck, &GROUPS);
-    few.coefficients(&few.weigh(Weights::before(of_deck))?, &GROUPS)
+    few.coefficients(&few.weigh(Weights::before(of_deck), turned)?, &GROUPS)
 }
 
 /// How much of the remainder is thrust: the mean over shares that are as likely before, by the marginal likelihood of N2. `None`
@@ -84,16 +89,16 @@ fn first_deck(of_deck: &ChannelRows) -> Option<Vec<f64>> {
 /// ```
 ///
 /// What no flight taught drag may be thrust or what an engine burns for it; fuel flow alone does not say which.
-fn share_that_is_thrust(rows: &N2Rows<'_>, deck: &Deck) -> Option<f64> {
+fn share_that_is_thrust(rows: &N2Rows<'_>, deck: &Deck, turned: &mut TurnedFlights) -> Option<f64> {
     let of_none = rows.of_deck(&GivenThrust { share: THRUST_SHARES[0], deck });
     // The same weights for all shares, or each would choose its own outliers.
     let Weighed { weights, mut dials, .. } =
-        FewColumns::of(&of_none, &GROUPS).weigh(Weights::before(&of_none))?;
+        FewColumns::of(&of_none, &GROUPS).weigh(Weights::before(&of_none), turned)?;
     let (mut sum, mut shares, mut largest) = (0.0, 0.0, f64::NEG_INFINITY);
     for share in THRUST_SHARES {
         let of_deck = rows.of_deck(&GivenThrust { share, deck });
         let ln;
-        (ln, dials) = FewColumns::of(&of_deck, &GROUPS).ln_evidence(&weights, dials);
+        (ln, dials) = FewColumns::of(&of_deck, &GROUPS).ln_evidence(&weights, dials, turned);
         // Relative to the largest so far.
         let by = (largest - ln.max(largest)).exp();
         largest = largest.max(ln);

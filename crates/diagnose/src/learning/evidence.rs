@@ -340,6 +340,7 @@ mod tests {
     use super::*;
     use crate::learning::outliers::Weights;
     use crate::learning::rows::ChannelRows;
+    use crate::learning::turned::TurnedFlights;
     use crate::math::cholesky::Cholesky;
     use crate::priors::SCALE_OF_NOTHING;
 
@@ -361,7 +362,7 @@ mod tests {
             groups: vec![0..3, 3..5],
             shares: vec![1.0; 2],
         };
-        let sums = ChannelSums::new(&rows, &Weights::of_one(&rows));
+        let sums = ChannelSums::new(&rows, &Weights::of_one(&rows), &mut TurnedFlights::default());
         let prior = Prior::of_roots(vec![
             Mat::from_fn(2, 2, |i, j| if i == j && i == 0 { 1.0 } else { 0.0 }),
             Mat::from_fn(2, 2, |i, j| if i == j && i == 1 { 1.0 } else { 0.0 }),
@@ -432,7 +433,8 @@ mod tests {
         let mut between = 0;
         for slope in [0.0, 0.15, 0.25, 0.4, 1.5, 12.0] {
             let rows = flights_with_slope(slope);
-            let sums = ChannelSums::new(&rows, &Weights::of_one(&rows));
+            let sums =
+                ChannelSums::new(&rows, &Weights::of_one(&rows), &mut TurnedFlights::default());
             let mut evidence = Evidence::new(&sums, &prior);
             let likeliest = evidence.likeliest(Dials::usual(), &[0.6, 0.3, 0.1, 0.05]);
             let points = evidence.points(likeliest);

@@ -8,6 +8,7 @@ use crate::learning::channel::{LearntChannel, learn_channel};
 use crate::learning::correlation::{Left, correlation_factor};
 use crate::learning::physical::Physics;
 use crate::learning::rows::{ChannelRows, fuel_flow_columns};
+use crate::learning::turned::TurnedFlights;
 use crate::learning::unseen::factor_by_unseen;
 use crate::math::cholesky::Cholesky;
 use crate::math::half_spaces::{Doubt, hold};
@@ -39,7 +40,8 @@ impl Baseline {
         let (rows, unheld) = ChannelRows::of_fuel_flow(self, data);
         let columns: Vec<usize> = fuel_flow_columns(self).collect();
         let groups: Vec<usize> = columns.iter().map(|&column| self.scale_group(column)).collect();
-        let fuel = learn_channel(&rows, &groups).ok_or(DiagnoseError::Degenerate)?;
+        let fuel = learn_channel(&rows, &groups, &mut TurnedFlights::default())
+            .ok_or(DiagnoseError::Degenerate)?;
         joint.put(&columns, &fuel);
         self.set_noise(0, &fuel);
         let [smooth, products, _] = fuel.posterior.dials.scales;
@@ -52,7 +54,8 @@ impl Baseline {
 
         for at in 1..=layout.contrasts.len() {
             let rows = ChannelRows::of_contrast(&deviations, &layout, data, at);
-            if let Some(found) = learn_channel(&rows, &[0]).filter(|_| !rows.groups.is_empty()) {
+            let found = learn_channel(&rows, &[0], &mut TurnedFlights::default());
+            if let Some(found) = found.filter(|_| !rows.groups.is_empty()) {
                 joint.put(&[layout.contrasts.start + at - 1], &found);
                 self.set_noise(1, &found);
             }

@@ -14,10 +14,11 @@
 
 use core::ops::Range;
 
-use faer::{Mat, Side};
+use faer::Mat;
 
 use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
+use crate::learning::turned::TurnedFlights;
 use crate::math::linear::{add_gram, subtract_gram, symmetrize};
 
 /// Rows that are multiplied together. Our choice: products are fast, and what waits for them is small.
@@ -36,7 +37,7 @@ pub(super) struct ChannelSums {
 }
 
 impl ChannelSums {
-    pub(super) fn new(rows: &ChannelRows, weights: &Weights) -> Self {
+    pub(super) fn new(rows: &ChannelRows, weights: &Weights, turned: &mut TurnedFlights) -> Self {
         let size = rows.columns.ncols();
         let rank = rows.loadings.len();
         let mut own = Mat::<f64>::zeros(size, size);
@@ -52,17 +53,17 @@ impl ChannelSums {
                 let range = rows.groups[group].clone();
                 let share = rows.shares[group];
                 let of_group = 1.0 / (share * weights.groups[group]).sqrt();
-                let (turned, lengths) = turned_loadings(rows, &range, &scales, of_group);
-                for (loading, length) in turned.iter().zip(lengths) {
+                let flight = turned.flight(rows, group, &scales);
+                for (loading, length) in flight.loadings.iter().zip(&flight.lengths) {
                     let into = common.col_as_slice_mut(eigenvalues.len());
-                    eigenvalues.push((length.max(0.0), share));
+                    eigenvalues.push((of_group * of_group * length, share));
                     for (column, into) in into.iter_mut().enumerate() {
                         let values = &white.col_as_slice(column)[range.start - first..];
                         let mut sum = 0.0;
                         for (at, u) in loading.iter().enumerate() {
                             sum += values[at] * u;
                         }
-                        *into = sum;
+                        *into = of_group * sum;
                     }
                 }
             }
@@ -105,13 +106,18 @@ impl ChannelSums {
 
 /// Rows through the inverse of their noise: w²C⁻¹X of the columns without the residual, at a ratio ρ of the noise between flights
 /// over that within.
-pub(super) fn through_noise(rows: &ChannelRows, weights: &Weights, ratio: f64) -> Mat<f64> {
+pub(super) fn through_noise(
+    rows: &ChannelRows,
+    weights: &Weights,
+    ratio: f64,
+    turned: &mut TurnedFlights,
+) -> Mat<f64> {
     let square = ratio * ratio;
     let scales = scales(rows, weights);
     let mut through = Mat::<f64>::zeros(rows.variance.len(), rows.width());
     for (group, range) in rows.groups.iter().enumerate() {
-        let of_group = 1.0 / (rows.shares[group] * weights.groups[group]).sqrt();
-        let (turned, lengths) = turned_loadings(rows, range, &scales, of_group);
+        let of_group = square / (rows.shares[group] * weights.groups[group]);
+        let flight = turned.flight(rows, group, &scales);
         let scales = &scales[range.clone()];
         for column in 0..rows.width() {
             let from = &rows.columns.col_as_slice(column)[range.clone()];
@@ -119,9 +125,9 @@ pub(super) fn through_noise(rows: &ChannelRows, weights: &Weights, ratio: f64) -
             for ((slot, value), scale) in into.iter_mut().zip(from).zip(scales) {
                 *slot = value * scale;
             }
-            for (loading, length) in turned.iter().zip(&lengths) {
+            for (loading, length) in flight.loadings.iter().zip(&flight.lengths) {
                 let common: f64 = loading.iter().zip(&*into).map(|(u, x)| u * x).sum();
-                let by = common * square / (square * length.max(0.0) + 1.0);
+                let by = common * of_group / (of_group * length + 1.0);
                 for (slot, u) in into.iter_mut().zip(loading) {
                     *slot -= by * u;
                 }
@@ -182,89 +188,9 @@ fn whitened(rows: &ChannelRows, groups: &Range<usize>, scales: &[f64]) -> Mat<f6
     white
 }
 
-/// Loadings of a group, whitened, times the eigenvectors of their products; and the eigenvalues. Of more loadings than rows as many as
-/// there are rows hold all: the eigenvectors of the rows' products, each times the root of its eigenvalue.
-fn turned_loadings(
-    rows: &ChannelRows,
-    range: &Range<usize>,
-    scales: &[f64],
-    of_group: f64,
-) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let of = |loading: &Vec<f64>| -> Vec<f64> {
-        range.clone().map(|row| loading[row] * scales[row] * of_group).collect()
-    };
-    let loadings: Vec<Vec<f64>> = rows.loadings.iter().map(of).collect();
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    if let [only] = &loadings[..] {
-        let length = product(only, only);
-        return (loadings, vec![length]);
-    }
-    let rank = loadings.len();
-    if rank > range.len() {
-        return turned_rows(&loadings, range.len());
-    }
-    let gram = Mat::from_fn(rank, rank, |i, j| product(&loadings[i], &loadings[j]));
-    if rank == 2 {
-        let (rotation, lengths) = of_two(gram[(0, 0)], gram[(1, 0)], gram[(1, 1)]);
-        let turned = |by: &[f64; 2]| -> Vec<f64> {
-            let pairs = loadings[0].iter().zip(&loadings[1]);
-            pairs.map(|(one, other)| one * by[0] + other * by[1]).collect()
-        };
-        return (rotation.iter().map(turned).collect(), lengths.to_vec());
-    }
-    // Not to be expected of numbers: then nothing is taken as common, as where nothing is loaded.
-    let Ok(eigen) = gram.self_adjoint_eigen(Side::Lower) else {
-        return (vec![vec![0.0; range.len()]; rank], vec![0.0; rank]);
-    };
-    let turned = |r: usize| -> Vec<f64> {
-        let sum = |at: usize| (0..rank).map(|k| loadings[k][at] * eigen.U()[(k, r)]).sum();
-        (0..range.len()).map(sum).collect()
-    };
-    let lengths = (0..rank).map(|r| eigen.S().column_vector()[r]).collect();
-    ((0..rank).map(turned).collect(), lengths)
-}
-
-/// Of fewer rows than loadings.
-fn turned_rows(loadings: &[Vec<f64>], count: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
-    let mut products = Mat::<f64>::zeros(count, count);
-    for loading in loadings {
-        for column in 0..count {
-            let by = loading[column];
-            let into = &mut products.col_as_slice_mut(column)[column..];
-            for (into, value) in into.iter_mut().zip(&loading[column..]) {
-                *into += by * value;
-            }
-        }
-    }
-    // As where nothing is loaded, as below.
-    let Ok(eigen) = products.self_adjoint_eigen(Side::Lower) else {
-        return (vec![vec![0.0; count]; count], vec![0.0; count]);
-    };
-    let length = |r: usize| eigen.S().column_vector()[r].max(0.0);
-    let turned = |r: usize| -> Vec<f64> {
-        let root = length(r).sqrt();
-        (0..count).map(|at| root * eigen.U()[(at, r)]).collect()
-    };
-    ((0..count).map(turned).collect(), (0..count).map(length).collect())
-}
-
-/// Eigenvectors and eigenvalues of the symmetric matrix `[[a, b], [b, c]]`: by one rotation of Jacobi.
-///
-/// # Source
-/// Golub and Van Loan 2013, Matrix computations, section 8.5.2.
-fn of_two(a: f64, b: f64, c: f64) -> ([[f64; 2]; 2], [f64; 2]) {
-    if b == 0.0 {
-        return ([[1.0, 0.0], [0.0, 1.0]], [a, c]);
-    }
-    let half = (c - a) / (2.0 * b);
-    let tangent = half.signum() / (half.abs() + half.hypot(1.0));
-    let cosine = 1.0 / tangent.hypot(1.0);
-    let sine = tangent * cosine;
-    ([[cosine, -sine], [sine, cosine]], [a - tangent * b, c + tangent * b])
-}
-
 #[cfg(test)]
 mod tests {
+    use faer::Side;
     use faer::linalg::solvers::Solve;
 
     use super::*;
@@ -273,27 +199,6 @@ mod tests {
     fn number(k: &mut f64) -> f64 {
         *k += 1.0;
         (*k * 0.618_033_988_749_895).fract() - 0.5
-    }
-
-    /// faer's decomposition of the same matrices.
-    #[test]
-    fn two_loadings_are_turned_as_by_faer() {
-        for (a, b, c) in [(2.0, 0.3, 1.0), (1.0, -0.9, 1.0), (0.0, 0.0, 3.0), (1e-9, 2e-6, 5.0)] {
-            let (vectors, values) = of_two(a, b, c);
-            let matrix = Mat::from_fn(2, 2, |i, j| [[a, b], [b, c]][i][j]);
-            let eigen = matrix.self_adjoint_eigen(Side::Lower).unwrap();
-            let mut sorted = values;
-            sorted.sort_by(f64::total_cmp);
-            for (k, value) in sorted.iter().enumerate() {
-                assert!((value - eigen.S().column_vector()[k]).abs() < 1e-14 * c);
-            }
-            for (vector, value) in vectors.iter().zip(values) {
-                let turned = [a * vector[0] + b * vector[1], b * vector[0] + c * vector[1]];
-                for k in 0..2 {
-                    assert!((turned[k] - value * vector[k]).abs() < 1e-14 * c, "{a} {b} {c}");
-                }
-            }
-        }
     }
 
     /// The same by the covariance of each flight, inverted (faer's Cholesky solver).
@@ -318,7 +223,7 @@ mod tests {
             rows: (0..count).map(|_| 0.7 + number(&mut k)).collect(),
             groups: vec![1.0, 0.3, 0.8],
         };
-        let sums = ChannelSums::new(&rows, &weights);
+        let sums = ChannelSums::new(&rows, &weights, &mut TurnedFlights::default());
         for (within, between) in [(0.3, 1.9), (1.7, 0.4)] {
             let mut expected = Mat::<f64>::zeros(columns, columns);
             let mut ln_determinant = 0.0;
@@ -336,7 +241,8 @@ mod tests {
                 expected += faer::Scale(share) * (part.transpose() * inverse);
             }
             let (gram, ln_common) = sums.gram(between / within);
-            let through = through_noise(&rows, &weights, between / within);
+            let through =
+                through_noise(&rows, &weights, between / within, &mut TurnedFlights::default());
             let by_rows = through.transpose() * rows.columns.subcols(0, columns - 1);
             for (i, j) in (0..columns - 1).flat_map(|i| (0..columns - 1).map(move |j| (i, j))) {
                 let found = by_rows[(i, j)] / (within * within);
