@@ -20,6 +20,7 @@ use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
 use crate::learning::turned::TurnedFlights;
 use crate::math::linear::{add_gram, subtract_gram, symmetrize};
+use crate::math::lower::dot;
 
 /// Rows that are multiplied together. Our choice: products are fast, and what waits for them is small.
 const ROWS_TOGETHER: usize = 384;
@@ -54,16 +55,13 @@ impl ChannelSums {
                 let share = rows.shares[group];
                 let of_group = 1.0 / (share * weights.groups[group]).sqrt();
                 let flight = turned.flight(rows, group, &scales);
-                for (loading, length) in flight.loadings.iter().zip(&flight.lengths) {
-                    let into = common.col_as_slice_mut(eigenvalues.len());
-                    eigenvalues.push((of_group * of_group * length, share));
-                    for (column, into) in into.iter_mut().enumerate() {
-                        let values = &white.col_as_slice(column)[range.start - first..];
-                        let mut sum = 0.0;
-                        for (at, u) in loading.iter().enumerate() {
-                            sum += values[at] * u;
-                        }
-                        *into = of_group * sum;
+                let at = eigenvalues.len();
+                let squared = |length: &f64| (of_group * of_group * length, share);
+                eigenvalues.extend(flight.lengths.iter().map(squared));
+                for column in 0..size {
+                    let values = &white.col_as_slice(column)[range.start - first..][..range.len()];
+                    for (r, loading) in flight.loadings.iter().enumerate() {
+                        common[(column, at + r)] = of_group * dot(values, loading);
                     }
                 }
             }
