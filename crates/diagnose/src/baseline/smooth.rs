@@ -263,7 +263,6 @@ impl Prepared {
 
     /// As [`Smooth::is_beyond`], of places in lengths.
     #[expect(clippy::inline_always, reason = "as the others")]
-    #[expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
     #[inline(always)]
     pub(crate) fn are_beyond(&self, z: &Lanes) -> [bool; LANES] {
         let mut found = [false; LANES];

@@ -1,7 +1,6 @@
 //! A smooth function of one number, tabulated: a cubic on each of many equal pieces, a straight line beyond them.
 
 #![expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
-#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
 
 use crate::math::lanes::{LANES, Lanes, map};
 

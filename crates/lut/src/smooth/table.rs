@@ -55,7 +55,6 @@ impl SmoothTable {
     /// # Panics
     /// Where the cell is of a larger grid.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
-    #[expect(clippy::needless_range_loop, reason = "a loop that counts becomes vectors there")]
     #[must_use]
     #[inline(always)]
     pub fn value(&self, cell: &Cell) -> f64 {

@@ -212,9 +212,8 @@ fn pressure_pa(altitude_m: f64, standard_temperature_k: f64) -> f64 {
     let of_temperature = ln(standard_temperature_k / SEA_LEVEL_TEMPERATURE_K);
     let ln_ratio =
         TROPOSPHERE_PRESSURE_EXPONENT * of_temperature - above_m / ISOTHERMAL_SCALE_HEIGHT_M;
-    let is_inside =
-        altitude_m >= LOWEST_PRESSURE_ALTITUDE_M && altitude_m <= HIGHEST_PRESSURE_ALTITUDE_M;
-    if is_inside { SEA_LEVEL_PRESSURE_PA * exp(ln_ratio) } else { f64::NAN }
+    let inside = LOWEST_PRESSURE_ALTITUDE_M..=HIGHEST_PRESSURE_ALTITUDE_M;
+    if inside.contains(&altitude_m) { SEA_LEVEL_PRESSURE_PA * exp(ln_ratio) } else { f64::NAN }
 }
 
 /// Temperature of the standard atmosphere.
