@@ -2,6 +2,7 @@
 
 pub(crate) mod bootstrap;
 pub(crate) mod cholesky;
+pub(crate) mod curve;
 pub(crate) mod eliminate;
 pub(crate) mod gram;
 pub(crate) mod half_spaces;

@@ -45,6 +45,7 @@ pub(crate) struct AtTable<'p> {
 /// the drag-divergence Mach number with lift coefficient is our choice, a little less than the 0.1 of Korn's equation
 /// without sweep; the lift coefficient at which it is stated is that of cruise in the middle of the envelope.
 #[must_use]
+#[inline]
 pub fn drag_rise(mach: f64, lift_coefficient: f64, divergence_mach: f64) -> f64 {
     let divergence = divergence_mach
         - DIVERGENCE_FALL_PER_LIFT_COEFFICIENT * (lift_coefficient - DIVERGENCE_LIFT_COEFFICIENT);

@@ -4,7 +4,8 @@ use effects::Variable;
 use serde::{Deserialize, Serialize};
 
 use crate::math::cholesky::Cholesky;
-use crate::math::lanes::{add, add_product, each, map};
+use crate::math::curve::{Curve, Pieces};
+use crate::math::lanes::{LANES, Lanes, add, add_product, each, map};
 use crate::math::vector_ln_exp::exp;
 use crate::priors::{SMOOTH_KNOT_DISTANCE, SMOOTH_MOST_KNOTS};
 use faer::Mat;
@@ -232,6 +233,12 @@ impl Smooth {
     }
 }
 
+/// Largest error of a tabulated mean, of ln fuel flow. Our choice: of eight functions less than 1e-9, far below what is printed.
+const CURVE_ERROR: f64 = 1e-10;
+
+/// Fourth derivative of the share of the variance that one knot holds, k²: 12 at the knot, by hand.
+const BENDS_OF_VARIANCE: f64 = 12.0;
+
 /// Lengths from the first knot up to which the kernel is computed from knot to knot: e^(−37²/2) is a normal number yet.
 const REACH: f64 = 37.0;
 
@@ -250,17 +257,57 @@ impl Prepared {
     #[expect(clippy::inline_always, reason = "as the others")]
     #[inline(always)]
     pub(crate) fn at<const N: usize>(&self, values: &[f64; N]) -> [f64; N] {
-        map(values, |value| self.text.at(value))
+        let (middle, per_unit) = (self.text.middle, 1.0 / self.text.length);
+        map(values, |value| (value - middle) * per_unit)
     }
 
-    /// Whether the other functions hold at a place in lengths.
-    pub(crate) fn reaches(&self, z: f64) -> bool {
-        (z - self.text.knots.0).abs() <= REACH
+    /// As [`Smooth::is_beyond`], of places in lengths.
+    #[expect(clippy::inline_always, reason = "as the others")]
+    #[inline(always)]
+    pub(crate) fn are_beyond(&self, z: &Lanes) -> [bool; LANES] {
+        let mut found = [false; LANES];
+        let ((first, last), distance) = (self.text.knots, self.distance);
+        for lane in 0..LANES {
+            let (below, above) = (first + distance - z[lane], z[lane] - last + distance);
+            found[lane] = below > BEYOND_BY_ROUNDING || above > BEYOND_BY_ROUNDING;
+        }
+        found
     }
 
-    /// As [`Smooth::is_beyond`], of a place in lengths.
-    pub(crate) fn is_beyond(&self, z: f64) -> bool {
-        self.text.beyond(z) > BEYOND_BY_ROUNDING
+    /// First and last knot, in lengths.
+    pub(crate) const fn knots(&self) -> (f64, f64) {
+        self.text.knots
+    }
+
+    /// Share of the process' variance that is left where its terms leave so much.
+    #[expect(clippy::inline_always, reason = "as the others")]
+    #[inline(always)]
+    pub(crate) fn left(&self, z: f64, left: f64) -> f64 {
+        self.text.left_of_variance(z, 1.0 - left)
+    }
+
+    /// The function's mean as a curve, within [`CURVE_ERROR`]; `None` where that would be very many pieces.
+    pub(crate) fn curve(&self) -> Option<Curve> {
+        let sizes: f64 = self.weights.iter().map(|weight| weight.abs()).sum();
+        // The kernel's fourth derivative is largest at its knot: 3.
+        let pieces = self.pieces(3.0 * sizes, sizes);
+        Curve::new(pieces, (0.0, self.slope), |z| self.mean(z))
+    }
+
+    /// Share of the process' variance that its terms leave, but for what grows beyond the values that were flown, as a curve.
+    pub(crate) fn left_curve(&self) -> Option<Curve> {
+        Curve::new(self.pieces(BENDS_OF_VARIANCE, 1.0), (1.0, 0.0), |z| {
+            let mut terms = [[0.0; 4]; 1 + SMOOTH_MOST_KNOTS];
+            let held = self.held(z, &mut terms[..self.len()]);
+            map(&held, |held| 1.0 - held)
+        })
+    }
+
+    /// Pieces of a curve that bends so much, as far as the kernel of weights of this sum is worth its error.
+    fn pieces(&self, fourth_derivative: f64, sizes: f64) -> Pieces {
+        let tail = (2.0 * (sizes / CURVE_ERROR).max(2.0).ln()).sqrt();
+        let (first, last) = self.text.knots;
+        Pieces::within(first - tail, last + tail, fourth_derivative, CURVE_ERROR)
     }
 
     /// The kernel at the first knot.
@@ -292,6 +339,14 @@ impl Prepared {
     #[expect(clippy::inline_always, reason = "as the others")]
     #[inline(always)]
     pub(crate) fn write<const N: usize>(&self, z: &[f64; N], into: &mut [[f64; N]]) -> [f64; N] {
+        let held = self.held(z, into);
+        each(z, &held, |z, held| self.text.left_of_variance(z, held))
+    }
+
+    /// Writes the terms; returns the share of the process' variance that they hold.
+    #[expect(clippy::inline_always, reason = "as the others")]
+    #[inline(always)]
+    fn held<const N: usize>(&self, z: &[f64; N], into: &mut [[f64; N]]) -> [f64; N] {
         into[0] = *z;
         let terms = &mut into[1..=self.text.count];
         let mut kernels = self.kernels(z);
@@ -312,7 +367,7 @@ impl Prepared {
             from_here[0] = term;
             rest = behind;
         }
-        each(z, &held, |z, held| self.text.left_of_variance(z, held))
+        held
     }
 }
 
@@ -371,6 +426,29 @@ fn kernel(a: f64, b: f64) -> f64 {
 mod tests {
     use super::*;
 
+    /// The oracle is the function by its terms, between the knots and far beyond them.
+    #[test]
+    fn curves_are_the_function_within_their_error() {
+        let values: Vec<f64> = (0..50).map(|k| 0.70 + 0.003 * f64::from(k)).collect();
+        let smooth = Smooth::over(Variable::Mach, 0.02, &values).unwrap();
+        let means: Vec<f64> =
+            (0..smooth.len()).map(|k| 0.03 * (f64::from(u8::try_from(k).unwrap())).sin()).collect();
+        let prepared = smooth.prepared(means.iter().copied());
+        let (curve, left) = (prepared.curve().unwrap(), prepared.left_curve().unwrap());
+        let mut terms = vec![0.0; smooth.len()];
+        for step in 0..20_000_u32 {
+            let value = 0.30 + 0.00005 * f64::from(step);
+            let known_left = smooth.write(value, &mut terms);
+            let known: f64 = terms.iter().zip(&means).map(|(term, mean)| term * mean).sum();
+            let z = prepared.at(&[value; LANES]);
+            let found = curve.at(&z)[step as usize % LANES];
+            assert!((found - known).abs() < 1.1 * CURVE_ERROR, "{value}: {found}, {known}");
+            let found = prepared.left(z[0], left.at(&z)[0]);
+            let tolerance = 1e-6 * known_left.max(1.0);
+            assert!((found - known_left).abs() < tolerance, "{value}: {found}, {known_left}");
+        }
+    }
+
     /// The covariance of two values is the kernel's where there are knots, and the prior's variance is never exceeded.
     #[test]
     fn between_knots_the_terms_have_the_kernels_covariance() {
@@ -410,7 +488,7 @@ mod tests {
             let value = 0.4 + 0.002 * f64::from(step);
             let left = smooth.write(value, &mut terms);
             let z = prepared.at(&[value]);
-            assert!(prepared.reaches(z[0]));
+            assert!((z[0] - prepared.text.knots.0).abs() <= REACH);
             let [left_found] = prepared.write(&z, &mut found);
             assert!((left - left_found).abs() < 1e-9 * left.max(1e-3), "{value}: {left_found}");
             for (term, [found]) in terms.iter().zip(&found) {

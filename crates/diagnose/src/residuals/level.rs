@@ -3,12 +3,15 @@
 //! A difficult file. It finds what [`WholeModel::of_point`](super::whole::WholeModel::of_point) finds, which asks the model some
 //! twenty times at each point: for slopes along everything that sensors measure, and for the effects that a fleet always shows.
 //! At such points most of that is known beforehand. An effect whose input is missing is what it was on average. A sensor's error
-//! moves few of the remainder's variables, so that only their functions are asked again. What is learnt of the drag table is a
-//! table itself; and the variance is one quadratic form in what is left. Points are computed a block at a time, several in one
-//! instruction; only tables are asked point by point.
+//! moves few of the remainder's variables, so that only their functions are asked again. Functions of one variable are tabulated
+//! once for a model, their means as [curves](crate::math::curve), what is uncertain of them as [`directions`]; what is learnt of
+//! the drag table is a table itself. Points are computed a block at a time, several in one instruction; only tables are asked
+//! point by point.
+
+#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
 
 mod block;
-mod covariance;
+mod directions;
 mod drag;
 mod functions;
 mod noise;
@@ -21,13 +24,13 @@ use units::{Mach, Mass, PressureAltitude};
 
 use crate::baseline::Baseline;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
-use crate::math::lanes::{LANES, Lanes};
-use crate::math::vector_ln_exp::ln;
+use crate::math::lanes::{LANES, Lanes, add, map};
+use crate::math::vector_ln_exp::{exp, ln};
 use crate::residuals::level::block::Block;
-use crate::residuals::level::covariance::{Covariance, TOGETHER};
+use crate::residuals::level::directions::{Directions, MOST_RISES};
 use crate::residuals::level::drag::Drag;
 use crate::residuals::level::functions::Functions;
-use crate::residuals::level::noise::{At, Noise, Sides};
+use crate::residuals::level::noise::{At, Noise};
 use crate::signals::noise::Statistics;
 
 /// A whole model, prepared for many such points.
@@ -39,7 +42,7 @@ pub struct WholeModelOfLevels {
     /// What effects without input were worth on average, and how different that was.
     standing_mean: f64,
     standing_variance: f64,
-    covariance: Covariance,
+    directions: Directions,
     noise: Noise,
     /// Factor on standard deviations.
     stated: f64,
@@ -49,7 +52,7 @@ pub struct WholeModelOfLevels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LevelQuestion {
     /// Predictions alone. Where a variance would have to be asked of a single prediction, at an end of the atmosphere or of the
-    /// table, the mean comes from here: the same within 1e-12.
+    /// table, the mean comes from here: the same within 1e-9.
     Means,
     /// Variances too, which take most of the time.
     MeansAndVariances,
@@ -60,6 +63,8 @@ pub enum LevelQuestion {
 pub struct LevelCorrection {
     /// To be added to ln fuel flow.
     pub ln_correction: f64,
+    /// e to the power of it, by which fuel flow is to be multiplied.
+    pub ratio: f64,
     /// Variance of ln fuel flow that a new segment of a new flight would show; NaN where it was not asked for.
     pub variance: f64,
     /// As of [`WholePrediction`](super::whole::WholePrediction).
@@ -81,7 +86,7 @@ struct Rise {
 
 impl WholeModelOfLevels {
     /// Points that are computed together.
-    pub const TOGETHER: usize = TOGETHER;
+    pub const TOGETHER: usize = LANES;
 
     /// `None` for a model with applied effects, or with a standing effect that no column of conditions leaves out.
     pub(crate) fn new(
@@ -89,11 +94,12 @@ impl WholeModelOfLevels {
         baseline: &Baseline,
         samples: usize,
     ) -> Option<Self> {
-        if model.applied().is_some() || !Functions::hold(baseline) {
+        if model.applied().is_some() {
             return None;
         }
         let (rises, places, without_input) = standing_effects(model, baseline)?;
         let parts = &baseline.parts;
+        let functions = Functions::new(baseline)?;
         let learnt = baseline.table.as_ref().map(|table| (table, parts.drag.as_slice()));
         let aircraft = model.aircraft();
         let sensors = *aircraft.sensors();
@@ -106,11 +112,11 @@ impl WholeModelOfLevels {
         };
         Some(Self {
             drag: Drag::new(model.drag_table(), baseline.between_nodes(), learnt)?,
-            functions: Functions::new(baseline),
+            directions: Directions::new(baseline, &functions, &places)?,
+            functions,
             rises,
             standing_mean: of(&parts.standing_means),
             standing_variance: of(&parts.standing_variances),
-            covariance: Covariance::new(baseline, &places)?,
             noise: Noise {
                 sensors,
                 statistics,
@@ -132,8 +138,8 @@ impl WholeModelOfLevels {
     }
 
     /// What the whole model makes of points, up to [`TOGETHER`](Self::TOGETHER) of them, predicted by its initial table. The
-    /// corrections are those of single predictions within 1e-12, the variances within 1e-8 of themselves, whichever points are
-    /// asked together.
+    /// corrections are those of single predictions within 1e-9, the standard deviations within 1e-5 of themselves, and the same
+    /// bits whichever points are asked together.
     #[must_use]
     pub fn corrections(
         &self,
@@ -141,156 +147,136 @@ impl WholeModelOfLevels {
         question: LevelQuestion,
     ) -> LevelCorrections {
         let vectors = pulp::Arch::new();
-        let mut answers = [None; TOGETHER];
+        let mut answers = [None; Self::TOGETHER];
         let of_variances = question == LevelQuestion::MeansAndVariances;
-        let mut loadings =
-            vec![0.0; if of_variances { TOGETHER * self.covariance.width() } else { 0 }];
-        let points = &points[..points.len().min(TOGETHER)];
+        let points = &points[..points.len().min(Self::TOGETHER)];
         for (at, points) in points.chunks(LANES).enumerate() {
             let Some(block) = Block::new(points) else { continue };
             let answers = &mut answers[at * LANES..];
-            let found = vectors.dispatch(Compute {
-                model: self,
-                block: &block,
-                points,
-                first: at * LANES,
-                loadings: &mut loadings,
-            });
+            let found =
+                vectors.dispatch(Compute { model: self, block: &block, points, of_variances });
             for (place, answer) in answers.iter_mut().enumerate().take(points.len()) {
-                *answer = self.answer(&found, place);
+                *answer = Self::answer(&found, place);
             }
         }
         if of_variances {
-            self.add_variance_of_model(&loadings, &mut answers);
+            // Where there is none a single prediction says why.
+            for answer in &mut answers {
+                *answer = answer.filter(|found| found.variance.is_finite());
+            }
         }
         answers
     }
 
-    fn answer(&self, found: &Computed, place: usize) -> Option<LevelCorrection> {
+    fn answer(found: &Computed, place: usize) -> Option<LevelCorrection> {
         let ln_correction = found.correction[place];
-        let is_whole = found.is_known[place]
-            && self.functions.reach(&found.values, place)
-            && ln_correction.is_finite();
+        let is_whole = found.is_known[place] && ln_correction.is_finite();
         is_whole.then(|| LevelCorrection {
             ln_correction,
+            ratio: found.ratio[place],
             variance: found.variance[place],
-            beyond_flights: self.functions.is_beyond_flights(&found.values, place),
+            beyond_flights: found.is_beyond_flights[place],
         })
-    }
-
-    /// Adds the variance of what was learnt to that of the noise.
-    fn add_variance_of_model(&self, loadings: &[f64], answers: &mut LevelCorrections) {
-        for (answer, of_model) in answers.iter_mut().zip(self.covariance.variances(loadings)) {
-            if let Some(found) = answer {
-                found.variance += self.stated * self.stated * of_model;
-            }
-            // A single prediction says why there is none.
-            *answer = answer.filter(|found| found.variance.is_finite());
-        }
     }
 }
 
-/// All that is computed of the points of a block, but for the variance of what was learnt. Compiled for the widest vectors that a
+/// All that is computed of the points of a block. Compiled for the widest vectors that a
 /// processor may have, which are chosen when it runs.
 struct Compute<'a> {
     model: &'a WholeModelOfLevels,
     block: &'a Block,
     points: &'a [LevelPrediction],
-    /// Place of the block's first point among those that are asked together.
-    first: usize,
-    /// Empty where no variances are asked for; column after column.
-    loadings: &'a mut [f64],
+    of_variances: bool,
 }
 
 /// What is computed.
 struct Computed {
     is_known: [bool; LANES],
-    values: functions::Values,
-    /// To be added to ln fuel flow.
+    is_beyond_flights: [bool; LANES],
+    /// To be added to ln fuel flow, and e to the power of it.
     correction: Lanes,
-    /// Of noise and of what the loadings leave out; NaN where it is not asked for.
+    ratio: Lanes,
+    /// NaN where it is not asked for.
     variance: Lanes,
 }
 
-impl pulp::NullaryFnOnce for Compute<'_> {
+impl pulp::WithSimd for Compute<'_> {
     type Output = Computed;
 
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
-    fn call(mut self) -> Computed {
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Computed {
         let Self { model, block, .. } = self;
         let mut is_known = [true; LANES];
-        let drag = model.drag.at(&block.lift_coefficient, &block.mach, &mut is_known);
+        let drag = model.drag.at_points(self.points, &mut is_known);
         let states = block.states(&drag.coefficient);
         let values = model.functions.values(&states);
         let mut correction = values.sum;
-        for (place, correction) in correction.iter_mut().enumerate() {
+        for place in 0..LANES {
             let over_bilinear = drag.coefficient[place] / block.bilinear_drag_coefficient[place];
-            *correction += ln(over_bilinear) + drag.learnt[place] + model.standing_mean;
+            correction[place] += ln(over_bilinear) + drag.learnt[place] + model.standing_mean;
         }
-        for (k, rise) in model.rises.iter().enumerate() {
-            let mut slopes = [0.0; LANES];
-            for (place, slope) in slopes.iter_mut().enumerate() {
+        let mut slopes = [[0.0; LANES]; MOST_RISES];
+        for k in 0..model.rises.len().min(MOST_RISES) {
+            let rise = model.rises[k];
+            for place in 0..LANES {
                 let state = (states.mach[place], states.lift_coefficient[place]);
-                *slope = rise.slope(state, drag.coefficient[place]);
-                correction[place] += *slope * rise.size;
+                slopes[k][place] = rise.slope(state, drag.coefficient[place]);
             }
-            self.write(model.functions.terms() + k, &slopes);
+            add(&mut correction, rise.size, &slopes[k]);
         }
-        let at = At { block, states, drag, values };
-        let variance = if self.loadings.is_empty() {
-            [f64::NAN; LANES]
-        } else {
-            let sides = model.noise.sides(&model.drag, block, &at.states, &mut is_known);
-            self.variance(&at, &sides)
+        let at = At {
+            functions: &model.functions,
+            table: &model.drag,
+            block,
+            states: &states,
+            drag: &drag,
+            values: &values,
         };
-        Computed { is_known, values: at.values, correction, variance }
+        let variance = if self.of_variances {
+            self.variance(simd, &at, &slopes, &mut is_known)
+        } else {
+            [f64::NAN; LANES]
+        };
+        let ratio = map(&correction, exp);
+        let is_beyond_flights = values.is_beyond_flights;
+        Computed { is_known, is_beyond_flights, correction, ratio, variance }
     }
 }
 
 impl Compute<'_> {
-    /// The variance but for that of what was learnt, whose loadings are written.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn variance(&mut self, at: &At<'_>, sides: &Sides) -> Lanes {
-        let Self { model, points, first, .. } = *self;
-        let mut terms = [[0.0; LANES]; functions::MOST_TERMS];
-        let terms = &mut terms[..model.functions.terms()];
-        let left = model.functions.write(&at.values, terms);
-        for (column, of_term) in terms.iter().enumerate() {
-            self.write(column, of_term);
+    fn variance<S: pulp::Simd>(
+        &self,
+        simd: S,
+        at: &At<'_>,
+        rises: &[Lanes; MOST_RISES],
+        is_known: &mut [bool; LANES],
+    ) -> Lanes {
+        let Self { model, points, .. } = *self;
+        let mut variance = model.noise.variance(at, is_known);
+        add(&mut variance, 1.0, &model.functions.left(at.values));
+        let rises = &rises[..model.rises.len()];
+        model.directions.add_variances(simd, (at.values, rises), points, &mut variance);
+        for place in 0..points.len().min(LANES) {
+            variance[place] += model.drag.left_out(&points[place].cell);
         }
-        let drag = (terms.len() + model.rises.len()) * TOGETHER;
-        let mut variance = model.noise.variance(&model.functions, at, sides);
         let stated = model.stated * model.stated;
-        for (place, variance) in variance.iter_mut().enumerate() {
-            let unflown = points.get(place).map_or(0.0, |point| {
-                model.drag.write(&point.cell, first + place, &mut self.loadings[drag..])
-            });
-            *variance = stated * (*variance + left[place] + unflown) + model.standing_variance;
-        }
-        variance
-    }
-
-    /// Writes a column of the loadings, where they are asked for.
-    #[expect(clippy::inline_always, reason = "as above")]
-    #[inline(always)]
-    fn write(&mut self, column: usize, values: &Lanes) {
-        let start = column * TOGETHER + self.first;
-        if let Some(into) = self.loadings.get_mut(start..start + LANES) {
-            into.copy_from_slice(values);
-        }
+        map(&variance, |variance| stated * variance + model.standing_variance)
     }
 }
 
 impl Rise {
     /// Slope of ln fuel flow along the size, by the difference by which it was learnt.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
     fn slope(&self, (mach, lift): (f64, f64), drag: f64) -> f64 {
         let by = |moved: f64| drag_rise(mach, lift, self.divergence_mach - moved);
         let as_is = by(0.0);
         let up = drag + (by(self.step_mach) - as_is);
         let down = drag + (by(-self.step_mach) - as_is);
-        (up / down).ln() / (2.0 * self.step)
+        ln(up / down) / (2.0 * self.step)
     }
 }
 
@@ -327,5 +313,5 @@ fn standing_effects(model: &EffectModel<'_>, baseline: &Baseline) -> Option<Stan
             _ => return None,
         }
     }
-    Some((rises, places, without_input))
+    (rises.len() <= MOST_RISES).then_some((rises, places, without_input))
 }

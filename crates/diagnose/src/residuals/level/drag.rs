@@ -2,9 +2,9 @@
 
 use effects::{BetweenNodes, value_continued};
 use lut::{Cell, Outside, SmoothTable, Table};
+use perf_model::LevelPrediction;
 
 use crate::math::lanes::{LANES, Lanes};
-use crate::residuals::level::covariance::TOGETHER;
 use crate::signals::table_uncertainty::TableUncertainty;
 
 /// The initial table as the model was learnt with it, and what was learnt.
@@ -19,7 +19,6 @@ pub(super) struct Drag {
 /// What was learnt of the drag table: its mean at the nodes, and what the loadings leave out.
 #[derive(Clone, Debug)]
 struct LearntDrag {
-    uncertainty: TableUncertainty,
     mean: Table,
     left_deviation: Option<Table>,
 }
@@ -48,36 +47,66 @@ impl Drag {
     }
 
     /// Drag at points; false in `is_known` where there is none, or none that is positive.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
     pub(super) fn at(
         &self,
-        lift_coefficient: &Lanes,
-        mach: &Lanes,
+        (lift_coefficient, mach): (&Lanes, &Lanes),
+        is_known: &mut [bool; LANES],
+        found: &mut Found,
+    ) {
+        for place in 0..LANES {
+            let (lift, mach) = (lift_coefficient[place], mach[place]);
+            let of_point = match self.table.grid().locate(lift, mach, Outside::Error) {
+                Ok(cell) => self.at_cell(&cell),
+                Err(_) => self.continued(lift, mach).unwrap_or((f64::NAN, 0.0)),
+            };
+            if of_point.0 > 0.0 {
+                (found.coefficient[place], found.learnt[place]) = of_point;
+            } else {
+                // A positive number, so that all goes on.
+                (found.coefficient[place], found.learnt[place]) = (1.0, 0.0);
+                is_known[place] = false;
+            }
+        }
+    }
+
+    /// Drag at points of which the cells are known; false in `is_known` where it is not positive.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn at_points(
+        &self,
+        points: &[LevelPrediction],
         is_known: &mut [bool; LANES],
     ) -> Found {
-        // Where there is no drag a positive number, so that all goes on.
         let mut found = Found { coefficient: [1.0; LANES], learnt: [0.0; LANES] };
-        for (place, is_known) in is_known.iter_mut().enumerate() {
-            match self.at_one(lift_coefficient[place], mach[place]) {
-                Some((coefficient, learnt)) if coefficient > 0.0 => {
-                    found.coefficient[place] = coefficient;
-                    found.learnt[place] = learnt;
-                }
-                _ => *is_known = false,
+        for place in 0..points.len().min(LANES) {
+            let of_point = self.at_cell(&points[place].cell);
+            if of_point.0 > 0.0 {
+                (found.coefficient[place], found.learnt[place]) = of_point;
+            } else {
+                is_known[place] = false;
             }
         }
         found
     }
 
-    fn at_one(&self, lift_coefficient: f64, mach: f64) -> Option<(f64, f64)> {
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn at_cell(&self, cell: &Cell) -> (f64, f64) {
+        let coefficient = match self.between_nodes {
+            BetweenNodes::Smooth => self.smooth.value(cell),
+            BetweenNodes::Straight => self.table.interpolate(cell),
+        };
+        let learnt =
+            if let Some(learnt) = &self.learnt { learnt.mean.interpolate(cell) } else { 0.0 };
+        (coefficient, learnt)
+    }
+
+    /// Beyond the table.
+    #[cold]
+    fn continued(&self, lift_coefficient: f64, mach: f64) -> Option<(f64, f64)> {
         let grid = self.table.grid();
-        if let Ok(cell) = grid.locate(lift_coefficient, mach, Outside::Error) {
-            let coefficient = match self.between_nodes {
-                BetweenNodes::Smooth => self.smooth.value(&cell),
-                BetweenNodes::Straight => self.table.interpolate(&cell),
-            };
-            let learnt = self.learnt.as_ref().map_or(0.0, |learnt| learnt.mean.interpolate(&cell));
-            return Some((coefficient, learnt));
-        }
         let smooth = (self.between_nodes == BetweenNodes::Smooth).then_some(&self.smooth);
         let coefficient = value_continued((&self.table, smooth), lift_coefficient, mach)?;
         let learnt = match &self.learnt {
@@ -89,14 +118,11 @@ impl Drag {
         Some((coefficient, learnt))
     }
 
-    /// Writes the loadings of one of the points; returns the variance that they leave out.
-    pub(super) fn write(&self, cell: &Cell, place: usize, into: &mut [f64]) -> f64 {
-        let Some(learnt) = &self.learnt else { return 0.0 };
-        let slots = into.iter_mut().skip(place).step_by(TOGETHER);
-        for (slot, loading) in slots.zip(learnt.uncertainty.loadings(cell)) {
-            *slot = loading;
-        }
-        learnt.left_deviation.as_ref().map_or(0.0, |left| {
+    /// The variance of what was learnt that its directions leave out.
+    #[inline]
+    pub(super) fn left_out(&self, cell: &Cell) -> f64 {
+        let left = self.learnt.as_ref().and_then(|learnt| learnt.left_deviation.as_ref());
+        left.map_or(0.0, |left| {
             let deviation = left.interpolate(cell);
             deviation * deviation
         })
@@ -112,6 +138,6 @@ impl LearntDrag {
         let left = uncertainty.left_deviations();
         let left_deviation =
             if left.is_empty() { None } else { Some(Table::new(grid.clone(), left).ok()?) };
-        Some(Self { uncertainty: uncertainty.clone(), mean, left_deviation })
+        Some(Self { mean, left_deviation })
     }
 }

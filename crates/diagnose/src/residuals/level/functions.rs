@@ -1,18 +1,19 @@
 //! The remainder over the variables of a state, each function asked only where its variable moved; a block of points at a time.
 
+#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
+
+use core::ops::Range;
+
 use effects::Variable;
 
 use crate::baseline::Baseline;
 use crate::baseline::smooth::Prepared;
-use crate::math::lanes::{LANES, Lanes, add, add_product, map};
-use crate::priors::SMOOTH_MOST_KNOTS;
+use crate::math::curve::Curve;
+use crate::math::lanes::{LANES, Lanes, add, add_product, each, map};
 use crate::thresholds::FARTHEST_PRODUCT;
 
 /// Most variables that a remainder has.
-const MOST: usize = 8;
-
-/// Most terms: a level, of each variable a slope and a term for each knot, and a product of each pair.
-pub(super) const MOST_TERMS: usize = 1 + MOST * (1 + SMOOTH_MOST_KNOTS) + MOST * (MOST - 1) / 2;
+pub(super) const MOST: usize = 8;
 
 /// What the remainder depends on.
 #[derive(Clone, Copy, Debug)]
@@ -41,13 +42,21 @@ pub(super) const ACCELERATION: [Variable; 1] = [Variable::CorrectedThrust];
 /// The remainder's functions.
 #[derive(Clone, Debug)]
 pub(super) struct Functions {
-    smooth: Vec<Prepared>,
+    smooth: Vec<Tabulated>,
     level: f64,
     /// Means of the products, a row for each factor; each product is there twice.
     products: [[f64; MOST]; MOST],
     reference_thrust_n: f64,
     smooth_variance: f64,
-    terms: usize,
+}
+
+/// One of the remainder's functions.
+#[derive(Clone, Debug)]
+pub(super) struct Tabulated {
+    prepared: Prepared,
+    mean: Curve,
+    /// What its terms leave of the process' variance, but for its growth beyond what was flown.
+    left: Curve,
 }
 
 /// The remainder at the points, and how it changes about them.
@@ -55,6 +64,8 @@ pub(super) struct Functions {
 pub(super) struct Values {
     /// All of it.
     pub(super) sum: Lanes,
+    /// Whether a variable lies beyond what was flown.
+    pub(super) is_beyond_flights: [bool; LANES],
     /// Each variable in lengths of its function.
     lengths: [Lanes; MOST],
     functions: [Lanes; MOST],
@@ -64,16 +75,22 @@ pub(super) struct Values {
 }
 
 impl Functions {
-    pub(super) fn new(baseline: &Baseline) -> Self {
+    /// `None` for more variables than are handled here, and for functions that bend too often for a table.
+    pub(super) fn new(baseline: &Baseline) -> Option<Self> {
+        if baseline.parts.smooth.len() > MOST {
+            return None;
+        }
         let parts = &baseline.parts;
         let mut means = parts.mean.iter().copied();
         let level = means.next().unwrap_or(0.0);
-        let smooth: Vec<Prepared> = parts
+        let tabulated = |prepared: Prepared| {
+            Some(Tabulated { mean: prepared.curve()?, left: prepared.left_curve()?, prepared })
+        };
+        let smooth: Vec<Tabulated> = parts
             .smooth
             .iter()
-            .take(MOST)
-            .map(|one| one.prepared(means.by_ref().take(one.len())))
-            .collect();
+            .map(|one| tabulated(one.prepared(means.by_ref().take(one.len()))))
+            .collect::<Option<_>>()?;
         let mut products = [[0.0; MOST]; MOST];
         let count = smooth.len();
         let pairs =
@@ -82,30 +99,36 @@ impl Functions {
             products[first][second] = mean;
             products[second][first] = mean;
         }
-        Self {
+        Some(Self {
             smooth,
             level,
             products,
             reference_thrust_n: parts.references.corrected_thrust_n,
             smooth_variance: baseline.smooth_variance(),
-            terms: baseline.remainder_terms(),
-        }
+        })
     }
 
-    /// Whether a baseline has no more variables than are handled here.
-    pub(super) fn hold(baseline: &Baseline) -> bool {
-        baseline.parts.smooth.len() <= MOST
+    /// The functions, in order.
+    pub(super) fn smooth(&self) -> &[Tabulated] {
+        &self.smooth
     }
 
-    /// Number of terms.
-    pub(super) const fn terms(&self) -> usize {
-        self.terms
+    /// Places of each one's terms among all of the remainder's; the level has the first one, products come last.
+    pub(super) fn places(&self) -> Vec<Range<usize>> {
+        let mut next = 1;
+        let place = |one: &Tabulated| {
+            let start = next;
+            next += one.prepared.len();
+            start..next
+        };
+        self.smooth.iter().map(place).collect()
     }
 
     /// A variable in lengths of its function.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
-    fn lengths(&self, one: &Prepared, states: &States) -> Lanes {
+    fn lengths(&self, one: &Tabulated, states: &States) -> Lanes {
+        let one = &one.prepared;
         match one.variable() {
             Variable::Mach => one.at(&states.mach),
             Variable::LiftCoefficient => one.at(&states.lift_coefficient),
@@ -126,23 +149,29 @@ impl Functions {
         let none = [[0.0; LANES]; MOST];
         let (mut lengths, mut functions, mut factors) = (none, none, none);
         let mut sum = [self.level; LANES];
-        for (place, one) in self.smooth.iter().enumerate() {
+        let mut is_beyond_flights = [false; LANES];
+        for place in 0..self.smooth.len().min(MOST) {
+            let one = &self.smooth[place];
             let z = self.lengths(one, states);
-            functions[place] = one.mean(&z);
+            functions[place] = one.mean.at(&z);
+            let is_beyond = one.prepared.are_beyond(&z);
+            for lane in 0..LANES {
+                is_beyond_flights[lane] |= is_beyond[lane];
+            }
             factors[place] = factor(&z);
             add(&mut sum, 1.0, &functions[place]);
             lengths[place] = z;
         }
         let mut slopes = none;
-        for (place, slope) in slopes.iter_mut().enumerate().take(self.smooth.len()) {
-            *slope = self.product(place, &factors);
-            add_product(&mut sum, 0.5, &factors[place], slope);
+        for place in 0..self.smooth.len().min(MOST) {
+            slopes[place] = self.product(place, &factors);
+            add_product(&mut sum, 0.5, &factors[place], &slopes[place]);
         }
-        Values { sum, lengths, functions, factors, slopes }
+        Values { sum, is_beyond_flights, lengths, functions, factors, slopes }
     }
 
-    /// How much the remainder at other states differs where only some variables do; no number where the functions do not hold
-    /// there. Compiled once: it is asked ten times.
+    /// How much the remainder at other states differs where only some variables do. Compiled once: it is asked ten
+    /// times.
     pub(super) fn change(&self, at: &Values, states: &States, moved: &[Variable]) -> Lanes {
         pulp::Arch::new().dispatch(Change { functions: self, at, states, moved })
     }
@@ -152,46 +181,43 @@ impl Functions {
     #[inline(always)]
     fn product(&self, place: usize, factors: &[Lanes; MOST]) -> Lanes {
         let mut sum = [0.0; LANES];
-        let row = &self.products[place][..self.smooth.len()];
-        for (mean, factor) in row.iter().zip(factors) {
-            add(&mut sum, *mean, factor);
+        for other in 0..self.smooth.len().min(MOST) {
+            add(&mut sum, self.products[place][other], &factors[other]);
         }
         sum
     }
 
-    /// Whether a variable at a point lies beyond what was flown.
-    pub(super) fn is_beyond_flights(&self, at: &Values, point: usize) -> bool {
-        let mut places = self.smooth.iter().zip(&at.lengths);
-        places.any(|(one, lengths)| one.is_beyond(lengths[point]))
-    }
-
-    /// Whether the functions hold at a point.
-    pub(super) fn reach(&self, at: &Values, point: usize) -> bool {
-        let mut places = self.smooth.iter().zip(&at.lengths);
-        places.all(|(one, lengths)| one.reaches(lengths[point]))
-    }
-
-    /// Writes the terms; returns the variance of what they do not hold.
+    /// The variance of what the terms do not hold.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    pub(super) fn write(&self, at: &Values, into: &mut [Lanes]) -> Lanes {
+    pub(super) fn left(&self, at: &Values) -> Lanes {
         let mut left = [0.0; LANES];
-        into[0] = [1.0; LANES];
-        let mut place = 1;
-        for (one, z) in self.smooth.iter().zip(&at.lengths) {
-            let of_one = one.write(z, &mut into[place..place + one.len()]);
+        for place in 0..self.smooth.len().min(MOST) {
+            let (one, z) = (&self.smooth[place], &at.lengths[place]);
+            let of_one = each(z, &one.left.at(z), |z, left| one.prepared.left(z, left));
             add(&mut left, self.smooth_variance, &of_one);
-            place += one.len();
-        }
-        let factors = &at.factors[..self.smooth.len()];
-        for (k, a) in factors.iter().enumerate() {
-            for b in &factors[k + 1..] {
-                into[place] = [0.0; LANES];
-                add_product(&mut into[place], 1.0, a, b);
-                place += 1;
-            }
         }
         left
+    }
+}
+
+impl Tabulated {
+    pub(super) const fn prepared(&self) -> &Prepared {
+        &self.prepared
+    }
+}
+
+impl Values {
+    /// A variable in lengths of its function.
+    #[inline]
+    pub(super) const fn lengths(&self, function: usize) -> &Lanes {
+        &self.lengths[function]
+    }
+
+    /// A variable as a factor of products.
+    #[inline]
+    pub(super) const fn factors(&self, function: usize) -> &Lanes {
+        &self.factors[function]
     }
 }
 
@@ -211,24 +237,20 @@ impl pulp::NullaryFnOnce for Change<'_> {
         let Self { functions, at, states, moved } = self;
         let mut steps = [[0.0; LANES]; MOST];
         let mut sum = [0.0; LANES];
-        for (place, one) in functions.smooth.iter().enumerate() {
-            if !moved.contains(&one.variable()) {
+        for place in 0..functions.smooth.len().min(MOST) {
+            let one = &functions.smooth[place];
+            if !moved.contains(&one.prepared.variable()) {
                 continue;
             }
             let z = functions.lengths(one, states);
             let mut step = factor(&z);
             add(&mut step, -1.0, &at.factors[place]);
-            add(&mut sum, 1.0, &one.mean(&z));
+            add(&mut sum, 1.0, &one.mean.at(&z));
             add(&mut sum, -1.0, &at.functions[place]);
             add_product(&mut sum, 1.0, &step, &at.slopes[place]);
             // With each of those that moved before it.
             add_product(&mut sum, 1.0, &step, &functions.product(place, &steps));
             steps[place] = step;
-            for (sum, z) in sum.iter_mut().zip(&z) {
-                if !one.reaches(*z) {
-                    *sum = f64::NAN;
-                }
-            }
         }
         sum
     }

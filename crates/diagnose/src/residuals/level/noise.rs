@@ -1,12 +1,19 @@
 //! Noise of a segment at points of level flight: slopes of ln fuel flow along what sensors measure, by the steps by which single
 //! predictions take them.
 
+#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
+
+use atmos::constants::{
+    HIGHEST_PRESSURE_ALTITUDE_M, ISOTHERMAL_SCALE_HEIGHT_M, LAPSE_RATE_K_M,
+    LOWEST_PRESSURE_ALTITUDE_M, SEA_LEVEL_PRESSURE_PA, SEA_LEVEL_TEMPERATURE_K,
+    TROPOPAUSE_PRESSURE_ALTITUDE_M, TROPOSPHERE_PRESSURE_EXPONENT,
+};
 use effects::Variable;
 use perf_model::aircraft::SensorDeviations;
-use units::{Mass, PressureAltitude};
+use units::Mass;
 
 use crate::math::lanes::{LANES, Lanes, each, map};
-use crate::math::vector_ln_exp::ln;
+use crate::math::vector_ln_exp::{exp, ln};
 use crate::residuals::level::block::{Block, ln_ratio};
 use crate::residuals::level::drag::{Drag, Found};
 use crate::residuals::level::functions::{self, Functions, States, Values};
@@ -30,35 +37,25 @@ pub(super) struct Noise {
 }
 
 /// The points, and what the model makes of them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct At<'b> {
+    pub(super) functions: &'b Functions,
+    pub(super) table: &'b Drag,
     pub(super) block: &'b Block,
-    pub(super) states: States,
-    pub(super) drag: Found,
-    pub(super) values: Values,
-}
-
-/// Both sides of the points for each sensor whose error changes drag.
-#[derive(Clone, Debug)]
-pub(super) struct Sides {
-    mach: [Side; 2],
-    altitude: [Side; 2],
-    mass: [Side; 2],
+    pub(super) states: &'b States,
+    pub(super) drag: &'b Found,
+    pub(super) values: &'b Values,
 }
 
 /// Points moved to one side by one sensor's error, and drag there.
 #[derive(Clone, Debug)]
 struct Side {
     states: States,
-    drag: Found,
-    thrust_n: Lanes,
-}
-
-/// Points that are moved, but for their thrust; dynamic and static pressure over those of the points.
-struct Moved {
-    states: States,
+    /// Dynamic and static pressure over those of the points.
     dynamic_pressure: Lanes,
     static_pressure: Lanes,
+    drag: Found,
+    thrust_n: Lanes,
 }
 
 impl Noise {
@@ -69,54 +66,38 @@ impl Noise {
         (sensors.mach.max(1e-6), temperature_k, sensors.pressure_altitude_m.max(0.1))
     }
 
-    /// The points moved, and drag there; false in `is_known` where there is none.
-    pub(super) fn sides(
-        &self,
-        drag: &Drag,
-        block: &Block,
-        states: &States,
-        is_known: &mut [bool; LANES],
-    ) -> Sides {
-        let (mach_step, temperature_step_k, altitude_step_m) = self.steps();
-        for (is_known, temperature_k) in is_known.iter_mut().zip(&block.temperature_k) {
-            *is_known &= *temperature_k > temperature_step_k;
-        }
-        let mut find = |moved: &Moved| moved.find(drag, block, is_known);
-        let along_mach = |by: f64| Moved::along_mach(states, by);
-        let along_altitude = |by_m: f64| Moved::along_altitude(block, states, by_m);
-        let along_mass = |by: f64| Moved::along_mass(states, by);
-        Sides {
-            mach: [find(&along_mach(mach_step)), find(&along_mach(-mach_step))],
-            altitude: [
-                find(&along_altitude(altitude_step_m)),
-                find(&along_altitude(-altitude_step_m)),
-            ],
-            mass: [find(&along_mass(MASS_STEP)), find(&along_mass(-MASS_STEP))],
-        }
-    }
-
-    /// Variance of what a segment has of its own and of what a flight has in common, less the standing effects'.
+    /// Variance of what a segment has of its own and of what a flight has in common, less the standing effects'; false in
+    /// `is_known` where a sensor's error leads to where there is no drag.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
-    pub(super) fn variance(&self, functions: &Functions, at: &At<'_>, sides: &Sides) -> Lanes {
+    pub(super) fn variance(&self, at: &At<'_>, is_known: &mut [bool; LANES]) -> Lanes {
         let Self { sensors, statistics: Statistics { factors, flight_bias, .. }, .. } = self;
         let (mach_step, temperature_step_k, altitude_step_m) = self.steps();
-        let mut of_mach = difference(functions, at, &sides.mach, &functions::MACH);
-        for (slope, mach) in of_mach.iter_mut().zip(&at.states.mach) {
-            let ratio = (1.0 + mach + mach_step) / (1.0 + mach - mach_step);
-            *slope += self.mach_exponent * ln(ratio);
+        let mut sides = [Side::new(at), Side::new(at)];
+        let [up, down] = &mut sides;
+        up.along_mach(at, mach_step);
+        down.along_mach(at, -mach_step);
+        let mut of_mach = difference(at, [up, down], &functions::MACH, is_known);
+        up.along_altitude(at, altitude_step_m);
+        down.along_altitude(at, -altitude_step_m);
+        let of_altitude = difference(at, [up, down], &functions::ALTITUDE, is_known);
+        up.along_mass(at, MASS_STEP);
+        down.along_mass(at, -MASS_STEP);
+        let of_mass = difference(at, [up, down], &functions::MASS, is_known);
+        for place in 0..LANES {
+            is_known[place] &= at.block.temperature_k[place] > temperature_step_k;
+            let above = 1.0 + at.states.mach[place];
+            of_mach[place] += self.mach_exponent * ln((above + mach_step) / (above - mach_step));
         }
-        let of_temperature = along_temperature(functions, at, temperature_step_k);
-        let of_altitude = difference(functions, at, &sides.altitude, &functions::ALTITUDE);
-        let of_mass = difference(functions, at, &sides.mass, &functions::MASS);
-        let of_acceleration = along_acceleration(functions, at);
+        let of_temperature = along_temperature(at, temperature_step_k);
+        let of_acceleration = along_acceleration(at);
         let squared = |difference: f64, step: f64, deviation: f64| {
             let slope = difference / (2.0 * step);
             slope * slope * deviation * deviation
         };
         let (within, between) = (factors.within[0].powi(2), factors.between[0].powi(2));
         let mut variance = [0.0; LANES];
-        for (place, variance) in variance.iter_mut().enumerate() {
+        for place in 0..LANES {
             let temperature_k = sensors.static_air_temperature_k;
             let own = self.fuel_flow_variance
                 + squared(of_mach[place], mach_step, sensors.mach)
@@ -133,89 +114,143 @@ impl Noise {
                     flight_bias.static_air_temperature_k,
                 )
                 + squared(of_altitude[place], altitude_step_m, flight_bias.pressure_altitude_m);
-            *variance = own * within + common * between;
+            variance[place] = own * within + common * between;
         }
         variance
     }
 }
 
-impl Moved {
-    fn along_mach(states: &States, by: f64) -> Self {
-        let mach = map(&states.mach, |mach| mach + by);
-        let pressure = each(&mach, &states.mach, |moved, mach| (moved / mach) * (moved / mach));
-        let lift_coefficient = each(&states.lift_coefficient, &pressure, |lift, p| lift / p);
+impl Side {
+    fn new(at: &At<'_>) -> Self {
         Self {
-            states: States { mach, lift_coefficient, ..*states },
-            dynamic_pressure: pressure,
+            states: *at.states,
+            dynamic_pressure: [1.0; LANES],
             static_pressure: [1.0; LANES],
+            drag: at.drag.clone(),
+            thrust_n: [0.0; LANES],
+        }
+    }
+
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn along_mach(&mut self, at: &At<'_>, by: f64) {
+        self.states = *at.states;
+        for place in 0..LANES {
+            let mach = at.states.mach[place];
+            let ratio = (mach + by) / mach;
+            self.states.mach[place] = mach + by;
+            self.states.lift_coefficient[place] /= ratio * ratio;
+            self.dynamic_pressure[place] = ratio * ratio;
+            self.static_pressure[place] = 1.0;
         }
     }
 
     /// Outside the atmosphere's domain no number.
-    fn along_altitude(block: &Block, states: &States, by_m: f64) -> Self {
-        let altitude_m = map(&states.pressure_altitude_m, |altitude_m| altitude_m + by_m);
-        let pressure = each(&altitude_m, &block.pressure_pa, |altitude_m, before_pa| {
-            let pressure = atmos::isa::pressure(PressureAltitude::meters(altitude_m));
-            pressure.map_or(f64::NAN, |pressure| pressure.to_pascals() / before_pa)
-        });
-        let isa_deviation_k = each(&altitude_m, &block.temperature_k, |altitude_m, sat_k| {
-            let standard = atmos::isa::temperature(PressureAltitude::meters(altitude_m));
-            standard.map_or(f64::NAN, |standard| sat_k - standard.to_kelvin())
-        });
-        let lift_coefficient = each(&states.lift_coefficient, &pressure, |lift, p| lift / p);
-        Self {
-            states: States {
-                lift_coefficient,
-                pressure_altitude_m: altitude_m,
-                isa_deviation_k,
-                ..*states
-            },
-            dynamic_pressure: pressure,
-            static_pressure: pressure,
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn along_altitude(&mut self, at: &At<'_>, by_m: f64) {
+        self.states = *at.states;
+        for place in 0..LANES {
+            let altitude_m = at.states.pressure_altitude_m[place] + by_m;
+            let standard_k = standard_temperature_k(altitude_m);
+            let ratio = pressure_pa(altitude_m, standard_k) / at.block.pressure_pa[place];
+            self.states.pressure_altitude_m[place] = altitude_m;
+            self.states.isa_deviation_k[place] = at.block.temperature_k[place] - standard_k;
+            self.states.lift_coefficient[place] /= ratio;
+            self.dynamic_pressure[place] = ratio;
+            self.static_pressure[place] = ratio;
         }
     }
 
-    fn along_mass(states: &States, by: f64) -> Self {
-        Self {
-            states: States {
-                lift_coefficient: map(&states.lift_coefficient, |lift| lift * (1.0 + by)),
-                mass_kg: map(&states.mass_kg, |mass_kg| mass_kg * (1.0 + by)),
-                ..*states
-            },
-            dynamic_pressure: [1.0; LANES],
-            static_pressure: [1.0; LANES],
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn along_mass(&mut self, at: &At<'_>, by: f64) {
+        self.states = *at.states;
+        for place in 0..LANES {
+            self.states.lift_coefficient[place] *= 1.0 + by;
+            self.states.mass_kg[place] *= 1.0 + by;
+            self.dynamic_pressure[place] = 1.0;
+            self.static_pressure[place] = 1.0;
         }
     }
 
-    /// With drag, and with the thrust that it asks for.
-    fn find(&self, drag: &Drag, block: &Block, is_known: &mut [bool; LANES]) -> Side {
-        let mut states = self.states;
-        let found = drag.at(&states.lift_coefficient, &states.mach, is_known);
-        let mut thrust_n = found.coefficient;
-        for (place, thrust_n) in thrust_n.iter_mut().enumerate() {
-            *thrust_n *= block.dynamic_force_n[place] * self.dynamic_pressure[place];
+    /// Drag there, and the thrust that it asks for. Compiled once: it is asked six times.
+    fn find(&mut self, at: &At<'_>, is_known: &mut [bool; LANES]) {
+        pulp::Arch::new().dispatch(Find { side: self, at, is_known });
+    }
+}
+
+struct Find<'a> {
+    side: &'a mut Side,
+    at: &'a At<'a>,
+    is_known: &'a mut [bool; LANES],
+}
+
+impl pulp::NullaryFnOnce for Find<'_> {
+    type Output = ();
+
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
+    fn call(self) {
+        let Self { side, at, is_known } = self;
+        let (states, block) = (&mut side.states, at.block);
+        at.table.at((&states.lift_coefficient, &states.mach), is_known, &mut side.drag);
+        for place in 0..LANES {
+            let force_n = block.dynamic_force_n[place] * side.dynamic_pressure[place];
+            let thrust_n = side.drag.coefficient[place] * force_n;
+            side.thrust_n[place] = thrust_n;
             states.corrected_thrust_n[place] =
-                *thrust_n / (block.pressure_ratio(place) * self.static_pressure[place]);
+                thrust_n / (block.pressure_ratio(place) * side.static_pressure[place]);
         }
-        Side { states, drag: found, thrust_n }
     }
+}
+
+/// Pressure of the standard atmosphere, on both sides of the tropopause without a branch; no number outside its domain.
+///
+/// ```text
+/// p = p0·(T/T0)^n·exp(−(hp − 11 000 m)/H above it)
+/// ```
+///
+/// # Source
+/// Book `[atmosphere.2]`.
+#[expect(clippy::inline_always, reason = "as above")]
+#[inline(always)]
+fn pressure_pa(altitude_m: f64, standard_temperature_k: f64) -> f64 {
+    let above_m = altitude_m - TROPOPAUSE_PRESSURE_ALTITUDE_M;
+    let above_m = if above_m > 0.0 { above_m } else { 0.0 };
+    let of_temperature = ln(standard_temperature_k / SEA_LEVEL_TEMPERATURE_K);
+    let ln_ratio =
+        TROPOSPHERE_PRESSURE_EXPONENT * of_temperature - above_m / ISOTHERMAL_SCALE_HEIGHT_M;
+    let inside = LOWEST_PRESSURE_ALTITUDE_M..=HIGHEST_PRESSURE_ALTITUDE_M;
+    if inside.contains(&altitude_m) { SEA_LEVEL_PRESSURE_PA * exp(ln_ratio) } else { f64::NAN }
+}
+
+/// Temperature of the standard atmosphere.
+#[expect(clippy::inline_always, reason = "as above")]
+#[inline(always)]
+fn standard_temperature_k(altitude_m: f64) -> f64 {
+    let is_high = altitude_m > TROPOPAUSE_PRESSURE_ALTITUDE_M;
+    let low_m = if is_high { TROPOPAUSE_PRESSURE_ALTITUDE_M } else { altitude_m };
+    SEA_LEVEL_TEMPERATURE_K - LAPSE_RATE_K_M * low_m
 }
 
 /// ln fuel flow on one side less that on the other, but for the TSFC law.
 #[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
 fn difference(
-    functions: &Functions,
     at: &At<'_>,
-    [up, down]: &[Side; 2],
+    [up, down]: [&mut Side; 2],
     moved: &[Variable],
+    is_known: &mut [bool; LANES],
 ) -> Lanes {
+    up.find(at, is_known);
+    down.find(at, is_known);
     let mut found = ln_ratio(&up.thrust_n, &down.thrust_n);
-    let above = functions.change(&at.values, &up.states, moved);
-    let below = functions.change(&at.values, &down.states, moved);
-    for (place, found) in found.iter_mut().enumerate() {
+    let above = at.functions.change(at.values, &up.states, moved);
+    let below = at.functions.change(at.values, &down.states, moved);
+    for place in 0..LANES {
         let learnt = up.drag.learnt[place] - down.drag.learnt[place];
-        *found += above[place] - below[place] + learnt;
+        found[place] += above[place] - below[place] + learnt;
     }
     found
 }
@@ -223,16 +258,16 @@ fn difference(
 /// Density falls and airspeed rises with temperature so that lift and drag stay.
 #[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
-fn along_temperature(functions: &Functions, at: &At<'_>, step_k: f64) -> Lanes {
-    let mut states = at.states;
+fn along_temperature(at: &At<'_>, step_k: f64) -> Lanes {
+    let mut states = *at.states;
     states.isa_deviation_k = map(&at.states.isa_deviation_k, |deviation_k| deviation_k + step_k);
-    let above = functions.change(&at.values, &states, &functions::TEMPERATURE);
+    let above = at.functions.change(at.values, &states, &functions::TEMPERATURE);
     states.isa_deviation_k = map(&at.states.isa_deviation_k, |deviation_k| deviation_k - step_k);
-    let below = functions.change(&at.values, &states, &functions::TEMPERATURE);
+    let below = at.functions.change(at.values, &states, &functions::TEMPERATURE);
     let mut found = at.block.temperature_k;
-    for (place, found) in found.iter_mut().enumerate() {
-        let tsfc = 0.5 * ln((*found + step_k) / (*found - step_k));
-        *found = tsfc + above[place] - below[place];
+    for place in 0..LANES {
+        let tsfc = 0.5 * ln((found[place] + step_k) / (found[place] - step_k));
+        found[place] = tsfc + above[place] - below[place];
     }
     found
 }
@@ -240,12 +275,12 @@ fn along_temperature(functions: &Functions, at: &At<'_>, step_k: f64) -> Lanes {
 /// Drag stays; thrust carries the inertia too, and what is learnt of drag counts by its share of thrust.
 #[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
-fn along_acceleration(functions: &Functions, at: &At<'_>) -> Lanes {
-    let (up_n, up) = accelerated(functions, at, ACCELERATION_STEP_M_S2);
-    let (down_n, down) = accelerated(functions, at, -ACCELERATION_STEP_M_S2);
+fn along_acceleration(at: &At<'_>) -> Lanes {
+    let (up_n, up) = accelerated(at, ACCELERATION_STEP_M_S2);
+    let (down_n, down) = accelerated(at, -ACCELERATION_STEP_M_S2);
     let mut found = ln_ratio(&up_n, &down_n);
-    for (place, found) in found.iter_mut().enumerate() {
-        *found += up[place] - down[place];
+    for place in 0..LANES {
+        found[place] += up[place] - down[place];
     }
     found
 }
@@ -253,16 +288,16 @@ fn along_acceleration(functions: &Functions, at: &At<'_>) -> Lanes {
 /// Thrust, and what was learnt, at an acceleration.
 #[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
-fn accelerated(functions: &Functions, at: &At<'_>, acceleration_m_s2: f64) -> (Lanes, Lanes) {
+fn accelerated(at: &At<'_>, acceleration_m_s2: f64) -> (Lanes, Lanes) {
     let drag_n = each(&at.block.dynamic_force_n, &at.drag.coefficient, |force, drag| force * drag);
     let thrust_n = each(&drag_n, &at.states.mass_kg, |drag, mass| drag + mass * acceleration_m_s2);
-    let mut states = at.states;
-    for (place, corrected_n) in states.corrected_thrust_n.iter_mut().enumerate() {
-        *corrected_n = thrust_n[place] / at.block.pressure_ratio(place);
+    let mut states = *at.states;
+    for place in 0..LANES {
+        states.corrected_thrust_n[place] = thrust_n[place] / at.block.pressure_ratio(place);
     }
-    let mut learnt = functions.change(&at.values, &states, &functions::ACCELERATION);
-    for (place, learnt) in learnt.iter_mut().enumerate() {
-        *learnt += drag_n[place] / thrust_n[place] * at.drag.learnt[place];
+    let mut learnt = at.functions.change(at.values, &states, &functions::ACCELERATION);
+    for place in 0..LANES {
+        learnt[place] += drag_n[place] / thrust_n[place] * at.drag.learnt[place];
     }
     (thrust_n, learnt)
 }

@@ -1,0 +1,406 @@
+//! The variance of what a model has learnt, in independent directions.
+//!
+//! A difficult file. With L the lower Cholesky factor of the covariance of the coefficients, the variance at a point whose terms
+//! are x is |Lᵀx|². The terms of a smooth function depend on one variable, so that their part of Lᵀx is a curve in as many
+//! directions as L has columns: it is tabulated, and a point costs four rows of the table instead of exponentials and their
+//! products with L. The same holds for the drag table's loadings, bilinear between nodes, of which each gets a row. L is
+//! triangular: a term has no part in directions after its own. Terms are ordered so that those with most rows come first.
+
+#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
+
+use std::sync::OnceLock;
+
+use faer::Mat;
+use lut::Cell;
+use perf_model::LevelPrediction;
+use pulp::Simd;
+
+use crate::baseline::Baseline;
+use crate::math::cholesky::Cholesky;
+use crate::math::lanes::{LANES, Lanes, add_product, map};
+use crate::residuals::level::functions::{Functions, MOST, Tabulated, Values};
+use crate::signals::table_uncertainty::TableUncertainty;
+
+/// Directions that are summed together: four of the widest vectors that are compiled for.
+const TOGETHER: usize = 32;
+
+/// Rows of a table for each length of a function. Cubics through four of them are off by 0.0234·f⁗·16⁻⁴ at most: a millionth of
+/// the function's prior deviation, as the kernel's fourth derivative is 3.
+const ROWS_PER_LENGTH: f64 = 16.0;
+
+/// Lengths beyond the knots up to which a table goes: the kernel is 1e-14 there.
+const TAIL_LENGTHS: f64 = 8.0;
+
+/// Most products of two variables.
+const MOST_PRODUCTS: usize = MOST * (MOST - 1) / 2;
+
+/// Most drag rises.
+pub(super) const MOST_RISES: usize = 8;
+
+/// Some directions. Of single precision: a part in ten million, far below what a standard deviation is worth.
+type Some32 = [f32; TOGETHER];
+
+/// Rows of one length: for each [`TOGETHER`] directions that they reach to, their values row after row.
+type Rows = Vec<Vec<Some32>>;
+
+/// Learnt coefficients in independent directions.
+#[derive(Clone, Debug)]
+pub(super) struct Directions {
+    products: Rows,
+    rises: Rows,
+    /// Functions by the number of their terms, fewest first: their places, and the tables.
+    functions: Vec<(usize, Table)>,
+    drag: Option<DragRows>,
+    level: Rows,
+}
+
+/// A smooth function's part, at rows of equally distant places.
+#[derive(Clone, Debug)]
+struct Table {
+    first: f64,
+    count: usize,
+    rows: Rows,
+    /// What the part grows by for each length beyond the table.
+    slope: Rows,
+}
+
+/// The drag table's part at its nodes, each computed when it is asked for: a large table has many that nobody visits.
+#[derive(Clone, Debug)]
+struct DragRows {
+    uncertainty: TableUncertainty,
+    /// A row for each loading.
+    loadings: Rows,
+    of_nodes: Vec<OnceLock<Vec<Some32>>>,
+}
+
+/// Where the points of a block lie in the tables.
+struct Places {
+    /// First of four rows of each function's table, their weights, and lengths beyond the table.
+    first: [[usize; LANES]; MOST],
+    weights: [[Lanes; 4]; MOST],
+    beyond: [Lanes; MOST],
+    /// Products of the variables.
+    products: [Lanes; MOST_PRODUCTS],
+}
+
+/// Rows of the drag table's nodes about a point, and their weights.
+type DragPart<'a> = [(f32, &'a [Some32]); 4];
+
+impl Directions {
+    /// `rises` are places among the standing effects; `None` where the covariance is not positive definite.
+    pub(super) fn new(baseline: &Baseline, functions: &Functions, rises: &[usize]) -> Option<Self> {
+        let layout = baseline.layout();
+        let of_functions = functions.places();
+        let products = of_functions.last().map_or(1, |range| range.end)..layout.remainder.end;
+        let standing = layout.standing_effects.start;
+        let mut by_terms: Vec<usize> = (0..of_functions.len()).collect();
+        by_terms.sort_by_key(|function| of_functions[*function].len());
+        let mut columns: Vec<usize> = products.clone().collect();
+        columns.extend(rises.iter().map(|place| standing + place));
+        for function in &by_terms {
+            columns.extend(of_functions[*function].clone());
+        }
+        columns.extend(layout.drag.clone());
+        columns.push(0);
+        let factor = Factor::new(baseline, &columns)?;
+        let mut next = products.len() + rises.len();
+        let mut tables = Vec::new();
+        for function in by_terms {
+            let one = &functions.smooth()[function];
+            tables.push((function, Table::new(one, &factor, next)));
+            next += of_functions[function].len();
+        }
+        let nodes = baseline.table.as_ref().map(|uncertainty| DragRows {
+            uncertainty: uncertainty.clone(),
+            loadings: factor.rows(next, layout.drag.len()),
+            of_nodes: vec![OnceLock::new(); uncertainty.grid().nodes()],
+        });
+        Some(Self {
+            products: factor.rows(0, products.len()),
+            rises: factor.rows(products.len(), rises.len()),
+            functions: tables,
+            drag: nodes,
+            level: factor.rows(columns.len() - 1, 1),
+        })
+    }
+
+    /// Adds the variance at each point of a block, whose drag rises have these slopes.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
+    pub(super) fn add_variances<S: Simd>(
+        &self,
+        simd: S,
+        (values, rises): (&Values, &[Lanes]),
+        points: &[LevelPrediction],
+        variances: &mut Lanes,
+    ) {
+        let places = self.places(values);
+        let mut of_model = [[0.0; TOGETHER]; LANES];
+        for place in 0..points.len().min(LANES) {
+            let drag = self.drag_part(&points[place].cell);
+            let mut squares = [0.0; TOGETHER];
+            for block in 0..self.level.len() {
+                let sum = self.sum(simd, (&places, rises, &drag), place, block);
+                let (into, _) = S::as_mut_simd_f32s(&mut squares);
+                let (sum, _) = S::as_simd_f32s(&sum);
+                for k in 0..into.len() {
+                    into[k] = simd.add_f32s(into[k], simd.mul_f32s(sum[k], sum[k]));
+                }
+            }
+            of_model[place] = squares;
+        }
+        // The same bits whatever the width of vectors.
+        for place in 0..points.len().min(LANES) {
+            let mut sums = [0.0; 8];
+            for from in (0..TOGETHER).step_by(8) {
+                for k in 0..8 {
+                    sums[k] += of_model[place][from + k];
+                }
+            }
+            let [a, b, c, d, e, f, g, h] = sums.map(f64::from);
+            variances[place] += ((a + b) + (c + d)) + ((e + f) + (g + h));
+        }
+    }
+
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn places(&self, values: &Values) -> Places {
+        let mut places = Places {
+            first: [[0; LANES]; MOST],
+            weights: [[[0.0; LANES]; 4]; MOST],
+            beyond: [[0.0; LANES]; MOST],
+            products: [[0.0; LANES]; MOST_PRODUCTS],
+        };
+        for at in 0..self.functions.len().min(MOST) {
+            let (function, table) = &self.functions[at];
+            table.place(values.lengths(*function), at, &mut places);
+        }
+        let mut row = 0;
+        for first in 0..self.functions.len() {
+            for second in first + 1..self.functions.len() {
+                let (a, b) = (values.factors(first), values.factors(second));
+                add_product(&mut places.products[row], 1.0, a, b);
+                row += 1;
+            }
+        }
+        places
+    }
+
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn drag_part(&self, cell: &Cell) -> DragPart<'_> {
+        let mut part: DragPart<'_> = [(0.0, &[]); 4];
+        if let Some(drag) = &self.drag {
+            let (weights, nodes) = (cell.weights(), cell.nodes());
+            for k in 0..4 {
+                part[k] = (single(weights[k]), drag.row(nodes[k]));
+            }
+        }
+        part
+    }
+
+    /// The parts of a point in some directions.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn sum<S: Simd>(
+        &self,
+        simd: S,
+        (places, rises, drag): (&Places, &[Lanes], &DragPart<'_>),
+        place: usize,
+        block: usize,
+    ) -> Some32 {
+        let mut found = self.level[block][0];
+        let (into, _) = S::as_mut_simd_f32s(&mut found);
+        let width = into.len().min(VECTORS);
+        for from in (0..into.len()).step_by(width) {
+            let mut sum = Sum { simd, values: [simd.splat_f32s(0.0); VECTORS], from, width };
+            if let Some(rows) = self.products.get(block) {
+                for k in 0..rows.len().min(MOST_PRODUCTS) {
+                    sum.add(places.products[k][place], &rows[k]);
+                }
+            }
+            if let Some(rows) = self.rises.get(block) {
+                for k in 0..rows.len().min(rises.len()) {
+                    sum.add(rises[k][place], &rows[k]);
+                }
+            }
+            for at in 0..self.functions.len().min(MOST) {
+                let table = &self.functions[at].1;
+                let Some(rows) = table.rows.get(block) else { continue };
+                let first = places.first[at][place];
+                let rows = &rows[first..first + 4];
+                for k in 0..4 {
+                    sum.add(places.weights[at][k][place], &rows[k]);
+                }
+                let beyond = places.beyond[at][place];
+                if beyond != 0.0 {
+                    sum.add(beyond, &table.slope[block][0]);
+                }
+            }
+            for (times, row) in drag {
+                if block < row.len() {
+                    sum.add(f64::from(*times), &row[block]);
+                }
+            }
+            for k in 0..width {
+                into[from + k] = simd.add_f32s(into[from + k], sum.values[k]);
+            }
+        }
+        found
+    }
+}
+
+/// Vectors that are summed side by side.
+const VECTORS: usize = 4;
+
+/// Vectors of a sum, from one of a block's on.
+struct Sum<S: Simd> {
+    simd: S,
+    values: [S::f32s; VECTORS],
+    from: usize,
+    width: usize,
+}
+
+impl<S: Simd> Sum<S> {
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn add(&mut self, times: f64, row: &Some32) {
+        let (row, _) = S::as_simd_f32s(row);
+        let times = self.simd.splat_f32s(single(times));
+        for k in 0..VECTORS {
+            if k < self.width {
+                let product = self.simd.mul_f32s(times, row[self.from + k]);
+                self.values[k] = self.simd.add_f32s(self.values[k], product);
+            }
+        }
+    }
+}
+
+impl Table {
+    fn new(one: &Tabulated, factor: &Factor, start: usize) -> Self {
+        let (first_knot, last_knot) = one.prepared().knots();
+        let first = first_knot - TAIL_LENGTHS;
+        let lengths = last_knot - first_knot + 2.0 * TAIL_LENGTHS;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred")]
+        let count = (lengths * ROWS_PER_LENGTH).ceil() as usize + 1;
+        let terms = one.prepared().len();
+        let mut rows: Rows = vec![Vec::new(); blocks(start + terms)];
+        let mut of_place = vec![[0.0]; terms];
+        for row in 0..count {
+            one.prepared().write(&[first + row as f64 / ROWS_PER_LENGTH], &mut of_place);
+            push(&mut rows, &factor.sum(start, of_place.iter().map(|[term]| *term)));
+        }
+        let mut slope: Rows = vec![Vec::new(); rows.len()];
+        push(&mut slope, &factor.sum(start, core::iter::once(1.0)));
+        Self { first, count, rows, slope }
+    }
+
+    /// Where points lie in it, in lengths: on a cubic through four rows, beyond the table on a straight line.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn place(&self, z: &Lanes, at: usize, places: &mut Places) {
+        let last = (self.count - 1) as f64;
+        let t = map(z, |z| (z - self.first) * ROWS_PER_LENGTH);
+        let held = map(&t, |t| if t > 0.0 { t } else { 0.0 });
+        let held = map(&held, |t| if t < last { t } else { last });
+        for lane in 0..LANES {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "held in it"
+            )]
+            let low = (held[lane] as i32 as usize).clamp(1, self.count - 3);
+            let x = held[lane] - low as f64;
+            let (below, above, far) = (x + 1.0, x - 1.0, x - 2.0);
+            places.first[at][lane] = low - 1;
+            places.weights[at][0][lane] = -SIXTH * (x * above * far);
+            places.weights[at][1][lane] = 0.5 * (below * above * far);
+            places.weights[at][2][lane] = -0.5 * (below * x * far);
+            places.weights[at][3][lane] = SIXTH * (below * x * above);
+            places.beyond[at][lane] = (t[lane] - held[lane]) / ROWS_PER_LENGTH;
+        }
+    }
+}
+
+const SIXTH: f64 = 1.0 / 6.0;
+
+impl DragRows {
+    #[inline]
+    fn row(&self, node: usize) -> &[Some32] {
+        let Some(row) = self.of_nodes.get(node) else { return &[] };
+        row.get_or_init(|| {
+            let loadings = self.uncertainty.row(node);
+            let of_block = |rows: &Vec<Some32>| {
+                let mut sum = [0.0; TOGETHER];
+                for (loading, row) in loadings.iter().zip(rows) {
+                    for (sum, value) in sum.iter_mut().zip(row) {
+                        *sum += loading * f64::from(*value);
+                    }
+                }
+                sum.map(single)
+            };
+            self.loadings.iter().map(of_block).collect()
+        })
+    }
+}
+
+/// Adds a row, with zeros to its end.
+fn push(rows: &mut Rows, row: &[f64]) {
+    for (block, of_block) in rows.iter_mut().enumerate() {
+        let mut values = [0.0; TOGETHER];
+        for (slot, value) in values.iter_mut().zip(row.iter().skip(block * TOGETHER)) {
+            *slot = single(*value);
+        }
+        of_block.push(values);
+    }
+}
+
+/// How many times [`TOGETHER`] directions the first terms reach to.
+fn blocks(terms: usize) -> usize {
+    terms.div_ceil(TOGETHER).max(1)
+}
+
+/// The lower Cholesky factor of a covariance.
+struct Factor {
+    /// Row after row up to the diagonal.
+    rows: Vec<Vec<f64>>,
+}
+
+impl Factor {
+    /// Of these columns of a baseline's covariance.
+    fn new(baseline: &Baseline, columns: &[usize]) -> Option<Self> {
+        let rows = baseline.factor();
+        let rows =
+            Mat::from_fn(columns.len(), rows.ncols(), |row, column| rows[(columns[row], column)]);
+        let factor = Cholesky::new(&(&rows * rows.transpose()))?;
+        let lower = factor.lower();
+        let row = |row: usize| (0..=row).map(|column| lower[(row, column)]).collect();
+        Some(Self { rows: (0..lower.nrows()).map(row).collect() })
+    }
+
+    /// The part of terms from `start` on.
+    fn sum(&self, start: usize, terms: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut sum = Vec::new();
+        for (row, term) in self.rows[start..].iter().zip(terms) {
+            sum.resize(row.len(), 0.0);
+            for (sum, value) in sum.iter_mut().zip(row) {
+                *sum += value * term;
+            }
+        }
+        sum
+    }
+
+    /// Rows of the factor itself, all as wide as the last.
+    fn rows(&self, start: usize, count: usize) -> Rows {
+        let mut rows: Rows = vec![Vec::new(); blocks(start + count)];
+        for row in start..start + count {
+            push(&mut rows, &self.sum(row, core::iter::once(1.0)));
+        }
+        rows
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "single precision is meant")]
+const fn single(value: f64) -> f32 {
+    value as f32
+}
