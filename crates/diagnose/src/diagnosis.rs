@@ -270,7 +270,7 @@ fn conclude(
     let unseen =
         (!options.skip_closure && real).then(|| nested(problem, exceeds, scale, options.seed));
     let places = (!options.skip_where).then(|| find(system, analysis, scale, options.seed));
-    let detection_input = DetectionInput {
+    let asked = DetectionInput {
         analysis,
         distances: &distances,
         posteriors: &posteriors,
@@ -282,8 +282,7 @@ fn conclude(
         exceeds_uncertainty: exceeds,
         lies_at_an_engine: places.as_ref().is_some_and(FoundPlaces::name_an_engine),
     };
-    let Detection { detected, table, smooth_term, forms } =
-        detect(problem, &detection_input, &mut outside);
+    let Detection { detected, table, smooth_term, forms } = detect(problem, &asked, &mut outside);
     gap.detected = detected;
     let unseen = unseen.filter(|_| gap.detected);
     if unseen.is_some() {

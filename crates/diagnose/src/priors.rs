@@ -26,7 +26,7 @@ deciding_numbers! {
             OurChoice "As much belief on three times the typical size, so that a large effect is not shrunk away; one in ten on ten times.";
         LARGEST_OF_TWO: f64 = 10.0, "of typical size",
             "size of either of two effects beyond which the pair is not believed",
-            OurChoice "The largest prior scale: what one effect alone may be its gap shows, but two impossible ones may cancel, as 57 K of SAT and 16 % of drag.";
+            OurChoice "The largest prior scale: two impossible ones may cancel, as 57 K of SAT and 16 % of drag did.";
         CONTRIBUTING: f64 = 1.0, "effects",
             "how many of all effects are expected to act at typical size where all are looked at at once",
             OurChoice "One: most models lack one thing, and the rest a little. Flights decide.";
