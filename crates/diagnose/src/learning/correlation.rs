@@ -111,7 +111,7 @@ impl Sums {
         if pairs.len() < 2 {
             return;
         }
-        let [[uu, uv], [_, vv]] = products_about_mean(pairs.iter().map(|pair| pair.left));
+        let [[uu, uv], [_, vv]] = products_about_mean(&pairs.iter().map(|pair| pair.left));
         self.squares[0] += uu;
         self.squares[1] += vv;
         self.product += uv;
@@ -124,7 +124,7 @@ impl Sums {
         for at in 0..pairs[0].common.len() {
             let loadings =
                 pairs.iter().map(|pair| pair.common.get(at).copied().unwrap_or_default());
-            let [[uu, uv], [_, vv]] = products_about_mean(loadings);
+            let [[uu, uv], [_, vv]] = products_about_mean(&loadings);
             self.believed[0] += uu;
             self.believed[1] += vv;
             self.of_common += uv;
@@ -144,7 +144,7 @@ impl Sums {
 }
 
 /// Sums of squares and products of two values, each less its mean.
-fn products_about_mean(values: impl Iterator<Item = [f64; 2]> + Clone) -> [[f64; 2]; 2] {
+fn products_about_mean(values: &(impl Iterator<Item = [f64; 2]> + Clone)) -> [[f64; 2]; 2] {
     let count = values.clone().count() as f64;
     let mean = |k: usize| values.clone().map(|value| value[k]).sum::<f64>() / count;
     let means = [mean(0), mean(1)];
