@@ -51,9 +51,9 @@ struct Sums {
 /// κ = (ν κ' + ν0)/(ν + ν0),   κ' = (r √(T_u T_v) − T_c)/T_uv,   r = Σ u v/√(Σ u² Σ v²)                  [baseline.8]
 /// ```
 ///
-/// u and v are what is left of both, less the mean of their flight, T_u and T_v what Σu² and Σv² should be by the noise that each
-/// has learnt, T_c and T_uv what Σuv should be by what flights have in common and by the segments' own errors; ν segments less
-/// flights, and what is stated counts as ν0 [`NOISE_FREEDOM`] segments. Both are shortened by what was fitted to them, so that r
+/// u and v are what is left of both, less the mean of their flight, `T_u` and `T_v` what Σu² and Σv² should be by the noise that
+/// each has learnt, `T_c` and `T_uv` what Σuv should be by what flights have in common and by the segments' own errors; ν segments
+/// less flights, and what is stated counts as ν0 [`NOISE_FREEDOM`] segments. Both are shortened by what was fitted to them, so that r
 /// alone is asked. 1 where hardly any correlation is stated.
 pub(super) fn correlation_factor(
     data: &PreparedFlights<'_>,
@@ -111,7 +111,7 @@ impl Sums {
         if pairs.len() < 2 {
             return;
         }
-        let [[uu, uv], [_, vv]] = products_about_mean(pairs.iter().map(|pair| pair.left));
+        let [[uu, uv], [_, vv]] = products_about_mean(&pairs.iter().map(|pair| pair.left));
         self.squares[0] += uu;
         self.squares[1] += vv;
         self.product += uv;
@@ -124,7 +124,7 @@ impl Sums {
         for at in 0..pairs[0].common.len() {
             let loadings =
                 pairs.iter().map(|pair| pair.common.get(at).copied().unwrap_or_default());
-            let [[uu, uv], [_, vv]] = products_about_mean(loadings);
+            let [[uu, uv], [_, vv]] = products_about_mean(&loadings);
             self.believed[0] += uu;
             self.believed[1] += vv;
             self.of_common += uv;
@@ -144,7 +144,7 @@ impl Sums {
 }
 
 /// Sums of squares and products of two values, each less its mean.
-fn products_about_mean(values: impl Iterator<Item = [f64; 2]> + Clone) -> [[f64; 2]; 2] {
+fn products_about_mean(values: &(impl Iterator<Item = [f64; 2]> + Clone)) -> [[f64; 2]; 2] {
     let count = values.clone().count() as f64;
     let mean = |k: usize| values.clone().map(|value| value[k]).sum::<f64>() / count;
     let means = [mean(0), mean(1)];
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     /// Values (−1, 0, 1) and the same plus twice (−1, 2, −1), which has the product 0 with it: Σu² = 2, Σv² = 2 + 24, Σuv = 2,
-    /// r = 2/√52. Believed: variances 1 and 13, so that r√(T_u T_v) of a flight is 2/√52·√(2·26) = 2; own covariance 1.25,
+    /// r = 2/√52. Believed: variances 1 and 13, so that `r√(T_u T_v)` of a flight is 2/√52·√(2·26) = 2; own covariance 1.25,
     /// which makes 2.5, and 0.5 in common, from loadings (½, 0, −½) and (1, 0, −1)/2.
     #[test]
     fn correlation_is_drawn_to_what_is_stated_by_forty_segments() {
