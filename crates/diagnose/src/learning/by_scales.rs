@@ -4,7 +4,6 @@ use faer::Mat;
 
 use crate::learning::dials::Dials;
 use crate::learning::prior::Prior;
-use crate::learning::sums::right_side;
 use crate::math::linear::add_gram;
 use crate::math::lower::{Lower, dot};
 
@@ -24,14 +23,13 @@ pub(super) struct ByScales {
 }
 
 impl ByScales {
-    /// At a ratio, whose Gram matrix this is; `None` where that has no factor.
-    pub(super) fn new(ratio: f64, gram: &Mat<f64>, prior: &Prior) -> Option<Self> {
-        let mut factor = Lower::zeros(gram.nrows() - 1);
-        factor.add(1.0, gram);
+    /// At a ratio, whose Gram matrix and right side these are; `None` where that has no factor.
+    pub(super) fn new(ratio: f64, (gram, right): (&Lower, &[f64]), prior: &Prior) -> Option<Self> {
+        let mut factor = gram.clone();
         if !factor.factor() {
             return None;
         }
-        let mut right = right_side(gram);
+        let mut right = right.to_vec();
         factor.solve_lower(&mut right);
         let lower = factor.to_mat();
         let part = |root: &Mat<f64>| {

@@ -38,13 +38,24 @@ pub(super) struct Evidence<'a> {
     sums: &'a ChannelSums,
     prior: &'a Prior,
     /// The Gram matrix formed last, with Σ ln(1 + ρ²λ), and its ratio.
-    gram: Option<(f64, Mat<f64>, f64)>,
+    gram: Option<GramAt>,
     /// The prior precision formed last, with `ln|K|`, and its scales.
     precision: Option<([f64; SCALES], Lower, f64)>,
     /// Cholesky factor of the posterior precision that was looked at last.
     factor: Lower,
     /// What makes scales cheap to move, at a ratio.
     by_scales: Option<ByScales>,
+}
+
+/// A Gram matrix at a ratio.
+struct GramAt {
+    ratio: f64,
+    /// Of the columns alone.
+    columns: Lower,
+    /// Products of the columns with the residual, and its square.
+    right: Vec<f64>,
+    square: f64,
+    ln_common: f64,
 }
 
 /// Posterior of the columns at one point: mean, and a root of the covariance.
@@ -86,10 +97,11 @@ impl<'a> Evidence<'a> {
             None => self.seen_by_precision(dials),
         };
         let Some((ln_determinants, explained)) = found else { return f64::NEG_INFINITY };
-        let Some((_, gram, ln_common)) = &self.gram else { return f64::NEG_INFINITY };
+        let Some(GramAt { square: of_residual, ln_common, .. }) = &self.gram else {
+            return f64::NEG_INFINITY;
+        };
         let square = dials.within * dials.within;
-        let width = gram.nrows() - 1;
-        let left = (gram[(width, width)] - explained) / square;
+        let left = (of_residual - explained) / square;
         let ln_noise = self.sums.values * square.ln() + ln_common;
         let likelihood = -0.5 * (ln_noise + ln_determinants + left);
         likelihood + self.ln_prior(dials)
@@ -98,8 +110,8 @@ impl<'a> Evidence<'a> {
     /// ln|K| + ln|K⁻¹ + G/w²| and gᵀ(K⁻¹ + G/w²)⁻¹g/w², by the precision.
     fn seen_by_precision(&mut self, dials: &Dials) -> Option<(f64, f64)> {
         self.factor(dials)?;
-        let ((_, gram, _), (.., ln_prior)) = (self.gram.as_ref()?, self.precision.as_ref()?);
-        let mut projected = right_side(gram);
+        let (gram, (.., ln_prior)) = (self.gram.as_ref()?, self.precision.as_ref()?);
+        let mut projected = gram.right.clone();
         self.factor.solve_lower(&mut projected);
         let explained = dot(&projected, &projected) / (dials.within * dials.within);
         Some((ln_prior + self.factor.ln_determinant(), explained))
@@ -113,14 +125,20 @@ impl<'a> Evidence<'a> {
         }
         self.form_gram(ratio);
         let gram = self.gram.as_ref();
-        self.by_scales = gram.and_then(|(_, gram, _)| ByScales::new(ratio, gram, self.prior));
+        self.by_scales =
+            gram.and_then(|gram| ByScales::new(ratio, (&gram.columns, &gram.right), self.prior));
     }
 
     /// The Gram matrix at a ratio.
     fn form_gram(&mut self, ratio: f64) {
-        if self.gram.as_ref().is_none_or(|(at, ..)| at.to_bits() != ratio.to_bits()) {
+        if self.gram.as_ref().is_none_or(|gram| gram.ratio.to_bits() != ratio.to_bits()) {
             let (gram, ln_common) = self.sums.gram(ratio);
-            self.gram = Some((ratio, gram, ln_common));
+            let width = gram.nrows() - 1;
+            let mut columns = Lower::zeros(width);
+            columns.add(1.0, &gram);
+            let square = gram[(width, width)];
+            let right = right_side(&gram);
+            self.gram = Some(GramAt { ratio, columns, right, square, ln_common });
             self.by_scales = None;
         }
     }
@@ -137,8 +155,8 @@ impl<'a> Evidence<'a> {
             let precision = factor.inverse().transposed_times_itself();
             self.precision = Some((dials.scales, precision, factor.ln_determinant()));
         }
-        let ((_, gram, _), (_, prior, _)) = (self.gram.as_ref()?, self.precision.as_ref()?);
-        self.factor.set_sum(prior, 1.0 / (dials.within * dials.within), gram);
+        let (gram, (_, prior, _)) = (self.gram.as_ref()?, self.precision.as_ref()?);
+        self.factor.set_sum(prior, 1.0 / (dials.within * dials.within), &gram.columns);
         self.factor.factor().then_some(())
     }
 
@@ -302,9 +320,9 @@ impl<'a> Evidence<'a> {
     /// The posterior mean at one point; `None` where matrices are not positive definite.
     pub(super) fn mean(&mut self, dials: &Dials) -> Option<Mat<f64>> {
         self.factor(dials)?;
-        let (_, gram, _) = self.gram.as_ref()?;
+        let gram = self.gram.as_ref()?;
         let square = dials.within * dials.within;
-        let mut mean = right_side(gram);
+        let mut mean = gram.right.clone();
         for value in &mut mean {
             *value /= square;
         }

@@ -9,7 +9,7 @@ use crate::math::pivoted::Pivoted;
 /// Prior covariance of the pivots by groups of columns: the one that stays, and those that scales multiply.
 pub(super) struct Prior {
     /// Each of its parts, and a root of it.
-    pub(super) parts: Vec<Mat<f64>>,
+    pub(super) parts: Vec<Lower>,
     pub(super) roots: Vec<Mat<f64>>,
 }
 
@@ -33,16 +33,18 @@ impl Prior {
 
     /// Covariance of the pivots at scales.
     pub(super) fn covariance(&self, scales: [f64; SCALES]) -> Lower {
-        let mut covariance = Lower::zeros(self.parts[0].nrows());
-        covariance.add(1.0, &self.parts[0]);
+        let mut covariance = self.parts[0].clone();
         for (part, scale) in self.parts[1..].iter().zip(scales) {
-            covariance.add(scale * scale, part);
+            covariance.add_share(scale * scale, part);
         }
         covariance
     }
 
     /// Of roots of its parts.
     pub(super) fn of_roots(roots: Vec<Mat<f64>>) -> Self {
-        Self { parts: roots.iter().map(|root| root * root.transpose()).collect(), roots }
+        Self {
+            parts: roots.iter().map(|root| Lower::of(&(root * root.transpose()))).collect(),
+            roots,
+        }
     }
 }

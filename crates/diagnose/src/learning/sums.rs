@@ -20,10 +20,11 @@ use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
 use crate::learning::turned::TurnedFlights;
 use crate::math::linear::{add_gram, subtract_gram, symmetrize};
-use crate::math::lower::dot;
 
 /// Rows that are multiplied together. Our choice: products are fast, and what waits for them is small.
 const ROWS_TOGETHER: usize = 384;
+/// Columns that are turned into rows together. Our choice: one line of a cache.
+const COLUMNS_TOGETHER: usize = 8;
 
 /// Sums over rows whose noise has factors of 1.
 pub(super) struct ChannelSums {
@@ -49,7 +50,7 @@ impl ChannelSums {
         for together in together(rows) {
             let first = rows.groups[together.start].start;
             let white = whitened(rows, &together, &scales);
-            add_gram(&mut own, white.as_ref());
+            add_gram(&mut own, white.transpose());
             for group in together {
                 let range = rows.groups[group].clone();
                 let share = rows.shares[group];
@@ -58,10 +59,14 @@ impl ChannelSums {
                 let at = eigenvalues.len();
                 let squared = |length: &f64| (of_group * of_group * length, share);
                 eigenvalues.extend(flight.lengths.iter().map(squared));
-                for column in 0..size {
-                    let values = &white.col_as_slice(column)[range.start - first..][..range.len()];
-                    for (r, loading) in flight.loadings.iter().enumerate() {
-                        common[(column, at + r)] = of_group * dot(values, loading);
+                for (r, loading) in flight.loadings.iter().enumerate() {
+                    let into = common.col_as_slice_mut(at + r);
+                    for (row, u) in loading.iter().enumerate() {
+                        let values = white.col_as_slice(range.start - first + row);
+                        let by = of_group * u;
+                        for (into, value) in into.iter_mut().zip(values) {
+                            *into += by * value;
+                        }
                     }
                 }
             }
@@ -78,7 +83,7 @@ impl ChannelSums {
         let mut own = Mat::<f64>::zeros(size, size);
         let scales = scales(rows, weights);
         for together in together(rows) {
-            add_gram(&mut own, whitened(rows, &together, &scales).as_ref());
+            add_gram(&mut own, whitened(rows, &together, &scales).transpose());
         }
         symmetrize(&mut own);
         own
@@ -171,16 +176,21 @@ fn together(rows: &ChannelRows) -> Vec<Range<usize>> {
     ranges
 }
 
-/// The rows of neighbouring groups, each times its scale.
+/// The rows of neighbouring groups, each times its scale, as columns.
 fn whitened(rows: &ChannelRows, groups: &Range<usize>, scales: &[f64]) -> Mat<f64> {
     let range = rows.groups[groups.start].start..rows.groups[groups.end - 1].end;
     let scales = &scales[range.clone()];
-    let mut white = Mat::<f64>::zeros(range.len(), rows.columns.ncols());
-    for column in 0..white.ncols() {
-        let from = &rows.columns.col_as_slice(column)[range.clone()];
-        let into = white.col_as_slice_mut(column);
+    let size = rows.columns.ncols();
+    let mut white = Mat::<f64>::zeros(size, range.len());
+    for first in (0..size).step_by(COLUMNS_TOGETHER) {
+        let last = (first + COLUMNS_TOGETHER).min(size);
+        let from: Vec<&[f64]> =
+            (first..last).map(|column| &rows.columns.col_as_slice(column)[range.clone()]).collect();
         for (at, scale) in scales.iter().enumerate() {
-            into[at] = from[at] * scale;
+            let into = &mut white.col_as_slice_mut(at)[first..last];
+            for (into, from) in into.iter_mut().zip(&from) {
+                *into = from[at] * scale;
+            }
         }
     }
     white

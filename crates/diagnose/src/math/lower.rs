@@ -7,7 +7,9 @@ mod kernels;
 
 use faer::Mat;
 
-use kernels::{Factor, Invert, Solve, SubtractProducts, TransposedTimesItself, solve_lower};
+use kernels::{
+    AddShare, Factor, Invert, Solve, SubtractProducts, TransposedTimesItself, solve_lower,
+};
 
 pub(crate) use kernels::dot;
 
@@ -62,10 +64,15 @@ impl Lower {
         &mut blocks.as_flattened_mut()[column..self.size]
     }
 
-    /// Becomes `B + share·A`, A with as many rows and columns or more.
-    pub(crate) fn set_sum(&mut self, base: &Self, share: f64, added: &Mat<f64>) {
+    /// Becomes `B + share·A`, of matrices of one size.
+    pub(crate) fn set_sum(&mut self, base: &Self, share: f64, added: &Self) {
         self.clone_from(base);
-        self.add(share, added);
+        self.add_share(share, added);
+    }
+
+    /// `C += share·A`, of matrices of one size.
+    pub(crate) fn add_share(&mut self, share: f64, added: &Self) {
+        pulp::Arch::new().dispatch(AddShare { into: &mut self.values, share, from: &added.values });
     }
 
     /// Becomes `1 + Σ share·C`, of matrices of one size.
@@ -74,11 +81,7 @@ impl Lower {
         for (share, part) in parts {
             (self.size, self.blocks) = (part.size, part.blocks);
             self.values.resize(part.values.len(), [0.0; LANES]);
-            for (into, from) in self.values.iter_mut().zip(&part.values) {
-                for lane in 0..LANES {
-                    into[lane] += share * from[lane];
-                }
-            }
+            self.add_share(share, part);
         }
         for k in 0..self.size {
             *self.at_mut(k, k) += 1.0;

@@ -142,6 +142,29 @@ fn clear_above(values: &mut [Block], size: usize, blocks: usize) {
     }
 }
 
+pub(super) struct AddShare<'a> {
+    pub(super) into: &'a mut [Block],
+    pub(super) share: f64,
+    pub(super) from: &'a [Block],
+}
+
+impl pulp::NullaryFnOnce for AddShare<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { into, share, from } = self;
+        let from = &from[..into.len()];
+        for block in 0..into.len() {
+            let (mut values, from) = (into[block], from[block]);
+            for lane in 0..LANES {
+                values[lane] += share * from[lane];
+            }
+            into[block] = values;
+        }
+    }
+}
+
 pub(super) struct Solve<'a> {
     pub(super) factor: &'a Lower,
     pub(super) right: &'a mut [f64],
