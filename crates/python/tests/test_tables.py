@@ -156,6 +156,7 @@ def test_columns_of_a_whole_model_are_single_predictions():
         ours, theirs = together.column(name), one_by_one.column(name)
         assert ours.is_valid().equals(theirs.is_valid()) and ours.null_count < 100
         scale = {"remainder_percent": 100.0, "fuel_flow_std_kg_s": 1e-3}.get(name, 0.0)
-        tolerance = 1e-8 if name == "fuel_flow_std_kg_s" else 1e-12
+        # Columns are predicted from tables of the model's functions, within 1e-9, of their deviations in single precision.
+        tolerance = 1e-5 if name == "fuel_flow_std_kg_s" else 1e-9
         ours, theirs = (column.drop_null().to_numpy() for column in (ours, theirs))
         assert np.all(np.abs(ours - theirs) <= tolerance * np.maximum(np.abs(theirs), scale)), name
