@@ -53,8 +53,7 @@ pub(super) fn learn_channel(
     turned: &mut TurnedFlights,
 ) -> Option<LearntChannel> {
     let few = FewColumns::of(rows, groups);
-    let Weighed { weights, sums, dials: before, left, .. } =
-        few.weigh(Weights::before(rows), turned)?;
+    let Weighed { weights, sums, dials: before, left, .. } = few.weigh(turned)?;
     let mut evidence = Evidence::new(&sums, &few.prior);
     let mut dials = before;
     let unseen = raise_scatter(&few.rows, &weights, &mut evidence, &mut dials)?;
@@ -92,11 +91,8 @@ impl FewColumns {
 
     /// Fits, and weighs what lies far from the fit, until weights stay. The first times only noise is sought: scales that are sought
     /// among outliers are large enough to follow them, and then nothing lies far.
-    pub(super) fn weigh(
-        &self,
-        mut weights: Weights,
-        turned: &mut TurnedFlights,
-    ) -> Option<Weighed> {
+    pub(super) fn weigh(&self, turned: &mut TurnedFlights) -> Option<Weighed> {
+        let mut weights = Weights::before(&self.rows);
         let mut dials = Dials::usual();
         // Weighings by noise alone.
         let mut before = if self.prior.has_scales() { 0 } else { MOST_WEIGHINGS_BY_NOISE };
@@ -239,7 +235,7 @@ mod tests {
         };
         let groups = [0; 3];
         let few = FewColumns::of(&rows, &groups);
-        let fit = few.weigh(Weights::of_one(&rows), &mut TurnedFlights::default()).unwrap();
+        let fit = few.weigh(&mut TurnedFlights::default()).unwrap();
         assert!(fit.weights.rows.iter().chain(&fit.weights.groups).all(|weight| *weight > 0.99));
         let covariance = Mat::from_fn(count, count, |i, j| {
             let own = if i == j { rows.variance[i] } else { 0.0 };

@@ -8,7 +8,6 @@ use crate::baseline::Baseline;
 use crate::learning::channel::{FewColumns, LearntChannel, Weighed, learn_channel};
 use crate::learning::fit::Joint;
 use crate::learning::n2_rows::{GivenThrust, LearntFuelFlow, N2Rows, given_columns};
-use crate::learning::outliers::Weights;
 use crate::learning::rows::ChannelRows;
 use crate::learning::sums::through_noise;
 use crate::learning::turned::TurnedFlights;
@@ -78,7 +77,7 @@ fn moved(from: &Deck, by: &[f64], deviations: &[f64]) -> Deck {
 /// Coefficients of the deck at the likeliest noise, in prior standard deviations.
 fn first_deck(of_deck: &ChannelRows, turned: &mut TurnedFlights) -> Option<Vec<f64>> {
     let few = FewColumns::of(of_deck, &GROUPS);
-    few.coefficients(&few.weigh(Weights::before(of_deck), turned)?, &GROUPS)
+    few.coefficients(&few.weigh(turned)?, &GROUPS)
 }
 
 /// How much of the remainder is thrust: the mean over shares that are as likely before, by the marginal likelihood of N2. `None`
@@ -90,15 +89,17 @@ fn first_deck(of_deck: &ChannelRows, turned: &mut TurnedFlights) -> Option<Vec<f
 ///
 /// What no flight taught drag may be thrust or what an engine burns for it; fuel flow alone does not say which.
 fn share_that_is_thrust(rows: &N2Rows<'_>, deck: &Deck, turned: &mut TurnedFlights) -> Option<f64> {
-    let of_none = rows.of_deck(&GivenThrust { share: THRUST_SHARES[0], deck });
+    let few_at = |share: f64| FewColumns::of(&rows.of_deck(&GivenThrust { share, deck }), &GROUPS);
+    let mut few = few_at(THRUST_SHARES[0]);
     // The same weights for all shares, or each would choose its own outliers.
-    let Weighed { weights, mut dials, .. } =
-        FewColumns::of(&of_none, &GROUPS).weigh(Weights::before(&of_none), turned)?;
+    let Weighed { weights, mut dials, .. } = few.weigh(turned)?;
     let (mut sum, mut shares, mut largest) = (0.0, 0.0, f64::NEG_INFINITY);
-    for share in THRUST_SHARES {
-        let of_deck = rows.of_deck(&GivenThrust { share, deck });
+    for (at, share) in THRUST_SHARES.into_iter().enumerate() {
+        if at > 0 {
+            few = few_at(share);
+        }
         let ln;
-        (ln, dials) = FewColumns::of(&of_deck, &GROUPS).ln_evidence(&weights, dials, turned);
+        (ln, dials) = few.ln_evidence(&weights, dials, turned);
         // Relative to the largest so far.
         let by = (largest - ln.max(largest)).exp();
         largest = largest.max(ln);

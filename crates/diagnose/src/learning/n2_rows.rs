@@ -35,6 +35,8 @@ pub(super) struct N2Rows<'a> {
     /// Their rows of fuel flow: that is recorded in every segment.
     places: Vec<usize>,
     noise: ChannelRows,
+    /// ln(N2/√θt) by the deck at hand, at the thrust of the table.
+    before: Vec<f64>,
     /// ln of thrust that drag is worth, and the whole remainder.
     by_drag: Vec<f64>,
     by_remainder: Vec<f64>,
@@ -57,17 +59,19 @@ impl<'a> N2Rows<'a> {
         let layout = fuel.layout;
         let by_drag = worth(layout.drag.clone(), fuel.first_of_drag());
         let by_remainder = worth(layout.remainder.clone(), 0);
-        let segments = places.iter().map(|&at| &data.segments[at]).collect();
+        let segments: Vec<&SegmentRow> = places.iter().map(|&at| &data.segments[at]).collect();
         let at_hand = &data.predictor.deck;
-        Self { fuel, channel, at_hand, segments, places, noise, by_drag, by_remainder }
+        let before =
+            segments.iter().map(|row| at_hand.of_terms(&at_hand.terms(&row.response))).collect();
+        Self { fuel, channel, at_hand, segments, places, noise, before, by_drag, by_remainder }
     }
 
     /// The deck's columns. The residual is what the deck at hand leaves at the thrust that is given.
     pub(super) fn of_deck(&self, given: &GivenThrust<'_>) -> ChannelRows {
         let LearntFuelFlow { layout, deviations, means, .. } = self.fuel;
-        let deviations = &deviations[layout.deck.clone()];
         let sizes: Vec<f64> =
-            layout.standing_effects.clone().map(|k| self.size(k, means)).collect();
+            layout.standing_effects.clone().map(|k| means[k] * deviations[k]).collect();
+        let deviations = &deviations[layout.deck.clone()];
         let mut columns = Mat::<f64>::zeros(self.segments.len(), DECK_TERMS + 1);
         for (at, row) in self.segments.iter().enumerate() {
             let (terms, slope) = self.at_given_thrust(at, given);
@@ -77,9 +81,9 @@ impl<'a> N2Rows<'a> {
             let by = steeper(row, slope);
             let effects = row.standing_effects.iter().zip(&sizes);
             let carried: f64 = effects.map(|(of, size)| by * of[self.channel] * size).sum();
-            let before = self.at_hand.of_terms(&self.at_hand.terms(&row.response));
-            columns[(at, DECK_TERMS)] =
-                row.residual[self.channel] + before - self.at_hand.of_terms(&terms) - carried;
+            columns[(at, DECK_TERMS)] = row.residual[self.channel] + self.before[at]
+                - self.at_hand.of_terms(&terms)
+                - carried;
         }
         self.noise.with_columns(columns)
     }
@@ -119,11 +123,6 @@ impl<'a> N2Rows<'a> {
         let thrust = self.by_drag[at] + given.share * self.by_remainder[at];
         let response = with_thrust(&self.segments[at].response, thrust);
         (self.at_hand.terms(&response), given.deck.slope(&response))
-    }
-
-    /// The size that was found of a coefficient.
-    fn size(&self, column: usize, means: &[f64]) -> f64 {
-        means[column] * self.fuel.deviations[column]
     }
 }
 
