@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::EffectModelError;
 use crate::form::AppliedForm;
+use crate::polar::fit_polar;
 use crate::references::EffectReferences;
-use crate::response::fit_polar;
 use crate::set::{Effects, SizedEffect};
 use crate::terms::Terms;
 use crate::variable::Variable;

@@ -82,6 +82,7 @@ mod known;
 mod mean;
 mod model;
 mod point;
+mod polar;
 mod recorded;
 mod references;
 mod response;

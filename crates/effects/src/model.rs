@@ -12,9 +12,10 @@ use crate::error::{EffectError, EffectModelError};
 use crate::extended::ExtendedModel;
 use crate::known::{KnownPoint, Trial};
 use crate::point::EffectPoint;
+use crate::polar::fit_polar;
 use crate::recorded;
 use crate::references::EffectReferences;
-use crate::response::{Bare, BetweenNodes, Edge, Response, evaluate, fit_polar};
+use crate::response::{Bare, BetweenNodes, Edge, Response, evaluate};
 use crate::set::Effects;
 use crate::terms::{Layers, Terms};
 

@@ -1,7 +1,7 @@
 //! From a recorded point and the effects that act there to the recorded quantities: one path for all effects.
 
 use flight::MAXIMUM_ENGINES;
-use lut::surface::{Basis, FitError, Surface, fit};
+use lut::surface::Surface;
 use lut::{Axis, Outside, SmoothTable, Table};
 use perf_model::Aircraft;
 use perf_model::tsfc::tsfc;
@@ -242,19 +242,4 @@ fn table_value(
     let (along_lift, along_mach) = drag_table.gradient(&cell);
     let inside = value(held_lift, held_mach).map_err(outside)?;
     Ok(inside + along_lift * beyond_lift + along_mach * beyond_mach)
-}
-
-/// CD0(M) and K(M) of a table.
-pub(crate) fn fit_polar(drag_table: &Table) -> Result<Surface, FitError> {
-    let grid = drag_table.grid();
-    let points: Vec<_> = drag_table
-        .values()
-        .iter()
-        .enumerate()
-        .map(|(node, &drag_coefficient)| {
-            let (lift_coefficient, mach) = grid.coordinates(node);
-            (lift_coefficient, mach, drag_coefficient, 1.0)
-        })
-        .collect();
-    Ok(fit(Basis::SeparableQuadratic, &points)?.surface)
 }

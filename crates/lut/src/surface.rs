@@ -6,8 +6,10 @@
 use nalgebra::{DMatrix, DVector, Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 
+mod beside;
 mod error;
 
+pub use beside::{FitBeside, fit_beside};
 pub use error::{FitError, Undetermined};
 
 /// Number of coefficients of either basis.
@@ -110,13 +112,7 @@ impl Surface {
 /// Book `[tables.8]`; Ghazi et al. 2020, equation (29) without its normal equations.
 pub fn fit(basis: Basis, points: &[(f64, f64, f64, f64)]) -> Result<Fit, FitError> {
     check(basis, points)?;
-    let roots: Vec<f64> = points.iter().map(|&(_, _, _, weight)| weight.sqrt()).collect();
-    let design = DMatrix::from_fn(points.len(), COEFFICIENTS, |i, k| {
-        let (x, y, _, _) = points[i];
-        roots[i] * basis.row(x, y)[k]
-    });
-    let mut target =
-        DVector::from_iterator(points.len(), points.iter().zip(&roots).map(|(p, root)| root * p.2));
+    let (design, mut target) = weighted(basis, points);
 
     let qr = design.qr();
     let triangle: Matrix6<f64> = qr.r().fixed_view::<COEFFICIENTS, COEFFICIENTS>(0, 0).into();
@@ -150,6 +146,17 @@ pub fn fit(basis: Basis, points: &[(f64, f64, f64, f64)]) -> Result<Fit, FitErro
         weights += weight;
     }
     Ok(Fit { surface, rank, condition_number, residual_rms: (squares / weights).sqrt() })
+}
+
+/// The design and what it is fitted to, each row times the root of its weight.
+fn weighted(basis: Basis, points: &[(f64, f64, f64, f64)]) -> (DMatrix<f64>, DVector<f64>) {
+    let roots: Vec<f64> = points.iter().map(|&(_, _, _, weight)| weight.sqrt()).collect();
+    let design = DMatrix::from_fn(points.len(), COEFFICIENTS, |i, k| {
+        let (x, y, _, _) = points[i];
+        roots[i] * basis.row(x, y)[k]
+    });
+    let values = points.iter().zip(&roots).map(|(point, root)| root * point.2);
+    (design, DVector::from_iterator(points.len(), values))
 }
 
 fn check(basis: Basis, points: &[(f64, f64, f64, f64)]) -> Result<(), FitError> {

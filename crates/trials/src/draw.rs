@@ -207,7 +207,8 @@ pub(crate) fn learnable() -> TruthPhysics {
 }
 
 /// Conditions at which effects are zero: means over the flights that the model has learnt; of an exact model, over those
-/// diagnosed. Dates continue to the last flight, so that ageing does not end with what was learnt.
+/// diagnosed. What gathers with time gathers from the mean date of what was learnt, because the model was right then, to the last
+/// flight.
 fn references(
     bare: &Plan,
     designed: &Simulation,
@@ -234,7 +235,7 @@ fn references(
     let (Some(learnt), Some(whole)) = (of(&learnt), whole) else {
         return Err(simulate::PlanError::NoFlights { tail: TAIL.to_owned() });
     };
-    Ok(References { last_date_s: whole.last_date_s, ..learnt })
+    Ok(References { first_date_s: learnt.date_s, last_date_s: whole.last_date_s, ..learnt })
 }
 
 /// An effect with its size, sign and hidden parameters.
