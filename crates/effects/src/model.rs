@@ -38,7 +38,7 @@ impl<'a> EffectModel<'a> {
     /// A model with effects, over the extended model's own table or another one on its grid (an adapted one).
     ///
     /// CD0(M) and K(M), shares of which some effects scale, are the six-coefficient polynomial
-    /// p0 + p1 M + p2 M² + (p3 + p4 M + p5 M²) CL² fitted to that table.
+    /// p0 + p1 M + p2 M² + (p3 + p4 M + p5 M²) CL² fitted to that table beside a drag rise. Book `[diagnosis.57]`.
     ///
     /// # Errors
     /// [`EffectModelError`] where the table is on another grid, does not determine the polynomial, or a reference is not

@@ -30,10 +30,10 @@ pub struct FitBeside {
 ///
 /// # Source
 /// Frisch and Waugh 1933; Lovell 1963: partial regression.
-pub fn fit_beside(
+pub fn fit_beside<F: Fn(f64, f64) -> f64>(
     basis: Basis,
     points: &[(f64, f64, f64, f64)],
-    functions: &[&dyn Fn(f64, f64) -> f64],
+    functions: &[F],
 ) -> Result<FitBeside, FitError> {
     check(basis, points)?;
     let (design, target) = weighted(basis, points);
@@ -107,7 +107,7 @@ mod tests {
         let bend = |x: f64, y: f64| (y - 0.7 + 0.2 * x).max(0.0).powi(3);
         let all =
             points(|x, y| surface(x, y) + 2.0 * bend(x, y) + 0.003 * (37.0 * x + 11.0 * y).sin());
-        let found = fit_beside(Basis::SeparableQuadratic, &all, &[&bend]).unwrap();
+        let found = fit_beside(Basis::SeparableQuadratic, &all, &[bend]).unwrap();
         let (_, share) = found.beside.unwrap();
         let mut normal = nalgebra::DMatrix::<f64>::zeros(7, 7);
         let mut right = DVector::<f64>::zeros(7);
@@ -129,11 +129,8 @@ mod tests {
     fn a_surface_alone_has_nothing_beside_it_but_rounding() {
         let bend = |_: f64, y: f64| (y - 0.7).max(0.0).powi(4);
         let negative = points(|x, y| surface(x, y) - bend(x, y));
-        assert_eq!(
-            fit_beside(Basis::SeparableQuadratic, &negative, &[&bend]).unwrap().beside,
-            None
-        );
-        let found = fit_beside(Basis::SeparableQuadratic, &points(surface), &[&bend]).unwrap();
+        assert_eq!(fit_beside(Basis::SeparableQuadratic, &negative, &[bend]).unwrap().beside, None);
+        let found = fit_beside(Basis::SeparableQuadratic, &points(surface), &[bend]).unwrap();
         assert!(found.beside.is_none_or(|(_, share)| share < 1e-10), "{:?}", found.beside);
         assert!((found.fit.surface.value(0.4, 0.8) - surface(0.4, 0.8)).abs() < 1e-13);
     }
