@@ -14,7 +14,7 @@ use crate::hypotheses::design::{Acts, Design};
 use crate::judge::closure::Shrinkage;
 use crate::judge::forms::change;
 use crate::judge::forms::dictionary::{Values, candidates};
-use crate::judge::noise_floors::replicate_floor;
+use crate::judge::noise_floors::{are_replicates, replicate_floor};
 use crate::judge::verdict::credit;
 use crate::library::Library;
 use crate::library::dates::DateGrid;
@@ -173,7 +173,10 @@ fn propagated_noise_of_fuel_flow_by_monte_carlo() {
             let meter = (sensors.fuel_flow_percent / 100.0).powi(2) / engines;
             let slope = row.point.mass_kg / row.response.net_thrust_n;
             let acceleration = (slope * row.acceleration_deviation_m_s2).powi(2);
-            let propagated = row.noise.factor[0][0].powi(2) - meter - acceleration;
+            // Of the segment alone, and what wanders through its flight.
+            let wandering: f64 = row.noise.air_data[0].iter().map(|value| value * value).sum();
+            let own = row.noise.factor[0][0].powi(2) - meter - acceleration;
+            let propagated = own + wandering;
             // Five standard errors of a variance: 5·√(2/4000) = 0.11.
             let ratio = variance / propagated;
             assert!((ratio - 1.0).abs() < 0.11, "{variance} drawn, {propagated} propagated");
@@ -427,9 +430,17 @@ fn replicates_find_the_noise_within_flights() {
         };
         let own = Shrinkage::of_changes(problem.system, 1.0, 0, change);
         let found = replicate_floor(problem.system, &own, 2.0).unwrap();
-        let squares =
-            data.segments.iter().flat_map(|row| row.noise.common.iter().map(|u| u[0] * u[0]));
-        let between = 2.0 * squares.sum::<f64>() / data.segments.len() as f64;
+        let neighbours = data.flights.iter().flat_map(|flight| {
+            data.segments[flight.segments.clone()].windows(2).map(|pair| (&pair[0], &pair[1]))
+        });
+        let (mut covariance, mut pairs) = (0.0, 0.0);
+        for (a, b) in neighbours.filter(|(a, b)| are_replicates(&a.point, &b.point)) {
+            for (a, b) in a.noise.common.iter().zip(&b.noise.common) {
+                covariance += a[0] * b[0];
+            }
+            pairs += 1.0;
+        }
+        let between = 2.0 * covariance / pairs;
         let ratio = (found - between) / (WITHIN * WITHIN);
         // Neighbours share segments: some hundreds of pairs know a variance to a tenth.
         assert!((ratio - 1.0).abs() < 0.25, "{ratio}");

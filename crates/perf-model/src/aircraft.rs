@@ -14,7 +14,7 @@ mod limits;
 mod sensors;
 
 pub use file::{AircraftFile, AxisFile, TableFile, TsfcFile};
-pub use sensors::{FlightBias, FuelFlowDrift, MassDeviation, SensorDeviations};
+pub use sensors::{AirDataDrift, FlightBias, FuelFlowDrift, MassDeviation, SensorDeviations};
 
 /// One aircraft type. Every number is within its limits, and the table's grid is built.
 ///

@@ -1,7 +1,9 @@
 //! What the aircraft file of a case states about the virtual aircraft's sensors.
 
 use atmos::constants::ISOTHERMAL_SCALE_HEIGHT_M;
-use perf_model::aircraft::{FlightBias, FuelFlowDrift, MassDeviation, SensorDeviations};
+use perf_model::aircraft::{
+    AirDataDrift, FlightBias, FuelFlowDrift, MassDeviation, SensorDeviations,
+};
 use simulate::{AircraftTruth, ChannelSensor, DRIFT_TIME_CONSTANT_S, Scatter, Sensors};
 
 /// What the aircraft file states about the fleet's sensors: how they err within a flight and from flight to flight, as an operator
@@ -14,7 +16,7 @@ use simulate::{AircraftTruth, ChannelSensor, DRIFT_TIME_CONSTANT_S, Scatter, Sen
 /// ```
 ///
 /// (Ornstein–Uhlenbeck process): v of a segment less v of a flight is left within the flight, and noise counts with 1/√10
-/// (ten samples a segment). What a flow meter keeps through a flight is stated with the fuel's heating value, its wander, with
+/// (ten samples a segment); the wander's share of the variance is stated for all air data as it is of the Mach number. What a flow meter keeps through a flight is stated with the fuel's heating value, its wander, with
 /// v of a segment, as what it is. Of what air data and rotor speed keep through a flight, σ of the flight and v of a
 /// flight of the wander are stated.
 ///
@@ -41,10 +43,8 @@ pub(crate) fn stated_sensors(
         let x = over_s / DRIFT_TIME_CONSTANT_S;
         2.0 / x * (1.0 - (1.0 - (-x).exp()) / x)
     };
-    let within = |slow: f64, noise: f64| {
-        let wander = (of_mean(SEGMENT_S) - of_mean(FLIGHT_S)).sqrt() * slow;
-        wander.hypot(noise / SAMPLES.sqrt())
-    };
+    let wander = |slow: f64| (of_mean(SEGMENT_S) - of_mean(FLIGHT_S)).sqrt() * slow;
+    let within = |slow: f64, noise: f64| wander(slow).hypot(noise / SAMPLES.sqrt());
     let through = |slow: f64, flight: f64| (of_mean(FLIGHT_S).sqrt() * slow).hypot(flight);
     let added = |sensor: &ChannelSensor| within(sensor.drift_sd, sensor.noise_sd);
     let kept = |sensor: &ChannelSensor| through(sensor.drift_sd, sensor.flight_sd);
@@ -58,6 +58,7 @@ pub(crate) fn stated_sensors(
         (mach, of_static * ISOTHERMAL_SCALE_HEIGHT_M)
     };
     let (mach, pressure_altitude_m) = of_pressures(&added);
+    let (wandering_mach, _) = of_pressures(&|sensor| wander(sensor.drift_sd));
     let (mach_kept, pressure_altitude_kept_m) = of_pressures(&kept);
     let meter = &sensors.fuel_flow;
     // Engines err independently; the N2 channel is their mean.
@@ -78,6 +79,11 @@ pub(crate) fn stated_sensors(
         pressure_altitude_m,
         fuel_flow_drift: FuelFlowDrift {
             percent: 100.0 * of_mean(SEGMENT_S).sqrt() * meter.gain_drift_sd,
+            time_s: DRIFT_TIME_CONSTANT_S,
+        },
+        air_data_drift: AirDataDrift {
+            // Nothing drifts where nothing errs.
+            share: if mach > 0.0 { (wandering_mach / mach).powi(2) } else { 0.0 },
             time_s: DRIFT_TIME_CONSTANT_S,
         },
         flight_bias: FlightBias {
@@ -106,6 +112,7 @@ pub(crate) fn misstated(stated: &SensorDeviations, factor: f64) -> SensorDeviati
         n2_percent: factor * stated.n2_percent,
         pressure_altitude_m: factor * stated.pressure_altitude_m,
         fuel_flow_drift: FuelFlowDrift { percent: 0.0, ..stated.fuel_flow_drift },
+        air_data_drift: AirDataDrift { share: 0.0, ..stated.air_data_drift },
         flight_bias: FlightBias {
             mach: 0.0,
             static_air_temperature_k: 0.0,
@@ -126,6 +133,8 @@ mod tests {
         // √(0.3² + 100²·0.0015²/2). Through a flight: TAT √(0.277915·0.10² + 0.20²)/1.128 = 0.183361,
         // N2 0.03/√2, static pressure √(0.277915·0.03² + 0.10²)/200 = 5.0622e-4 of p, total pressure
         // √(0.277915·0.05² + 0.15²)/(200·1.128^3.5) = 4.9955e-4; Mach √(5.0622² + 4.9955²)e-4·1.128/1.12, altitude 5.0622e-4·6341.6.
+        // Of the Mach number 0.57433·(0.03²/200² + 0.05²/(200·1.128^3.5)²) = 2.83706e-8 wanders,
+        // 0.01²/10/200² + 0.03²/10/(200·1.128^3.5)² = 1.21832e-9 is new.
         let truth = AircraftTruth::preset(simulate::Preset::CitationX).unwrap();
         let stated = stated_sensors(&Sensors::transport(), &Scatter::default(), &truth);
         assert!((stated.fuel_flow_percent - 0.094868).abs() < 1e-5, "{stated:?}");
@@ -133,6 +142,10 @@ mod tests {
         assert!((stated.static_air_temperature_k - 0.068632).abs() < 1e-5, "{stated:?}");
         assert!((stated.lower_heating_value_percent - 0.318198).abs() < 1e-5, "{stated:?}");
         assert_eq!(stated.mass, MassDeviation::Kilograms(0.01 * 0.7 * 11_068.0));
+        assert!(
+            (stated.air_data_drift.share - 2.83706e-8 / 2.958893e-8).abs() < 1e-4,
+            "{stated:?}"
+        );
         let kept = stated.flight_bias;
         assert!((kept.static_air_temperature_k - 0.183361).abs() < 1e-5, "{kept:?}");
         assert!((kept.n2_percent - 0.021213).abs() < 1e-5, "{kept:?}");

@@ -1,5 +1,7 @@
 //! Two other estimates of the noise floor, which need no sensor's standard deviation.
 
+use effects::EffectPoint;
+
 use crate::judge::closure::Shrinkage;
 use crate::library::Library;
 use crate::priors::SMOOTH_AMPLITUDES;
@@ -14,22 +16,25 @@ use crate::thresholds::{
 /// few replicates.
 ///
 /// ```text
-/// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r²,   e what the best model leaves                      [diagnosis.30]
+/// σ² = ½·mean (e_i − e_(i+1))² + mean Σ_r u_r,i u_r,(i+1),   e what the best model leaves            [diagnosis.30]
 /// ```
+///
+/// Both means are over neighbouring segments at one Mach number and level, so that of what wanders within a flight each has its
+/// part.
 pub(crate) fn replicate_floor(
     system: &WhitenedSystem<'_>,
     own: &Shrinkage,
     noise_scale: f64,
 ) -> Option<f64> {
     let data = system.data;
-    let (mut sum, mut pairs) = (0.0, 0_usize);
+    let (mut sum, mut common, mut pairs) = (0.0, 0.0, 0_usize);
     for flight in &data.flights {
         for index in flight.segments.clone().skip(1) {
-            let (a, b) = (&data.segments[index - 1].point, &data.segments[index].point);
-            if (a.mach - b.mach).abs() <= REPLICATE_MACH
-                && (a.pressure_altitude_m - b.pressure_altitude_m).abs() <= REPLICATE_ALTITUDE_M
-            {
+            let (a, b) = (&data.segments[index - 1], &data.segments[index]);
+            if are_replicates(&a.point, &b.point) {
                 sum += (own.left[index] - own.left[index - 1]).powi(2);
+                let loadings = a.noise.common.iter().zip(&b.noise.common);
+                common += loadings.map(|(a, b)| a[0] * b[0]).sum::<f64>();
                 pairs += 1;
             }
         }
@@ -37,12 +42,13 @@ pub(crate) fn replicate_floor(
     if pairs < FEWEST_REPLICATES {
         return None;
     }
-    let common: f64 = data
-        .segments
-        .iter()
-        .map(|row| row.noise.common.iter().map(|u| u[0] * u[0]).sum::<f64>())
-        .sum();
-    Some(0.5 * sum / pairs as f64 + noise_scale * common / data.segments.len() as f64)
+    Some((0.5 * sum + noise_scale * common) / pairs as f64)
+}
+
+/// Whether two neighbouring segments are flown alike.
+pub(crate) fn are_replicates(a: &EffectPoint, b: &EffectPoint) -> bool {
+    (a.mach - b.mach).abs() <= REPLICATE_MACH
+        && (a.pressure_altitude_m - b.pressure_altitude_m).abs() <= REPLICATE_ALTITUDE_M
 }
 
 /// Mean square that a flexible model (all effects, smooth functions of all variables) leaves on folds of flights that it was

@@ -9,6 +9,9 @@ use faer::linalg::triangular_solve::{
 };
 use faer::{Auto, Mat, Par, Spec};
 
+/// Share of a variance that is nothing but rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Cholesky factor of a symmetric positive definite matrix.
 #[derive(Debug)]
 pub(crate) struct Cholesky {
@@ -84,6 +87,29 @@ pub(crate) fn small_cholesky<const N: usize>(
     factor
 }
 
+/// The same of a covariance that may be singular: columns to which nothing new is left are zero. A variance below a billionth of
+/// a row's own is rounding.
+pub(crate) fn semidefinite_cholesky<const N: usize>(
+    covariance: &[[f64; N]; N],
+    count: usize,
+) -> [[f64; N]; N] {
+    let mut factor = [[0.0; N]; N];
+    for row in 0..count {
+        for column in 0..=row {
+            let inner: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
+            let left = covariance[row][column] - inner;
+            factor[row][column] = if row == column {
+                if left > ROUNDING * covariance[row][row] { left.sqrt() } else { 0.0 }
+            } else if factor[column][column] > 0.0 {
+                left / factor[column][column]
+            } else {
+                0.0
+            };
+        }
+    }
+    factor
+}
+
 /// `L⁻¹·values` with a factor of [`small_cholesky`].
 pub(crate) fn solve_small_lower<const N: usize>(
     factor: &[[f64; N]; N],
@@ -112,5 +138,14 @@ mod tests {
         factor.solve(&mut right);
         assert!((right[(0, 0)] - 1.375).abs() < 1e-15 && (right[(1, 0)] - 1.25).abs() < 1e-15);
         assert!(Cholesky::new(&Mat::from_fn(2, 2, |_, _| -1.0)).is_none());
+    }
+
+    /// By hand: (2, 1)(2, 1)ᵀ + (0, 0, 3)(0, 0, 3)ᵀ has rank 2, and the factor its two columns in their places.
+    #[test]
+    fn a_singular_covariance_has_a_factor_with_columns_of_zeros() {
+        let covariance = [[4.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 9.0]];
+        let factor = semidefinite_cholesky(&covariance, 3);
+        assert_eq!(factor, [[2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 3.0]]);
+        assert_eq!(semidefinite_cholesky(&[[0.0; 3]; 3], 3), [[0.0; 3]; 3]);
     }
 }

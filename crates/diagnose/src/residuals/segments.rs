@@ -378,7 +378,7 @@ pub(crate) fn add_wander_to(
     let mut noises: Vec<&mut SegmentNoise> =
         segments.iter_mut().map(|row| &mut row.noise).collect();
     let engines = model.aircraft().engines();
-    add_wander(&mut noises, &times_s, statistics.drift(), engines);
+    add_wander(&mut noises, &times_s, statistics, engines);
 }
 
 fn channels_of(model: &EffectModel<'_>, inside: &[FlightInside<'_>]) -> Channels {

@@ -228,7 +228,7 @@ impl<'a> WholeModel<'a> {
         }
         .segment_noise(&known, samples, recorded)?;
         let engines = self.model.aircraft().engines();
-        add_wander(&mut [&mut noise], &[0.0], self.statistics.drift(), engines);
+        add_wander(&mut [&mut noise], &[0.0], &self.statistics, engines);
         let square = |values: &ByChannel| values[0] * values[0];
         Ok(WholePrediction {
             ln_fuel_flow: without + carried.mean,

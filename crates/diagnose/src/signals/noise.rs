@@ -1,11 +1,11 @@
 //! How uncertain the residuals are: sensors propagated through the model by finite differences, channel by channel.
 
 use effects::{EffectError, EffectModel, EffectPoint, Effects, KnownPoint, Response};
-use perf_model::aircraft::{FlightBias, FuelFlowDrift, SensorDeviations};
+use perf_model::aircraft::{AirDataDrift, FlightBias, FuelFlowDrift, SensorDeviations};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
 use serde::{Deserialize, Serialize};
 
-use crate::math::cholesky::small_cholesky;
+use crate::math::cholesky::{semidefinite_cholesky, small_cholesky};
 use crate::priors::FLIGHT_SPLIT_DEVIATION;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 
@@ -63,18 +63,19 @@ pub(crate) struct Statistics {
     pub(crate) factors: NoiseFactors,
     pub(crate) flight_bias: FlightBias,
     pub(crate) fuel_flow_drift: FuelFlowDrift,
+    pub(crate) air_data_drift: AirDataDrift,
 }
 
 impl Statistics {
     /// What factors multiply of what the aircraft file states.
     pub(crate) fn of(factors: &NoiseFactors, sensors: &SensorDeviations) -> Self {
         // Factors of older files stand for what a flight keeps, and for what drifts.
-        let (flight_bias, fuel_flow_drift) = if factors.with_flight_bias {
-            (sensors.flight_bias, sensors.fuel_flow_drift)
+        let (flight_bias, fuel_flow_drift, air_data_drift) = if factors.with_flight_bias {
+            (sensors.flight_bias, sensors.fuel_flow_drift, sensors.air_data_drift)
         } else {
-            (FlightBias::none(), FuelFlowDrift::default())
+            (FlightBias::none(), FuelFlowDrift::default(), AirDataDrift::default())
         };
-        Self { factors: *factors, flight_bias, fuel_flow_drift }
+        Self { factors: *factors, flight_bias, fuel_flow_drift, air_data_drift }
     }
 
     /// The drift of fuel flow, as large as the factors make it.
@@ -89,8 +90,11 @@ impl Statistics {
 pub(crate) struct SegmentNoise {
     /// Lower triangle, row by row, of the Cholesky factor of the segment's own covariance.
     pub(crate) factor: [[f64; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
-    /// Loadings: mass, heating value, one split a contrast, Mach number, SAT, pressure altitude, N2, then the wander's.
+    /// Loadings: mass, heating value, one split a contrast, Mach number, SAT, pressure altitude, N2, then those of what wanders
+    /// within the flight.
     pub(crate) common: Vec<ByChannel>,
+    /// What wandering errors of air data make of each channel: lower triangle of the Cholesky factor of their covariance.
+    pub(crate) air_data: [ByChannel; MAXIMUM_CHANNELS],
     /// What the recorded acceleration adds to each channel.
     pub(crate) acceleration: ByChannel,
 }
@@ -112,6 +116,8 @@ impl NoiseModel<'_> {
     /// C_f = C + Σ_r u_r u_rᵀ                   over a flight, r over mass, heating value, split,
     ///                                          and Mach number, SAT, pressure altitude, N2 by `flight_bias`  [diagnosis.14]
     /// ```
+    ///
+    /// A share of the air data's part wanders instead ([`add_wander`]).
     pub(crate) fn segment_noise(
         &self,
         known: &KnownPoint,
@@ -130,7 +136,8 @@ impl NoiseModel<'_> {
             added[channel] = slopes.acceleration[channel] * point.acceleration_m_s2;
         }
         let factor = small_cholesky(&covariance, channels.count());
-        Ok(SegmentNoise { factor, common, acceleration: added })
+        let air_data = self.wandering_air_data(&slopes, recorded);
+        Ok(SegmentNoise { factor, common, air_data, acceleration: added })
     }
 
     /// Slopes of every channel along what sensors measure, by central differences.
@@ -204,6 +211,7 @@ impl NoiseModel<'_> {
         let acceleration = mean_acceleration_deviation_m_s2(sensors.acceleration_m_s2, samples);
         let meter = sensors.fuel_flow_percent / 100.0;
         let engines = model.aircraft().engines();
+        let fresh = 1.0 - statistics.air_data_drift.share;
         let mut covariance = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
         covariance[0][0] = total_fuel_flow_relative_variance(meter, &[], engines);
         for contrast in 1..=channels.contrasts {
@@ -216,18 +224,10 @@ impl NoiseModel<'_> {
             let n2 = sensors.n2_percent / 100.0;
             covariance[channels.n2_row()][channels.n2_row()] = n2 * n2;
         }
-        for (slope, deviation) in [
-            (&slopes.mach, sensors.mach),
-            (&slopes.static_air_temperature, sensors.static_air_temperature_k),
-            (&slopes.pressure_altitude, sensors.pressure_altitude_m),
-            (&slopes.acceleration, acceleration),
-        ] {
-            for a in 0..count {
-                for b in 0..count {
-                    covariance[a][b] += slope[a] * slope[b] * deviation * deviation;
-                }
-            }
+        for air_data in slopes.of_air_data(sensors) {
+            add_products(&mut covariance, air_data, fresh);
         }
+        add_products(&mut covariance, (&slopes.acceleration, acceleration), 1.0);
         for a in 0..count {
             for b in 0..count {
                 covariance[a][b] *=
@@ -253,6 +253,28 @@ impl NoiseModel<'_> {
         covariance
     }
 
+    /// What wandering errors of air data make of the channels: the Cholesky factor of Σ_s J_s J_sᵀ σ_s² times their share.
+    fn wandering_air_data(
+        &self,
+        slopes: &Slopes,
+        recorded: [bool; MAXIMUM_CHANNELS],
+    ) -> [ByChannel; MAXIMUM_CHANNELS] {
+        let Self { model, channels, statistics, .. } = *self;
+        let share = statistics.air_data_drift.share;
+        let mut covariance = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+        if share <= 0.0 {
+            return covariance;
+        }
+        for (slope, deviation) in slopes.of_air_data(model.aircraft().sensors()) {
+            add_products(
+                &mut covariance,
+                (&self.between((slope, deviation), recorded), 1.0),
+                share,
+            );
+        }
+        semidefinite_cholesky(&covariance, channels.count())
+    }
+
     /// Loadings on what all segments of a flight have in common: mass, heating value, one split a contrast, Mach number, SAT,
     /// pressure altitude, N2.
     fn common_loadings(
@@ -263,7 +285,7 @@ impl NoiseModel<'_> {
     ) -> Vec<ByChannel> {
         let Self { model, channels, statistics, .. } = *self;
         let sensors = model.aircraft().sensors();
-        let Statistics { factors, flight_bias, .. } = statistics;
+        let flight_bias = &statistics.flight_bias;
         let unit = |row: usize| {
             let mut slope = [0.0; MAXIMUM_CHANNELS];
             slope[row] = 1.0;
@@ -285,16 +307,25 @@ impl NoiseModel<'_> {
             sources.push((unit(channels.n2_row()), flight_bias.n2_percent / 100.0));
         }
         sources
-            .into_iter()
-            .map(|(slope, deviation)| {
-                let mut loading = [0.0; MAXIMUM_CHANNELS];
-                for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
-                    let factor = factors.between[channels.kind(channel)];
-                    loading[channel] = slope[channel] * deviation * factor;
-                }
-                loading
-            })
+            .iter()
+            .map(|(slope, deviation)| self.between((slope, *deviation), recorded))
             .collect()
+    }
+
+    /// What an error with these slopes and this standard deviation makes of each channel, as large as the factors make what
+    /// segments of a flight have in common.
+    fn between(
+        &self,
+        (slope, deviation): (&ByChannel, f64),
+        recorded: [bool; MAXIMUM_CHANNELS],
+    ) -> ByChannel {
+        let Self { channels, statistics, .. } = *self;
+        let mut loading = [0.0; MAXIMUM_CHANNELS];
+        for channel in (0..channels.count()).filter(|&channel| recorded[channel]) {
+            let factor = statistics.factors.between[channels.kind(channel)];
+            loading[channel] = slope[channel] * deviation * factor;
+        }
+        loading
     }
 }
 
@@ -307,39 +338,82 @@ struct Slopes {
     mass: ByChannel,
 }
 
-/// Adds the flow meters' wander to what the segments of a flight have in common, one loading a segment.
+impl Slopes {
+    /// Those of the air data, each with the standard deviation that is stated of a segment's mean.
+    const fn of_air_data(&self, sensors: &SensorDeviations) -> [(&ByChannel, f64); 3] {
+        [
+            (&self.mach, sensors.mach),
+            (&self.static_air_temperature, sensors.static_air_temperature_k),
+            (&self.pressure_altitude, sensors.pressure_altitude_m),
+        ]
+    }
+}
+
+/// Adds a share of the covariance that an error with these slopes and this standard deviation makes.
+fn add_products(
+    covariance: &mut [ByChannel; MAXIMUM_CHANNELS],
+    (slope, deviation): (&ByChannel, f64),
+    share: f64,
+) {
+    for (row, a) in covariance.iter_mut().zip(slope) {
+        for (value, b) in row.iter_mut().zip(slope) {
+            *value += share * (a * b * deviation * deviation);
+        }
+    }
+}
+
+/// Adds what wanders within a flight to what its segments have in common, one loading a segment each: the flow meters, and
+/// air data: a share s of what they err by from segment to segment.
 ///
 /// ```text
 /// cov(i, j) = σ²/n·exp(−|t_i − t_j|/τ),  n engines                                    [diagnosis.47]
+/// cov(i, j) = L_i L_jᵀ·exp(−|t_i − t_j|/τ),  L_i L_iᵀ = s·Σ_s J_s J_sᵀ σ_s² at a segment  [diagnosis.58]
 /// ```
 ///
-/// It is Markov: each value is ρ times the one before plus √(1 − ρ²) times something new, ρ the likeness of neighbours, which
-/// is its Cholesky factor row by row. `times_s` rise.
+/// `times_s` rise.
 pub(crate) fn add_wander(
     noises: &mut [&mut SegmentNoise],
     times_s: &[f64],
-    wander: FuelFlowDrift,
+    statistics: &Statistics,
     engines: usize,
 ) {
-    if wander.percent <= 0.0 {
-        return;
+    let meters = statistics.drift();
+    if meters.percent > 0.0 {
+        let deviation = meters.percent / 100.0 / (engines.max(1) as f64).sqrt();
+        let mut of_meters = [0.0; MAXIMUM_CHANNELS];
+        of_meters[0] = deviation;
+        add_markov(noises, times_s, meters.time_s, |_| of_meters);
     }
-    let deviation = wander.percent / 100.0 / (engines.max(1) as f64).sqrt();
+    for source in 0..MAXIMUM_CHANNELS {
+        if noises.iter().any(|noise| noise.air_data.iter().any(|row| row[source] != 0.0)) {
+            let of_source = |noise: &SegmentNoise| noise.air_data.map(|row| row[source]);
+            add_markov(noises, times_s, statistics.air_data_drift.time_s, of_source);
+        }
+    }
+}
+
+/// Adds the loadings of one process, as large at each segment as is said.
+///
+/// Each value is ρ times the one before plus √(1 − ρ²) times something new, ρ the likeness of neighbours, which is the Cholesky
+/// factor of its correlations row by row.
+fn add_markov(
+    noises: &mut [&mut SegmentNoise],
+    times_s: &[f64],
+    time_s: f64,
+    size: impl Fn(&SegmentNoise) -> ByChannel,
+) {
     let mut weights = vec![0.0; times_s.len()];
     for (index, noise) in noises.iter_mut().enumerate() {
         let likeness = match index {
             0 => 0.0,
-            _ => (-(times_s[index] - times_s[index - 1]).abs() / wander.time_s).exp(),
+            _ => (-(times_s[index] - times_s[index - 1]).abs() / time_s).exp(),
         };
         for weight in &mut weights {
             *weight *= likeness;
         }
         weights[index] = (1.0 - likeness * likeness).max(0.0).sqrt();
-        noise.common.extend(weights.iter().map(|weight| {
-            let mut loading = [0.0; MAXIMUM_CHANNELS];
-            loading[0] = deviation * weight;
-            loading
-        }));
+        let size = size(noise);
+        noise.common.extend(weights.iter().map(|weight| size.map(|value| value * weight)));
     }
 }
 
@@ -352,11 +426,17 @@ mod tests {
         let noise = || SegmentNoise {
             factor: [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
             common: vec![],
+            air_data: [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
             acceleration: [0.0; MAXIMUM_CHANNELS],
         };
         let (mut a, mut b, mut c) = (noise(), noise(), noise());
-        let wander = FuelFlowDrift { percent: 0.2, time_s: 1200.0 };
-        add_wander(&mut [&mut a, &mut b, &mut c], &[0.0, 600.0, 2400.0], wander, 2);
+        let statistics = Statistics {
+            factors: NoiseFactors::default(),
+            flight_bias: FlightBias::none(),
+            fuel_flow_drift: FuelFlowDrift { percent: 0.2, time_s: 1200.0 },
+            air_data_drift: AirDataDrift::default(),
+        };
+        add_wander(&mut [&mut a, &mut b, &mut c], &[0.0, 600.0, 2400.0], &statistics, 2);
         let covariance = |x: &SegmentNoise, y: &SegmentNoise| {
             x.common.iter().zip(&y.common).map(|(x, y)| x[0] * y[0]).sum::<f64>()
         };
@@ -373,6 +453,42 @@ mod tests {
         }
     }
 
+    /// By hand: factors (2, 0 | 1, 3) and (4, 0 | 0, 5) a correlation time apart have e⁻¹·(2·4, 2·0 | 1·4, 1·0 + 3·5) in common,
+    /// and each has its own product with itself.
+    #[test]
+    fn air_data_wander_in_all_channels_together() {
+        let noise = |air_data: [[f64; 2]; 2]| {
+            let mut own = [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS];
+            for (row, from) in own.iter_mut().zip(air_data) {
+                row[..2].copy_from_slice(&from);
+            }
+            SegmentNoise {
+                factor: [[0.0; MAXIMUM_CHANNELS]; MAXIMUM_CHANNELS],
+                common: vec![],
+                air_data: own,
+                acceleration: [0.0; MAXIMUM_CHANNELS],
+            }
+        };
+        let mut a = noise([[2.0, 0.0], [1.0, 3.0]]);
+        let mut b = noise([[4.0, 0.0], [0.0, 5.0]]);
+        let sensors = SensorDeviations {
+            air_data_drift: AirDataDrift { share: 1.0, time_s: 900.0 },
+            ..SensorDeviations::default()
+        };
+        let statistics = Statistics::of(&NoiseFactors::default(), &sensors);
+        add_wander(&mut [&mut a, &mut b], &[100.0, 1000.0], &statistics, 2);
+        let covariance = |x: &SegmentNoise, i: usize, y: &SegmentNoise, j: usize| {
+            x.common.iter().zip(&y.common).map(|(x, y)| x[i] * y[j]).sum::<f64>()
+        };
+        let likeness = (-1.0_f64).exp();
+        for (i, j, together, of_b) in
+            [(0, 0, 8.0, 16.0), (0, 1, 0.0, 0.0), (1, 0, 4.0, 0.0), (1, 1, 15.0, 25.0)]
+        {
+            assert!((covariance(&a, i, &b, j) - together * likeness).abs() < 1e-12);
+            assert!((covariance(&b, i, &b, j) - of_b).abs() < 1e-12);
+        }
+    }
+
     /// A file that an older program wrote has neither field: its factors were learnt over sensors' errors from segment to segment,
     /// mass, heating value and split alone. Text and figures by hand.
     #[test]
@@ -383,15 +499,18 @@ mod tests {
         let sensors = SensorDeviations {
             flight_bias: FlightBias { mach: 0.001, ..FlightBias::none() },
             fuel_flow_drift: FuelFlowDrift { percent: 0.2, time_s: 1200.0 },
+            air_data_drift: AirDataDrift { share: 0.8, time_s: 1200.0 },
             ..SensorDeviations::default()
         };
         let of_old = Statistics::of(&old, &sensors);
         assert_eq!((of_old.flight_bias.mach, of_old.drift().percent), (0.0, 0.0));
+        assert_eq!(of_old.air_data_drift.share, 0.0);
         let new = NoiseFactors { with_flight_bias: true, ..old };
         let of_new = Statistics::of(&new, &sensors);
         // 4 × 0.2 %.
         assert!((of_new.drift().percent - 0.8).abs() < 1e-15);
         assert!((of_new.flight_bias.mach - 0.001).abs() < 1e-15);
+        assert_eq!(of_new.air_data_drift, sensors.air_data_drift);
         let text = ron::to_string(&new).unwrap();
         assert_eq!(ron::from_str::<NoiseFactors>(&text).unwrap(), new);
     }

@@ -47,6 +47,29 @@ pub struct SensorDeviations {
     /// Drift of flow meters within a flight, slower than a segment lasts. Not written where it is the default.
     #[serde(alias = "fuel_flow_wander", skip_serializing_if = "FuelFlowDrift::is_default")]
     pub fuel_flow_drift: FuelFlowDrift,
+    /// How much of what air data err by from segment to segment drifts. Not written where it is the default.
+    #[serde(skip_serializing_if = "AirDataDrift::is_default")]
+    pub air_data_drift: AirDataDrift,
+}
+
+/// Drift of air data within a flight: a share of the variance from segment to segment of Mach number, static air temperature and
+/// pressure altitude is a first-order Gauss–Markov process each, so that the errors of neighbouring segments are correlated. A
+/// static source, a transducer and a probe err by temperature and attitude, which change within the hour; what is new in every
+/// segment is rounding and turbulence, of which a mean keeps little.
+///
+/// We know of no figure for real air data, so the default is no drift. Where air data drift and the file does not state it, all is
+/// taken as new in every segment, and functions of anything that changes slowly through a flight, as what burnt fuel makes of the
+/// mass, seem to explain the drift. Against a learnt model the drift is multiplied by what flights show of errors that a flight
+/// keeps, so that where it is stated, the deviations of air data are best those of the fleet.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AirDataDrift {
+    /// Share of the variance of a segment's mean that drifts: 0 all new in every segment, 1 nothing. Default 0.
+    #[serde(deserialize_with = "limits::drifting_share::deserialize")]
+    pub share: f64,
+    /// Correlation time: the correlation of two means falls to 1/e over it, s. Default 1200.
+    #[serde(deserialize_with = "limits::drift_time_s::deserialize")]
+    pub time_s: f64,
 }
 
 /// Drift of flow meters within a flight, in addition to what differs from segment to segment: a first-order
@@ -122,6 +145,7 @@ impl Default for SensorDeviations {
             pressure_altitude_m: 8.0,
             flight_bias: FlightBias::default(),
             fuel_flow_drift: FuelFlowDrift::default(),
+            air_data_drift: AirDataDrift::default(),
         }
     }
 }
@@ -139,6 +163,24 @@ impl FuelFlowDrift {
 
     fn check(&self) -> Result<(), AircraftError> {
         limits::fuel_flow_drift_percent::check(self.percent)?;
+        limits::drift_time_s::check(self.time_s)?;
+        Ok(())
+    }
+}
+
+impl Default for AirDataDrift {
+    fn default() -> Self {
+        Self { share: 0.0, time_s: 1200.0 }
+    }
+}
+
+impl AirDataDrift {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    fn check(&self) -> Result<(), AircraftError> {
+        limits::drifting_share::check(self.share)?;
         limits::drift_time_s::check(self.time_s)?;
         Ok(())
     }
@@ -189,7 +231,8 @@ impl SensorDeviations {
         limits::n2_percent::check(self.n2_percent)?;
         limits::pressure_altitude_m::check(self.pressure_altitude_m)?;
         self.flight_bias.check()?;
-        self.fuel_flow_drift.check()
+        self.fuel_flow_drift.check()?;
+        self.air_data_drift.check()
     }
 }
 

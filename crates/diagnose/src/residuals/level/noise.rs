@@ -71,7 +71,13 @@ impl Noise {
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
     pub(super) fn variance(&self, at: &At<'_>, is_known: &mut [bool; LANES]) -> Lanes {
-        let Self { sensors, statistics: Statistics { factors, flight_bias, .. }, .. } = self;
+        let Self {
+            sensors,
+            statistics: Statistics { factors, flight_bias, air_data_drift, .. },
+            ..
+        } = self;
+        // What drifts of air data counts as what a flight has in common.
+        let (fresh, drifting) = (1.0 - air_data_drift.share, air_data_drift.share);
         let (mach_step, temperature_step_k, altitude_step_m) = self.steps();
         let mut sides = [Side::new(at), Side::new(at)];
         let [up, down] = &mut sides;
@@ -99,13 +105,15 @@ impl Noise {
         let mut variance = [0.0; LANES];
         for place in 0..LANES {
             let temperature_k = sensors.static_air_temperature_k;
-            let own = self.fuel_flow_variance
-                + squared(of_mach[place], mach_step, sensors.mach)
+            let of_air_data = squared(of_mach[place], mach_step, sensors.mach)
                 + squared(of_temperature[place], temperature_step_k, temperature_k)
-                + squared(of_altitude[place], altitude_step_m, sensors.pressure_altitude_m)
+                + squared(of_altitude[place], altitude_step_m, sensors.pressure_altitude_m);
+            let own = self.fuel_flow_variance
+                + fresh * of_air_data
                 + squared(of_acceleration[place], ACCELERATION_STEP_M_S2, self.acceleration_m_s2);
             let mass = sensors.mass.relative_to(Mass::kilograms(at.states.mass_kg[place]));
             let common = self.level_variance
+                + drifting * of_air_data
                 + squared(of_mass[place], MASS_STEP, mass)
                 + squared(of_mach[place], mach_step, flight_bias.mach)
                 + squared(
