@@ -253,7 +253,8 @@ impl NoiseModel<'_> {
         covariance
     }
 
-    /// What wandering errors of air data make of the channels: the Cholesky factor of Σ_s J_s J_sᵀ σ_s² times their share.
+    /// What wandering errors of air data make of the channels: the Cholesky factor of their covariance times the share that
+    /// wanders.
     fn wandering_air_data(
         &self,
         slopes: &Slopes,
@@ -504,7 +505,7 @@ mod tests {
         };
         let of_old = Statistics::of(&old, &sensors);
         assert_eq!((of_old.flight_bias.mach, of_old.drift().percent), (0.0, 0.0));
-        assert_eq!(of_old.air_data_drift.share, 0.0);
+        assert_eq!(of_old.air_data_drift, AirDataDrift::default());
         let new = NoiseFactors { with_flight_bias: true, ..old };
         let of_new = Statistics::of(&new, &sensors);
         // 4 × 0.2 %.
