@@ -7,3 +7,4 @@ pub(crate) mod record;
 pub(crate) mod references;
 pub(crate) mod table_uncertainty;
 pub(crate) mod variables;
+pub(crate) mod wander;

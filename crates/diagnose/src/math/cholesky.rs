@@ -71,20 +71,8 @@ pub(crate) fn small_cholesky<const N: usize>(
     covariance: &[[f64; N]; N],
     count: usize,
 ) -> [[f64; N]; N] {
-    let mut factor = [[0.0; N]; N];
-    for row in 0..count {
-        for column in 0..=row {
-            let inner: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
-            let left = covariance[row][column] - inner;
-            factor[row][column] = if row == column {
-                // Every row has a variance of its own; the floor only guards against a sensor declared perfect.
-                left.max(1e-14).sqrt()
-            } else {
-                left / factor[column][column]
-            };
-        }
-    }
-    factor
+    // Every row has a variance of its own; the floor only guards against a sensor declared perfect.
+    small_lower(covariance, count, |left, _| left.max(1e-14).sqrt())
 }
 
 /// The same of a covariance that may be singular: columns to which nothing new is left are zero. A variance below a billionth of
@@ -93,13 +81,24 @@ pub(crate) fn semidefinite_cholesky<const N: usize>(
     covariance: &[[f64; N]; N],
     count: usize,
 ) -> [[f64; N]; N] {
+    let is_new = |left: f64, variance: f64| left > ROUNDING * variance;
+    let pivot = |left: f64, variance| if is_new(left, variance) { left.sqrt() } else { 0.0 };
+    small_lower(covariance, count, pivot)
+}
+
+/// Rows of a factor one by one; `pivot` makes an entry of the diagonal of what is left of a row's variance, and of that variance.
+fn small_lower<const N: usize>(
+    covariance: &[[f64; N]; N],
+    count: usize,
+    pivot: impl Fn(f64, f64) -> f64,
+) -> [[f64; N]; N] {
     let mut factor = [[0.0; N]; N];
     for row in 0..count {
         for column in 0..=row {
             let inner: f64 = (0..column).map(|k| factor[row][k] * factor[column][k]).sum();
             let left = covariance[row][column] - inner;
             factor[row][column] = if row == column {
-                if left > ROUNDING * covariance[row][row] { left.sqrt() } else { 0.0 }
+                pivot(left, covariance[row][row])
             } else if factor[column][column] > 0.0 {
                 left / factor[column][column]
             } else {

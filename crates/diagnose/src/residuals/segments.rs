@@ -24,11 +24,10 @@ use crate::signals::channels::{
     ByChannel, Channels, MAXIMUM_CHANNELS, has_n2, mean_n2_percent, recorded_channels,
 };
 use crate::signals::n2_deck::Deck;
-use crate::signals::noise::{
-    HEATING_VALUE_LOADING, NoiseModel, SegmentNoise, Statistics, add_wander,
-};
+use crate::signals::noise::{HEATING_VALUE_LOADING, NoiseModel, SegmentNoise, Statistics};
 use crate::signals::record::FlightRecord;
 use crate::signals::record::GaugeBurn;
+use crate::signals::wander::add_wander;
 
 /// Everything ready.
 #[derive(Clone, Debug)]

@@ -12,8 +12,9 @@ use crate::residuals::reference::Reference;
 use crate::residuals::signatures::Difference;
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::n2_deck::Deck;
-use crate::signals::noise::{NoiseModel, Statistics, add_wander};
+use crate::signals::noise::{NoiseModel, Statistics};
 use crate::signals::references::DiagnoseError;
+use crate::signals::wander::add_wander;
 
 /// Samples of the segment that an interval at a flight point is of.
 const SAMPLES_OF_A_SEGMENT: usize = 10;

@@ -42,13 +42,13 @@ pub struct SensorDeviations {
     #[serde(deserialize_with = "limits::pressure_altitude_m::deserialize")]
     pub pressure_altitude_m: f64,
     /// Per-flight bias of air data and rotor speed. Not written where it is the default.
-    #[serde(alias = "through_flight", skip_serializing_if = "FlightBias::is_default")]
+    #[serde(alias = "through_flight", skip_serializing_if = "is_default")]
     pub flight_bias: FlightBias,
     /// Drift of flow meters within a flight, slower than a segment lasts. Not written where it is the default.
-    #[serde(alias = "fuel_flow_wander", skip_serializing_if = "FuelFlowDrift::is_default")]
+    #[serde(alias = "fuel_flow_wander", skip_serializing_if = "is_default")]
     pub fuel_flow_drift: FuelFlowDrift,
     /// How much of what air data err by from segment to segment drifts. Not written where it is the default.
-    #[serde(skip_serializing_if = "AirDataDrift::is_default")]
+    #[serde(skip_serializing_if = "is_default")]
     pub air_data_drift: AirDataDrift,
 }
 
@@ -157,10 +157,6 @@ impl Default for FuelFlowDrift {
 }
 
 impl FuelFlowDrift {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     fn check(&self) -> Result<(), AircraftError> {
         limits::fuel_flow_drift_percent::check(self.percent)?;
         limits::drift_time_s::check(self.time_s)?;
@@ -175,10 +171,6 @@ impl Default for AirDataDrift {
 }
 
 impl AirDataDrift {
-    fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     fn check(&self) -> Result<(), AircraftError> {
         limits::drifting_share::check(self.share)?;
         limits::drift_time_s::check(self.time_s)?;
@@ -202,10 +194,6 @@ impl FlightBias {
     #[must_use]
     pub const fn none() -> Self {
         Self { mach: 0.0, static_air_temperature_k: 0.0, n2_percent: 0.0, pressure_altitude_m: 0.0 }
-    }
-
-    fn is_default(&self) -> bool {
-        *self == Self::default()
     }
 
     fn check(&self) -> Result<(), AircraftError> {
@@ -234,6 +222,11 @@ impl SensorDeviations {
         self.fuel_flow_drift.check()?;
         self.air_data_drift.check()
     }
+}
+
+/// Whether nothing need be written.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 #[cfg(test)]

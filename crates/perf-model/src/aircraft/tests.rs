@@ -180,15 +180,22 @@ fn reads_as_a_part_of_another_file() {
 #[test]
 fn sensors_are_written_and_read_back() {
     let drift = FuelFlowDrift { percent: 0.4, time_s: 900.0 };
+    let of_air_data = AirDataDrift { share: 0.9, time_s: 900.0 };
     let bias = FlightBias { mach: 0.0, ..FlightBias::default() };
     for sensors in [
         SensorDeviations::default(),
         SensorDeviations { fuel_flow_drift: drift, ..SensorDeviations::default() },
+        SensorDeviations { air_data_drift: of_air_data, ..SensorDeviations::default() },
         SensorDeviations { flight_bias: bias, ..SensorDeviations::default() },
     ] {
         let text = ron::to_string(&sensors).unwrap();
         assert_eq!(ron::from_str::<SensorDeviations>(&text).unwrap(), sensors, "{text}");
         let has_drift = sensors.fuel_flow_drift != FuelFlowDrift::default();
         assert_eq!(text.contains("fuel_flow_drift"), has_drift, "{text}");
+        let air_data_drift = sensors.air_data_drift != AirDataDrift::default();
+        assert_eq!(text.contains("air_data_drift"), air_data_drift, "{text}");
     }
+    // More than all cannot drift.
+    let error = ron::from_str::<SensorDeviations>("(air_data_drift: (share: 1.5))").unwrap_err();
+    assert!(error.to_string().contains("share of the air data's variance that drifts"), "{error}");
 }

@@ -48,9 +48,9 @@ fn whole_and_segments() -> (ModelFile, Vec<Segment>) {
     (file, segments)
 }
 
-/// The same flights by an aircraft whose TSFC depends on Mach number, as the fixture's does not.
-fn whole_with_mach_exponent() -> ModelFile {
-    let text = AIRCRAFT.replace("mach_exponent: 0.0", "mach_exponent: 0.6");
+/// The same flights by an aircraft of which something else is stated.
+fn whole_where(stated: &str, instead: &str) -> ModelFile {
+    let text = AIRCRAFT.replace(stated, instead);
     assert_ne!(text, AIRCRAFT);
     let aircraft = Aircraft::from_ron(&text).unwrap();
     let guide = Guide::from_csv(GUIDE.as_bytes()).unwrap();
@@ -140,7 +140,11 @@ fn columns_of_an_initial_model_and_of_both_laws_are_single_predictions() {
     columns_are_single_predictions(&ModelFile::from_text(PAPER).unwrap(), Predicts::TableOnly);
     columns_are_single_predictions(&ModelFile::from_text(BAYES).unwrap(), Predicts::TableOnly);
     columns_are_single_predictions(&whole(), Predicts::WholeModel);
-    columns_are_single_predictions(&whole_with_mach_exponent(), Predicts::WholeModel);
+    // TSFC that depends on Mach number, air data that drift: neither is so in the fixture.
+    let with_mach_exponent = whole_where("mach_exponent: 0.0", "mach_exponent: 0.6");
+    columns_are_single_predictions(&with_mach_exponent, Predicts::WholeModel);
+    let drift = "engines: 2, sensors: (air_data_drift: (share: 0.7)),";
+    columns_are_single_predictions(&whole_where("engines: 2,", drift), Predicts::WholeModel);
 }
 
 /// A model whose functions bend over far shorter lengths than any that is learnt: many points lie where columns do not hold, or
