@@ -58,7 +58,7 @@ bounded!(lower_heating_value_percent, "standard deviation of heating value", "%"
 bounded!(n2_percent, "standard deviation of N2", "%", 0.001, 10.0);
 bounded!(n2_flight_bias_percent, "per-flight bias of N2", "%", 0.0, 10.0);
 bounded!(fuel_flow_drift_percent, "drift of fuel flow", "%", 0.0, 20.0);
-bounded!(drifting_share, "share of the air data's variance that drifts", "", 0.0, 1.0);
+bounded!(drifting_share, "share of the air data's variance that drifts", "-", 0.0, 1.0);
 bounded!(drift_time_s, "correlation time of the drift", "s", 1.0, 1e6);
 bounded!(pressure_altitude_m, "standard deviation of pressure altitude", "m", 0.0, 500.0);
 
