@@ -8,6 +8,7 @@ use faer::Mat;
 use crate::judge::posterior::mean_square;
 use crate::library::Testable;
 use crate::math::horseshoe::{Candidate, Horseshoe, draw};
+use crate::math::lower::Lower;
 use crate::math::quantile::central_95;
 use crate::output::{Contribution, Magnitude};
 use crate::priors::{CONTRIBUTING, PRIOR_SCALES};
@@ -37,10 +38,10 @@ pub(crate) fn contributions(
             let residual = gram.ncols() - 1;
             let (size, scaled) = (columns.len(), |j: usize| typical[j] / noise_scale);
             Candidate {
-                gram: Mat::from_fn(size, size, |i, j| {
+                gram: Lower::of(&Mat::from_fn(size, size, |i, j| {
                     typical[i] * scaled(j) * gram[(columns[i], columns[j])]
-                }),
-                product: Mat::from_fn(size, 1, |j, _| scaled(j) * gram[(columns[j], residual)]),
+                })),
+                product: (0..size).map(|j| scaled(j) * gram[(columns[j], residual)]).collect(),
                 ln_weight: smoothed.ln_weight(noise_scale),
             }
         })
@@ -107,6 +108,5 @@ fn shares_of_leading(draws: &Mat<f64>, rms_percent: &[f64]) -> Vec<f64> {
 /// Mean and 95 % interval.
 fn summary(mut values: Vec<f64>) -> (f64, [f64; 2]) {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
-    values.sort_by(f64::total_cmp);
-    (mean, central_95(&values))
+    (mean, central_95(&mut values))
 }

@@ -21,6 +21,5 @@ pub(crate) fn interval_95(
             ratio(above, below)
         })
         .collect();
-    ratios.sort_by(f64::total_cmp);
-    central_95(&ratios)
+    central_95(&mut ratios)
 }

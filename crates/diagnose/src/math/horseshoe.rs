@@ -15,6 +15,7 @@
 
 use faer::Mat;
 
+use crate::math::lower::{Lower, dot};
 use crate::math::random::RandomStream;
 
 /// Largest precision of a column's prior: a millionth of its unit is nothing, and matrices stay finite.
@@ -25,9 +26,9 @@ const SWEEPS_TO_A_BACKGROUND: usize = 10;
 /// A linear system from which all but its columns was integrated out, residuals of unit variance.
 pub(crate) struct Candidate {
     /// Products of the columns with each other.
-    pub(crate) gram: Mat<f64>,
-    /// Products of the columns with the residuals, one column.
-    pub(crate) product: Mat<f64>,
+    pub(crate) gram: Lower,
+    /// Products of the columns with the residuals.
+    pub(crate) product: Vec<f64>,
     /// ln of its prior probability and of its evidence without any column.
     pub(crate) ln_weight: f64,
 }
@@ -46,7 +47,7 @@ pub(crate) struct Horseshoe {
 
 /// Draws of all coefficients, one column a draw; `None` where a matrix is not positive definite.
 pub(crate) fn draw(candidates: &[Candidate], prior: Horseshoe) -> Option<Mat<f64>> {
-    let size = candidates.first()?.gram.ncols();
+    let size = candidates.first()?.product.len();
     let mut chain = Chain::new(size, prior);
     let (discarded, kept) = prior.sweeps;
     let mut draws = Mat::zeros(size, kept);
@@ -154,7 +155,7 @@ impl Chain {
         for (normal, half) in self.coefficients.iter_mut().zip(&factor.half) {
             *normal += half;
         }
-        factor.solve_upper(&mut self.coefficients);
+        factor.lower.solve_upper(&mut self.coefficients);
     }
 
     fn draw_scales(&mut self) {
@@ -176,64 +177,30 @@ impl Chain {
 }
 
 /// Cholesky factor of a gram with precisions added to its diagonal, and `L⁻¹` of the product.
-///
-/// Some thirty columns are factored thousands of times: plain loops take a tenth of the instructions of a routine for matrices of
-/// any size.
 struct Factor {
-    /// Row by row.
-    lower: Vec<f64>,
+    lower: Lower,
     half: Vec<f64>,
 }
 
 impl Factor {
     /// `None` where the matrix is not positive definite.
     fn new(candidate: &Candidate, precisions: &[f64]) -> Option<Self> {
-        let size = precisions.len();
-        let product = candidate.product.col_as_slice(0);
-        let (mut lower, mut half) = (vec![0.0; size * size], vec![0.0; size]);
-        for (i, precision) in precisions.iter().enumerate() {
-            let (above, row) = lower.split_at_mut(i * size);
-            let gram = &candidate.gram.col_as_slice(i)[..=i];
-            for j in 0..i {
-                let other = &above[j * size..=j * size + j];
-                row[j] = (gram[j] - dot(&row[..j], &other[..j])) / other[j];
-            }
-            let pivot = gram[i] + precision - dot(&row[..i], &row[..i]);
-            if !(pivot.is_finite() && pivot > 0.0) {
-                return None;
-            }
-            row[i] = pivot.sqrt();
-            half[i] = (product[i] - dot(&row[..i], &half[..i])) / row[i];
+        let mut lower = candidate.gram.clone();
+        for (k, precision) in precisions.iter().enumerate() {
+            *lower.at_mut(k, k) += precision;
         }
+        if !lower.factor() {
+            return None;
+        }
+        let mut half = candidate.product.clone();
+        lower.solve_lower(&mut half);
         Some(Self { lower, half })
     }
 
     /// ln of the evidence, coefficients integrated out, but for what the precisions have in common.
     fn ln_evidence(&self) -> f64 {
-        0.5 * (dot(&self.half, &self.half) - self.ln_determinant())
+        0.5 * (dot(&self.half, &self.half) - self.lower.ln_determinant())
     }
-
-    fn ln_determinant(&self) -> f64 {
-        let size = self.half.len();
-        2.0 * (0..size).map(|k| self.lower[k * size + k].ln()).sum::<f64>()
-    }
-
-    /// `L⁻ᵀ` of values, in place.
-    fn solve_upper(&self, values: &mut [f64]) {
-        let size = values.len();
-        for i in (0..size).rev() {
-            let row = &self.lower[i * size..=i * size + i];
-            values[i] /= row[i];
-            let solved = values[i];
-            for (value, factor) in values[..i].iter_mut().zip(row) {
-                *value -= factor * solved;
-            }
-        }
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// A gamma number of shape `halves`/2 and unit rate: exponentials, and half the square of a normal number.
@@ -260,26 +227,29 @@ mod tests {
             let near = ((i + 2 * j) % 5 + (j + 2 * i) % 5) as f64;
             if i == j { 40.0 } else { near }
         });
-        let product = Mat::from_fn(5, 1, |i, _| i as f64 - 1.5);
+        let product: Vec<f64> = (0..5).map(|i| i as f64 - 1.5).collect();
         let precisions = [0.5, 1.0, 2.0, 0.0, 3.0];
         let mut whole = gram.clone();
         (0..5).for_each(|k| whole[(k, k)] += precisions[k]);
         let expected = Cholesky::new(&whole).unwrap();
-        let mut solved = product.clone();
+        let mut solved = Mat::from_fn(5, 1, |i, _| product[i]);
+        let right = solved.clone();
         expected.solve(&mut solved);
-        let factor =
-            Factor::new(&Candidate { gram, product, ln_weight: 0.0 }, &precisions).unwrap();
-        assert!((factor.ln_determinant() - expected.ln_determinant()).abs() < 1e-12);
+        let candidate = Candidate { gram: Lower::of(&gram), product, ln_weight: 0.0 };
+        let factor = Factor::new(&candidate, &precisions).unwrap();
+        let explained: f64 = (0..5).map(|k| right[(k, 0)] * solved[(k, 0)]).sum();
+        let ln_evidence = 0.5 * (explained - expected.ln_determinant());
+        assert!((factor.ln_evidence() - ln_evidence).abs() < 1e-12);
         let mut found = factor.half.clone();
-        factor.solve_upper(&mut found);
+        factor.lower.solve_upper(&mut found);
         for (found, expected) in found.iter().zip(solved.col_as_slice(0)) {
             assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         }
     }
 
     fn candidate(gram: f64, product: f64, ln_weight: f64) -> Candidate {
-        let of = |value: f64| Mat::from_fn(1, 1, |_, _| value);
-        Candidate { gram: of(gram), product: of(product), ln_weight }
+        let gram = Lower::of(&Mat::from_fn(1, 1, |_, _| gram));
+        Candidate { gram, product: vec![product], ln_weight }
     }
 
     fn prior(kept: usize) -> Horseshoe {
@@ -363,9 +333,9 @@ mod tests {
             (0, 1) | (1, 0) => 399.9,
             _ => 0.0,
         });
-        let product = Mat::from_fn(6, 1, |i, _| if i < 2 { 400.0 } else { 0.0 });
+        let product = (0..6).map(|i| if i < 2 { 400.0 } else { 0.0 }).collect();
         let draws = draw(
-            &[Candidate { gram, product, ln_weight: 0.0 }],
+            &[Candidate { gram: Lower::of(&gram), product, ln_weight: 0.0 }],
             Horseshoe { common_scale: 0.05, ..prior(4_000) },
         );
         let draws = draws.unwrap();

@@ -30,10 +30,16 @@ pub(crate) fn quantile(sorted: &[f64], share: f64, kind: QuantileType) -> f64 {
     }
 }
 
-/// The interval that holds 95 % of sorted numbers, its ends among them: positions of type 7 rounded outwards.
-pub(crate) fn central_95(sorted: &[f64]) -> [f64; 2] {
-    let Some(last) = sorted.len().checked_sub(1) else { return [f64::NAN; 2] };
-    [sorted[last / 40], sorted[last - last / 40]]
+/// The interval that holds 95 % of some numbers, its ends among them: positions of type 7 rounded outwards. Their order changes.
+pub(crate) fn central_95(values: &mut [f64]) -> [f64; 2] {
+    let Some(last) = values.len().checked_sub(1) else { return [f64::NAN; 2] };
+    let left_out = last / 40;
+    // In this order: the second choice moves only what lies above the first.
+    let (_, low, above) = values.select_nth_unstable_by(left_out, f64::total_cmp);
+    let low = *low;
+    let Some(highest) = above.len().checked_sub(1) else { return [low; 2] };
+    let (_, high, _) = above.select_nth_unstable_by(highest - left_out, f64::total_cmp);
+    [low, *high]
 }
 
 #[cfg(test)]
@@ -57,8 +63,13 @@ mod tests {
     #[test]
     fn an_interval_leaves_out_a_fortieth_at_each_end() {
         // 0 to 999: 999/40 = 24 numbers are left out below, and as many above.
-        let sorted: Vec<f64> = (0..1000).map(f64::from).collect();
-        let [low, high] = central_95(&sorted);
+        // 7 and 1000 have no divisor in common: all of them, shuffled.
+        let mut shuffled: Vec<f64> = (0..1000).map(|k| f64::from(7 * k % 1000)).collect();
+        let [low, high] = central_95(&mut shuffled);
         assert!((low - 24.0).abs() < 1e-12 && (high - 975.0).abs() < 1e-12, "{low} {high}");
+        let [low, high] = central_95(&mut [3.0, 1.0, 2.0]);
+        assert!((low - 1.0).abs() < 1e-12 && (high - 3.0).abs() < 1e-12, "{low} {high}");
+        let [low, high] = central_95(&mut [5.0]);
+        assert!((low - 5.0).abs() < 1e-12 && (high - 5.0).abs() < 1e-12, "{low} {high}");
     }
 }
