@@ -16,52 +16,81 @@ const EXACT_DIGITS: usize = 15;
 /// every field of a report. `None` for anything else, also at the end of `bytes`; [`leading`] handles that.
 #[inline]
 pub(crate) fn short(bytes: &[u8]) -> Option<(f64, &[u8])> {
-    let is_negative = bytes.first() == Some(&b'-');
-    let unsigned = if is_negative { &bytes[1..] } else { bytes };
-    match within_a_word(unsigned) {
-        Some((magnitude, length)) => {
-            Some((if is_negative { -magnitude } else { magnitude }, &unsigned[length..]))
+    short_at(bytes, 0).map(|(number, end)| (number, &bytes[end..]))
+}
+
+/// The same at a place in `bytes`, and its end.
+#[inline]
+pub(crate) fn short_at(bytes: &[u8], at: usize) -> Option<(f64, usize)> {
+    match within_words(bytes, at) {
+        Some((number, end, after)) if after != b'e' => Some((number, end)),
+        _ => {
+            let (number, rest) = short_by_bytes(bytes.get(at..)?)?;
+            Some((number, bytes.len() - rest.len()))
         }
-        None => short_by_bytes(bytes),
     }
 }
 
-/// A number without sign and exponent that ends within the first eight bytes, and its length: all eight are looked at
-/// together, as one 64-bit word whose lowest byte is the first.
+/// A number without plus sign and exponent that ends within eight bytes, its end, and the byte there, which can be an `e`.
+/// `None` for anything else, also within eight bytes of the end.
+#[expect(
+    clippy::inline_always,
+    reason = "called, it costs as much again: its constants are loaded for each number"
+)]
+#[inline(always)]
+pub(crate) fn within_words(bytes: &[u8], at: usize) -> Option<(f64, usize, u8)> {
+    let is_negative = *bytes.get(at)? == b'-';
+    let (magnitude, end, after) = within_a_word(bytes, at + usize::from(is_negative))?;
+    // Without a branch: in a column about zero the sign is one way as often as the other.
+    let sign = u64::from(is_negative) << 63;
+    Some((f64::from_bits(magnitude.to_bits() | sign), end, after))
+}
+
+/// The magnitude of [`within_words`]: eight bytes are looked at together, as one 64-bit word whose lowest byte is the first.
 ///
 /// # Source
 /// Eight digits in three multiplications: Lemire 2021, "Number parsing at a gigabyte per second", section 6.
-#[inline]
-fn within_a_word(bytes: &[u8]) -> Option<(f64, usize)> {
+#[expect(clippy::inline_always, reason = "as above")]
+#[inline(always)]
+fn within_a_word(bytes: &[u8], at: usize) -> Option<(f64, usize, u8)> {
     const EACH: u64 = 0x0101_0101_0101_0101;
-    let eight: &[u8; 8] = bytes.first_chunk()?;
-    let word = u64::from_le_bytes(*eight);
-    // Digits become 0 to 9. Of each byte that is not one of these the highest bit is set.
+    let word = u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?);
+    // Digits become 0 to 9. Of each byte that is not one of these the highest bit is set, up to the first byte from which a
+    // sum carries: that is neither a digit nor a point, and nothing behind it is looked at.
     let digits = word ^ (EACH * 0x30);
-    let no_digit = (((digits & (EACH * 0x7f)) + EACH * 0x76) | digits) & (EACH * 0x80);
-    let point = (no_digit.trailing_zeros() / 8) as usize;
+    let no_digit = (digits.wrapping_add(EACH * 0x76) | digits) & (EACH * 0x80);
+    let point = no_digit.trailing_zeros() / 8;
     if point == 8 {
         return None;
     }
-    let has_point = eight[point] == b'.';
-    let (digits, fraction_digits, length) = if has_point {
-        let end = ((no_digit & (no_digit - 1)).trailing_zeros() / 8) as usize;
+    let (digits, fraction_digits, length) = if byte_of(word, point) == b'.' {
+        let before_point = (no_digit ^ (no_digit - 1)) >> 8;
+        let end = (no_digit & (no_digit - 1)).trailing_zeros() / 8;
         // Closed up over the point.
-        let whole = digits & ((1 << (8 * point)) - 1);
-        (whole | (digits >> 8) & (u64::MAX << (8 * point)), end - point - 1, end)
+        let closed_up = digits & before_point | (digits >> 8) & !before_point;
+        (closed_up << 8, end - point - 1, end)
     } else {
         (digits, 0, point)
     };
-    let count = length - usize::from(has_point);
-    if length == 8 || count == 0 || eight[length] == b'e' {
+    // A point alone has no digit.
+    if length == 8 || length <= u32::from(point == 0) {
         return None;
     }
     // The last digit to the highest byte, zeros before the first.
-    let pairs = (digits << (64 - 8 * count)).wrapping_mul(10 * 0x100 + 1) >> 8;
+    let pairs = (digits << (64 - 8 * length)).wrapping_mul(10 * 0x100 + 1) >> 8;
     let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul(100 * 0x1_0000 + 1) >> 16;
     let mantissa = (fours & 0x0000_ffff_0000_ffff).wrapping_mul(10_000 * 0x1_0000_0000 + 1) >> 32;
+    #[expect(clippy::cast_possible_truncation, reason = "eight digits at most")]
+    let mantissa = f64::from(mantissa as u32);
     // Both operands are exact, so the quotient is the nearest double (Clinger 1990).
-    Some((mantissa as f64 / POWERS_OF_TEN[fraction_digits], length))
+    let magnitude = mantissa / POWERS_OF_TEN[fraction_digits as usize];
+    Some((magnitude, at + length as usize, byte_of(word, length)))
+}
+
+/// One byte of a word; the lowest is the first.
+#[inline]
+const fn byte_of(word: u64, place: u32) -> u8 {
+    (word >> (8 * place)).to_le_bytes()[0]
 }
 
 /// As [`short`], byte by byte.

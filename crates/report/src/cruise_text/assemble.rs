@@ -103,6 +103,7 @@ impl Table<'_> {
 
     /// The values of one field, in the unit of the file.
     fn of_field(&self, index: usize) -> impl ExactSizeIterator<Item = &f64> {
-        self.values.iter().skip(index).step_by(self.fields.len())
+        // Faster than stepping: it is known of a row how long it is.
+        self.values.chunks_exact(self.fields.len()).map(move |row| &row[index])
     }
 }

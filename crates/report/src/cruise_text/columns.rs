@@ -37,6 +37,12 @@ pub(crate) struct Field {
 }
 
 impl Field {
+    /// Whether a number in the unit of the file is inside the range.
+    #[inline]
+    pub(crate) fn holds(&self, number: f64) -> bool {
+        self.low <= number && number <= self.high
+    }
+
     /// From the unit of the file to the stored unit.
     #[inline]
     pub(crate) fn convert(&self, value: f64) -> f64 {
@@ -93,14 +99,18 @@ type NamedColumn<'a> = (Word<'a>, Option<Column>);
 
 fn read_names(line: Line<'_>) -> Result<Vec<NamedColumn<'_>>, Refusal> {
     let mut columns: Vec<NamedColumn<'_>> = Vec::new();
-    // A line can hold a hundred thousand names.
-    let mut known: BTreeMap<&str, Word<'_>> = BTreeMap::new();
+    // A line can hold a hundred thousand names that the format does not know, and of those that it knows some tens.
+    let mut kept_out: BTreeMap<&str, Word<'_>> = BTreeMap::new();
     for word in line.meaning().words() {
-        if let Some(first) = known.insert(word.text, word) {
+        let column = Column::from_name(word.text);
+        let first = match column {
+            Some(_) => columns.iter().find(|(_, known)| *known == column).map(|(word, _)| *word),
+            None => kept_out.insert(word.text, word),
+        };
+        if let Some(first) = first {
             let first_column = line.text[..first.offset].chars().count() + 1;
             return Err(line.refuse_word(word, RefusalKind::ColumnDoubled { first_column }));
         }
-        let column = Column::from_name(word.text);
         if column.is_none() && !word.text.starts_with(KEPT_OUT_PREFIX) {
             return Err(line.refuse_word(word, RefusalKind::ColumnUnknown));
         }

@@ -27,15 +27,21 @@ pub(super) fn read(
     let mut rows = 0;
     let mut series = Series::new(fields);
     for line in lines.by_ref() {
-        match read_row(line, fields, values) {
+        let filled = values.len();
+        values.resize(filled + fields.len(), 0.0);
+        let row = &mut values[filled..];
+        match read_row(line, fields, row) {
             Ok(true) => {}
-            Ok(false) => continue,
+            Ok(false) => {
+                values.truncate(filled);
+                continue;
+            }
             Err(problem) => return Err(refusal(problem, line, fields)),
         }
         if !line.is_ended {
             findings.push(accept_last_row(line, fields)?);
         }
-        series.check(&values[rows * fields.len()..], line, fields)?;
+        series.check(row, line, fields)?;
         rows += 1;
     }
     Ok(rows)
@@ -49,42 +55,53 @@ enum RowProblem {
     OutOfRange { offset: usize, column: Column, field: usize, value: f64 },
 }
 
-/// Appends the numbers of one line to `values`; `false` for a line without content. After a problem `values` ends in part
-/// of a row and must not be used.
-///
-/// Not inlined: together with its caller's error handling the loop would not keep its values in registers.
-#[inline(never)]
-fn read_row(line: Line<'_>, fields: &[Field], values: &mut Vec<f64>) -> Result<bool, RowProblem> {
-    let bytes = line.text.as_bytes();
+/// The numbers of one line, one for each field; `false` for a line without content. After a problem `row` holds only part of
+/// them and must not be used.
+fn read_row(line: Line<'_>, fields: &[Field], row: &mut [f64]) -> Result<bool, RowProblem> {
     // In the text that starts at the line, a number ends at the line end at the latest: nothing needs to be compared
     // with the line's length until something other than a number in its range turns up.
     let onward = line.onward.as_bytes();
-    let beyond = onward.len() - bytes.len();
-    let mut rest = onward;
-    for (index, field) in fields.iter().enumerate() {
-        rest = skip_blanks(rest);
-        // No number is inside the range of an ignored column: it is empty.
-        if let Some((number, tail)) = number::short(rest)
-            && field.low <= number
-            && number <= field.high
-            && (tail.first().is_some_and(|byte| is_blank(*byte)) || tail.len() == beyond)
-        {
-            values.push(number);
-            rest = tail;
-            continue;
-        }
-        if is_end_of_meaning(rest, beyond) {
+    let length = line.text.len();
+    let (mut at, mut index) = (0, 0);
+    loop {
+        let (read, end) = read_short(onward, at, &fields[index..], &mut row[index..]);
+        (at, index) = (skip_blanks(onward, end), index + read);
+        let Some(field) = fields.get(index) else { break };
+        if is_end_of_meaning(onward, at, length) {
             return if index == 0 { Ok(false) } else { Err(RowProblem::WrongLength) };
         }
-        let (number, end) = read_field(bytes, onward.len() - rest.len(), index, field)?;
-        values.push(number);
-        rest = &onward[end..];
+        (row[index], at) = match number::short_at(onward, at) {
+            Some((number, end))
+                if field.holds(number) && is_end_of_word(line.text.as_bytes(), end) =>
+            {
+                (number, end)
+            }
+            _ => read_field(line.text.as_bytes(), at, index, field)?,
+        };
+        index += 1;
     }
-    if is_end_of_meaning(skip_blanks(rest), beyond) {
-        Ok(true)
-    } else {
-        Err(RowProblem::WrongLength)
+    if is_end_of_meaning(onward, at, length) { Ok(true) } else { Err(RowProblem::WrongLength) }
+}
+
+/// Reads fields as long as they are short numbers inside their ranges with a blank or a line feed behind: how many, and where
+/// they end. No number is inside the range of an ignored column: it is empty.
+///
+/// Not inlined: together with what handles all other fields the loop would not keep its values in registers.
+#[inline(never)]
+fn read_short(bytes: &[u8], mut at: usize, fields: &[Field], row: &mut [f64]) -> (usize, usize) {
+    for (index, (field, value)) in fields.iter().zip(row).enumerate() {
+        let start = skip_blanks(bytes, at);
+        match number::within_words(bytes, start) {
+            Some((number, end, after))
+                if field.holds(number) && (is_blank(after) || after == b'\n') =>
+            {
+                *value = number;
+                at = end;
+            }
+            _ => return (index, at),
+        }
     }
+    (fields.len(), at)
 }
 
 /// Anything that is not a short number inside its range; returns its value and its end.
@@ -101,7 +118,7 @@ fn read_field(
         _ => return Ok((f64::NAN, end)),
     };
     let number = number::whole(word).ok_or(RowProblem::NotANumber { offset: at, column })?;
-    if field.low <= number && number <= field.high {
+    if field.holds(number) {
         Ok((number, end))
     } else {
         Err(RowProblem::OutOfRange { offset: at, column, field: index, value: number })
@@ -109,18 +126,16 @@ fn read_field(
 }
 
 #[inline]
-fn skip_blanks(mut rest: &[u8]) -> &[u8] {
-    while let [byte, tail @ ..] = rest
-        && is_blank(*byte)
-    {
-        rest = tail;
+fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
+    while bytes.get(at).is_some_and(|byte| is_blank(*byte)) {
+        at += 1;
     }
-    rest
+    at
 }
 
-/// The end of the line, after which `beyond` bytes lie, or a comment: `rest` begins with a word.
-fn is_end_of_meaning(rest: &[u8], beyond: usize) -> bool {
-    rest.len() <= beyond || rest[0] == b'#'
+/// The end of the line, which has this length, or a comment: a word begins at `at`.
+fn is_end_of_meaning(bytes: &[u8], at: usize, length: usize) -> bool {
+    at >= length || bytes[at] == b'#'
 }
 
 fn is_end_of_word(bytes: &[u8], at: usize) -> bool {
