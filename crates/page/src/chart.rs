@@ -5,7 +5,7 @@
 
 use std::fmt::Write;
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 mod axis;
 mod bins;
@@ -14,8 +14,7 @@ pub(crate) mod dates;
 
 pub(crate) use axis::{Axis, Tick};
 pub(crate) use bins::{Bins, Histogram, thinned};
-pub(crate) use coordinate::coordinate;
-use coordinate::push_point;
+pub(crate) use coordinate::{coordinate, pixel, push_point};
 
 /// Room for labels around the frame.
 const LEFT: f64 = 64.0;
@@ -87,19 +86,19 @@ impl Chart {
                 role="img" aria-labelledby=(format!("{0}-title {0}-desc", self.id)) {
                 title id=(format!("{}-title", self.id)) { (self.title) }
                 desc id=(format!("{}-desc", self.id)) { (self.description) }
-                path class="grid" d=(self.grid_lines()) {}
+                path class="grid" d=(PreEscaped(self.grid_lines())) {}
                 g class="marks" { (marks) }
                 path class="frame" d=(format!(
                     "M{} {}V{}H{}", coordinate(left), coordinate(top), coordinate(bottom), coordinate(right)
                 )) {}
-                path class="frame" d=(self.tick_lines()) {}
+                path class="frame" d=(PreEscaped(self.tick_lines())) {}
                 @for tick in self.x.ticks() {
                     text class="tick" text-anchor="middle"
-                        x=(coordinate(self.label_at(tick))) y=(coordinate(bottom + 16.0)) { (tick.label) }
+                        x=(pixel(self.label_at(tick))) y=(pixel(bottom + 16.0)) { (tick.label) }
                 }
                 @for tick in self.y.ticks() {
                     text class="tick" text-anchor="end"
-                        x=(coordinate(left - 7.0)) y=(coordinate(self.y_at(tick.at) + 4.0)) { (tick.label) }
+                        x=(pixel(left - 7.0)) y=(pixel(self.y_at(tick.at) + 4.0)) { (tick.label) }
                 }
                 text class="label" text-anchor="middle" x=(middle_x) y=(coordinate(self.height - 6.0)) {
                     (self.x_label)
@@ -165,8 +164,8 @@ impl Chart {
         let (left, right) = (self.x_at(x.0.max(self.x.first())), self.x_at(x.1.min(self.x.last())));
         let (bottom, top) = (self.y_at(y.0.max(self.y.first())), self.y_at(y.1.min(self.y.last())));
         html! {
-            rect class=(format!("cell {class}")) x=(coordinate(left)) y=(coordinate(top))
-                width=(coordinate((right - left).max(0.0))) height=(coordinate((bottom - top).max(0.0)))
+            rect class=(format!("cell {class}")) x=(pixel(left)) y=(pixel(top))
+                width=(pixel((right - left).max(0.0))) height=(pixel((bottom - top).max(0.0)))
                 data-tip=(tip) {}
         }
     }
@@ -282,11 +281,11 @@ pub(crate) fn legend(entries: &[(Key, &str, &str)]) -> Markup {
     }
 }
 
-/// A path; empty where there is nothing to draw.
+/// A path; empty where there is nothing to draw. Letters and numbers, thousands of them, have nothing to escape.
 fn path(class: &str, d: &str) -> Markup {
     html! {
         @if !d.is_empty() {
-            path class=(class) d=(d) {}
+            path class=(class) d=(PreEscaped(d)) {}
         }
     }
 }

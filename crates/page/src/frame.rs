@@ -1,5 +1,7 @@
 //! The frame around the body of every page.
 
+use std::sync::LazyLock;
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::style;
@@ -13,6 +15,8 @@ const SCRIPTS: [&str; 5] = [
     include_str!("script/values.js"),
     include_str!("script/turn.js"),
 ];
+/// All of them in one, made once: a fleet has a page for each tail.
+static SCRIPT: LazyLock<String> = LazyLock::new(scripts);
 /// The page may run what it holds and load nothing, whatever a name in it says.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 
@@ -34,7 +38,7 @@ pub(crate) fn framed(title: &str, body: &Markup) -> String {
                     h1 { (title) }
                     (body)
                 }
-                script { (PreEscaped(scripts())) }
+                script { (PreEscaped(SCRIPT.as_str())) }
             }
         }
     };

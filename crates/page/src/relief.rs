@@ -160,7 +160,11 @@ fn floor(solid: &mut Solid, scales: &Scales) {
 }
 
 fn facets(solid: &mut Solid, scales: &Scales, surface: &Surface<'_>) {
-    for rows in surface.nodes.windows(2) {
+    // Each is written in the words of many facets.
+    let mach: Vec<String> = surface.nodes[0].iter().map(|node| breakpoint(node.mach)).collect();
+    let lift_coefficient: Vec<String> =
+        surface.nodes.iter().map(|row| breakpoint(row[0].lift_coefficient)).collect();
+    for (row, rows) in surface.nodes.windows(2).enumerate() {
         for column in 1..rows[0].len() {
             let corners =
                 [rows[0][column - 1], rows[0][column], rows[1][column], rows[1][column - 1]];
@@ -168,10 +172,10 @@ fn facets(solid: &mut Solid, scales: &Scales, surface: &Surface<'_>) {
             let faint = if corners.iter().any(|node| node.informed) { "" } else { " faint" };
             let tip = format!(
                 "Mach {} to {}, CL {} to {}\n{mean:+.1} % in the mean",
-                breakpoint(corners[0].mach),
-                breakpoint(corners[2].mach),
-                breakpoint(corners[0].lift_coefficient),
-                breakpoint(corners[2].lift_coefficient)
+                mach[column - 1],
+                mach[column],
+                lift_coefficient[row],
+                lift_coefficient[row + 1]
             );
             let at = corners.map(|node| scales.at(node.mach, node.lift_coefficient, node.change));
             let class = format!("cell facet {}{faint}", shade::class(mean, surface.full));
@@ -191,10 +195,12 @@ fn height<'a>(corners: &[Node; 4], point: &'a Point) -> Option<(&'a Point, f64)>
     let along =
         share(point.lift_coefficient, corners[0].lift_coefficient, corners[3].lift_coefficient);
     // Half-open: a point between two facets lies on one.
-    let inside = (0.0..1.0).contains(&across) && (0.0..1.0).contains(&along);
+    if !((0.0..1.0).contains(&across) && (0.0..1.0).contains(&along)) {
+        return None;
+    }
     let between = |one: &Node, other: &Node| one.change + across * (other.change - one.change);
     let (near, far) = (between(&corners[0], &corners[1]), between(&corners[3], &corners[2]));
-    inside.then_some((point, near + along * (far - near)))
+    Some((point, near + along * (far - near)))
 }
 
 /// The edges of the initial table, which is the plane of no change; from node to node, so that each is in front or behind.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::chart::coordinate;
+use crate::chart::{pixel, push_point};
 
 const WIDTH: f64 = 500.0;
 const HEIGHT: f64 = 350.0;
@@ -22,6 +22,13 @@ pub(crate) struct Camera {
     elevation_deg: f64,
 }
 
+/// A camera's angles by their sines and cosines: a drawing has thousands of corners to be seen.
+#[derive(Clone, Copy, Debug)]
+struct Eye {
+    azimuth: (f64, f64),
+    elevation: (f64, f64),
+}
+
 /// A corner as it is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Seen {
@@ -35,6 +42,7 @@ struct Seen {
 /// Pieces of a drawing, in the painter's order when it is drawn.
 pub(crate) struct Solid {
     camera: Camera,
+    eye: Eye,
     /// In thousandths.
     corners: Vec<[f64; 3]>,
     /// The number of each, by its bits: a drawing has hundreds, each joined by several pieces.
@@ -49,10 +57,19 @@ impl Camera {
     /// As drawn: the corner of the smallest values is nearest.
     pub(crate) const HOME: Self = Self { azimuth_deg: 35.0, elevation_deg: 28.0 };
 
+    fn eye(self) -> Eye {
+        Eye {
+            azimuth: self.azimuth_deg.to_radians().sin_cos(),
+            elevation: self.elevation_deg.to_radians().sin_cos(),
+        }
+    }
+}
+
+impl Eye {
     /// A corner of the box: first to the right, second away, third up, then turned and seen from above.
     fn see(self, [first, second, third]: [f64; 3]) -> Seen {
-        let (sin, cos) = self.azimuth_deg.to_radians().sin_cos();
-        let (sin_elevation, cos_elevation) = self.elevation_deg.to_radians().sin_cos();
+        let (sin, cos) = self.azimuth;
+        let (sin_elevation, cos_elevation) = self.elevation;
         let away = first * sin + second * cos;
         Seen {
             across: first * cos - second * sin,
@@ -67,7 +84,8 @@ impl Solid {
     pub(crate) fn new(camera: Camera) -> Self {
         let (below, texts) = (String::new(), String::new());
         let (corners, numbers) = (Vec::new(), BTreeMap::new());
-        Self { camera, corners, numbers, below, pieces: Vec::new(), texts }
+        let eye = camera.eye();
+        Self { camera, eye, corners, numbers, below, pieces: Vec::new(), texts }
     }
 
     /// Lines on the floor, behind everything.
@@ -92,7 +110,7 @@ impl Solid {
 
     /// How far away corners are in the mean.
     fn away(&self, at: &[[f64; 3]]) -> f64 {
-        at.iter().map(|corner| self.camera.see(*corner).away).sum::<f64>() / at.len() as f64
+        at.iter().map(|corner| self.eye.see(*corner).away).sum::<f64>() / at.len() as f64
     }
 
     /// Words at a place, in front of everything.
@@ -100,7 +118,7 @@ impl Solid {
         let (x, y) = self.place(at);
         let corner = self.corner(at);
         let text = html! {
-            text class=(class) text-anchor="middle" x=(coordinate(x)) y=(coordinate(y)) data-p=(corner) { (words) }
+            text class=(class) text-anchor="middle" x=(pixel(x)) y=(pixel(y)) data-p=(corner) { (words) }
         };
         self.texts.push_str(&text.into_string());
     }
@@ -131,7 +149,7 @@ impl Solid {
 
     /// Where a corner is drawn: as rounded as the script has it, so that what it draws at first is the same.
     fn place(&self, at: [f64; 3]) -> (f64, f64) {
-        let seen = self.camera.see(at.map(|one| thousandths(one) / 1000.0));
+        let seen = self.eye.see(at.map(|one| thousandths(one) / 1000.0));
         (MIDDLE.0 + SCALE * seen.across, MIDDLE.1 - SCALE * seen.up)
     }
 
@@ -151,15 +169,14 @@ impl Solid {
         let mut d = String::new();
         for (k, corner) in at.iter().enumerate() {
             let begins = is_dots || if is_facet { k == 0 } else { k.is_multiple_of(2) };
-            let (x, y) = self.place(*corner);
-            let _ =
-                write!(d, "{}{} {}", if begins { 'M' } else { 'L' }, coordinate(x), coordinate(y));
+            push_point(&mut d, if begins { 'M' } else { 'L' }, self.place(*corner));
             d.push_str(if is_dots { "h0" } else { "" });
         }
         d.push_str(if is_facet { "Z" } else { "" });
         let (numbers, on) = (self.numbers(at), self.numbers(on));
         html! {
-            path class=(class) d=(d) data-p=(numbers) data-on=[(!on.is_empty()).then_some(on)]
+            path class=(class) d=(PreEscaped(d)) data-p=(PreEscaped(numbers))
+                data-on=[(!on.is_empty()).then_some(PreEscaped(on))]
                 data-tip=[(!tip.is_empty()).then_some(tip)] {}
         }
         .into_string()
@@ -167,7 +184,12 @@ impl Solid {
 
     /// The numbers of corners.
     fn numbers(&mut self, at: &[[f64; 3]]) -> String {
-        at.iter().map(|corner| self.corner(*corner).to_string()).collect::<Vec<_>>().join(" ")
+        let mut text = String::new();
+        for corner in at {
+            let separator = if text.is_empty() { "" } else { " " };
+            let _ = write!(text, "{separator}{}", self.corner(*corner));
+        }
+        text
     }
 }
 
@@ -195,7 +217,7 @@ mod tests {
             ([-1.0, -1.0, -0.5], [-0.3660, -1.1160, -1.3660]),
         ];
         for (corner, by_hand) in expected {
-            let Seen { across, up, away } = camera.see(corner);
+            let Seen { across, up, away } = camera.eye().see(corner);
             for (found, by_hand) in [across, up, away].into_iter().zip(by_hand) {
                 assert!((found - by_hand).abs() < 1e-4, "{corner:?}: {found} {by_hand}");
             }

@@ -74,6 +74,12 @@ pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
         .into_iter()
         .map(|k| (view.points[k].mach, view.points[k].lift_coefficient))
         .collect();
+    // Each is written in the words of many cells.
+    let words_of = |grid: &[f64], nodes: &Nodes| -> Vec<String> {
+        nodes.chosen.iter().map(|k| breakpoint(grid[*k])).collect()
+    };
+    let (lift_coefficient, mach) =
+        (words_of(&polars.lift_coefficient, &rows), words_of(&polars.mach, &columns));
     html! {
         figure {
             figcaption {
@@ -92,7 +98,7 @@ pub(crate) fn surface(view: &TailView, place: &Place<'_>) -> Markup {
                             (columns.edges[j], columns.edges[j + 1]),
                             (rows.edges[i], rows.edges[i + 1]),
                             &look(view, polars.node(*row, *column), full),
-                            &tip(view, *row, *column),
+                            &tip(view, polars.node(*row, *column), &mach[j], &lift_coefficient[i]),
                         ))
                     }
                 }
@@ -120,18 +126,15 @@ pub(crate) fn change(view: &TailView, node: usize) -> f64 {
     100.0 * (view.polars.current[node] / view.polars.initial[node] - 1.0)
 }
 
-fn tip(view: &TailView, row: usize, column: usize) -> String {
+fn tip(view: &TailView, node: usize, mach: &str, lift_coefficient: &str) -> String {
     let polars = &view.polars;
-    let node = polars.node(row, column);
     let (initial, current) = (polars.initial[node], polars.current[node]);
     let within = polars
         .half_width95
         .as_ref()
         .map_or_else(String::new, |half| format!(" ± {:.1}", 100.0 * half[node]));
     format!(
-        "Mach {}, CL {}\nCD {initial:.4} to {current:.4}: {}{within} %",
-        breakpoint(polars.mach[column]),
-        breakpoint(polars.lift_coefficient[row]),
+        "Mach {mach}, CL {lift_coefficient}\nCD {initial:.4} to {current:.4}: {}{within} %",
         signed_tenths(change(view, node))
     )
 }

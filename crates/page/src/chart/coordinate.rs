@@ -1,7 +1,9 @@
 //! Coordinates of a drawing as text.
 
+use maud::PreEscaped;
+
 /// A letter of a path and the point that it leads to.
-pub(super) fn push_point(d: &mut String, letter: char, (x, y): (f64, f64)) {
+pub(crate) fn push_point(d: &mut String, letter: char, (x, y): (f64, f64)) {
     d.push(letter);
     push_coordinate(d, x);
     d.push(' ');
@@ -15,9 +17,16 @@ pub(crate) fn coordinate(value: f64) -> String {
     text
 }
 
+/// The same as the value of an attribute: there is nothing in it to escape.
+pub(crate) fn pixel(value: f64) -> PreEscaped<String> {
+    PreEscaped(coordinate(value))
+}
+
 /// Appends what `{value:.1}` gives, without a last `.0` and without a sign of zero. A page holds hundreds of thousands of
 /// them, and formatting with a precision is slow.
 fn push_coordinate(text: &mut String, value: f64) {
+    /// What follows a whole number.
+    const TENTHS: [&str; 10] = ["", ".1", ".2", ".3", ".4", ".5", ".6", ".7", ".8", ".9"];
     /// Distance from the middle between two tenths above which the product with 10 is rounded as the value would be.
     const CLEAR: f64 = 1e-6;
     let tenths = value * 10.0;
@@ -33,11 +42,8 @@ fn push_coordinate(text: &mut String, value: f64) {
             reason = "from 0 to 1e8"
         )]
         let magnitude = nearest.abs() as u32;
-        push_whole(text, magnitude / 10);
-        if !magnitude.is_multiple_of(10) {
-            text.push('.');
-            text.push(digit(magnitude % 10));
-        }
+        text.push_str(itoa::Buffer::new().format(magnitude / 10));
+        text.push_str(TENTHS[magnitude as usize % TENTHS.len()]);
         return;
     }
     let printed = format!("{value:.1}");
@@ -46,17 +52,6 @@ fn push_coordinate(text: &mut String, value: f64) {
         Some(whole) => text.push_str(whole),
         None => text.push_str(&printed),
     }
-}
-
-fn push_whole(text: &mut String, number: u32) {
-    if number >= 10 {
-        push_whole(text, number / 10);
-    }
-    text.push(digit(number % 10));
-}
-
-fn digit(number: u32) -> char {
-    char::from_digit(number, 10).unwrap_or('0')
 }
 
 #[cfg(test)]
