@@ -21,32 +21,75 @@ pub struct Reference {
 #[serde(transparent)]
 pub struct ConditionMeans(BTreeMap<String, Reference>);
 
-/// Names of the engines' rotor speeds.
-const N2_PERCENT: [&str; MAXIMUM_ENGINES] =
-    ["n2_1_percent", "n2_2_percent", "n2_3_percent", "n2_4_percent"];
+/// Signals whose means are kept; those of the engines are the last.
+const SIGNALS: [&str; 12 + MAXIMUM_ENGINES] = [
+    "mach",
+    "lift_coefficient",
+    "pressure_altitude_m",
+    "static_air_temperature_k",
+    "isa_deviation_k",
+    "mass_kg",
+    "fuel_used_kg",
+    "unix_days",
+    "cg_percent_mac",
+    "roll_deg",
+    "latitude_deg",
+    "anti_ice",
+    "n2_1_percent",
+    "n2_2_percent",
+    "n2_3_percent",
+    "n2_4_percent",
+];
 
-impl ConditionMeans {
-    /// Adds a segment: Welford's running mean, so that learning in two runs gives the same bits as in one.
-    pub fn add(&mut self, segment: &Segment, lift_coefficient: f64) {
+/// The signals of a segment, as far as it has them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Conditions([Option<f64>; SIGNALS.len()]);
+
+impl Conditions {
+    /// Of a segment with this lift coefficient.
+    pub(crate) fn of(segment: &Segment, lift_coefficient: f64) -> Self {
         let means = &segment.means;
-        self.add_value("mach", Some(means.mach));
-        self.add_value("lift_coefficient", Some(lift_coefficient));
-        self.add_value("pressure_altitude_m", Some(means.pressure_altitude_m));
-        self.add_value("static_air_temperature_k", Some(means.static_air_temperature_k));
         let isa_deviation = atmos::isa::isa_deviation(
             PressureAltitude::meters(means.pressure_altitude_m),
             Temperature::kelvin(means.static_air_temperature_k),
         );
-        self.add_value("isa_deviation_k", isa_deviation.ok().map(TemperatureDifference::to_kelvin));
-        self.add_value("mass_kg", Some(means.mass_kg));
-        self.add_value("fuel_used_kg", Some(means.fuel_used_kg));
-        self.add_value("unix_days", Some(unix_days(segment)));
-        self.add_value("cg_percent_mac", means.center_of_gravity_percent_mac);
-        self.add_value("roll_deg", means.roll_deg);
-        self.add_value("latitude_deg", means.latitude_deg);
-        self.add_value("anti_ice", means.anti_ice);
-        for (name, n2) in N2_PERCENT.iter().zip(&means.n2_percent) {
-            self.add_value(name, Some(*n2));
+        let n2 = |engine: usize| means.n2_percent.get(engine).copied();
+        Self([
+            Some(means.mach),
+            Some(lift_coefficient),
+            Some(means.pressure_altitude_m),
+            Some(means.static_air_temperature_k),
+            isa_deviation.ok().map(TemperatureDifference::to_kelvin),
+            Some(means.mass_kg),
+            Some(means.fuel_used_kg),
+            Some(unix_days(segment)),
+            means.center_of_gravity_percent_mac,
+            means.roll_deg,
+            means.latitude_deg,
+            means.anti_ice,
+            n2(0),
+            n2(1),
+            n2(2),
+            n2(3),
+        ])
+    }
+}
+
+impl ConditionMeans {
+    /// Adds the segments of a flight, one after the other: Welford's running mean, so that learning in two runs gives the same
+    /// bits as in one. Signal by signal: each is looked up once.
+    pub(crate) fn add(&mut self, segments: &[Conditions]) {
+        for (place, signal) in SIGNALS.iter().enumerate() {
+            let mut values = segments.iter().filter_map(|conditions| conditions.0[place]);
+            if !self.0.contains_key(*signal) {
+                let Some(first) = values.next() else { continue };
+                self.0.insert((*signal).to_owned(), Reference { mean: first, segments: 1 });
+            }
+            let Some(reference) = self.0.get_mut(*signal) else { continue };
+            for value in values {
+                reference.segments += 1;
+                reference.mean += (value - reference.mean) / reference.segments as f64;
+            }
         }
     }
 
@@ -75,19 +118,6 @@ impl ConditionMeans {
     /// All of them, by name.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &Reference)> {
         self.0.iter().map(|(name, reference)| (name.as_str(), reference))
-    }
-
-    fn add_value(&mut self, signal: &str, value: Option<f64>) {
-        let Some(value) = value else { return };
-        match self.0.get_mut(signal) {
-            Some(reference) => {
-                reference.segments += 1;
-                reference.mean += (value - reference.mean) / reference.segments as f64;
-            }
-            None => {
-                self.0.insert(signal.to_owned(), Reference { mean: value, segments: 1 });
-            }
-        }
     }
 }
 

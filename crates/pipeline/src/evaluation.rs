@@ -72,13 +72,20 @@ impl TailResult {
 
     /// The same, given what the whole model predicts for each segment where that is known already.
     pub(crate) fn adapted_as_predicted(data: TailData, predicted: Option<&[Option<f64>]>) -> Self {
-        let before = evaluate(&data.model.initial, data.model.initial.drag_table(), &data.segments);
-        let after = match data.model.whole(Predicts::WholeModel) {
+        let initial = &data.model.initial;
+        let (before, after) = match data.model.whole(Predicts::WholeModel) {
             // It refers to the initial table.
             Some(whole) => {
-                evaluate_whole((&whole, predicted), &data.model, &data.segments, before.clone())
+                let before = evaluate(initial, initial.drag_table(), &data.segments);
+                let by_table = before.clone();
+                let after =
+                    evaluate_whole((&whole, predicted), &data.model, &data.segments, by_table);
+                (before, after)
             }
-            None => evaluate(&data.model.initial, data.model.drag_coefficient(), &data.segments),
+            None => {
+                let (table, segments) = (data.model.drag_coefficient(), &data.segments);
+                evaluate_by_two(initial, (initial.drag_table(), table), segments)
+            }
         };
         let mut summary = summary_of(&data, &before);
         summary.informed_nodes = Some(data.model.informed_nodes());
@@ -217,24 +224,57 @@ pub fn evaluate<'s>(
     segments
         .into_iter()
         .map(|segment| match model.observe(segment) {
-            Ok(observation) => {
-                let error = error_percent(table, &observation);
-                Some(Evaluated {
-                    lift_coefficient: observation.lift_coefficient,
-                    drag_coefficient: observation.drag_coefficient,
-                    predicted_fuel_flow_kg_s: error
-                        .map(|error| segment.means.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
-                    error_percent: error,
-                })
-            }
-            Err(_) => state_without_errors(model, segment).map(|state| Evaluated {
-                lift_coefficient: state.lift_coefficient,
-                drag_coefficient: state.drag_coefficient,
-                predicted_fuel_flow_kg_s: None,
-                error_percent: None,
-            }),
+            Ok(observation) => Some(evaluated(table, segment, &observation)),
+            Err(_) => without_errors(model, segment),
         })
         .collect()
+}
+
+/// The same by two tables, in one pass where segments give one observation for both.
+fn evaluate_by_two(
+    model: &ExtendedModel,
+    (one, other): (&Table, &Table),
+    segments: &[Segment],
+) -> (Vec<Option<Evaluated>>, Vec<Option<Evaluated>>) {
+    if model.effects().is_some() {
+        return (evaluate(model, one, segments), evaluate(model, other, segments));
+    }
+    segments
+        .iter()
+        .map(|segment| match model.observe(segment) {
+            Ok(observation) => (
+                Some(evaluated(one, segment, &observation)),
+                Some(evaluated(other, segment, &observation)),
+            ),
+            Err(_) => {
+                let state = without_errors(model, segment);
+                (state, state)
+            }
+        })
+        .unzip()
+}
+
+/// What a table predicts for a segment that gives this observation.
+pub(crate) fn evaluated(table: &Table, segment: &Segment, observation: &Observation) -> Evaluated {
+    let error = error_percent(table, observation);
+    Evaluated {
+        lift_coefficient: observation.lift_coefficient,
+        drag_coefficient: observation.drag_coefficient,
+        predicted_fuel_flow_kg_s: error
+            .map(|error| segment.means.fuel_flow_total_kg_s * (1.0 - error / 100.0)),
+        error_percent: error,
+    }
+}
+
+/// The coefficients of a segment that gives no observation.
+fn without_errors(model: &ExtendedModel, segment: &Segment) -> Option<Evaluated> {
+    let state = state_without_errors(model, segment)?;
+    Some(Evaluated {
+        lift_coefficient: state.lift_coefficient,
+        drag_coefficient: state.drag_coefficient,
+        predicted_fuel_flow_kg_s: None,
+        error_percent: None,
+    })
 }
 
 /// What a table predicts for an observation; `None` outside its grid.

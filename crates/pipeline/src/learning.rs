@@ -12,7 +12,7 @@ use effects::ExtendedModel;
 use flight::{Observation, Segment};
 use refit::RefitRule;
 
-use crate::condition_means::ConditionMeans;
+use crate::condition_means::{ConditionMeans, Conditions};
 use crate::model_file::{LawState, Learnt, LedgerEntry, PaperSettings};
 use crate::whole_model::belief_before_flights;
 
@@ -95,16 +95,16 @@ pub fn learn_flight(
     flight: &FlightToLearn<'_>,
 ) -> Result<FlightLearnt, LearningError> {
     let mut observations = Vec::with_capacity(flight.segments.len());
-    let mut references = learnt.references.clone();
+    let mut conditions = Vec::with_capacity(flight.segments.len());
     for segment in flight.segments {
         if let Some((observation, corrected)) = observed(initial, segment) {
-            references.add(&corrected, observation.lift_coefficient);
+            conditions.push(Conditions::of(&corrected, observation.lift_coefficient));
             observations.push(observation);
         }
     }
     let mut result = learn_observations(initial, &mut learnt.law, &observations)?;
     result.outside_table += flight.segments.len() - observations.len();
-    learnt.references = references;
+    learnt.references.add(&conditions);
     learnt.ledger.push(LedgerEntry {
         segments: flight.segments.len() as u64,
         outside_table: result.outside_table as u64,

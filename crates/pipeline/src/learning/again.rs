@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use adapt::bayes::DragTables;
 use effects::ExtendedModel;
-use flight::Segment;
+use flight::{Observation, Segment};
 use lut::Table;
 
 use super::{LawChoice, LearningError, begin, learn_observations, observed};
@@ -80,10 +80,23 @@ impl<'m> LearningAgain<'m> {
     /// # Errors
     /// As for [`learn_flight`](super::learn_flight), which do not happen on flights that were learnt before.
     pub(crate) fn learn(&mut self, segments: &[Segment]) -> Result<(), LearningError> {
-        let observations: Vec<_> = segments
-            .iter()
-            .filter_map(|segment| Some(observed(self.initial, segment)?.0))
-            .collect();
+        self.learn_observed(&self.observe(segments))
+    }
+
+    /// What segments say of drag; `None` of those that say nothing.
+    pub(super) fn observe(&self, segments: &[Segment]) -> Vec<Option<Observation>> {
+        segments.iter().map(|segment| Some(observed(self.initial, segment)?.0)).collect()
+    }
+
+    /// Learns the next flight, whose segments say this.
+    ///
+    /// # Errors
+    /// As for [`learn`](Self::learn).
+    pub(super) fn learn_observed(
+        &mut self,
+        observations: &[Option<Observation>],
+    ) -> Result<(), LearningError> {
+        let observations: Vec<Observation> = observations.iter().flatten().copied().collect();
         learn_observations(self.initial, &mut self.law, &observations)?;
         Ok(())
     }

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use flight::{Segment, Timestamp};
+use flight::{Observation, Segment, Timestamp};
 use monitor::FlightDeviation;
 
 use super::{LearningAgain, LearningError};
-use crate::evaluation::evaluate;
+use crate::evaluation::{evaluate, evaluated};
 use crate::model_file::ModelFile;
 use crate::segments_table::Evaluated;
 
@@ -71,14 +71,31 @@ pub(crate) fn continue_curve<'s>(
 ) -> Result<(), LearningError> {
     for (recorded, as_learnt) in flights {
         let Some(first) = recorded.first() else { continue };
-        let predicted = evaluate(again.initial(), &*again.table()?, recorded);
+        let observations = again.observe(as_learnt);
+        let predicted = predicted(&again, (recorded, as_learnt), &observations)?;
         let start = first.identity.start;
         if let Some(forecast) = forecast(start, recorded, &predicted) {
             curve.insert((start, first.identity.flight.clone()), forecast);
         }
-        again.learn(as_learnt)?;
+        again.learn_observed(&observations)?;
     }
     Ok(())
+}
+
+/// What the table says now of a flight as it was recorded; given what its segments say as they are learnt, which mostly is the
+/// same.
+fn predicted(
+    again: &LearningAgain<'_>,
+    (recorded, as_learnt): (&[Segment], &[Segment]),
+    observations: &[Option<Observation>],
+) -> Result<Vec<Option<Evaluated>>, LearningError> {
+    let table = again.table()?;
+    // Effects may be shares of the table's own drag.
+    if again.initial().effects().is_some() || !std::ptr::eq(recorded, as_learnt) {
+        return Ok(evaluate(again.initial(), &table, recorded));
+    }
+    let segments = recorded.iter().zip(observations);
+    Ok(segments.map(|(segment, said)| Some(evaluated(&table, segment, said.as_ref()?))).collect())
 }
 
 fn forecast(
