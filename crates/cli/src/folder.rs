@@ -149,11 +149,20 @@ impl Folder {
         self.path.join(file).exists()
     }
 
-    /// Puts a file of the next generation into the waiting folder.
+    /// Puts a file of the next generation into the waiting folder, for the state to name.
     ///
     /// # Errors
     /// A file that cannot be written.
     pub(crate) fn stage(&self, file: &str, bytes: &[u8]) -> Result<FileState, Failure> {
+        self.stage_unnamed(file, bytes)?;
+        Ok(FileState::of(file, bytes))
+    }
+
+    /// The same of a file that is no part of the state, a page for instance.
+    ///
+    /// # Errors
+    /// As for [`stage`](Self::stage).
+    pub(crate) fn stage_unnamed(&self, file: &str, bytes: &[u8]) -> Result<(), Failure> {
         let path = self.waiting().join(file);
         let attempt = || {
             steps::make_folder(&self.waiting())?;
@@ -162,8 +171,7 @@ impl Folder {
             }
             steps::write(&path, bytes)
         };
-        attempt().map_err(|error| Failure::unwritable(&self.path, error))?;
-        Ok(FileState::of(file, bytes))
+        attempt().map_err(|error| Failure::unwritable(&self.path, error))
     }
 
     /// These files, where there are any, are out of date with what is staged, and go when it is in its place. None of them may
@@ -187,7 +195,7 @@ impl Folder {
         let state = State { generation: self.state.generation + 1, tails };
         let text =
             state.to_text().map_err(|error| Failure::unwritable(&self.path, error))?.into_bytes();
-        self.stage(state::NAME, &text)?;
+        self.stage_unnamed(state::NAME, &text)?;
         let waiting = self.waiting();
         let publish = || -> std::io::Result<()> {
             steps::sync_below(&self.path)?;

@@ -32,7 +32,7 @@ pub(super) fn write(
         },
         tails: tails.collect(),
     };
-    run.folder.stage("summary.json", &summary.to_json())?;
+    run.folder.stage_unnamed("summary.json", &summary.to_json())?;
     let title = "Adaptation of performance models to cruise reports";
     let page = if run.on_one_page {
         let sections: Vec<&page::Section> =
@@ -46,7 +46,7 @@ pub(super) fn write(
             .collect();
         page::fleet_report(&summary, &links, title)
     };
-    run.folder.stage("report.html", neutral(&page).as_bytes())?;
+    run.folder.stage_unnamed("report.html", neutral(&page).as_bytes())?;
     Ok(summary)
 }
 

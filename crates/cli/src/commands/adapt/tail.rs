@@ -271,8 +271,10 @@ impl Run<'_> {
         if self.on_one_page {
             return Ok(Some(section));
         }
-        self.folder
-            .stage(&page_file(&result.tail), neutral(&page::tail_page(&section)).as_bytes())?;
+        self.folder.stage_unnamed(
+            &page_file(&result.tail),
+            neutral(&page::tail_page(&section)).as_bytes(),
+        )?;
         Ok(None)
     }
 }
