@@ -77,8 +77,7 @@ fn to_parquet(columns: &Columns) -> Result<Vec<u8>, parquet::errors::ParquetErro
         let Some(mut column) = group.next_column()? else { break };
         match cells {
             Cells::Text(values) => {
-                let values: Vec<ByteArray> =
-                    values.iter().map(|value| ByteArray::from(value.as_str())).collect();
+                let values: Vec<ByteArray> = values.iter().map(ByteArray::from).collect();
                 column.typed::<ByteArrayType>().write_batch(&values, None, None)?;
             }
             Cells::Count(values) => {

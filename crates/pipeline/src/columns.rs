@@ -3,15 +3,18 @@
 //! Numbers in CSV are the shortest decimals that read back to the same bits; an absent value is an empty field; texts are
 //! made harmless by [`csv_cell`].
 
+mod texts;
+
 use std::fmt::Write as _;
 
 use crate::csv_cell;
+pub use texts::Texts;
 
 /// The values of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cells {
     /// Text, never absent.
-    Text(Vec<String>),
+    Text(Texts),
     /// Whole numbers.
     Count(Vec<u64>),
     /// Numbers, perhaps absent.
@@ -32,7 +35,7 @@ impl Cells {
 
     fn value(&self, row: usize) -> serde_json::Value {
         match self {
-            Self::Text(values) => values[row].as_str().into(),
+            Self::Text(values) => values.get(row).into(),
             Self::Count(values) => values[row].into(),
             Self::Number(values) => values[row].into(),
             // A number that is not finite is `null`.
@@ -42,11 +45,8 @@ impl Cells {
 
     fn push_field(&self, row: usize, text: &mut String) {
         match self {
-            Self::Text(values) => push_quoted(&csv_cell::written(&values[row]), text),
-            Self::Count(values) => {
-                // Writing to a string cannot fail.
-                let _ = write!(text, "{}", values[row]);
-            }
+            Self::Text(values) => push_quoted(&csv_cell::written(values.get(row)), text),
+            Self::Count(values) => text.push_str(itoa::Buffer::new().format(values[row])),
             Self::Number(values) => {
                 if let Some(value) = values[row] {
                     push_shortest(value, text);
@@ -82,7 +82,7 @@ pub fn push_shortest(value: f64, text: &mut String) {
 /// # Source
 /// RFC 4180, section 2.
 fn push_quoted(field: &str, text: &mut String) {
-    if !field.contains([',', '"', '\n', '\r']) {
+    if !field.bytes().any(|byte| matches!(byte, b',' | b'"' | b'\n' | b'\r')) {
         text.push_str(field);
         return;
     }
@@ -112,8 +112,13 @@ pub struct Columns {
 
 impl Columns {
     /// Adds a column of text.
-    pub fn text(&mut self, name: impl Into<String>, values: impl Iterator<Item = String>) {
+    pub fn text(&mut self, name: impl Into<String>, values: impl Iterator<Item: AsRef<str>>) {
         self.columns.push((name.into(), Cells::Text(values.collect())));
+    }
+
+    /// The same of texts that are put together already.
+    pub fn texts(&mut self, name: impl Into<String>, values: Texts) {
+        self.columns.push((name.into(), Cells::Text(values)));
     }
 
     /// Adds a column of whole numbers.

@@ -16,6 +16,9 @@ const TEXT_MARK: char = '\'';
 
 /// A text as a cell, before it is quoted.
 pub fn written(text: &str) -> Cow<'_, str> {
+    if is_harmless(text) {
+        return Cow::Borrowed(text);
+    }
     let escaped = if text.contains("\\u{") {
         Cow::Owned(without_controls(&text.replace("\\u{", "\\u{5c}u{"), stays_in_cell).into_owned())
     } else {
@@ -51,6 +54,12 @@ pub fn read(cell: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(plain)
+}
+
+/// Nearly every text: nothing in it needs a second look, and it begins as no formula does.
+fn is_harmless(text: &str) -> bool {
+    text.bytes().all(|byte| matches!(byte, b' '..=b'~') && byte != b'\\')
+        && text.bytes().next().is_none_or(|byte| byte.is_ascii_alphanumeric())
 }
 
 /// Marks in front count as nothing, so that a text that begins with one reads back as it was.
@@ -96,27 +105,39 @@ fn is_obeyed(letter: char) -> bool {
         || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The first byte of such a character in UTF-8; others begin with it too.
+/// The first byte of such a character in UTF-8; others begin with it too. Without branches: of many bytes at once.
 const fn may_begin_obeyed(byte: u8) -> bool {
-    byte < b' ' || matches!(byte, 0x7f | 0xc2 | 0xe2)
+    (byte < b' ') | (byte == 0x7f) | (byte == 0xc2) | (byte == 0xe2)
 }
 
-/// The first letter that acts, and where it is. Pages of megabytes hold none: bytes are looked at some at a time, in which
-/// several fit into one instruction, and letters only where one may be.
+/// The first letter that acts, and where it is.
 fn first(text: &str, acts: impl Fn(char) -> bool) -> Option<(usize, char)> {
-    const BYTES_AT_ONCE: usize = 64;
-    for (chunk, bytes) in text.as_bytes().chunks(BYTES_AT_ONCE).enumerate() {
-        if !bytes.iter().fold(false, |any, byte| any | may_begin_obeyed(*byte)) {
-            continue;
+    let mut from = 0;
+    while let Some(at) = first_to_look_at(text.as_bytes(), from) {
+        if let Some(letter) = text[at..].chars().next().filter(|letter| acts(*letter)) {
+            return Some((at, letter));
         }
-        let begins = bytes.iter().enumerate().filter(|(_, byte)| may_begin_obeyed(**byte));
-        for at in begins.map(|(k, _)| BYTES_AT_ONCE * chunk + k) {
-            if let Some(letter) = text[at..].chars().next().filter(|letter| acts(*letter)) {
-                return Some((at, letter));
-            }
-        }
+        from = at + 1;
     }
     None
+}
+
+/// The first byte from one on with which such a character may begin. Pages of megabytes hold none: bytes are looked at some at
+/// a time, in which several fit into one instruction.
+///
+/// Not generic, so that it is compiled in this crate, for speed, and not in one that is compiled for size.
+#[inline(never)]
+fn first_to_look_at(bytes: &[u8], from: usize) -> Option<usize> {
+    const BYTES_AT_ONCE: usize = 64;
+    let one_by_one = |bytes: &[u8]| bytes.iter().position(|byte| may_begin_obeyed(*byte));
+    let rest = &bytes[from..];
+    let (chunks, _) = rest.as_chunks::<BYTES_AT_ONCE>();
+    let without = chunks
+        .iter()
+        .take_while(|chunk| !chunk.iter().fold(false, |any, byte| any | may_begin_obeyed(*byte)))
+        .count();
+    let looked_at = without * BYTES_AT_ONCE;
+    one_by_one(&rest[looked_at..]).map(|at| from + looked_at + at)
 }
 
 #[cfg(test)]

@@ -28,10 +28,10 @@ impl KnownFlight {
 pub fn to_csv(flights: &[KnownFlight]) -> Vec<u8> {
     let mut columns = Columns::default();
     let entries = || flights.iter().map(|known| &known.entry);
-    columns.text("flight", entries().map(|entry| entry.flight.clone()));
-    columns.text("start", entries().map(|entry| entry.start.clone()));
+    columns.text("flight", entries().map(|entry| &entry.flight));
+    columns.text("start", entries().map(|entry| &entry.start));
     columns.text("end", flights.iter().map(|known| known.end.to_string()));
-    columns.text("content", entries().map(|entry| entry.content.clone()));
+    columns.text("content", entries().map(|entry| &entry.content));
     columns.count("samples", entries().map(|entry| entry.samples));
     columns.count("segments", entries().map(|entry| entry.segments));
     columns.count("outside_table", entries().map(|entry| entry.outside_table));

@@ -1,11 +1,11 @@
 //! `segments/TAIL.csv`: every segment with its mean state, and back.
 
-use std::fmt::Write as _;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use flight::{FlightIdentity, MAXIMUM_ENGINES, Segment, SegmentMeans};
 
-use crate::columns::Columns;
+use crate::columns::{Columns, Texts};
 use crate::csv_cell;
 
 /// What a model predicts for a segment.
@@ -133,8 +133,8 @@ pub fn table(rows: &[SegmentRow], engines: usize) -> Columns {
     let engines = engines.min(MAXIMUM_ENGINES);
     let mut columns = Columns::default();
     let means = |of: Getter| rows.iter().map(move |row| of(&row.segment.means));
-    columns.text("tail", rows.iter().map(|row| row.segment.identity.tail.clone()));
-    columns.text("flight", rows.iter().map(|row| row.segment.identity.flight.clone()));
+    columns.text("tail", rows.iter().map(|row| row.segment.identity.tail.as_str()));
+    columns.text("flight", rows.iter().map(|row| row.segment.identity.flight.as_str()));
     columns.text("start", starts(rows));
     let (time, rest) = REQUIRED.split_at(1);
     for (name, get, _) in time {
@@ -171,7 +171,7 @@ pub fn table(rows: &[SegmentRow], engines: usize) -> Columns {
         "temperature_assumed",
         rows.iter().map(|row| u64::from(row.segment.temperature_assumed)),
     );
-    columns.text("rows", rows.iter().map(|row| join(&row.segment.rows)));
+    columns.texts("rows", joined(rows));
     if rows.iter().any(|row| row.evaluated.is_some()) {
         let evaluated = |of: fn(&Evaluated) -> Option<f64>| {
             rows.iter().map(move |row| row.evaluated.as_ref().and_then(of))
@@ -401,23 +401,31 @@ impl Row<'_> {
 }
 
 /// START of each row as text, printed once a flight.
-fn starts(rows: &[SegmentRow]) -> impl Iterator<Item = String> {
-    let mut last: Option<(&Arc<FlightIdentity>, String)> = None;
+/// START of each row's flight: one text for all rows of a flight.
+fn starts(rows: &[SegmentRow]) -> impl Iterator<Item = Rc<str>> {
+    let mut last: Option<(&Arc<FlightIdentity>, Rc<str>)> = None;
     rows.iter().map(move |row| {
         let identity = &row.segment.identity;
         match &last {
-            Some((known, text)) if Arc::ptr_eq(known, identity) => text.clone(),
-            _ => last.insert((identity, identity.start.to_string())).1.clone(),
+            Some((known, text)) if Arc::ptr_eq(known, identity) => Rc::clone(text),
+            _ => {
+                let text = Rc::from(identity.start.to_string());
+                Rc::clone(&last.insert((identity, text)).1)
+            }
         }
     })
 }
 
-fn join(rows: &[u32]) -> String {
-    let mut text = String::with_capacity(5 * rows.len());
-    for (index, row) in rows.iter().enumerate() {
-        text.push_str(if index == 0 { "" } else { ";" });
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{row}");
+/// The samples of each segment.
+fn joined(rows: &[SegmentRow]) -> Texts {
+    let mut texts = Texts::default();
+    for row in rows {
+        texts.push_with(|text| {
+            for (index, sample) in row.segment.rows.iter().enumerate() {
+                text.push_str(if index == 0 { "" } else { ";" });
+                text.push_str(itoa::Buffer::new().format(*sample));
+            }
+        });
     }
-    text
+    texts
 }

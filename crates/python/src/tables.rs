@@ -27,7 +27,7 @@ pub(crate) fn to_arrow(columns: &Columns) -> Result<(Vec<Field>, Vec<ArrayRef>),
     for (name, cells) in columns.iter() {
         let (kind, array): (DataType, ArrayRef) = match cells {
             Cells::Text(values) => {
-                (DataType::Utf8, Arc::new(StringArray::from_iter_values(values)))
+                (DataType::Utf8, Arc::new(StringArray::from_iter_values(values.iter())))
             }
             Cells::Count(values) => {
                 let values = values.iter().map(|value| i64::try_from(*value));

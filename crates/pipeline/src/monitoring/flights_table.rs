@@ -19,7 +19,7 @@ const OF_A_DEVIATION: usize = 3;
 #[must_use]
 pub fn flights_to_csv(flights: &[MonitoredFlight]) -> Vec<u8> {
     let mut columns = Columns::default();
-    columns.text("flight", flights.iter().map(|flight| flight.flight.clone()));
+    columns.text("flight", flights.iter().map(|flight| &flight.flight));
     columns.text("start", flights.iter().map(|flight| flight.start.to_string()));
     columns.count("segments", flights.iter().map(|flight| flight.segments as u64));
     columns.count("outside_table", flights.iter().map(|flight| flight.outside_table as u64));
