@@ -106,6 +106,7 @@ fn is_obeyed(letter: char) -> bool {
 }
 
 /// The first byte of such a character in UTF-8; others begin with it too. Without branches: of many bytes at once.
+#[expect(clippy::needless_bitwise_bool, reason = "branches would take the bytes one by one")]
 const fn may_begin_obeyed(byte: u8) -> bool {
     (byte < b' ') | (byte == 0x7f) | (byte == 0xc2) | (byte == 0xe2)
 }

@@ -73,19 +73,15 @@ impl TailResult {
     /// The same, given what the whole model predicts for each segment where that is known already.
     pub(crate) fn adapted_as_predicted(data: TailData, predicted: Option<&[Option<f64>]>) -> Self {
         let initial = &data.model.initial;
-        let (before, after) = match data.model.whole(Predicts::WholeModel) {
+        let (before, after) = if let Some(whole) = data.model.whole(Predicts::WholeModel) {
             // It refers to the initial table.
-            Some(whole) => {
-                let before = evaluate(initial, initial.drag_table(), &data.segments);
-                let by_table = before.clone();
-                let after =
-                    evaluate_whole((&whole, predicted), &data.model, &data.segments, by_table);
-                (before, after)
-            }
-            None => {
-                let (table, segments) = (data.model.drag_coefficient(), &data.segments);
-                evaluate_by_two(initial, (initial.drag_table(), table), segments)
-            }
+            let before = evaluate(initial, initial.drag_table(), &data.segments);
+            let by_table = before.clone();
+            let after = evaluate_whole((&whole, predicted), &data.model, &data.segments, by_table);
+            (before, after)
+        } else {
+            let tables = (initial.drag_table(), data.model.drag_coefficient());
+            evaluate_by_two(initial, tables, &data.segments)
         };
         let mut summary = summary_of(&data, &before);
         summary.informed_nodes = Some(data.model.informed_nodes());
@@ -241,12 +237,11 @@ fn evaluate_by_two(
     }
     segments
         .iter()
-        .map(|segment| match model.observe(segment) {
-            Ok(observation) => (
-                Some(evaluated(one, segment, &observation)),
-                Some(evaluated(other, segment, &observation)),
-            ),
-            Err(_) => {
+        .map(|segment| {
+            if let Ok(observation) = model.observe(segment) {
+                let by = |table| Some(evaluated(table, segment, &observation));
+                (by(one), by(other))
+            } else {
                 let state = without_errors(model, segment);
                 (state, state)
             }

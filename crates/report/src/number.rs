@@ -50,7 +50,6 @@ pub(crate) fn within_words(bytes: &[u8], at: usize) -> Option<(f64, usize, u8)> 
 ///
 /// # Source
 /// Eight digits in three multiplications: Lemire 2021, "Number parsing at a gigabyte per second", section 6.
-#[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
 fn within_a_word(bytes: &[u8], at: usize) -> Option<(f64, usize, u8)> {
     const EACH: u64 = 0x0101_0101_0101_0101;
@@ -80,7 +79,7 @@ fn within_a_word(bytes: &[u8], at: usize) -> Option<(f64, usize, u8)> {
     let pairs = (digits << (64 - 8 * length)).wrapping_mul(10 * 0x100 + 1) >> 8;
     let fours = (pairs & 0x00ff_00ff_00ff_00ff).wrapping_mul(100 * 0x1_0000 + 1) >> 16;
     let mantissa = (fours & 0x0000_ffff_0000_ffff).wrapping_mul(10_000 * 0x1_0000_0000 + 1) >> 32;
-    #[expect(clippy::cast_possible_truncation, reason = "eight digits at most")]
+    // At most eight digits.
     let mantissa = f64::from(mantissa as u32);
     // Both operands are exact, so the quotient is the nearest double (Clinger 1990).
     let magnitude = mantissa / POWERS_OF_TEN[fraction_digits as usize];
