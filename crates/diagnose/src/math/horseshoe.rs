@@ -227,7 +227,7 @@ mod tests {
             let near = ((i + 2 * j) % 5 + (j + 2 * i) % 5) as f64;
             if i == j { 40.0 } else { near }
         });
-        let product: Vec<f64> = (0..5).map(|i| i as f64 - 1.5).collect();
+        let product: Vec<f64> = (0..5).map(|i| f64::from(i) - 1.5).collect();
         let precisions = [0.5, 1.0, 2.0, 0.0, 3.0];
         let mut whole = gram.clone();
         (0..5).for_each(|k| whole[(k, k)] += precisions[k]);
