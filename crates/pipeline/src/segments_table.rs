@@ -400,8 +400,7 @@ impl Row<'_> {
     }
 }
 
-/// START of each row as text, printed once a flight.
-/// START of each row's flight: one text for all rows of a flight.
+/// START of each row as text: one text for all rows of a flight.
 fn starts(rows: &[SegmentRow]) -> impl Iterator<Item = Rc<str>> {
     let mut last: Option<(&Arc<FlightIdentity>, Rc<str>)> = None;
     rows.iter().map(move |row| {

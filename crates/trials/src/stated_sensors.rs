@@ -17,8 +17,8 @@ use simulate::{AircraftTruth, ChannelSensor, DRIFT_TIME_CONSTANT_S, Scatter, Sen
 ///
 /// (Ornstein–Uhlenbeck process): v of a segment less v of a flight is left within the flight, and noise counts with 1/√10
 /// (ten samples a segment); the wander's share of the variance is stated for all air data as it is of the Mach number. What a
-/// flow meter keeps through a flight is stated with the fuel's heating value, its wander, with v of a segment, as what it is. Of what air data and rotor speed keep through a flight, σ of the flight and v of a
-/// flight of the wander are stated.
+/// flow meter keeps through a flight is stated with the fuel's heating value, its wander, with v of a segment, as what it is. Of
+/// what air data and rotor speed keep through a flight, σ of the flight and v of a flight of the wander are stated.
 ///
 /// The air-data computer's errors are stated where the fleet cruises, Mach 0.80 and 200 hPa:
 ///
