@@ -33,8 +33,7 @@ pub(crate) fn fit_polar(drag_table: &Table) -> Result<Surface, FitError> {
             (lift_coefficient, mach, drag_coefficient, 1.0)
         })
         .collect();
-    let rises: Vec<_> = (0..DIVERGENCE_MACHS)
-        .map(|step| FIRST_DIVERGENCE_MACH + DIVERGENCE_MACH_STEP * f64::from(step))
+    let rises: Vec<_> = divergence_machs()
         .map(|divergence_mach| {
             move |lift_coefficient: f64, mach: f64| {
                 drag_rise(mach, lift_coefficient, divergence_mach)
@@ -42,6 +41,11 @@ pub(crate) fn fit_polar(drag_table: &Table) -> Result<Surface, FitError> {
         })
         .collect();
     Ok(fit_beside(Basis::SeparableQuadratic, &points, &rises)?.fit.surface)
+}
+
+/// Drag-divergence Mach numbers at which a rise is looked for.
+pub(crate) fn divergence_machs() -> impl Iterator<Item = f64> {
+    (0..DIVERGENCE_MACHS).map(|step| FIRST_DIVERGENCE_MACH + DIVERGENCE_MACH_STEP * f64::from(step))
 }
 
 #[cfg(test)]

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use adapt::bayes::{BayesSettings, BayesState, Posterior};
 use diagnose::{FlightRecord, TableUncertainty, TableUncertaintyError, visited_nodes};
-use effects::ExtendedModel;
+use effects::{ExtendedModel, GuideRange, lost_rises};
 
-use crate::model_file::ModelFile;
+use crate::model_file::{GuideRecord, ModelFile};
 use crate::whole_model::Predicts;
 
 /// Most nodes of a table whose full covariance is taken; beyond, that of the nodes which the flights at hand visit.
@@ -33,12 +33,19 @@ pub fn of_model(
     let table = model.drag_coefficient();
     match model.posterior() {
         Some(posterior) => of_posterior(posterior, &model.initial, table, flights).map(Some),
-        None => of_book(&model.initial, table, model.settings.bayes, flights),
+        None => of_book(&model.initial, table, model.settings.bayes, Some(&model.guide), flights),
     }
 }
 
 /// What is believed of a guide's drag before any flight: the prior of law `bayes`, its size scaled to what the aircraft file
-/// states; `None` where that is 0.
+/// states, and what the polynomial lost of the guide; `None` where the file states 0.
+///
+/// ```text
+/// C = C_bayes + ε²/J·Σ_j r_j r_jᵀ/(CD CDᵀ),   ε rms of the guide beside the polynomial, r_j the J shapes of [diagnosis.59]
+/// ```
+///
+/// Law `bayes` believes in corrections that bend little. Where a guide has a drag rise, its six-coefficient polynomial is off by
+/// what bends most: without this belief such a table is taken for scatter between flights, or for an effect beside it.
 ///
 /// # Errors
 /// A covariance that is invalid: a table whose drag is not positive, or settings that make none.
@@ -46,6 +53,7 @@ pub fn of_book(
     model: &ExtendedModel,
     drag_table: &lut::Table,
     settings: BayesSettings,
+    guide: Option<&GuideRecord>,
     flights: &[FlightRecord<'_>],
 ) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
     let stated = model.aircraft().table_uncertainty_percent();
@@ -58,7 +66,27 @@ pub fn of_book(
     let visited = visited_nodes(model, drag_table, flights).unwrap_or_default();
     let usual_percent = 100.0 * settings.values().correction_std;
     let scale = stated.map_or(1.0, |percent| percent / usual_percent);
-    Ok(Some(of_visited(&prior, drag_table.grid(), &visited, scale)?.of_book()))
+    let lost = guide.map_or_else(Vec::new, |guide| lost_of_guide(model, drag_table, guide));
+    Ok(Some(of_visited_and(&prior, drag_table.grid(), &visited, scale, &lost)?.of_book()))
+}
+
+/// Relative errors of the nodes by what the polynomial lost of the guide, one vector a shape, their squares to be summed. None where
+/// the guide's range is too small for a polynomial: then it lost nothing.
+fn lost_of_guide(
+    model: &ExtendedModel,
+    drag_table: &lut::Table,
+    guide: &GuideRecord,
+) -> Vec<Vec<f64>> {
+    let range = GuideRange { lift_coefficient: guide.lift_coefficient, mach: guide.mach };
+    let basis = model.polynomial().basis;
+    let mut shapes = lost_rises(basis, &range, drag_table.grid()).unwrap_or_default();
+    let each = guide.residual_rms / (shapes.len().max(1) as f64).sqrt();
+    for shape in &mut shapes {
+        for (value, drag_coefficient) in shape.iter_mut().zip(drag_table.values()) {
+            *value *= each / drag_coefficient;
+        }
+    }
+    shapes
 }
 
 /// What a table learnt by law `bayes` does not know: `drag_table` is what the flights are held against.
@@ -94,12 +122,32 @@ pub(crate) fn of_visited(
     visited: &[usize],
     scale: f64,
 ) -> Result<TableUncertainty, TableUncertaintyError> {
-    let square = |deviation: &f64| (scale * deviation).powi(2);
-    let variances: Vec<f64> = posterior.standard_deviation().iter().map(square).collect();
+    of_visited_and(posterior, grid, visited, scale, &[])
+}
+
+/// The same with more shapes by which nodes err together, of a size unknown about 0 with a standard deviation of 1 each.
+fn of_visited_and(
+    posterior: &Posterior,
+    grid: &Arc<lut::Grid>,
+    visited: &[usize],
+    scale: f64,
+    shapes: &[Vec<f64>],
+) -> Result<TableUncertainty, TableUncertaintyError> {
+    let square = |(node, deviation): (usize, &f64)| {
+        let of_shapes: f64 = shapes.iter().map(|shape| shape[node] * shape[node]).sum();
+        (scale * deviation).powi(2) + of_shapes
+    };
+    let deviations = posterior.standard_deviation();
+    let variances: Vec<f64> = deviations.iter().enumerate().map(square).collect();
     let column = |node: usize| {
         let mut covariances = posterior.covariances_with(node);
         for value in &mut covariances {
             *value *= scale * scale;
+        }
+        for shape in shapes {
+            for (value, other) in covariances.iter_mut().zip(shape) {
+                *value += shape[node] * other;
+            }
         }
         covariances
     };

@@ -71,12 +71,16 @@ pub(crate) fn detect(
     let judged = unseen.unwrap_or(own);
     let leaves_most = judged.after() > LARGEST_REST * judged.floor() / input.noise_scale
         && !closes_more_than(OTHER_FORM[0], unseen);
-    if table.is_none() && (leaves_most || may_close_nothing(unseen.filter(|_| !is_scatter))) {
+    // What smooth functions that were fitted to other flights predict does not differ from flight to flight by chance.
+    let no_scatter = is_scatter && table.is_none() && !smooth_predicts_nothing(problem, own);
+    let unproven = no_scatter || may_close_nothing(unseen.filter(|_| !is_scatter));
+    if table.is_none() && (leaves_most || unproven) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
     }
     // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let something = input.exceeds_uncertainty
+        || no_scatter
         || smooth_term > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
     let taught = system.data.predictor.baseline.is_some();

@@ -4,6 +4,8 @@
 //! flights and for every draw of noise; draws go through in groups, so that their tables stay in the cache and the cost
 //! is linear in segments.
 
+use core::ops::Range;
+
 use effects::Variable;
 use faer::Mat;
 
@@ -26,7 +28,7 @@ use crate::thresholds::{
 const GROUP: usize = 40;
 /// Stream of random numbers: draws of noise.
 const NOISE_STREAM: u64 = 1;
-/// Falls of χ² that differ by less are of one place and its complement.
+/// Falls of χ² that differ by less are of regions that fit alike.
 const EQUAL: f64 = 1e-6;
 
 /// Places that are not by chance, most striking first; and everywhere, where the level of all is not.
@@ -104,6 +106,7 @@ pub(crate) fn find(
     let mut left = expected_errors_removed(system, &as_recorded);
     let told = Told { system, places: &places, gaps: &as_recorded, variances: &variances };
     let mut found = Vec::new();
+    let mut said = Vec::new();
     let mut everywhere = (1.0, None);
     while found.len() < MOST_REGIONS {
         let statistics = statistics(&search, &null, &noise, &left);
@@ -111,16 +114,13 @@ pub(crate) fn find(
             let level = search.regions.iter().position(BinnedRegion::is_everywhere);
             everywhere = (level.map_or(1.0, |k| null.p_value_everywhere(statistics[k])), level);
         }
-        let Some((index, members)) = best((&search, &null), &statistics, &told, &left, &noise)
-        else {
+        let significant = Significant { search: &search, null: &null, said: &said };
+        let Some((index, members)) = significant.best(&statistics, &told, &left, &noise) else {
             break;
         };
-        let p_value = null.p_value(statistics[index]);
-        if p_value > REGION_P_VALUE {
-            break;
-        }
         let candidate = &search.regions[index];
-        found.push(told.slice(candidate, &members, p_value, seed));
+        found.push(told.slice(candidate, &members, null.p_value(statistics[index]), seed));
+        said.push(*candidate);
         take_out(&mut left, candidate, members, &noise);
     }
     let everywhere = match everywhere {
@@ -239,10 +239,11 @@ pub(crate) fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
 /// and weighs segments down, where heavy tails were found.
 ///
 /// A recorded acceleration that is far from the mean is partly in error, and the error is in the residual: without this,
-/// slices over acceleration would stand out in every recording.
+/// slices over acceleration would stand out in every recording. Where ground speed is recorded better than stated, residuals do
+/// not follow acceleration so much, and no more is taken out than they do.
 ///
 /// ```text
-/// E(δ | V̇G) = (V̇G − mean)·σ_δ²/var(V̇G),   ∂ ln Wf/∂V̇G = m/F                                    [diagnosis.27]
+/// E(δ | V̇G) = (V̇G − mean)·s,   s = σ_δ²/var(V̇G) at most,   ∂ ln Wf/∂V̇G = m/F                         [diagnosis.27]
 /// ```
 pub(crate) fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) -> Gaps {
     let segments = &system.data.segments;
@@ -251,16 +252,45 @@ pub(crate) fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) 
     let variance =
         segments.iter().map(|row| (row.point.acceleration_m_s2 - mean).powi(2)).sum::<f64>()
             / count;
-    let mut left = gaps.clone();
-    for (row, gap) in segments.iter().zip(&mut left.total) {
-        if variance > 0.0 {
-            let share = error_share(row.acceleration_deviation_m_s2, variance);
+    let by_acceleration: Vec<f64> = segments
+        .iter()
+        .map(|row| {
             let slope = row.point.mass_kg / row.response.net_thrust_n;
-            *gap += slope * share * (row.point.acceleration_m_s2 - mean);
+            slope * (row.point.acceleration_m_s2 - mean)
+        })
+        .collect();
+    let flights = system.data.flights.iter().map(|flight| flight.segments.clone());
+    let seen = share_in_residuals(flights, &by_acceleration, &gaps.total);
+    let mut left = gaps.clone();
+    for ((row, gap), by_acceleration) in
+        segments.iter().zip(&mut left.total).zip(&by_acceleration)
+    {
+        if variance > 0.0 {
+            let share = error_share(row.acceleration_deviation_m_s2, variance).min(seen);
+            *gap += share * by_acceleration;
         }
         *gap *= row.weight;
     }
     left
+}
+
+/// The share of an acceleration by which residuals fall as it grows, within flights: least squares; 0 where they rise.
+fn share_in_residuals(
+    flights: impl Iterator<Item = Range<usize>>,
+    by_acceleration: &[f64],
+    residuals: &[f64],
+) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for flight in flights {
+        let mean = |of: &[f64]| of[flight.clone()].iter().sum::<f64>() / flight.len() as f64;
+        let (of_acceleration, of_residual) = (mean(by_acceleration), mean(residuals));
+        for segment in flight.clone() {
+            let moved = by_acceleration[segment] - of_acceleration;
+            product += moved * (residuals[segment] - of_residual);
+            square += moved * moved;
+        }
+    }
+    if square > 0.0 { (-product / square).max(0.0) } else { 0.0 }
 }
 
 fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) -> Vec<f64> {
@@ -281,55 +311,71 @@ fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) 
     statistics
 }
 
-/// The place to say, with its segments. Variables are correlated, so that many regions are not by chance where one has a gap: of
-/// those a step over the place decides, which fits best by likelihood; of a place and its complement, which fit alike, the
-/// larger gap. Where none is, the one that stands out most.
-fn best(
-    (search, null): (&Search<'_>, &Null),
-    statistics: &[f64],
-    told: &Told<'_>,
-    left: &Gaps,
-    noise: &Noise<'_>,
-) -> Option<(usize, Vec<usize>)> {
-    let mut order: Vec<usize> =
-        (0..search.regions.len()).filter(|&index| !search.regions[index].is_everywhere()).collect();
-    order.sort_by(|&a, &b| statistics[b].total_cmp(&statistics[a]));
-    let members = |index: &usize| -> Vec<usize> {
-        let segments = 0..told.gaps.total.len();
-        segments.filter(|&k| search.regions[*index].holds(told.places, k)).collect()
-    };
-    let enough = |index: &usize| told.flights_of(&members(index)) >= FEWEST_FLIGHTS_OF_A_REGION;
-    let first = order.iter().copied().find(enough)?;
-    if search.regions[first].series.is_engine() {
-        return Some((first, members(&first)));
+/// Places that are not by chance, but for those that were said.
+struct Significant<'a> {
+    search: &'a Search<'a>,
+    null: &'a Null,
+    said: &'a [BinnedRegion],
+}
+
+impl Significant<'_> {
+    /// The place to say, with its segments; `None` where all is by chance. Variables are correlated, so that many regions are not
+    /// by chance where one has a gap: of those in which the gap is larger than outside, a step over the place decides, which fits
+    /// best by likelihood; of several that fit alike, the larger gap.
+    fn best(
+        &self,
+        statistics: &[f64],
+        told: &Told<'_>,
+        left: &Gaps,
+        noise: &Noise<'_>,
+    ) -> Option<(usize, Vec<usize>)> {
+        let regions = &self.search.regions;
+        let mut order: Vec<usize> = (0..regions.len())
+            .filter(|&index| !regions[index].is_everywhere())
+            .filter(|&index| self.null.p_value(statistics[index]) <= REGION_P_VALUE)
+            .collect();
+        order.sort_by(|&a, &b| statistics[b].total_cmp(&statistics[a]));
+        let enough = |(_, members): &(usize, Vec<usize>)| {
+            told.flights_of(members) >= FEWEST_FLIGHTS_OF_A_REGION
+        };
+        let mut candidates = order
+            .into_iter()
+            .filter(|&index| !self.said.iter().any(|said| regions[index].is_of_the_segments_of(said)))
+            .map(|index| (index, self.members(index, told)))
+            .filter(enough)
+            .peekable();
+        if let Some(first) = candidates.next_if(|(index, _)| regions[*index].series.is_engine()) {
+            return Some(first);
+        }
+        let (compared, members): (Vec<usize>, Vec<Vec<usize>>) = candidates
+            .filter(|(index, _)| !regions[*index].series.is_engine())
+            .filter(|(_, members)| left.is_larger_in(members))
+            .take(MOST_COMPARED)
+            .unzip();
+        let steps = noise.steps(&left.total, &members);
+        let weighed: Vec<f64> = compared
+            .iter()
+            .zip(&steps)
+            .map(|(&index, step)| step.fall * regions[index].weight().powi(2))
+            .collect();
+        let largest = weighed.iter().copied().fold(0.0, f64::max);
+        compared
+            .into_iter()
+            .zip(members)
+            .zip(weighed)
+            .filter(|(_, fall)| *fall >= largest * (1.0 - EQUAL))
+            .map(|((index, inside), _)| {
+                (told.mean(&regions[index], &inside).abs(), index, inside)
+            })
+            // The first of equals, so that the order of variables decides.
+            .reduce(|a, b| if b.0 > a.0 { b } else { a })
+            .map(|(_, index, inside)| (index, inside))
     }
-    let compared: Vec<usize> = order
-        .into_iter()
-        .skip_while(|&index| index != first)
-        .take_while(|&index| null.p_value(statistics[index]) <= REGION_P_VALUE)
-        .filter(|&index| !search.regions[index].series.is_engine())
-        .filter(enough)
-        .take(MOST_COMPARED)
-        .collect();
-    let regions: Vec<Vec<usize>> = compared.iter().map(members).collect();
-    let steps = noise.steps(&left.total, &regions);
-    let weighed: Vec<f64> = compared
-        .iter()
-        .zip(&steps)
-        .map(|(&index, step)| step.fall * search.regions[index].weight().powi(2))
-        .collect();
-    let largest = weighed.iter().copied().fold(0.0, f64::max);
-    compared
-        .into_iter()
-        .zip(weighed)
-        .filter(|(_, fall)| *fall >= largest * (1.0 - EQUAL))
-        .map(|(index, _)| {
-            let inside = members(&index);
-            (told.mean(&search.regions[index], &inside).abs(), index, inside)
-        })
-        // The first of equals, so that the order of variables decides.
-        .reduce(|a, b| if b.0 > a.0 { b } else { a })
-        .map(|(_, index, inside)| (index, inside))
+
+    fn members(&self, index: usize, told: &Told<'_>) -> Vec<usize> {
+        let region = &self.search.regions[index];
+        (0..told.gaps.total.len()).filter(|&k| region.holds(told.places, k)).collect()
+    }
 }
 
 /// Removes what distinguishes a region: its excess over the rest, or what its engine does apart from the others.
@@ -429,6 +475,19 @@ mod tests {
             [mach, roll, roll]
         );
         assert_eq!(led(&[&[Variable::Mass]], true), [Some(Variable::Mass)]);
+    }
+
+    /// By hand: within two flights, whose levels differ, residuals fall by half of what acceleration makes, or rise.
+    #[test]
+    fn residuals_say_how_much_of_an_acceleration_is_error() {
+        let by_acceleration = [0.01, 0.03, -0.02, 0.02, 0.0];
+        let share = |by: f64| {
+            let levels = [0.3, 0.3, -0.1, -0.1, -0.1];
+            let residuals: Vec<f64> =
+                levels.iter().zip(&by_acceleration).map(|(level, a)| level + by * a).collect();
+            share_in_residuals([0..2, 2..5].into_iter(), &by_acceleration, &residuals)
+        };
+        assert!((share(-0.5) - 0.5).abs() < 1e-12 && share(0.5).abs() < 1e-12);
     }
 
     /// Monte Carlo: of accelerations with a standard deviation of 3, recorded with errors of 4, the error is 16/25 of what is

@@ -46,6 +46,13 @@ impl BinnedRegion {
         })
     }
 
+    /// Whether it is made of the same segments as another, of all engines or of the same one.
+    pub(crate) fn is_of_the_segments_of(&self, other: &Self) -> bool {
+        let is_engine = |region: &Self| region.series.is_engine();
+        let same_series = self.series == other.series || (!is_engine(self) && !is_engine(other));
+        same_series && self.ranges == other.ranges
+    }
+
     /// Everything: no condition at all.
     pub(crate) fn is_everywhere(&self) -> bool {
         self.series == Series::FuelFlow && self.ranges == [None; 2]

@@ -113,6 +113,15 @@ impl Gaps {
         self.total[segment] + engine.map_or(0.0, |engine| self.apart[engine][segment])
     }
 
+    /// Whether the mean of fuel flow in a place is the larger, whatever its sign, than in all other segments. A place in which less
+    /// is amiss than elsewhere differs as clearly, and is none where the gap lies.
+    pub(crate) fn is_larger_in(&self, members: &[usize]) -> bool {
+        let inside: f64 = members.iter().map(|&segment| self.total[segment]).sum();
+        let outside = self.total.iter().sum::<f64>() - inside;
+        let (within, beyond) = (members.len(), self.total.len() - members.len());
+        inside.abs() * beyond as f64 >= outside.abs() * within as f64
+    }
+
     /// Share of the explainable gap.
     fn share(&self, engine: Option<usize>, members: &[usize], variances: &[f64]) -> f64 {
         let of = |segment: usize, engine: Option<usize>| {
@@ -152,6 +161,16 @@ mod tests {
         }
         // Nothing but noise has no shares.
         assert!(gaps.share(None, &[0], &[1.0; 2]).abs() < 1e-15);
+    }
+
+    /// By hand: means of 0.02 and −0.03; of 0.02 and 0.01.
+    #[test]
+    fn a_gap_lies_where_its_mean_is_larger_whatever_its_sign() {
+        let gaps = |total: &[f64]| Gaps { total: total.to_vec(), apart: vec![] };
+        let apart = gaps(&[0.01, 0.03, -0.03]);
+        assert!(apart.is_larger_in(&[2]) && !apart.is_larger_in(&[0, 1]));
+        let alike = gaps(&[0.03, 0.01, 0.01]);
+        assert!(alike.is_larger_in(&[0, 1]) && !alike.is_larger_in(&[2]));
     }
 
     #[test]
