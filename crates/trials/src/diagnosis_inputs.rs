@@ -60,7 +60,8 @@ impl DiagnosisInputs {
                 let settings = adapt::bayes::BayesSettings::physical_2026();
                 let table = book.drag_table();
                 let records = records(&flights);
-                let uncertainty = table_uncertainty::of_book(&book, table, settings, None, &records)?;
+                let uncertainty =
+                    table_uncertainty::of_book(&book, table, settings, None, &records)?;
                 drop(records);
                 Ok(Self { uncertainty, ..Self::untaught(book, flights) })
             }

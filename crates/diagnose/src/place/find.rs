@@ -262,8 +262,7 @@ pub(crate) fn expected_errors_removed(system: &WhitenedSystem<'_>, gaps: &Gaps) 
     let flights = system.data.flights.iter().map(|flight| flight.segments.clone());
     let seen = share_in_residuals(flights, &by_acceleration, &gaps.total);
     let mut left = gaps.clone();
-    for ((row, gap), by_acceleration) in
-        segments.iter().zip(&mut left.total).zip(&by_acceleration)
+    for ((row, gap), by_acceleration) in segments.iter().zip(&mut left.total).zip(&by_acceleration)
     {
         if variance > 0.0 {
             let share = error_share(row.acceleration_deviation_m_s2, variance).min(seen);
@@ -340,7 +339,9 @@ impl Significant<'_> {
         };
         let mut candidates = order
             .into_iter()
-            .filter(|&index| !self.said.iter().any(|said| regions[index].is_of_the_segments_of(said)))
+            .filter(|&index| {
+                !self.said.iter().any(|said| regions[index].is_of_the_segments_of(said))
+            })
             .map(|index| (index, self.members(index, told)))
             .filter(enough)
             .peekable();
@@ -364,9 +365,7 @@ impl Significant<'_> {
             .zip(members)
             .zip(weighed)
             .filter(|(_, fall)| *fall >= largest * (1.0 - EQUAL))
-            .map(|((index, inside), _)| {
-                (told.mean(&regions[index], &inside).abs(), index, inside)
-            })
+            .map(|((index, inside), _)| (told.mean(&regions[index], &inside).abs(), index, inside))
             // The first of equals, so that the order of variables decides.
             .reduce(|a, b| if b.0 > a.0 { b } else { a })
             .map(|(_, index, inside)| (index, inside))
