@@ -1,5 +1,6 @@
 //! Where the gap lies.
 
+pub(crate) mod acceleration;
 pub(crate) mod binned_variable;
 pub(crate) mod draws;
 pub(crate) mod find;

@@ -4,7 +4,8 @@ use super::{fleet, with_system};
 use effects::Variable;
 
 use crate::hypotheses::design::Design;
-use crate::place::find::{expected_errors_removed, gaps};
+use crate::place::acceleration::expected_errors_removed;
+use crate::place::find::gaps;
 use crate::place::named::NamedGap;
 use crate::search::system::WhitenedSystem;
 
