@@ -1,5 +1,7 @@
 //! Whether a gap is reported, and how much of each probability other flights bear out.
 
+use core::cell::LazyCell;
+
 use crate::advice::distances::Distances;
 use crate::judge::closure::Shrinkage;
 use crate::judge::forms::leading_forms;
@@ -71,8 +73,9 @@ pub(crate) fn detect(
     let judged = unseen.unwrap_or(own);
     let leaves_most = judged.after() > LARGEST_REST * judged.floor() / input.noise_scale
         && !closes_more_than(OTHER_FORM[0], unseen);
+    let nothing_predicted = LazyCell::new(|| smooth_predicts_nothing(problem, own));
     // What smooth functions that were fitted to other flights predict does not differ from flight to flight by chance.
-    let no_scatter = is_scatter && table.is_none() && !smooth_predicts_nothing(problem, own);
+    let no_scatter = is_scatter && table.is_none() && !*nothing_predicted;
     let unproven = no_scatter || may_close_nothing(unseen.filter(|_| !is_scatter));
     if table.is_none() && (leaves_most || unproven) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
@@ -104,11 +107,8 @@ pub(crate) fn detect(
     // Whether anything that was fitted to other flights surely predicts a flight better than no gap at all does
     // [diagnosis.53]: what errs anew on every flight is no property of the aircraft. A bump between two knots is no sum of smooth
     // functions, and may be all of a large gap: the form that describes it is asked then.
-    let has_no_witness = stands_out
-        && taught
-        && !input.lies_at_an_engine
-        && is_outside
-        && smooth_predicts_nothing(problem, own);
+    let has_no_witness =
+        stands_out && taught && !input.lies_at_an_engine && is_outside && *nothing_predicted;
     let is_borne_out = !has_no_witness || {
         let best = forms.get_or_insert_with(leading).first();
         bears_out(best.and_then(|best| best.closure))
