@@ -15,7 +15,7 @@ fn main() {
         arguments.get(k).and_then(|text| text.parse().ok()).unwrap_or(default)
     };
     let seed = number(1, 1.0) as u64;
-    let repeats = number(2, 2.0) as u64;
+    let repeats = number(2, 1.0) as u64;
     let times = number(3, 1.0);
     let clutter = number(4, 0.0);
     let what = arguments.get(5).map_or("single", String::as_str);
