@@ -13,7 +13,7 @@ use pipeline::learning::{self, FlightToLearn, LawChoice};
 use pipeline::model_file::{LawState, LedgerEntry};
 use pipeline::reduction::ReducedFlight;
 use pipeline::table_uncertainty;
-use pipeline::whole_model::ln_gap_of;
+use pipeline::whole_model::{Predicts, ln_gap_of};
 use segmenter::TrimCriteria;
 use simulate::Scatter;
 use simulate::study::DragError;
@@ -21,8 +21,9 @@ use simulate::study::DragError;
 use crate::draw::{DrawnCase, TAIL};
 use crate::failure::CaseFailure;
 use crate::flown_case::{fly, records};
+use crate::guide_model::model_of_guide;
 use crate::plan::ReferenceModel;
-use crate::reference_model::{COARSE, FINE, reference_model};
+use crate::reference_model::{COARSE, FINE, reference_aircraft, reference_model};
 use crate::stated_sensors::{misstated, stated_sensors};
 
 /// What the diagnosis is given.
@@ -64,6 +65,15 @@ impl DiagnosisInputs {
                     table_uncertainty::of_book(&book, table, settings, None, &records)?;
                 drop(records);
                 Ok(Self { uncertainty, ..Self::untaught(book, flights) })
+            }
+            ReferenceModel::Guide => {
+                let aircraft = reference_aircraft(truth, stated, &COARSE)?;
+                let model = model_of_guide(drawn, &aircraft)?;
+                let records = records(&flights);
+                let uncertainty =
+                    table_uncertainty::of_model(&model, Predicts::WholeModel, &records)?;
+                drop(records);
+                Ok(Self { uncertainty, ..Self::untaught(model.initial, flights) })
             }
             ReferenceModel::Adapted => {
                 let training_flights = fly(drawn.training_flights(), 0..clean)?;

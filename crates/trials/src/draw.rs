@@ -48,9 +48,10 @@ impl DrawnCase {
     /// What the simulator refuses.
     pub fn draw(plan: &TrialPlan, spec: &CaseSpec) -> Result<Self, simulate::PlanError> {
         let (physics, earth, clean) = match spec.part.reference_model {
-            ReferenceModel::Exact | ReferenceModel::Misstated | ReferenceModel::Initial => {
-                (TruthPhysics::plain(), Earth::plain(), 0)
-            }
+            ReferenceModel::Exact
+            | ReferenceModel::Misstated
+            | ReferenceModel::Initial
+            | ReferenceModel::Guide => (TruthPhysics::plain(), Earth::plain(), 0),
             ReferenceModel::Adapted => (learnable(), Earth::full(), plan.clean_flights),
         };
         let all = plan.flights + clean;

@@ -30,6 +30,15 @@ pub enum CaseFailure {
     /// The denied model.
     #[error(transparent)]
     Model(#[from] perf_model::ModelError),
+    /// The rows of a guide.
+    #[error(transparent)]
+    GuideRows(#[from] units::OutOfDomain),
+    /// Their text.
+    #[error(transparent)]
+    GuideText(#[from] perf_model::CsvError),
+    /// The model that they make.
+    #[error(transparent)]
+    Initial(#[from] perf_model::InitialModelError),
     /// What it should have learnt.
     #[error(transparent)]
     Learning(#[from] pipeline::learning::LearningError),

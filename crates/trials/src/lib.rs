@@ -36,6 +36,7 @@ mod draw;
 mod failure;
 mod fleets;
 mod flown_case;
+mod guide_model;
 mod markdown;
 pub mod places;
 mod plan;

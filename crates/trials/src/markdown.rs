@@ -230,6 +230,7 @@ const fn denied(denied: ReferenceModel) -> &'static str {
         ReferenceModel::Exact => "exact",
         ReferenceModel::Adapted => "adapted",
         ReferenceModel::Initial => "initial",
+        ReferenceModel::Guide => "guide",
         ReferenceModel::Misstated => "misstated",
     }
 }

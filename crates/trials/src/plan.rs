@@ -91,9 +91,19 @@ pub enum ReferenceModel {
     Adapted,
     /// A guide whose drag is off smoothly, that no flight has taught. What is planted is what no table can hold.
     Initial,
+    /// The same guide as rows of fuel flow, made into a model as `cruisefit init` makes it: the aircraft's polynomial through them,
+    /// so that it lacks the drag rise too.
+    Guide,
     /// As `Exact`, with an aircraft file that states sensors three times better or worse than they are, and nothing of what they
     /// keep through a flight or drift by.
     Misstated,
+}
+
+impl ReferenceModel {
+    /// Whether it has the error of a guide that no flight has taught.
+    const fn is_of_guide(self) -> bool {
+        matches!(self, Self::Initial | Self::Guide)
+    }
 }
 
 /// What acts in addition to the planted effect.
@@ -354,7 +364,7 @@ impl TrialPlan {
                         && part.reference_model == ReferenceModel::Exact
                         && part.kind != Kind::Pair)
             })
-            .filter(|id| part.reference_model != ReferenceModel::Initial || !a_table_holds(*id))
+            .filter(|id| !part.reference_model.is_of_guide() || !a_table_holds(*id))
             .map(TruthEffect::Library)
             .filter(|id| self.effects.is_empty() || self.effects.contains(id))
             .collect()

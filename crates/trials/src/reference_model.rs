@@ -27,8 +27,30 @@ pub(crate) fn reference_model(
     grid: &[(f64, f64, f64); 2],
     error: Option<&DragError>,
 ) -> Result<ExtendedModel, CaseFailure> {
+    let aircraft = reference_aircraft(truth, sensors, grid)?;
+    let at = truth.reference_conditions();
+    let grid = Arc::clone(aircraft.grid());
+    let values = (0..grid.nodes())
+        .map(|node| grid.coordinates(node))
+        .map(|(lift, mach)| {
+            let drag = truth.drag_coefficient(lift, Mach::new(mach), &at, physics);
+            drag * (1.0 + error.map_or(0.0, |error| error.at(mach, lift)))
+        })
+        .collect();
+    let table = Table::new(Arc::clone(&grid), values)?;
+    let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
+    let extrapolated = vec![false; grid.nodes()];
+    Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?.into())
+}
+
+/// The aircraft file that knows the truth's wing and TSFC.
+pub(crate) fn reference_aircraft(
+    truth: &AircraftTruth,
+    sensors: SensorDeviations,
+    grid: &[(f64, f64, f64); 2],
+) -> Result<Aircraft, perf_model::AircraftError> {
     let axis = |(from, to, step)| AxisFile::Step { from, to, step };
-    let aircraft = Aircraft::new(AircraftFile {
+    Aircraft::new(AircraftFile {
         name: truth.name.clone(),
         type_code: truth.type_code.clone(),
         engines: truth.engine.count,
@@ -45,20 +67,7 @@ pub(crate) fn reference_model(
         reference_lhv_mj_kg: None,
         table_uncertainty_percent: None,
         sensors,
-    })?;
-    let at = truth.reference_conditions();
-    let grid = Arc::clone(aircraft.grid());
-    let values = (0..grid.nodes())
-        .map(|node| grid.coordinates(node))
-        .map(|(lift, mach)| {
-            let drag = truth.drag_coefficient(lift, Mach::new(mach), &at, physics);
-            drag * (1.0 + error.map_or(0.0, |error| error.at(mach, lift)))
-        })
-        .collect();
-    let table = Table::new(Arc::clone(&grid), values)?;
-    let polynomial = Surface { basis: Basis::SeparableQuadratic, coefficients: [0.0; 6] };
-    let extrapolated = vec![false; grid.nodes()];
-    Ok(PerformanceModel::new(aircraft, polynomial, table, extrapolated)?.into())
+    })
 }
 
 #[cfg(test)]

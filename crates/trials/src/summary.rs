@@ -243,7 +243,7 @@ fn goals_of(group: &Group) -> Vec<Goal> {
         (Background::Clutter, _) => &CLUTTER,
         (Background::Clean, ReferenceModel::Exact) => &CLEAN,
         (Background::Clean, ReferenceModel::Adapted) => &ADAPTED,
-        (Background::Clean, ReferenceModel::Initial) => &INITIAL,
+        (Background::Clean, ReferenceModel::Initial | ReferenceModel::Guide) => &INITIAL,
         (Background::Clean, ReferenceModel::Misstated) => &MISSTATED,
     };
     goals
