@@ -100,20 +100,12 @@ struct Tally {
 
 /// Puts every other byte at every place of a file. `outcome` of the bytes: `None` if they are refused, otherwise whether they
 /// are read as the file is.
-fn change_every_byte(
-    what: &str,
-    good: &[u8],
-    outcome: impl Fn(&[u8]) -> Option<bool> + Sync,
-) -> Tally {
+fn change_every_byte(what: &str, good: &[u8], outcome: impl Fn(&[u8]) -> Option<bool>) -> Tally {
     change_bytes(what, good, &(1..=u8::MAX).collect::<Vec<u8>>(), outcome)
 }
 
 /// The same with one bit of each byte changed at a time.
-fn change_every_bit(
-    what: &str,
-    good: &[u8],
-    outcome: impl Fn(&[u8]) -> Option<bool> + Sync,
-) -> Tally {
+fn change_every_bit(what: &str, good: &[u8], outcome: impl Fn(&[u8]) -> Option<bool>) -> Tally {
     change_bytes(what, good, &[1, 2, 4, 8, 16, 32, 64, 128], outcome)
 }
 
@@ -121,33 +113,9 @@ fn change_bytes(
     what: &str,
     good: &[u8],
     masks: &[u8],
-    outcome: impl Fn(&[u8]) -> Option<bool> + Sync,
+    outcome: impl Fn(&[u8]) -> Option<bool>,
 ) -> Tally {
     assert_eq!(outcome(good), Some(true), "{what}: the undamaged file");
-    // A million readings of a model: by as many threads as a small machine has.
-    let tallies = std::thread::scope(|scope| {
-        let of = |masks| {
-            let outcome = &outcome;
-            scope.spawn(move || change_places(what, good, masks, outcome))
-        };
-        let running: Vec<_> = masks.chunks(masks.len().div_ceil(4)).map(of).collect();
-        running.into_iter().map(|thread| thread.join().unwrap()).collect::<Vec<Tally>>()
-    });
-    let tally = tallies.iter().fold(Tally::default(), |sum, own| Tally {
-        refused: sum.refused + own.refused,
-        harmless: sum.harmless + own.harmless,
-    });
-    assert_eq!(tally.refused + tally.harmless, masks.len() * good.len());
-    println!("{what}: {} bytes, {tally:?}", good.len());
-    tally
-}
-
-fn change_places(
-    what: &str,
-    good: &[u8],
-    masks: &[u8],
-    outcome: &impl Fn(&[u8]) -> Option<bool>,
-) -> Tally {
     let mut tally = Tally::default();
     let mut bytes = good.to_vec();
     for place in 0..good.len() {
@@ -166,6 +134,8 @@ fn change_places(
         }
         bytes[place] = good[place];
     }
+    assert_eq!(tally.refused + tally.harmless, masks.len() * good.len());
+    println!("{what}: {} bytes, {tally:?}", good.len());
     tally
 }
 

@@ -10,10 +10,10 @@ use flight::Segment;
 use flight::effect::EffectId;
 use lut::Table;
 use pipeline::learning::{self, FlightToLearn, LawChoice};
-use pipeline::model_file::{LawState, LedgerEntry};
+use pipeline::model_file::{GuideRecord, LawState, LedgerEntry};
 use pipeline::reduction::ReducedFlight;
 use pipeline::table_uncertainty;
-use pipeline::whole_model::{Predicts, ln_gap_of};
+use pipeline::whole_model::ln_gap_of;
 use segmenter::TrimCriteria;
 use simulate::Scatter;
 use simulate::study::DragError;
@@ -23,7 +23,7 @@ use crate::failure::CaseFailure;
 use crate::flown_case::{fly, records};
 use crate::guide_model::model_of_guide;
 use crate::plan::ReferenceModel;
-use crate::reference_model::{COARSE, FINE, reference_aircraft, reference_model};
+use crate::reference_model::{COARSE, FINE, reference_model};
 use crate::stated_sensors::{misstated, stated_sensors};
 
 /// What the diagnosis is given.
@@ -58,22 +58,11 @@ impl DiagnosisInputs {
             }
             ReferenceModel::Initial => {
                 let book = model(stated, &COARSE, Some(drawn.book_error()))?;
-                let settings = adapt::bayes::BayesSettings::physical_2026();
-                let table = book.drag_table();
-                let records = records(&flights);
-                let uncertainty =
-                    table_uncertainty::of_book(&book, table, settings, None, &records)?;
-                drop(records);
-                Ok(Self { uncertainty, ..Self::untaught(book, flights) })
+                Self::of_book(book, None, flights)
             }
             ReferenceModel::Guide => {
-                let aircraft = reference_aircraft(truth, stated, &COARSE)?;
-                let model = model_of_guide(drawn, &aircraft)?;
-                let records = records(&flights);
-                let uncertainty =
-                    table_uncertainty::of_model(&model, Predicts::WholeModel, &records)?;
-                drop(records);
-                Ok(Self { uncertainty, ..Self::untaught(model.initial, flights) })
+                let model = model_of_guide(drawn, stated)?;
+                Self::of_book(model.initial, Some(&model.guide), flights)
             }
             ReferenceModel::Adapted => {
                 let training_flights = fly(drawn.training_flights(), 0..clean)?;
@@ -87,6 +76,19 @@ impl DiagnosisInputs {
     fn untaught(model: ExtendedModel, flights: Vec<ReducedFlight>) -> Self {
         let drag_table = model.drag_table().clone();
         Self { model, drag_table, baseline: None, uncertainty: None, flights }
+    }
+
+    /// A model that no flight has taught, with what law `bayes` believes of a guide's drag and what the polynomial lost of this one.
+    fn of_book(
+        book: ExtendedModel,
+        guide: Option<&GuideRecord>,
+        flights: Vec<ReducedFlight>,
+    ) -> Result<Self, CaseFailure> {
+        let settings = adapt::bayes::BayesSettings::physical_2026();
+        let table = book.drag_table();
+        let uncertainty =
+            table_uncertainty::of_book(&book, table, settings, guide, &records(&flights))?;
+        Ok(Self { uncertainty, ..Self::untaught(book, flights) })
     }
 
     /// The diagnosis, with these effects struck from the library.

@@ -1,6 +1,7 @@
 //! The model that `cruisefit init` makes of a guide whose drag is off.
 
-use perf_model::{Aircraft, Guide, initial_model};
+use perf_model::aircraft::SensorDeviations;
+use perf_model::{Guide, initial_model};
 use pipeline::model_file::ModelFile;
 use simulate::AircraftTruth;
 use simulate::study::{GuideGrid, flight_planning_guide, guide_csv};
@@ -8,6 +9,7 @@ use units::Mass;
 
 use crate::draw::DrawnCase;
 use crate::failure::CaseFailure;
+use crate::reference_model::{COARSE, reference_aircraft};
 
 /// The initial model of a guide with the case's error of drag: rows of fuel flow over the aircraft's masses, pressure altitudes and
 /// airspeeds, read and fitted as a user's file is.
@@ -16,12 +18,13 @@ use crate::failure::CaseFailure;
 /// Rows that are no guide, or do not determine the polynomial.
 pub(crate) fn model_of_guide(
     drawn: &DrawnCase,
-    aircraft: &Aircraft,
+    sensors: SensorDeviations,
 ) -> Result<ModelFile, CaseFailure> {
     let (truth, error) = (drawn.aircraft(), drawn.book_error());
     let (rows, _) = flight_planning_guide(truth, drawn.physics(), &guide_grid(truth), error)?;
     let guide = Guide::from_csv(guide_csv(&rows).as_bytes())?;
-    Ok(ModelFile::from_initial(&initial_model(aircraft, &guide)?, &guide))
+    let aircraft = reference_aircraft(truth, sensors, &COARSE)?;
+    Ok(ModelFile::from_initial(&initial_model(&aircraft, &guide)?, &guide))
 }
 
 /// The study's grid, its masses those of this aircraft: six, evenly from empty with a tenth of the fuel to the maximum at take-off.
@@ -39,7 +42,6 @@ fn guide_grid(truth: &AircraftTruth) -> GuideGrid {
 mod tests {
     use super::*;
     use crate::plan::TrialPlan;
-    use crate::reference_model::{COARSE, reference_aircraft};
     use crate::stated_sensors::stated_sensors;
     use simulate::Scatter;
     use units::Mach;
@@ -58,8 +60,7 @@ mod tests {
             let truth = drawn.aircraft();
             let sensors = drawn.flown().plan().sensors.sensors();
             let stated = stated_sensors(&sensors, &Scatter::default(), truth);
-            let file = reference_aircraft(truth, stated, &COARSE).unwrap();
-            let model = model_of_guide(&drawn, &file).unwrap();
+            let model = model_of_guide(&drawn, stated).unwrap();
             let at = truth.reference_conditions();
             let (lift, mach) = (0.40, 0.65);
             let off = drawn.book_error().at(mach, lift);
