@@ -3,14 +3,13 @@
 #
 #     docs/build.sh            # then look at docs/book/index.html: it loads nothing from a network
 #
-# What is missing is installed to target/book-tools, in the versions below, which belong together (mdbook-katex brings
-# KaTeX 0.16.4). Needs cargo, python3, and npm for the fonts of the equations; a network at the first run only.
+# What is missing is installed to target/book-tools, in the versions below. Needs cargo, python3, and node with npm for the
+# equations; a network at the first run only.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 MDBOOK=0.5.3
-MDBOOK_KATEX=0.10.0
-KATEX=0.16.4
+KATEX_VERSION=0.16.4
 
 tools="${BOOK_TOOLS:-$PWD/target/book-tools}"
 export PATH="$tools/bin:$PATH"
@@ -18,13 +17,14 @@ export PATH="$tools/bin:$PATH"
 # Unoptimised: built in half the time, and they read one book.
 [ "$(mdbook --version 2>/dev/null)" = "mdbook v$MDBOOK" ] ||
   cargo install mdbook --version "$MDBOOK" --locked --debug --no-default-features --features search --root "$tools"
-[ "$(mdbook-katex --version 2>/dev/null)" = "mdbook-katex $MDBOOK_KATEX" ] ||
-  cargo install mdbook-katex --version "$MDBOOK_KATEX" --locked --debug --root "$tools"
-if ! grep -qs "KaTeX $KATEX" docs/katex.css; then
-  mkdir -p "$tools"
-  (cd "$tools" && npm pack --silent "katex@$KATEX" >/dev/null)
-  python3 docs/katex_css.py "$tools/katex-$KATEX.tgz" docs/katex.css
+export KATEX="$tools/katex-$KATEX_VERSION/dist/katex.min.js"
+if ! [ -f "$KATEX" ]; then
+  (cd "$tools" && npm pack --silent "katex@$KATEX_VERSION" >/dev/null)
+  mkdir -p "$tools/katex-$KATEX_VERSION"
+  tar -xzf "$tools/katex-$KATEX_VERSION.tgz" -C "$tools/katex-$KATEX_VERSION" --strip-components 1
 fi
+grep -qs "KaTeX $KATEX_VERSION" docs/katex.css ||
+  python3 docs/katex_css.py "$tools/katex-$KATEX_VERSION.tgz" docs/katex.css
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
