@@ -1,6 +1,7 @@
 //! How long a search takes: `speed [FLIGHTS]` on the virtual fleet of the tests, `speed SEGMENTS.csv` on another program's
 //! data (the columns are those of `Row`, written by `docs/figures/diagnosis_speed.py`). Everything but closure and places:
-//! signatures, whitening, evidence of every single effect and pair, refinement, agnostic functions, classes.
+//! signatures, whitening, evidence of every single effect and pair, refinement, agnostic functions, classes. With `all` as the
+//! second argument closure and places too.
 #![allow(
     clippy::print_stdout,
     clippy::unwrap_used,
@@ -33,7 +34,8 @@ fn main() {
     let records: Vec<_> =
         flights.iter().map(|segments| FlightRecord { segments, gauges: None }).collect();
     let input = Input::against(&model, &records);
-    let options = Options { skip_closure: true, skip_where: true, ..Options::default() };
+    let skip = std::env::args().nth(2).as_deref() != Some("all");
+    let options = Options { skip_closure: skip, skip_where: skip, ..Options::default() };
     let mut shortest = f64::INFINITY;
     let mut found = None;
     for _ in 0..if records.len() > 600 { 1 } else { RUNS } {

@@ -27,7 +27,7 @@ use crate::residuals::chords::chord_errors;
 use crate::residuals::reference::Reference;
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
-use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
+use crate::residuals::whiten::{FlightWhitening, whiten_within_segment};
 use crate::search::robust::student_weight;
 use crate::search::system::{Problem, WhitenedSystem};
 use crate::signals::channels::MAXIMUM_CHANNELS;
@@ -123,7 +123,8 @@ fn whitening_is_by_the_inverse_of_the_whole_covariance() {
                     }
                 }
             }
-            let ln_common = whiten_flight(data, rows, &mut white);
+            let whitening = FlightWhitening::new(data, flight);
+            whitening.whiten(data, flight, &mut white);
             let whole = covariance(data, flight);
             let expected = plain.transpose() * whole.clone().try_inverse().unwrap() * &plain;
             let found = white.transpose() * &white;
@@ -132,7 +133,7 @@ fn whitening_is_by_the_inverse_of_the_whole_covariance() {
                 .iter()
                 .flat_map(|row| (0..channels).map(|k| 2.0 * row.noise.factor[k][k].ln()))
                 .sum();
-            assert!((own + ln_common - ln_determinant(&whole)).abs() < 1e-7);
+            assert!((own + whitening.ln_determinant - ln_determinant(&whole)).abs() < 1e-7);
         }
     });
 }
@@ -344,9 +345,7 @@ fn sums_over_places_are_of_their_segments() {
         let search = Search::new(&places, &noise.weighed(ones.as_slice()), 0);
         assert_eq!(search.series(), [Series::FuelFlow, Series::WithinFlights]);
         let mut sums = search.sums(1);
-        for segment in 0..size {
-            search.add(&mut sums, segment, &[vec![gap[segment]], vec![weighed[segment]]]);
-        }
+        search.add(&mut sums, 0, &[gap.as_slice().to_vec(), weighed.clone()]);
         let mut seen = [0, 0];
         search.for_each(&sums, |index, sum| {
             let region = &search.regions[index];

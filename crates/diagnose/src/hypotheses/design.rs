@@ -12,7 +12,7 @@ use crate::priors::{
 };
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
-use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
+use crate::residuals::whiten::{FlightWhitening, whiten_within_segment};
 use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
 use crate::signals::table_uncertainty::TableUncertainty;
 use crate::signals::variables::{Hats, Scaled};
@@ -212,6 +212,24 @@ impl<'a> Design<'a> {
 
     /// All columns of a flight's fuel flow as they are, not whitened: one row per segment.
     pub(crate) fn fuel_flow(&self, data: &PreparedFlights<'_>, flight: &FlightRows) -> Mat<f64> {
+        self.plain_rows(data, flight, |rows, scratch| self.write_columns(rows, scratch))
+    }
+
+    /// The same, the columns of the nuisance alone; the others are zero.
+    pub(crate) fn nuisance_of_fuel_flow(
+        &self,
+        data: &PreparedFlights<'_>,
+        flight: &FlightRows,
+    ) -> Mat<f64> {
+        self.plain_rows(data, flight, |rows, scratch| self.write_nuisance(rows, scratch))
+    }
+
+    fn plain_rows(
+        &self,
+        data: &PreparedFlights<'_>,
+        flight: &FlightRows,
+        write: impl Fn(&mut RowsOfSegment<'_>, &mut [f64]),
+    ) -> Mat<f64> {
         let channels = data.channels.count();
         let mut matrix = Mat::<f64>::zeros(channels, self.columns);
         let mut rows = Mat::<f64>::zeros(flight.segments.len(), self.columns);
@@ -222,7 +240,7 @@ impl<'a> Design<'a> {
             for channel in 0..MAXIMUM_CHANNELS {
                 plain.noise.factor[channel][channel] = 1.0;
             }
-            self.write_segment(data, &plain, 0, &mut matrix, &mut scratch);
+            write(&mut RowsOfSegment::new(data, &plain, 0, &mut matrix), &mut scratch);
             for column in 0..self.columns {
                 rows[(index, column)] = matrix[(0, column)];
             }
@@ -234,7 +252,7 @@ impl<'a> Design<'a> {
     /// Whitened rows of a flight, all columns.
     pub(crate) fn whitened(&self, data: &PreparedFlights<'_>, flight: &FlightRows) -> Mat<f64> {
         let mut matrix = self.within_segments(data, flight);
-        whiten_flight(data, &data.segments[flight.segments.clone()], &mut matrix);
+        FlightWhitening::new(data, flight).whiten(data, flight, &mut matrix);
         matrix
     }
 
@@ -250,7 +268,8 @@ impl<'a> Design<'a> {
         let mut matrix = Mat::<f64>::zeros(rows, self.columns);
         let mut scratch = vec![0.0; self.columns];
         for (index, row) in segments.iter().enumerate() {
-            self.write_segment(data, row, index * channels, &mut matrix, &mut scratch);
+            let mut rows = RowsOfSegment::new(data, row, index * channels, &mut matrix);
+            self.write_columns(&mut rows, &mut scratch);
         }
         if let Some(gauge) = &flight.gauge {
             for (column, signature) in gauge.signatures.iter().enumerate() {
@@ -262,21 +281,14 @@ impl<'a> Design<'a> {
         matrix
     }
 
-    fn write_segment(
-        &self,
-        data: &PreparedFlights<'_>,
-        row: &SegmentRow,
-        first: usize,
-        matrix: &mut Mat<f64>,
-        scratch: &mut [f64],
-    ) {
-        let mut rows = RowsOfSegment::new(data, row, first, matrix);
+    fn write_columns(&self, rows: &mut RowsOfSegment<'_>, scratch: &mut [f64]) {
+        let row = rows.row;
         for (column, signature) in row.signatures.iter().enumerate() {
             rows.put(column, signature);
         }
-        self.write_nuisance(&mut rows, scratch);
+        self.write_nuisance(rows, scratch);
         rows.put(self.columns - 1, &row.residual);
-        self.write_smooth_columns(&mut rows, scratch);
+        self.write_smooth_columns(rows, scratch);
     }
 
     /// Columns of what is uncertain about the model.

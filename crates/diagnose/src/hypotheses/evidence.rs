@@ -9,7 +9,8 @@ use statrs::function::erf::erfc;
 
 use crate::hypotheses::backgrounds::Background;
 use crate::library::{Library, Testable};
-use crate::math::mixture::{Evidence, Factored, Mixture, ln_sum};
+use crate::math::mixture::{Evidence, Factored, Mixture};
+use crate::math::vector_ln_exp::{exp, ln};
 use crate::priors::{
     EXPECTED_SIGN, FLIGHT_SCATTER_SIZES_PERCENT, NOISE_FREEDOM, PRIOR_BY_SIZE, PRIOR_SCALES,
 };
@@ -86,16 +87,20 @@ impl Prior {
 
     /// ln of its density at a size, sign included.
     pub(crate) fn ln_density(&self, size: f64) -> f64 {
-        let own = self.scales[..self.count].iter().map(|&(deviation, ln_share)| {
+        let root = (2.0 * core::f64::consts::PI).sqrt();
+        let mut own = [f64::NEG_INFINITY; PRIOR_SCALES.len()];
+        for (own, &(deviation, ln_share)) in own.iter_mut().zip(&self.scales[..self.count]) {
             let z = (size - self.mean) / deviation;
-            ln_share - 0.5 * z * z - (deviation * (2.0 * core::f64::consts::PI).sqrt()).ln()
-        });
+            *own = ln_share - 0.5 * z * z - ln(deviation * root);
+        }
+        let largest = own.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = own.into_iter().map(|own| exp(own - largest)).sum();
         let sign = match self.sign {
             EffectSign::Positive if size > 0.0 => 2.0 * EXPECTED_SIGN,
             EffectSign::Positive => 2.0 * (1.0 - EXPECTED_SIGN),
             _ => 1.0,
         };
-        ln_sum(own) + sign.ln()
+        largest + ln(sum * sign)
     }
 }
 

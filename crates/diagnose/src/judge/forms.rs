@@ -14,7 +14,7 @@ use crate::output::form::{ActsOn, FoundForm};
 use crate::output::verdict::Closure;
 use crate::priors::{FORM_AMPLITUDES, NOISE_FREEDOM};
 use crate::residuals::rows::SegmentRow;
-use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
+use crate::residuals::whiten::whiten_within_segment;
 use crate::search::analyse::Analysis;
 use crate::search::folds::fold_of;
 use crate::search::outside::Outside;
@@ -310,7 +310,7 @@ impl Columns<'_> {
                 }
             }
         }
-        whiten_flight(data, segments, &mut rows);
+        system.whiten(index, &mut rows);
         rows
     }
 }

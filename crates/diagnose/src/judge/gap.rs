@@ -61,7 +61,7 @@ pub(crate) fn unknown_square(system: &WhitenedSystem<'_>) -> f64 {
         .flights
         .iter()
         .map(|flight| {
-            let rows = design.fuel_flow(data, flight);
+            let rows = design.nuisance_of_fuel_flow(data, flight);
             (0..rows.nrows())
                 .flat_map(|row| design.nuisance.clone().map(move |column| (row, column)))
                 .map(|at| rows[at] * rows[at])

@@ -114,15 +114,16 @@ pub(crate) fn dominant(
 /// Probabilities of the models if every effect could change fuel flow by any amount within a range, in place of its prior
 /// sizes: each weight times the ratio of the two densities at the estimate (Laplace's approximation).
 fn flat_probabilities(analysis: &Analysis, mean_squares: &[f64]) -> Vec<f64> {
+    let ln_flat: Vec<f64> = mean_squares
+        .iter()
+        .map(|square| 0.5 * square.max(f64::MIN_POSITIVE).ln() - FLAT_RANGE.ln())
+        .collect();
     let ln_ratio = |scored: &ScoredHypothesis| -> f64 {
         let columns = scored.hypothesis.columns.iter().zip(&scored.sizes);
-        columns
-            .map(|(&column, &size)| {
-                let ln_flat =
-                    0.5 * mean_squares[column].max(f64::MIN_POSITIVE).ln() - FLAT_RANGE.ln();
-                ln_flat - analysis.scorer.priors[column].ln_density(size)
-            })
-            .sum()
+        let of = |(&column, &size): (&usize, &f64)| {
+            ln_flat[column] - analysis.scorer.priors[column].ln_density(size)
+        };
+        columns.map(of).sum()
     };
     let ln: Vec<f64> = analysis
         .models

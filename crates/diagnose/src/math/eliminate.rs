@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use crate::math::cholesky::Cholesky;
-use crate::math::linear::{gather, subtract_product};
+use crate::math::linear::{gather, subtract_own_product, subtract_product};
 
 /// A Gram matrix from which columns of known prior were integrated out, over the columns that are left.
 #[derive(Clone, Debug)]
@@ -47,7 +47,7 @@ impl Elimination {
         let mut matrix = gather(gram, &kept, &kept);
         let found = Self::projection(gram, kept, out, deviations)?;
         if found.factor.is_some() {
-            subtract_product(&mut matrix, &found.projected, &found.projected);
+            subtract_own_product(&mut matrix, &found.projected);
         }
         let ln_determinant = found.ln_determinant();
         Some((found, Reduced { matrix, ln_determinant }))
@@ -110,7 +110,7 @@ impl Elimination {
             }
             factor.solve_lower(&mut projected);
             subtract_product(&mut cross, &self.projected, &projected);
-            subtract_product(&mut own, &projected, &projected);
+            subtract_own_product(&mut own, &projected);
         }
         Changed { cross, own }
     }

@@ -24,6 +24,12 @@ pub(crate) fn subtract_gram(from: &mut Mat<f64>, columns: &Mat<f64>) {
     add_symmetric(from, columns.as_ref(), -1.0);
 }
 
+/// `C −= AᵀA` of a symmetric C, both triangles.
+pub(crate) fn subtract_own_product(from: &mut Mat<f64>, columns: &Mat<f64>) {
+    add_symmetric(from, columns.transpose(), -1.0);
+    symmetrize(from);
+}
+
 /// `C += share·AAᵀ`, lower triangle only.
 fn add_symmetric(into: &mut Mat<f64>, left: MatRef<'_, f64>, share: f64) {
     use faer::linalg::matmul::triangular::{BlockStructure, matmul};

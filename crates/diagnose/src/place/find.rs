@@ -25,6 +25,8 @@ use crate::thresholds::{
 
 /// Draws that are summed together.
 const GROUP: usize = 40;
+/// Segments whose draws are added together.
+const TOGETHER: usize = 512;
 /// Stream of random numbers: draws of noise.
 const NOISE_STREAM: u64 = 1;
 /// Falls of χ² that differ by less are of regions that fit alike.
@@ -175,12 +177,12 @@ fn null_of(
         drawn[1] = drawn[0].clone();
         noise.weigh(&mut drawn[1]);
         let mut sums = search.sums(GROUP);
-        let mut values = vec![vec![0.0; GROUP]; drawn.len()];
-        for segment in 0..segments {
-            for (values, drawn) in values.iter_mut().zip(&drawn) {
-                values.iter_mut().enumerate().for_each(|(draw, v)| *v = drawn[(segment, draw)]);
-            }
-            search.add(&mut sums, segment, &values);
+        for first in (0..segments).step_by(TOGETHER) {
+            let range = first..segments.min(first + TOGETHER);
+            let rows = |drawn: &Mat<f64>| {
+                range.clone().flat_map(|at| (0..GROUP).map(move |draw| drawn[(at, draw)])).collect()
+            };
+            search.add(&mut sums, first, &drawn.iter().map(rows).collect::<Vec<Vec<f64>>>());
         }
         sums
     };
@@ -236,17 +238,12 @@ pub(crate) fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
 
 fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) -> Vec<f64> {
     let mut sums = search.sums(1);
-    let mut values = vec![vec![0.0]; search.series().len()];
-    for (segment, weighed) in noise.weighed(&gaps.total).into_iter().enumerate() {
-        for (values, series) in values.iter_mut().zip(search.series()) {
-            values[0] = match series {
-                Series::FuelFlow => gaps.total[segment],
-                Series::WithinFlights => weighed,
-                Series::Engine(engine) => gaps.apart[*engine][segment],
-            };
-        }
-        search.add(&mut sums, segment, &values);
-    }
+    let values = |series: &Series| match series {
+        Series::FuelFlow => gaps.total.clone(),
+        Series::WithinFlights => noise.weighed(&gaps.total),
+        Series::Engine(engine) => gaps.apart[*engine].clone(),
+    };
+    search.add(&mut sums, 0, &search.series().iter().map(values).collect::<Vec<Vec<f64>>>());
     let mut statistics = vec![0.0; search.regions.len()];
     search.for_each(&sums, |index, sum| statistics[index] = null.statistic(search, index, sum[0]));
     statistics

@@ -194,20 +194,22 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Adds a segment: values of each series, one a draw.
-    pub(crate) fn add(&self, sums: &mut Sums, segment: usize, values: &[Vec<f64>]) {
+    /// Adds segments one after the other from `first` on: values of each series, one row a segment, one value a draw. Table by
+    /// table, so that its few sums stay in a near cache.
+    pub(crate) fn add(&self, sums: &mut Sums, first: usize, values: &[Vec<f64>]) {
         let width = sums.width;
         for (total, values) in sums.totals.iter_mut().zip(values) {
-            for (slot, value) in total.iter_mut().zip(values) {
-                *slot += value;
+            for row in values.chunks_exact(width) {
+                add_row(total, row);
             }
         }
         for table in &self.tables {
-            let [row, column] = table.variables.map(|place| self.bin(place, segment));
-            let cell = table.offset + if table.variables[1].is_some() { BINS * row } else { row };
-            let at = (cell + column) * width;
-            for (slot, value) in sums.cells[at..at + width].iter_mut().zip(&values[table.series]) {
-                *slot += value;
+            let [row, column] = table.variables;
+            let columns = if column.is_some() { BINS } else { 1 };
+            for (segment, values) in (first..).zip(values[table.series].chunks_exact(width)) {
+                let cell = columns * self.bin(row, segment) + self.bin(column, segment);
+                let at = (table.offset + cell) * width;
+                add_row(&mut sums.cells[at..at + width], values);
             }
         }
     }
@@ -263,6 +265,12 @@ impl<'a> Search<'a> {
                 }
             }
         }
+    }
+}
+
+fn add_row(into: &mut [f64], row: &[f64]) {
+    for (slot, value) in into.iter_mut().zip(row) {
+        *slot += value;
     }
 }
 

@@ -7,7 +7,7 @@
 use faer::{Mat, Side};
 
 use crate::math::cholesky::solve_small_lower;
-use crate::residuals::rows::SegmentRow;
+use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::channels::ByChannel;
 
@@ -52,48 +52,67 @@ fn weigh(data: &PreparedFlights<'_>, segments: &[SegmentRow], rows: &mut Mat<f64
     }
 }
 
-/// Whitens what the segments of a flight have in common, rows ← (1 + UUᵀ)^(−1/2)·rows, and weighs them.
+/// Whitens what the segments of a flight have in common, rows ← (1 + UUᵀ)^(−1/2)·rows.
 ///
 /// ```text
 /// UᵀU = QΛQᵀ,  V = UQΛ^(−1/2),  (1 + UUᵀ)^(−1/2) = 1 − V·diag(1 − (1 + λ)^(−1/2))·Vᵀ        [diagnosis.16]
 /// ```
-///
-/// Returns `ln|1 + UᵀU|`, what the common errors add to the ln of the covariance's determinant.
-pub(crate) fn whiten_flight(
-    data: &PreparedFlights<'_>,
-    segments: &[SegmentRow],
-    matrix: &mut Mat<f64>,
-) -> f64 {
-    let common = common_loadings(data, segments, matrix.nrows());
-    let rank = common.ncols();
-    let inner = common.transpose() * &common;
-    let Ok(eigen) = inner.self_adjoint_eigen(Side::Lower) else { return 0.0 };
-    let rotated = &common * eigen.U();
-    let values = eigen.S().column_vector();
-    let mut basis = Mat::<f64>::zeros(matrix.nrows(), rank);
-    let mut shrunk = Mat::<f64>::zeros(matrix.nrows(), rank);
-    let mut ln_determinant = 0.0;
-    for column in 0..rank {
-        let value = values[column];
-        ln_determinant += value.max(0.0).ln_1p();
-        if value <= 1e-12 {
-            continue;
+#[derive(Clone, Debug)]
+pub(crate) struct FlightWhitening {
+    /// V, and V times what it shrinks by.
+    basis: Mat<f64>,
+    shrunk: Mat<f64>,
+    /// `ln|1 + UᵀU|`, what the common errors add to the ln of the covariance's determinant.
+    pub(crate) ln_determinant: f64,
+}
+
+impl FlightWhitening {
+    /// That of a flight.
+    pub(crate) fn new(data: &PreparedFlights<'_>, flight: &FlightRows) -> Self {
+        let segments = &data.segments[flight.segments.clone()];
+        let rows = segments.len() * data.channels.count() + usize::from(flight.gauge.is_some());
+        let common = common_loadings(data, segments, rows);
+        let rank = common.ncols();
+        let mut found = Self {
+            basis: Mat::zeros(rows, rank),
+            shrunk: Mat::zeros(rows, rank),
+            ln_determinant: 0.0,
+        };
+        let inner = common.transpose() * &common;
+        let Ok(eigen) = inner.self_adjoint_eigen(Side::Lower) else { return found };
+        let rotated = &common * eigen.U();
+        let values = eigen.S().column_vector();
+        for column in 0..rank {
+            let value = values[column];
+            found.ln_determinant += value.max(0.0).ln_1p();
+            if value <= 1e-12 {
+                continue;
+            }
+            let shrink = 1.0 - 1.0 / (1.0 + value).sqrt();
+            for row in 0..rows {
+                found.basis[(row, column)] = rotated[(row, column)] / value.sqrt();
+                found.shrunk[(row, column)] = shrink * found.basis[(row, column)];
+            }
         }
-        let shrink = 1.0 - 1.0 / (1.0 + value).sqrt();
-        for row in 0..matrix.nrows() {
-            basis[(row, column)] = rotated[(row, column)] / value.sqrt();
-            shrunk[(row, column)] = shrink * basis[(row, column)];
-        }
+        found
     }
-    let projected = basis.transpose() * &*matrix;
-    faer::linalg::matmul::matmul(
-        matrix.as_mut(),
-        faer::Accum::Add,
-        shrunk.as_ref(),
-        projected.as_ref(),
-        -1.0,
-        faer::Par::Seq,
-    );
-    weigh(data, segments, matrix);
-    ln_determinant
+
+    /// Whitens rows of the flight, and weighs them.
+    pub(crate) fn whiten(
+        &self,
+        data: &PreparedFlights<'_>,
+        flight: &FlightRows,
+        matrix: &mut Mat<f64>,
+    ) {
+        let projected = self.basis.transpose() * &*matrix;
+        faer::linalg::matmul::matmul(
+            matrix.as_mut(),
+            faer::Accum::Add,
+            self.shrunk.as_ref(),
+            projected.as_ref(),
+            -1.0,
+            faer::Par::Seq,
+        );
+        weigh(data, &data.segments[flight.segments.clone()], matrix);
+    }
 }

@@ -11,6 +11,7 @@ use crate::math::eliminate::Reduced;
 use crate::math::gram::Gram;
 use crate::math::mixture::ln_sum;
 use crate::priors::FLIGHT_SCATTER_SIZES_PERCENT;
+use crate::search::pairs;
 use crate::search::refine::{Relinearised, refine};
 use crate::search::singles::{Kinds, search_all, search_flight_scatter};
 use crate::search::system::{EliminatedGrams, Problem, SmoothTerms};
@@ -57,7 +58,9 @@ pub(crate) fn analyse(problem: Problem<'_>, without: Option<usize>) -> Option<An
         nothing: all.iter().map(|at| system.is_nothing(at)).collect(),
         uncertain_table: all.iter().map(|at| system.belief(at) == TableBelief::Uncertain).collect(),
     };
-    let search = search_all(&scorer, &all, 2, &kinds);
+    let negligible =
+        if without.is_none() { pairs::NEGLIGIBLE } else { pairs::NEGLIGIBLE_BESIDE_THE_BEST };
+    let search = search_all(&scorer, &all, negligible, &kinds);
     let mut models = search.models;
     if without.is_none() {
         models.extend(with_flight_scatter(problem, gram, &scorer)?);

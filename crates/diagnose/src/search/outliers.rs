@@ -7,6 +7,8 @@
 //! Difficult: one absurd segment moves what its whole flight seems to have in common. Rows are therefore whitened segment by
 //! segment, and a flight's common errors are estimated from its ordinary segments alone.
 
+use std::borrow::Cow;
+
 use effects::Variable;
 use faer::Mat;
 
@@ -14,12 +16,14 @@ use crate::hypotheses::design::{AGNOSTIC_VARIABLES, Design};
 use crate::library::Library;
 use crate::library::dates::is_dated;
 use crate::math::cholesky::Cholesky;
-use crate::math::linear::{add_gram, gather, subtract_gram, symmetrize};
+use crate::math::gram::Sum;
+use crate::math::linear::gather;
 use crate::math::quantile::{QuantileType, quantile};
 use crate::priors::{OUTLIER_SMOOTH, ROBUST_EFFECT};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::common_loadings;
+use crate::search::system::fit_in_memory;
 use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::thresholds::{
     ALIKE_NEIGHBORS, FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, LEAST_ROBUST_SCALE,
@@ -95,9 +99,12 @@ struct Judge<'a> {
     /// Columns of the flexible fit, the residual last, and their prior standard deviations.
     columns: Vec<usize>,
     deviations: Vec<f64>,
+    /// Rows of every flight, where they fit in memory; else they are made again at every turn.
+    kept: Option<Vec<OfFlight>>,
 }
 
 /// A flight's rows, whitened segment by segment: columns of the fit, and loadings of what the flight has in common.
+#[derive(Clone)]
 struct OfFlight {
     rows: Mat<f64>,
     common: Mat<f64>,
@@ -115,10 +122,20 @@ impl<'a> Judge<'a> {
             .chain(design.smooth.clone().map(|column| (column, smooth)))
             .unzip();
         columns.push(design.residual());
-        Self { data, design, columns, deviations }
+        let keep = fit_in_memory(data, columns.len());
+        let mut judge = Self { data, design, columns, deviations, kept: None };
+        judge.kept = keep.then(|| data.flights.iter().map(|flight| judge.made(flight)).collect());
+        judge
     }
 
-    fn of_flight(&self, flight: &FlightRows) -> OfFlight {
+    fn of_flight(&self, index: usize) -> Cow<'_, OfFlight> {
+        match &self.kept {
+            Some(kept) => Cow::Borrowed(&kept[index]),
+            None => Cow::Owned(self.made(&self.data.flights[index])),
+        }
+    }
+
+    fn made(&self, flight: &FlightRows) -> OfFlight {
         let rows = self.design.within_segments(self.data, flight);
         let count = flight.segments.len() * self.data.channels.count();
         let places: Vec<usize> = (0..count).collect();
@@ -145,21 +162,21 @@ impl<'a> Judge<'a> {
     fn fit(&self, far: &[Option<Side>]) -> Option<Vec<f64>> {
         let width = self.columns.len();
         let all: Vec<usize> = (0..width).collect();
-        let mut gram = Mat::<f64>::zeros(width, width);
-        for flight in &self.data.flights {
+        let (mut own, mut shared) = (Sum::new(width), Sum::new(width));
+        for (index, flight) in self.data.flights.iter().enumerate() {
             let places = self.places(flight, |segment| far[segment].is_none());
             if places.is_empty() {
                 continue;
             }
-            let of_flight = self.of_flight(flight);
+            let of_flight = self.of_flight(index);
             let rows = gather(&of_flight.rows, &places, &all);
             let (common, inner) = inner(&of_flight.common, &places)?;
             let mut cross = common.transpose() * &rows;
             inner.solve_lower(&mut cross);
-            add_gram(&mut gram, rows.as_ref());
-            subtract_gram(&mut gram, &cross.transpose().to_owned());
+            own.add(&rows, 0.0);
+            shared.add(&cross, 0.0);
         }
-        symmetrize(&mut gram);
+        let gram = own.finish().matrix - shared.finish().matrix;
         let last = width - 1;
         let mut normal = Mat::from_fn(last, last, |i, j| gram[(i, j)]);
         for (k, deviation) in self.deviations.iter().enumerate() {
@@ -176,10 +193,10 @@ impl<'a> Judge<'a> {
         let mut left = Vec::with_capacity(self.data.segments.len() * channels);
         let mut of_flights = Vec::with_capacity(self.data.flights.len());
         // A flight of which every segment was far is judged by all of them.
-        for flight in &self.data.flights {
+        for (index, flight) in self.data.flights.iter().enumerate() {
             let some = flight.segments.clone().any(|segment| before[segment].is_none());
             let ordinary = self.places(flight, |segment| !some || before[segment].is_none());
-            let Some((own, common)) = self.left_of(flight, sizes, &ordinary) else {
+            let Some((own, common)) = self.left_of(index, sizes, &ordinary) else {
                 return vec![None; self.data.segments.len()];
             };
             left.extend(own);
@@ -199,7 +216,7 @@ impl<'a> Judge<'a> {
     /// What a flight's segments leave of their own; how far the flight is off, and to which side.
     fn left_of(
         &self,
-        flight: &FlightRows,
+        flight: usize,
         sizes: &[f64],
         ordinary: &[usize],
     ) -> Option<(Vec<f64>, (f64, Side))> {

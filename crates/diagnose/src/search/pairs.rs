@@ -12,7 +12,9 @@ use crate::math::vector_ln_exp::{exp, ln};
 use crate::priors::{LARGEST_OF_TWO, NOISE_FREEDOM};
 
 /// A model this much less probable than the best one, in ln, is left out: all together they hold less than 1e-13.
-const NEGLIGIBLE: f64 = 40.0;
+pub(crate) const NEGLIGIBLE: f64 = 40.0;
+/// The same where only the best model is asked for, and whether nothing at all is probable: all together less than 1e-4.
+pub(crate) const NEGLIGIBLE_BESIDE_THE_BEST: f64 = 20.0;
 /// Largest gain of two signs, ln 2 each.
 const SIGNS: f64 = 2.0 * core::f64::consts::LN_2;
 /// Prior scales that count for every column of a pair: all but the thin tail.
@@ -56,13 +58,15 @@ pub(crate) struct Context<'a> {
     pub(crate) large: &'a [bool],
     /// The ln weight of the best smaller model.
     pub(crate) best: f64,
+    /// A pair this much less probable than the best model, in ln, is left out.
+    pub(crate) negligible: f64,
 }
 
 /// Every pair of columns of different effects that is not negligible against the best smaller model.
 pub(crate) fn search(
     scorer: &Scorer,
     backgrounds: &[Background],
-    Context { uncertain_table, large, best }: Context<'_>,
+    Context { uncertain_table, large, best, negligible }: Context<'_>,
 ) -> Vec<ScoredHypothesis> {
     let columns: Vec<Vec<Column>> = (0..scorer.columns())
         .map(|column| scales(scorer, backgrounds, column, large[column]))
@@ -70,7 +74,7 @@ pub(crate) fn search(
     let mut best = best;
     let mut models = Vec::new();
     let mut scratch = Scratch::new(scorer, backgrounds);
-    scratch.limit(best - NEGLIGIBLE);
+    scratch.limit(best - negligible);
     for a in 0..columns.len() {
         for b in a + 1..columns.len() {
             if scorer.effect_of[a] == scorer.effect_of[b] {
@@ -95,7 +99,7 @@ pub(crate) fn search(
             if let Some(scored) = scored.filter(|scored| is_possible(scorer, scored)) {
                 if scored.ln_weight > best {
                     best = scored.ln_weight;
-                    scratch.limit(best - NEGLIGIBLE);
+                    scratch.limit(best - negligible);
                 }
                 models.push(scored);
             }
@@ -305,11 +309,9 @@ mod tests {
     use crate::hypotheses::evidence::Prior;
     use crate::math::mixture::Mixture;
 
-    /// Against the evidence of one pair at a time, which has its own test against numerical integration.
-    #[test]
-    fn same_as_one_pair_at_a_time() {
-        let columns = 4;
-        let prior = |mean: f64, deviation: f64, sign: EffectSign| Prior {
+    /// An effect of usual and of larger sizes, with a thin tail of very large ones.
+    fn prior(mean: f64, deviation: f64, sign: EffectSign) -> Prior {
+        Prior {
             mean,
             scales: [
                 (deviation, 0.45_f64.ln()),
@@ -318,7 +320,13 @@ mod tests {
             ],
             count: 3,
             sign,
-        };
+        }
+    }
+
+    /// Against the evidence of one pair at a time, which has its own test against numerical integration.
+    #[test]
+    fn same_as_one_pair_at_a_time() {
+        let columns = 4;
         let scorer = Scorer {
             priors: vec![
                 prior(0.0, 1.0, EffectSign::Positive),
@@ -357,8 +365,12 @@ mod tests {
             at
         };
         let backgrounds = [background(0.0), background(0.3)];
-        let context =
-            Context { uncertain_table: &[false, true], large: &[true; 4], best: f64::NEG_INFINITY };
+        let context = Context {
+            uncertain_table: &[false, true],
+            large: &[true; 4],
+            best: f64::NEG_INFINITY,
+            negligible: NEGLIGIBLE,
+        };
         let found = search(&scorer, &backgrounds, context);
         assert_eq!(found.len(), 5, "the two columns of one effect make no pair");
         for scored in &found {

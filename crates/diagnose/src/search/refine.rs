@@ -10,9 +10,8 @@ use crate::hypotheses::backgrounds::{Background, TableBelief};
 use crate::hypotheses::evidence::{ScoredHypothesis, Scorer};
 use crate::library::Library;
 use crate::math::eliminate::Changed;
-use crate::residuals::rows::FlightRows;
 use crate::residuals::signatures::Difference;
-use crate::residuals::whiten::{whiten_flight, whiten_within_segment};
+use crate::residuals::whiten::whiten_within_segment;
 use crate::search::folds::fold_of;
 use crate::search::singles::Sum;
 use crate::search::system::{EliminatedGrams, Problem, SmoothTerms, WhitenedSystem};
@@ -254,9 +253,9 @@ impl RelinearisedRows {
             levels: Mat::zeros(flights.len(), width),
             starts,
         };
-        for (index, flight) in flights.iter().enumerate() {
-            let kept = (Some(fold_of(index)) != without)
-                .then(|| fresh.rows(system, model, linear, flight));
+        for index in 0..flights.len() {
+            let kept =
+                (Some(fold_of(index)) != without).then(|| fresh.rows(system, model, linear, index));
             fresh.flights.push(kept);
         }
         fresh
@@ -268,9 +267,10 @@ impl RelinearisedRows {
         system: &WhitenedSystem<'_>,
         model: &EffectModel<'_>,
         linear: &[Linear],
-        flight: &FlightRows,
+        index: usize,
     ) -> Mat<f64> {
         let data = system.data;
+        let flight = &data.flights[index];
         let channels = data.channels.count();
         let segments = &data.segments[flight.segments.clone()];
         let rows = segments.len() * channels + usize::from(flight.gauge.is_some());
@@ -313,7 +313,7 @@ impl RelinearisedRows {
                 }
             }
         }
-        whiten_flight(data, segments, &mut fresh);
+        system.whiten(index, &mut fresh);
         fresh
     }
 

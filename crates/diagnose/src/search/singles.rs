@@ -23,11 +23,11 @@ pub(crate) struct Kinds {
     pub(crate) uncertain_table: Vec<bool>,
 }
 
-/// Every model of at most `largest` effects.
+/// Every model of at most two effects; pairs this much less probable than the best model, in ln, are left out.
 pub(crate) fn search_all(
     scorer: &Scorer,
     backgrounds: &[Background],
-    largest: usize,
+    negligible: f64,
     kinds: &Kinds,
 ) -> Search {
     let columns = scorer.priors.len();
@@ -58,16 +58,15 @@ pub(crate) fn search_all(
         }
         models.push(sum.scored(model));
     }
-    if largest >= 2 {
-        let best = models.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
-        let large: Vec<bool> = models[1..=columns]
-            .iter()
-            .zip(&scorer.priors)
-            .map(|(single, prior)| (single.sizes[0] - prior.mean).abs() > LARGE * prior.scales[0].0)
-            .collect();
-        let context = Context { uncertain_table: &kinds.uncertain_table, large: &large, best };
-        models.extend(pairs::search(scorer, backgrounds, context));
-    }
+    let best = models.iter().map(|m| m.ln_weight).fold(f64::NEG_INFINITY, f64::max);
+    let large: Vec<bool> = models[1..=columns]
+        .iter()
+        .zip(&scorer.priors)
+        .map(|(single, prior)| (single.sizes[0] - prior.mean).abs() > LARGE * prior.scales[0].0)
+        .collect();
+    let context =
+        Context { uncertain_table: &kinds.uncertain_table, large: &large, best, negligible };
+    models.extend(pairs::search(scorer, backgrounds, context));
     Search { models, ln_clean }
 }
 
@@ -219,7 +218,7 @@ mod tests {
         let scorer = scorer_of_three();
         let backgrounds = [Background::small(&matrix, &[0, 1, 2], 3, 0.0)];
         let kinds = Kinds { nothing: vec![true], uncertain_table: vec![false] };
-        let found = search_all(&scorer, &backgrounds, 2, &kinds);
+        let found = search_all(&scorer, &backgrounds, pairs::NEGLIGIBLE, &kinds);
         let pairs: Vec<&ScoredHypothesis> =
             found.models.iter().filter(|model| model.hypothesis.columns.len() == 2).collect();
         assert_eq!(pairs.len(), 3);

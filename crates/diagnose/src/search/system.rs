@@ -14,6 +14,7 @@ use crate::priors::{
     BOOK_AMPLITUDES, BOOK_SCATTERS, PRIOR_BOOK_RIGHT, TAUGHT_LARGEST_AMPLITUDE, TAUGHT_SCATTERS,
 };
 use crate::residuals::segments::PreparedFlights;
+use crate::residuals::whiten::FlightWhitening;
 use crate::search::folds::{Folds, fold_of};
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
 use crate::thresholds::{CLOSURE_FOLDS, TAUGHT_CLEAN_AMPLITUDE, TAUGHT_CLEAN_SPIKE};
@@ -31,6 +32,7 @@ pub(crate) struct WhitenedSystem<'a> {
     pub(crate) design: &'a Design<'a>,
     gram: Gram,
     folds: Folds,
+    whitenings: Vec<FlightWhitening>,
     kept: Option<Vec<Mat<f64>>>,
     /// What is assumed of all flights at once, integrated over.
     pub(crate) levels: Vec<Level>,
@@ -55,20 +57,19 @@ pub(crate) enum SmoothTerms {
 
 impl<'a> WhitenedSystem<'a> {
     pub(crate) fn new(data: &'a PreparedFlights<'a>, design: &'a Design<'a>) -> Self {
-        let rows = data.segments.len() * data.channels.count() + data.flights.len();
-        let keep = rows * design.columns <= KEPT_NUMBERS;
-        let kept = keep.then(|| {
-            data.flights.iter().map(|flight| design.whitened(data, flight)).collect::<Vec<_>>()
-        });
+        let of_flight = |flight| FlightWhitening::new(data, flight);
         let mut system = Self {
             data,
             design,
             gram: Gram { matrix: Mat::zeros(0, 0), rows: 0.0 },
             folds: Folds::default(),
-            kept,
+            whitenings: data.flights.iter().map(of_flight).collect(),
+            kept: None,
             levels: levels(data, design),
             flight_levels: Vec::with_capacity(data.flights.len()),
         };
+        system.kept = fit_in_memory(data, design.columns)
+            .then(|| (0..data.flights.len()).map(|flight| system.made(flight)).collect());
         let mut sum = Sum::new(design.columns);
         for index in 0..data.flights.len() {
             let rows = system.whitened(index);
@@ -151,10 +152,19 @@ impl<'a> WhitenedSystem<'a> {
     pub(crate) fn whitened(&self, flight: usize) -> std::borrow::Cow<'_, Mat<f64>> {
         match &self.kept {
             Some(kept) => std::borrow::Cow::Borrowed(&kept[flight]),
-            None => {
-                std::borrow::Cow::Owned(self.design.whitened(self.data, &self.data.flights[flight]))
-            }
+            None => std::borrow::Cow::Owned(self.made(flight)),
         }
+    }
+
+    fn made(&self, flight: usize) -> Mat<f64> {
+        let mut rows = self.design.within_segments(self.data, &self.data.flights[flight]);
+        self.whiten(flight, &mut rows);
+        rows
+    }
+
+    /// Whitens rows of a flight, whose segments are already.
+    pub(crate) fn whiten(&self, flight: usize, rows: &mut Mat<f64>) {
+        self.whitenings[flight].whiten(self.data, &self.data.flights[flight], rows);
     }
 
     /// Values that were recorded in a flight.
@@ -227,6 +237,12 @@ impl<'a> WhitenedSystem<'a> {
         reduced.ln_determinant += ln_determinant;
         Some((ScatterElimination { scatter: Some(scatter), elimination }, reduced))
     }
+}
+
+/// Whether rows of all flights, with so many columns, are few enough to be kept.
+pub(crate) fn fit_in_memory(data: &PreparedFlights<'_>, columns: usize) -> bool {
+    let rows = data.segments.len() * data.channels.count() + data.flights.len();
+    rows * columns <= KEPT_NUMBERS
 }
 
 fn is_book(design: &Design<'_>) -> bool {
