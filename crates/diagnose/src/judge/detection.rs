@@ -59,9 +59,12 @@ pub(crate) fn detect(
 ) -> Detection {
     let Problem { system, library, .. } = problem;
     let DetectionInput { distances, posteriors, gap, own, unseen, .. } = *input;
-    let table = TableFinding::fit(system, input.analysis, library)
-        .map(|table| borne_out(table, unseen))
-        .filter(|table| table.probability > MORE_PROBABLE_THAN_NOT);
+    let is_probable = |table: &TableFinding| table.probability > MORE_PROBABLE_THAN_NOT;
+    let found = TableFinding::fit(system, input.analysis, library).filter(is_probable);
+    let was_found = found.is_some();
+    let table = found.map(|table| borne_out(table, unseen)).filter(is_probable);
+    // What is named beside a table that other flights do not bear out was told from the wrong remainder.
+    let refuted_table = was_found && table.is_none();
     let smooth_term = outside.probability;
     let top = posteriors.first();
     let is_scatter = top.is_some_and(|top| top.effect.is_none());
@@ -76,13 +79,14 @@ pub(crate) fn detect(
     let nothing_predicted = LazyCell::new(|| smooth_predicts_nothing(problem, own));
     // What smooth functions that were fitted to other flights predict does not differ from flight to flight by chance.
     let no_scatter = is_scatter && table.is_none() && !*nothing_predicted;
-    let unproven = no_scatter || may_close_nothing(unseen.filter(|_| !is_scatter));
+    let unproven = no_scatter || refuted_table || may_close_nothing(unseen.filter(|_| !is_scatter));
     if table.is_none() && (leaves_most || unproven) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
     }
     // Where no name holds more than half and the size alone shows no gap, nothing is said to be there.
     let named: f64 = posteriors.iter().map(|p| p.probability).sum();
     let something = input.exceeds_uncertainty
+        || refuted_table
         || no_scatter
         || smooth_term > OUTSIDE_PROBABILITY
         || named * (1.0 - outside.probability) > MORE_PROBABLE_THAN_NOT;
