@@ -32,7 +32,7 @@ use crate::search::analyse::{Analysis, analyse};
 use crate::search::outliers::outliers;
 use crate::search::outside::{Outside, compete};
 use crate::search::robust::outlier_weights;
-use crate::search::system::{Problem, WhitenedSystem};
+use crate::search::system::{Problem, RowsWithinSegments, WhitenedSystem};
 use crate::signals::references::DiagnoseError;
 use crate::signals::table_uncertainty::{TableOrigin, TableUncertainty};
 use crate::thresholds::{CLEAN_PROBABILITY, CLOSER_DATES, WORTH_CLOSER_DATES};
@@ -136,15 +136,20 @@ impl Run<'_> {
         notes.extend(data.thrust_by_n2_note(library));
         let design = |data: &_| Design::new(data, references, input.baseline, input.table);
         let of_all = design(&data);
-        let refused = &*judged.refused.get_or_insert_with(|| outliers(&data, &of_all, library));
-        let design = if refused.contains(&true) {
+        let rows = RowsWithinSegments::new(&data, &of_all);
+        let refused =
+            &*judged.refused.get_or_insert_with(|| outliers(&data, &of_all, library, &rows));
+        let (design, rows) = if refused.contains(&true) {
+            drop(rows);
             notes.push(leave_out(&mut data, refused));
             if let Some(done) = too_few(&data) {
                 return Ok(done);
             }
-            design(&data)
+            let of_kept = design(&data);
+            let rows = RowsWithinSegments::new(&data, &of_kept);
+            (of_kept, rows)
         } else {
-            of_all
+            (of_all, rows)
         };
         notes.extend(input.table.and_then(table_in_columns));
         if input.references.is_none() && input.baseline.is_none() {
@@ -153,7 +158,7 @@ impl Run<'_> {
         if let Some(weights) = &judged.weights {
             data.weigh(weights);
         }
-        let mut system = WhitenedSystem::new(&data, &design);
+        let mut system = WhitenedSystem::of_rows(&data, &design, rows);
         let problem = Problem { system: &system, model, library };
         let mut analysis = analyse(problem, None).ok_or(DiagnoseError::Degenerate)?;
         // Heavy tails show only beside the best model; then everything is done again with weights.

@@ -1,13 +1,17 @@
 //! The size of an effect with its interval, over all hypotheses that name it.
 
+use core::f64::consts::{FRAC_1_SQRT_2, TAU};
+
 use flight::effect::{EffectGroup, EffectId, HiddenParameter, StepTarget};
 use statrs::function::erf::erfc;
 
 use crate::output::Magnitude;
 use crate::priors::FORM_ERROR;
 
-/// Steps of bisection: 2⁻⁶⁰ of the bracket is below rounding.
-const HALVINGS: usize = 60;
+/// Steps at most: if every other one is a bisection, 2⁻⁶⁰ of the bracket is below rounding.
+const STEPS: usize = 120;
+/// A step this short beside the number itself, or the bracket, is rounding.
+const SETTLED: f64 = 1e-14;
 
 /// What one hypothesis believes of a size: a normal with the hypothesis's probability.
 #[derive(Clone, Copy, Debug)]
@@ -45,28 +49,42 @@ pub(crate) fn open_by_law(id: EffectId, hidden: HiddenParameter) -> f64 {
     }
 }
 
-/// Where a mixture of normals has a share below it, by bisection.
+/// Where a mixture of normals has a share below it: Newton's method, or bisection where that leaves the bracket or the bracket
+/// has not halved.
 fn quantile(beliefs: &[SizeBelief], share: f64) -> f64 {
     let total: f64 = beliefs.iter().map(|of| of.probability).sum();
-    let below = |x: f64| -> f64 {
-        let normal = |of: &SizeBelief| {
-            0.5 * erfc((of.size - x) / (of.deviation * core::f64::consts::SQRT_2))
-        };
-        beliefs.iter().map(|of| of.probability * normal(of)).sum::<f64>() / total
+    // The share below x less that which is wanted, and the density there.
+    let above = |x: f64| -> (f64, f64) {
+        let (mut below, mut density) = (0.0, 0.0);
+        for of in beliefs {
+            let z = (x - of.size) / of.deviation;
+            below += of.probability * 0.5 * erfc(-z * FRAC_1_SQRT_2);
+            density += of.probability * (-0.5 * z * z).exp() / (of.deviation * TAU.sqrt());
+        }
+        (below / total - share, density / total)
     };
     // Eight standard deviations leave 1e-15 outside.
     let ends = |by: f64| beliefs.iter().map(move |of| of.size + by * of.deviation);
     let mut low = ends(-8.0).fold(f64::INFINITY, f64::min);
     let mut high = ends(8.0).fold(f64::NEG_INFINITY, f64::max);
-    for _ in 0..HALVINGS {
-        let middle = f64::midpoint(low, high);
-        if below(middle) < share {
-            low = middle;
+    let mut x = f64::midpoint(low, high);
+    for _ in 0..STEPS {
+        let width = high - low;
+        let (off, density) = above(x);
+        if off < 0.0 {
+            low = x;
         } else {
-            high = middle;
+            high = x;
         }
+        let next = x - off / density;
+        let is_inside = low < next && next < high;
+        if is_inside && (next - x).abs() <= SETTLED * width.max(next.abs()) {
+            return next;
+        }
+        let halved = high - low <= 0.5 * width;
+        x = if is_inside && halved { next } else { f64::midpoint(low, high) };
     }
-    f64::midpoint(low, high)
+    x
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ impl Predictor<'_> {
         });
         if channels.n2 {
             let thrust = drag + share * remainder;
-            predicted[channels.n2_row()] = self.deck.value(&with_thrust(response, thrust));
+            predicted[channels.n2_row()] = self.deck.value_with_thrust(response, thrust);
         }
         if let Some(baseline) = self.baseline {
             predicted[0] += drag + remainder;

@@ -23,7 +23,7 @@ use crate::priors::{OUTLIER_SMOOTH, ROBUST_EFFECT};
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
 use crate::residuals::whiten::common_loadings;
-use crate::search::system::fit_in_memory;
+use crate::search::system::{RowsWithinSegments, fit_in_memory};
 use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::thresholds::{
     ALIKE_NEIGHBORS, FARTHEST_FROM_MEDIAN, LEAST_MEDIAN_DISTANCE, LEAST_ROBUST_SCALE,
@@ -58,8 +58,9 @@ pub(crate) fn outliers(
     data: &PreparedFlights<'_>,
     design: &Design<'_>,
     library: &Library,
+    rows: &RowsWithinSegments,
 ) -> Vec<bool> {
-    let judge = Judge::new(data, design, library);
+    let judge = Judge::new(data, design, library, rows);
     let mut far = far_from_median(data);
     for _ in 0..TURNS {
         let Some(sizes) = judge.fit(&far) else { break };
@@ -113,7 +114,12 @@ struct OfFlight {
 impl<'a> Judge<'a> {
     /// The fit has every effect without a date (a step that begins with one absurd flight would explain it), the nuisance and
     /// the smooth functions.
-    fn new(data: &'a PreparedFlights<'a>, design: &'a Design<'a>, library: &Library) -> Self {
+    fn new(
+        data: &'a PreparedFlights<'a>,
+        design: &'a Design<'a>,
+        library: &Library,
+        rows: &RowsWithinSegments,
+    ) -> Self {
         let undated = library.effects.iter().filter(|effect| !is_dated(effect.id));
         let smooth = design.smooth_deviation(OUTLIER_SMOOTH);
         let (mut columns, deviations): (Vec<usize>, Vec<f64>) = undated
@@ -124,24 +130,27 @@ impl<'a> Judge<'a> {
         columns.push(design.residual());
         let keep = fit_in_memory(data, columns.len());
         let mut judge = Self { data, design, columns, deviations, kept: None };
-        judge.kept = keep.then(|| data.flights.iter().map(|flight| judge.made(flight)).collect());
+        let own = |flight| judge.made(flight, rows.of_flight(data, design, flight).as_ref());
+        let all = keep.then(|| (0..data.flights.len()).map(own).collect());
+        judge.kept = all;
         judge
     }
 
     fn of_flight(&self, index: usize) -> Cow<'_, OfFlight> {
-        match &self.kept {
-            Some(kept) => Cow::Borrowed(&kept[index]),
-            None => Cow::Owned(self.made(&self.data.flights[index])),
+        if let Some(kept) = &self.kept {
+            return Cow::Borrowed(&kept[index]);
         }
+        let rows = self.design.within_segments(self.data, &self.data.flights[index]);
+        Cow::Owned(self.made(index, &rows))
     }
 
-    fn made(&self, flight: &FlightRows) -> OfFlight {
-        let rows = self.design.within_segments(self.data, flight);
+    fn made(&self, flight: usize, rows: &Mat<f64>) -> OfFlight {
+        let flight = &self.data.flights[flight];
         let count = flight.segments.len() * self.data.channels.count();
         let places: Vec<usize> = (0..count).collect();
         let segments = &self.data.segments[flight.segments.clone()];
         OfFlight {
-            rows: gather(&rows, &places, &self.columns),
+            rows: gather(rows, &places, &self.columns),
             common: common_loadings(self.data, segments, count),
         }
     }

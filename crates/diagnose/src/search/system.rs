@@ -1,5 +1,7 @@
 //! One pass over the data: Gram matrices of all flights and of folds of them, nuisance integrated out.
 
+use std::borrow::Cow;
+
 use faer::Mat;
 
 use effects::EffectModel;
@@ -55,8 +57,43 @@ pub(crate) enum SmoothTerms {
     LeftOut,
 }
 
+/// Rows of all flights whose segments are whitened and nothing else, where they fit in memory: made once for outliers and system.
+#[derive(Debug, Default)]
+pub(crate) struct RowsWithinSegments(Option<Vec<Mat<f64>>>);
+
+impl RowsWithinSegments {
+    /// Those of all flights.
+    pub(crate) fn new(data: &PreparedFlights<'_>, design: &Design<'_>) -> Self {
+        let of = |flight| design.within_segments(data, flight);
+        let kept = fit_in_memory(data, design.columns);
+        Self(kept.then(|| data.flights.iter().map(of).collect()))
+    }
+
+    /// Those of a flight, made again where they are not kept.
+    pub(crate) fn of_flight(
+        &self,
+        data: &PreparedFlights<'_>,
+        design: &Design<'_>,
+        flight: usize,
+    ) -> Cow<'_, Mat<f64>> {
+        match &self.0 {
+            Some(kept) => Cow::Borrowed(&kept[flight]),
+            None => Cow::Owned(design.within_segments(data, &data.flights[flight])),
+        }
+    }
+}
+
 impl<'a> WhitenedSystem<'a> {
     pub(crate) fn new(data: &'a PreparedFlights<'a>, design: &'a Design<'a>) -> Self {
+        Self::of_rows(data, design, RowsWithinSegments::new(data, design))
+    }
+
+    /// Of rows that were made from the same flights and design.
+    pub(crate) fn of_rows(
+        data: &'a PreparedFlights<'a>,
+        design: &'a Design<'a>,
+        rows: RowsWithinSegments,
+    ) -> Self {
         let of_flight = |flight| FlightWhitening::new(data, flight);
         let mut system = Self {
             data,
@@ -68,8 +105,12 @@ impl<'a> WhitenedSystem<'a> {
             levels: levels(data, design),
             flight_levels: Vec::with_capacity(data.flights.len()),
         };
-        system.kept = fit_in_memory(data, design.columns)
-            .then(|| (0..data.flights.len()).map(|flight| system.made(flight)).collect());
+        system.kept = rows.0.map(|mut rows| {
+            for (flight, rows) in rows.iter_mut().enumerate() {
+                system.whiten(flight, rows);
+            }
+            rows
+        });
         let mut sum = Sum::new(design.columns);
         for index in 0..data.flights.len() {
             let rows = system.whitened(index);
@@ -149,10 +190,10 @@ impl<'a> WhitenedSystem<'a> {
     }
 
     /// Whitened rows of a flight.
-    pub(crate) fn whitened(&self, flight: usize) -> std::borrow::Cow<'_, Mat<f64>> {
+    pub(crate) fn whitened(&self, flight: usize) -> Cow<'_, Mat<f64>> {
         match &self.kept {
-            Some(kept) => std::borrow::Cow::Borrowed(&kept[flight]),
-            None => std::borrow::Cow::Owned(self.made(flight)),
+            Some(kept) => Cow::Borrowed(&kept[flight]),
+            None => Cow::Owned(self.made(flight)),
         }
     }
 

@@ -53,13 +53,16 @@ impl Deck {
         deck
     }
 
-    fn scaled(&self, response: &Response) -> [f64; 4] {
-        let variables = deck_variables(response);
+    fn scaled(&self, variables: [f64; 4]) -> [f64; 4] {
         core::array::from_fn(|k| (variables[k] - self.centers[k]) / DECK_SCALES[k])
     }
 
     pub(crate) fn terms(&self, response: &Response) -> [f64; DECK_TERMS] {
-        let v = self.scaled(response);
+        self.terms_of(deck_variables(response))
+    }
+
+    fn terms_of(&self, variables: [f64; 4]) -> [f64; DECK_TERMS] {
+        let v = self.scaled(variables);
         let mut terms = [1.0; DECK_TERMS];
         terms[1..5].copy_from_slice(&v);
         let mut at = 5;
@@ -74,7 +77,14 @@ impl Deck {
 
     /// ln N2 that the deck predicts.
     pub(crate) fn value(&self, response: &Response) -> f64 {
-        self.of_terms(&self.terms(response)) + half_ln_total_temperature_ratio(response)
+        self.value_with_thrust(response, 0.0)
+    }
+
+    /// The same with another thrust: ln of the ratio.
+    pub(crate) fn value_with_thrust(&self, response: &Response, ln_ratio: f64) -> f64 {
+        let mut variables = deck_variables(response);
+        variables[0] += ln_ratio;
+        self.of_terms(&self.terms_of(variables)) + half_ln_total_temperature_ratio(response)
     }
 
     /// ln(N2/√θt) at these terms.
@@ -83,7 +93,7 @@ impl Deck {
     }
 
     pub(crate) fn slope(&self, response: &Response) -> f64 {
-        let v = self.scaled(response);
+        let v = self.scaled(deck_variables(response));
         let c = &self.coefficients;
         (c[1] + 2.0 * c[5] * v[0] + c[6] * v[1] + c[7] * v[2] + c[8] * v[3]) / DECK_SCALES[0]
     }

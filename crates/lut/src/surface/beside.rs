@@ -40,26 +40,29 @@ pub fn fit_beside<F: Fn(f64, f64) -> f64>(
     let orthonormal = design.qr().q();
     let left_of = |values: &DVector<f64>| values - &orthonormal * orthonormal.tr_mul(values);
     let target = left_of(&target);
-    let mut best: Option<(usize, f64)> = None;
+    let mut best: Option<(usize, DVector<f64>)> = None;
     let mut most = 0.0;
     for (index, function) in functions.iter().enumerate() {
         let values = points.iter().map(|&(x, y, _, weight)| weight.sqrt() * function(x, y));
         let values = DVector::from_iterator(points.len(), values);
-        let left = left_of(&values);
-        let squares = left.norm_squared();
-        if squares <= LEAST_LEFT * LEAST_LEFT * values.norm_squared() {
+        let length = values.norm_squared();
+        // ‖f̃‖² = ‖f‖² − ‖Q'f‖² to a ten thousandth where it is least, which is enough to choose; f̃·z̃ = f·z̃.
+        let squares = length - orthonormal.tr_mul(&values).norm_squared();
+        let along = values.dot(&target);
+        if squares <= LEAST_LEFT * LEAST_LEFT * length || along <= 0.0 {
             continue;
         }
-        let along = left.dot(&target);
         let fall = along * along / squares;
-        if along > 0.0 && fall > most {
+        if fall > most {
             most = fall;
-            best = Some((index, along / squares));
+            best = Some((index, values));
         }
     }
-    let Some((index, share)) = best else {
+    let Some((index, values)) = best else {
         return Ok(FitBeside { fit: fit(basis, points)?, beside: None });
     };
+    let left = left_of(&values);
+    let share = left.dot(&target) / left.norm_squared();
     let without: Vec<_> = points
         .iter()
         .map(|&(x, y, z, weight)| (x, y, z - share * functions[index](x, y), weight))

@@ -34,7 +34,7 @@ fn with_flights<T>(
 fn found(flights: &[Vec<Segment>]) -> Vec<usize> {
     with_flights(flights, |data, design, library| {
         assert_eq!(data.segments.len(), flights.iter().flatten().count());
-        let refused = outliers(data, design, library);
+        let refused = outliers(data, design, library, &RowsWithinSegments::new(data, design));
         (0..refused.len()).filter(|&place| refused[place]).collect()
     })
 }
@@ -96,7 +96,7 @@ fn what_neighbors_show_too_is_no_outlier() {
 #[test]
 fn the_fit_is_the_one_of_the_search() {
     with_flights(&fleet(76, 6), |data, design, library| {
-        let judge = Judge::new(data, design, library);
+        let judge = Judge::new(data, design, library, &RowsWithinSegments::new(data, design));
         let sizes = judge.fit(&vec![None; data.segments.len()]).unwrap();
         let system = WhitenedSystem::new(data, design);
         let columns = &judge.columns[..sizes.len()];
