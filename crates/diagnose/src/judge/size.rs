@@ -8,9 +8,9 @@ use statrs::function::erf::erfc;
 use crate::output::Magnitude;
 use crate::priors::FORM_ERROR;
 
-/// Steps at most: if every other one is a bisection, 2⁻⁶⁰ of the bracket is below rounding.
+/// Steps at most: bisections alone would settle in 47.
 const STEPS: usize = 120;
-/// A step this short beside the number itself, or the bracket, is rounding.
+/// A step this short beside the first bracket is rounding.
 const SETTLED: f64 = 1e-14;
 
 /// What one hypothesis believes of a size: a normal with the hypothesis's probability.
@@ -49,8 +49,11 @@ pub(crate) fn open_by_law(id: EffectId, hidden: HiddenParameter) -> f64 {
     }
 }
 
-/// Where a mixture of normals has a share below it: Newton's method, or bisection where that leaves the bracket or the bracket
-/// has not halved.
+/// Where a mixture of normals has a share below it: Newton's method, with bisection where its step leaves the bracket or is more
+/// than half the step before.
+///
+/// # Source
+/// Press et al., *Numerical Recipes*, 3rd edition, section 9.4.
 fn quantile(beliefs: &[SizeBelief], share: f64) -> f64 {
     let total: f64 = beliefs.iter().map(|of| of.probability).sum();
     // The share below x less that which is wanted, and the density there.
@@ -67,22 +70,23 @@ fn quantile(beliefs: &[SizeBelief], share: f64) -> f64 {
     let ends = |by: f64| beliefs.iter().map(move |of| of.size + by * of.deviation);
     let mut low = ends(-8.0).fold(f64::INFINITY, f64::min);
     let mut high = ends(8.0).fold(f64::NEG_INFINITY, f64::max);
-    let mut x = f64::midpoint(low, high);
+    let settled = SETTLED * (high - low);
+    let (mut x, mut step) = (f64::midpoint(low, high), high - low);
     for _ in 0..STEPS {
-        let width = high - low;
         let (off, density) = above(x);
         if off < 0.0 {
             low = x;
         } else {
             high = x;
         }
-        let next = x - off / density;
-        let is_inside = low < next && next < high;
-        if is_inside && (next - x).abs() <= SETTLED * width.max(next.abs()) {
-            return next;
+        let newton = x - off / density;
+        let converges = low < newton && newton < high && (newton - x).abs() <= 0.5 * step;
+        let next = if converges { newton } else { f64::midpoint(low, high) };
+        step = (next - x).abs();
+        x = next;
+        if step <= settled {
+            break;
         }
-        let halved = high - low <= 0.5 * width;
-        x = if is_inside && halved { next } else { f64::midpoint(low, high) };
     }
     x
 }
@@ -112,6 +116,29 @@ mod tests {
         let of = magnitude(10.0, &[belief(0.01, 1.0, 0.1), belief(0.99, 10.0, 1.0)], 0.0);
         assert!((of.ci95[0] - (10.0 - 2.1661)).abs() < 2e-3, "{of:?}");
         assert!((of.ci95[1] - (10.0 + 1.9557)).abs() < 2e-3, "{of:?}");
+    }
+
+    /// Oracle: the share below, at the quantile of narrow and wide normals, near and far.
+    #[test]
+    fn the_share_below_a_quantile_is_its_share() {
+        let mixtures = [
+            vec![belief(0.5, -3.0, 1e-3), belief(0.5, 3.0, 1e-3)],
+            vec![belief(0.9, 1.0, 0.01), belief(0.1, 0.0, 10.0)],
+            vec![belief(0.02, -50.0, 0.1), belief(0.97, 0.0, 1.0), belief(0.01, 1e4, 5.0)],
+        ];
+        for mixture in mixtures {
+            for share in [0.01, 0.025, 0.3, 0.7, 0.975] {
+                let x = quantile(&mixture, share);
+                let below: f64 = mixture
+                    .iter()
+                    .map(|of| {
+                        let z = (x - of.size) / of.deviation;
+                        of.probability * 0.5 * erfc(-z * FRAC_1_SQRT_2)
+                    })
+                    .sum();
+                assert!((below - share).abs() < 1e-9, "{mixture:?} {share}: {x} {below}");
+            }
+        }
     }
 
     #[test]

@@ -97,6 +97,7 @@ fn far_from_median(data: &PreparedFlights<'_>) -> Vec<Option<Side>> {
 struct Judge<'a> {
     data: &'a PreparedFlights<'a>,
     design: &'a Design<'a>,
+    within_segments: &'a RowsWithinSegments,
     /// Columns of the flexible fit, the residual last, and their prior standard deviations.
     columns: Vec<usize>,
     deviations: Vec<f64>,
@@ -118,7 +119,7 @@ impl<'a> Judge<'a> {
         data: &'a PreparedFlights<'a>,
         design: &'a Design<'a>,
         library: &Library,
-        rows: &RowsWithinSegments,
+        within_segments: &'a RowsWithinSegments,
     ) -> Self {
         let undated = library.effects.iter().filter(|effect| !is_dated(effect.id));
         let smooth = design.smooth_deviation(OUTLIER_SMOOTH);
@@ -129,28 +130,27 @@ impl<'a> Judge<'a> {
             .unzip();
         columns.push(design.residual());
         let keep = fit_in_memory(data, columns.len());
-        let mut judge = Self { data, design, columns, deviations, kept: None };
-        let own = |flight| judge.made(flight, rows.of_flight(data, design, flight).as_ref());
-        let all = keep.then(|| (0..data.flights.len()).map(own).collect());
-        judge.kept = all;
+        let mut judge = Self { data, design, within_segments, columns, deviations, kept: None };
+        let flights = 0..data.flights.len();
+        judge.kept = keep.then(|| flights.map(|flight| judge.made(flight)).collect());
         judge
     }
 
     fn of_flight(&self, index: usize) -> Cow<'_, OfFlight> {
-        if let Some(kept) = &self.kept {
-            return Cow::Borrowed(&kept[index]);
+        match &self.kept {
+            Some(kept) => Cow::Borrowed(&kept[index]),
+            None => Cow::Owned(self.made(index)),
         }
-        let rows = self.design.within_segments(self.data, &self.data.flights[index]);
-        Cow::Owned(self.made(index, &rows))
     }
 
-    fn made(&self, flight: usize, rows: &Mat<f64>) -> OfFlight {
-        let flight = &self.data.flights[flight];
+    fn made(&self, index: usize) -> OfFlight {
+        let rows = self.within_segments.of_flight(self.data, self.design, index);
+        let flight = &self.data.flights[index];
         let count = flight.segments.len() * self.data.channels.count();
         let places: Vec<usize> = (0..count).collect();
         let segments = &self.data.segments[flight.segments.clone()];
         OfFlight {
-            rows: gather(rows, &places, &self.columns),
+            rows: gather(&rows, &places, &self.columns),
             common: common_loadings(self.data, segments, count),
         }
     }

@@ -58,7 +58,7 @@ pub(crate) enum SmoothTerms {
 }
 
 /// Rows of all flights whose segments are whitened and nothing else, where they fit in memory: made once for outliers and system.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct RowsWithinSegments(Option<Vec<Mat<f64>>>);
 
 impl RowsWithinSegments {

@@ -96,7 +96,8 @@ fn what_neighbors_show_too_is_no_outlier() {
 #[test]
 fn the_fit_is_the_one_of_the_search() {
     with_flights(&fleet(76, 6), |data, design, library| {
-        let judge = Judge::new(data, design, library, &RowsWithinSegments::new(data, design));
+        let rows = RowsWithinSegments::new(data, design);
+        let judge = Judge::new(data, design, library, &rows);
         let sizes = judge.fit(&vec![None; data.segments.len()]).unwrap();
         let system = WhitenedSystem::new(data, design);
         let columns = &judge.columns[..sizes.len()];
