@@ -1,5 +1,9 @@
 //! The whitened linear model of a flight: which columns there are, and their rows.
 
+mod blocks;
+mod rows_of_segment;
+mod smooth_background;
+
 use core::ops::Range;
 
 use effects::{EffectReferences, Variable};
@@ -7,86 +11,17 @@ use faer::Mat;
 
 use crate::baseline::Baseline;
 use crate::baseline::layout::{DeckColumns, NuisanceLayout};
-use crate::priors::{
-    AGNOSTIC_QUANTILES, DECK_DEVIATION, PRODUCT_SCALE, SMOOTH_QUANTILES, SPLIT_SCALE,
-};
+use crate::hypotheses::design::blocks::agnostic_blocks;
+use crate::hypotheses::design::rows_of_segment::RowsOfSegment;
+use crate::hypotheses::design::smooth_background::SmoothBackground;
+use crate::priors::DECK_DEVIATION;
 use crate::residuals::rows::{FlightRows, SegmentRow};
 use crate::residuals::segments::PreparedFlights;
-use crate::residuals::whiten::{FlightWhitening, whiten_within_segment};
-use crate::signals::channels::{ByChannel, Channels, MAXIMUM_CHANNELS};
+use crate::residuals::whiten::FlightWhitening;
+use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::signals::table_uncertainty::TableUncertainty;
-use crate::signals::variables::{Hats, Scaled};
 
-/// Variables of the smooth background. Our choice: what effects of the library depend on.
-const SMOOTH_VARIABLES: [Variable; 15] = [
-    Variable::Mach,
-    Variable::LiftCoefficient,
-    Variable::PressureAltitude,
-    Variable::CorrectedThrust,
-    Variable::IsaDeviation,
-    Variable::StaticAirTemperature,
-    Variable::Date,
-    Variable::FuelUsed,
-    Variable::Roll,
-    Variable::Acceleration,
-    Variable::CrossWind,
-    Variable::Latitude,
-    Variable::EastwardSpeed,
-    Variable::CenterOfGravity,
-    Variable::Mass,
-];
-/// Products in the smooth background. Our choice: pairs that physics multiplies.
-const SMOOTH_PRODUCTS: [(Variable, Variable); 10] = [
-    (Variable::Mach, Variable::LiftCoefficient),
-    (Variable::Mach, Variable::PressureAltitude),
-    (Variable::LiftCoefficient, Variable::PressureAltitude),
-    (Variable::Mach, Variable::IsaDeviation),
-    (Variable::PressureAltitude, Variable::IsaDeviation),
-    (Variable::CorrectedThrust, Variable::Mach),
-    (Variable::CrossWind, Variable::Latitude),
-    (Variable::EastwardSpeed, Variable::Latitude),
-    (Variable::CenterOfGravity, Variable::LiftCoefficient),
-    (Variable::Mach, Variable::Date),
-];
-/// Without acceleration: its own error is in the residual, which depends on it in every recording.
-pub(crate) const AGNOSTIC_VARIABLES: [Variable; 19] = [
-    Variable::Mach,
-    Variable::LiftCoefficient,
-    Variable::PressureAltitude,
-    Variable::CorrectedThrust,
-    Variable::IsaDeviation,
-    Variable::StaticAirTemperature,
-    Variable::FuelUsed,
-    Variable::Mass,
-    Variable::Date,
-    Variable::Roll,
-    Variable::CrossWind,
-    Variable::Latitude,
-    Variable::EastwardSpeed,
-    Variable::CenterOfGravity,
-    Variable::LatitudeCrossWind,
-    Variable::CenterOfGravityLift,
-    Variable::MachLift,
-    Variable::MachExcess,
-    Variable::AntiIce,
-];
-
-/// How a smooth function acts: on fuel flow alone, or on thrust, so that N2 sees it too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Acts {
-    FuelFlow,
-    Thrust,
-    Split,
-}
-
-/// A smooth term of one variable.
-#[derive(Clone, Debug)]
-pub(crate) struct Block {
-    pub(crate) variable: Variable,
-    pub(crate) acts: Acts,
-    pub(crate) columns: Range<usize>,
-    hats: Option<Hats>,
-}
+pub(crate) use blocks::{AGNOSTIC_VARIABLES, Acts, Block};
 
 /// Which column is what: effects, nuisance, smooth background, smooth terms, residual last.
 #[derive(Clone, Debug)]
@@ -97,10 +32,7 @@ pub(crate) struct Design<'a> {
     pub(crate) blocks: Vec<Block>,
     pub(crate) columns: usize,
     references: EffectReferences,
-    smooth_hats: Vec<(Variable, Hats)>,
-    smooth_products: Vec<(Variable, Scaled, Variable, Scaled)>,
-    /// Root mean square of all smooth terms together, so that an amplitude is that of their sum.
-    smooth_rms: f64,
+    background: SmoothBackground,
     nuisance_parts: Nuisance<'a>,
 }
 
@@ -140,48 +72,20 @@ impl<'a> Design<'a> {
         let nuisance = effects..effects + layout.len();
         let parts = Nuisance { layout, baseline, acceleration, table };
 
-        let smooth_hats: Vec<(Variable, Hats)> = SMOOTH_VARIABLES
-            .into_iter()
-            .filter_map(|v| Some((v, Hats::at_quantiles(&values(v)?, &SMOOTH_QUANTILES)?)))
-            .collect();
-        let smooth_products: Vec<_> = SMOOTH_PRODUCTS
-            .into_iter()
-            .filter_map(|(a, b)| {
-                Some((a, Scaled::from_values(&values(a)?), b, Scaled::from_values(&values(b)?)))
-            })
-            .collect();
-        let once = 1
-            + smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
-            + smooth_products.len();
         let kinds = if data.channels.n2 { 2 } else { 1 };
-        let smooth = nuisance.end..nuisance.end + kinds * once;
-
+        let background = SmoothBackground::new(data, references, values, kinds);
+        let smooth = nuisance.end..nuisance.end + kinds * background.terms();
         let (blocks, at) = agnostic_blocks(data, values, smooth.end);
-        let mut design = Self {
+        Self {
             effects,
             nuisance,
             smooth,
             blocks,
             columns: at + 1,
             references: *references,
-            smooth_hats,
-            smooth_products,
-            smooth_rms: 1.0,
+            background,
             nuisance_parts: parts,
-        };
-        design.smooth_rms = design.rms_of_smooth(data, kinds);
-        design
-    }
-
-    /// Root mean square over the segments of the sum of all smooth terms of unit amplitude, all kinds of them together.
-    fn rms_of_smooth(&self, data: &PreparedFlights<'_>, kinds: usize) -> f64 {
-        let mut terms = vec![0.0; self.smooth_terms()];
-        let mut square = 0.0;
-        for row in &data.segments {
-            self.write_smooth(row, &mut terms);
-            square += terms.iter().map(|term| term * term).sum::<f64>();
         }
-        (kinds as f64 * square / data.segments.len().max(1) as f64).sqrt()
     }
 
     pub(crate) const fn residual(&self) -> usize {
@@ -201,9 +105,7 @@ impl<'a> Design<'a> {
             smooth: nuisance.end..nuisance.end,
             blocks: vec![],
             columns: nuisance.end + 1,
-            smooth_hats: vec![],
-            smooth_products: vec![],
-            smooth_rms: self.smooth_rms,
+            background: self.background.without_functions(),
             nuisance,
             references: self.references,
             nuisance_parts: self.nuisance_parts.clone(),
@@ -358,28 +260,7 @@ impl<'a> Design<'a> {
             }
         }
         for block in &self.blocks {
-            if let Some(hats) = &block.hats {
-                let value = block
-                    .variable
-                    .value(&row.point, &row.response, &self.references)
-                    .unwrap_or(0.0);
-                hats.write(value, &mut scratch[..hats.len()]);
-                for (k, value) in scratch[..hats.len()].iter().enumerate() {
-                    if block.acts == Acts::Thrust {
-                        rows.put_thrust(block.columns.start + k, *value);
-                    } else {
-                        rows.put_fuel_flow(block.columns.start + k, *value);
-                    }
-                }
-            } else {
-                for (k, column) in block.columns.clone().enumerate() {
-                    let mut values = [0.0; MAXIMUM_CHANNELS];
-                    if row.is_recorded[1 + k] {
-                        values[1 + k] = SPLIT_SCALE;
-                    }
-                    rows.put(column, &values);
-                }
-            }
+            block.write(rows, &self.references, scratch);
         }
     }
 
@@ -414,29 +295,16 @@ impl<'a> Design<'a> {
 
     /// Terms of the smooth background, of one kind.
     pub(crate) fn smooth_terms(&self) -> usize {
-        1 + self.smooth_hats.iter().map(|(_, hats)| hats.len()).sum::<usize>()
-            + self.smooth_products.len()
+        self.background.terms()
     }
 
     /// Prior standard deviation of each smooth term that makes their sum this large, root mean square over the segments.
     pub(crate) fn smooth_deviation(&self, amplitude: f64) -> f64 {
-        amplitude / self.smooth_rms
+        self.background.deviation(amplitude)
     }
 
     pub(crate) fn write_smooth(&self, row: &SegmentRow, into: &mut [f64]) {
-        let value = |variable: Variable| {
-            variable.value(&row.point, &row.response, &self.references).unwrap_or(0.0)
-        };
-        into[0] = 1.0;
-        let mut at = 1;
-        for (variable, hats) in &self.smooth_hats {
-            hats.write(value(*variable), &mut into[at..at + hats.len()]);
-            at += hats.len();
-        }
-        for (a, scaled_a, b, scaled_b) in &self.smooth_products {
-            into[at] = PRODUCT_SCALE * scaled_a.at(value(*a)) * scaled_b.at(value(*b));
-            at += 1;
-        }
+        self.background.write(row, &self.references, into);
     }
 
     /// Turns the raw nuisance columns into columns of unit prior variance.
@@ -469,106 +337,6 @@ impl<'a> Design<'a> {
             }
         }
     }
-}
-
-/// The rows of one segment in a matrix, one row per channel, whitened by the segment's own noise.
-struct RowsOfSegment<'a> {
-    row: &'a SegmentRow,
-    channels: Channels,
-    first: usize,
-    matrix: &'a mut Mat<f64>,
-    /// Whitened: a change of fuel flow alone, and of thrust, which N2 sees too.
-    fuel_flow: ByChannel,
-    thrust: ByChannel,
-}
-
-impl<'a> RowsOfSegment<'a> {
-    fn new(
-        data: &PreparedFlights<'_>,
-        row: &'a SegmentRow,
-        first: usize,
-        matrix: &'a mut Mat<f64>,
-    ) -> Self {
-        let channels = data.channels;
-        let mut on_fuel = [0.0; MAXIMUM_CHANNELS];
-        on_fuel[0] = 1.0;
-        let mut on_thrust = on_fuel;
-        on_thrust[0] = row.drag_over_thrust;
-        if channels.n2 && row.is_recorded[channels.n2_row()] {
-            on_thrust[channels.n2_row()] = row.n2_slope * row.drag_over_thrust;
-        }
-        let fuel_flow = whiten_within_segment(row, &on_fuel, channels.count());
-        let thrust = whiten_within_segment(row, &on_thrust, channels.count());
-        Self { row, channels, first, matrix, fuel_flow, thrust }
-    }
-
-    /// Whitened: a change of fuel flow, of which N2 sees a share.
-    fn of_remainder(&self, thrust_share: f64) -> ByChannel {
-        let (row, channels) = (self.row, self.channels);
-        if thrust_share == 0.0 {
-            return self.fuel_flow;
-        }
-        let mut values = [0.0; MAXIMUM_CHANNELS];
-        values[0] = 1.0;
-        if channels.n2 && row.is_recorded[channels.n2_row()] {
-            values[channels.n2_row()] = thrust_share * row.n2_slope;
-        }
-        whiten_within_segment(row, &values, channels.count())
-    }
-
-    fn put(&mut self, column: usize, values: &ByChannel) {
-        let white = whiten_within_segment(self.row, values, self.channels.count());
-        self.put_white(column, &white, 1.0);
-    }
-
-    fn put_fuel_flow(&mut self, column: usize, by: f64) {
-        let unit = self.fuel_flow;
-        self.put_white(column, &unit, by);
-    }
-
-    fn put_thrust(&mut self, column: usize, by: f64) {
-        let unit = self.thrust;
-        self.put_white(column, &unit, by);
-    }
-
-    fn put_white(&mut self, column: usize, white: &ByChannel, by: f64) {
-        for (channel, value) in white.iter().enumerate().take(self.channels.count()) {
-            self.matrix[(self.first + channel, column)] = value * by;
-        }
-    }
-}
-
-/// Functions of single variables outside the library, and the contrasts of the engines: their columns from `first` on, and the
-/// first column after them.
-fn agnostic_blocks(
-    data: &PreparedFlights<'_>,
-    values: impl Fn(Variable) -> Option<Vec<f64>>,
-    first: usize,
-) -> (Vec<Block>, usize) {
-    let mut blocks = Vec::new();
-    let mut at = first;
-    for variable in AGNOSTIC_VARIABLES {
-        let hats = values(variable).and_then(|values| match variable {
-            // A switch has no values between off and on that a bend could be at.
-            Variable::AntiIce => Hats::at_quantiles(&values, &[0.0, 1.0]),
-            _ => Hats::at_quantiles(&values, &AGNOSTIC_QUANTILES),
-        });
-        let Some(hats) = hats else { continue };
-        for acts in [Acts::FuelFlow, Acts::Thrust] {
-            if acts == Acts::Thrust && !data.channels.n2 {
-                continue;
-            }
-            let columns = at..at + hats.len();
-            at = columns.end;
-            blocks.push(Block { variable, acts, columns, hats: Some(hats.clone()) });
-        }
-    }
-    if data.channels.contrasts > 0 {
-        let columns = at..at + data.channels.contrasts;
-        at = columns.end;
-        blocks.push(Block { variable: Variable::Engine, acts: Acts::Split, columns, hats: None });
-    }
-    (blocks, at)
 }
 
 /// Share of the recorded accelerations' mean square that their error has, at most 1.

@@ -1,0 +1,84 @@
+use super::*;
+
+/// The oracle is the function by its terms, between the knots and far beyond them.
+#[test]
+fn curves_are_the_function_within_their_error() {
+    let values: Vec<f64> = (0..50).map(|k| 0.70 + 0.003 * f64::from(k)).collect();
+    let smooth = Smooth::over(Variable::Mach, 0.02, &values).unwrap();
+    let means: Vec<f64> =
+        (0..smooth.len()).map(|k| 0.03 * (f64::from(u8::try_from(k).unwrap())).sin()).collect();
+    let prepared = smooth.prepared(means.iter().copied());
+    let (curve, left) = (prepared.curve().unwrap(), prepared.left_curve().unwrap());
+    let mut terms = vec![0.0; smooth.len()];
+    for step in 0..20_000_u32 {
+        let value = 0.30 + 0.00005 * f64::from(step);
+        let known_left = smooth.write(value, &mut terms);
+        let known: f64 = terms.iter().zip(&means).map(|(term, mean)| term * mean).sum();
+        let z = prepared.at(&[value; LANES]);
+        let found = curve.at(&z)[step as usize % LANES];
+        assert!((found - known).abs() < 1.1 * CURVE_ERROR, "{value}: {found}, {known}");
+        let found = prepared.left(z[0], left.at(&z)[0]);
+        let tolerance = 1e-6 * known_left.max(1.0);
+        assert!((found - known_left).abs() < tolerance, "{value}: {found}, {known_left}");
+    }
+}
+
+/// The covariance of two values is the kernel's where there are knots, and the prior's variance is never exceeded.
+#[test]
+fn between_knots_the_terms_have_the_kernels_covariance() {
+    let values: Vec<f64> = (0..50).map(|k| 0.70 + 0.003 * f64::from(k)).collect();
+    let smooth = Smooth::over(Variable::Mach, 0.02, &values).unwrap();
+    let mut one = vec![0.0; smooth.len()];
+    let mut other = vec![0.0; smooth.len()];
+    for a in [0.70, 0.7333, 0.78, 0.83] {
+        let left = smooth.write(a, &mut one);
+        assert!(left < 0.01, "{a}: {left}");
+        for b in [0.71, 0.7450, 0.81] {
+            smooth.write(b, &mut other);
+            let found: f64 = one[1..].iter().zip(&other[1..]).map(|(p, q)| p * q).sum();
+            let expected = (-0.5 * ((a - b) / 0.02_f64).powi(2)).exp();
+            assert!((found - expected).abs() < 0.01, "{a} {b}: {found} {expected}");
+        }
+    }
+    // Far away nothing is held, the slope goes on, and what is not known grows: by hand, 0.1 beyond 0.847 are 5.15 lengths,
+    // ⅔·5.15³ = 91.06.
+    assert!((smooth.write(0.95, &mut one) - 91.06).abs() < 0.01);
+    assert!((one[0] - (0.95 - 0.7735) / 0.02).abs() < 1e-9);
+    // Flown from 0.70 to 0.847, both ends included.
+    let beyond = [0.6999, 0.70, 0.78, 0.847, 0.8471].map(|value| smooth.is_beyond(value));
+    assert_eq!(beyond, [true, false, false, false, true]);
+}
+
+/// The oracle is the function asked term by term.
+#[test]
+fn prepared_it_is_the_same_function() {
+    let values: Vec<f64> = (0..50).map(|k| 0.70 + 0.003 * f64::from(k)).collect();
+    let smooth = Smooth::over(Variable::Mach, 0.02, &values).unwrap();
+    let mean = |k: u32| 0.01 * f64::from(k * k % 7) - 0.02;
+    let means: Vec<f64> = (0..20).map(mean).take(smooth.len()).collect();
+    let prepared = smooth.prepared(means.iter().copied());
+    let (mut terms, mut found) = (vec![0.0; smooth.len()], vec![[0.0]; smooth.len()]);
+    for step in 0..=300 {
+        let value = 0.4 + 0.002 * f64::from(step);
+        let left = smooth.write(value, &mut terms);
+        let z = prepared.at(&[value]);
+        assert!((z[0] - prepared.text.knots.0).abs() <= REACH);
+        let [left_found] = prepared.write(&z, &mut found);
+        assert!((left - left_found).abs() < 1e-9 * left.max(1e-3), "{value}: {left_found}");
+        for (term, [found]) in terms.iter().zip(&found) {
+            assert!((term - found).abs() < 1e-12 * term.abs().max(1.0), "{value}: {found}");
+        }
+        let expected: f64 = terms.iter().zip(&means).map(|(term, mean)| term * mean).sum();
+        assert!((prepared.mean(&z)[0] - expected).abs() < 1e-12, "{value}");
+    }
+}
+
+#[test]
+fn what_does_not_vary_has_no_function_and_a_wide_range_few_knots() {
+    assert!(Smooth::over(Variable::Mach, 0.02, &[0.8; 30]).is_none());
+    assert!(Smooth::over(Variable::Mach, 0.02, &[]).is_none());
+    let wide = Smooth::over(Variable::PressureAltitude, 600.0, &[0.0, 60_000.0]).unwrap();
+    assert!(wide.len() <= 1 + SMOOTH_MOST_KNOTS);
+    let mut terms = vec![0.0; wide.len()];
+    assert!(wide.write(33_333.0, &mut terms) < 0.05);
+}
