@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use crate::criteria::NamedCriteria;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use pipeline::prediction::PredictedColumn;
 
 use deferred::Deferred;
 
@@ -360,6 +361,11 @@ pub(crate) struct PredictArgs {
     /// State no standard deviations, which take most of the time at very many points
     #[arg(long)]
     pub(crate) without_deviations: bool,
+    /// Columns of the prediction that are wanted, separated by commas, in any order: what nobody wants is not computed
+    /// [default: all]
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', hide_possible_values = true)]
+    #[arg(value_parser = PossibleValuesParser::new(PredictedColumn::ALL.map(PredictedColumn::name)))]
+    pub(crate) columns: Option<Vec<String>>,
     /// Document.
     #[command(flatten)]
     pub(crate) json: JsonFlag,

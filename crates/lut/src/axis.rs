@@ -230,6 +230,43 @@ impl Axis {
         }
     }
 
+    /// Cells of several coordinates, and the shares of the cells' widths at which they lie. False in `is_off` where a coordinate
+    /// is outside or within [`SNAP`] of a breakpoint; what is written there has no meaning.
+    ///
+    /// Only what must be looked up is done point by point.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[expect(clippy::needless_range_loop, reason = "as loops over several points are")]
+    #[inline(always)]
+    pub(crate) fn place_all<const N: usize>(
+        &self,
+        coordinates: &[f64; N],
+        cells: &mut [usize; N],
+        shares: &mut [f64; N],
+        is_off: &mut [bool; N],
+    ) {
+        let (first, last) = (self.first(), self.last());
+        let mut held = [first; N];
+        for place in 0..N {
+            let coordinate = coordinates[place];
+            // Also where it is no number.
+            let inside = (first <= coordinate) & (coordinate < last);
+            held[place] = if inside { coordinate } else { first };
+        }
+        let mut ends = ([0.0; N], [0.0; N]);
+        for place in 0..N {
+            let index = self.buckets.cell(&self.breakpoints, held[place]);
+            let (low, high) = (self.breakpoints[index], self.breakpoints[index + 1]);
+            cells[place] = index;
+            (ends.0[place], ends.1[place]) = (low, high);
+        }
+        for place in 0..N {
+            let (above_low, below_high) =
+                (coordinates[place] - ends.0[place], ends.1[place] - coordinates[place]);
+            shares[place] = above_low / (ends.1[place] - ends.0[place]);
+            is_off[place] &= (above_low > SNAP) & (below_high > SNAP);
+        }
+    }
+
     /// Position of `coordinate`, `None` beyond the ends (or NaN); with `hold`, what is beyond takes the position of the
     /// nearer end.
     pub(crate) fn position(&self, coordinate: f64, hold: bool) -> Option<Position> {

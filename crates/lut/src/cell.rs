@@ -44,6 +44,13 @@ impl Cell {
     #[inline]
     pub fn weights(&self) -> [f64; 4] {
         let (u, v) = self.local();
+        Self::weights_of(u, v)
+    }
+
+    /// The weights at shares of a cell's widths.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[inline(always)]
+    pub(crate) fn weights_of(u: f64, v: f64) -> [f64; 4] {
         let (left, below) = (1.0 - u, 1.0 - v);
         [left * below, left * v, u * below, u * v]
     }

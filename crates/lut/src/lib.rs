@@ -33,6 +33,7 @@
 
 mod axis;
 mod cell;
+mod cells;
 mod grid;
 mod smooth;
 pub mod surface;
@@ -40,6 +41,7 @@ mod table;
 
 pub use axis::{Axis, AxisError, SNAP};
 pub use cell::Cell;
+pub use cells::Cells;
 pub use grid::{Grid, Outside, OutsideGrid};
 pub use smooth::{SmoothCell, SmoothTable};
 pub use table::{Table, TableError};

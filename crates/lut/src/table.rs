@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Cell, Grid};
+use crate::{Cell, Cells, Grid};
 
 /// Values at the nodes of a grid, bilinear between them.
 ///
@@ -95,6 +95,34 @@ impl Table {
         let [a, b, c, d] = self.corners(cell);
         let [wa, wb, wc, wd] = cell.weights();
         wa * a + wb * b + wc * c + wd * d
+    }
+
+    /// The bilinear values at several located points, to the same bits.
+    ///
+    /// # Panics
+    /// Where the cells are of a larger grid.
+    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[expect(clippy::needless_range_loop, reason = "as loops over several points are")]
+    #[must_use]
+    #[inline(always)]
+    pub fn interpolate_all<const N: usize>(&self, cells: &Cells<N>) -> [f64; N] {
+        let mut corners = [[0.0; N]; 4];
+        for place in 0..N {
+            let nodes = cells.nodes(place);
+            for k in 0..4 {
+                corners[k][place] = self.values[nodes[k]];
+            }
+        }
+        let (u, v) = cells.shares();
+        let mut values = [0.0; N];
+        for place in 0..N {
+            let [wa, wb, wc, wd] = Cell::weights_of(u[place], v[place]);
+            values[place] = wa * corners[0][place]
+                + wb * corners[1][place]
+                + wc * corners[2][place]
+                + wd * corners[3][place];
+        }
+        values
     }
 
     /// Slopes along x and y of the bilinear surface at a located point.

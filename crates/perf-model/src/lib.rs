@@ -61,8 +61,8 @@ pub use csv_text::{CsvColumn, CsvError, CsvErrorReason};
 pub use guide::{Guide, GuidePoint};
 pub use initial::{InitialModel, InitialModelError, initial_model};
 pub use model::{
-    LevelFlights, LevelPrediction, ModelError, ObserveError, OutsideTable, PerformanceModel,
-    PredictError, Prediction, SegmentPrediction,
+    LevelBlock, LevelFlights, LevelPrediction, ModelError, ObserveError, OutsideTable,
+    PerformanceModel, PredictError, Prediction, SegmentPrediction,
 };
 pub use points::{FlightPoint, FlightPointRow, FlightPoints, LevelColumns, PointCell, PointTable};
 pub use state::SegmentState;

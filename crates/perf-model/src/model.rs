@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use flight::Segment;
 use lut::surface::Surface;
-use lut::{Cell, Grid, Outside, OutsideGrid, Table};
+use lut::{Cell, Cells, Grid, Outside, OutsideGrid, Table};
 use units::OutOfDomain;
 
 use crate::Aircraft;
@@ -14,7 +14,7 @@ mod level_flight;
 mod observe;
 mod predict;
 
-pub use level_flight::{LevelFlights, LevelPrediction};
+pub use level_flight::{LevelBlock, LevelFlights, LevelPrediction};
 pub use observe::ObserveError;
 pub use predict::{PredictError, Prediction, SegmentPrediction};
 
@@ -164,6 +164,25 @@ impl PerformanceModel {
             .into_iter()
             .zip(cell.weights())
             .any(|(node, weight)| weight > NODE_WEIGHT_THRESHOLD && self.extrapolated[node])
+    }
+
+    /// The same at several points: whether a node that the guide does not support has a part in each value.
+    #[must_use]
+    #[inline]
+    pub fn use_extrapolated<const N: usize>(&self, cells: &Cells<N>) -> [bool; N] {
+        let mut found = [false; N];
+        for (place, found) in found.iter_mut().enumerate() {
+            let nodes = cells.nodes(place);
+            let [a, b, c, d] = nodes;
+            let is_set = &self.extrapolated;
+            // The weights are asked only where they decide.
+            if is_set[a] | is_set[b] | is_set[c] | is_set[d] {
+                let mut weights = cells.weights(place).into_iter().zip(nodes);
+                *found =
+                    weights.any(|(weight, node)| weight > NODE_WEIGHT_THRESHOLD && is_set[node]);
+            }
+        }
+        found
     }
 }
 

@@ -1,6 +1,6 @@
 //! Time of predictions by all that a model has learnt, at points drawn where the Global 5000 of `fixtures/global5000` flies.
 //!
-//! `cargo run --release -p cruisefit-pipeline --example whole_speed -- MODEL.ron [POINTS] [means]`; without a model one that has
+//! `cargo run --release -p cruisefit-pipeline --example whole_speed -- MODEL.ron [POINTS] [means|flows]`; without a model one that has
 //! learnt no more than its table.
 #![expect(clippy::print_stdout, reason = "an example shows its result")]
 #![expect(clippy::disallowed_methods, reason = "the file of a measurement, not of the library")]
@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use perf_model::LevelFlights;
 use pipeline::model_file::ModelFile;
-use pipeline::prediction::Predictor;
+use pipeline::prediction::{PredictedColumn, Predictor};
 use pipeline::whole_model::Predicts;
 use test_support::Random;
 
@@ -23,13 +23,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         None => TABLE_ALONE.to_owned(),
     };
     let count: usize = arguments.get(1).map_or(Ok(10_000), |text| text.parse())?;
-    let means = arguments.get(2).is_some_and(|text| text == "means");
+    let asked = arguments.get(2).map(String::as_str);
     let file = ModelFile::from_text(&text)?;
     let begun = Instant::now();
     let mut predictor = Predictor::new(&file, Predicts::WholeModel)?;
     println!("prepared in {:.2} ms", 1e3 * begun.elapsed().as_secs_f64());
-    if means {
-        predictor = predictor.without_deviations();
+    match asked {
+        Some("means") => predictor = predictor.without_deviations(),
+        Some("flows") => predictor = predictor.with_columns(&[PredictedColumn::FuelFlow]),
+        _ => {}
     }
     let mut random = Random::new(1, 1);
     let mut column =

@@ -11,9 +11,13 @@ use units::{FuelFlowTotal, Temperature};
 use crate::model_file::ModelFile;
 use crate::whole_model::Predicts;
 
+use figures::Asked;
+
+mod figures;
 mod of_segments;
 mod points;
 
+pub use figures::PredictedColumn;
 pub use of_segments::{columns_of_segments, point_of_segment};
 pub use points::{PredictedPoints, measured_kg_s};
 
@@ -32,7 +36,8 @@ pub struct Predictor<'a> {
     plain: Option<ExtendedModel>,
     /// Relative scatter between flights of an applied effect.
     scatter: f64,
-    states_deviations: bool,
+    asked: Asked,
+    has_deviations: bool,
 }
 
 /// What is predicted at a flight point.
@@ -69,7 +74,8 @@ impl<'a> Predictor<'a> {
             whole,
             plain: model.initial.with_effects(AppliedEffects::default()).ok(),
             scatter: effects.map_or(0.0, AppliedEffects::fuel_heating_value_deviation),
-            states_deviations: true,
+            asked: Asked::EVERYTHING,
+            has_deviations: true,
             model,
         })
     }
@@ -77,7 +83,18 @@ impl<'a> Predictor<'a> {
     /// The same predictions without their standard deviations, which take most of the time of a learnt model.
     #[must_use]
     pub fn without_deviations(self) -> Self {
-        Self { states_deviations: false, ..self }
+        Self { has_deviations: false, ..self }
+    }
+
+    /// The same predictions at many points, of which these columns alone are wanted: what nobody wants is not computed.
+    #[must_use]
+    pub fn with_columns(self, columns: &[PredictedColumn]) -> Self {
+        Self { asked: Asked::only(columns), ..self }
+    }
+
+    /// Whether standard deviations are computed at many points.
+    const fn states_deviations(&self) -> bool {
+        self.has_deviations && self.asked.has(PredictedColumn::FuelFlowDeviation)
     }
 
     /// Whether more than the table predicts.
@@ -122,7 +139,7 @@ impl<'a> Predictor<'a> {
         prediction: &Prediction,
         whole: Option<&WholePrediction>,
     ) -> Option<f64> {
-        if !self.states_deviations {
+        if !self.states_deviations() {
             return None;
         }
         // The imagined segment is recorded by the aircraft's sensors without any error of theirs.

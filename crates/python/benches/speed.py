@@ -114,6 +114,10 @@ def main():
     compare("table with deviations", learnt, points, arguments.repeats, table_only=True)
     compare("whole model", learnt, points.slice(0, arguments.whole), arguments.repeats)
     compare("the same, means alone", learnt, points.slice(0, arguments.whole), arguments.repeats, deviations=False)
+    fuel_flow = ["fuel_flow_kg_s"]
+    compare("the same, fuel flow", learnt, points.slice(0, arguments.whole), arguments.repeats, columns=fuel_flow)
+    fuel_flow += ["fuel_flow_std_kg_s"]
+    compare("with its deviation", learnt, points.slice(0, arguments.whole), arguments.repeats, columns=fuel_flow)
     if arguments.program:
         parquet_to_parquet(points, arguments.program, arguments.repeats)
 

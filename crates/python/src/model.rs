@@ -9,7 +9,7 @@ use pipeline::evaluation::{TailCounts, TailData, TailResult};
 use pipeline::model_file::ModelFile;
 use pipeline::model_table;
 use pipeline::models::Models;
-use pipeline::prediction::Predictor;
+use pipeline::prediction::{PredictedColumn, Predictor};
 use pipeline::whole_model::Predicts;
 use pyo3::prelude::*;
 use pyo3_arrow::PyTable;
@@ -79,22 +79,28 @@ impl Model {
     }
 
     /// The table with its predictions, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`;
-    /// `deviations`: whether standard deviations are stated.
+    /// `deviations`: whether standard deviations are stated; `columns`: of the prediction, all without it.
     fn predict(
         &self,
         py: Python<'_>,
         table: AnyRecordBatch,
         predicts: &str,
         deviations: bool,
+        columns: Option<Vec<String>>,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Prediction> {
         let predicts = predicts_of(predicts)?;
+        let columns = columns.map(|names| columns_of(&names)).transpose()?;
         let schema = table.schema()?;
         let batches = batches_of(table)?;
         let file = Arc::clone(&self.file);
         let (batches, refused) = run(py, threads, move |caller| {
             let predictor = Predictor::new(&file, predicts).map_err(Failure::input)?;
             let predictor = if deviations { predictor } else { predictor.without_deviations() };
+            let predictor = match &columns {
+                Some(columns) => predictor.with_columns(columns),
+                None => predictor,
+            };
             points::predict(&predictor, &plain(batches)?, caller)
         })?;
         let schema = batches.first().map_or(schema, arrow_array::RecordBatch::schema);
@@ -187,6 +193,20 @@ pub(crate) fn predicts_of(word: &str) -> Result<Predicts, Failure> {
         "table" => Ok(Predicts::TableOnly),
         other => Err(Failure::input(format!("found {other:?}, expected \"whole\" or \"table\""))),
     }
+}
+
+/// Columns of predictions by their names.
+///
+/// # Errors
+/// A name of none.
+fn columns_of(names: &[String]) -> Result<Vec<PredictedColumn>, Failure> {
+    let column = |name: &String| {
+        PredictedColumn::of_name(name).ok_or_else(|| {
+            let known = PredictedColumn::ALL.map(PredictedColumn::name).join(", ");
+            Failure::input(format!("found {name:?}, expected a column of predictions: {known}"))
+        })
+    };
+    names.iter().map(column).collect()
 }
 
 /// The models of a call.

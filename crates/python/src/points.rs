@@ -128,6 +128,9 @@ fn numbers(array: &ArrayRef) -> Option<Cow<'_, [f64]>> {
 /// An array with a null for each NaN.
 fn with_nulls(values: Vec<f64>) -> Float64Array {
     let missing = values.iter().any(|value| value.is_nan());
+    if missing && values.iter().all(|value| value.is_nan()) {
+        return Float64Array::new_null(values.len());
+    }
     let nulls = missing.then(|| values.iter().map(|value| !value.is_nan()).collect());
     Float64Array::new(values.into(), nulls)
 }

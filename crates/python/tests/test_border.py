@@ -190,6 +190,17 @@ def test_without_deviations_the_rest_of_a_prediction_is_the_same(initial, segmen
     assert whole.drop_columns([name]) == bare.drop_columns([name])
 
 
+def test_a_prediction_has_the_columns_that_are_wanted(initial, segments):
+    model = initial.adapt(segments).model()
+    points = pa.table(POINTS)
+    everything = model.predict(points)
+    wanted = ["specific_range_m_kg", "fuel_flow_kg_s"]
+    assert model.predict(points, columns=wanted) == everything.select([*points.column_names, *reversed(wanted)])
+    assert model.predict(points, columns=[]) == points
+    with pytest.raises(cruisefit.errors.InputError, match="fuel_flow_kg_s, fuel_flow_std_kg_s"):
+        model.predict(points, columns=["fuel_flow"])
+
+
 def test_pickles(initial, segments):
     assert pickle.loads(pickle.dumps(initial)).to_text() == initial.to_text()
     assert pickle.loads(pickle.dumps(segments)).to_csv() == segments.to_csv()

@@ -134,6 +134,7 @@ fn judge(
             output: Some(predicted.clone()),
             table_only: false,
             without_deviations: false,
+            columns: None,
         })?;
         let errors = errors_of(&predicted)?;
         let _ = writeln!(

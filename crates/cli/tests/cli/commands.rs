@@ -63,6 +63,36 @@ fn predict_meets_the_static_points_after_adaptation_better_than_before() {
 }
 
 #[test]
+fn predict_writes_the_columns_that_are_wanted() {
+    let scratch = tempfile::tempdir().unwrap();
+    let model = initial_model(scratch.path());
+    let predict = |more: &[&str]| {
+        let points = fixture("static.csv");
+        let mut arguments = vec!["predict".as_ref(), "--model".as_ref(), model.as_os_str()];
+        arguments.push(points.as_os_str());
+        arguments.extend(more.iter().map(std::ffi::OsStr::new));
+        cruisefit(&arguments)
+    };
+    let columns = |ran: &crate::support::Ran, wanted: &[&str]| -> Vec<String> {
+        let names: Vec<&str> = ran.stdout.lines().next().unwrap().split(',').collect();
+        let place = |name: &&str| names.iter().position(|known| known == name).unwrap();
+        let places: Vec<usize> = wanted.iter().map(place).collect();
+        let cells = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            places.iter().map(|place| cells[*place]).collect::<Vec<_>>().join(",")
+        };
+        ran.stdout.lines().map(cells).collect()
+    };
+    let (all, some) =
+        (predict(&[]).expect(0), predict(&["--columns", "error_percent,fuel_flow_kg_s"]).expect(0));
+    let wanted = ["fuel_flow_kg_s", "error_percent"];
+    assert_eq!(columns(&some, &wanted), columns(&all, &wanted));
+    assert!(some.stdout.lines().next().unwrap().ends_with(",fuel_flow_kg_s,error_percent"));
+    assert!(!some.stdout.contains("lift_coefficient"), "{}", some.stdout);
+    predict(&["--columns", "fuel_flow"]).expect(2).says("fuel_flow_kg_s");
+}
+
+#[test]
 fn a_point_outside_the_table_keeps_its_row_and_is_told() {
     let scratch = tempfile::tempdir().unwrap();
     let model = initial_model(scratch.path());

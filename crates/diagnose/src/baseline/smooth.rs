@@ -19,7 +19,7 @@ const JITTER: f64 = 1e-6;
 const GROWTH_BEYOND: f64 = 2.0 / 3.0;
 
 /// Lengths beyond the last flown value that are still that value: it is computed on several ways.
-const BEYOND_BY_ROUNDING: f64 = 1e-9;
+pub(crate) const BEYOND_BY_ROUNDING: f64 = 1e-9;
 
 /// A smooth function of one variable: a slope, and a Gaussian process with a squared exponential kernel on equally distant
 /// knots over what was flown. Beyond the knots the process fades to 0 and the slope goes on; what is not known there grows as
@@ -261,17 +261,16 @@ impl Prepared {
         map(values, |value| (value - middle) * per_unit)
     }
 
-    /// As [`Smooth::is_beyond`], of places in lengths.
+    /// Raises each number to how far a place in lengths lies beyond what was flown, as [`Smooth::is_beyond`] measures it.
     #[expect(clippy::inline_always, reason = "as the others")]
     #[inline(always)]
-    pub(crate) fn are_beyond(&self, z: &Lanes) -> [bool; LANES] {
-        let mut found = [false; LANES];
+    pub(crate) fn add_beyond(&self, z: &Lanes, farthest: &mut Lanes) {
         let ((first, last), distance) = (self.text.knots, self.distance);
         for lane in 0..LANES {
             let (below, above) = (first + distance - z[lane], z[lane] - last + distance);
-            found[lane] = below > BEYOND_BY_ROUNDING || above > BEYOND_BY_ROUNDING;
+            let beyond = if below > above { below } else { above };
+            farthest[lane] = if beyond > farthest[lane] { beyond } else { farthest[lane] };
         }
-        found
     }
 
     /// First and last knot, in lengths.

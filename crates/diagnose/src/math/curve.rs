@@ -7,6 +7,9 @@ use crate::math::lanes::{LANES, Lanes, map};
 /// Coefficients of a cubic, from the lowest power.
 type Cubic = [f64; 4];
 
+/// The cubics at several places.
+pub(crate) type Cubics = [Cubic; LANES];
+
 /// 2⁵²: a positive number that it is added to is rounded to a whole number, in its last bits.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
@@ -74,18 +77,28 @@ impl Curve {
     /// The function at places.
     #[inline(always)]
     pub(crate) fn at(&self, places: &Lanes) -> Lanes {
+        self.at_with(places, &mut [[0.0; 4]; LANES])
+    }
+
+    /// The same with a place for the cubics, which many functions may use one after the other.
+    #[inline(always)]
+    pub(crate) fn at_with(&self, places: &Lanes, cubics: &mut Cubics) -> Lanes {
         let last = (self.pieces.len() - 1) as f64;
         let from_first = map(places, |x| (x - self.first) * self.pieces_per_unit);
         let shifted = map(&from_first, |t| if t > 0.0 { t } else { 0.0 });
         let shifted = map(&shifted, |t| if t < last { t } else { last } + WHOLE);
-        let mut values = [0.0; LANES];
+        // First all are fetched, point by point; then all are computed, several in one instruction.
         for lane in 0..LANES {
             #[expect(
                 clippy::cast_possible_truncation,
                 reason = "the lowest bits are what is wanted"
             )]
             let piece = shifted[lane].to_bits() as u32 as usize;
-            let [a, b, c, d] = self.pieces[piece];
+            cubics[lane] = self.pieces[piece];
+        }
+        let mut values = [0.0; LANES];
+        for lane in 0..LANES {
+            let [a, b, c, d] = cubics[lane];
             let x = from_first[lane] - (shifted[lane] - WHOLE);
             values[lane] = a + x * (b + x * (c + x * d));
         }

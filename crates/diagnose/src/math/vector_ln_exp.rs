@@ -60,6 +60,24 @@ pub(crate) fn ln(x: f64) -> f64 {
     exponent * LN_2[0] - ((half - (s * (half + r) + exponent * LN_2[1])) - f)
 }
 
+/// Largest |t| of [`ln_of_near`]: t¹²/13 is below a hundredth of the last place.
+pub(crate) const NEAR: f64 = 0.02;
+
+/// ln((1 + t)/(1 − t)) for |t| up to [`NEAR`]: a third of the work of [`ln`]; anything for others.
+///
+/// ```text
+/// 2·(t + t³/3 + t⁵/5 + t⁷/7 + t⁹/9 + t¹¹/11)
+/// ```
+///
+/// # Source
+/// The series of 2 artanh t; Abramowitz and Stegun 1964, equation 4.6.33.
+#[inline(always)]
+pub(crate) fn ln_of_near(t: f64) -> f64 {
+    let z = t * t;
+    let odd = 1.0 / 3.0 + z * (1.0 / 5.0 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0))));
+    2.0 * (t + t * (z * odd))
+}
+
 /// eˣ for x from −700 to 700; below −700 what it is there.
 ///
 /// ```text
@@ -103,6 +121,11 @@ mod tests {
             assert!((ln(x) - x.ln()).abs() <= 3e-16 * x.ln().abs(), "{x}");
         }
         assert!(ln(1.0).abs() < 1e-300 && (exp(0.0) - 1.0).abs() < 1e-300);
+        for k in -1000..=1000 {
+            let t = NEAR * f64::from(k) / 1000.0;
+            let expected = 2.0 * t.atanh();
+            assert!((ln_of_near(t) - expected).abs() <= 4e-16 * expected.abs(), "{t}");
+        }
         assert!(exp(-1e9) < 1e-303 && exp(f64::NEG_INFINITY) < 1e-303);
     }
 }

@@ -10,27 +10,28 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
 
-mod block;
 mod directions;
 mod drag;
 mod functions;
 mod noise;
+mod states;
 
 use effects::{EffectModel, EffectPoint, drag_rise};
 use flight::effect::{EffectId, HiddenParameter};
 use perf_model::variance::{mean_acceleration_deviation_m_s2, total_fuel_flow_relative_variance};
-use perf_model::{FlightPoint, LevelPrediction};
+use perf_model::{FlightPoint, LevelBlock};
 use units::{Mach, Mass, PressureAltitude};
 
 use crate::baseline::Baseline;
+use crate::baseline::smooth::BEYOND_BY_ROUNDING;
 use crate::baseline::standing_effects::STANDING_EFFECTS;
 use crate::math::lanes::{LANES, Lanes, add, map};
-use crate::math::vector_ln_exp::{exp, ln};
-use crate::residuals::level::block::Block;
+use crate::math::vector_ln_exp::{NEAR, exp, ln, ln_of_near};
 use crate::residuals::level::directions::{Directions, MOST_RISES};
 use crate::residuals::level::drag::Drag;
 use crate::residuals::level::functions::Functions;
 use crate::residuals::level::noise::{At, Noise};
+use crate::residuals::level::states::States;
 use crate::signals::noise::Statistics;
 
 /// A whole model, prepared for many such points.
@@ -58,21 +59,18 @@ pub enum LevelQuestion {
     MeansAndVariances,
 }
 
-/// What the whole model makes of a prediction by its initial table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LevelCorrection {
-    /// To be added to ln fuel flow.
-    pub ln_correction: f64,
-    /// e to the power of it, by which fuel flow is to be multiplied.
-    pub ratio: f64,
+/// What the whole model predicts at the points of a block.
+#[derive(Clone, Debug)]
+pub struct LevelAnswers {
+    /// False where single predictions have to be asked.
+    pub is_known: [bool; LANES],
+    /// Fuel flow of all engines.
+    pub fuel_flow_total_kg_s: Lanes,
     /// Variance of ln fuel flow that a new segment of a new flight would show; NaN where it was not asked for.
-    pub variance: f64,
+    pub variance: Lanes,
     /// As of [`WholePrediction`](super::whole::WholePrediction).
-    pub beyond_flights: bool,
+    pub beyond_flights: [bool; LANES],
 }
-
-/// Answers for up to [`WholeModelOfLevels::TOGETHER`] points; `None` where single predictions have to be asked.
-pub type LevelCorrections = [Option<LevelCorrection>; WholeModelOfLevels::TOGETHER];
 
 /// A drag rise that the fleet shows at all times.
 #[derive(Clone, Copy, Debug)]
@@ -85,9 +83,6 @@ struct Rise {
 }
 
 impl WholeModelOfLevels {
-    /// Points that are computed together.
-    pub const TOGETHER: usize = LANES;
-
     /// `None` for a model with applied effects, or with a standing effect that no column of conditions leaves out.
     pub(crate) fn new(
         model: &EffectModel<'_>,
@@ -137,46 +132,20 @@ impl WholeModelOfLevels {
         })
     }
 
-    /// What the whole model makes of points, up to [`TOGETHER`](Self::TOGETHER) of them, predicted by its initial table. The
-    /// corrections are those of single predictions within 1e-9, the standard deviations within 1e-5 of themselves, and the same
-    /// bits whichever points are asked together.
+    /// Predictions at the points of a block of the initial model: ln fuel flow as single predictions have it within 1e-9, standard
+    /// deviations within 1e-5 of themselves, and the same bits whichever points are asked together.
     #[must_use]
-    pub fn corrections(
-        &self,
-        points: &[LevelPrediction],
-        question: LevelQuestion,
-    ) -> LevelCorrections {
-        let vectors = pulp::Arch::new();
-        let mut answers = [None; Self::TOGETHER];
+    pub fn answers(&self, block: &LevelBlock, question: LevelQuestion) -> LevelAnswers {
         let of_variances = question == LevelQuestion::MeansAndVariances;
-        let points = &points[..points.len().min(Self::TOGETHER)];
-        for (at, points) in points.chunks(LANES).enumerate() {
-            let Some(block) = Block::new(points) else { continue };
-            let answers = &mut answers[at * LANES..];
-            let found =
-                vectors.dispatch(Compute { model: self, block: &block, points, of_variances });
-            for (place, answer) in answers.iter_mut().enumerate().take(points.len()) {
-                *answer = Self::answer(&found, place);
-            }
-        }
+        let compute = Compute { model: self, block, of_variances };
+        let mut answers = pulp::Arch::new().dispatch(compute);
         if of_variances {
             // Where there is none a single prediction says why.
-            for answer in &mut answers {
-                *answer = answer.filter(|found| found.variance.is_finite());
+            for place in 0..LANES {
+                answers.is_known[place] &= answers.variance[place].is_finite();
             }
         }
         answers
-    }
-
-    fn answer(found: &Computed, place: usize) -> Option<LevelCorrection> {
-        let ln_correction = found.correction[place];
-        let is_whole = found.is_known[place] && ln_correction.is_finite();
-        is_whole.then(|| LevelCorrection {
-            ln_correction,
-            ratio: found.ratio[place],
-            variance: found.variance[place],
-            beyond_flights: found.is_beyond_flights[place],
-        })
     }
 }
 
@@ -184,63 +153,56 @@ impl WholeModelOfLevels {
 /// processor may have, which are chosen when it runs.
 struct Compute<'a> {
     model: &'a WholeModelOfLevels,
-    block: &'a Block,
-    points: &'a [LevelPrediction],
+    block: &'a LevelBlock,
     of_variances: bool,
 }
 
-/// What is computed.
-struct Computed {
-    is_known: [bool; LANES],
-    is_beyond_flights: [bool; LANES],
-    /// To be added to ln fuel flow, and e to the power of it.
-    correction: Lanes,
-    ratio: Lanes,
-    /// NaN where it is not asked for.
-    variance: Lanes,
-}
-
 impl pulp::WithSimd for Compute<'_> {
-    type Output = Computed;
+    type Output = LevelAnswers;
 
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> Computed {
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> LevelAnswers {
         let Self { model, block, .. } = self;
-        let mut is_known = [true; LANES];
-        let drag = model.drag.at_points(self.points, &mut is_known);
-        let states = block.states(&drag.coefficient);
-        let values = model.functions.values(&states);
-        let mut correction = values.sum;
-        for place in 0..LANES {
-            let over_bilinear = drag.coefficient[place] / block.bilinear_drag_coefficient[place];
-            correction[place] += ln(over_bilinear) + drag.learnt[place] + model.standing_mean;
-        }
-        let mut slopes = [[0.0; LANES]; MOST_RISES];
-        for k in 0..model.rises.len().min(MOST_RISES) {
-            let rise = model.rises[k];
-            for place in 0..LANES {
-                let state = (states.mach[place], states.lift_coefficient[place]);
-                slopes[k][place] = rise.slope(state, drag.coefficient[place]);
-            }
-            add(&mut correction, rise.size, &slopes[k]);
-        }
-        let at = At {
-            functions: &model.functions,
-            table: &model.drag,
-            block,
-            states: &states,
-            drag: &drag,
-            values: &values,
-        };
-        let variance = if self.of_variances {
-            self.variance(simd, &at, &slopes, &mut is_known)
+        let mut is_known = block.is_known;
+        let drag = model.drag.of_block(block, &mut is_known);
+        let states = States::of(block, &drag.coefficient);
+        let slopes = model.slopes_of_rises(&states, &drag.coefficient);
+        let (remainder, beyond, variance) = if self.of_variances {
+            let values = model.functions.values(&states);
+            let at = At {
+                functions: &model.functions,
+                table: &model.drag,
+                block,
+                states: &states,
+                drag: &drag,
+                values: &values,
+            };
+            let variance = self.variance(simd, &at, &slopes, &mut is_known);
+            (values.sum, values.beyond, variance)
         } else {
-            [f64::NAN; LANES]
+            let (remainder, beyond) = model.functions.sum(&states);
+            (remainder, beyond, [f64::NAN; LANES])
         };
-        let ratio = map(&correction, exp);
-        let is_beyond_flights = values.is_beyond_flights;
-        Computed { is_known, is_beyond_flights, correction, ratio, variance }
+        let mut correction = [0.0; LANES];
+        for place in 0..LANES {
+            correction[place] = remainder[place] + drag.learnt[place] + model.standing_mean;
+        }
+        for k in 0..model.rises.len().min(MOST_RISES) {
+            add(&mut correction, model.rises[k].size, &slopes[k]);
+        }
+        let mut fuel_flow_total_kg_s = [0.0; LANES];
+        let mut beyond_flights = [false; LANES];
+        for place in 0..LANES {
+            let by_drag_kg_s =
+                drag.coefficient[place] * block.fuel_flow_per_drag_coefficient_kg_s[place];
+            fuel_flow_total_kg_s[place] = by_drag_kg_s * exp(correction[place]);
+        }
+        for place in 0..LANES {
+            is_known[place] &= correction[place].abs() <= f64::MAX;
+            beyond_flights[place] = beyond[place] > BEYOND_BY_ROUNDING;
+        }
+        LevelAnswers { is_known, fuel_flow_total_kg_s, variance, beyond_flights }
     }
 }
 
@@ -254,29 +216,66 @@ impl Compute<'_> {
         rises: &[Lanes; MOST_RISES],
         is_known: &mut [bool; LANES],
     ) -> Lanes {
-        let Self { model, points, .. } = *self;
+        let Self { model, block, .. } = *self;
         let mut variance = model.noise.variance(at, is_known);
         add(&mut variance, 1.0, &model.functions.left(at.values));
         let rises = &rises[..model.rises.len()];
-        model.directions.add_variances(simd, (at.values, rises), points, &mut variance);
-        for place in 0..points.len().min(LANES) {
-            variance[place] += model.drag.left_out(&points[place].cell);
-        }
+        model.directions.add_variances(simd, (at.values, rises), block, &mut variance);
+        let left_out = model.drag.left_out(&block.cells);
+        add(&mut variance, 1.0, &left_out);
         let stated = model.stated * model.stated;
         map(&variance, |variance| stated * variance + model.standing_variance)
     }
 }
 
+impl WholeModelOfLevels {
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn slopes_of_rises(&self, states: &States, drag: &Lanes) -> [Lanes; MOST_RISES] {
+        let mut slopes = [[0.0; LANES]; MOST_RISES];
+        for k in 0..self.rises.len().min(MOST_RISES) {
+            slopes[k] = self.rises[k].slopes(states, drag);
+        }
+        slopes
+    }
+}
+
 impl Rise {
-    /// Slope of ln fuel flow along the size, by the difference by which it was learnt.
+    /// Slopes of ln fuel flow along the size, by the difference by which it was learnt.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
     #[inline(always)]
-    fn slope(&self, (mach, lift): (f64, f64), drag: f64) -> f64 {
+    fn slopes(&self, states: &States, drag: &Lanes) -> Lanes {
+        let per_step = 1.0 / (2.0 * self.step);
+        let (mut slopes, mut sides) = ([0.0; LANES], [0.0; LANES]);
+        let mut are_far = 0;
+        for place in 0..LANES {
+            let (up, down) = self.drag_on_both_sides(states, drag, place);
+            sides[place] = (up - down) / (up + down);
+        }
+        for place in 0..LANES {
+            slopes[place] = ln_of_near(sides[place]) * per_step;
+            are_far |= u64::from(sides[place].abs() > NEAR);
+        }
+        if are_far != 0 {
+            // Far beyond where drag rises: each such place by the logarithm.
+            for place in 0..LANES {
+                let (up, down) = self.drag_on_both_sides(states, drag, place);
+                let by_logarithm = ln(up / down) * per_step;
+                let is_far = sides[place].abs() > NEAR;
+                slopes[place] = if is_far { by_logarithm } else { slopes[place] };
+            }
+        }
+        slopes
+    }
+
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn drag_on_both_sides(&self, states: &States, drag: &Lanes, place: usize) -> (f64, f64) {
+        let (mach, lift) = (states.mach[place], states.lift_coefficient[place]);
         let by = |moved: f64| drag_rise(mach, lift, self.divergence_mach - moved);
         let as_is = by(0.0);
-        let up = drag + (by(self.step_mach) - as_is);
-        let down = drag + (by(-self.step_mach) - as_is);
-        ln(up / down) / (2.0 * self.step)
+        let drag = drag[place];
+        (drag + (by(self.step_mach) - as_is), drag + (by(-self.step_mach) - as_is))
     }
 }
 

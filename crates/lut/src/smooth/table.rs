@@ -1,6 +1,6 @@
 //! The smooth surface of one table, prepared for very many values.
 
-use crate::{Axis, Cell, Table};
+use crate::{Axis, Cell, Cells, Table};
 
 use super::end_slopes;
 
@@ -58,8 +58,37 @@ impl SmoothTable {
     #[must_use]
     #[inline(always)]
     pub fn value(&self, cell: &Cell) -> f64 {
-        let (row, column) = cell.indices();
         let (u, v) = cell.local();
+        let of_v = self.powers_of_v(cell.indices(), u);
+        of_v[0] + v * (of_v[1] + v * (of_v[2] + v * of_v[3]))
+    }
+
+    /// The values at several located points, to the same bits.
+    ///
+    /// # Panics
+    /// Where the cells are of a larger grid.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[expect(clippy::needless_range_loop, reason = "as loops over several points are")]
+    #[must_use]
+    #[inline(always)]
+    pub fn values<const N: usize>(&self, cells: &Cells<N>) -> [f64; N] {
+        let (u, v) = cells.shares();
+        let mut powers = [[0.0; NODES]; N];
+        for place in 0..N {
+            powers[place] = self.powers_of_v(cells.indices(place), u[place]);
+        }
+        let mut values = [0.0; N];
+        for place in 0..N {
+            let (of_v, v) = (powers[place], v[place]);
+            values[place] = of_v[0] + v * (of_v[1] + v * (of_v[2] + v * of_v[3]));
+        }
+        values
+    }
+
+    /// Coefficients of the powers of v in a cell.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn powers_of_v(&self, (row, column): (usize, usize), u: f64) -> [f64; NODES] {
         let [constant, linear, square, cubic] = &self.cells[row * self.columns + column];
         let mut of_v = *cubic;
         for power in [square, linear, constant] {
@@ -67,7 +96,7 @@ impl SmoothTable {
                 of_v[k] = of_v[k] * u + power[k];
             }
         }
-        of_v[0] + v * (of_v[1] + v * (of_v[2] + v * of_v[3]))
+        of_v
     }
 }
 

@@ -1,41 +1,26 @@
 //! Predictions at many flight points, as columns.
 
-use diagnose::{LevelCorrection, LevelQuestion, WholeModelOfLevels};
-use perf_model::fuel_flow::fuel_flow_error_percent;
-use perf_model::{FlightPoint, LevelFlights, LevelPrediction, specific_range::specific_range};
-use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, TemperatureDifference};
+use diagnose::{LevelAnswers, LevelQuestion, WholeModelOfLevels};
+use perf_model::specific_range::specific_range;
+use perf_model::{FlightPoint, LevelBlock, LevelFlights};
+use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, TemperatureDifference, TrueAirspeed};
 
-use super::{PointPrediction, Predictor};
+use super::Predictor;
+use super::figures::{Figures, PredictedColumn, flag, flags};
 use crate::columns::Columns;
 
 /// Predictions at many flight points.
 #[derive(Clone, Debug, Default)]
 pub struct PredictedPoints {
-    /// Names and values, NaN where there is none: `fuel_flow_kg_s`, `fuel_flow_std_kg_s` (none by law `paper`
-    /// and where it is not asked for),
-    /// `specific_range_m_kg`, `lift_coefficient`, `drag_coefficient`, `extrapolated` (1 or 0), with measured fuel flows
-    /// `error_percent`, and where more than the table predicts `remainder_percent` and `beyond_flights` (1 or 0).
+    /// Names and values of the columns that were asked for, NaN where there is none: those of [`PredictedColumn`] in order. Without
+    /// measured fuel flows there are no errors, and beside the table there is something only where more was learnt.
     pub columns: Vec<(&'static str, Vec<f64>)>,
     /// Points (from 0) without a prediction, and why.
-    pub refused: Vec<(usize, String)>,
+    pub refused: Refused,
 }
 
 /// Points without a prediction, and why.
-type Refused = Vec<(usize, String)>;
-
-/// The columns that every prediction has, in order.
-#[derive(Debug)]
-struct Figures {
-    fuel_flow_kg_s: Vec<f64>,
-    fuel_flow_std_kg_s: Vec<f64>,
-    specific_range_m_kg: Vec<f64>,
-    lift_coefficient: Vec<f64>,
-    drag_coefficient: Vec<f64>,
-    extrapolated: Vec<f64>,
-    /// Of more than the table; empty where that alone predicts.
-    remainder_percent: Vec<f64>,
-    beyond_flights: Vec<f64>,
-}
+pub(super) type Refused = Vec<(usize, String)>;
 
 impl Predictor<'_> {
     /// Whether predictions at points of which mass, pressure altitude, Mach number and deviation from the ISA alone are known
@@ -52,7 +37,8 @@ impl Predictor<'_> {
         points: &[FlightPoint],
         measured_kg_s: Option<&[f64]>,
     ) -> PredictedPoints {
-        let (mut figures, mut refused) = (Figures::none(points.len()), Vec::new());
+        let mut figures = Figures::unknown(self.asked, self.is_whole(), points.len());
+        let mut refused = Vec::new();
         // Whether a point goes over columns is a matter of the point alone, not of those around it.
         let is_plain = |point: &FlightPoint| self.predicts_columns() && self.is_plain(point);
         let plain: Vec<usize> =
@@ -74,12 +60,12 @@ impl Predictor<'_> {
                 continue;
             }
             match self.at(point) {
-                Ok(found) => figures.set(place, &found),
+                Ok(found) => figures.set_prediction(place, &found),
                 Err(reason) => refused.push((place, reason)),
             }
         }
         refused.sort_by_key(|(place, _)| *place);
-        figures.into_predicted(self, measured_kg_s, refused)
+        figures.into_predicted(measured_kg_s, refused)
     }
 
     /// The same at points of which no more is known than what columns of level flights hold.
@@ -90,7 +76,7 @@ impl Predictor<'_> {
     ) -> PredictedPoints {
         if self.predicts_columns() {
             let (figures, refused) = self.by_columns(flights);
-            return figures.into_predicted(self, measured_kg_s, refused);
+            return figures.into_predicted(measured_kg_s, refused);
         }
         let points: Vec<FlightPoint> =
             (0..flights.count()).map(|place| point_of(flights, place)).collect();
@@ -107,33 +93,39 @@ impl Predictor<'_> {
     }
 
     fn by_columns(&self, flights: LevelFlights<'_>) -> (Figures, Refused) {
+        use PredictedColumn as Column;
         if let Some(whole) = &self.whole_of_levels {
             return self.by_whole_columns(whole, flights);
         }
         let model = self.current.base();
-        let mut figures = Figures::none(flights.count());
-        let posterior = self.model.posterior().filter(|_| self.states_deviations);
+        let mut figures = Figures::unknown(self.asked, self.is_whole(), flights.count());
+        let posterior = self.model.posterior().filter(|_| self.states_deviations());
         let variances = posterior.map(adapt::bayes::Posterior::variance_by_cell);
         let known = variances.as_ref().zip(self.plain.as_ref());
+        let is_flagged = figures.has(Column::Extrapolated);
         let mut next = 0;
         let mut refused = Vec::new();
         model.predict_level(flights, |place, predicted| {
             self.one_by_one(flights, next..place, &mut figures, &mut refused);
             next = place + 1;
             let total_kg_s = predicted.fuel_flow_total.to_kilograms_per_second();
-            figures.fuel_flow_kg_s[place] = total_kg_s;
-            figures.specific_range_m_kg[place] =
-                predicted.specific_range().to_meters_per_kilogram();
-            figures.lift_coefficient[place] = predicted.lift_coefficient;
-            figures.drag_coefficient[place] = predicted.drag_coefficient;
-            figures.extrapolated[place] = flag(model.uses_extrapolated(&predicted.cell));
+            figures.set(Column::FuelFlow, place, total_kg_s);
+            let range_m_kg = predicted.specific_range().to_meters_per_kilogram();
+            figures.set(Column::SpecificRange, place, range_m_kg);
+            figures.set(Column::LiftCoefficient, place, predicted.lift_coefficient);
+            figures.set(Column::DragCoefficient, place, predicted.drag_coefficient);
+            if is_flagged {
+                let is_extrapolated = model.uses_extrapolated(&predicted.cell);
+                figures.set(Column::Extrapolated, place, flag(is_extrapolated));
+            }
             if let Some((variances, plain)) = known {
                 let of_sensors = plain.base().level_variance(predicted, super::SAMPLES as usize);
                 let per_relative_drag_kg_s = plain.drag_table().interpolate(&predicted.cell)
                     * predicted.fuel_flow_per_drag_coefficient_kg_s;
                 let kg_s = variances.segment_variance(&predicted.cell, &of_sensors).sqrt()
                     * per_relative_drag_kg_s;
-                figures.fuel_flow_std_kg_s[place] = self.with_scatter(kg_s, total_kg_s);
+                let deviation_kg_s = self.with_scatter(kg_s, total_kg_s);
+                figures.set(Column::FuelFlowDeviation, place, deviation_kg_s);
             }
         });
         self.one_by_one(flights, next..flights.count(), &mut figures, &mut refused);
@@ -146,62 +138,70 @@ impl Predictor<'_> {
         whole: &WholeModelOfLevels,
         flights: LevelFlights<'_>,
     ) -> (Figures, Refused) {
-        let initial = self.model.initial.base();
-        let mut figures = Figures::none(flights.count());
-        figures.predict_beside_table();
-        let mut refused = Vec::new();
-        let question = if self.states_deviations {
+        let question = if self.states_deviations() {
             LevelQuestion::MeansAndVariances
         } else {
             LevelQuestion::Means
         };
-        let (mut places, mut block) = (Vec::new(), Vec::new());
-        let mut next = 0;
-        let mut answer = |places: &mut Vec<usize>, block: &mut Vec<LevelPrediction>| {
-            let found = whole.corrections(block, question);
-            for ((place, predicted), found) in places.iter().zip(&*block).zip(found) {
-                let Some(found) = found else { continue };
-                self.one_by_one(flights, next..*place, &mut figures, &mut refused);
-                next = *place + 1;
-                self.set_corrected(&mut figures, *place, predicted, &found);
-            }
-            places.clear();
-            block.clear();
-        };
-        initial.predict_level(flights, |place, predicted| {
-            places.push(place);
-            block.push(*predicted);
-            if block.len() == WholeModelOfLevels::TOGETHER {
-                answer(&mut places, &mut block);
+        let mut figures = Figures::with_capacity(self.asked, self.is_whole(), flights.count());
+        let mut unknown = Vec::new();
+        self.model.initial.base().level_blocks(flights, |from, block| {
+            let answers = whole.answers(block, question);
+            self.extend(&mut figures, block, &answers);
+            for (place, is_known) in answers.is_known[..block.count].iter().enumerate() {
+                if !is_known {
+                    unknown.push(from + place);
+                }
             }
         });
-        answer(&mut places, &mut block);
-        self.one_by_one(flights, next..flights.count(), &mut figures, &mut refused);
+        let mut refused = Vec::new();
+        for place in unknown {
+            self.one_by_one(flights, place..place + 1, &mut figures, &mut refused);
+        }
         (figures, refused)
     }
 
-    fn set_corrected(
-        &self,
-        figures: &mut Figures,
-        place: usize,
-        predicted: &LevelPrediction,
-        found: &LevelCorrection,
-    ) {
+    /// Adds the figures of a block; those of unknown points have no meaning yet.
+    fn extend(&self, figures: &mut Figures, block: &LevelBlock, answers: &LevelAnswers) {
+        use PredictedColumn as Column;
+        let count = block.count;
+        let totals_kg_s = &answers.fuel_flow_total_kg_s;
+        figures.extend(Column::FuelFlow, &totals_kg_s[..count]);
+        let mut values = [f64::NAN; LevelBlock::POINTS];
+        if figures.has(Column::FuelFlowDeviation) {
+            for (place, value) in values.iter_mut().enumerate() {
+                let kg_s = answers.variance[place].sqrt() * totals_kg_s[place];
+                *value = self.with_scatter(kg_s, totals_kg_s[place]);
+            }
+            figures.extend(Column::FuelFlowDeviation, &values[..count]);
+        }
+        if figures.has(Column::SpecificRange) {
+            for (place, value) in values.iter_mut().enumerate() {
+                let airspeed = TrueAirspeed::meters_per_second(block.true_airspeed_m_s[place]);
+                let total = FuelFlowTotal::kilograms_per_second(totals_kg_s[place]);
+                *value = specific_range(airspeed, total).to_meters_per_kilogram();
+            }
+            figures.extend(Column::SpecificRange, &values[..count]);
+        }
+        figures.extend(Column::LiftCoefficient, &block.lift_coefficient[..count]);
         let current = self.current.base();
-        let total_kg_s = predicted.fuel_flow_total.to_kilograms_per_second() * found.ratio;
-        let drag_coefficient = current.drag_table().interpolate(&predicted.cell);
-        let by_table_kg_s = drag_coefficient * predicted.fuel_flow_per_drag_coefficient_kg_s;
-        let total = FuelFlowTotal::kilograms_per_second(total_kg_s);
-        figures.fuel_flow_kg_s[place] = total_kg_s;
-        figures.fuel_flow_std_kg_s[place] =
-            self.with_scatter(found.variance.sqrt() * total_kg_s, total_kg_s);
-        figures.specific_range_m_kg[place] =
-            specific_range(predicted.true_airspeed, total).to_meters_per_kilogram();
-        figures.lift_coefficient[place] = predicted.lift_coefficient;
-        figures.drag_coefficient[place] = drag_coefficient;
-        figures.extrapolated[place] = flag(current.uses_extrapolated(&predicted.cell));
-        figures.remainder_percent[place] = 100.0 * (total_kg_s / by_table_kg_s - 1.0);
-        figures.beyond_flights[place] = flag(found.beyond_flights);
+        if figures.has(Column::DragCoefficient) || figures.has(Column::RemainderPercent) {
+            let drag_coefficient = current.drag_table().interpolate_all(&block.cells);
+            figures.extend(Column::DragCoefficient, &drag_coefficient[..count]);
+            for (place, value) in values.iter_mut().enumerate() {
+                let by_table_kg_s =
+                    drag_coefficient[place] * block.fuel_flow_per_drag_coefficient_kg_s[place];
+                *value = 100.0 * (totals_kg_s[place] / by_table_kg_s - 1.0);
+            }
+            figures.extend(Column::RemainderPercent, &values[..count]);
+        }
+        if figures.has(Column::Extrapolated) {
+            let extrapolated = current.use_extrapolated(&block.cells);
+            figures.extend(Column::Extrapolated, &flags(&extrapolated)[..count]);
+        }
+        if figures.has(Column::BeyondFlights) {
+            figures.extend(Column::BeyondFlights, &flags(&answers.beyond_flights)[..count]);
+        }
     }
 
     /// Points of which columns say nothing: they give no reason, and a limit may be drawn a rounding apart.
@@ -214,96 +214,13 @@ impl Predictor<'_> {
     ) {
         for place in places {
             match self.at(&point_of(flights, place)) {
-                Ok(found) => figures.set(place, &found),
-                Err(reason) => refused.push((place, reason)),
+                Ok(found) => figures.set_prediction(place, &found),
+                Err(reason) => {
+                    figures.set_none(place);
+                    refused.push((place, reason));
+                }
             }
         }
-    }
-}
-
-impl Figures {
-    fn none(count: usize) -> Self {
-        let none = || vec![f64::NAN; count];
-        Self {
-            fuel_flow_kg_s: none(),
-            fuel_flow_std_kg_s: none(),
-            specific_range_m_kg: none(),
-            lift_coefficient: none(),
-            drag_coefficient: none(),
-            extrapolated: none(),
-            remainder_percent: Vec::new(),
-            beyond_flights: Vec::new(),
-        }
-    }
-
-    /// More than the table predicts: there are columns for it.
-    fn predict_beside_table(&mut self) {
-        let count = self.fuel_flow_kg_s.len();
-        self.remainder_percent.resize(count, f64::NAN);
-        self.beyond_flights.resize(count, f64::NAN);
-    }
-
-    /// The figures of some points, at their places.
-    fn set_all(&mut self, places: &[usize], found: &Self) {
-        if !found.remainder_percent.is_empty() {
-            self.predict_beside_table();
-        }
-        for (into, from) in [
-            (&mut self.fuel_flow_kg_s, &found.fuel_flow_kg_s),
-            (&mut self.fuel_flow_std_kg_s, &found.fuel_flow_std_kg_s),
-            (&mut self.specific_range_m_kg, &found.specific_range_m_kg),
-            (&mut self.lift_coefficient, &found.lift_coefficient),
-            (&mut self.drag_coefficient, &found.drag_coefficient),
-            (&mut self.extrapolated, &found.extrapolated),
-            (&mut self.remainder_percent, &found.remainder_percent),
-            (&mut self.beyond_flights, &found.beyond_flights),
-        ] {
-            for (place, value) in places.iter().zip(from) {
-                into[*place] = *value;
-            }
-        }
-    }
-
-    fn set(&mut self, place: usize, found: &PointPrediction) {
-        let prediction = &found.prediction;
-        self.fuel_flow_kg_s[place] = prediction.fuel_flow_total.to_kilograms_per_second();
-        self.fuel_flow_std_kg_s[place] = found.fuel_flow_std_kg_s.unwrap_or(f64::NAN);
-        self.specific_range_m_kg[place] = prediction.specific_range.to_meters_per_kilogram();
-        self.lift_coefficient[place] = prediction.lift_coefficient;
-        self.drag_coefficient[place] = prediction.drag_coefficient;
-        self.extrapolated[place] = flag(prediction.extrapolated);
-        if let Some(beside) = found.beside_table {
-            self.predict_beside_table();
-            self.remainder_percent[place] = 100.0 * beside.ln_fuel_flow.exp_m1();
-            self.beyond_flights[place] = flag(beside.beyond_flights);
-        }
-    }
-
-    fn into_predicted(
-        mut self,
-        predictor: &Predictor<'_>,
-        measured_kg_s: Option<&[f64]>,
-        refused: Vec<(usize, String)>,
-    ) -> PredictedPoints {
-        let error_percent = measured_kg_s.map(|measured| {
-            let flows = measured.iter().zip(&self.fuel_flow_kg_s);
-            flows.map(|(measured, predicted)| error_percent(*measured, *predicted)).collect()
-        });
-        self.predict_beside_table();
-        let mut columns = vec![
-            ("fuel_flow_kg_s", self.fuel_flow_kg_s),
-            ("fuel_flow_std_kg_s", self.fuel_flow_std_kg_s),
-            ("specific_range_m_kg", self.specific_range_m_kg),
-            ("lift_coefficient", self.lift_coefficient),
-            ("drag_coefficient", self.drag_coefficient),
-            ("extrapolated", self.extrapolated),
-        ];
-        columns.extend(error_percent.map(|values| ("error_percent", values)));
-        if predictor.is_whole() {
-            columns.push(("remainder_percent", self.remainder_percent));
-            columns.push(("beyond_flights", self.beyond_flights));
-        }
-        PredictedPoints { columns, refused }
     }
 }
 
@@ -320,15 +237,6 @@ impl PredictedPoints {
 pub fn measured_kg_s(points: &[FlightPoint]) -> Vec<f64> {
     let measured = points.iter().map(|point| point.measured_fuel_flow_total);
     measured.map(|flow| flow.map_or(f64::NAN, FuelFlowTotal::to_kilograms_per_second)).collect()
-}
-
-const fn flag(is_set: bool) -> f64 {
-    if is_set { 1.0 } else { 0.0 }
-}
-
-fn error_percent(measured_kg_s: f64, predicted_kg_s: f64) -> f64 {
-    let total = FuelFlowTotal::kilograms_per_second;
-    fuel_flow_error_percent(total(measured_kg_s), total(predicted_kg_s))
 }
 
 fn point_of(flights: LevelFlights<'_>, place: usize) -> FlightPoint {

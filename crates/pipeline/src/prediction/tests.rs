@@ -229,6 +229,37 @@ fn without_deviations_the_rest_is_the_same_to_the_bit() {
     }
 }
 
+/// Whatever columns are asked for: each alone is what it is among all.
+#[test]
+fn a_column_alone_is_the_same_to_the_bit() {
+    for (file, predicts) in [
+        (whole(), Predicts::WholeModel),
+        (ModelFile::from_text(BAYES).unwrap(), Predicts::TableOnly),
+    ] {
+        let points = points();
+        let measured = measured_kg_s(&points);
+        let all =
+            Predictor::new(&file, predicts).unwrap().at_points(&points, Some(&measured)).columns;
+        let mut found = Vec::new();
+        for column in PredictedColumn::ALL {
+            assert_eq!(PredictedColumn::of_name(column.name()), Some(column));
+            let only = Predictor::new(&file, predicts).unwrap().with_columns(&[column]);
+            found.extend(only.at_points(&points, Some(&measured)).columns);
+        }
+        let names = |columns: &[(&'static str, Vec<f64>)]| -> Vec<&'static str> {
+            columns.iter().map(|(name, _)| *name).collect()
+        };
+        assert_eq!(names(&found), names(&all));
+        for ((name, alone), (_, among)) in found.iter().zip(&all) {
+            let bits = |values: &[f64]| -> Vec<u64> {
+                values.iter().map(|value| value.to_bits()).collect()
+            };
+            assert_eq!(bits(alone), bits(among), "{name}");
+        }
+    }
+    assert_eq!(PredictedColumn::of_name("fuel_flow"), None);
+}
+
 /// By the ranges of what was flown, found in the segments.
 #[test]
 fn points_beyond_the_flights_are_marked_and_less_sure() {

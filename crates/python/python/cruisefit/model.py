@@ -94,6 +94,7 @@ class Model:
         *,
         table_only: bool = False,
         deviations: bool = True,
+        columns: Sequence[str] | None = None,
         strict: bool = False,
         threads: int | None = None,
     ) -> Table:
@@ -107,6 +108,8 @@ class Model:
             table_only: Predict with the drag table alone, without what else the model has learnt.
             deviations: State standard deviations. They take most of the time of a learnt model: without them millions of points
                 are predicted several times as fast, and ``fuel_flow_std_kg_s`` is null.
+            columns: Columns of the prediction that are wanted, in any order; all without it. What nobody wants is not computed:
+                ``columns=["fuel_flow_kg_s"]`` takes half the time of everything but standard deviations.
             strict: Refuse points without a prediction, rather than warn of them.
             threads: Threads to use; all processors without it.
 
@@ -118,10 +121,12 @@ class Model:
             where the point is outside the model's table, and a :class:`PredictionWarning` says how many are.
 
         Raises:
-            InputError: A column is missing or unknown, or a value is outside its limits, with row and column.
+            InputError: A column is missing or unknown, or a value is outside its limits, with row and column; or ``columns`` has a
+                name that no column of predictions has.
         """
+        wanted = None if columns is None else list(columns)
         table, refused = self._native.predict(
-            as_stream(points), "table" if table_only else "whole", deviations, threads
+            as_stream(points), "table" if table_only else "whole", deviations, wanted, threads
         )
         if refused:
             row, reason = refused[0]

@@ -11,8 +11,8 @@
 use std::sync::OnceLock;
 
 use faer::Mat;
-use lut::Cell;
-use perf_model::LevelPrediction;
+use lut::Cells;
+use perf_model::LevelBlock;
 use pulp::Simd;
 
 use crate::baseline::Baseline;
@@ -131,13 +131,13 @@ impl Directions {
         &self,
         simd: S,
         (values, rises): (&Values, &[Lanes]),
-        points: &[LevelPrediction],
+        points: &LevelBlock,
         variances: &mut Lanes,
     ) {
         let places = self.places(values);
         let mut of_model = [[0.0; TOGETHER]; LANES];
-        for place in 0..points.len().min(LANES) {
-            let drag = self.drag_part(&points[place].cell);
+        for place in 0..points.count.min(LANES) {
+            let drag = self.drag_part(&points.cells, place);
             let mut squares = [0.0; TOGETHER];
             for block in 0..self.level.len() {
                 let sum = self.sum(simd, (&places, rises, &drag), place, block);
@@ -150,7 +150,7 @@ impl Directions {
             of_model[place] = squares;
         }
         // The same bits whatever the width of vectors.
-        for place in 0..points.len().min(LANES) {
+        for place in 0..points.count.min(LANES) {
             let mut sums = [0.0; 8];
             for from in (0..TOGETHER).step_by(8) {
                 for k in 0..8 {
@@ -188,10 +188,10 @@ impl Directions {
 
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn drag_part(&self, cell: &Cell) -> DragPart<'_> {
+    fn drag_part(&self, cells: &Cells<LANES>, place: usize) -> DragPart<'_> {
         let mut part: DragPart<'_> = [(0.0, &[]); 4];
         if let Some(drag) = &self.drag {
-            let (weights, nodes) = (cell.weights(), cell.nodes());
+            let (weights, nodes) = (cells.weights(place), cells.nodes(place));
             for k in 0..4 {
                 part[k] = (single(weights[k]), drag.row(nodes[k]));
             }

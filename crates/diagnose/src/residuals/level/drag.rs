@@ -1,10 +1,12 @@
 //! Drag by the initial table and what was learnt of it, at points and about them.
 
-use effects::{BetweenNodes, value_continued};
-use lut::{Cell, Outside, SmoothTable, Table};
-use perf_model::LevelPrediction;
+#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
 
-use crate::math::lanes::{LANES, Lanes};
+use effects::{BetweenNodes, value_continued};
+use lut::{Cell, Cells, Outside, SmoothTable, Table};
+use perf_model::LevelBlock;
+
+use crate::math::lanes::{LANES, Lanes, map};
 use crate::signals::table_uncertainty::TableUncertainty;
 
 /// The initial table as the model was learnt with it, and what was learnt.
@@ -71,24 +73,26 @@ impl Drag {
         }
     }
 
-    /// Drag at points of which the cells are known; false in `is_known` where it is not positive.
+    /// Drag at the points of a block; false in `is_known` where it is not positive.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    pub(super) fn at_points(
-        &self,
-        points: &[LevelPrediction],
-        is_known: &mut [bool; LANES],
-    ) -> Found {
-        let mut found = Found { coefficient: [1.0; LANES], learnt: [0.0; LANES] };
-        for place in 0..points.len().min(LANES) {
-            let of_point = self.at_cell(&points[place].cell);
-            if of_point.0 > 0.0 {
-                (found.coefficient[place], found.learnt[place]) = of_point;
-            } else {
-                is_known[place] = false;
-            }
+    pub(super) fn of_block(&self, block: &LevelBlock, is_known: &mut [bool; LANES]) -> Found {
+        let mut coefficient = match self.between_nodes {
+            BetweenNodes::Smooth => self.smooth.values(&block.cells),
+            BetweenNodes::Straight => self.table.interpolate_all(&block.cells),
+        };
+        let mut learnt = match &self.learnt {
+            Some(learnt) => learnt.mean.interpolate_all(&block.cells),
+            None => [0.0; LANES],
+        };
+        for place in 0..LANES {
+            let is_positive = coefficient[place] > 0.0;
+            is_known[place] &= is_positive;
+            // A positive number, so that all goes on.
+            coefficient[place] = if is_positive { coefficient[place] } else { 1.0 };
+            learnt[place] = if is_positive { learnt[place] } else { 0.0 };
         }
-        found
+        Found { coefficient, learnt }
     }
 
     #[expect(clippy::inline_always, reason = "as above")]
@@ -119,13 +123,14 @@ impl Drag {
     }
 
     /// The variance of what was learnt that its directions leave out.
-    #[inline]
-    pub(super) fn left_out(&self, cell: &Cell) -> f64 {
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn left_out(&self, cells: &Cells<LANES>) -> Lanes {
         let left = self.learnt.as_ref().and_then(|learnt| learnt.left_deviation.as_ref());
-        left.map_or(0.0, |left| {
-            let deviation = left.interpolate(cell);
-            deviation * deviation
-        })
+        match left {
+            Some(left) => map(&left.interpolate_all(cells), |deviation| deviation * deviation),
+            None => [0.0; LANES],
+        }
     }
 }
 

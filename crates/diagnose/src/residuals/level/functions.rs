@@ -8,23 +8,13 @@ use effects::Variable;
 
 use crate::baseline::Baseline;
 use crate::baseline::smooth::Prepared;
-use crate::math::curve::Curve;
+use crate::math::curve::{Cubics, Curve};
 use crate::math::lanes::{LANES, Lanes, add, add_product, each, map};
+use crate::residuals::level::states::States;
 use crate::thresholds::FARTHEST_PRODUCT;
 
 /// Most variables that a remainder has.
 pub(super) const MOST: usize = 8;
-
-/// What the remainder depends on.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct States {
-    pub(super) mach: Lanes,
-    pub(super) lift_coefficient: Lanes,
-    pub(super) pressure_altitude_m: Lanes,
-    pub(super) corrected_thrust_n: Lanes,
-    pub(super) isa_deviation_k: Lanes,
-    pub(super) mass_kg: Lanes,
-}
 
 pub(super) const MACH: [Variable; 3] =
     [Variable::Mach, Variable::LiftCoefficient, Variable::CorrectedThrust];
@@ -64,8 +54,8 @@ pub(super) struct Tabulated {
 pub(super) struct Values {
     /// All of it.
     pub(super) sum: Lanes,
-    /// Whether a variable lies beyond what was flown.
-    pub(super) is_beyond_flights: [bool; LANES],
+    /// By how many lengths a variable lies beyond what was flown.
+    pub(super) beyond: Lanes,
     /// Each variable in lengths of its function.
     lengths: [Lanes; MOST],
     functions: [Lanes; MOST],
@@ -148,26 +138,47 @@ impl Functions {
     pub(super) fn values(&self, states: &States) -> Values {
         let none = [[0.0; LANES]; MOST];
         let (mut lengths, mut functions, mut factors) = (none, none, none);
-        let mut sum = [self.level; LANES];
-        let mut is_beyond_flights = [false; LANES];
+        let mut sum = Sum::new(self.level);
         for place in 0..self.smooth.len().min(MOST) {
-            let one = &self.smooth[place];
-            let z = self.lengths(one, states);
-            functions[place] = one.mean.at(&z);
-            let is_beyond = one.prepared.are_beyond(&z);
-            for lane in 0..LANES {
-                is_beyond_flights[lane] |= is_beyond[lane];
-            }
-            factors[place] = factor(&z);
-            add(&mut sum, 1.0, &functions[place]);
+            let z = self.lengths(&self.smooth[place], states);
+            functions[place] = self.add(place, &z, &mut factors, &mut sum);
             lengths[place] = z;
         }
         let mut slopes = none;
         for place in 0..self.smooth.len().min(MOST) {
             slopes[place] = self.product(place, &factors);
-            add_product(&mut sum, 0.5, &factors[place], &slopes[place]);
         }
-        Values { sum, is_beyond_flights, lengths, functions, factors, slopes }
+        Values { sum: sum.value, beyond: sum.beyond, lengths, functions, factors, slopes }
+    }
+
+    /// The remainder alone, and by how many lengths the points lie beyond what was flown, as [`values`](Self::values) has them.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    pub(super) fn sum(&self, states: &States) -> (Lanes, Lanes) {
+        let mut factors = [[0.0; LANES]; MOST];
+        let mut sum = Sum::new(self.level);
+        for place in 0..self.smooth.len().min(MOST) {
+            let z = self.lengths(&self.smooth[place], states);
+            self.add(place, &z, &mut factors, &mut sum);
+        }
+        (sum.value, sum.beyond)
+    }
+
+    /// Adds a function at these lengths and its products with those before it; returns the function.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn add(&self, place: usize, z: &Lanes, factors: &mut [Lanes; MOST], sum: &mut Sum) -> Lanes {
+        let one = &self.smooth[place];
+        one.prepared.add_beyond(z, &mut sum.beyond);
+        let function = one.mean.at_with(z, &mut sum.cubics);
+        add(&mut sum.value, 1.0, &function);
+        let mut of_others = [0.0; LANES];
+        for other in 0..place {
+            add(&mut of_others, self.products[place][other], &factors[other]);
+        }
+        factors[place] = factor(z);
+        add_product(&mut sum.value, 1.0, &factors[place], &of_others);
+        function
     }
 
     /// How much the remainder at other states differs where only some variables do. Compiled once: it is asked ten
@@ -218,6 +229,21 @@ impl Values {
     #[inline]
     pub(super) const fn factors(&self, function: usize) -> &Lanes {
         &self.factors[function]
+    }
+}
+
+/// The remainder as it is summed.
+struct Sum {
+    value: Lanes,
+    beyond: Lanes,
+    cubics: Cubics,
+}
+
+impl Sum {
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    const fn new(level: f64) -> Self {
+        Self { value: [level; LANES], beyond: [0.0; LANES], cubics: [[0.0; 4]; LANES] }
     }
 }
 

@@ -9,14 +9,15 @@ use atmos::constants::{
     TROPOPAUSE_PRESSURE_ALTITUDE_M, TROPOSPHERE_PRESSURE_EXPONENT,
 };
 use effects::Variable;
+use perf_model::LevelBlock;
 use perf_model::aircraft::SensorDeviations;
 use units::Mass;
 
 use crate::math::lanes::{LANES, Lanes, each, map};
 use crate::math::vector_ln_exp::{exp, ln};
-use crate::residuals::level::block::{Block, ln_ratio};
 use crate::residuals::level::drag::{Drag, Found};
-use crate::residuals::level::functions::{self, Functions, States, Values};
+use crate::residuals::level::functions::{self, Functions, Values};
+use crate::residuals::level::states::{States, ln_ratio, pressure_ratio};
 use crate::signals::noise::Statistics;
 
 /// Relative step of the mass, and step of the acceleration (m/s²), of the slopes of the noise.
@@ -41,7 +42,7 @@ pub(super) struct Noise {
 pub(super) struct At<'b> {
     pub(super) functions: &'b Functions,
     pub(super) table: &'b Drag,
-    pub(super) block: &'b Block,
+    pub(super) block: &'b LevelBlock,
     pub(super) states: &'b States,
     pub(super) drag: &'b Found,
     pub(super) values: &'b Values,
@@ -91,7 +92,7 @@ impl Noise {
         down.along_mass(at, -MASS_STEP);
         let of_mass = difference(at, [up, down], &functions::MASS, is_known);
         for place in 0..LANES {
-            is_known[place] &= at.block.temperature_k[place] > temperature_step_k;
+            is_known[place] &= at.block.static_air_temperature_k[place] > temperature_step_k;
             let above = 1.0 + at.states.mach[place];
             of_mach[place] += self.mach_exponent * ln((above + mach_step) / (above - mach_step));
         }
@@ -163,7 +164,8 @@ impl Side {
             let standard_k = standard_temperature_k(altitude_m);
             let ratio = pressure_pa(altitude_m, standard_k) / at.block.pressure_pa[place];
             self.states.pressure_altitude_m[place] = altitude_m;
-            self.states.isa_deviation_k[place] = at.block.temperature_k[place] - standard_k;
+            self.states.isa_deviation_k[place] =
+                at.block.static_air_temperature_k[place] - standard_k;
             self.states.lift_coefficient[place] /= ratio;
             self.dynamic_pressure[place] = ratio;
             self.static_pressure[place] = ratio;
@@ -208,7 +210,7 @@ impl pulp::NullaryFnOnce for Find<'_> {
             let thrust_n = side.drag.coefficient[place] * force_n;
             side.thrust_n[place] = thrust_n;
             states.corrected_thrust_n[place] =
-                thrust_n / (block.pressure_ratio(place) * side.static_pressure[place]);
+                thrust_n / (pressure_ratio(block, place) * side.static_pressure[place]);
         }
     }
 }
@@ -272,7 +274,7 @@ fn along_temperature(at: &At<'_>, step_k: f64) -> Lanes {
     let above = at.functions.change(at.values, &states, &functions::TEMPERATURE);
     states.isa_deviation_k = map(&at.states.isa_deviation_k, |deviation_k| deviation_k - step_k);
     let below = at.functions.change(at.values, &states, &functions::TEMPERATURE);
-    let mut found = at.block.temperature_k;
+    let mut found = at.block.static_air_temperature_k;
     for place in 0..LANES {
         let tsfc = 0.5 * ln((found[place] + step_k) / (found[place] - step_k));
         found[place] = tsfc + above[place] - below[place];
@@ -301,7 +303,7 @@ fn accelerated(at: &At<'_>, acceleration_m_s2: f64) -> (Lanes, Lanes) {
     let thrust_n = each(&drag_n, &at.states.mass_kg, |drag, mass| drag + mass * acceleration_m_s2);
     let mut states = *at.states;
     for place in 0..LANES {
-        states.corrected_thrust_n[place] = thrust_n[place] / at.block.pressure_ratio(place);
+        states.corrected_thrust_n[place] = thrust_n[place] / pressure_ratio(at.block, place);
     }
     let mut learnt = at.functions.change(at.values, &states, &functions::ACCELERATION);
     for place in 0..LANES {
