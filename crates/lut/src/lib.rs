@@ -7,7 +7,8 @@
 //!
 //! The one design decision: looking up has two steps. [`Grid::locate`] turns a point into a [`Cell`] (four nodes, four
 //! weights, four distances), and a [`Table`] is read with the cell. Code that changes a table needs the cell anyway,
-//! and tables that share a [`Grid`] are read with one search.
+//! and tables that share a [`Grid`] are read with one search. Where there are very many points, [`Cells`] are some of them side
+//! by side.
 //!
 //! Limits:
 //! - A coordinate within [`SNAP`] of a breakpoint *is* that breakpoint; this rule is applied first. Axes whose

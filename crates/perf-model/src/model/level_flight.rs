@@ -5,22 +5,27 @@
 //! is left are products, quotients and roots over columns, several points in one instruction; only the search in the
 //! table is done point by point.
 
-use atmos::constants::{
-    HIGHEST_PRESSURE_ALTITUDE_M, LOWEST_PRESSURE_ALTITUDE_M, TROPOPAUSE_PRESSURE_ALTITUDE_M,
-};
+mod block;
+mod functions;
+
+use atmos::constants::TROPOPAUSE_PRESSURE_ALTITUDE_M;
 use atmos::{airspeed, isa};
 use flight::ObservationVariance;
-use lut::{Cell, Cells, Outside};
+use lut::{Cell, Outside};
 use units::{
     Acceleration, Force, FuelFlowTotal, Mach, Mass, Pressure, PressureAltitude, SpecificRange,
     Temperature, TrueAirspeed,
 };
 
+use block::Lanes;
+use functions::Functions;
+
 use super::PerformanceModel;
 use crate::forces;
 use crate::specific_range::specific_range;
-use crate::tsfc::tsfc;
 use crate::variance::{self, RecordedPoint, TableSlopes};
+
+pub use block::LevelBlock;
 
 /// Flight points as columns of one length.
 #[derive(Clone, Copy, Debug)]
@@ -75,104 +80,21 @@ impl LevelPrediction {
     }
 }
 
-/// A quantity at each point of a block.
-type Lanes = [f64; LevelBlock::POINTS];
-
-/// Flight points side by side, one array for each quantity: what is known of them before drag is. Places beyond the last point
-/// and points without a prediction hold numbers without meaning; [`is_known`](Self::is_known) tells.
-#[derive(Clone, Debug)]
-pub struct LevelBlock {
-    /// Number of points.
-    pub count: usize,
-    /// Whether [`predict`](PerformanceModel::predict) finds a prediction.
-    pub is_known: [bool; Self::POINTS],
-    /// Gross mass.
-    pub mass_kg: Lanes,
-    /// Pressure altitude.
-    pub pressure_altitude_m: Lanes,
-    /// Mach number.
-    pub mach: Lanes,
-    /// Deviation from the ISA.
-    pub isa_deviation_k: Lanes,
-    /// Static pressure.
-    pub pressure_pa: Lanes,
-    /// Temperature of the ISA at the pressure altitude.
-    pub standard_temperature_k: Lanes,
-    /// Static air temperature.
-    pub static_air_temperature_k: Lanes,
-    /// True airspeed.
-    pub true_airspeed_m_s: Lanes,
-    /// Lift coefficient.
-    pub lift_coefficient: Lanes,
-    /// Drag of a drag coefficient of 1, N.
-    pub dynamic_force_n: Lanes,
-    /// Fuel flow of all engines of a drag coefficient of 1, kg/s.
-    pub fuel_flow_per_drag_coefficient_kg_s: Lanes,
-    /// Cells of the table.
-    pub cells: Cells<{ Self::POINTS }>,
-}
-
-impl LevelBlock {
-    /// Points that are computed together: so many that the code of a step, which is long, is fetched once for them all, and so few
-    /// that what is known of them stays in a near cache.
-    pub const POINTS: usize = 32;
-
-    fn new() -> Self {
-        let none = [0.0; Self::POINTS];
-        Self {
-            count: 0,
-            is_known: [false; Self::POINTS],
-            mass_kg: none,
-            pressure_altitude_m: none,
-            mach: none,
-            isa_deviation_k: none,
-            pressure_pa: none,
-            standard_temperature_k: none,
-            static_air_temperature_k: none,
-            true_airspeed_m_s: none,
-            lift_coefficient: none,
-            dynamic_force_n: none,
-            fuel_flow_per_drag_coefficient_kg_s: none,
-            cells: Cells::default(),
-        }
-    }
-
-    /// Takes points from a place on, as many as there are and fit in; places beyond them repeat the first.
-    fn take(&mut self, points: &LevelFlights<'_>, from: usize, count: usize) {
-        self.count = Self::POINTS.min(count - from);
-        for (lanes, column) in [
-            (&mut self.mass_kg, points.mass_kg),
-            (&mut self.pressure_altitude_m, points.pressure_altitude_m),
-            (&mut self.mach, points.mach),
-            (&mut self.isa_deviation_k, points.isa_deviation_k),
-        ] {
-            let column = &column[from..from + self.count];
-            lanes[..self.count].copy_from_slice(column);
-            lanes[self.count..].fill(column[0]);
-        }
-    }
-
-    #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
-    #[inline(always)]
-    fn is_inside_domains(&self, place: usize) -> bool {
-        let (mass_kg, altitude_m) = (self.mass_kg[place], self.pressure_altitude_m[place]);
-        (f64::MIN_POSITIVE <= mass_kg)
-            & (mass_kg <= f64::MAX)
-            & (LOWEST_PRESSURE_ALTITUDE_M <= altitude_m)
-            & (altitude_m <= HIGHEST_PRESSURE_ALTITUDE_M)
-            & (self.mach[place] >= f64::MIN_POSITIVE)
-            & (self.static_air_temperature_k[place] >= f64::MIN_POSITIVE)
-    }
-}
-
 impl PerformanceModel {
     /// Predicted fuel flow of all engines, kg/s, at each point that all columns have; NaN where
     /// [`predict`](Self::predict) finds none. Within 1e-12 of what `predict` finds.
     #[must_use]
     pub fn fuel_flows_kg_s(&self, points: LevelFlights<'_>) -> Vec<f64> {
-        let mut flows = vec![f64::NAN; points.count()];
-        self.predict_level(points, |place, predicted| {
-            flows[place] = predicted.fuel_flow_total.to_kilograms_per_second();
+        let mut flows = Vec::with_capacity(points.count());
+        self.level_blocks(points, |_, block| {
+            let drag_coefficient = self.drag_table().interpolate_all(&block.cells);
+            let mut of_block = [f64::NAN; LevelBlock::POINTS];
+            for place in 0..LevelBlock::POINTS {
+                let total_kg_s =
+                    drag_coefficient[place] * block.fuel_flow_per_drag_coefficient_kg_s[place];
+                of_block[place] = if block.is_known[place] { total_kg_s } else { f64::NAN };
+            }
+            flows.extend_from_slice(&of_block[..block.count]);
         });
         flows
     }
@@ -356,113 +278,6 @@ impl LevelFlights<'_> {
     pub fn count(&self) -> usize {
         let columns = [self.mass_kg, self.pressure_altitude_m, self.mach, self.isa_deviation_k];
         columns.iter().map(|column| column.len()).min().unwrap_or(0)
-    }
-}
-
-/// The functions of one variable that a prediction needs, as polynomials.
-struct Functions {
-    low_pressure_pa: Polynomial<16>,
-    high_pressure_pa: Polynomial<16>,
-    low_temperature_k: Polynomial<2>,
-    /// TSFC of the static temperature of the standard day at sea level over Mach number, kg/(N·s).
-    tsfc_at_sea_level: Polynomial<16>,
-}
-
-impl Functions {
-    fn of(model: &PerformanceModel) -> Self {
-        let (lowest, highest) = (LOWEST_PRESSURE_ALTITUDE_M, HIGHEST_PRESSURE_ALTITUDE_M);
-        let tropopause = TROPOPAUSE_PRESSURE_ALTITUDE_M;
-        let pressure = |altitude_m: f64| {
-            isa::pressure(PressureAltitude::meters(altitude_m))
-                .map_or(f64::NAN, Pressure::to_pascals)
-        };
-        let temperature = |altitude_m: f64| {
-            isa::temperature(PressureAltitude::meters(altitude_m))
-                .map_or(f64::NAN, Temperature::to_kelvin)
-        };
-        let machs = model.aircraft().grid().y();
-        let law = model.aircraft().tsfc_law();
-        Self {
-            low_pressure_pa: Polynomial::of((lowest, tropopause), pressure),
-            high_pressure_pa: Polynomial::of((tropopause, highest), pressure),
-            low_temperature_k: Polynomial::of((lowest, tropopause), temperature),
-            tsfc_at_sea_level: Polynomial::of((machs.first(), machs.last()), |mach| {
-                tsfc(law, 1.0, Mach::new(mach)).to_kilograms_per_newton_second()
-            }),
-        }
-    }
-}
-
-impl Functions {
-    /// Pressures at altitudes. Most blocks are on one side of the tropopause: the other side is not computed for them.
-    #[expect(clippy::inline_always, reason = "as its caller")]
-    #[inline(always)]
-    fn write_pressures_pa(&self, altitudes_m: &Lanes, pressures_pa: &mut Lanes) {
-        let is_low = |altitude_m: f64| altitude_m <= TROPOPAUSE_PRESSURE_ALTITUDE_M;
-        let (low, high) = (&self.low_pressure_pa, &self.high_pressure_pa);
-        let mut count = 0;
-        for place in 0..LevelBlock::POINTS {
-            count += usize::from(is_low(altitudes_m[place]));
-        }
-        for place in 0..LevelBlock::POINTS {
-            if count < LevelBlock::POINTS {
-                pressures_pa[place] = high.at(altitudes_m[place]);
-            }
-        }
-        for place in 0..LevelBlock::POINTS {
-            if count > 0 && is_low(altitudes_m[place]) {
-                pressures_pa[place] = low.at(altitudes_m[place]);
-            }
-        }
-    }
-}
-
-/// A smooth function between two ends as the polynomial that meets it at Chebyshev's points.
-///
-/// # Source
-/// Press et al., *Numerical Recipes*, third edition, sections 5.8 (coefficients) and 5.10 (as powers).
-struct Polynomial<const N: usize> {
-    middle: f64,
-    per_half_width: f64,
-    /// Of the powers of the variable scaled to −1 to 1, from the lowest.
-    coefficients: [f64; N],
-}
-
-impl<const N: usize> Polynomial<N> {
-    fn of((first, last): (f64, f64), function: impl Fn(f64) -> f64) -> Self {
-        let (middle, half_width) = (f64::midpoint(first, last), 0.5 * (last - first));
-        let angle = |k: usize| core::f64::consts::PI * (k as f64 + 0.5) / N as f64;
-        let values: [f64; N] =
-            core::array::from_fn(|k| function(middle + half_width * angle(k).cos()));
-        // Chebyshev's polynomials as powers, one after the other: T(j+1) = 2 x T(j) − T(j−1).
-        let (mut before, mut current) = ([0.0; N], [0.0; N]);
-        current[0] = 1.0;
-        let mut coefficients = [0.0; N];
-        for j in 0..N {
-            let sum: f64 = values
-                .iter()
-                .enumerate()
-                .map(|(k, value)| value * (j as f64 * angle(k)).cos())
-                .sum();
-            let weight = sum * if j == 0 { 1.0 } else { 2.0 } / N as f64;
-            for (coefficient, power) in coefficients.iter_mut().zip(&current) {
-                *coefficient += weight * power;
-            }
-            let double = if j == 0 { 1.0 } else { 2.0 };
-            let next: [f64; N] = core::array::from_fn(|power| {
-                let raised = if power == 0 { 0.0 } else { double * current[power - 1] };
-                raised - before[power]
-            });
-            before = current;
-            current = next;
-        }
-        Self { middle, per_half_width: 1.0 / half_width, coefficients }
-    }
-
-    #[inline]
-    fn at(&self, x: f64) -> f64 {
-        let scaled = (x - self.middle) * self.per_half_width;
-        self.coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * scaled + coefficient)
     }
 }
 

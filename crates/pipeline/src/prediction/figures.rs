@@ -1,5 +1,6 @@
 //! The columns of predictions at many points, and which of them are asked for.
 
+use perf_model::LevelBlock;
 use perf_model::fuel_flow::fuel_flow_error_percent;
 use units::FuelFlowTotal;
 
@@ -154,6 +155,22 @@ impl Figures {
         }
     }
 
+    /// Adds values at a block's first places to a column that is to be filled.
+    pub(super) fn extend_with(
+        &mut self,
+        column: PredictedColumn,
+        count: usize,
+        value: impl Fn(usize) -> f64,
+    ) {
+        if self.has(column) {
+            let mut values = [f64::NAN; LevelBlock::POINTS];
+            for (place, slot) in values.iter_mut().enumerate() {
+                *slot = value(place);
+            }
+            self.columns[column as usize].extend_from_slice(&values[..count]);
+        }
+    }
+
     /// Sets a value of a column that is to be filled.
     #[inline]
     pub(super) fn set(&mut self, column: PredictedColumn, place: usize, value: f64) {
@@ -223,15 +240,6 @@ impl Figures {
 /// 1 or 0.
 pub(super) const fn flag(is_set: bool) -> f64 {
     if is_set { 1.0 } else { 0.0 }
-}
-
-/// 1 or 0 of each.
-pub(super) fn flags<const N: usize>(are_set: &[bool; N]) -> [f64; N] {
-    let mut flags = [0.0; N];
-    for (into, is_set) in flags.iter_mut().zip(are_set) {
-        *into = flag(*is_set);
-    }
-    flags
 }
 
 fn error_percent(measured_kg_s: f64, predicted_kg_s: f64) -> f64 {

@@ -1,12 +1,14 @@
 //! Predictions at many flight points, as columns.
 
+use adapt::bayes::Posterior;
 use diagnose::{LevelAnswers, LevelQuestion, WholeModelOfLevels};
+use effects::ExtendedModel;
 use perf_model::specific_range::specific_range;
 use perf_model::{FlightPoint, LevelBlock, LevelFlights};
 use units::{FuelFlowTotal, Mach, Mass, PressureAltitude, TemperatureDifference, TrueAirspeed};
 
 use super::Predictor;
-use super::figures::{Figures, PredictedColumn, flag, flags};
+use super::figures::{Figures, PredictedColumn, flag};
 use crate::columns::Columns;
 
 /// Predictions at many flight points.
@@ -16,7 +18,7 @@ pub struct PredictedPoints {
     /// measured fuel flows there are no errors, and beside the table there is something only where more was learnt.
     pub columns: Vec<(&'static str, Vec<f64>)>,
     /// Points (from 0) without a prediction, and why.
-    pub refused: Refused,
+    pub refused: Vec<(usize, String)>,
 }
 
 /// Points without a prediction, and why.
@@ -93,16 +95,26 @@ impl Predictor<'_> {
     }
 
     fn by_columns(&self, flights: LevelFlights<'_>) -> (Figures, Refused) {
-        use PredictedColumn as Column;
-        if let Some(whole) = &self.whole_of_levels {
-            return self.by_whole_columns(whole, flights);
+        let posterior = self.model.posterior().filter(|_| self.states_deviations());
+        match (&self.whole_of_levels, posterior, &self.plain) {
+            (None, Some(posterior), Some(plain)) => {
+                self.with_deviations_of_table(posterior, plain, flights)
+            }
+            (whole, ..) => self.by_blocks(whole.as_ref(), flights),
         }
+    }
+
+    /// By the table alone, with the standard deviations of law `bayes`, which are asked of every cell.
+    fn with_deviations_of_table(
+        &self,
+        posterior: &Posterior,
+        plain: &ExtendedModel,
+        flights: LevelFlights<'_>,
+    ) -> (Figures, Refused) {
+        use PredictedColumn as Column;
         let model = self.current.base();
         let mut figures = Figures::unknown(self.asked, self.is_whole(), flights.count());
-        let posterior = self.model.posterior().filter(|_| self.states_deviations());
-        let variances = posterior.map(adapt::bayes::Posterior::variance_by_cell);
-        let known = variances.as_ref().zip(self.plain.as_ref());
-        let is_flagged = figures.has(Column::Extrapolated);
+        let variances = posterior.variance_by_cell();
         let mut next = 0;
         let mut refused = Vec::new();
         model.predict_level(flights, |place, predicted| {
@@ -110,32 +122,28 @@ impl Predictor<'_> {
             next = place + 1;
             let total_kg_s = predicted.fuel_flow_total.to_kilograms_per_second();
             figures.set(Column::FuelFlow, place, total_kg_s);
+            let of_sensors = plain.base().level_variance(predicted, super::SAMPLES as usize);
+            let per_relative_drag_kg_s = plain.drag_table().interpolate(&predicted.cell)
+                * predicted.fuel_flow_per_drag_coefficient_kg_s;
+            let kg_s = variances.segment_variance(&predicted.cell, &of_sensors).sqrt()
+                * per_relative_drag_kg_s;
+            let deviation_kg_s = self.with_scatter(kg_s, total_kg_s);
+            figures.set(Column::FuelFlowDeviation, place, deviation_kg_s);
             let range_m_kg = predicted.specific_range().to_meters_per_kilogram();
             figures.set(Column::SpecificRange, place, range_m_kg);
             figures.set(Column::LiftCoefficient, place, predicted.lift_coefficient);
             figures.set(Column::DragCoefficient, place, predicted.drag_coefficient);
-            if is_flagged {
-                let is_extrapolated = model.uses_extrapolated(&predicted.cell);
-                figures.set(Column::Extrapolated, place, flag(is_extrapolated));
-            }
-            if let Some((variances, plain)) = known {
-                let of_sensors = plain.base().level_variance(predicted, super::SAMPLES as usize);
-                let per_relative_drag_kg_s = plain.drag_table().interpolate(&predicted.cell)
-                    * predicted.fuel_flow_per_drag_coefficient_kg_s;
-                let kg_s = variances.segment_variance(&predicted.cell, &of_sensors).sqrt()
-                    * per_relative_drag_kg_s;
-                let deviation_kg_s = self.with_scatter(kg_s, total_kg_s);
-                figures.set(Column::FuelFlowDeviation, place, deviation_kg_s);
-            }
+            let is_extrapolated = model.uses_extrapolated(&predicted.cell);
+            figures.set(Column::Extrapolated, place, flag(is_extrapolated));
         });
         self.one_by_one(flights, next..flights.count(), &mut figures, &mut refused);
         (figures, refused)
     }
 
     /// All that was learnt refers to the initial table; what else is stated of a point is by the learnt one, on the same grid.
-    fn by_whole_columns(
+    fn by_blocks(
         &self,
-        whole: &WholeModelOfLevels,
+        whole: Option<&WholeModelOfLevels>,
         flights: LevelFlights<'_>,
     ) -> (Figures, Refused) {
         let question = if self.states_deviations() {
@@ -143,12 +151,15 @@ impl Predictor<'_> {
         } else {
             LevelQuestion::Means
         };
+        let current = self.current.base();
+        let model = if whole.is_some() { self.model.initial.base() } else { current };
         let mut figures = Figures::with_capacity(self.asked, self.is_whole(), flights.count());
         let mut unknown = Vec::new();
-        self.model.initial.base().level_blocks(flights, |from, block| {
-            let answers = whole.answers(block, question);
-            self.extend(&mut figures, block, &answers);
-            for (place, is_known) in answers.is_known[..block.count].iter().enumerate() {
+        model.level_blocks(flights, |from, block| {
+            let answers = whole.map(|whole| whole.answers(block, question));
+            self.extend(&mut figures, block, answers.as_ref());
+            let is_known = answers.as_ref().map_or(&block.is_known, |answers| &answers.is_known);
+            for (place, is_known) in is_known[..block.count].iter().enumerate() {
                 if !is_known {
                     unknown.push(from + place);
                 }
@@ -162,46 +173,43 @@ impl Predictor<'_> {
     }
 
     /// Adds the figures of a block; those of unknown points have no meaning yet.
-    fn extend(&self, figures: &mut Figures, block: &LevelBlock, answers: &LevelAnswers) {
+    fn extend(&self, figures: &mut Figures, block: &LevelBlock, answers: Option<&LevelAnswers>) {
         use PredictedColumn as Column;
-        let count = block.count;
-        let totals_kg_s = &answers.fuel_flow_total_kg_s;
+        let (current, count) = (self.current.base(), block.count);
+        let is_by_table = answers.is_none()
+            || figures.has(Column::DragCoefficient)
+            || figures.has(Column::RemainderPercent);
+        let none = [f64::NAN; LevelBlock::POINTS];
+        let (mut drag_coefficient, mut by_table_kg_s) = (none, none);
+        if is_by_table {
+            drag_coefficient = current.drag_table().interpolate_all(&block.cells);
+            for (place, kg_s) in by_table_kg_s.iter_mut().enumerate() {
+                *kg_s = drag_coefficient[place] * block.fuel_flow_per_drag_coefficient_kg_s[place];
+            }
+        }
+        let totals_kg_s = answers.map_or(&by_table_kg_s, |answers| &answers.fuel_flow_total_kg_s);
         figures.extend(Column::FuelFlow, &totals_kg_s[..count]);
-        let mut values = [f64::NAN; LevelBlock::POINTS];
-        if figures.has(Column::FuelFlowDeviation) {
-            for (place, value) in values.iter_mut().enumerate() {
-                let kg_s = answers.variance[place].sqrt() * totals_kg_s[place];
-                *value = self.with_scatter(kg_s, totals_kg_s[place]);
-            }
-            figures.extend(Column::FuelFlowDeviation, &values[..count]);
-        }
-        if figures.has(Column::SpecificRange) {
-            for (place, value) in values.iter_mut().enumerate() {
-                let airspeed = TrueAirspeed::meters_per_second(block.true_airspeed_m_s[place]);
-                let total = FuelFlowTotal::kilograms_per_second(totals_kg_s[place]);
-                *value = specific_range(airspeed, total).to_meters_per_kilogram();
-            }
-            figures.extend(Column::SpecificRange, &values[..count]);
-        }
+        figures.extend_with(Column::FuelFlowDeviation, count, |place| {
+            let variance = answers.map_or(f64::NAN, |answers| answers.variance[place]);
+            self.with_scatter(variance.sqrt() * totals_kg_s[place], totals_kg_s[place])
+        });
+        figures.extend_with(Column::SpecificRange, count, |place| {
+            let airspeed = TrueAirspeed::meters_per_second(block.true_airspeed_m_s[place]);
+            let total = FuelFlowTotal::kilograms_per_second(totals_kg_s[place]);
+            specific_range(airspeed, total).to_meters_per_kilogram()
+        });
         figures.extend(Column::LiftCoefficient, &block.lift_coefficient[..count]);
-        let current = self.current.base();
-        if figures.has(Column::DragCoefficient) || figures.has(Column::RemainderPercent) {
-            let drag_coefficient = current.drag_table().interpolate_all(&block.cells);
-            figures.extend(Column::DragCoefficient, &drag_coefficient[..count]);
-            for (place, value) in values.iter_mut().enumerate() {
-                let by_table_kg_s =
-                    drag_coefficient[place] * block.fuel_flow_per_drag_coefficient_kg_s[place];
-                *value = 100.0 * (totals_kg_s[place] / by_table_kg_s - 1.0);
-            }
-            figures.extend(Column::RemainderPercent, &values[..count]);
-        }
+        figures.extend(Column::DragCoefficient, &drag_coefficient[..count]);
         if figures.has(Column::Extrapolated) {
             let extrapolated = current.use_extrapolated(&block.cells);
-            figures.extend(Column::Extrapolated, &flags(&extrapolated)[..count]);
+            figures.extend_with(Column::Extrapolated, count, |place| flag(extrapolated[place]));
         }
-        if figures.has(Column::BeyondFlights) {
-            figures.extend(Column::BeyondFlights, &flags(&answers.beyond_flights)[..count]);
-        }
+        figures.extend_with(Column::RemainderPercent, count, |place| {
+            100.0 * (totals_kg_s[place] / by_table_kg_s[place] - 1.0)
+        });
+        figures.extend_with(Column::BeyondFlights, count, |place| {
+            flag(answers.is_some_and(|answers| answers.beyond_flights[place]))
+        });
     }
 
     /// Points of which columns say nothing: they give no reason, and a limit may be drawn a rounding apart.

@@ -1,23 +1,24 @@
 //! A checked mapping: every required quantity has a source, every unit is known.
 
+mod conversion;
 mod mass;
+mod sources;
 
-use core::ops::Range;
-
-use flight::column::{Column, ColumnUnit};
+use flight::column::Column;
 use flight::{MAXIMUM_ENGINES, MissingColumn, Timestamp};
 use units::convert::METERS_PER_FOOT;
 use units::{Mass, OutOfDomain, check_within};
 
 use super::MappingError;
 use super::file::{
-    BadRows, CruiseFile, FORMAT, MappingFile, OutOfRange, QuantitySource, RowsAre, TextSource,
-    TimeSource,
+    BadRows, CruiseFile, FORMAT, MappingFile, OutOfRange, RowsAre, TextSource, TimeSource,
 };
 use super::level::LevelCriteria;
-use super::numbers::Numbers;
 use crate::cruise_text::parse_instant;
-use crate::refusal::nearest;
+
+use sources::{Derivations, Inputs, Sources, known_unit};
+
+pub(super) use conversion::Conversion;
 
 /// The checked content of a mapping file.
 #[derive(Clone, Debug)]
@@ -80,68 +81,6 @@ pub(super) enum Fill {
     Hold(f64),
     /// A straight line between values no farther apart than this, s.
     Line(f64),
-}
-
-/// Values that are converted, then looked at: few enough that they are still at hand.
-const VALUES_TOGETHER: usize = 1024;
-
-/// From a number of the recording to the stored unit of a quantity.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Conversion {
-    pub(super) input: usize,
-    /// For the angle between two columns.
-    pub(super) minus: Option<usize>,
-    factor: f64,
-    offset: f64,
-}
-
-impl Conversion {
-    pub(super) fn apply(&self, numbers: &Numbers, row: usize) -> f64 {
-        self.of(numbers.at(self.input, row), self.minus.map(|minus| numbers.at(minus, row)))
-    }
-
-    /// The same for rows that follow each other, behind what `values` holds. Gives how many of them are not so.
-    pub(super) fn append_to(
-        &self,
-        values: &mut Vec<f64>,
-        numbers: &Numbers,
-        rows: Range<usize>,
-        is_so: impl Fn(f64) -> bool,
-    ) -> u64 {
-        let mut others = 0;
-        for (columns, rows) in numbers.slices(rows) {
-            let sent = columns[self.input][rows.clone()].chunks(VALUES_TOGETHER);
-            let mut less = self.minus.map(|minus| columns[minus][rows].chunks(VALUES_TOGETHER));
-            for sent in sent {
-                let from = values.len();
-                match less.as_mut().and_then(Iterator::next) {
-                    None => {
-                        // Copied, since the compiler knows then that they stay as they are while values are written.
-                        let Self { factor, offset, .. } = *self;
-                        values.extend(sent.iter().map(|value| value * factor + offset));
-                    }
-                    Some(less) => {
-                        let both = sent.iter().zip(less);
-                        values.extend(both.map(|(value, less)| self.of(*value, Some(*less))));
-                    }
-                }
-                // Counted, without a way out of the loop: nearly always all are so.
-                others += values[from..].iter().map(|value| u64::from(!is_so(*value))).sum::<u64>();
-            }
-        }
-        others
-    }
-
-    /// Of a number, or of the angle between two.
-    fn of(&self, value: f64, less: Option<f64>) -> f64 {
-        let value = value * self.factor + self.offset;
-        less.map_or(value, |less| wrap_deg(value - less * self.factor))
-    }
-}
-
-/// An angle in −180 … 180°.
-fn wrap_deg(angle_deg: f64) -> f64 {
-    (angle_deg + 180.0).rem_euclid(360.0) - 180.0
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -273,170 +212,6 @@ impl Plan {
     }
 }
 
-/// The sources of quantities, as far as the file has been read.
-#[derive(Default)]
-struct Sources {
-    inputs: Inputs,
-    recorded: Vec<(Column, Conversion)>,
-    mach: Option<MachSource>,
-    temperature: Option<TemperatureSource>,
-    true_airspeed: Option<TrueAirspeedSource>,
-}
-
-struct Derivations {
-    mach: MachSource,
-    temperature: TemperatureSource,
-    true_airspeed: TrueAirspeedSource,
-}
-
-impl Sources {
-    fn add(&mut self, name: String, source: QuantitySource) -> Result<(), MappingError> {
-        let quantity = match Column::from_name(&name) {
-            // Time and fuel used have entries of their own.
-            None | Some(Column::Time | Column::FuelUsed) => {
-                return Err(MappingError::QuantityUnknown { near: near_quantity(&name), name });
-            }
-            Some(quantity) => quantity,
-        };
-        match (quantity, source) {
-            (
-                _,
-                QuantitySource::Recorded {
-                    column,
-                    unit,
-                    scale,
-                    offset,
-                    hold_s,
-                    interpolate_s,
-                    values,
-                    optional: _,
-                },
-            ) => {
-                let unit = unit.ok_or(MappingError::UnitMissing { column: quantity })?;
-                let mut conversion = self.inputs.conversion(quantity, column, &unit, scale)?;
-                check_within("offset", "-", offset, -1e9, 1e9)?;
-                // The offset is in the mapping's unit, after the scale.
-                conversion.offset += offset * known_unit(quantity, &unit)?.factor;
-                let input = &mut self.inputs.0[conversion.input];
-                input.fill = fill(hold_s, interpolate_s)?;
-                input.values.extend(values);
-                self.recorded.push((quantity, conversion));
-            }
-            (Column::Drift, QuantitySource::Difference { column, minus, unit }) => {
-                let mut conversion = self.inputs.conversion(quantity, column, &unit, 1.0)?;
-                conversion.minus = Some(self.inputs.place(minus, true));
-                self.recorded.push((quantity, conversion));
-            }
-            (Column::Mach, QuantitySource::FromCalibratedAirspeed { column, unit, scale }) => {
-                // Calibrated airspeed is not a column of the report, but is given in the units of true airspeed.
-                let conversion =
-                    self.inputs.conversion(Column::TrueAirspeed, column, &unit, scale)?;
-                self.mach = Some(MachSource::CalibratedAirspeed(conversion));
-            }
-            (Column::Mach, QuantitySource::FromTrueAirspeed) => {
-                self.mach = Some(MachSource::TrueAirspeed);
-            }
-            (Column::TrueAirspeed, QuantitySource::FromMach) => {
-                self.true_airspeed = Some(TrueAirspeedSource::Mach);
-            }
-            (
-                Column::StaticAirTemperature,
-                QuantitySource::FromTotalTemperature { recovery_factor },
-            ) => {
-                check_within("recovery factor", "-", recovery_factor, 0.5, 1.0)?;
-                self.temperature = Some(TemperatureSource::TotalTemperature { recovery_factor });
-            }
-            (Column::StaticAirTemperature, QuantitySource::Isa { deviation_k }) => {
-                check_within("deviation from the ISA", "K", deviation_k, -100.0, 100.0)?;
-                self.temperature = Some(TemperatureSource::Isa { deviation_k });
-            }
-            (column, source) => {
-                return Err(MappingError::SourceNotForQuantity {
-                    column,
-                    source_name: source.name(),
-                });
-            }
-        }
-        Ok(())
-    }
-
-    fn is_recorded(&self, wanted: Column) -> bool {
-        self.recorded.iter().any(|(column, _)| *column == wanted)
-    }
-
-    fn require(&self, column: Column) -> Result<(), MappingError> {
-        if self.is_recorded(column) {
-            Ok(())
-        } else {
-            Err(MappingError::QuantityNotMapped { column })
-        }
-    }
-
-    /// Every required quantity is recorded or derived, and none from itself.
-    fn derivations(&mut self) -> Result<Derivations, MappingError> {
-        self.require(Column::PressureAltitude)?;
-        self.require(Column::GroundSpeed)?;
-        if self.mach.is_none() {
-            self.require(Column::Mach)?;
-        }
-        if self.temperature.is_none() {
-            self.require(Column::StaticAirTemperature)?;
-        }
-        if self.true_airspeed.is_none() {
-            self.require(Column::TrueAirspeed)?;
-        }
-        let derivations = Derivations {
-            mach: self.mach.unwrap_or(MachSource::Recorded),
-            temperature: self.temperature.unwrap_or(TemperatureSource::Recorded),
-            true_airspeed: self.true_airspeed.unwrap_or(TrueAirspeedSource::Recorded),
-        };
-        let is_temperature_of_mach =
-            matches!(derivations.temperature, TemperatureSource::TotalTemperature { .. });
-        if is_temperature_of_mach {
-            self.require(Column::TotalAirTemperature)?;
-            for (column, conversion) in &self.recorded {
-                if *column == Column::TotalAirTemperature {
-                    self.inputs.0[conversion.input].is_required = true;
-                }
-            }
-        }
-        let is_airspeed_of_mach = matches!(derivations.true_airspeed, TrueAirspeedSource::Mach);
-        if matches!(derivations.mach, MachSource::TrueAirspeed)
-            && (is_airspeed_of_mach || is_temperature_of_mach)
-        {
-            return Err(MappingError::Circular);
-        }
-        Ok(derivations)
-    }
-}
-
-#[derive(Default)]
-struct Inputs(Vec<Input>);
-
-impl Inputs {
-    fn place(&mut self, name: String, is_required: bool) -> usize {
-        if let Some(place) = self.0.iter().position(|input| input.name == name) {
-            self.0[place].is_required |= is_required;
-            return place;
-        }
-        self.0.push(Input { name, is_required, fill: Fill::Not, values: Vec::new() });
-        self.0.len() - 1
-    }
-
-    fn conversion(
-        &mut self,
-        column: Column,
-        input: String,
-        unit: &str,
-        scale: f64,
-    ) -> Result<Conversion, MappingError> {
-        let unit = known_unit(column, unit)?;
-        check_within("scale", "-", scale, -1e12, 1e12)?;
-        let input = self.place(input, !column.is_optional());
-        Ok(Conversion { input, minus: None, factor: scale * unit.factor, offset: unit.offset })
-    }
-}
-
 fn points_plan(rows: RowsAre, inputs: &mut Inputs) -> Result<Option<PointsPlan>, MappingError> {
     let RowsAre::AveragedPoints { averaged_over_s, scatter } = rows else { return Ok(None) };
     let scatter = scatter.into_iter().map(|(name, column, unit)| {
@@ -466,35 +241,12 @@ const fn refuse_for_points(entry: &'static str, is_there: bool) -> Result<(), Ma
     if is_there { Err(MappingError::NeedsSamples { entry }) } else { Ok(()) }
 }
 
-fn known_unit(column: Column, unit: &str) -> Result<ColumnUnit, MappingError> {
-    let known = column.units().iter().find(|known| known.name == unit);
-    known.copied().ok_or_else(|| MappingError::UnitUnknown {
-        column,
-        unit: unit.to_owned(),
-        near: nearest(unit, column.units().iter().map(|unit| unit.name)),
-    })
-}
-
-fn fill(hold_s: Option<f64>, interpolate_s: Option<f64>) -> Result<Fill, MappingError> {
-    let checked = |age_s| check_within("age of a held value", "s", age_s, 0.0, 86_400.0);
-    Ok(match (hold_s, interpolate_s) {
-        (None, None) => Fill::Not,
-        (Some(age_s), None) => Fill::Hold(checked(age_s)?),
-        (None, Some(span_s)) => Fill::Line(checked(span_s)?),
-        (Some(_), Some(_)) => return Err(MappingError::HeldAndInterpolated),
-    })
-}
-
 fn decimal(decimal: char, separator: char) -> Result<char, MappingError> {
     if matches!(decimal, '.' | ',') && decimal != separator {
         Ok(decimal)
     } else {
         Err(MappingError::SeparatorUnusable { character: decimal })
     }
-}
-
-fn near_quantity(name: &str) -> Option<&'static str> {
-    nearest(name, flight::column::COLUMN_NAMES.split(' '))
 }
 
 fn time_plan(source: TimeSource) -> Result<(String, TimeForm), MappingError> {

@@ -1,6 +1,7 @@
 use flight::{Cruise, Segment, SegmentMeans};
 use units::TemperatureDifference;
 
+use super::functions::Polynomial;
 use super::*;
 use crate::FlightPoint;
 

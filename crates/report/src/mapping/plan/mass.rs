@@ -3,7 +3,8 @@
 use flight::column::Column;
 use units::{Mass, check_within};
 
-use super::{Fill, Inputs, Load, MassPlan, fill, known_unit};
+use super::sources::{Inputs, fill, known_unit};
+use super::{Fill, Load, MassPlan};
 use crate::mapping::MappingError;
 use crate::mapping::file::{Amount, MassSource, WithUnit};
 
