@@ -235,7 +235,7 @@ impl Axis {
     ///
     /// Only what must be looked up is done point by point.
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
-    #[expect(clippy::needless_range_loop, reason = "as loops over several points are")]
+    #[expect(clippy::needless_bitwise_bool, reason = "no branch, so that compilers make vectors")]
     #[inline(always)]
     pub(crate) fn place_all<const N: usize>(
         &self,

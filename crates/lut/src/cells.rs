@@ -5,11 +5,6 @@
     clippy::inline_always,
     reason = "compiled for the vectors of the caller, which a call of its own would not be"
 )]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "loops count: iterators are calls of their own in a function that is compiled for other vectors"
-)]
-
 use crate::{Cell, Grid, Outside};
 
 /// The cells that hold `N` points of one grid, and the points' positions in them. Filled by [`locate`](Self::locate).

@@ -17,10 +17,11 @@ fn side_by_side_as_one_by_one() {
     let odd = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, 0.1, 0.6, 0.3, 0.3 + 1e-10];
     let (mut cells, mut inside, mut outside) = (Cells::<8>::default(), 0, 0);
     for step in 0..2000_u32 {
-        let mut x: [f64; 8] =
-            core::array::from_fn(|k| 0.05 + 0.0007 * f64::from((step * 37 + 113 * k as u32) % 900));
-        let mut y: [f64; 8] =
-            core::array::from_fn(|k| 0.45 + 0.0005 * f64::from((step * 53 + 7 * k as u32) % 1000));
+        let (mut x, mut y) = ([0.0; 8], [0.0; 8]);
+        for ((x, y), k) in x.iter_mut().zip(&mut y).zip(0_u32..) {
+            *x = 0.05 + 0.0007 * f64::from((step * 37 + 113 * k) % 900);
+            *y = 0.45 + 0.0005 * f64::from((step * 53 + 7 * k) % 1000);
+        }
         if step % 5 == 0 {
             x[(step / 5 % 8) as usize] = odd[(step / 40 % 8) as usize];
             y[(step / 7 % 8) as usize] = [0.5, 0.7, 0.75, 0.9][(step / 35 % 4) as usize];

@@ -68,7 +68,6 @@ impl SmoothTable {
     /// # Panics
     /// Where the cells are of a larger grid.
     #[expect(clippy::inline_always, reason = "as above")]
-    #[expect(clippy::needless_range_loop, reason = "as loops over several points are")]
     #[must_use]
     #[inline(always)]
     pub fn values<const N: usize>(&self, cells: &Cells<N>) -> [f64; N] {

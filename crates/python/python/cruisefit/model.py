@@ -109,7 +109,7 @@ class Model:
             deviations: State standard deviations. They take most of the time of a learnt model: without them millions of points
                 are predicted several times as fast, and ``fuel_flow_std_kg_s`` is null.
             columns: Columns of the prediction that are wanted, in any order; all without it. What nobody wants is not computed:
-                ``columns=["fuel_flow_kg_s"]`` takes half the time of everything but standard deviations.
+                ``columns=["fuel_flow_kg_s"]`` takes half the time of ``deviations=False``.
             strict: Refuse points without a prediction, rather than warn of them.
             threads: Threads to use; all processors without it.
 

@@ -1,7 +1,5 @@
 //! Drag by the initial table and what was learnt of it, at points and about them.
 
-#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
-
 use effects::{BetweenNodes, value_continued};
 use lut::{Cell, Cells, Outside, SmoothTable, Table};
 use perf_model::LevelBlock;

@@ -1,7 +1,5 @@
 //! The states of a block of points, as the remainder's variables have them.
 
-#![expect(clippy::needless_range_loop, reason = "loops count, as those over lanes")]
-
 use atmos::constants::SEA_LEVEL_PRESSURE_PA;
 use perf_model::LevelBlock;
 

@@ -83,13 +83,12 @@ impl LevelBlock {
     }
 
     #[expect(clippy::inline_always, reason = "compiled for the vectors of its caller")]
+    #[expect(clippy::needless_bitwise_bool, reason = "no branch, so that compilers make vectors")]
     #[inline(always)]
     pub(super) fn is_inside_domains(&self, place: usize) -> bool {
         let (mass_kg, altitude_m) = (self.mass_kg[place], self.pressure_altitude_m[place]);
-        (f64::MIN_POSITIVE <= mass_kg)
-            & (mass_kg <= f64::MAX)
-            & (LOWEST_PRESSURE_ALTITUDE_M <= altitude_m)
-            & (altitude_m <= HIGHEST_PRESSURE_ALTITUDE_M)
+        (f64::MIN_POSITIVE..=f64::MAX).contains(&mass_kg)
+            & (LOWEST_PRESSURE_ALTITUDE_M..=HIGHEST_PRESSURE_ALTITUDE_M).contains(&altitude_m)
             & (self.mach[place] >= f64::MIN_POSITIVE)
             & (self.static_air_temperature_k[place] >= f64::MIN_POSITIVE)
     }

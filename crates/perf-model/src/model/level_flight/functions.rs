@@ -50,8 +50,8 @@ impl Functions {
         let is_low = |altitude_m: f64| altitude_m <= TROPOPAUSE_PRESSURE_ALTITUDE_M;
         let (low, high) = (&self.low_pressure_pa, &self.high_pressure_pa);
         let mut count = 0;
-        for place in 0..LevelBlock::POINTS {
-            count += usize::from(is_low(altitudes_m[place]));
+        for altitude_m in altitudes_m {
+            count += usize::from(is_low(*altitude_m));
         }
         for place in 0..LevelBlock::POINTS {
             if count < LevelBlock::POINTS {
