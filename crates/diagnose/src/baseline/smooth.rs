@@ -266,9 +266,9 @@ impl Prepared {
     #[inline(always)]
     pub(crate) fn add_beyond(&self, z: &Lanes, farthest: &mut Lanes) {
         let ((first, last), distance) = (self.text.knots, self.distance);
+        let (middle, half) = (f64::midpoint(first, last), 0.5 * (last - first) - distance);
         for lane in 0..LANES {
-            let (below, above) = (first + distance - z[lane], z[lane] - last + distance);
-            let beyond = if below > above { below } else { above };
+            let beyond = (z[lane] - middle).abs() - half;
             farthest[lane] = if beyond > farthest[lane] { beyond } else { farthest[lane] };
         }
     }

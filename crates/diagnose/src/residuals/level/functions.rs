@@ -123,9 +123,10 @@ impl Functions {
             Variable::Mach => one.at(&states.mach),
             Variable::LiftCoefficient => one.at(&states.lift_coefficient),
             Variable::PressureAltitude => one.at(&states.pressure_altitude_m),
-            Variable::CorrectedThrust => one.at(&map(&states.corrected_thrust_n, |thrust_n| {
-                thrust_n / self.reference_thrust_n
-            })),
+            Variable::CorrectedThrust => {
+                let per_reference = 1.0 / self.reference_thrust_n;
+                one.at(&map(&states.corrected_thrust_n, |thrust_n| thrust_n * per_reference))
+            }
             Variable::IsaDeviation => one.at(&states.isa_deviation_k),
             Variable::Mass => one.at(&states.mass_kg),
             // As of a state that was flown: not a variable of it.

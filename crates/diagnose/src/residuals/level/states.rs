@@ -41,7 +41,7 @@ impl States {
 #[expect(clippy::inline_always, reason = "as above")]
 #[inline(always)]
 pub(super) fn pressure_ratio(block: &LevelBlock, place: usize) -> f64 {
-    block.pressure_pa[place] / SEA_LEVEL_PRESSURE_PA
+    block.pressure_pa[place] * (1.0 / SEA_LEVEL_PRESSURE_PA)
 }
 
 /// ln of a ratio of positive numbers.
