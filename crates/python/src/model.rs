@@ -79,17 +79,17 @@ impl Model {
     }
 
     /// The table with its predictions, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`;
-    /// `deviations`: whether standard deviations are stated; `columns`: of the prediction, all without it.
+    /// `stated`: whether standard deviations are, and columns of the prediction, all without them.
     fn predict(
         &self,
         py: Python<'_>,
         table: AnyRecordBatch,
         predicts: &str,
-        deviations: bool,
-        columns: Option<Vec<String>>,
+        stated: (bool, Option<Vec<String>>),
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Prediction> {
         let predicts = predicts_of(predicts)?;
+        let (deviations, columns) = stated;
         let columns = columns.map(|names| columns_of(&names)).transpose()?;
         let schema = table.schema()?;
         let batches = batches_of(table)?;

@@ -124,9 +124,9 @@ class Model:
             InputError: A column is missing or unknown, or a value is outside its limits, with row and column; or ``columns`` has a
                 name that no column of predictions has.
         """
-        wanted = None if columns is None else list(columns)
+        stated = (deviations, None if columns is None else list(columns))
         table, refused = self._native.predict(
-            as_stream(points), "table" if table_only else "whole", deviations, wanted, threads
+            as_stream(points), "table" if table_only else "whole", stated, threads
         )
         if refused:
             row, reason = refused[0]
