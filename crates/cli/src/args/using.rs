@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use pipeline::prediction::PredictedColumn;
 
@@ -33,8 +33,8 @@ pub(crate) struct PredictArgs {
     /// Columns of the prediction that are wanted, separated by commas, in any order: what nobody wants is not computed
     /// [default: all]
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', hide_possible_values = true)]
-    #[arg(value_parser = PossibleValuesParser::new(PredictedColumn::ALL.map(PredictedColumn::name)))]
-    pub(crate) columns: Option<Vec<String>>,
+    #[arg(value_parser = prediction_columns())]
+    pub(crate) columns: Option<Vec<PredictedColumn>>,
     /// Document.
     #[command(flatten)]
     pub(crate) json: JsonFlag,
@@ -193,4 +193,10 @@ fn picture_formats() -> PossibleValuesParser {
 
 fn chart_names() -> PossibleValuesParser {
     PossibleValuesParser::new(page::TAIL_CHARTS.into_iter().chain(page::DIAGNOSIS_CHARTS))
+}
+
+fn prediction_columns() -> impl TypedValueParser<Value = PredictedColumn> {
+    PossibleValuesParser::new(PredictedColumn::ALL.map(PredictedColumn::name)).try_map(|name| {
+        PredictedColumn::of_name(&name).ok_or("a name that no column of predictions has")
+    })
 }

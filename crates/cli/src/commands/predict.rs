@@ -18,9 +18,7 @@ use crate::reading::{Buffers, FlightRead, Source, is_parquet};
 use crate::{parquet_batches, parquet_numbers};
 use pipeline::columns::Columns;
 use pipeline::model_file::ModelFile;
-use pipeline::prediction::{
-    PredictedColumn, Predictor, columns_of_segments, measured_kg_s, point_of_segment,
-};
+use pipeline::prediction::{Predictor, columns_of_segments, measured_kg_s, point_of_segment};
 use pipeline::reading::Checks;
 use pipeline::segments_table;
 use pipeline::whole_model::Predicts;
@@ -37,10 +35,7 @@ pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
     let predictor =
         if arguments.without_deviations { predictor.without_deviations() } else { predictor };
     let predictor = match &arguments.columns {
-        Some(names) => {
-            let columns = names.iter().filter_map(|name| PredictedColumn::of_name(name));
-            predictor.with_columns(&columns.collect::<Vec<_>>())
-        }
+        Some(columns) => predictor.with_columns(columns),
         None => predictor,
     };
     if arguments.mapping.is_some() || is_segments(&arguments.points) {

@@ -1,7 +1,7 @@
 //! Drag by the initial table and what was learnt of it, at points and about them.
 
 use effects::{BetweenNodes, value_continued};
-use lut::{Cell, Cells, Outside, SmoothTable, Table};
+use lut::{Cells, Outside, SmoothTable, Table};
 use perf_model::LevelBlock;
 
 use crate::math::lanes::{LANES, Lanes, map};
@@ -55,54 +55,39 @@ impl Drag {
         is_known: &mut [bool; LANES],
         found: &mut Found,
     ) {
+        let mut cells = Cells::default();
+        cells.locate(self.table.grid(), lift_coefficient, mach);
+        *found = self.in_cells(&cells);
         for place in 0..LANES {
-            let (lift, mach) = (lift_coefficient[place], mach[place]);
-            let of_point = match self.table.grid().locate(lift, mach, Outside::Error) {
-                Ok(cell) => self.at_cell(&cell),
-                Err(_) => self.continued(lift, mach).unwrap_or((f64::NAN, 0.0)),
-            };
-            if of_point.0 > 0.0 {
-                (found.coefficient[place], found.learnt[place]) = of_point;
-            } else {
-                // A positive number, so that all goes on.
-                (found.coefficient[place], found.learnt[place]) = (1.0, 0.0);
-                is_known[place] = false;
+            if !cells.is_inside(place) {
+                (found.coefficient[place], found.learnt[place]) =
+                    self.continued(lift_coefficient[place], mach[place]).unwrap_or((f64::NAN, 0.0));
             }
         }
+        found.keep_positive(is_known);
     }
 
     /// Drag at the points of a block; false in `is_known` where it is not positive.
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
     pub(super) fn of_block(&self, block: &LevelBlock, is_known: &mut [bool; LANES]) -> Found {
-        let mut coefficient = match self.between_nodes {
-            BetweenNodes::Smooth => self.smooth.values(&block.cells),
-            BetweenNodes::Straight => self.table.interpolate_all(&block.cells),
-        };
-        let mut learnt = match &self.learnt {
-            Some(learnt) => learnt.mean.interpolate_all(&block.cells),
-            None => [0.0; LANES],
-        };
-        for place in 0..LANES {
-            let is_positive = coefficient[place] > 0.0;
-            is_known[place] &= is_positive;
-            // A positive number, so that all goes on.
-            coefficient[place] = if is_positive { coefficient[place] } else { 1.0 };
-            learnt[place] = if is_positive { learnt[place] } else { 0.0 };
-        }
-        Found { coefficient, learnt }
+        let mut found = self.in_cells(&block.cells);
+        found.keep_positive(is_known);
+        found
     }
 
     #[expect(clippy::inline_always, reason = "as above")]
     #[inline(always)]
-    fn at_cell(&self, cell: &Cell) -> (f64, f64) {
+    fn in_cells(&self, cells: &Cells<LANES>) -> Found {
         let coefficient = match self.between_nodes {
-            BetweenNodes::Smooth => self.smooth.value(cell),
-            BetweenNodes::Straight => self.table.interpolate(cell),
+            BetweenNodes::Smooth => self.smooth.values(cells),
+            BetweenNodes::Straight => self.table.interpolate_all(cells),
         };
-        let learnt =
-            if let Some(learnt) = &self.learnt { learnt.mean.interpolate(cell) } else { 0.0 };
-        (coefficient, learnt)
+        let learnt = match &self.learnt {
+            Some(learnt) => learnt.mean.interpolate_all(cells),
+            None => [0.0; LANES],
+        };
+        Found { coefficient, learnt }
     }
 
     /// Beyond the table.
@@ -128,6 +113,21 @@ impl Drag {
         match left {
             Some(left) => map(&left.interpolate_all(cells), |deviation| deviation * deviation),
             None => [0.0; LANES],
+        }
+    }
+}
+
+impl Found {
+    /// False in `is_known` where drag is not positive; 1 is put there, so that all goes on.
+    #[expect(clippy::inline_always, reason = "as above")]
+    #[inline(always)]
+    fn keep_positive(&mut self, is_known: &mut [bool; LANES]) {
+        let Self { coefficient, learnt } = self;
+        for place in 0..LANES {
+            let is_positive = coefficient[place] > 0.0;
+            is_known[place] &= is_positive;
+            coefficient[place] = if is_positive { coefficient[place] } else { 1.0 };
+            learnt[place] = if is_positive { learnt[place] } else { 0.0 };
         }
     }
 }
