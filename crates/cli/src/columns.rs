@@ -11,7 +11,7 @@ use parquet::schema::types::{ColumnPath, Type};
 use pipeline::columns::{Cells, Columns};
 
 use crate::failure::Failure;
-use crate::files::write_atomically;
+use crate::files::outputs::write_result;
 
 /// Values that are encoded together.
 const VALUES_AT_ONCE: usize = 1 << 16;
@@ -19,17 +19,17 @@ const VALUES_AT_ONCE: usize = 1 << 16;
 /// Writes to a file whose ending chooses the format, or as CSV to standard output, which `-` means too.
 ///
 /// # Errors
-/// An ending that is neither `.csv` nor `.parquet`, or a file that cannot be written.
+/// An ending that is neither `.csv` nor `.parquet`, a file that would be lost, or one that cannot be written.
 pub(crate) fn write(columns: &Columns, path: Option<&Path>) -> Result<(), Failure> {
     let Some(path) = path.filter(|path| path.as_os_str() != "-") else {
         return crate::terminal::print_data(&columns.to_csv())
             .map_err(|error| Failure::unwritable(Path::new("standard output"), error));
     };
     match path.extension().and_then(|ending| ending.to_str()) {
-        Some("csv") => write_atomically(path, &columns.to_csv()),
+        Some("csv") => write_result(path, &columns.to_csv()),
         Some("parquet") => {
             let bytes = to_parquet(columns).map_err(|error| Failure::unwritable(path, error))?;
-            write_atomically(path, &bytes)
+            write_result(path, &bytes)
         }
         _ => Err(Failure::BadArgument {
             argument: "--output",

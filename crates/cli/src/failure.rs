@@ -118,6 +118,15 @@ pub(crate) enum Failure {
         /// The file or folder.
         path: String,
     },
+    /// A file that would be lost, of a command that replaces results of its own kind alone.
+    #[error("{path} is {what}, which would be lost")]
+    #[diagnostic(help("choose another name, or remove it first"))]
+    WouldLose {
+        /// The file.
+        path: String,
+        /// What it is.
+        what: String,
+    },
     /// An argument that is invalid.
     #[error("{argument}: {reason}")]
     BadArgument {

@@ -19,6 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use pipeline::adaptation::StoredTail;
+use pipeline::folder_state;
 use pipeline::learnt_flights::KnownFlight;
 
 use crate::failure::{Failure, show};
@@ -58,6 +59,19 @@ pub(crate) struct Folder {
 
 /// Folders of a tail's files, and of its page.
 const FOLDERS: [&str; 5] = ["models", "segments", "flights", "deviations", "pages"];
+
+/// Whether a path is that of a folder's state, or of a file of the kinds that a state names.
+pub(crate) fn is_of_a_state(path: &Path) -> bool {
+    let Ok(path) = path.canonicalize() else { return false };
+    let is_named = |name: &str| path.file_name().is_some_and(|own| own == name);
+    let has_state =
+        |folder: Option<&Path>| folder.is_some_and(|f| f.join(folder_state::NAME).is_file());
+    let folder = path.parent();
+    let is_below = folder
+        .and_then(Path::file_name)
+        .is_some_and(|name| FOLDERS.iter().any(|folder| name == *folder));
+    is_named(folder_state::NAME) || (is_below && has_state(folder.and_then(Path::parent)))
+}
 
 impl Folder {
     /// Opens the folder at a path, created if it does not exist.

@@ -7,7 +7,7 @@ use pipeline::summary::RefusedSummary;
 use crate::args::JsonWanted;
 use crate::commands::Outcome;
 use crate::failure::Failure;
-use crate::files::outputs::check_replaceable;
+use crate::files::outputs::{check_replaceable, would_lose};
 use crate::files::write_atomically;
 use crate::terminal;
 
@@ -23,9 +23,9 @@ pub(crate) fn check(wanted: JsonWanted<'_>) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::unwritable(path, "it is a folder; --json takes the name of a file"));
     }
-    check_replaceable(path, false, &[], |text| {
-        text.trim_start().starts_with(['{', '[']) || text.is_empty()
-    })
+    let is_own = |text: &str| text.trim_start().starts_with(['{', '[']) || text.is_empty();
+    check_replaceable(path, false, &[], is_own)
+        .or_else(|_| would_lose(path, "a file that was not made by this command"))
 }
 
 /// Prints or writes the document of a run.

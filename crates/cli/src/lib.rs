@@ -146,6 +146,8 @@ fn start_logging(common: &args::Common) -> Warnings {
         .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
+        // Where standard error is closed a warning is lost; telling of it there would end the program.
+        .log_internal_errors(false)
         .with_filter(asked.unwrap_or_else(|| Targets::new().with_default(level)));
     let subscriber = tracing_subscriber::registry().with(printed);
     let _ = tracing::subscriber::set_global_default(subscriber);

@@ -8,12 +8,24 @@ use crate::files::{read_text, write_atomically};
 use pipeline::model_file::ModelFile;
 use pipeline::models::Models;
 
-/// Reads a model file.
+/// Reads a model file, or the only model of a folder.
 ///
 /// # Errors
-/// A file that cannot be read, is not a model, is of a newer format, or whose checksum does not match.
+/// A file that cannot be read, is not a model, is of a newer format, or whose checksum does not match; a folder of several.
 pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
-    model_of_text(path, &read_text(path)?)
+    if !path.is_dir() {
+        return model_of_text(path, &read_text(path)?);
+    }
+    let mut models = models_of(path)?;
+    match models.pop() {
+        Some((_, model)) if models.is_empty() => Ok(model),
+        Some((last, _)) => {
+            let reason =
+                format!("{} models; one is needed here, such as {}", models.len() + 1, show(&last));
+            Err(Failure::bad_file(path, reason))
+        }
+        None => Err(Failure::bad_file(path, "a folder without a model")),
+    }
 }
 
 /// A model from the bytes of its file.

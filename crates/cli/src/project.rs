@@ -74,7 +74,7 @@ pub(crate) fn with_project(arguments: Vec<OsString>) -> Result<Vec<OsString>, Fa
         }
     }
     if !used.is_empty() {
-        eprintln!("{}: {}", path.display(), used.join(", "));
+        crate::terminal::tell(&format!("{}: {}\n", path.display(), used.join(", ")));
     }
     let mut arguments = arguments;
     // Before a `--`, behind which all are files.

@@ -29,6 +29,8 @@ pub enum EventBefore {
     None,
     /// One or more.
     Recorded,
+    /// It is taken for certain that nothing changed, recorded or not: what the flights are worth without a change here.
+    Unchanged,
 }
 
 /// A flight at which the current piece may have begun.
@@ -88,6 +90,7 @@ impl ChangeFilter {
         let probability = match flight.event_before {
             EventBefore::None => self.beliefs.change_within(flight.years - self.last_years),
             EventBefore::Recorded => self.beliefs.change_at_event,
+            EventBefore::Unchanged => 0.0,
         };
         self.last_years = flight.years;
         let stayed = self.change.last().map_or(0.0, |(_, stayed)| *stayed);

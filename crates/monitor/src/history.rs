@@ -5,10 +5,12 @@ use core::ops::Range;
 use flight::Timestamp;
 
 use crate::filter::{ChangeFilter, EventBefore, FilteredFlight};
-use crate::levels::{Estimate, Levels};
+use crate::levels::{Estimate, Levels, NORMAL_95};
 use crate::noise::{Noise, median};
 use crate::series::Series;
-use crate::settings::{ABOUT_FLIGHTS, ChangeBeliefs, DATE_INTERVAL, REPORTED_PROBABILITY};
+use crate::settings::{
+    ABOUT_FLIGHTS, ChangeBeliefs, DATE_INTERVAL, LEAST_EVIDENCE, REPORTED_PROBABILITY,
+};
 
 /// A change that the flights show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,19 +67,14 @@ impl History {
         let noise = Noise::estimate(series);
         let weights = noise.weights(series);
         let at_flight: Vec<usize> = events.iter().map(|time| series.first_from(*time)).collect();
-        let filter = filter(series, &weights, &at_flight, beliefs);
-        let mut changes = changes(&filter);
+        let asked = Asked::new(series, &weights, &at_flight, *beliefs);
+        let mut changes = asked.changes();
         for change in &mut changes {
             belong(change, &at_flight);
         }
         changes.dedup_by_key(|change| change.first_flight);
+        let levels = levels_between(&mut changes, series, &weights, beliefs)?;
         let boundaries: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
-        let levels = Levels::fit(series, &weights, &boundaries, beliefs)?;
-        for (place, change) in changes.iter_mut().enumerate() {
-            if let Some(step) = levels.step_percent(place) {
-                change.step_percent = step;
-            }
-        }
         let mut all = boundaries;
         all.extend(at_flight.iter().copied().filter(|flight| (1..series.len()).contains(flight)));
         all.sort_unstable();
@@ -114,29 +111,127 @@ pub fn weighted_mean_percent(
     (weight > 0.0).then(|| Estimate { value: sum / weight, deviation: weight.powf(-0.5) })
 }
 
-fn filter(
+/// Levels between changes, of which those go, one after the other, whose step may be none: its 95 % interval holds zero.
+fn levels_between(
+    changes: &mut Vec<Change>,
     series: &Series,
     weights: &[f64],
-    events: &[usize],
     beliefs: &ChangeBeliefs,
-) -> ChangeFilter {
-    let mut all: Vec<f64> =
-        series.flights().iter().map(super::series::FlightDeviation::deviation_percent).collect();
-    let middle = median(&mut all);
-    let mut filter = ChangeFilter::new(*beliefs);
-    for (index, (flight, weight)) in series.flights().iter().zip(weights).enumerate() {
-        filter.push(&FilteredFlight {
-            years: series.years(flight.time()),
-            deviation_percent: flight.deviation_percent() - middle,
-            weight: *weight,
-            event_before: if events.contains(&index) {
-                EventBefore::Recorded
-            } else {
-                EventBefore::None
-            },
-        });
+) -> Option<Levels> {
+    loop {
+        let boundaries: Vec<usize> = changes.iter().map(|change| change.first_flight).collect();
+        let levels = Levels::fit(series, weights, &boundaries, beliefs)?;
+        for (place, change) in changes.iter_mut().enumerate() {
+            if let Some(step) = levels.step_percent(place) {
+                change.step_percent = step;
+            }
+        }
+        let deviations = |step: Estimate| step.value.abs() / step.deviation;
+        let least = changes
+            .iter()
+            .enumerate()
+            .map(|(place, change)| (place, deviations(change.step_percent)))
+            .min_by(|(_, one), (_, other)| one.total_cmp(other))
+            .filter(|(_, deviations)| *deviations <= NORMAL_95);
+        let Some((place, _)) = least else { return Some(levels) };
+        changes.remove(place);
     }
-    filter
+}
+
+/// A series whose changes are asked for.
+struct Asked<'a> {
+    series: &'a Series,
+    weights: &'a [f64],
+    /// Flights before which an event was recorded.
+    events: &'a [usize],
+    beliefs: ChangeBeliefs,
+    /// The median deviation, %.
+    middle_percent: f64,
+}
+
+impl<'a> Asked<'a> {
+    fn new(
+        series: &'a Series,
+        weights: &'a [f64],
+        events: &'a [usize],
+        beliefs: ChangeBeliefs,
+    ) -> Self {
+        let mut all: Vec<f64> = series
+            .flights()
+            .iter()
+            .map(super::series::FlightDeviation::deviation_percent)
+            .collect();
+        Self { series, weights, events, beliefs, middle_percent: median(&mut all) }
+    }
+
+    /// A filter that has seen all flights, before some of which nothing can have changed.
+    fn filter(&self, unchanged: &Range<usize>) -> ChangeFilter {
+        let mut filter = ChangeFilter::new(self.beliefs);
+        for (index, (flight, weight)) in self.series.flights().iter().zip(self.weights).enumerate()
+        {
+            filter.push(&FilteredFlight {
+                years: self.series.years(flight.time()),
+                deviation_percent: flight.deviation_percent() - self.middle_percent,
+                weight: *weight,
+                event_before: if unchanged.contains(&index) {
+                    EventBefore::Unchanged
+                } else if self.events.contains(&index) {
+                    EventBefore::Recorded
+                } else {
+                    EventBefore::None
+                },
+            });
+        }
+        filter
+    }
+
+    /// Changes that are more probable than not and that the flights themselves speak for, each with the probability that there is
+    /// one among the flights nearest to it.
+    ///
+    /// ```text
+    /// P(a change among R) = 1 − F(no change among R)/F                                           [monitoring.18]
+    /// ```
+    ///
+    /// Over months with few flights a change is probable before any is seen. It is reported where the flights make its odds
+    /// [`LEAST_EVIDENCE`] times what they were before.
+    fn changes(&self) -> Vec<Change> {
+        let filter = self.filter(&(0..0));
+        let mut known = changes(&filter);
+        let flights = self.series.len();
+        let firsts: Vec<usize> = known.iter().map(|change| change.first_flight).collect();
+        for (change, (_, near)) in known.iter_mut().zip(nearest(&firsts, flights)) {
+            let without = self.filter(&near).log_density();
+            change.probability = -(without - filter.log_density()).min(0.0).exp_m1();
+        }
+        let ranges = nearest(&firsts, flights).map(|(_, near)| near);
+        let judged = known.into_iter().zip(ranges);
+        judged
+            .filter(|(change, near)| {
+                let before = self.probability_before(near.clone());
+                change.probability >= REPORTED_PROBABILITY
+                    && odds(change.probability) >= LEAST_EVIDENCE * odds(before)
+            })
+            .map(|(change, _)| change)
+            .collect()
+    }
+
+    /// Probability that something changes before one of these flights, before any flight is seen.
+    fn probability_before(&self, flights: Range<usize>) -> f64 {
+        let years = |flight: usize| self.series.years(self.series.flights()[flight].time());
+        let stays = |flight: usize| {
+            let changes = if self.events.contains(&flight) {
+                self.beliefs.change_at_event
+            } else {
+                self.beliefs.change_within(years(flight) - years(flight - 1))
+            };
+            1.0 - changes
+        };
+        1.0 - flights.filter(|flight| *flight > 0).map(stays).product::<f64>()
+    }
+}
+
+fn odds(probability: f64) -> f64 {
+    probability / (1.0 - probability)
 }
 
 /// Changes that are more probable than not: those of the most probable division, each with the probability of all starts nearer

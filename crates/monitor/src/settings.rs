@@ -55,6 +55,11 @@ const MINUTE_YEARS: f64 = 1.0 / (DAYS_A_YEAR * 24.0 * 60.0);
 /// A change is reported where it is more probable than not.
 pub const REPORTED_PROBABILITY: f64 = 0.5;
 
+/// Factor by which flights have to raise the odds of a change before it is reported: positive evidence by Kass and Raftery 1995,
+/// Journal of the American Statistical Association 90, 773–795. Where flights are few and months many, a change is probable by
+/// the calendar alone, which says nothing of this tail.
+pub const LEAST_EVIDENCE: f64 = 3.0;
+
 /// Flights on either side within which the probability of one change is summed up where no single flight stands out: two
 /// weeks of an aircraft that flies one recorded leg a day.
 pub const ABOUT_FLIGHTS: usize = 7;

@@ -5,6 +5,7 @@
 
 use core::fmt;
 use std::collections::BTreeMap;
+use std::io::Read;
 
 use units::{OutOfDomain, check_within};
 
@@ -87,6 +88,11 @@ pub enum CsvErrorReason {
         /// Columns of the header.
         expected: usize,
     },
+    /// A quote that is open where the text ends.
+    #[error(
+        "a quote opens in this row and is never closed; expected \"\" for a quote inside a field"
+    )]
+    QuoteOpen,
     /// Bytes that are not UTF-8.
     #[error("not UTF-8 text")]
     NotUtf8,
@@ -124,6 +130,27 @@ pub enum CsvErrorReason {
     },
 }
 
+/// Read behind a text: a row of its own, unless a quote is open.
+const END: &[u8] = b"\n\x04\n";
+const END_FIELD: &str = "\x04";
+
+/// The line of the row in which a quote opens that a text of comma-separated values never closes: all rows behind it would be one
+/// field. `None` where every quote is closed.
+#[must_use]
+pub fn open_quote(text: &[u8]) -> Option<u64> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(Read::chain(text, END));
+    let mut record = csv::ByteRecord::new();
+    let (mut line, mut is_open) = (1, false);
+    while reader.read_byte_record(&mut record).unwrap_or(false) {
+        line = line_of(text, record.position());
+        is_open = record.iter().ne([END_FIELD.as_bytes()]);
+    }
+    is_open.then_some(line)
+}
+
 /// A file as text: names and fields as sent.
 #[derive(Debug)]
 pub(crate) struct CsvText {
@@ -145,13 +172,17 @@ impl CsvText {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true) // lengths are compared here, for a message with line and counts
-            .from_reader(text);
+            .from_reader(Read::chain(text, END));
         let mut record = csv::ByteRecord::new();
         let mut rows = Vec::new();
         // Reading bytes from memory into a flexible byte record cannot fail; an error is treated as the end.
         while reader.read_byte_record(&mut record).unwrap_or(false) {
             let line = line_of(text, record.position());
             rows.push(Row { line, fields: utf8_fields(&record, line)? });
+        }
+        let last = rows.pop();
+        if let Some(Row { line, .. }) = last.filter(|last| last.fields != [END_FIELD]) {
+            return Err(CsvError::new(line, CsvErrorReason::QuoteOpen));
         }
         let mut rows = rows.into_iter();
         let Some(Row { line: header_line, fields: header }) = rows.next() else {

@@ -57,7 +57,7 @@ pub mod tsfc;
 pub mod variance;
 
 pub use aircraft::{Aircraft, AircraftError};
-pub use csv_text::{CsvColumn, CsvError, CsvErrorReason};
+pub use csv_text::{CsvColumn, CsvError, CsvErrorReason, open_quote};
 pub use guide::{Guide, GuidePoint};
 pub use initial::{InitialModel, InitialModelError, initial_model};
 pub use model::{

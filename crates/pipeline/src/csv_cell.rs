@@ -62,9 +62,11 @@ fn is_harmless(text: &str) -> bool {
         && text.bytes().next().is_none_or(|byte| byte.is_ascii_alphanumeric())
 }
 
-/// Marks in front count as nothing, so that a text that begins with one reads back as it was.
+/// Marks in front count as nothing, so that a text that begins with one reads back as it was. A dash alone is what tables have for
+/// "not available".
 fn is_formula(text: &str) -> bool {
-    text.trim_start_matches(TEXT_MARK).starts_with(FORMULA) && text.parse::<f64>().is_err()
+    let bare = text.trim_start_matches(TEXT_MARK);
+    bare.starts_with(FORMULA) && bare != "-" && text.parse::<f64>().is_err()
 }
 
 /// Tabulators and line ends are quoted, as in any table.

@@ -38,7 +38,7 @@ pub enum ImpossibleDate {
     LongAfterStart {
         /// START of the flight.
         start: Timestamp,
-        /// How long after it the last segment lies, days.
+        /// How long after it the last row or segment lies, days.
         days: f64,
     },
 }
@@ -46,10 +46,12 @@ pub enum ImpossibleDate {
 /// Whether a flight can have been flown when its report says.
 ///
 /// # Errors
-/// [`ImpossibleDate`] for a START in the future or a segment long after START.
+/// [`ImpossibleDate`] for a START in the future, or a segment or the end of the flight long after START: a flight that lasted
+/// for years would overlap every later one.
 pub fn possible(
     identity: &FlightIdentity,
     segments: &[Segment],
+    end: Timestamp,
     now: Timestamp,
 ) -> Result<(), ImpossibleDate> {
     let start = identity.start;
@@ -57,7 +59,7 @@ pub fn possible(
         return Err(ImpossibleDate::Future { start, now });
     }
     let last_s = segments.iter().map(|segment| segment.means.time_s).fold(0.0, f64::max);
-    let days = last_s / SECONDS_PER_DAY;
+    let days = (last_s / SECONDS_PER_DAY).max(days_between(start, end));
     if days > MOST_DAYS_AFTER_START {
         return Err(ImpossibleDate::LongAfterStart { start, days });
     }
@@ -129,7 +131,7 @@ mod tests {
         let now = at("2026-11-22T00:00:00Z");
         let judge = |start: &str, time_s: f64| {
             let (identity, segments) = flight(start, time_s);
-            possible(&identity, &segments, now)
+            possible(&identity, &segments, identity.start, now)
         };
         assert_eq!(judge("2026-11-21T22:00:00Z", 7200.0), Ok(()));
         // Tomorrow's date at 14 hours ahead of UTC, by a clock without a time zone.
@@ -138,6 +140,10 @@ mod tests {
         // 1.55e9 s after START, in 2019: 17 940 days, counted by hand (1.55e9 / 86 400 = 17 939.8).
         let error = judge("2019-03-14T10:45:00Z", 1.55e9).unwrap_err();
         assert!(error.to_string().contains("17939.8 days after START"), "{error}");
+        // The last row alone: no segment lies there, and every later flight would begin before this one's end.
+        let (identity, segments) = flight("2019-03-14T10:45:00Z", 7200.0);
+        let error = possible(&identity, &segments, at("2303-08-06T06:14:21Z"), now).unwrap_err();
+        assert!(matches!(error, ImpossibleDate::LongAfterStart { .. }), "{error}");
     }
 
     #[test]

@@ -193,8 +193,8 @@ impl Group<'_> {
         let learnt = self.model.learnt.as_ref();
         if learnt.is_none_or(|learnt| learnt.baseline.is_none()) && !asked.table_only {
             run_notes.push(
-                "the model has learnt no remainder (law bayes learns one from five flights): everything that a table cannot hold \
-                 counts as gap"
+                "the model has learnt no remainder (law bayes learns one from five flights with segments inside the table): \
+                 everything that a table cannot hold counts as gap; adapt it to more flights first"
                     .to_owned(),
             );
         }

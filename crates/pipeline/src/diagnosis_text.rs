@@ -10,8 +10,8 @@ use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::{
     NOT_RULED_OUT, acts_on_words, advice, are_few, distances_words, form_words, joined,
-    measurement_words, near_and_far, others_of_class, region_words, silent_words, told_size,
-    variable_words,
+    left_out_words, measurement_words, near_and_far, others_of_class, region_words, silent_words,
+    told_size, variable_words,
 };
 use crate::summary::{counted, not_minus_zero};
 
@@ -65,6 +65,7 @@ pub fn lines(diagnosed: &DiagnosedTail) -> Vec<String> {
         counted(diagnosis.segments, "segment"),
         against(&diagnosed.compared),
     )];
+    lines.extend(left_out(diagnosis));
     let found = match &diagnosis.verdict {
         Verdict::InsufficientData(_) => {
             let advice = advice(diagnosis);
@@ -93,6 +94,18 @@ pub fn lines(diagnosed: &DiagnosedTail) -> Vec<String> {
         lines.push(format!("Not testable with this data: {}.", names.join("; ")));
     }
     lines
+}
+
+/// "Left out: 94 segments outside the drag table."
+fn left_out(diagnosis: &Diagnosis) -> Option<String> {
+    let told: Vec<String> = diagnosis
+        .left_out
+        .iter()
+        .map(|(reason, count)| {
+            format!("{} {}", counted(*count, "segment"), left_out_words(*reason))
+        })
+        .collect();
+    (!told.is_empty()).then(|| format!("Left out: {}.", told.join(", ")))
 }
 
 /// ", 2019-09-01 to 2020-08-30", the days of the first and the last flight.
@@ -310,6 +323,10 @@ fn with_probability(diagnosis: &Diagnosis, id: EffectId) -> String {
 
 /// How far the gap shrinks.
 fn closes(diagnosis: &Diagnosis, found: &Found) -> String {
+    if found.effects == [EffectId::FuelHeatingValue] {
+        return "It is another on every flight: added to the model it makes no prediction better, only the stated interval wider."
+            .to_owned();
+    }
     let after = diagnosis.causes.iter().find_map(|cause| cause.rms_after_percent);
     match (after, found.closure) {
         (Some(after), Some(Closure { share, ci95: [low, high] })) => format!(
@@ -367,7 +384,10 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
             cause.closure.map_or_else(
                 || "how much it closes could not be measured".to_owned(),
                 |closure| {
-                    format!("it closes {:.0} % on unseen flights", 100.0 * closure.share.max(0.0))
+                    format!(
+                        "it closes {:.0} % on unseen flights",
+                        not_minus_zero(100.0 * closure.share, 0)
+                    )
                 }
             )
         ));

@@ -247,6 +247,15 @@ impl ModelFile {
         self.learnt.as_ref().map(|learnt| learnt.law.confidence())
     }
 
+    /// Whether any segment has taught the table: of a flight outside it nothing is learnt.
+    pub fn has_learnt_segments(&self) -> bool {
+        match self.learnt.as_ref().map(|learnt| &learnt.law) {
+            Some(LawState::Bayes { state, .. }) => state.segments() > 0,
+            Some(LawState::Paper { .. }) => true,
+            None => false,
+        }
+    }
+
     /// The solution of law `bayes`, where that is the law.
     pub fn posterior(&self) -> Option<&Posterior> {
         match &self.learnt {

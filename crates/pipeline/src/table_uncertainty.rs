@@ -13,8 +13,9 @@ use crate::whole_model::Predicts;
 const NODES_WITH_COVARIANCE: usize = 700;
 
 /// What a model's table does not know where these flights are. Of a model that no flight has taught, or that was taught by a
-/// law that does not say, it is what is believed of a guide: the prior of law `bayes`. `None` where the aircraft file states
-/// that the table is exact (`table_uncertainty_percent: 0`) and nothing was learnt.
+/// law that does not say, it is what is believed of a guide: the prior of law `bayes`; and so it is of what the flights have
+/// left open of it until they have taught the whole model: a table of few flights may still be off as a guide's is. `None`
+/// where the aircraft file states that the table is exact (`table_uncertainty_percent: 0`) and nothing was learnt.
 /// `None` too where the whole model is asked for, whose baseline has it.
 ///
 /// # Errors
@@ -24,16 +25,23 @@ pub fn of_model(
     predicts: Predicts,
     flights: &[FlightRecord<'_>],
 ) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
+    let has_whole_model = model.learnt.as_ref().is_some_and(|learnt| learnt.baseline.is_some());
     // What was learnt together with the table has its uncertainty too.
-    if model.learnt.as_ref().is_some_and(|l| l.baseline.is_some())
-        && predicts == Predicts::WholeModel
-    {
+    if has_whole_model && predicts == Predicts::WholeModel {
         return Ok(None);
     }
-    let table = model.drag_coefficient();
+    let (initial, table) = (&model.initial, model.drag_coefficient());
+    let settings = model.settings.bayes;
+    let belief = Belief { model: initial, settings, guide: Some(&model.guide) };
+    let is_exact = initial.aircraft().table_uncertainty_percent() == Some(0.0);
     match model.posterior() {
-        Some(posterior) => of_posterior(posterior, &model.initial, table, flights).map(Some),
-        None => of_book(&model.initial, table, model.settings.bayes, Some(&model.guide), flights),
+        Some(posterior) if has_whole_model || (is_exact && model.has_learnt_segments()) => {
+            of_posterior(posterior, initial, table, flights).map(Some)
+        }
+        Some(posterior) if model.has_learnt_segments() => {
+            belief.after(posterior, table, flights).map(Some)
+        }
+        _ => of_book(initial, table, settings, Some(&model.guide), flights),
     }
 }
 
@@ -56,18 +64,38 @@ pub fn of_book(
     guide: Option<&GuideRecord>,
     flights: &[FlightRecord<'_>],
 ) -> Result<Option<TableUncertainty>, TableUncertaintyError> {
-    let stated = model.aircraft().table_uncertainty_percent();
-    if stated == Some(0.0) {
+    if model.aircraft().table_uncertainty_percent() == Some(0.0) {
         return Ok(None);
     }
     let invalid = TableUncertaintyError::NotPositiveDefinite;
     let nothing_learnt = BayesState::new(drag_table, settings).map_err(|_| invalid)?;
     let prior = nothing_learnt.solve().map_err(|_| invalid)?;
-    let visited = visited_nodes(model, drag_table, flights).unwrap_or_default();
-    let usual_percent = 100.0 * settings.values().correction_std;
-    let scale = stated.map_or(1.0, |percent| percent / usual_percent);
-    let lost = guide.map_or_else(Vec::new, |guide| lost_of_guide(model, drag_table, guide));
-    Ok(Some(of_visited_and(&prior, drag_table.grid(), &visited, scale, &lost)?.of_book()))
+    Belief { model, settings, guide }.after(&prior, drag_table, flights).map(Some)
+}
+
+/// What is believed of a guide's drag.
+struct Belief<'a> {
+    model: &'a ExtendedModel,
+    settings: BayesSettings,
+    guide: Option<&'a GuideRecord>,
+}
+
+impl Belief<'_> {
+    /// C of [`of_book`], C_bayes being what law `bayes` knows after the flights that it has learnt.
+    fn after(
+        &self,
+        posterior: &Posterior,
+        drag_table: &lut::Table,
+        flights: &[FlightRecord<'_>],
+    ) -> Result<TableUncertainty, TableUncertaintyError> {
+        let Self { model, settings, guide } = *self;
+        let usual_percent = 100.0 * settings.values().correction_std;
+        let stated = model.aircraft().table_uncertainty_percent();
+        let scale = stated.map_or(1.0, |percent| percent / usual_percent);
+        let visited = visited_nodes(model, drag_table, flights).unwrap_or_default();
+        let lost = guide.map_or_else(Vec::new, |guide| lost_of_guide(model, drag_table, guide));
+        Ok(of_visited_and(posterior, drag_table.grid(), &visited, scale, &lost)?.of_book())
+    }
 }
 
 /// Relative errors of the nodes by what the polynomial lost of the guide, one vector a shape, their squares to be summed. None where

@@ -6,7 +6,7 @@ use crate::args::{ExportArgs, ExportFormat};
 use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
-use crate::files::write_atomically;
+use crate::files::outputs::write_result;
 use crate::models::read_model;
 use pipeline::{export, model_table};
 
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &ExportArgs) -> Result<Outcome, Failure> {
         (None, text) => Ok(Outcome::text(text.unwrap_or_default())),
         (Some(path), text) => {
             if let Some(text) = text {
-                write_atomically(path, text.as_bytes())?;
+                write_result(path, text.as_bytes())?;
             }
             let name = format.to_possible_value().map(|value| value.get_name().to_owned());
             Ok(Outcome {

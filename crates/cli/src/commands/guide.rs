@@ -5,11 +5,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 use perf_model::poll_schumann::{self, Parameters, STATED_ACCURACY_PERCENT, guide::PublicGuide};
-use pipeline::public_guide::aircraft_text;
+use pipeline::public_guide::{aircraft_text, is_public};
 
 use crate::args::GuideArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
+use crate::files::outputs::would_lose;
 use crate::files::{make_folder, write_atomically};
 
 /// Runs the command.
@@ -35,8 +36,15 @@ pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
         poll_schumann::guide::guide(&code, parameters).map_err(|error| bad(error.to_string()))?;
     let aircraft = aircraft_text(&guide, parameters).map_err(|error| bad(error.to_string()))?;
     make_folder(folder)?;
-    write_atomically(&folder.join("AIRCRAFT.ron"), aircraft.as_bytes())?;
-    write_atomically(&folder.join("guide.csv"), guide.to_csv().as_bytes())?;
+    let (aircraft_path, guide_path) = (folder.join("AIRCRAFT.ron"), folder.join("guide.csv"));
+    let is_own = std::fs::read_to_string(&aircraft_path).is_ok_and(|known| is_public(&known));
+    for path in [&aircraft_path, &guide_path] {
+        if path.exists() && !is_own {
+            would_lose(path, "an operator's own file")?;
+        }
+    }
+    write_atomically(&aircraft_path, aircraft.as_bytes())?;
+    write_atomically(&guide_path, guide.to_csv().as_bytes())?;
     Ok(Outcome::with_figures(text(&guide, parameters, folder), figures(&guide, parameters, folder)))
 }
 

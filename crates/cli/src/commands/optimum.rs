@@ -13,7 +13,7 @@ use crate::args::OptimumArgs;
 use crate::columns;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
-use crate::files::write_atomically;
+use crate::files::outputs::write_result;
 use crate::models::read_model;
 
 /// Seed of the models drawn for the intervals: the same model gives the same intervals.
@@ -81,7 +81,7 @@ fn write(
 ) -> Result<(), Failure> {
     if ending(path) == Some("json") {
         let json = document.to_json().map_err(|error| Failure::unwritable(path, error))?;
-        write_atomically(path, json.as_bytes())
+        write_result(path, json.as_bytes())
     } else {
         columns::write(&optimum::columns(conditions), Some(path))
     }

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use crate::args::PlotArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, show};
-use crate::files::{file_stem_of_tail, read_text, write_atomically};
+use crate::files::outputs::write_result;
+use crate::files::{file_stem_of_tail, read_text};
 use crate::models::read_model;
 use diagnose::SegmentGap;
 use page::{PictureFormat, TrialConfusion};
@@ -59,7 +60,7 @@ pub(crate) fn run(arguments: &PlotArgs) -> Result<Outcome, Failure> {
     })?;
     let picture =
         format.draw(drawn).map_err(|error| Failure::unwritable(&arguments.output, error))?;
-    write_atomically(&arguments.output, &picture.bytes)?;
+    write_result(&arguments.output, &picture.bytes)?;
     let unknown: String = picture.unknown_characters.iter().collect();
     if !unknown.is_empty() {
         tracing::warn!(

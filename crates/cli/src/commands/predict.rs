@@ -12,6 +12,7 @@ use crate::columns;
 use crate::commands::{Outcome, check_refused, read_mapping};
 use crate::criteria::NamedCriteria;
 use crate::failure::{Failure, RefusedReport, show};
+use crate::files::outputs::check_not_read;
 use crate::files::standard_input;
 use crate::models::read_model;
 use crate::reading::{Buffers, FlightRead, Source, is_parquet};
@@ -29,6 +30,9 @@ use report::MAXIMUM_TEXT_BYTES;
 /// # Errors
 /// A reason for which nothing was done.
 pub(crate) fn run(arguments: &PredictArgs) -> Result<Outcome, Failure> {
+    for input in [&arguments.points, &arguments.model] {
+        check_not_read(arguments.output.as_deref(), input)?;
+    }
     let model = read_model(&arguments.model)?;
     let predictor = Predictor::new(&model, Predicts::table_only(arguments.table_only))
         .map_err(|error| Failure::bad_file(&arguments.model, error))?;

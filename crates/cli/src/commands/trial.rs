@@ -45,7 +45,11 @@ pub(crate) fn run(arguments: &TrialArgs, progress: Progress) -> Result<Outcome, 
         0 => String::new(),
         fleets => format!(" and {}", counted(fleets, "fleet")),
     };
-    eprintln!("{} cases{and_fleets}, truth sealed: sha256 {}", cases.len(), truths.seal().hash());
+    crate::terminal::tell(&format!(
+        "{} cases{and_fleets}, truth sealed: sha256 {}\n",
+        cases.len(),
+        truths.seal().hash()
+    ));
     let bar = progress.bar(cases.len() + fleets.len(), "trials");
     let results: Vec<_> = cases
         .par_iter()

@@ -17,6 +17,7 @@ mod commands;
 mod dates;
 mod diagnosis;
 mod export;
+mod few_flights;
 mod figures;
 mod fleet;
 mod folder;

@@ -79,7 +79,11 @@ pub(crate) fn detect(
     let nothing_predicted = LazyCell::new(|| smooth_predicts_nothing(problem, own));
     // What smooth functions that were fitted to other flights predict does not differ from flight to flight by chance.
     let no_scatter = is_scatter && table.is_none() && !*nothing_predicted;
-    let unproven = no_scatter || refuted_table || may_close_nothing(unseen.filter(|_| !is_scatter));
+    // A scatter closes nothing, but what is named with it must not make unseen flights worse.
+    let unproven = no_scatter
+        || refuted_table
+        || surely_makes_worse(unseen)
+        || may_close_nothing(unseen.filter(|_| !is_scatter));
     if table.is_none() && (leaves_most || unproven) {
         outside.probability = 1.0 - UNPROVEN_SHARE * (1.0 - outside.probability);
     }
@@ -156,6 +160,11 @@ fn borne_out(table: TableFinding, unseen: Option<&Shrinkage>) -> TableFinding {
 /// Whether the closure of a name on flights that it was not fitted to may be none.
 fn may_close_nothing(unseen: Option<&Shrinkage>) -> bool {
     unseen.and_then(Shrinkage::closure).is_some_and(|(_, [least, _])| least <= 0.0)
+}
+
+/// Whether the named effects certainly make other flights worse.
+fn surely_makes_worse(unseen: Option<&Shrinkage>) -> bool {
+    unseen.and_then(Shrinkage::closure).is_some_and(|(_, [_, most])| most < 0.0)
 }
 
 /// Whether a name certainly shrinks the gap by more than this share on flights that it was not fitted to. What a large effect

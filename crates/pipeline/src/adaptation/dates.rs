@@ -14,7 +14,8 @@ pub fn refuse_impossible(reading: &mut Reading, now: Timestamp) {
     // Fractions of a second are nothing to print.
     let now = Timestamp::from_second(now.as_second()).unwrap_or(now);
     for flight in std::mem::take(&mut reading.flights) {
-        match dates::possible(&flight.reduced.identity, &flight.reduced.segments, now) {
+        let (identity, segments) = (&flight.reduced.identity, &flight.reduced.segments);
+        match dates::possible(identity, segments, flight.end, now) {
             Ok(()) => reading.flights.push(flight),
             Err(reason) => reading.refused.push(RefusedReport::whole(flight.path, reason)),
         }

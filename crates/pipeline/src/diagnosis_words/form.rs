@@ -18,7 +18,9 @@ pub fn form_words(found: &FoundForm) -> String {
     };
     let closure = found.closure.map_or_else(
         || "how much it closes could not be measured".to_owned(),
-        |closure| format!("closes {:.0} % on unseen flights", 100.0 * closure.share.max(0.0)),
+        |closure| {
+            format!("closes {:.0} % on unseen flights", not_minus_zero(100.0 * closure.share, 0))
+        },
     );
     let size = not_minus_zero(found.size, 2);
     let shape = shape(found.form, (found.variable, found.scale), found.place_ci95);

@@ -40,6 +40,14 @@ pub enum EventsError {
     /// Not comma-separated values.
     #[error(transparent)]
     Csv(#[from] csv::Error),
+    /// A quote that is open where the text ends: every later event would be part of a note.
+    #[error(
+        "line {line}: a quote opens in this row and is never closed; expected \"\" for a quote inside a field"
+    )]
+    QuoteOpen {
+        /// Physical line from 1.
+        line: u64,
+    },
     /// A column is missing.
     #[error("line 1: found columns {found}, expected date,tail,kind,note")]
     Columns {
@@ -67,6 +75,9 @@ const COLUMNS: [&str; 4] = ["date", "tail", "kind", "note"];
 /// # Errors
 /// [`EventsError`] with line, column, what was found and what is expected.
 pub fn read_events(bytes: &[u8]) -> Result<Vec<Event>, EventsError> {
+    if let Some(line) = perf_model::open_quote(bytes) {
+        return Err(EventsError::QuoteOpen { line });
+    }
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
     let header = reader.headers()?.clone();
     let place = |name: &str| header.iter().position(|known| known == name);
@@ -119,6 +130,14 @@ pub fn instant(text: &str) -> Option<Timestamp> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// An inch mark in front of a note once took every later event with it.
+    #[test]
+    fn a_quote_that_stays_open_is_refused_with_its_line() {
+        let text = "date,tail,kind,note\n2026-01-02,T,wash,\"un\n2026-01-03,T,wash,b\n";
+        let error = read_events(text.as_bytes()).unwrap_err();
+        assert!(error.to_string().starts_with("line 2: a quote opens"), "{error}");
+    }
 
     #[test]
     fn events_are_read_in_order() {

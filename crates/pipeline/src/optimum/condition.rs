@@ -93,7 +93,7 @@ pub fn at(
     let curves: Vec<(f64, Curve)> = question
         .levels
         .iter()
-        .map(|level| (level.to_feet(), model.curve(condition, *level)))
+        .map(|level| (whole_millionths(level.to_feet()), model.curve(condition, *level)))
         .collect();
     let cost_index = question.cost_index.unwrap_or_default();
     let mut kinds = vec![Kind::MaximumRange, Kind::LongRange];
@@ -245,4 +245,9 @@ fn interval95(mut values: Vec<f64>) -> Option<[f64; 2]> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;
     Some([values[last / 40], values[last - last / 40]])
+}
+
+/// Without the last digits that a level in feet has gained in metres: the level that was asked for, for whoever looks it up.
+fn whole_millionths(feet: f64) -> f64 {
+    (1e6 * feet).round() / 1e6
 }
