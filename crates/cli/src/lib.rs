@@ -158,12 +158,10 @@ fn start_logging(common: &args::Common) -> Warnings {
 fn print_result(result: Result<Outcome, Failure>, told: Told) -> u8 {
     let failure = match result {
         Ok(Outcome { text, refused, ending, .. }) => {
-            if told == Told::All {
-                terminal::print(&text);
-            }
+            let is_delivered = told != Told::All || terminal::print(&text);
             terminal::tell_refused(&refused);
             match ending {
-                Ending::Done if refused.is_empty() => return DONE,
+                Ending::Done if refused.is_empty() && is_delivered => return DONE,
                 Ending::Done => return SOME_REFUSED,
                 Ending::Alerts => return ALERTS_RAISED,
                 Ending::NotPassed(failure) => failure,
@@ -171,6 +169,6 @@ fn print_result(result: Result<Outcome, Failure>, told: Told) -> u8 {
         }
         Err(failure) => failure,
     };
-    eprint!("{}", terminal::errors::shown(&failure, Terminal::of_run().err));
+    terminal::tell_as_it_is(&terminal::errors::shown(&failure, Terminal::of_run().err));
     NOTHING_DONE
 }

@@ -88,10 +88,23 @@ fn width() -> usize {
     stated.or_else(seen).filter(|columns| *columns >= LEAST_WIDTH).unwrap_or(USUAL_WIDTH)
 }
 
-/// Text for people, to standard output. A reader that closes the pipe early (`| head`) is not an error.
-pub(crate) fn print(text: &str) {
+/// Text for people, to standard output, and whether it got there; standard error says why not. A reader that closes the pipe early
+/// (`| head`) is not an error.
+pub(crate) fn print(text: &str) -> bool {
     let dressed = Terminal::of_run().out.dress(text);
-    let _ = std::io::stdout().write_all(dressed.as_bytes());
+    let mut to = std::io::stdout();
+    match to.write_all(dressed.as_bytes()).and_then(|()| to.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            tell(&format!("standard output cannot be written: {error}\n"));
+            false
+        }
+        _ => true,
+    }
+}
+
+/// Text that is dressed already, to standard error. Where that is closed or full, nobody can be told.
+pub(crate) fn tell_as_it_is(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// Text for people, to standard error.

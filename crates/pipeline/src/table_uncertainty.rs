@@ -81,7 +81,7 @@ struct Belief<'a> {
 }
 
 impl Belief<'_> {
-    /// C of [`of_book`], C_bayes being what law `bayes` knows after the flights that it has learnt.
+    /// C of [`of_book`], `C_bayes` being what law `bayes` knows after the flights that it has learnt.
     fn after(
         &self,
         posterior: &Posterior,

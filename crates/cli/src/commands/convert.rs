@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use flight::Report;
+use flight::{Report, Severity};
 use pipeline::summary::counted;
 use report::mapping::Mapping;
 use report::{Parsed, TextLayout};
@@ -107,6 +107,12 @@ impl<'a> Conversion<'a> {
 
     fn take(&mut self, path: &Path, parsed: &Parsed) {
         self.flights += 1;
+        // What was left out of a recording is in no report that is made of it.
+        if let Output::Folder(..) = self.output {
+            for finding in parsed.findings.iter().filter(|one| one.severity >= Severity::Warning) {
+                tracing::warn!(file = %path.display(), line = finding.line, "{}", finding.message);
+            }
+        }
         match &mut self.output {
             Output::Shown(shown) => show_flight(path, parsed, shown),
             Output::Folder(folder, force) if self.failure.is_none() => {

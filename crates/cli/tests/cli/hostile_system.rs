@@ -234,3 +234,21 @@ fn a_flight_that_lacks_thrust_is_drawn_again_and_counted() {
     assert_eq!(one.len(), 5, "{:?}", one.keys());
     assert_eq!(fly("3"), one);
 }
+
+/// A log on a full disk: the status is that of the run, not of a crash, and what was not delivered is said.
+#[cfg(target_os = "linux")]
+#[test]
+fn full_standard_streams_end_no_run() {
+    let full = || Stdio::from(std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap());
+    let run = |words: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cruisefit"));
+        command.args(words).env_remove("RUST_LOG");
+        command
+    };
+    let silent = run(&["predict", "--model", "NO.ron", "NO.csv"]).stderr(full()).output().unwrap();
+    assert_eq!(silent.status.code(), Some(2));
+    let undelivered = run(&["effects"]).stdout(full()).output().unwrap();
+    assert_eq!(undelivered.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&undelivered.stderr).into_owned();
+    assert!(said.contains("standard output cannot be written"), "{said}");
+}
