@@ -10,8 +10,8 @@ use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::{
     NOT_RULED_OUT, acts_on_words, advice, are_few, distances_words, form_words, joined,
-    left_out_words, measurement_words, near_and_far, others_of_class, region_words, silent_words,
-    told_size, variable_words,
+    left_out_words, measurement_words, near_and_far, no_effect_words, others_of_class,
+    region_words, silent_words, told_size, variable_words,
 };
 use crate::summary::{counted, not_minus_zero};
 
@@ -372,7 +372,8 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
         what.map_or_else(String::new, |what| format!("{words}{what}"))
     };
     let mut lines = vec![format!(
-        "A real gap that no effect of the library explains{}{} (probability {:.2}).",
+        "{}{}{} (probability {:.2}).",
+        no_effect_words(outside.probability),
         told("; it depends on ", outside.variable.map(variable_words)),
         told(" and acts on ", outside.acts_on.map(acts_on_words)),
         outside.probability

@@ -323,6 +323,17 @@ pub const fn left_out_words(reason: LeftOutReason) -> &'static str {
     }
 }
 
+/// What is said of a gap that no effect of the library explains, with this probability.
+pub fn no_effect_words(probability: f64) -> &'static str {
+    /// From here on it is said without reserve; our choice, as for every name.
+    const SURE: f64 = 0.9;
+    if probability >= SURE {
+        "A real gap that no effect of the library explains"
+    } else {
+        "A real gap, and more probably than not no effect of the library explains it"
+    }
+}
+
 /// What a cause outside the library acts on.
 pub const fn acts_on_words(acts_on: ActsOn) -> &'static str {
     match acts_on {

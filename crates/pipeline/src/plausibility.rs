@@ -83,7 +83,8 @@ pub enum Absurd {
 }
 
 /// Serious findings in words, empty where there are none; unless they are accepted, the flights of tails that are absurdly
-/// far off the book are moved to the refused ones.
+/// far off the book, or of which all lie outside its table, are moved to the refused ones. Nothing could be learnt of the latter, and
+/// what is known already is refused when its mapping is corrected.
 pub fn set_aside_absurd<'m>(
     reading: &mut Reading,
     model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
@@ -99,7 +100,14 @@ pub fn set_aside_absurd<'m>(
     }
     let refused: BTreeMap<String, String> = of_book
         .into_iter()
-        .filter(|finding| finding.code == book::DEVIATION)
+        .filter(|finding| {
+            let flights = || reading.flights.iter().map(|flight| &flight.reduced.identity.tail);
+            finding.code == book::DEVIATION
+                || finding.code == book::OUTSIDE
+                    && finding.severity >= Severity::Serious
+                    && flights().filter(|tail| **tail == finding.tail).count()
+                        >= book::FLIGHTS_OUTSIDE
+        })
         .map(|finding| {
             let reason = format!(
                 "{}: {}; likely {}; --accept uses it nevertheless",

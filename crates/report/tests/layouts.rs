@@ -242,3 +242,18 @@ fn rows_minutes_apart_are_guessed_as_points() {
         assert!(!mapping.contains("AveragedPoints"), "{left_out:?}: {mapping}");
     }
 }
+
+/// Exports of spreadsheets: a blank row below the names, a clock of twelve hours, the aircraft's type under `Aircraft`.
+#[test]
+fn blank_rows_and_clocks_of_twelve_hours() {
+    let recording = "Time UTC,Reg,Flight,Aircraft,ALT_STD,SAT,Mach,TAS,GS\n,,,,,,,,\n\
+                     1/13/2018 9:29:00 AM,D-BBBB,0001,A320,28993,-39.5,0.7175,427.5,419.5\n\
+                     1/13/2018 1:29:00 PM,D-BBBB,0001,A320,28993,-39.5,0.7175,427.5,419.5\n";
+    let mapping = first_mapping(recording.as_bytes()).unwrap();
+    for line in [
+        "time: Timestamp(column: \"Time UTC\", format: \"%m/%d/%Y %I:%M:%S %p\"",
+        "aircraft: Column(\"Aircraft\")",
+    ] {
+        assert!(mapping.contains(line), "{line} is not in\n{mapping}");
+    }
+}

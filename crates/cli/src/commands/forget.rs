@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &ForgetArgs) -> Result<Outcome, Failure> {
     folder.commit(states)?;
     let text = format!(
         "Flight {} of {} forgotten; tail {tail} in {} has learnt {left} others. summary.json and report.html are those of \
-         the last run of `adapt`.\n",
+         the last run of `adapt`, which learns the flight again if its report is still among those that it reads.\n",
         forgotten.entry.flight,
         forgotten.entry.start,
         show(&arguments.folder)

@@ -19,6 +19,13 @@ use crate::models::read_model;
 /// Seed of the models drawn for the intervals: the same model gives the same intervals.
 const SEED: u64 = 1;
 
+/// Levels that are asked for: a flight level in hundreds of feet is none of them.
+const LEVELS_FT: (f64, f64, &str) = (5_000.0, 65_000.0, "ft");
+/// Winds along the track: what is beyond was never flown in.
+const TAILWINDS_KT: (f64, f64, &str) = (-400.0, 400.0, "kt");
+/// Days, as flight points have them.
+const DAYS_K: (f64, f64, &str) = (-50.0, 50.0, "K");
+
 /// Runs the command.
 ///
 /// # Errors
@@ -34,17 +41,19 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     };
     let mut levels = match &arguments.levels[..] {
         [] => optimum::usual_levels(),
-        given => positive("--levels", given)?.into_iter().map(PressureAltitude::feet).collect(),
+        given => {
+            within("--levels", given, LEVELS_FT)?.into_iter().map(PressureAltitude::feet).collect()
+        }
     };
     levels.sort_by(|one, other| one.to_feet().total_cmp(&other.to_feet()));
     let cost_index = arguments.cost_index.map(CostIndex::kilograms_per_minute);
-    let tailwinds = finite("--tailwind", &arguments.tailwind)?;
+    let tailwinds = within("--tailwind", &arguments.tailwind, TAILWINDS_KT)?;
     let question = Question {
         levels,
         tailwinds: tailwinds.into_iter().map(TrueAirspeed::knots).collect(),
         cost_index,
     };
-    let days = finite("--isa-deviation", &arguments.isa_deviation)?;
+    let days = within("--isa-deviation", &arguments.isa_deviation, DAYS_K)?;
     let asked: Vec<MassAndDay> = masses
         .iter()
         .flat_map(|mass| {
@@ -102,12 +111,16 @@ fn ending(path: &Path) -> Option<&str> {
     path.extension().and_then(|ending| ending.to_str())
 }
 
-fn finite(argument: &'static str, values: &[f64]) -> Result<Vec<f64>, Failure> {
-    match values.iter().find(|value| !value.is_finite()) {
+fn within(
+    argument: &'static str,
+    values: &[f64],
+    (least, most, unit): (f64, f64, &str),
+) -> Result<Vec<f64>, Failure> {
+    match values.iter().find(|value| !(least..=most).contains(*value)) {
         None => Ok(values.to_vec()),
         Some(value) => Err(Failure::BadArgument {
             argument,
-            reason: format!("found {value}, expected finite numbers"),
+            reason: format!("found {value}, expected {least} to {most} {unit}"),
         }),
     }
 }

@@ -297,6 +297,22 @@ fn the_absurd_is_refused_until_it_is_accepted() {
     adapt(&model, &output, &reports, &["--accept"]).expect(0).says("book-deviation");
 }
 
+/// Masses in the wrong unit, all outside the table: once learnt, the corrected reports were "already known".
+#[test]
+fn flights_of_which_none_is_inside_the_table_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let reports = planted(folder.path(), |text| {
+        unit(&unit(&load_unit(text, "kg"), "WF", "kg/h"), "FU", "kg")
+    });
+    let output = folder.path().join("out");
+    adapt(&model, &output, &reports, &[])
+        .expect(2)
+        .says("outside the model's table")
+        .says("--accept");
+    assert!(!output.exists(), "nothing may be written");
+}
+
 #[test]
 fn copies_and_overlaps_are_found() {
     let folder = tempfile::tempdir().unwrap();

@@ -10,6 +10,11 @@ pub const DEVIATION: &str = "book-deviation";
 /// Mean deviation from the book beyond which it is a slip rather than an aircraft, %. Old aircraft burn 5 to 8 % more
 /// than their book, a public model of the type is within 10 to 15 %.
 pub const PLAUSIBLE_PERCENT: f64 = 15.0;
+/// Code of the finding that segments of a tail lie outside the table of its book.
+pub const OUTSIDE: &str = "outside-table";
+/// Flights of which no segment is inside the table, from which that is a slip of units or a table that is too small: one or two may
+/// have been flown where the aircraft seldom is.
+pub const FLIGHTS_OUTSIDE: usize = 3;
 /// Share of segments outside the table from which that is worth a word.
 const OUTSIDE_SHARE: f64 = 0.5;
 /// Lift coefficients of cruise end below this; masses twice as large do not.
@@ -90,7 +95,7 @@ fn outside(tail: &str, inside: usize, all: usize, lift: Option<f64>) -> Option<D
     }
     Some(DataFinding {
         severity: if inside == 0 { Severity::Serious } else { Severity::Warning },
-        code: "outside-table",
+        code: OUTSIDE,
         tail: tail.to_owned(),
         flight: String::new(),
         start: String::new(),

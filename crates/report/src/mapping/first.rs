@@ -147,7 +147,7 @@ const ENGINE_NAMES: [(&str, &[&str]); 4] = [
 const TEXTS: [(&str, &[&str], &str); 3] = [
     (
         "aircraft",
-        &["aircrafttype", "actype", "type", "typecode", "flplairctype"],
+        &["aircrafttype", "actype", "type", "typecode", "flplairctype", "aircraft", "ac"],
         "Text(\"TYPE\"),   // ?",
     ),
     (
@@ -383,7 +383,8 @@ impl Columns {
         }
     }
 
-    /// The form of dates with slashes or points: day first unless a number says otherwise. `None` of other texts.
+    /// The form of dates with slashes or points: day first unless a number says otherwise, of twelve hours where the text ends in AM
+    /// or PM. `None` of other texts.
     fn date_form(&self, column: usize) -> Option<&'static str> {
         let first = self.texts_of(column).find(|text| !text.is_empty())?;
         let mark = ['/', '.'].into_iter().find(|mark| numbers_of_date(first, *mark).is_some())?;
@@ -391,11 +392,14 @@ impl Columns {
             .texts_of(column)
             .filter_map(|text| numbers_of_date(text, mark))
             .any(|[_, second]| second > 12);
-        Some(match (mark, month_first) {
-            ('/', false) => "%d/%m/%Y %H:%M:%S",
-            ('/', true) => "%m/%d/%Y %H:%M:%S",
-            (_, false) => "%d.%m.%Y %H:%M:%S",
-            (_, true) => "%m.%d.%Y %H:%M:%S",
+        let twelve_hours = first.ends_with(['M', 'm']);
+        Some(match (mark, month_first, twelve_hours) {
+            ('/', false, false) => "%d/%m/%Y %H:%M:%S",
+            ('/', true, false) => "%m/%d/%Y %H:%M:%S",
+            ('/', false, true) => "%d/%m/%Y %I:%M:%S %p",
+            ('/', true, true) => "%m/%d/%Y %I:%M:%S %p",
+            (_, false, _) => "%d.%m.%Y %H:%M:%S",
+            (_, true, _) => "%m.%d.%Y %H:%M:%S",
         })
     }
 

@@ -39,7 +39,9 @@ impl Columns {
             .records()
             .take(ROWS)
             .filter_map(Result::ok)
-            .map(|record| record.iter().map(str::to_owned).collect())
+            .map(|record| record.iter().map(str::to_owned).collect::<Vec<String>>())
+            // A blank row below the names tells nothing of the columns.
+            .filter(|row| row.iter().any(|field| !field.is_empty()))
             .collect();
         let units = rows.first().filter(|row| is_row_of_units(row)).cloned();
         if units.is_some() {
