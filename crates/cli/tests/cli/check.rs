@@ -302,9 +302,8 @@ fn the_absurd_is_refused_until_it_is_accepted() {
 fn flights_of_which_none_is_inside_the_table_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let model = initial_model(folder.path());
-    let reports = planted(folder.path(), |text| {
-        unit(&unit(&load_unit(text, "kg"), "WF", "kg/h"), "FU", "kg")
-    });
+    let reports =
+        planted(folder.path(), |text| header(&header(text, "ZFW", "116760 lb"), "FOB", "34550 lb"));
     let output = folder.path().join("out");
     adapt(&model, &output, &reports, &[])
         .expect(2)
