@@ -303,7 +303,7 @@ fn flights_of_which_none_is_inside_the_table_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let model = initial_model(folder.path());
     let reports =
-        planted(folder.path(), |text| header(&header(text, "ZFW", "116760 lb"), "FOB", "34550 lb"));
+        planted(folder.path(), |text| header(&header(text, "ZFW", "211840 lb"), "FOB", "62680 lb"));
     let output = folder.path().join("out");
     adapt(&model, &output, &reports, &[])
         .expect(2)
