@@ -120,7 +120,7 @@ pub(crate) enum Failure {
     },
     /// A file that would be lost, of a command that replaces results of its own kind alone.
     #[error("{path} is {what}, which would be lost")]
-    #[diagnostic(help("choose another name, or remove it first"))]
+    #[diagnostic(help("choose another name"))]
     WouldLose {
         /// The file.
         path: String,
