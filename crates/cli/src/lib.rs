@@ -4,11 +4,7 @@
 //! Exit status: 0 done; 1 done, but some input was refused (each refusal on stderr and in the summary); 2 nothing was
 //! done, with the reason on stderr; 3 done, and a rule of `monitor --alert` fired.
 
-#![expect(
-    clippy::print_stderr,
-    clippy::disallowed_methods,
-    reason = "the command line talks to the world"
-)]
+#![expect(clippy::disallowed_methods, reason = "the command line talks to the world")]
 
 mod args;
 mod arrow_batches;
