@@ -24,8 +24,13 @@ pub(crate) fn check(wanted: JsonWanted<'_>) -> Result<(), Failure> {
         return Err(Failure::unwritable(path, "it is a folder; --json takes the name of a file"));
     }
     let is_own = |text: &str| text.trim_start().starts_with(['{', '[']) || text.is_empty();
-    check_replaceable(path, false, &[], is_own)
-        .or_else(|_| would_lose(path, "a file that was not made by this command"))
+    match check_replaceable(path, false, &[], is_own) {
+        // There is no --force to advise.
+        Err(Failure::WouldReplace { .. }) => {
+            would_lose(path, "a file that was not made by this command")
+        }
+        checked => checked,
+    }
 }
 
 /// Prints or writes the document of a run.

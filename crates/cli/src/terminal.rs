@@ -109,8 +109,7 @@ pub(crate) fn tell_as_it_is(text: &str) {
 
 /// Text for people, to standard error.
 pub(crate) fn tell(text: &str) {
-    let dressed = Terminal::of_run().err.dress(text);
-    let _ = std::io::stderr().write_all(dressed.as_bytes());
+    tell_as_it_is(&Terminal::of_run().err.dress(text));
 }
 
 /// Data to standard output: what a program reads stays as it is, what a terminal shows is made harmless.
@@ -148,7 +147,7 @@ pub(crate) fn tell_refused(refused: &[RefusedReport]) {
 
 fn tell_excerpt(path: &std::path::Path, line: usize, column: Option<usize>, reason: &str) {
     if let Some(excerpt) = excerpt::Excerpt::read(path, line, column, reason) {
-        let _ = std::io::stderr().write_all(excerpt.drawn().as_bytes());
+        tell_as_it_is(&excerpt.drawn());
     }
 }
 

@@ -264,14 +264,15 @@ fn reduce_points(
 }
 
 fn notes_of(path: &Path, findings: Vec<Finding>) -> Vec<String> {
-    let mut notes = Vec::new();
-    for finding in findings {
-        if finding.severity >= Severity::Warning {
-            tracing::warn!(file = %path.display(), line = finding.line, "{}", finding.message);
-        }
-        notes.push(finding.message);
+    warn_of(path, &findings);
+    findings.into_iter().map(|finding| finding.message).collect()
+}
+
+/// Warns of what was found in a file, notes left out.
+pub fn warn_of(path: &Path, findings: &[Finding]) {
+    for finding in findings.iter().filter(|finding| finding.severity >= Severity::Warning) {
+        tracing::warn!(file = %path.display(), line = finding.line, "{}", finding.message);
     }
-    notes
 }
 
 fn end_of(report: &Report) -> Result<Timestamp, String> {

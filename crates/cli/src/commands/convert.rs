@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use flight::{Report, Severity};
+use flight::Report;
+use pipeline::reading::warn_of;
 use pipeline::summary::counted;
 use report::mapping::Mapping;
 use report::{Parsed, TextLayout};
@@ -109,9 +110,7 @@ impl<'a> Conversion<'a> {
         self.flights += 1;
         // What was left out of a recording is in no report that is made of it.
         if let Output::Folder(..) = self.output {
-            for finding in parsed.findings.iter().filter(|one| one.severity >= Severity::Warning) {
-                tracing::warn!(file = %path.display(), line = finding.line, "{}", finding.message);
-            }
+            warn_of(path, &parsed.findings);
         }
         match &mut self.output {
             Output::Shown(shown) => show_flight(path, parsed, shown),
