@@ -189,7 +189,7 @@ impl<'a> Asked<'a> {
     /// one among the flights nearest to it.
     ///
     /// ```text
-    /// P(a change among R) = 1 − F(no change among R)/F                                           [monitoring.18]
+    /// P(a change among R) = 1 − Π_R (1 − p)·F(given none among R)/F                              [monitoring.18]
     /// ```
     ///
     /// Over months with few flights a change is probable before any is seen. It is reported where the flights make its odds
@@ -201,7 +201,8 @@ impl<'a> Asked<'a> {
         let firsts: Vec<usize> = known.iter().map(|change| change.first_flight).collect();
         for (change, (_, near)) in known.iter_mut().zip(nearest(&firsts, flights)) {
             let without = self.filter(&near).log_density();
-            change.probability = -(without - filter.log_density()).min(0.0).exp_m1();
+            let none_before = (-self.probability_before(near)).ln_1p();
+            change.probability = -(none_before + without - filter.log_density()).min(0.0).exp_m1();
         }
         let ranges = nearest(&firsts, flights).map(|(_, near)| near);
         let judged = known.into_iter().zip(ranges);
