@@ -8,9 +8,7 @@ use crate::filter::{ChangeFilter, EventBefore, FilteredFlight};
 use crate::levels::{Estimate, Levels, NORMAL_95};
 use crate::noise::{Noise, median};
 use crate::series::Series;
-use crate::settings::{
-    ABOUT_FLIGHTS, ChangeBeliefs, DATE_INTERVAL, LEAST_EVIDENCE, REPORTED_PROBABILITY,
-};
+use crate::settings::{ABOUT_FLIGHTS, ChangeBeliefs, DATE_INTERVAL, REPORTED_PROBABILITY};
 
 /// A change that the flights show.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -185,35 +183,34 @@ impl<'a> Asked<'a> {
         filter
     }
 
-    /// Changes that are more probable than not and that the flights themselves speak for, each with the probability that there is
-    /// one among the flights nearest to it.
+    /// Changes that are more probable than not, each with the probability that there is one among the flights R nearest to it.
     ///
     /// ```text
-    /// P(a change among R) = 1 − Π_R (1 − p)·F(given none among R)/F                              [monitoring.18]
+    /// P = 1 − Π_R (1 − p)·F(given none among R)/F,   Q = 1 − Π_R (1 − p)
+    /// probability: odds P/(1 − P)·min(1, q(1 − Q)/(Q(1 − q)))                                     [monitoring.18]
     /// ```
     ///
-    /// Over months with few flights a change is probable before any is seen. It is reported where the flights make its odds
-    /// [`LEAST_EVIDENCE`] times what they were before.
+    /// with q = [`ChangeBeliefs::change_at_most`]: over months with few flights the calendar alone makes a change probable,
+    /// which is no sign of one.
     fn changes(&self) -> Vec<Change> {
         let filter = self.filter(&(0..0));
         let mut known = changes(&filter);
-        let flights = self.series.len();
         let firsts: Vec<usize> = known.iter().map(|change| change.first_flight).collect();
-        for (change, (_, near)) in known.iter_mut().zip(nearest(&firsts, flights)) {
-            let without = self.filter(&near).log_density();
-            let none_before = (-self.probability_before(near)).ln_1p();
-            change.probability = -(none_before + without - filter.log_density()).min(0.0).exp_m1();
+        for (change, (_, near)) in known.iter_mut().zip(nearest(&firsts, self.series.len())) {
+            change.probability = self.probability(&filter, near);
         }
-        let ranges = nearest(&firsts, flights).map(|(_, near)| near);
-        let judged = known.into_iter().zip(ranges);
-        judged
-            .filter(|(change, near)| {
-                let before = self.probability_before(near.clone());
-                change.probability >= REPORTED_PROBABILITY
-                    && odds(change.probability) >= LEAST_EVIDENCE * odds(before)
-            })
-            .map(|(change, _)| change)
-            .collect()
+        known.retain(|change| change.probability >= REPORTED_PROBABILITY);
+        known
+    }
+
+    /// Probability of at least one change before one of these flights [monitoring.18].
+    fn probability(&self, seen: &ChangeFilter, flights: Range<usize>) -> f64 {
+        let without = self.filter(&flights).log_density();
+        let before = self.probability_before(flights);
+        let log_none = (-before).ln_1p() + without - seen.log_density();
+        let odds = -log_none.min(0.0).exp_m1() / log_none.exp();
+        let believed = odds_of(self.beliefs.change_at_most) / odds_of(before);
+        1.0 - 1.0 / (1.0 + odds * believed.min(1.0))
     }
 
     /// Probability that something changes before one of these flights, before any flight is seen.
@@ -231,7 +228,7 @@ impl<'a> Asked<'a> {
     }
 }
 
-fn odds(probability: f64) -> f64 {
+fn odds_of(probability: f64) -> f64 {
     probability / (1.0 - probability)
 }
 

@@ -20,6 +20,10 @@ pub struct ChangeBeliefs {
     /// Probability that something changes where an event (wash, engine change) is recorded: most are meant to change
     /// something, not all do. Between two flights without an event it is never more likely, however long the aircraft stood.
     pub change_at_event: f64,
+    /// Largest probability, before the flights are seen, that something changed among those about a date: that nothing did is
+    /// never believed to be less likely, however many months they span. Twenty flights in two years may hide a change by the
+    /// calendar, which is no sign of one.
+    pub change_at_most: f64,
 }
 
 impl ChangeBeliefs {
@@ -32,7 +36,14 @@ impl ChangeBeliefs {
             small_slope_deviation_percent_per_year: 0.3,
             changes_per_year: 1.0,
             change_at_event: 0.5,
+            change_at_most: 0.5,
         }
+    }
+
+    /// The same of one engine of several: what changes is any of them, each as likely.
+    #[must_use]
+    pub fn of_an_engine(self, engines: usize) -> Self {
+        Self { change_at_most: 1.0 / (1.0 + engines.max(1) as f64), ..self }
     }
 
     /// Probability that something changes within a time between two flights where no event is recorded.
@@ -54,11 +65,6 @@ const MINUTE_YEARS: f64 = 1.0 / (DAYS_A_YEAR * 24.0 * 60.0);
 
 /// A change is reported where it is more probable than not.
 pub const REPORTED_PROBABILITY: f64 = 0.5;
-
-/// Factor by which flights have to raise the odds of a change before it is reported: positive evidence by Kass and Raftery 1995,
-/// Journal of the American Statistical Association 90, 773–795. Where flights are few and months many, a change is probable by
-/// the calendar alone, which says nothing of this tail.
-pub const LEAST_EVIDENCE: f64 = 3.0;
 
 /// Flights on either side within which the probability of one change is summed up where no single flight stands out: two
 /// weeks of an aircraft that flies one recorded leg a day.

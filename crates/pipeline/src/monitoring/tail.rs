@@ -100,13 +100,15 @@ impl<'a> MonitoredTail<'a> {
                 flights.iter().map(|flight| of(flight)).collect();
             shown.map(Series::new).transpose()
         };
-        let read = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>| {
+        let read = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>,
+                    beliefs: &ChangeBeliefs| {
             let Some(series) = series(of)? else { return Ok(None) };
-            Ok(History::fit(&series, &times, &beliefs).map(|history| (series, history)))
+            Ok(History::fit(&series, &times, beliefs).map(|history| (series, history)))
         };
         let normalised =
             |of: Option<FlightDeviation>| of.map(|of| of.raised(deviations.level_percent));
-        let Some((series_of_all, history)) = read(&|flight| normalised(flight.learnt))? else {
+        let Some((series_of_all, history)) = read(&|flight| normalised(flight.learnt), &beliefs)?
+        else {
             return Ok(None);
         };
         let before_learning =
@@ -115,9 +117,11 @@ impl<'a> MonitoredTail<'a> {
                 (series, weights)
             });
         let count = flights.iter().map(|flight| flight.engines.len()).min().unwrap_or(0);
+        let of_one = beliefs.of_an_engine(count);
         let mut engines = Vec::with_capacity(count);
         for engine in 0..count {
-            engines.extend(read(&|flight| normalised(flight.engines.get(engine).copied()))?);
+            let of = |flight: &MonitoredFlight| normalised(flight.engines.get(engine).copied());
+            engines.extend(read(&of, &of_one)?);
         }
         let reference = deviations.reference;
         Ok(Some(Self {
