@@ -144,7 +144,7 @@ impl core::fmt::Display for Meant {
 }
 
 fn unit_names(column: Column) -> String {
-    column.units().iter().map(|unit| unit.name).collect::<Vec<_>>().join(" ")
+    plan::units_of(column).map(|unit| unit.name).collect::<Vec<_>>().join(" ")
 }
 
 /// Mapping files built into the program: name and text, whose first lines say what it is for and where that is from.
@@ -197,6 +197,8 @@ impl Mapping {
         mapping.file.separator = ',';
         mapping.file.decimal = '.';
         mapping.file.comment = None;
+        mapping.file.thousands = None;
+        mapping.file.names_line = 1;
         mapping.file.units_row = false;
         mapping
     }

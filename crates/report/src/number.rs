@@ -179,6 +179,21 @@ pub(crate) fn whole(bytes: &[u8]) -> Option<f64> {
     leading(bytes).filter(|(_, length)| *length == bytes.len()).map(|(value, _)| value)
 }
 
+/// A number without the marks between its groups of three digits; `None` where it has none, or a group of another length.
+pub(crate) fn without_groups(text: &str, mark: char, decimal: char) -> Option<String> {
+    let digits = text.trim_start_matches(['+', '-']);
+    let end = digits.find(decimal).unwrap_or(digits.len());
+    let mut groups = digits[..end].split(mark);
+    let is_digits = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
+    let first = groups.next().filter(|first| (1..=3).contains(&first.len()) && is_digits(first))?;
+    let mut following = groups.clone().peekable();
+    following.peek()?;
+    let are_groups = following.all(|group| group.len() == 3 && is_digits(group));
+    let sign = &text[..text.len() - digits.len()];
+    let joined = || core::iter::once(first).chain(groups).collect::<String>();
+    are_groups.then(|| format!("{sign}{}{}", joined(), &digits[end..]))
+}
+
 /// Whether `bytes` ends where a number cannot end: in a sign or in an exponent without digits.
 pub(crate) fn is_cut_off(bytes: &[u8]) -> bool {
     let unsigned_exponent = bytes.strip_suffix(b"-").or_else(|| bytes.strip_suffix(b"+"));
@@ -217,6 +232,20 @@ mod tests {
         ] {
             assert_eq!(whole(bad.as_bytes()), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn groups_of_three_digits_and_no_others() {
+        for (text, joined) in
+            [("28,993", "28993"), ("-1,234,567.25", "-1234567.25"), ("1,000.5", "1000.5")]
+        {
+            assert_eq!(without_groups(text, ',', '.').as_deref(), Some(joined));
+        }
+        for other in ["28993", "2,89,93", "0,7175", "1,000,00", ",100", "1,000.5,0", "x,100", ""] {
+            let found = without_groups(other, ',', '.');
+            assert!(found.is_none_or(|found| whole(found.as_bytes()).is_none()), "{other}");
+        }
+        assert_eq!(without_groups("12 345,5", ' ', ',').as_deref(), Some("12345,5"));
     }
 
     #[test]

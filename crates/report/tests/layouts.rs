@@ -1,4 +1,4 @@
-//! Twelve invented but typical layouts: the first mapping reads each as it is. They were at hand while it was written.
+//! Fourteen invented but typical layouts: the first mapping reads each as it is. They were at hand while it was written.
 //!
 //! `fixtures/layouts/make_layouts.py` writes the recordings.
 
@@ -7,7 +7,7 @@ use std::path::Path;
 use report::Mapping;
 use report::mapping::first_mapping;
 
-const LAYOUTS: [&str; 12] = [
+const LAYOUTS: [&str; 14] = [
     "01_named_units.csv",
     "02_sparse_qar.csv",
     "03_european.csv",
@@ -20,6 +20,8 @@ const LAYOUTS: [&str; 12] = [
     "10_discretes.csv",
     "11_unicode_text.txt",
     "12_bad_rows.csv",
+    "15_titles.csv",
+    "16_spreadsheet.csv",
 ];
 
 #[test]
@@ -256,4 +258,44 @@ fn blank_rows_and_clocks_of_twelve_hours() {
     ] {
         assert!(mapping.contains(line), "{line} is not in\n{mapping}");
     }
+}
+
+/// What a spreadsheet or a print-out writes is found, and said to be a guess; the answer of each is its mapping's own reading above.
+#[test]
+fn titles_thousands_and_days_are_found() {
+    let of = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/layouts").join(name);
+        #[expect(clippy::disallowed_methods, reason = "tests read data from files")]
+        let bytes = std::fs::read(path).unwrap();
+        (first_mapping(&bytes).unwrap(), bytes)
+    };
+    let (titles, bytes) = of("15_titles.csv");
+    assert!(titles.contains("    names_line: 4,   // ?\n"), "{titles}");
+    assert!(titles.contains("GrossMass(column: \"GW(T)\", unit: \"t\""), "{titles}");
+    // Places in the recording count its titles.
+    let other =
+        titles.replace("\"MACH\": Recorded(column: \"MACH\"", "\"MACH\": Recorded(column: \"M\"");
+    let refusal = Mapping::from_ron(&other).unwrap().read_named(&bytes, "x").unwrap_err();
+    assert_eq!(refusal.line, 4);
+    let text = String::from_utf8(bytes).unwrap().replace(",2394\n", ",x\n");
+    let strict = titles.replace("bad_rows: LeaveRowOut", "bad_rows: Refuse");
+    let refusal = Mapping::from_ron(&strict).unwrap().read_named(text.as_bytes(), "x").unwrap_err();
+    assert_eq!((refusal.line, refusal.column), (5, 59));
+    let (days, bytes) = of("16_spreadsheet.csv");
+    for entry in [
+        "thousands: ',',   // ?",
+        "time: Days(column: \"DateTime\", start: \"1899-12-30T00:00:00Z\"),   // ?",
+        "\"ALT\": Recorded(column: \"FL\", unit: \"FL\"),   // ?",
+        "\"SAT\": Recorded(column: \"SAT [degF]\", unit: \"degF\"),",
+    ] {
+        assert!(days.contains(entry), "{days}");
+    }
+    let reports = Mapping::from_ron(&days).unwrap().read_named(&bytes, "x").unwrap();
+    let report = &reports[0].report;
+    // As made: half past ten, trimmed by a minute, samples of ten seconds; 64 t less what was burnt.
+    assert_eq!(report.header().identity.start.to_string(), "2024-03-01T10:01:00Z");
+    assert!(
+        report.columns().time_s.windows(2).all(|pair| (pair[1] - pair[0] - 10.0).abs() < 0.002)
+    );
+    assert!((report.columns().static_air_temperature_k.as_ref().unwrap()[0] - 218.8).abs() < 0.2);
 }

@@ -76,7 +76,8 @@ impl TimeSource {
             }
             Self::Epoch { column, .. }
             | Self::TimeOfDay { column, .. }
-            | Self::Seconds { column, .. } => columns.push(column),
+            | Self::Seconds { column, .. }
+            | Self::Days { column, .. } => columns.push(column),
         }
     }
 }
@@ -122,6 +123,12 @@ pub(super) struct MappingFile {
     /// The character before the decimals of a number.
     #[serde(default = "point")]
     pub(super) decimal: char,
+    /// Character between groups of three digits, which is left out.
+    #[serde(default)]
+    pub(super) thousands: Option<char>,
+    /// Line of the column names, from 1, where titles stand above it.
+    #[serde(default = "first_line")]
+    pub(super) names_line: usize,
     /// Whether a row of units follows the names.
     #[serde(default)]
     pub(super) units_row: bool,
@@ -223,6 +230,8 @@ pub(super) enum TimeSource {
     TimeOfDay { column: String, date: String, utc_offset: String },
     /// Seconds since `start`.
     Seconds { column: String, start: String },
+    /// Days with their fraction since `start`, as spreadsheets count them, to the millisecond.
+    Days { column: String, start: String },
 }
 
 /// A number and its unit.
@@ -379,6 +388,10 @@ const fn comma() -> char {
 
 const fn point() -> char {
     '.'
+}
+
+const fn first_line() -> usize {
+    1
 }
 
 const fn one() -> f64 {

@@ -3,11 +3,17 @@
 mod columns;
 mod names;
 mod points;
+mod rules;
+mod times;
 
 use core::fmt::Write;
 
 use columns::Columns;
 use names::engine_of;
+use rules::{
+    CALIBRATED, COMPUTED_FUEL, ENGINE_NAMES, GAUGES, GROSS, Kind, ORDINARY, Rule, TEXTS,
+    TOTAL_FLOW, TRACK, USED, ZERO_FUEL,
+};
 
 use crate::decode;
 use crate::refusal::Refusal;
@@ -30,14 +36,9 @@ pub fn first_mapping(bytes: &[u8]) -> Result<String, Refusal> {
     let left_over = columns.left_over(&quantities, &[&texts, &time, &quantities, &mass]);
     let mapping = format!(
         "// Made from the names and values of a recording. Lines with `// ?` are guesses.\n\
-         (\n    format: 1,\n{separator}{decimal}{units_row}    bad_rows: LeaveRowOut,\n    out_of_range: LeaveRowOut,\n\
+         (\n    format: 1,\n{form}    bad_rows: LeaveRowOut,\n    out_of_range: LeaveRowOut,\n\
          {texts}    time: {time}\n    quantities: {{\n{quantities}    }},\n{left_over}    mass: {mass}\n{LEVEL_CRUISE})\n",
-        separator = match columns.form.separator {
-            b',' => String::new(),
-            other => format!("    separator: {:?},\n", char::from(other)),
-        },
-        decimal = if columns.decimal == ',' { "    decimal: ',',\n" } else { "" },
-        units_row = if columns.units_row { "    units_row: true,\n" } else { "" },
+        form = columns.form_entries(),
     );
     let of_points = points::of_points(&mapping);
     let far_apart = points::are_far_apart(&of_points, &text);
@@ -48,153 +49,6 @@ const LEVEL_CRUISE: &str = "    // Level cruise; leave it away where the recordi
 
 /// Where no column holds a mass: a number to be replaced.
 const START_MASS: &str = "StartMass(gross_weight: Value(60000, \"kg\")),   // ?";
-
-/// A quantity that is one column in one unit.
-struct Rule {
-    quantity: &'static str,
-    names: &'static [&'static str],
-    kind: Kind,
-}
-
-#[derive(Clone, Copy)]
-enum Kind {
-    Altitude,
-    Temperature,
-    Mach,
-    Speed,
-    CalibratedSpeed,
-    Angle,
-    Mass,
-    Percent,
-    Discrete,
-}
-
-const fn rule(quantity: &'static str, names: &'static [&'static str], kind: Kind) -> Rule {
-    Rule { quantity, names, kind }
-}
-
-const ORDINARY: [Rule; 13] = [
-    rule(
-        "ALT",
-        &[
-            "pressurealtitude",
-            "pressurealt",
-            "pressalt",
-            "palt",
-            "altitudestd",
-            "altstd",
-            "altistd",
-            "altitudepressure",
-            "baroaltitude",
-            "altitude",
-            "alt",
-            "flightlevel",
-            "fl",
-        ],
-        Kind::Altitude,
-    ),
-    rule(
-        "SAT",
-        &["staticairtemperature", "sat", "outsideairtemperature", "oat", "airtemperature"],
-        Kind::Temperature,
-    ),
-    rule("TAT", &["totalairtemperature", "tat"], Kind::Temperature),
-    rule("MACH", &["machnumber", "mach", "machno", "m"], Kind::Mach),
-    rule("VTAS", &["trueairspeed", "trueairspd", "tas", "vtas", "airspeedtrue"], Kind::Speed),
-    rule("GSPD", &["groundspeed", "groundspd", "grndspd", "gndspd", "gspd", "gs"], Kind::Speed),
-    rule("ROLL", &["rollangle", "roll", "bank", "bankangle"], Kind::Angle),
-    rule("DRIFT", &["driftangle", "drift"], Kind::Angle),
-    rule(
-        "HDG",
-        &["headingtrue", "trueheading", "hdgtrue", "truehdg", "heading", "hdg"],
-        Kind::Angle,
-    ),
-    rule("LAT", &["latitude", "lat"], Kind::Angle),
-    rule("LON", &["longitude", "lon", "long"], Kind::Angle),
-    rule("CG", &["centreofgravity", "centerofgravity", "cg", "cgpercentmac"], Kind::Percent),
-    rule("A/I", &["antiice", "wingantiice", "engantiice", "ai"], Kind::Discrete),
-];
-const CALIBRATED: Rule =
-    rule("", &["calibratedairspeed", "computedairspeed", "cas", "ias"], Kind::CalibratedSpeed);
-const TRACK: Rule = rule(
-    "",
-    &["trackangletrue", "tracktrue", "truetrack", "truetrk", "trktrue", "track", "trk"],
-    Kind::Angle,
-);
-const GROSS: Rule = rule(
-    "",
-    &["grossweight", "grossweightsmoothed", "gw", "weight", "mass", "grossmass", "aircraftmass"],
-    Kind::Mass,
-);
-const ZERO_FUEL: Rule = rule("", &["zerofuelweight", "zfw"], Kind::Mass);
-const COMPUTED_FUEL: Rule = rule("", &["fob", "fuelonboard", "totalfuel"], Kind::Mass);
-/// Names that gauges have and a computed fuel on board has not: that is often the first quantity less what meters count, and would
-/// bear out every meter.
-const GAUGES: Rule = rule(
-    "FQ",
-    &["fuelquantity", "fuelqty", "fq", "totalfuelquantity", "totalfuelqty", "fuelqtytotal"],
-    Kind::Mass,
-);
-const USED: Rule = rule("", &["fuelused", "fu", "fuelburn", "fuelburnt"], Kind::Mass);
-const ENGINE_NAMES: [(&str, &[&str]); 4] = [
-    ("N1", &["n1"]),
-    ("N2", &["n2"]),
-    ("WF", &["fuelflow", "ff", "wf", "ffuel"]),
-    ("EGT", &["egt", "itt", "exhaustgastemperature"]),
-];
-
-/// Texts of the header: key, names of columns, what there is without one.
-const TEXTS: [(&str, &[&str], &str); 3] = [
-    (
-        "aircraft",
-        &["aircrafttype", "actype", "type", "typecode", "flplairctype", "aircraft", "ac"],
-        "Text(\"TYPE\"),   // ?",
-    ),
-    (
-        "tail",
-        &[
-            "tail",
-            "registration",
-            "reg",
-            "acident",
-            "tailnumber",
-            "tailno",
-            "acreg",
-            "acregistration",
-            "aircraftregistration",
-        ],
-        "Text(\"TAIL\"),   // ?",
-    ),
-    (
-        "flight",
-        &[
-            "flight",
-            "flightnumber",
-            "flightno",
-            "flightid",
-            "fltid",
-            "fltnum",
-            "flightnum",
-            "flt",
-            "fltno",
-            "callsign",
-            "systtrajid",
-        ],
-        "FileName,   // ? one flight; several in a file: Column(\"NAME\"), or new_flight_after_s",
-    ),
-];
-const TIME_NAMES: [&str; 10] = [
-    "timestamp",
-    "datetime",
-    "utcdatetime",
-    "utc",
-    "plotdate",
-    "time",
-    "ts",
-    "t",
-    "seconds",
-    "flighttime",
-];
 
 impl Columns {
     /// `column: …, unit: …` of a column, and whether the unit is a guess.
@@ -218,7 +72,7 @@ impl Columns {
         let median = self.median(column).unwrap_or(0.0);
         let (unit, is_guess) = match kind {
             Kind::Altitude if largest > 17_000.0 => ("unit: \"ft\"", false),
-            Kind::Altitude if largest < 650.0 => ("unit: \"ft\", scale: 100", true),
+            Kind::Altitude if largest < 650.0 => ("unit: \"FL\"", true),
             Kind::Altitude => ("unit: \"m\"", true),
             Kind::Temperature if median > 150.0 => ("unit: \"K\"", false),
             Kind::Temperature => ("unit: \"degC\"", true),
@@ -230,6 +84,7 @@ impl Columns {
             Kind::CalibratedSpeed if largest > 180.0 => ("unit: \"kt\"", true),
             Kind::Speed | Kind::CalibratedSpeed => ("unit: \"m/s\"", true),
             Kind::Angle => ("unit: \"deg\"", false),
+            Kind::Mass if largest < 700.0 => ("unit: \"t\"", true),
             Kind::Mass => ("unit: \"kg\"", true),
             Kind::Percent => ("unit: \"%MAC\"", false),
             Kind::Discrete => {
@@ -264,7 +119,7 @@ impl Columns {
                 let source = format!("Recorded(column: {:?}, {unit})", self.names[column].sent);
                 line(text, &format!("{quantity}({engine})"), &source, is_guess);
             }
-            let total = self.names.iter().position(|name| names.iter().any(|one| name.is(one)));
+            let total = self.named(names).or_else(|| self.named(&TOTAL_FLOW));
             if let (false, "WF", Some(column)) = (found, quantity, total) {
                 let (unit, _) = self.engine_unit(quantity, column);
                 let source = format!("Recorded(column: {:?}, {unit})", self.names[column].sent);
@@ -340,69 +195,6 @@ impl Columns {
         names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)))
     }
 
-    fn time_column(&self) -> Option<usize> {
-        self.named(&TIME_NAMES).or_else(|| self.column_of_dates())
-    }
-
-    fn date_column(&self) -> Option<usize> {
-        self.names.iter().position(|name| name.is("date") || name.is("utcdate"))
-    }
-
-    fn time(&self) -> String {
-        let Some(column) = self.time_column() else {
-            return "Seconds(column: \"TIME\", start: \"2000-01-01T00:00:00Z\"),   // ?".to_owned();
-        };
-        let name = &self.names[column].sent;
-        let date = self.date_column();
-        let sample = self.texts_of(column).find(|text| !text.is_empty()).unwrap_or_default();
-        let form = self.date_form(column);
-        let with_zone = sample.ends_with('Z') || sample.contains('+');
-        match sample.parse::<f64>() {
-            Ok(number) if number > 1e17 => format!("Epoch(column: {name:?}, unit: \"ns\"),"),
-            Ok(number) if number > 1e14 => format!("Epoch(column: {name:?}, unit: \"us\"),"),
-            Ok(number) if number > 1e11 => format!("Epoch(column: {name:?}, unit: \"ms\"),"),
-            Ok(number) if number > 1e8 => format!("Epoch(column: {name:?}, unit: \"s\"),"),
-            Ok(_) => format!("Seconds(column: {name:?}, start: \"2000-01-01T00:00:00Z\"),   // ?"),
-            Err(_) if sample.contains('-') => {
-                let mark = if with_zone { "" } else { "   // ?" };
-                format!("Timestamp(column: {name:?}, utc_offset: \"Z\"),{mark}")
-            }
-            Err(_) => match (form, date) {
-                (Some(form), _) => format!(
-                    "Timestamp(column: {name:?}, format: {form:?}, utc_offset: \"Z\"),   // ?"
-                ),
-                (None, Some(date)) => format!(
-                    "Timestamp(column: {name:?}, date: {:?}, format: {:?}, utc_offset: \"Z\"),   // ?",
-                    self.names[date].sent,
-                    self.date_form(date).unwrap_or("%Y-%m-%d %H:%M:%S")
-                ),
-                (None, None) => format!(
-                    "TimeOfDay(column: {name:?}, date: \"2000-01-01\", utc_offset: \"Z\"),   // ?"
-                ),
-            },
-        }
-    }
-
-    /// The form of dates with slashes or points: day first unless a number says otherwise, of twelve hours where the text ends in AM
-    /// or PM. `None` of other texts.
-    fn date_form(&self, column: usize) -> Option<&'static str> {
-        let first = self.texts_of(column).find(|text| !text.is_empty())?;
-        let mark = ['/', '.'].into_iter().find(|mark| numbers_of_date(first, *mark).is_some())?;
-        let month_first = self
-            .texts_of(column)
-            .filter_map(|text| numbers_of_date(text, mark))
-            .any(|[_, second]| second > 12);
-        let twelve_hours = first.ends_with(['M', 'm']);
-        Some(match (mark, month_first, twelve_hours) {
-            ('/', false, false) => "%d/%m/%Y %H:%M:%S",
-            ('/', true, false) => "%m/%d/%Y %H:%M:%S",
-            ('/', false, true) => "%d/%m/%Y %I:%M:%S %p",
-            ('/', true, true) => "%m/%d/%Y %I:%M:%S %p",
-            (_, false, _) => "%d.%m.%Y %H:%M:%S",
-            (_, true, _) => "%m.%d.%Y %H:%M:%S",
-        })
-    }
-
     /// Columns that no part of the mapping takes, with a value of each, and quantities that are missing: as comments.
     fn left_over(&self, quantities: &str, parts: &[&str]) -> String {
         let mut text = String::new();
@@ -432,7 +224,8 @@ impl Columns {
     fn mass(&self) -> String {
         let amount = |column: usize| {
             let (fields, is_guess) = self.recorded(column, Kind::Mass);
-            let unit = if fields.contains("\"lb\"") { "lb" } else { "kg" };
+            let unit = ["lb", "t"].into_iter().find(|unit| fields.contains(&format!("{unit:?}")));
+            let unit = unit.unwrap_or("kg");
             (self.names[column].sent.clone(), unit, is_guess)
         };
         let mark = |is_guess: bool| if is_guess { "   // ?" } else { "" };
@@ -464,16 +257,6 @@ impl Columns {
             }
             _ => START_MASS.to_owned(),
         }
-    }
-}
-
-/// The first two numbers of a date whose three numbers have a mark between them.
-fn numbers_of_date(text: &str, mark: char) -> Option<[u32; 2]> {
-    let date = text.split([' ', 'T']).next()?;
-    let numbers: Result<Vec<u32>, _> = date.split(mark).map(str::parse).collect();
-    match numbers.ok()?[..] {
-        [first, second, _] => Some([first, second]),
-        _ => None,
     }
 }
 

@@ -19,12 +19,15 @@ use crate::cruise_text::parse_instant;
 use sources::{Derivations, Inputs, Sources, known_unit};
 
 pub(super) use conversion::Conversion;
+pub(super) use sources::units_of;
 
 /// The checked content of a mapping file.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) separator: u8,
     pub(super) decimal: char,
+    /// Character between groups of three digits.
+    pub(super) thousands: Option<char>,
     pub(super) units_row: bool,
     pub(super) comment: Option<u8>,
     pub(super) not_available: Vec<String>,
@@ -127,15 +130,34 @@ pub(super) enum TimeForm {
         format: Option<String>,
         utc_offset: Option<String>,
     },
-    /// Number over `per_second` is seconds since `start`: a division, so that whole seconds stay whole.
+    /// A count of seconds or of something else since `start`.
     Seconds {
         start: Timestamp,
-        per_second: f64,
+        count: Count,
     },
     /// Seconds of the day; `midnight` begins the day of the first row.
     TimeOfDay {
         midnight: Timestamp,
     },
+}
+
+/// What a number that tells the time counts.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Count {
+    /// So many a second. The number is divided, so that whole seconds stay whole.
+    PerSecond(f64),
+    /// Days with their fraction: of ten decimals, so that they are rounded to the millisecond.
+    Days,
+}
+
+impl Count {
+    /// Seconds that a number means.
+    pub(super) fn seconds(self, number: f64) -> f64 {
+        match self {
+            Self::PerSecond(count) => number / count,
+            Self::Days => (number * 86_400e3).round() / 1e3,
+        }
+    }
 }
 
 impl Plan {
@@ -160,6 +182,7 @@ impl Plan {
         Ok(Self {
             separator: ascii(file.separator)?,
             decimal: decimal(file.decimal, file.separator)?,
+            thousands: file.thousands.map(|mark| thousands(mark, file.decimal)).transpose()?,
             units_row: file.units_row,
             comment: file.comment.map(ascii).transpose()?,
             not_available: file.not_available,
@@ -249,6 +272,14 @@ fn decimal(decimal: char, separator: char) -> Result<char, MappingError> {
     }
 }
 
+/// What is no digit, letter or sign, and not the decimal character. A field with the separator in it has quotes.
+fn thousands(mark: char, decimal: char) -> Result<char, MappingError> {
+    if mark == decimal || mark.is_alphanumeric() || "+-\"".contains(mark) {
+        return Err(MappingError::SeparatorUnusable { character: mark });
+    }
+    Ok(mark)
+}
+
 fn time_plan(source: TimeSource) -> Result<(String, TimeForm), MappingError> {
     let any_day = "2000-01-01T00:00:00";
     match source {
@@ -274,7 +305,8 @@ fn time_plan(source: TimeSource) -> Result<(String, TimeForm), MappingError> {
                     });
                 }
             };
-            Ok((column, TimeForm::Seconds { start: Timestamp::UNIX_EPOCH, per_second }))
+            let count = Count::PerSecond(per_second);
+            Ok((column, TimeForm::Seconds { start: Timestamp::UNIX_EPOCH, count }))
         }
         TimeSource::TimeOfDay { column, date, utc_offset } => {
             let text = format!("{date}T00:00:00{utc_offset}");
@@ -282,11 +314,17 @@ fn time_plan(source: TimeSource) -> Result<(String, TimeForm), MappingError> {
             Ok((column, TimeForm::TimeOfDay { midnight }))
         }
         TimeSource::Seconds { column, start } => {
-            let start: Timestamp =
-                parse_instant(&start).ok_or(MappingError::InstantMalformed { text: start })?;
-            Ok((column, TimeForm::Seconds { start, per_second: 1.0 }))
+            let start = instant(start)?;
+            Ok((column, TimeForm::Seconds { start, count: Count::PerSecond(1.0) }))
+        }
+        TimeSource::Days { column, start } => {
+            Ok((column, TimeForm::Seconds { start: instant(start)?, count: Count::Days }))
         }
     }
+}
+
+fn instant(text: String) -> Result<Timestamp, MappingError> {
+    parse_instant(&text).ok_or(MappingError::InstantMalformed { text })
 }
 
 /// Engines count from 1 without a gap; rotor speed and fuel flow are of the same engines.

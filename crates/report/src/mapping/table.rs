@@ -4,6 +4,7 @@ mod batch;
 mod clock;
 mod columns;
 mod flights;
+mod instants;
 mod line_numbers;
 mod open;
 mod recording;
@@ -26,6 +27,15 @@ use crate::refusal::{Found, Refusal, RefusalKind, nearest};
 pub(super) struct Form {
     pub(super) separator: u8,
     pub(super) comment: Option<u8>,
+    /// Line of the names, from 1.
+    pub(super) names_line: usize,
+}
+
+impl Form {
+    /// Lines above the names.
+    const fn titles(self) -> usize {
+        self.names_line.saturating_sub(1)
+    }
 }
 
 /// A recording's layout: the plan for the columns that it has, and where they are.
@@ -50,6 +60,7 @@ pub(super) struct Below {
 /// # Errors
 /// A text without a line of names.
 pub(super) fn names(form: Form, text: &str) -> Result<Vec<String>, Refusal> {
+    let text = below_titles(form, text);
     let names = Names::read(form, text, &mut reader(form, text))?;
     Ok(names.record.iter().map(str::to_owned).collect())
 }
@@ -63,15 +74,18 @@ impl Layout {
         file_name: Option<&str>,
     ) -> Result<(Self, Below), Refusal> {
         let form = form_of(file);
-        let mut reader = reader(form, first);
-        let names = Names::read(form, first, &mut reader)?;
+        let text = below_titles(form, first);
+        let titles = first.len() - text.len();
+        let mut reader = reader(form, text);
+        let names = Names::read(form, text, &mut reader)?;
         let layout = Self::of_names(file, &names, file_name)?;
         if layout.plan.units_row {
             let _ = reader.read_record(&mut csv::StringRecord::new());
         }
         let position = reader.position();
-        let byte = usize::try_from(position.byte()).unwrap_or(usize::MAX).min(first.len());
-        Ok((layout, Below { byte, line: line_of(position) }))
+        let byte = usize::try_from(position.byte()).unwrap_or(usize::MAX).min(text.len());
+        let line = line_of(position) + form.titles();
+        Ok((layout, Below { byte: titles + byte, line }))
     }
 
     /// The layout of a table with these names of columns.
@@ -96,13 +110,13 @@ impl Layout {
     ) -> Result<Self, Refusal> {
         let sent: Vec<&str> = names.record.iter().collect();
         let plan = Plan::new(file.resolved(&sent)).map_err(|error: MappingError| Refusal {
-            line: 1,
+            line: names.sent_line(),
             column: 1,
             found: Found::text(&sent.join(" ")),
             kind: RefusalKind::SourceColumnsUnfit { reason: error.to_string() },
         })?;
         let fields = Fields::find(&plan, names, file_name)?;
-        Ok(Self { plan, fields, columns: names.record.len(), names_line: names.line })
+        Ok(Self { plan, fields, columns: names.record.len(), names_line: names.sent_line() })
     }
 
     /// The line of names.
@@ -111,7 +125,7 @@ impl Layout {
     }
 
     fn form(&self) -> Form {
-        Form { separator: self.plan.separator, comment: self.plan.comment }
+        Form { separator: self.plan.separator, comment: self.plan.comment, names_line: 1 }
     }
 
     /// Refuses the number of an input in a row.
@@ -143,7 +157,11 @@ impl Layout {
 fn form_of(file: &MappingFile) -> Form {
     // What is no separator is refused with the mapping itself.
     let byte = |character: char| u8::try_from(character).ok();
-    Form { separator: byte(file.separator).unwrap_or(b','), comment: file.comment.and_then(byte) }
+    Form {
+        separator: byte(file.separator).unwrap_or(b','),
+        comment: file.comment.and_then(byte),
+        names_line: file.names_line,
+    }
 }
 
 /// Where the recording has what the mapping names.
@@ -193,8 +211,9 @@ enum Text {
 /// The line of names.
 struct Names<'a> {
     record: csv::StringRecord,
-    /// Its physical line.
+    /// Its physical line below the titles.
     line: usize,
+    /// The text below the titles.
     text: &'a str,
     form: Form,
 }
@@ -207,10 +226,16 @@ impl<'a> Names<'a> {
             let line = text.lines().count().max(1);
             let last = text.lines().nth(line - 1).unwrap_or_default();
             let (column, kind) = (last.chars().count() + 1, RefusalKind::SourceNamesMissing);
+            let line = line + form.titles();
             return Err(Refusal { line, column, found: Found::EndOfText, kind });
         }
         let line = settle(form, text, record.position().map_or(1, line_of));
         Ok(Self { record, line, text, form })
+    }
+
+    /// Its line in the recording.
+    const fn sent_line(&self) -> usize {
+        self.line + self.form.titles()
     }
 
     fn find(&self, name: &str) -> Result<usize, Refusal> {
@@ -220,13 +245,13 @@ impl<'a> Names<'a> {
         match (places.next(), places.next()) {
             (Some(place), None) => Ok(place),
             (Some(_), Some(second)) => Err(Refusal {
-                line: self.line,
+                line: self.sent_line(),
                 column: column_of(self.form, text, second),
                 found: Found::text(name),
                 kind: RefusalKind::SourceColumnDoubled { name: owned() },
             }),
             (None, _) => Err(Refusal {
-                line: self.line,
+                line: self.sent_line(),
                 column: text.chars().count() + 1,
                 found: Found::EndOfLine,
                 kind: RefusalKind::SourceColumnMissing { name: owned(), hint: self.hint(name) },
@@ -255,6 +280,13 @@ impl<'a> Names<'a> {
             TextSource::FileName => Text::Constant(file_name.unwrap_or_default().to_owned()),
         })
     }
+}
+
+/// What is below the titles.
+pub(super) fn below_titles(form: Form, text: &str) -> &str {
+    let Some(last) = form.titles().checked_sub(1) else { return text };
+    let end = memchr::memchr_iter(b'\n', text.as_bytes()).nth(last);
+    end.map_or("", |end| &text[end + 1..])
 }
 
 /// A reader of a text's records, of any length.

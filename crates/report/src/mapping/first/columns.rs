@@ -1,8 +1,11 @@
 //! The names and the first rows of a recording.
 
+use core::fmt::Write;
+
 use super::super::table::{self, Form};
-use super::Rule;
 use super::names::{Name, unit_called};
+use super::rules::Rule;
+use crate::number::without_groups;
 use crate::refusal::Refusal;
 
 /// Rows whose values are looked at.
@@ -18,21 +21,19 @@ pub(super) struct Columns {
     pub(super) units_row: bool,
     /// The character before the decimals of a number.
     pub(super) decimal: char,
+    /// The one between groups of three digits.
+    pub(super) thousands: Option<char>,
 }
 
 impl Columns {
     pub(super) fn from_text(text: &str) -> Result<Self, Refusal> {
-        let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
-        let separator = [b',', b';', b'\t', b'|']
-            .into_iter()
-            .max_by_key(|separator| first.matches(char::from(*separator)).count())
-            .unwrap_or(b',');
-        let form = Form { separator, comment: None };
+        let form = form_of(text);
         let sent = table::names(form, text)?;
+        let text = table::below_titles(form, text);
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(true)
             .flexible(true)
-            .delimiter(separator)
+            .delimiter(form.separator)
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
         let mut rows: Vec<Vec<String>> = reader
@@ -53,8 +54,31 @@ impl Columns {
             .enumerate()
             .map(|(column, name)| Name::new(name, unit_of(column)))
             .collect();
-        let decimal = if separator != b',' && has_decimal_commas(&rows) { ',' } else { '.' };
-        Ok(Self { form, names, rows, units_row: units.is_some(), decimal })
+        let has_commas = form.separator != b',' && has_decimal_commas(&rows);
+        let decimal = if has_commas { ',' } else { '.' };
+        let thousands = mark_of_thousands(&rows, decimal);
+        Ok(Self { form, names, rows, units_row: units.is_some(), decimal, thousands })
+    }
+
+    /// The entries that tell how the text is written.
+    pub(super) fn form_entries(&self) -> String {
+        let mut text = String::new();
+        if self.form.separator != b',' {
+            let _ = writeln!(text, "    separator: {:?},", char::from(self.form.separator));
+        }
+        if self.decimal == ',' {
+            text += "    decimal: ',',\n";
+        }
+        if let Some(mark) = self.thousands {
+            let _ = writeln!(text, "    thousands: {mark:?},   // ?");
+        }
+        if self.form.names_line > 1 {
+            let _ = writeln!(text, "    names_line: {},   // ?", self.form.names_line);
+        }
+        if self.units_row {
+            text += "    units_row: true,\n";
+        }
+        text
     }
 
     /// The column of the first of the rule's names that is there.
@@ -67,6 +91,8 @@ impl Columns {
     }
 
     pub(super) fn number(&self, text: &str) -> Option<f64> {
+        let joined = self.thousands.and_then(|mark| without_groups(text, mark, self.decimal));
+        let text = joined.as_deref().unwrap_or(text);
         match self.decimal {
             ',' => text.replace(',', ".").parse().ok(),
             _ => text.parse().ok(),
@@ -94,6 +120,59 @@ impl Columns {
         };
         (0..self.names.len()).find(|&column| self.texts_of(column).next().is_some_and(looks_so))
     }
+}
+
+/// Lines among which that of the names is looked for.
+const TITLES: usize = 40;
+
+/// The separator, and the line of the names: the first line that is not blank, unless another one begins the table that follows,
+/// where a program writes what the table is above it.
+fn form_of(text: &str) -> Form {
+    let lines: Vec<(usize, &str)> =
+        (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty()).take(TITLES).collect();
+    let (first, separator) = (0..lines.len())
+        .find_map(|first| begins_a_table(&lines[first..]).map(|separator| (first, separator)))
+        .unwrap_or_else(|| {
+            (0, most_frequent_separator(lines.first().map_or("", |(_, line)| line)))
+        });
+    // Blank lines above the first one are left out by themselves.
+    let names_line = if first == 0 { 1 } else { lines[first].0 };
+    Form { separator, comment: None, names_line }
+}
+
+fn most_frequent_separator(line: &str) -> u8 {
+    let count = |separator: &u8| separators_of(line, char::from(*separator));
+    [b',', b';', b'\t', b'|'].into_iter().max_by_key(count).unwrap_or(b',')
+}
+
+/// The separator of the table that begins with these lines: as many are in most of the next lines as in the first one, whose fields
+/// are names.
+fn begins_a_table(lines: &[(usize, &str)]) -> Option<u8> {
+    let ((_, names), rows) = lines.split_first()?;
+    let separator = most_frequent_separator(names);
+    let mark = char::from(separator);
+    let count = separators_of(names, mark);
+    let next = &rows[..rows.len().min(5)];
+    let alike = next.iter().filter(|(_, row)| separators_of(row, mark) == count).count();
+    let fields = || names.split(mark).map(str::trim).filter(|field| !field.is_empty());
+    let numbers = fields().filter(|field| field.parse::<f64>().is_ok()).count();
+    let is_table = count >= 2 && !next.is_empty() && 2 * alike > next.len();
+    (is_table && 2 * numbers < fields().count()).then_some(separator)
+}
+
+/// Separators that are not between quotes.
+fn separators_of(line: &str, separator: char) -> usize {
+    line.split('"').step_by(2).map(|outside| outside.matches(separator).count()).sum()
+}
+
+/// The mark between groups of three digits: that of the most numbers of which a comma or a point makes no other number, if any.
+fn mark_of_thousands(rows: &[Vec<String>], decimal: char) -> Option<char> {
+    let marks = [',', '.', ' ', '\'', '\u{a0}', '\u{202f}'].into_iter();
+    let counted = marks.filter(|mark| *mark != decimal).map(|mark| {
+        let cells = rows.iter().flatten();
+        (cells.filter(|cell| without_groups(cell, mark, decimal).is_some()).count(), mark)
+    });
+    counted.max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0).map(|(_, mark)| mark)
 }
 
 /// Whether a row holds no number, and the names of at least two units.

@@ -1,6 +1,6 @@
 //! What a column's name tells: quantity, unit, engine.
 
-use super::Kind;
+use super::rules::Kind;
 
 /// A column's name, as sent and taken apart.
 pub(super) struct Name {
@@ -11,7 +11,7 @@ pub(super) struct Name {
 }
 
 /// What units are called at the end of a name, and what we call them; the longer ones first.
-const UNITS: [(&str, &str); 27] = [
+const UNITS: [(&str, &str); 34] = [
     ("feet", "ft"),
     ("ft", "ft"),
     ("meters", "m"),
@@ -27,10 +27,17 @@ const UNITS: [(&str, &str); 27] = [
     ("lbhr", "lb/h"),
     ("lbsh", "lb/h"),
     ("pph", "lb/h"),
+    ("th", "t/h"),
+    ("tph", "t/h"),
+    ("thr", "t/h"),
     ("kgs", "kg/s"),
     ("kg", "kg"),
     ("lbs", "lb"),
     ("lb", "lb"),
+    ("tonnes", "t"),
+    ("tonne", "t"),
+    ("tons", "t"),
+    ("t", "t"),
     ("degc", "degC"),
     ("degf", "degF"),
     ("deg", "deg"),
@@ -80,13 +87,12 @@ impl Name {
             (Kind::Altitude, "m") => "unit: \"m\"",
             (Kind::Temperature, "degC") => "unit: \"degC\"",
             (Kind::Temperature, "K") => "unit: \"K\"",
-            (Kind::Temperature, "degF") => {
-                "unit: \"degC\", scale: 0.5555555556, offset: -17.77777778"
-            }
+            (Kind::Temperature, "degF") => "unit: \"degF\"",
             (Kind::Speed | Kind::CalibratedSpeed, "kt") => "unit: \"kt\"",
             (Kind::Speed | Kind::CalibratedSpeed, "m/s") => "unit: \"m/s\"",
             (Kind::Mass, "kg") => "unit: \"kg\"",
             (Kind::Mass, "lb") => "unit: \"lb\"",
+            (Kind::Mass, "t") => "unit: \"t\"",
             (Kind::Percent, "%") => "unit: \"%MAC\"",
             (Kind::Angle, "deg") => "unit: \"deg\"",
             _ => return None,
@@ -94,7 +100,7 @@ impl Name {
     }
 
     pub(super) fn flow_unit(&self) -> Option<&'static str> {
-        self.unit.filter(|unit| ["kg/h", "lb/h", "kg/s"].contains(unit))
+        self.unit.filter(|unit| ["kg/h", "lb/h", "kg/s", "t/h"].contains(unit))
     }
 }
 
@@ -102,7 +108,10 @@ impl Name {
 pub(super) fn unit_called(text: &str) -> Option<&'static str> {
     let plain: String =
         text.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>().to_lowercase();
-    let own = ["kt", "ft", "m", "m/s", "kg", "lb", "kg/h", "lb/h", "kg/s", "degC", "K", "deg", "%"];
+    let own = [
+        "kt", "ft", "m", "m/s", "kg", "lb", "t", "kg/h", "lb/h", "kg/s", "t/h", "degC", "K", "deg",
+        "%",
+    ];
     let as_written = own.into_iter().find(|unit| *unit == text.trim());
     as_written.or_else(|| UNITS.iter().find(|(word, _)| *word == plain).map(|(_, unit)| *unit))
 }

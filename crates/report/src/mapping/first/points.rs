@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::super::{MappedReport, Mapping, Source};
 use super::columns::Columns;
-use super::{LEVEL_CRUISE, START_MASS, TEXTS};
+use super::rules::TEXTS;
+use super::{LEVEL_CRUISE, START_MASS};
 
 const AVERAGED_POINTS: &str = "    // Rows too far apart for samples: means over stable frames.\n    rows: AveragedPoints(averaged_over_s: 60),   // ?\n";
 /// A mass at the start of a flight needs samples to be followed from: of points each has its own.
@@ -71,7 +72,10 @@ impl Columns {
             let key = of_flight.iter().map(|column| row.get(*column).map_or("", String::as_str));
             flights.entry(key.collect()).or_default().push(row);
         }
-        let steps = flights.values().flat_map(|rows| self.steps_s(rows)).collect();
+        let day = self.time_column().is_some_and(|column| self.counts_days(column));
+        let unit_s = if day { 86_400.0 } else { 1.0 };
+        let steps = flights.values().flat_map(|rows| self.steps_s(rows));
+        let steps = steps.map(|step| step * unit_s).collect();
         let few = !of_flight.is_empty() && self.rows.len() <= MOST_POINTS * flights.len();
         median(steps).map_or(few && flights.len() > 1, |step_s| step_s > LONGEST_STEP_S)
     }

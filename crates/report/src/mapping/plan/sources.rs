@@ -2,6 +2,7 @@
 
 use flight::column::{Column, ColumnUnit};
 use units::check_within;
+use units::convert::METERS_PER_FOOT;
 
 use super::conversion::Conversion;
 use super::{Fill, Input, MachSource, TemperatureSource, TrueAirspeedSource};
@@ -175,12 +176,31 @@ impl Inputs {
     }
 }
 
+/// Units in which a mapping may give a quantity: those of the report's column, and some in which recorders and spreadsheets have it.
+pub(in crate::mapping) fn units_of(column: Column) -> impl Iterator<Item = ColumnUnit> {
+    const fn unit(name: &'static str, factor: f64, offset: f64) -> ColumnUnit {
+        ColumnUnit { name, factor, offset }
+    }
+    let more = match column {
+        Column::PressureAltitude => Some(unit("FL", 100.0 * METERS_PER_FOOT, 0.0)),
+        Column::FuelUsed | Column::FuelQuantity => Some(unit("t", 1000.0, 0.0)),
+        Column::FuelFlowTotal | Column::FuelFlowEngine(_) => {
+            Some(unit("t/h", 1000.0 / 3600.0, 0.0))
+        }
+        Column::StaticAirTemperature | Column::TotalAirTemperature => {
+            Some(unit("degF", 5.0 / 9.0, 273.15 - 32.0 * 5.0 / 9.0))
+        }
+        _ => None,
+    };
+    column.units().iter().copied().chain(more)
+}
+
 pub(super) fn known_unit(column: Column, unit: &str) -> Result<ColumnUnit, MappingError> {
-    let known = column.units().iter().find(|known| known.name == unit);
-    known.copied().ok_or_else(|| MappingError::UnitUnknown {
+    let known = || units_of(column);
+    known().find(|known| known.name == unit).ok_or_else(|| MappingError::UnitUnknown {
         column,
         unit: unit.to_owned(),
-        near: nearest(unit, column.units().iter().map(|unit| unit.name)),
+        near: nearest(unit, known().map(|unit| unit.name)),
     })
 }
 

@@ -238,10 +238,11 @@ impl Layout {
                 Some(Times::Nanoseconds(core::mem::take(times)))
             }
             (
-                TimeForm::Seconds { per_second, .. },
+                TimeForm::Seconds { count, .. },
                 BatchColumn::Numbers(numbers) | BatchColumn::Finite(numbers),
             ) => {
-                let seconds: Vec<f64> = numbers.iter().map(|number| number / per_second).collect();
+                let seconds: Vec<f64> =
+                    numbers.iter().map(|number| count.seconds(*number)).collect();
                 let is_near = |seconds: &f64| seconds.abs() <= FARTHEST_S;
                 seconds.iter().all(is_near).then_some(Times::Seconds(seconds))
             }

@@ -89,8 +89,8 @@ impl Layout {
                 let instants = times.iter().map(|time| at_offset(*time, offset));
                 Some(Times::Instants(instants.collect::<Option<_>>()?))
             }
-            (Cells::Numbers(seconds), TimeForm::Seconds { per_second, .. }) => {
-                let times: Vec<f64> = seconds.iter().map(|time| time / per_second).collect();
+            (Cells::Numbers(seconds), TimeForm::Seconds { count, .. }) => {
+                let times: Vec<f64> = seconds.iter().map(|time| count.seconds(*time)).collect();
                 let usual = |time: &f64| time.abs() <= FARTHEST_S;
                 let known = !seconds.iter().any(|time| sentinels.contains(time));
                 (known && times.iter().all(usual)).then_some(Times::Seconds(times))

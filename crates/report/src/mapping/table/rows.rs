@@ -7,14 +7,14 @@ use std::sync::Arc;
 
 use flight::Timestamp;
 
+use super::instants::{InstantCache, formatted, time_of_day_s};
 use super::line_numbers::LineNumbers;
 use super::{Layout, Text, line_of, means_nothing, reader, settle};
-use crate::cruise_text::parse_instant;
 use crate::mapping::file::BadRows;
 use crate::mapping::numbers::Block;
 use crate::mapping::pieces::{Content, Piece};
 use crate::mapping::plan::{Input, TimeForm};
-use crate::number;
+use crate::number::{self, without_groups};
 use crate::refusal::{Found, Refusal, RefusalKind};
 
 /// The rows of a piece.
@@ -261,8 +261,9 @@ impl Rows {
         let malformed =
             || row.refuse(place, field, Found::text(text), RefusalKind::SourceInstantMalformed);
         match (&mut self.times, &layout.plan.time) {
-            (Times::Seconds(times), TimeForm::Seconds { per_second, .. }) => {
-                let seconds = row.number(field, &layout.plan.time_column, place)? / per_second;
+            (Times::Seconds(times), TimeForm::Seconds { count, .. }) => {
+                let number = row.number(field, &layout.plan.time_column, place)?;
+                let seconds = count.seconds(number);
                 if seconds.abs() > FARTHEST_S {
                     return Err(malformed());
                 }
@@ -355,7 +356,9 @@ impl<'r> Row<'r> {
                 return Ok(*value);
             }
         }
-        let is_plain = self.layout.plan.decimal == '.' && self.layout.plan.not_available.is_empty();
+        let plan = &self.layout.plan;
+        let is_plain =
+            plan.decimal == '.' && plan.thousands.is_none() && plan.not_available.is_empty();
         let range = &self.fields[field];
         // Nearly every field; the bytes behind it are given too, of which eight are looked at together.
         if is_plain
@@ -372,8 +375,11 @@ impl<'r> Row<'r> {
         if self.is_not_available(sent) {
             return Ok(f64::NAN);
         }
-        let with_point = (self.layout.plan.decimal == ',').then(|| sent.replacen(',', ".", 1));
-        let text = with_point.as_deref().unwrap_or(sent);
+        let plan = &self.layout.plan;
+        let joined = plan.thousands.and_then(|mark| without_groups(sent, mark, plan.decimal));
+        let text = joined.as_deref().unwrap_or(sent);
+        let with_point = (plan.decimal == ',').then(|| text.replacen(',', ".", 1));
+        let text = with_point.as_deref().unwrap_or(text);
         // Other programs write the exponent's letter as a capital.
         number::whole(text.as_bytes())
             .or_else(|| {
@@ -398,73 +404,3 @@ impl<'r> Row<'r> {
 
 /// Seconds from an origin beyond which a number is in another unit than seconds.
 pub(super) const FARTHEST_S: f64 = 2e11;
-
-/// The last minute that was read: the instants of a recording differ in their seconds for most of the time.
-#[derive(Debug, Default)]
-pub(super) struct InstantCache {
-    /// Up to the colon before the seconds.
-    to_minute: String,
-    /// Behind the seconds.
-    behind: String,
-    /// The instant at second 0.
-    minute: Option<Timestamp>,
-}
-
-impl InstantCache {
-    /// Where the seconds are in `YYYY-MM-DD hh:mm:ss`.
-    const SECONDS: core::ops::Range<usize> = 17..19;
-
-    /// ISO text with `T` or a blank between date and time, with its own offset or with `utc_offset`.
-    fn instant(&mut self, text: &str, utc_offset: Option<&str>) -> Option<Timestamp> {
-        let seconds = text.as_bytes().get(Self::SECONDS).and_then(|digits| match digits {
-            [tens @ b'0'..=b'5', ones @ b'0'..=b'9'] => {
-                Some(i64::from(10 * (tens - b'0') + (ones - b'0')))
-            }
-            _ => None,
-        });
-        let Some((seconds, parts)) =
-            seconds.zip(text.get(..Self::SECONDS.start).zip(text.get(Self::SECONDS.end..)))
-        else {
-            return instant(text, utc_offset);
-        };
-        if let Some(minute) = self.minute
-            && (self.to_minute.as_str(), self.behind.as_str()) == parts
-        {
-            return Timestamp::new(minute.as_second() + seconds, minute.subsec_nanosecond()).ok();
-        }
-        let instant = instant(text, utc_offset)?;
-        // Before 1970 seconds and their fraction have one sign: such instants are read one by one.
-        self.minute = (instant.as_second() > 60)
-            .then(|| Timestamp::new(instant.as_second() - seconds, instant.subsec_nanosecond()))
-            .and_then(Result::ok);
-        (self.to_minute, self.behind) = (parts.0.to_owned(), parts.1.to_owned());
-        Some(instant)
-    }
-}
-
-/// ISO text with `T` or a blank between date and time, with its own offset or with `utc_offset`.
-fn instant(text: &str, utc_offset: Option<&str>) -> Option<Timestamp> {
-    let with_t = text.replacen(' ', "T", 1);
-    parse_instant(&with_t).or_else(|| parse_instant(&(with_t + utc_offset?)))
-}
-
-/// Text of a form as `strptime` names it; an offset in the text counts more than `utc_offset`.
-fn formatted(text: &str, format: &str, utc_offset: Option<&str>) -> Option<Timestamp> {
-    let broken = jiff::fmt::strtime::parse(format, text).ok()?;
-    if broken.offset().is_some() {
-        return broken.to_timestamp().ok();
-    }
-    parse_instant(&(broken.to_datetime().ok()?.to_string() + utc_offset?))
-}
-
-/// Hours, minutes and seconds, separated by colons; s.
-fn time_of_day_s(text: &str) -> Option<f64> {
-    let mut fields = text.split(':').map(|field| number::whole(field.as_bytes()));
-    let (hours, minutes) = (fields.next()??, fields.next()??);
-    let seconds = fields.next().unwrap_or(Some(0.0))?;
-    let is_within = (0.0..24.0).contains(&hours)
-        && (0.0..60.0).contains(&minutes)
-        && (0.0..61.0).contains(&seconds)
-        && fields.next().is_none();
-    is_within.then_some(3600.0 * hours + 60.0 * minutes + seconds)
-}
