@@ -131,10 +131,16 @@ pub(crate) fn tell_refused(refused: &[RefusedReport]) {
     let terminal = Terminal::of_run();
     let most = if terminal.err.width.is_some() { REFUSALS_OF_A_KIND } else { usize::MAX };
     let mut told = kinds::Told::new(most);
-    for one in refused {
+    // Several flights of a recording may be refused for the same reason.
+    for alike in refused.chunk_by(|one, other| one == other) {
+        let one = &alike[0];
         if told.is_told(&one.reason) {
             let is_first = told.count(&one.reason) == 1;
-            tell(&format!("refused: {one}\n"));
+            let times = match alike.len() {
+                1 => String::new(),
+                flights => format!(" ({flights} flights)"),
+            };
+            tell(&format!("refused: {one}{times}\n"));
             if let (true, Some(line)) = (is_first, one.line) {
                 tell_excerpt(&one.path, line, one.column, &one.reason);
             }

@@ -27,6 +27,7 @@ use crate::output::note::{LeftOutReason, Note};
 use crate::output::verdict::{Insufficient, Verdict};
 use crate::output::{Detectable, Diagnosis, Gap, NotTestable, OutsideLibrary};
 use crate::place::find::{FoundPlaces, find};
+use crate::priors::PRIOR_SCALES;
 use crate::residuals::segments::PreparedFlights;
 use crate::search::analyse::{Analysis, analyse};
 use crate::search::outliers::outliers;
@@ -311,11 +312,13 @@ fn conclude(
     let verdict = verdict(&findings, notes);
     let led = |places| led_by_name(places, &findings, system, &verdict, options.seed);
     let places = places.map_or_else(Vec::new, |places| led(places).of_gap(detected));
-    let found_forms = match &verdict {
+    let mut found_forms = match &verdict {
         Verdict::OutsideLibrary(_) => forms
             .unwrap_or_else(|| leading_forms(problem, analysis, &outside, (scale, options.seed))),
         _ => vec![],
     };
+    // What may have no size describes nothing.
+    found_forms.retain(FoundForm::has_a_size);
     Ok(Diagnosis {
         flights: system.data.flights.len(),
         segments: system.data.segments.len(),
@@ -358,7 +361,7 @@ fn led_by_name(
     if let Some(named) = named_gap(findings, system, verdict)
         && let Some(place) = named.place(system, &places.variances, seed)
     {
-        places.lead_with(place, &named.variables(), named.is_level());
+        places.lead_with(place, &named);
     }
     places
 }
@@ -402,10 +405,12 @@ fn detectable(
     (0..library.effects.len())
         .map(|effect| {
             let smallest = distances.smallest_detectable(effect);
+            let [.., (most, _)] = PRIOR_SCALES;
+            let largest = most * library.effects[effect].typical;
             let class = classes.iter().find(|class| class.contains(&effect));
             Detectable {
                 effect: id(effect),
-                smallest: smallest.is_finite().then_some(smallest),
+                smallest: (smallest <= largest).then_some(smallest),
                 class: class.map_or_else(Vec::new, |class| class.iter().map(|&e| id(e)).collect()),
                 nearest_other: distances.nearest_other(library, effect),
                 nearest_pair: distances.nearest_pair(library, effect),

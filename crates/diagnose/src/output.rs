@@ -183,7 +183,8 @@ pub struct NotTestable {
 pub struct Detectable {
     /// The effect.
     pub effect: EffectId,
-    /// Smallest size, in the effect's unit, seen with about 60 % probability; `None` where the data say nothing about it.
+    /// Smallest size, in the effect's unit, seen with about 60 % probability; `None` where it is larger than is believed in of any
+    /// aircraft.
     pub smallest: Option<f64>,
     /// Effects that this data cannot tell from it at typical sizes, itself included.
     pub class: Vec<EffectId>,

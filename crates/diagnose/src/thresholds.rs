@@ -217,6 +217,9 @@ deciding_numbers! {
         SECOND_CONDITION: f64 = 1.15, "",
             "factor by which a second condition must raise the statistic",
             OurChoice "A simpler region is easier to use.";
+        LEAST_SHARE: f64 = 0.005, "",
+            "least share of the explainable gap in a region of all engines",
+            OurChoice "Less is 0 % in words: what lies there is made up for within it.";
         MOST_COMPARED: usize = 200, "regions",
             "regions that are not by chance and compete by likelihood, at most",
             OurChoice "A bound on time.";

@@ -59,6 +59,12 @@ pub enum CsvErrorReason {
         /// Names that the file may have.
         known: String,
     },
+    /// Names with another separator between them.
+    #[error("names with {found:?} between them, expected ','")]
+    OtherSeparator {
+        /// The separator.
+        found: char,
+    },
     /// A name that appears twice.
     #[error("column appears twice, first as column {first}")]
     DuplicatedColumn {
@@ -344,7 +350,12 @@ fn check_header(line: u64, header: &[String], known: &[Column]) -> Result<(), Cs
             return Err(error(CsvErrorReason::DuplicatedColumn { first: first + 1 }));
         }
         if !name.starts_with("X-") && known.iter().all(|column| column.name != name) {
-            return Err(error(CsvErrorReason::UnknownColumn { known: names(known) }));
+            let between = |mark: &char| header.len() == 1 && name.contains(*mark);
+            let other = [';', '\t', '|'].into_iter().find(between);
+            let unknown = || CsvErrorReason::UnknownColumn { known: names(known) };
+            let reason =
+                other.map_or_else(unknown, |found| CsvErrorReason::OtherSeparator { found });
+            return Err(error(reason));
         }
     }
     Ok(())

@@ -8,11 +8,11 @@ use units::{
 };
 
 use crate::columns::{
-    ANTI_ICE, CG_PERCENT_MAC, DATE, FUEL_FLOW_KG_H, FUEL_FLOW_LB_H, ISA_DEVIATION_C, LATITUDE_DEG,
-    MACH, MASS_KG, PRESSURE_ALTITUDE_FT, TRUE_HEADING_DEG, WEIGHT_LB,
+    ANTI_ICE, CG_PERCENT_MAC, DATE, FLIGHT_LEVEL, FUEL_FLOW_KG_H, FUEL_FLOW_LB_H, ISA_DEVIATION_C,
+    LATITUDE_DEG, MACH, MASS_KG, PRESSURE_ALTITUDE_FT, TRUE_HEADING_DEG, WEIGHT_LB,
 };
 use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, Row, is_available};
-use crate::guide::{fuel_flow_in, mass_in};
+use crate::guide::{fuel_flow_in, mass_in, pressure_altitude_in};
 
 mod table;
 
@@ -62,10 +62,11 @@ pub struct FlightPoint {
 }
 
 /// Columns that flight points may have.
-const COLUMNS: [Column; 12] = [
+const COLUMNS: [Column; 13] = [
     WEIGHT_LB,
     MASS_KG,
     PRESSURE_ALTITUDE_FT,
+    FLIGHT_LEVEL,
     MACH,
     ISA_DEVIATION_C,
     FUEL_FLOW_LB_H,
@@ -80,7 +81,7 @@ const COLUMNS: [Column; 12] = [
 impl FlightPoints {
     /// Reads flight points.
     ///
-    /// Comma-separated; the header determines the columns: `weight_lb` or `mass_kg`; `pressure_altitude_ft`; `mach`;
+    /// Comma-separated; the header determines the columns: `weight_lb` or `mass_kg`; `pressure_altitude_ft` or `flight_level`; `mach`;
     /// optionally `isa_deviation_c` (otherwise the ISA), `fuel_flow_lb_h` or `fuel_flow_kg_h`, `date`,
     /// `cg_percent_mac`, `anti_ice`, `latitude_deg`, `true_heading_deg`. In an optional column other than
     /// `isa_deviation_c` an empty field or `-` means "not available". Columns whose name begins with `X-` are kept and
@@ -146,7 +147,7 @@ impl FlightPoint {
 #[derive(Clone, Debug)]
 struct Columns<'c> {
     mass: (usize, &'c Column),
-    pressure_altitude: usize,
+    pressure_altitude: (usize, &'c Column),
     mach: usize,
     isa_deviation: Option<usize>,
     fuel_flow: Option<(usize, &'c Column)>,
@@ -161,7 +162,7 @@ impl Columns<'static> {
     fn find_in(file: &CsvText) -> Result<Self, CsvError> {
         Ok(Self {
             mass: file.require_one_of(&[&WEIGHT_LB, &MASS_KG])?,
-            pressure_altitude: file.require(&PRESSURE_ALTITUDE_FT)?,
+            pressure_altitude: file.require_one_of(&[&PRESSURE_ALTITUDE_FT, &FLIGHT_LEVEL])?,
             mach: file.require(&MACH)?,
             isa_deviation: file.find(&ISA_DEVIATION_C),
             fuel_flow: file.find_either([&FUEL_FLOW_LB_H, &FUEL_FLOW_KG_H])?,
@@ -175,13 +176,13 @@ impl Columns<'static> {
 
     fn point(&self, file: &CsvText, row: &Row) -> Result<FlightPoint, CsvError> {
         let (mass, mass_column) = self.mass;
+        let (altitude, altitude_column) = self.pressure_altitude;
         Ok(FlightPoint {
             mass: mass_in(mass_column, file.number(row, mass, mass_column)?),
-            pressure_altitude: PressureAltitude::feet(file.number(
-                row,
-                self.pressure_altitude,
-                &PRESSURE_ALTITUDE_FT,
-            )?),
+            pressure_altitude: pressure_altitude_in(
+                altitude_column,
+                file.number(row, altitude, altitude_column)?,
+            ),
             mach: Mach::new(file.number(row, self.mach, &MACH)?),
             isa_deviation: TemperatureDifference::kelvin(match self.isa_deviation {
                 Some(index) => file.number(row, index, &ISA_DEVIATION_C)?,
@@ -272,6 +273,17 @@ mod tests {
                 ..FlightPoint::new(bare.mass, bare.pressure_altitude, bare.mach)
             }
         );
+    }
+
+    #[test]
+    fn flight_levels_are_hundreds_of_feet() {
+        let in_feet =
+            FlightPoints::from_csv(b"mass_kg,pressure_altitude_ft,mach\n14000,41000,0.8").unwrap();
+        let in_levels =
+            FlightPoints::from_csv(b"mass_kg,flight_level,mach\n14000,410,0.8").unwrap();
+        assert_eq!(in_levels.rows()[0].point, in_feet.rows()[0].point);
+        let both = b"mass_kg,pressure_altitude_ft,flight_level,mach\n14000,41000,410,0.8";
+        assert!(FlightPoints::from_csv(both).is_err());
     }
 
     #[test]

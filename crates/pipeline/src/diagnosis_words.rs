@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use diagnose::{
-    ActsOn, Diagnosis, FlightsOnPurpose, Found, Insufficient, LeftOutReason, LoadingKind,
-    Magnitude, Measurement, Note, Rest, RestKind, Separation, Sweep, SweepLoading, Unexplained,
-    Variable, Verdict,
+    ActsOn, Diagnosis, FlightsOnPurpose, Found, FoundForm, Insufficient, LeftOutReason,
+    LoadingKind, Magnitude, Measurement, Note, OutsideLibrary, Rest, RestKind, Separation, Sweep,
+    SweepLoading, Unexplained, Variable, Verdict,
 };
 use flight::effect::EffectId;
 
@@ -37,15 +37,15 @@ pub fn advice(diagnosis: &Diagnosis) -> String {
         Verdict::InsufficientData(reason) => {
             format!("Too little data: {}.", insufficient_words(*reason))
         }
-        Verdict::OutsideLibrary(unexplained) => unexplained_words(unexplained),
+        Verdict::OutsideLibrary(unexplained) => unexplained_words(diagnosis, unexplained),
         Verdict::Effects(found) => found_words(diagnosis, found),
     }
 }
 
-fn unexplained_words(unexplained: &Unexplained) -> String {
+fn unexplained_words(diagnosis: &Diagnosis, unexplained: &Unexplained) -> String {
     let mut words = format!(
-        "A gap that no effect of the library explains; it depends on {}.",
-        variable_or_none(unexplained.variable)
+        "{}. Apply nothing: look at what these flights have in common where it lies, or record more signals.",
+        outside_words(&diagnosis.outside)
     );
     if let Some(share) = unexplained.nearest_closes {
         let _ = write!(
@@ -323,8 +323,23 @@ pub const fn left_out_words(reason: LeftOutReason) -> &'static str {
     }
 }
 
+/// A gap without a name in words: how surely nothing in the library explains it, what it depends on and acts on.
+pub fn outside_words(outside: &OutsideLibrary) -> String {
+    let mut words = no_effect_words(outside.probability).to_owned();
+    // What is described best by a level depends on nothing.
+    if !outside.forms.first().is_some_and(FoundForm::is_a_level) {
+        if let Some(variable) = outside.variable {
+            let _ = write!(words, "; it depends on {}", variable_words(variable));
+        }
+        if let Some(acts_on) = outside.acts_on {
+            let _ = write!(words, " and acts on {}", acts_on_words(acts_on));
+        }
+    }
+    words
+}
+
 /// What is said of a gap that no effect of the library explains, with this probability.
-pub fn no_effect_words(probability: f64) -> &'static str {
+fn no_effect_words(probability: f64) -> &'static str {
     /// From here on it is said without reserve; our choice, as for every name.
     const SURE: f64 = 0.9;
     if probability >= SURE {

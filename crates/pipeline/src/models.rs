@@ -51,13 +51,22 @@ pub enum NoModel {
         tail: String,
     },
     /// No model of the type.
-    #[error("found aircraft type {found:?}, expected {expected}")]
+    #[error("found aircraft type {found:?}, expected {expected}{}", placeholder_words(found))]
     Type {
         /// Type in the report.
         found: String,
         /// Types of all models, quoted.
         expected: String,
     },
+}
+
+/// What a first mapping writes where no column holds the type is none.
+fn placeholder_words(found: &str) -> &'static str {
+    if found == report::mapping::NO_TYPE {
+        ": the mapping states no type yet (aircraft: Text(…), or the column that holds it)"
+    } else {
+        ""
+    }
 }
 
 /// Two models that claim the same tail or, both without a tail, the same type.

@@ -147,6 +147,9 @@ fn unit_names(column: Column) -> String {
     plan::units_of(column).map(|unit| unit.name).collect::<Vec<_>>().join(" ")
 }
 
+/// What a first mapping states as aircraft type where no column holds it.
+pub const NO_TYPE: &str = "TYPE";
+
 /// Mapping files built into the program: name and text, whose first lines say what it is for and where that is from.
 pub const PRESETS: [(&str, &str); 8] = [
     ("traffic-a320", include_str!("../presets/traffic_a320.ron")),

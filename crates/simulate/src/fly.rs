@@ -9,10 +9,12 @@
 
 mod air_ahead;
 mod controls;
+mod error;
 mod forces;
+mod seen;
 mod steering;
 
-use units::{OutOfDomain, PressureAltitude};
+use units::PressureAltitude;
 
 use crate::aircraft::AircraftTruth;
 use crate::random::{Purpose, Streams};
@@ -22,6 +24,8 @@ use crate::state::{EnergyBook, FUEL_TEMPERATURE_AT_START_K, MassBook, TrueState}
 use crate::terms::{FuelShares, MAXIMUM_ENGINES, Terms};
 use crate::weather::{AirMass, DrydenFilters, Gusts, Patch, Turbulence, intensity_m_s};
 
+pub use error::FlightError;
+
 use air_ahead::AirAhead;
 use controls::Controls;
 use forces::{EarthHere, Forces, Motion};
@@ -29,43 +33,6 @@ use steering::Steering;
 
 /// Time constant with which fuel in the wings approaches TAT, s.
 const FUEL_TEMPERATURE_TIME_S: f64 = 7200.0;
-
-/// Why a flight cannot be flown as planned.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FlightError {
-    /// Outside the atmosphere.
-    #[error(transparent)]
-    Atmosphere(#[from] OutOfDomain),
-    /// The engines cannot hold the speed.
-    #[error("at {time_s} s Mach number {mach} falls away from {target}: not enough thrust")]
-    Thrust {
-        /// Time since the start of the recording, s.
-        time_s: f64,
-        /// Mach number.
-        mach: f64,
-        /// Target of the autopilot.
-        target: f64,
-    },
-    /// More lift than the wing can give.
-    #[error("at {time_s} s lift coefficient {lift_coefficient} above {maximum}")]
-    LiftCoefficient {
-        /// Time since the start of the recording, s.
-        time_s: f64,
-        /// Needed.
-        lift_coefficient: f64,
-        /// Largest.
-        maximum: f64,
-    },
-    /// No fuel left.
-    #[error("at {time_s} s no fuel is left of {fuel_on_board_kg} kg")]
-    Fuel {
-        /// Time since the start of the recording, s.
-        time_s: f64,
-        /// At engine start, kg.
-        fuel_on_board_kg: f64,
-    },
-}
 
 /// Everything needed to fly one flight.
 #[derive(Clone, Debug)]
@@ -415,61 +382,5 @@ impl<'a> Flying<'a> {
             return Err(FlightError::Fuel { time_s, fuel_on_board_kg });
         }
         Ok(())
-    }
-
-    fn instant(&self) -> Instant {
-        let forces = &self.forces;
-        Instant {
-            static_pressure_pa: forces.static_pressure_pa,
-            mach: forces.mach,
-            total_air_temperature_k: forces.total_air_temperature_k,
-            ground_speed_m_s: forces.ground_speed_m_s,
-            roll_deg: self.roll_trim_deg() + self.steering.roll_deg(),
-            drift_deg: (forces.drift_rad + self.drift_wobble_rad).to_degrees(),
-            fuel_flow_kg_s: forces.fuel_flow_kg_s,
-        }
-    }
-
-    fn true_state(&self) -> TrueState {
-        let forces = &self.forces;
-        let place = self.steering.place();
-        let drift_rad = forces.drift_rad + self.drift_wobble_rad;
-        let rotors = forces::rotors(self.setup, &self.motion, forces);
-        TrueState {
-            time_s: self.time_s,
-            pressure_altitude_m: self.motion.pressure_altitude_m,
-            geometric_altitude_m: self.motion.geometric_altitude_m,
-            static_pressure_pa: forces.static_pressure_pa,
-            static_air_temperature_k: forces.static_air_temperature_k,
-            mach: forces.mach,
-            true_airspeed_m_s: forces.true_airspeed_m_s,
-            smooth_airspeed_m_s: self.motion.smooth_airspeed_m_s,
-            ground_speed_m_s: forces.ground_speed_m_s,
-            acceleration_m_s2: forces.acceleration_m_s2 + self.wind_change_m_s2,
-            vertical_speed_m_s: self.motion.vertical_speed_m_s,
-            climb_angle_rad: forces.climb_angle_rad,
-            roll_deg: self.roll_trim_deg() + self.steering.roll_deg(),
-            drift_deg: drift_rad.to_degrees(),
-            true_heading_deg: (place.track_rad() - drift_rad).to_degrees().rem_euclid(360.0),
-            latitude_deg: place.latitude_rad().to_degrees(),
-            longitude_deg: place.longitude_rad().to_degrees(),
-            tail_wind_m_s: forces.tail_wind_m_s,
-            wind_from_left_m_s: forces.wind_from_left_m_s,
-            turbulence_m_s: self.gust_sigma_m_s,
-            mass_kg: self.motion.mass_kg,
-            fuel_used_kg: self.motion.fuel_used_kg,
-            center_of_gravity_percent_mac: forces.center_of_gravity_percent_mac,
-            effective_gravity_m_s2: self.here.effective_gravity_m_s2,
-            lift_coefficient: forces.lift_coefficient,
-            drag_coefficient: forces.drag_coefficient,
-            drag_n: forces.drag_n,
-            thrust_n: self.motion.thrust_n,
-            fuel_flow_kg_s: forces.fuel_flow_kg_s,
-            n1_percent: rotors.n1_percent,
-            n2_percent: rotors.n2_percent,
-            exhaust_gas_temperature_k: rotors.exhaust_gas_temperature_k,
-            anti_ice: forces.anti_ice,
-            fuel_temperature_k: self.motion.fuel_temperature_k,
-        }
     }
 }

@@ -163,7 +163,7 @@ fn layouts_read_with_their_first_mapping_have_no_finding() {
         .filter(|path| path.extension().is_none_or(|ending| ending != "py"))
         .collect();
     layouts.sort();
-    assert_eq!(layouts.len(), 23);
+    assert_eq!(layouts.len(), 25);
     for layout in layouts {
         cruisefit(&[
             "mapping".as_ref(),

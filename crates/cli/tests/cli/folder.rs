@@ -236,6 +236,10 @@ fn a_damaged_or_long_tail_costs_itself_only() {
     let long = "L".repeat(300);
     adapt(&model, &output, &[tail(1, "a1.txt", "A"), tail(1, "b1.txt", "B")], &[]).expect(0);
     std::fs::write(output.join("models/A.ron"), "no model").unwrap();
+    // Told in the night in which it is found, though nothing is new.
+    adapt(&model, &output, &[tail(1, "b1.txt", "B")], &[])
+        .expect(1)
+        .says("models/A.ron: tail A is not on the page: its SHA-256 is not that of STATE.ron");
     let next = [tail(2, "a2.txt", "A"), tail(2, "b2.txt", "B"), tail(2, "l2.txt", &long)];
     adapt(&model, &output, &next, &[])
         .expect(1)

@@ -30,6 +30,30 @@ fn segments_that_are_weighed_down_count_less_in_places() {
     });
 }
 
+/// A gap that begins on a date lies from its first flight on, to the segment, however wide the bins of dates are. By hand: the
+/// 8th of 20 flights.
+#[test]
+fn the_place_of_a_step_is_from_its_own_date_on() {
+    with_system(&fleet(82, 20), |problem| {
+        let data = problem.system.data;
+        let from = data.flights[7].segments.start;
+        let gap: Vec<f64> =
+            (0..data.segments.len()).map(|k| if k < from { 0.0 } else { 0.01 }).collect();
+        let variances = vec![1e-6; gap.len()];
+        let named = |p| NamedGap { gap: gap.clone(), drivers: vec![(Variable::Date, p)] };
+        let found = named(0.01).place(problem.system, &variances, 1).unwrap();
+        let [condition] = &found.region.conditions[..] else { panic!("{:?}", found.region) };
+        let edge = condition.from.unwrap();
+        let date = |k: usize| data.segments[k].point.date_s.to_bits();
+        assert_eq!(
+            (edge.value.to_bits(), edge.flown_below.to_bits()),
+            (date(from), date(from - 1))
+        );
+        assert_eq!(found.segments, gap.len() - from);
+        assert!(named(0.2).place(problem.system, &variances, 1).is_none());
+    });
+}
+
 /// `[diagnosis.56]`: what is named makes 1 % at the fastest tenth, and nothing else: the region is the fastest fifth, the nearest
 /// that bins of fifths have. Not along a variable that is less sure than a place must be, nor where none is sure.
 #[test]

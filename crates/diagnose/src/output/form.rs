@@ -44,6 +44,19 @@ pub struct FoundForm {
 }
 
 impl FoundForm {
+    /// Whether 0 lies outside the 95 % interval of its size.
+    #[must_use]
+    pub fn has_a_size(&self) -> bool {
+        let [low, high] = self.size_ci95;
+        low > 0.0 || high < 0.0
+    }
+
+    /// Whether it is the same everywhere, as effects of the library are.
+    #[must_use]
+    pub const fn is_a_level(&self) -> bool {
+        matches!(self.form, Form::Offset)
+    }
+
     /// The form as a model contains it; `None` for what no prediction can have: one engine's, or one over what is recorded and no
     /// property of the aircraft.
     #[must_use]

@@ -9,10 +9,12 @@ use faer::Mat;
 
 use crate::math::random::RandomStream;
 use crate::output::Slice;
+use crate::output::region::Condition;
 use crate::place::acceleration::expected_errors_removed;
 use crate::place::binned_variable::places;
 use crate::place::draws::{Drawing, NoiseLevel, chords, draw};
 use crate::place::likelihood::Noise;
+use crate::place::named::NamedGap;
 use crate::place::null::Null;
 use crate::place::regions::{BinnedRegion, Search, Series};
 use crate::place::told::{Gaps, Told};
@@ -44,11 +46,19 @@ pub(crate) struct FoundPlaces {
 impl FoundPlaces {
     /// Puts the place of what is named first, unless one of its driving variables leads already. A level that varies is everywhere,
     /// and more so there.
-    pub(crate) fn lead_with(&mut self, named: Slice, drivers: &[Variable], is_level: bool) {
-        let leads = self.regions.first().is_some_and(|first| {
-            first.region.conditions.iter().any(|condition| drivers.contains(&condition.variable))
+    pub(crate) fn lead_with(&mut self, named: Slice, gap: &NamedGap) {
+        let (drivers, is_level) = (gap.variables(), gap.is_level());
+        let first = self.regions.first_mut();
+        let leads = first.filter(|first| {
+            let mut conditions = first.region.conditions.iter();
+            conditions.any(|condition| drivers.contains(&condition.variable))
         });
-        if leads {
+        if let Some(first) = leads {
+            // A step has its own date, and bins of dates are weeks long.
+            let of_date = |condition: &Condition| condition.variable == Variable::Date;
+            if gap.step().is_some() && first.region.conditions.iter().all(of_date) {
+                *first = named;
+            }
             return;
         }
         let everywhere = self.everywhere.take().filter(|_| is_level && self.regions.is_empty());
@@ -279,7 +289,10 @@ impl Significant<'_> {
         let mut candidates = order
             .into_iter()
             .filter(|&index| {
-                !self.said.iter().any(|said| regions[index].is_of_the_segments_of(said))
+                let region = &regions[index];
+                !self.said.iter().any(|said| {
+                    region.is_of_the_segments_of(said) || region.is_the_rest_of(said, told.places)
+                })
             })
             .map(|index| (index, self.members(index, told)))
             .filter(enough)
@@ -289,7 +302,7 @@ impl Significant<'_> {
         }
         let (compared, members): (Vec<usize>, Vec<Vec<usize>>) = candidates
             .filter(|(index, _)| !regions[*index].series.is_engine())
-            .filter(|(_, members)| left.is_larger_in(members))
+            .filter(|(_, members)| left.is_larger_in(members) && !told.holds_nothing(members))
             .take(MOST_COMPARED)
             .unzip();
         let steps = noise.steps(&left.total, &members);

@@ -6,6 +6,7 @@
 use effects::Variable;
 
 use crate::output::Slice;
+use crate::output::region::{Condition, Edge};
 use crate::place::binned_variable::{BinnedVariable, places};
 use crate::place::find::gaps;
 use crate::place::regions::{BinnedRegion, intervals};
@@ -57,6 +58,14 @@ impl NamedGap {
         let places = places(&system.data.segments, system.design.references());
         let gaps = gaps(system);
         let told = Told { system, places: &places, gaps: &gaps, variances };
+        let step = self.step().filter(|_| {
+            self.drivers.iter().any(|(driver, p)| *driver == Variable::Date && *p <= REGION_P_VALUE)
+        });
+        if let Some(from) = step
+            && let Some(place) = self.of_step(from, &told, seed)
+        {
+            return Some(place);
+        }
         let mut best: Option<Fit> = None;
         for (driver, p_value) in self.drivers.iter().filter(|(_, p)| *p <= REGION_P_VALUE) {
             let of_driver = |place: &BinnedVariable| place.variable() == *driver;
@@ -71,6 +80,26 @@ impl NamedGap {
             }
         }
         best.map(|best| told.slice(&best.region, &best.members, best.p_value, seed))
+    }
+
+    /// The first segment of a gap that begins on a date: nothing before it, something from then on.
+    pub(crate) fn step(&self) -> Option<usize> {
+        let from = self.gap.iter().position(|gap| *gap != 0.0).filter(|from| *from > 0)?;
+        self.gap[from..].iter().all(|gap| *gap != 0.0).then_some(from)
+    }
+
+    /// The segments from a step on; flights are in order.
+    fn of_step(&self, from: usize, told: &Told<'_>, seed: u64) -> Option<Slice> {
+        let segments = &told.system.data.segments;
+        let (before, first) = (segments[from - 1].point.date_s, segments[from].point.date_s);
+        let members: Vec<usize> = (from..self.gap.len()).collect();
+        if before >= first || told.flights_of(&members) < FEWEST_FLIGHTS_OF_A_REGION {
+            return None;
+        }
+        let edge = Edge { value: first, flown_below: before };
+        let condition = Condition { variable: Variable::Date, from: Some(edge), to: None };
+        let p_value = self.drivers.iter().find(|(driver, _)| *driver == Variable::Date)?.1;
+        Some(told.slice_of((None, vec![condition]), &members, p_value, seed))
     }
 
     /// Whether it has nearly the same sign and size everywhere: its mean exceeds its standard deviation.

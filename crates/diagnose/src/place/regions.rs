@@ -53,6 +53,20 @@ impl BinnedRegion {
         same_series && self.ranges == other.ranges
     }
 
+    /// Whether it is all that another leaves, of one variable: what is said of one says the other's.
+    pub(crate) fn is_the_rest_of(&self, other: &Self, places: &[BinnedVariable]) -> bool {
+        let ([Some((variable, low, high)), None], [Some((same, from, to)), None]) =
+            (self.ranges, other.ranges)
+        else {
+            return false;
+        };
+        let last = places[variable].count();
+        variable == same
+            && self.series.is_engine() == other.series.is_engine()
+            && ((low == 0 && high == from && to == last)
+                || (from == 0 && to == low && high == last))
+    }
+
     /// Everything: no condition at all.
     pub(crate) fn is_everywhere(&self) -> bool {
         self.series == Series::FuelFlow && self.ranges == [None; 2]

@@ -3,10 +3,11 @@
 use crate::math::bootstrap::interval_95;
 use crate::math::random::RandomStream;
 use crate::output::Slice;
-use crate::output::region::Region;
+use crate::output::region::{Condition, Region};
 use crate::place::binned_variable::BinnedVariable;
 use crate::place::regions::{BinnedRegion, Series};
 use crate::search::system::WhitenedSystem;
+use crate::thresholds::LEAST_SHARE;
 
 /// Stream of random numbers: resamples of flights behind intervals.
 const INTERVAL_STREAM: u64 = 2;
@@ -78,23 +79,39 @@ impl Told<'_> {
         seed: u64,
     ) -> Slice {
         let engine = self.engine(candidate, members);
+        let ranges = candidate.ranges.iter().flatten();
+        let condition =
+            |&(place, low, high): &(usize, usize, usize)| self.places[place].condition(low, high);
+        self.slice_of((engine, ranges.map(condition).collect()), members, p_value, seed)
+    }
+
+    /// The same of segments that meet some conditions, of all engines or of one.
+    pub(crate) fn slice_of(
+        &self,
+        (engine, conditions): (Option<usize>, Vec<Condition>),
+        members: &[usize],
+        p_value: f64,
+        seed: u64,
+    ) -> Slice {
         let by_flight = self.by_flight(members, |segment| self.value(engine, segment));
-        let conditions = candidate.ranges.iter().flatten();
+        let (sum, count) =
+            by_flight.iter().fold((0.0, 0.0), |(sum, count), (of, n)| (sum + of, count + n));
         #[expect(clippy::cast_possible_truncation, reason = "four engines at most")]
-        let region = Region {
-            engine: engine.map(|engine| (engine + 1) as u8),
-            conditions: conditions
-                .map(|&(place, low, high)| self.places[place].condition(low, high))
-                .collect(),
-        };
+        let engine_number = engine.map(|engine| (engine + 1) as u8);
         Slice {
-            region,
+            region: Region { engine: engine_number, conditions },
             segments: members.len(),
-            mean_gap_percent: 100.0 * self.mean(candidate, members),
+            mean_gap_percent: 100.0 * sum / count,
             ci95: bootstrap_mean(&by_flight, seed).map(|end| 100.0 * end),
             share_of_gap: self.share(engine, members),
             p_value,
         }
+    }
+
+    /// Whether a place holds next to nothing of the explainable gap, where there is any.
+    pub(crate) fn holds_nothing(&self, members: &[usize]) -> bool {
+        let all: Vec<usize> = (0..self.gaps.total.len()).collect();
+        self.share(None, &all) > 0.0 && self.share(None, members) < LEAST_SHARE
     }
 
     /// Share of the explainable gap; an engine's is what it has in it. 0 where there is no more than noise.

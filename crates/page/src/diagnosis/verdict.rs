@@ -6,8 +6,8 @@ use diagnose::{Diagnosis, Magnitude, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_words::{
-    NOT_RULED_OUT, acts_on_words, advice, are_few, form_words, near_and_far, no_effect_words,
-    others_of_class, region_words, silent_words, told_size, variable_words,
+    NOT_RULED_OUT, advice, are_few, form_words, near_and_far, others_of_class, outside_words,
+    region_words, silent_words, told_size,
 };
 
 use super::Tail;
@@ -62,10 +62,7 @@ fn what(diagnosis: &Diagnosis) -> Markup {
         Verdict::NoGap => html! { b { (silent_words(diagnosis)) } },
         Verdict::InsufficientData(_) => html! { b { "No verdict: too little data." } },
         Verdict::OutsideLibrary(_) => html! {
-            b { (no_effect_words(diagnosis.outside.probability)) }
-            @if let Some(variable) = diagnosis.outside.variable { "; it depends on " (variable_words(variable)) }
-            @if let Some(acts_on) = diagnosis.outside.acts_on { " and acts on " (acts_on_words(acts_on)) }
-            "."
+            b { (outside_words(&diagnosis.outside)) } "."
         },
         Verdict::Effects(found) => html! {
             @for (place, id) in found.effects.iter().enumerate() {

@@ -3,15 +3,13 @@
 use std::borrow::Cow;
 
 use flight::Timestamp;
-use units::{Angle, Mach, PressureAltitude, TemperatureDifference};
+use units::{Angle, Mach, TemperatureDifference};
 
 use super::{COLUMNS, Columns, FlightPoint};
 use crate::LevelFlights;
-use crate::columns::{
-    CG_PERCENT_MAC, ISA_DEVIATION_C, LATITUDE_DEG, MACH, PRESSURE_ALTITUDE_FT, TRUE_HEADING_DEG,
-};
+use crate::columns::{CG_PERCENT_MAC, ISA_DEVIATION_C, LATITUDE_DEG, MACH, TRUE_HEADING_DEG};
 use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, within};
-use crate::guide::{fuel_flow_in, mass_in};
+use crate::guide::{fuel_flow_in, mass_in, pressure_altitude_in};
 
 /// The columns of a table of flight points, found by name as in [`FlightPoints::from_csv`](super::FlightPoints::from_csv).
 #[derive(Debug)]
@@ -102,6 +100,7 @@ impl PointTable {
             all_within.then(|| values.iter().map(|value| si(*value)).collect::<Vec<f64>>())
         };
         let (mass, mass_column) = columns.mass;
+        let (altitude, altitude_column) = columns.pressure_altitude;
         let mass_kg = required(mass, mass_column, &|v| mass_in(mass_column, v).to_kilograms())?;
         let isa_deviation_k = match columns.isa_deviation {
             Some(index) => required(index, &ISA_DEVIATION_C, &|value| {
@@ -121,11 +120,9 @@ impl PointTable {
         };
         Some(LevelColumns {
             mass_kg,
-            pressure_altitude_m: required(
-                columns.pressure_altitude,
-                &PRESSURE_ALTITUDE_FT,
-                &|value| PressureAltitude::feet(value).to_meters(),
-            )?,
+            pressure_altitude_m: required(altitude, altitude_column, &|value| {
+                pressure_altitude_in(altitude_column, value).to_meters()
+            })?,
             mach: required(columns.mach, &MACH, &|value| value)?,
             isa_deviation_k,
             measured_fuel_flow_kg_s,
@@ -144,9 +141,10 @@ impl PointTable {
         let row = TableRow { header: &self.header, row, cell };
         let columns = &self.columns;
         let (mass, mass_column) = columns.mass;
+        let (altitude, altitude_column) = columns.pressure_altitude;
         let mut point = FlightPoint::new(
             mass_in(mass_column, row.number(mass, mass_column)?),
-            PressureAltitude::feet(row.number(columns.pressure_altitude, &PRESSURE_ALTITUDE_FT)?),
+            pressure_altitude_in(altitude_column, row.number(altitude, altitude_column)?),
             Mach::new(row.number(columns.mach, &MACH)?),
         );
         if let Some(index) = columns.isa_deviation {

@@ -1,3 +1,4 @@
+use super::named::figure;
 use super::*;
 
 #[test]

@@ -24,7 +24,12 @@ pub fn form_words(found: &FoundForm) -> String {
     );
     let size = not_minus_zero(found.size, 2);
     let shape = shape(found.form, (found.variable, found.scale), found.place_ci95);
-    format!("{what} {size:+.2} ± {half:.2} {unit} {shape}: {closure}")
+    let alike = match (found.is_a_level(), found.acts_on) {
+        (true, ActsOn::Thrust) => ", as zero_lift_drag makes it",
+        (true, _) => ", as tsfc_factor or fuel_flow_gain makes it",
+        _ => "",
+    };
+    format!("{what} {size:+.2} ± {half:.2} {unit} {shape}{alike}: {closure}")
 }
 
 /// "outside: drag +9.61 ± 0.80 counts around Mach number 0.781, width 0.016".

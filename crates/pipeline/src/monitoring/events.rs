@@ -54,6 +54,12 @@ pub enum EventsError {
         /// The header.
         found: String,
     },
+    /// A column twice.
+    #[error("line 1: found column {name} twice, expected it once")]
+    Doubled {
+        /// Its name.
+        name: &'static str,
+    },
     /// A field that is not what its column holds.
     #[error("line {line}, column {column}: found {found:?}, expected {expected}")]
     Field {
@@ -85,6 +91,10 @@ pub fn read_events(bytes: &[u8]) -> Result<Vec<Event>, EventsError> {
     if places[..3].iter().any(Option::is_none) {
         let found = header.iter().collect::<Vec<_>>().join(",");
         return Err(EventsError::Columns { found });
+    }
+    let count = |name: &&str| header.iter().filter(|known| known == name).count();
+    if let Some(name) = COLUMNS.into_iter().find(|name| count(name) > 1) {
+        return Err(EventsError::Doubled { name });
     }
     let mut events = Vec::new();
     for record in reader.records() {
@@ -161,5 +171,11 @@ mod tests {
         );
         assert!(error("date,tail,kind,note\n2026-03-02,,wash,\n").contains("line 2, column tail"));
         assert!(error("date,tail\n").contains("found columns date,tail"));
+        // The second one would be left out in silence.
+        assert_eq!(
+            error("date,date,tail,kind\n2026-03-02,2026-06-04,T,wash\n"),
+            "line 1: found column date twice, expected it once"
+        );
+        assert!(read_events(b"date,tail,kind,X,X\n2026-03-02,T,wash,1,2\n").is_ok());
     }
 }

@@ -101,10 +101,10 @@ class Model:
         """Fuel flow and specific range at flight points: level flight without acceleration.
 
         Args:
-            points: A table with the columns ``weight_lb`` or ``mass_kg``; ``pressure_altitude_ft``; ``mach``; optionally
-                ``isa_deviation_c`` (otherwise the ISA), ``fuel_flow_lb_h`` or ``fuel_flow_kg_h`` (measured, all engines),
-                ``date``, ``cg_percent_mac``, ``anti_ice``, ``latitude_deg``, ``true_heading_deg``. Columns whose names begin
-                with ``X-`` have no meaning; any other name is refused.
+            points: A table with the columns ``weight_lb`` or ``mass_kg``; ``pressure_altitude_ft`` or ``flight_level``;
+                ``mach``; optionally ``isa_deviation_c`` (otherwise the ISA), ``fuel_flow_lb_h`` or ``fuel_flow_kg_h``
+                (measured, all engines), ``date``, ``cg_percent_mac``, ``anti_ice``, ``latitude_deg``, ``true_heading_deg``.
+                Columns whose names begin with ``X-`` have no meaning; any other name is refused.
             table_only: Predict with the drag table alone, without what else the model has learnt.
             deviations: State standard deviations. They take most of the time of a learnt model: without them millions of points
                 are predicted several times as fast, and ``fuel_flow_std_kg_s`` is null.

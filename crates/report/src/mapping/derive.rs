@@ -1,22 +1,24 @@
 //! From rows of a recording to a report: conversion, derivation, ranges.
 
+mod air;
 mod load;
 mod rows;
+mod told;
 
 use core::ops::Range;
 
-use atmos::{airspeed, isa, temperature};
 use flight::column::Column;
 use flight::{
-    Assumption, Finding, FlightIdentity, FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn,
-    OptionalColumns, Report, ReportColumns, ReportDataError, ReportHeader, Severity, Timestamp,
+    Assumption, FlightIdentity, FuelFlowColumns, MAXIMUM_ENGINES, OptionalColumn, OptionalColumns,
+    Report, ReportColumns, ReportDataError, ReportHeader, Timestamp,
 };
 use jiff::SignedDuration;
-use units::{CalibratedAirspeed, Mach, Mass, PressureAltitude, Temperature, TrueAirspeed};
+use units::Mass;
 
-use super::plan::{Conversion, MachSource, MassPlan, Plan, TemperatureSource, TrueAirspeedSource};
+use super::plan::{Conversion, Plan, TemperatureSource};
 use super::table::{Layout, Recording};
-use rows::{Converted, Limits, Surplus, Used, UsedRows};
+use air::AirData;
+use rows::{Converted, Limits, Used, UsedRows};
 
 use crate::Parsed;
 use crate::refusal::{Found, Refusal, RefusalKind};
@@ -99,13 +101,6 @@ impl Series {
     }
 
     const EMPTY: Self = Self::new(Vec::new(), 0);
-}
-
-struct AirData {
-    pressure_altitude_m: Series,
-    mach: Series,
-    static_air_temperature_k: Series,
-    true_airspeed_m_s: Series,
 }
 
 struct Load {
@@ -226,113 +221,6 @@ impl Part<'_> {
         }
     }
 
-    fn air_data(&mut self) -> Result<AirData, Refusal> {
-        let pressure_altitude_m = self.required(Column::PressureAltitude)?;
-        // In an order in which each is derived after its inputs: the plan has excluded circles.
-        let mut mach = match &self.plan.mach {
-            MachSource::Recorded => Some(self.required(Column::Mach)?),
-            MachSource::CalibratedAirspeed(conversion) => {
-                Some(self.mach_of_calibrated_airspeed(conversion, &pressure_altitude_m)?)
-            }
-            MachSource::TrueAirspeed => None,
-        };
-        let static_air_temperature_k = match self.plan.temperature {
-            TemperatureSource::Recorded => self.required(Column::StaticAirTemperature)?,
-            TemperatureSource::Isa { deviation_k } => {
-                self.isa_temperature(deviation_k, &pressure_altitude_m)?
-            }
-            TemperatureSource::TotalTemperature { recovery_factor } => {
-                self.temperature_of_total_temperature(recovery_factor, mach.as_ref())?
-            }
-        };
-        let temperatures =
-            || static_air_temperature_k.values.iter().map(|value| Temperature::kelvin(*value));
-        let true_airspeed_m_s = match (self.plan.true_airspeed, &mach) {
-            (TrueAirspeedSource::Mach, Some(mach)) => {
-                let values = mach.values.iter().zip(temperatures()).map(|(mach, sat)| {
-                    airspeed::mach_to_true_airspeed(Mach::new(*mach), sat).to_meters_per_second()
-                });
-                let series = Series::new(values.collect(), mach.input);
-                self.check_range(Column::TrueAirspeed, &series, None)?;
-                series
-            }
-            _ => self.required(Column::TrueAirspeed)?,
-        };
-        if mach.is_none() {
-            let values = true_airspeed_m_s.values.iter().zip(temperatures()).map(|(speed, sat)| {
-                airspeed::true_airspeed_to_mach(TrueAirspeed::meters_per_second(*speed), sat)
-                    .value()
-            });
-            let series = Series::new(values.collect(), true_airspeed_m_s.input);
-            self.check_range(Column::Mach, &series, None)?;
-            mach = Some(series);
-        }
-        let mach = mach.unwrap_or(Series::EMPTY);
-        Ok(AirData { pressure_altitude_m, mach, static_air_temperature_k, true_airspeed_m_s })
-    }
-
-    fn mach_of_calibrated_airspeed(
-        &self,
-        conversion: &Conversion,
-        pressure_altitude_m: &Series,
-    ) -> Result<Series, Refusal> {
-        let mut values = self.convert(conversion);
-        for (row, (value, altitude)) in
-            values.iter_mut().zip(&pressure_altitude_m.values).enumerate()
-        {
-            let pressure = isa::pressure(PressureAltitude::meters(*altitude))
-                .map_err(|error| self.outside_atmosphere(row, pressure_altitude_m, error))?;
-            let speed = CalibratedAirspeed::meters_per_second(*value);
-            *value = airspeed::calibrated_airspeed_to_mach(speed, pressure).value();
-        }
-        let series = Series::new(values, conversion.input);
-        self.check_range(Column::Mach, &series, None)?;
-        Ok(series)
-    }
-
-    fn isa_temperature(
-        &self,
-        deviation_k: f64,
-        pressure_altitude_m: &Series,
-    ) -> Result<Series, Refusal> {
-        let mut values = Vec::with_capacity(pressure_altitude_m.values.len());
-        for (row, altitude) in pressure_altitude_m.values.iter().enumerate() {
-            let temperature = isa::temperature(PressureAltitude::meters(*altitude))
-                .map_err(|error| self.outside_atmosphere(row, pressure_altitude_m, error))?;
-            values.push(temperature.to_kelvin() + deviation_k);
-        }
-        let series = Series::new(values, pressure_altitude_m.input);
-        self.check_range(Column::StaticAirTemperature, &series, None)?;
-        Ok(series)
-    }
-
-    fn temperature_of_total_temperature(
-        &mut self,
-        recovery_factor: f64,
-        mach: Option<&Series>,
-    ) -> Result<Series, Refusal> {
-        let mut series = self.required(Column::TotalAirTemperature)?;
-        for (value, mach) in series.values.iter_mut().zip(mach.iter().flat_map(|m| &m.values)) {
-            let total = Temperature::kelvin(*value);
-            *value =
-                temperature::total_to_static(total, Mach::new(*mach), recovery_factor).to_kelvin();
-        }
-        self.check_range(Column::StaticAirTemperature, &series, None)?;
-        Ok(series)
-    }
-
-    fn outside_atmosphere(
-        &self,
-        row: usize,
-        series: &Series,
-        error: units::OutOfDomain,
-    ) -> Refusal {
-        let found = Found::Number { value: error.value, unit: error.unit };
-        let limit = if error.value < error.minimum { error.minimum } else { error.maximum };
-        let column = Column::PressureAltitude;
-        self.refuse(row, series.input, found, RefusalKind::OutOfRange { column, limit, unit: "m" })
-    }
-
     fn columns(
         &mut self,
         air: AirData,
@@ -393,121 +281,5 @@ impl Part<'_> {
         let maximum = column.range().maximum.map(|one| one * engines as f64);
         self.check_range(column, &series, maximum)?;
         Ok(series.values)
-    }
-
-    /// The derivations, for the report's notes.
-    fn derived(&self, load: &Load) -> Vec<&'static str> {
-        let mut derived = Vec::new();
-        match self.plan.mach {
-            MachSource::Recorded => {}
-            MachSource::CalibratedAirspeed(_) => derived.push("MACH from CAS and ALT"),
-            MachSource::TrueAirspeed => derived.push("MACH from VTAS and SAT"),
-        }
-        if matches!(self.plan.temperature, TemperatureSource::TotalTemperature { .. }) {
-            derived.push("SAT from TAT and MACH");
-        }
-        if matches!(self.plan.true_airspeed, TrueAirspeedSource::Mach) {
-            derived.push("VTAS from MACH and SAT");
-        }
-        if self
-            .plan
-            .recorded
-            .iter()
-            .any(|(column, conversion)| *column == Column::Drift && conversion.minus.is_some())
-        {
-            derived.push("DRIFT from track and heading");
-        }
-        if load.largest_rise_kg.is_some() {
-            derived.push(match self.plan.mass {
-                MassPlan::ZeroFuelAndTanks { .. } => {
-                    "FU from the fall of zero-fuel weight and tanks"
-                }
-                _ => "FU from the fall of gross mass",
-            });
-        }
-        if matches!(self.plan.mass, MassPlan::StartMass { .. }) {
-            derived.push("FU from the integral of WF");
-        }
-        derived
-    }
-
-    fn findings(&self, derived: &[&'static str], load: &Load, surplus: &[Surplus]) -> Vec<Finding> {
-        let first_line = Some(self.recording.lines.at(self.rows.at(0)));
-        let note = |severity, code, message| Finding { severity, code, message, line: first_line };
-        let mut findings = Vec::new();
-        if !derived.is_empty() {
-            let message = format!("derived by the mapping: {}", derived.join(", "));
-            findings.push(note(Severity::Note, "mapped-derived", message));
-        }
-        if let TemperatureSource::Isa { deviation_k } = self.plan.temperature {
-            let message = format!(
-                "static air temperature is not recorded: ISA {deviation_k:+} K is used instead"
-            );
-            findings.push(note(Severity::Warning, "mapped-temperature-assumed", message));
-        }
-        if let Some(largest_rise_kg) = load.largest_rise_kg {
-            let message = format!(
-                "fuel used is the running maximum of the fall of gross mass, which rose by up to {largest_rise_kg:.1} kg \
-                 on the way"
-            );
-            findings.push(note(Severity::Note, "mapped-fuel-used", message));
-        }
-        if self.recording.left_out > 0 {
-            findings.push(Finding {
-                severity: Severity::Warning,
-                code: "mapped-rows-left-out",
-                message: format!(
-                    "{} rows lack a number that the report needs{} and are left out",
-                    self.recording.left_out,
-                    self.recording
-                        .lacking
-                        .as_ref()
-                        .map_or_else(String::new, |column| format!(" (most of them {column:?})"))
-                ),
-                line: self.recording.first_left_out,
-            });
-        }
-        if let Some(first) = &self.recording.first_bad {
-            findings.push(Finding {
-                severity: Severity::Warning,
-                code: "mapped-rows-bad",
-                message: format!(
-                    "{} rows cannot be read and are left out, the first: {first}",
-                    self.recording.bad
-                ),
-                line: Some(first.line),
-            });
-        }
-        for (column, filled) in &self.recording.filled {
-            let message = format!("{column:?} is held or interpolated in {filled} rows");
-            findings.push(note(Severity::Note, "mapped-filled", message));
-        }
-        if let Some((row, column)) = surplus.first() {
-            findings.push(Finding {
-                severity: Severity::Warning,
-                code: "mapped-rows-out-of-range",
-                message: format!(
-                    "{} rows hold a number out of range and are left out, the first for its {}",
-                    surplus.len(),
-                    column.name()
-                ),
-                line: Some(self.recording.lines.at(*row)),
-            });
-        }
-        let rows = self.recording.time_s.len();
-        if self.level_rows < rows {
-            let last_line = self.recording.lines.at(self.rows.at(self.rows.len() - 1));
-            let message = format!(
-                "level cruise: {} of {rows} rows{}, to line {last_line}; the rest is climb, descent or too short",
-                self.level_rows,
-                if self.level_parts > 1 {
-                    format!(" in {} level parts", self.level_parts)
-                } else {
-                    String::new()
-                }
-            );
-            findings.push(note(Severity::Note, "mapped-cruise-cut", message));
-        }
-        findings
     }
 }

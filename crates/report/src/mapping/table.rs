@@ -4,6 +4,7 @@ mod batch;
 mod clock;
 mod columns;
 mod flights;
+mod growing;
 mod instants;
 mod line_numbers;
 mod open;

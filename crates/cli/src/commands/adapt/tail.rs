@@ -205,7 +205,9 @@ impl Run<'_> {
     /// A tail to which this run adds nothing.
     fn rest(&self, outcome: TailOutcome) -> Result<TailOutcome, Failure> {
         let at_rest = self.at_rest(&outcome.tail)?;
-        Ok(TailOutcome { state: at_rest.state, section: at_rest.section, ..outcome })
+        let mut refused = outcome.refused;
+        refused.extend(at_rest.refused);
+        Ok(TailOutcome { state: at_rest.state, section: at_rest.section, refused, ..outcome })
     }
 
     /// A tail for which this run has no report: what the folder has of it, written again only where it has to be.
@@ -219,9 +221,16 @@ impl Run<'_> {
         }
         let stored = match self.folder.load(tail) {
             Ok(stored) => stored,
+            // Damage is told in the night in which it is found, whatever is new.
             Err(failure) => {
-                tracing::warn!("tail {tail} is not on the page: {failure}");
-                return Ok(self.untouched(tail));
+                let (path, reason) = match failure {
+                    Failure::BadFile { path, reason, .. }
+                    | Failure::Unreadable { path, reason } => (path, reason),
+                    other => (tail.to_owned(), other.to_string()),
+                };
+                let reason = format!("tail {tail} is not on the page: {reason}");
+                let refused = vec![RefusedReport::whole(path.into(), reason)];
+                return Ok(TailOutcome { refused, ..self.untouched(tail) });
             }
         };
         let begun = match self.folder.state_of(tail) {

@@ -37,7 +37,11 @@ fn a_name_leads_unless_its_variable_does() {
             everywhere: Some(slice(&[])),
             variances: vec![],
         };
-        found.lead_with(slice(&[Variable::Mach]), &[Variable::Mach, Variable::Mass], is_level);
+        let gap = NamedGap {
+            gap: vec![1.0, if is_level { 1.0 } else { -1.0 }],
+            drivers: vec![(Variable::Mach, 0.0), (Variable::Mass, 0.0)],
+        };
+        found.lead_with(slice(&[Variable::Mach]), &gap);
         let places = found.of_gap(true);
         places.iter().map(|p| p.region.conditions.first().map(|c| c.variable)).collect::<Vec<_>>()
     };
@@ -50,4 +54,34 @@ fn a_name_leads_unless_its_variable_does() {
         [mach, roll, roll]
     );
     assert_eq!(led(&[&[Variable::Mass]], true), [Some(Variable::Mass)]);
+}
+
+/// A step replaces a bin of dates that leads, and no other place; what is not zero before is no step.
+#[test]
+fn a_step_leads_with_its_own_date() {
+    let slice = |variables: &[Variable], segments: usize| Slice {
+        region: Region {
+            engine: None,
+            conditions: variables
+                .iter()
+                .map(|&variable| Condition { variable, from: None, to: None })
+                .collect(),
+        },
+        segments,
+        mean_gap_percent: 1.0,
+        ci95: [0.5, 1.5],
+        share_of_gap: 1.0,
+        p_value: 0.01,
+    };
+    let led = |first: &[Variable], gap: &[f64]| {
+        let mut found =
+            FoundPlaces { regions: vec![slice(first, 7)], everywhere: None, variances: vec![] };
+        let gap = NamedGap { gap: gap.to_vec(), drivers: vec![(Variable::Date, 0.0)] };
+        found.lead_with(slice(&[Variable::Date], 2), &gap);
+        found.of_gap(true)[0].segments
+    };
+    assert_eq!(led(&[Variable::Date], &[0.0, 0.0, 1.0, 1.1]), 2);
+    assert_eq!(led(&[Variable::Date, Variable::Mach], &[0.0, 0.0, 1.0, 1.1]), 7);
+    assert_eq!(led(&[Variable::Date], &[0.1, 0.2, 1.0, 1.1]), 7);
+    assert_eq!(led(&[Variable::Date], &[0.0, 1.0, 0.0, 1.1]), 7);
 }

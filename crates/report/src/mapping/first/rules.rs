@@ -98,12 +98,14 @@ pub(super) const ENGINE_NAMES: [(&str, &[&str]); 4] = [
 pub(super) const TOTAL_FLOW: [&str; 6] =
     ["fftotal", "totalff", "fuelflowtotal", "totalfuelflow", "wftotal", "totalwf"];
 
+const NO_TYPE_YET: &str = "Text(\"TYPE\"),   // ?";
+
 /// Texts of the header: key, names of columns, what there is without one.
 pub(super) const TEXTS: [(&str, &[&str], &str); 3] = [
     (
         "aircraft",
         &["aircrafttype", "actype", "type", "typecode", "flplairctype", "aircraft", "ac"],
-        "Text(\"TYPE\"),   // ?",
+        NO_TYPE_YET,
     ),
     (
         "tail",

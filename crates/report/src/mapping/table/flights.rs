@@ -2,26 +2,16 @@
 
 use std::sync::Arc;
 
-use flight::Timestamp;
-
-use super::batch::instant_of;
 use super::clock::Clock;
 #[cfg(test)]
 use super::open::Limits;
 use super::open::{Arrival, Gone, Open};
-use super::rows::{Event, Rows, Times};
+use super::rows::{Event, Rows};
 use super::{Layout, Recording, Text};
-use crate::decode::MAXIMUM_TEXT_BYTES;
 use crate::mapping::file::BadRows;
 use crate::mapping::numbers::Block;
 use crate::mapping::pieces::Piece;
-use crate::mapping::plan::TimeForm;
 use crate::refusal::{Found, Refusal, RefusalKind};
-
-const HALF_A_DAY_S: f64 = 43_200.0;
-/// Where a recording goes back behind a step of more than this, it is the time before which is wrong and not those behind, s: clocks
-/// are set back by less. Our choice.
-const FAR_AHEAD_S: f64 = 600.0;
 
 /// The flights that are not yet at their end, and where the rows end.
 #[derive(Debug, Default)]
@@ -314,158 +304,8 @@ fn not_increasing(layout: &Layout, rows: &Rows, row: usize, previous: f64) -> Re
     layout.refuse_field((line, &text), field, found, kind)
 }
 
-fn field_of(layout: &Layout, line: &str, field: usize) -> String {
+pub(super) fn field_of(layout: &Layout, line: &str, field: usize) -> String {
     let mut reader = super::reader(layout.form(), line);
     let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
     record.get(field).unwrap_or_default().to_owned()
-}
-
-impl Recording {
-    /// Keeps a piece that holds rows of this flight: a refusal needs the text of its line.
-    fn keep(&mut self, piece: &Piece) -> Result<(), Refusal> {
-        let is_known = |last: &Piece| {
-            last.first_line == piece.first_line && last.kept_bytes() == piece.kept_bytes()
-        };
-        if self.pieces.last().is_some_and(is_known) {
-            return Ok(());
-        }
-        self.kept_bytes += piece.kept_bytes();
-        self.pieces.push(piece.clone());
-        if self.kept_bytes > MAXIMUM_TEXT_BYTES {
-            let kind = RefusalKind::TooLarge { limit_bytes: MAXIMUM_TEXT_BYTES };
-            return Err(Refusal {
-                line: piece.first_line,
-                column: 1,
-                found: Found::EndOfText,
-                kind,
-            });
-        }
-        Ok(())
-    }
-
-    /// Whether the last row is far ahead of the one before, and of this time, which follows that one.
-    fn last_is_ahead_of(&self, time_s: f64, layout: &Layout) -> bool {
-        // A time of day that is ahead may have passed midnight.
-        let is_of_day = matches!(layout.plan.time, TimeForm::TimeOfDay { .. });
-        match self.time_s.as_slice() {
-            [.., before, last] if !is_of_day && layout.plan.bad_rows == BadRows::LeaveRowOut => {
-                last - before > FAR_AHEAD_S && time_s > *before
-            }
-            _ => false,
-        }
-    }
-
-    /// Takes the last row away, behind which the flight goes on at a time before it.
-    fn take_last(&mut self, layout: &Layout, next_s: f64) -> Refusal {
-        let line = self.lines.last().unwrap_or_default();
-        let text = self.line(line).into_owned();
-        let found = Found::text(&field_of(layout, &text, layout.fields.time));
-        self.time_s.pop();
-        self.numbers.pop();
-        self.lines.pop();
-        let kind = RefusalKind::TimeAhead { next: next_s, unit: "s" };
-        layout.refuse_field((line, &text), layout.fields.time, found, kind)
-    }
-
-    /// Everything but the times of rows.
-    fn extend(&mut self, (rows, numbers): (&Rows, &Arc<Block>), range: core::ops::Range<usize>) {
-        self.lines.extend(&rows.lines, range.clone());
-        self.numbers.extend(numbers, range);
-    }
-
-    /// Adds the times of all these rows, if each is later than the one before, by `longest_s` at most: nearly always. Else none
-    /// is added.
-    fn extend_times(
-        &mut self,
-        layout: &Layout,
-        times: &Times,
-        range: core::ops::Range<usize>,
-        longest_s: f64,
-    ) -> bool {
-        let before = self.time_s.len();
-        // The first row sets the origin.
-        let first_s = match times {
-            Times::OfDay(_) => return false,
-            _ => self.seconds(layout, times, range.start),
-        };
-        self.time_s.push(first_s);
-        let rest = range.start + 1..range.end;
-        match times {
-            Times::OfDay(_) => {}
-            Times::Seconds(times) => self.time_s.extend_from_slice(&times[rest]),
-            Times::Instants(times) => {
-                self.time_s.extend(times[rest].iter().map(|time| since_s(*time, self.origin)));
-            }
-            Times::Nanoseconds(times) => {
-                let since_s = nanoseconds_since(self.origin);
-                self.time_s.extend(times[rest].iter().copied().map(since_s));
-            }
-        }
-        let added = &self.time_s[before.saturating_sub(1)..];
-        // Counted, without a way out of the loop: nearly always none is.
-        let follows = |earlier: f64, later: f64| later > earlier && later - earlier <= longest_s;
-        let pairs = added.iter().zip(&added[1..]);
-        let others = pairs.map(|(earlier, later)| u64::from(!follows(*earlier, *later)));
-        let follow = others.sum::<u64>() == 0;
-        if !follow {
-            self.time_s.truncate(before);
-        }
-        follow
-    }
-
-    /// Seconds since the flight's origin, which its first instant sets.
-    fn seconds(&mut self, layout: &Layout, times: &Times, row: usize) -> f64 {
-        match times {
-            Times::Seconds(times) => {
-                if let TimeForm::Seconds { start, .. } = &layout.plan.time {
-                    self.origin = *start;
-                }
-                times[row]
-            }
-            Times::Instants(times) => {
-                if self.time_s.is_empty() {
-                    self.origin = times[row];
-                }
-                since_s(times[row], self.origin)
-            }
-            Times::Nanoseconds(times) => {
-                if self.time_s.is_empty() {
-                    self.origin = instant_of(times[row]).unwrap_or_default();
-                }
-                nanoseconds_since(self.origin)(times[row])
-            }
-            Times::OfDay(times) => {
-                if let TimeForm::TimeOfDay { midnight } = &layout.plan.time {
-                    self.origin = *midnight;
-                }
-                let seconds = times[row];
-                // Later than noon and then earlier: midnight has passed.
-                if seconds < self.last_time_of_day_s - HALF_A_DAY_S {
-                    self.days += 1.0;
-                }
-                self.last_time_of_day_s = seconds;
-                seconds + self.days * 2.0 * HALF_A_DAY_S
-            }
-        }
-    }
-}
-
-fn since_s(instant: Timestamp, origin: Timestamp) -> f64 {
-    let seconds = instant.as_second() - origin.as_second();
-    let nanoseconds = instant.subsec_nanosecond() - origin.subsec_nanosecond();
-    if nanoseconds == 0 {
-        return seconds as f64;
-    }
-    (i128::from(seconds) * 1_000_000_000 + i128::from(nanoseconds)) as f64 / 1e9
-}
-
-/// The same of instants in nanoseconds since 1970, to the bit.
-fn nanoseconds_since(origin: Timestamp) -> impl Fn(i64) -> f64 {
-    /// Up to here every whole number is one of double precision, so that its quotient is rounded once.
-    const EXACT: i64 = 1 << 53;
-    let from = i64::try_from(origin.as_nanosecond()).ok();
-    move |instant| match from.and_then(|from| instant.checked_sub(from)) {
-        Some(since) if (-EXACT..EXACT).contains(&since) => since as f64 / 1e9,
-        _ => since_s(instant_of(instant).unwrap_or_default(), origin),
-    }
 }

@@ -1,0 +1,132 @@
+//! What a report says of how it was made.
+
+use flight::column::Column;
+use flight::{Finding, Severity};
+
+use super::super::plan::{MachSource, MassPlan, TemperatureSource, TrueAirspeedSource};
+use super::rows::Surplus;
+use super::{Load, Part};
+
+impl Part<'_> {
+    /// The derivations, for the report's notes.
+    pub(super) fn derived(&self, load: &Load) -> Vec<&'static str> {
+        let mut derived = Vec::new();
+        match self.plan.mach {
+            MachSource::Recorded => {}
+            MachSource::CalibratedAirspeed(_) => derived.push("MACH from CAS and ALT"),
+            MachSource::TrueAirspeed => derived.push("MACH from VTAS and SAT"),
+        }
+        if matches!(self.plan.temperature, TemperatureSource::TotalTemperature { .. }) {
+            derived.push("SAT from TAT and MACH");
+        }
+        if matches!(self.plan.true_airspeed, TrueAirspeedSource::Mach) {
+            derived.push("VTAS from MACH and SAT");
+        }
+        if self
+            .plan
+            .recorded
+            .iter()
+            .any(|(column, conversion)| *column == Column::Drift && conversion.minus.is_some())
+        {
+            derived.push("DRIFT from track and heading");
+        }
+        if load.largest_rise_kg.is_some() {
+            derived.push(match self.plan.mass {
+                MassPlan::ZeroFuelAndTanks { .. } => {
+                    "FU from the fall of zero-fuel weight and tanks"
+                }
+                _ => "FU from the fall of gross mass",
+            });
+        }
+        if matches!(self.plan.mass, MassPlan::StartMass { .. }) {
+            derived.push("FU from the integral of WF");
+        }
+        derived
+    }
+
+    /// What is to be said of the rows.
+    pub(super) fn findings(
+        &self,
+        derived: &[&'static str],
+        load: &Load,
+        surplus: &[Surplus],
+    ) -> Vec<Finding> {
+        let first_line = Some(self.recording.lines.at(self.rows.at(0)));
+        let note = |severity, code, message| Finding { severity, code, message, line: first_line };
+        let mut findings = Vec::new();
+        if !derived.is_empty() {
+            let message = format!("derived by the mapping: {}", derived.join(", "));
+            findings.push(note(Severity::Note, "mapped-derived", message));
+        }
+        if let TemperatureSource::Isa { deviation_k } = self.plan.temperature {
+            let message = format!(
+                "static air temperature is not recorded: ISA {deviation_k:+} K is used instead"
+            );
+            findings.push(note(Severity::Warning, "mapped-temperature-assumed", message));
+        }
+        if let Some(largest_rise_kg) = load.largest_rise_kg {
+            let message = format!(
+                "fuel used is the running maximum of the fall of gross mass, which rose by up to {largest_rise_kg:.1} kg \
+                 on the way"
+            );
+            findings.push(note(Severity::Note, "mapped-fuel-used", message));
+        }
+        if self.recording.left_out > 0 {
+            findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-rows-left-out",
+                message: format!(
+                    "{} rows lack a number that the report needs{} and are left out",
+                    self.recording.left_out,
+                    self.recording
+                        .lacking
+                        .as_ref()
+                        .map_or_else(String::new, |column| format!(" (most of them {column:?})"))
+                ),
+                line: self.recording.first_left_out,
+            });
+        }
+        if let Some(first) = &self.recording.first_bad {
+            findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-rows-bad",
+                message: format!(
+                    "{} rows cannot be read and are left out, the first: {first}",
+                    self.recording.bad
+                ),
+                line: Some(first.line),
+            });
+        }
+        for (column, filled) in &self.recording.filled {
+            let message = format!("{column:?} is held or interpolated in {filled} rows");
+            findings.push(note(Severity::Note, "mapped-filled", message));
+        }
+        if let Some((row, column)) = surplus.first() {
+            findings.push(Finding {
+                severity: Severity::Warning,
+                code: "mapped-rows-out-of-range",
+                message: format!(
+                    "{} rows hold a number out of range and are left out, the first for its {}",
+                    surplus.len(),
+                    column.name()
+                ),
+                line: Some(self.recording.lines.at(*row)),
+            });
+        }
+        let rows = self.recording.time_s.len();
+        if self.level_rows < rows {
+            let last_line = self.recording.lines.at(self.rows.at(self.rows.len() - 1));
+            let message = format!(
+                "level cruise: {} of {rows} rows{}, to line {last_line}; the rest is climb, descent or too short",
+                self.level_rows,
+                if self.level_parts > 1 {
+                    format!(" in {} level parts", self.level_parts)
+                } else {
+                    String::new()
+                }
+            );
+            findings.push(note(Severity::Note, "mapped-cruise-cut", message));
+        }
+        findings
+    }
+}
