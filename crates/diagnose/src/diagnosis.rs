@@ -312,13 +312,11 @@ fn conclude(
     let verdict = verdict(&findings, notes);
     let led = |places| led_by_name(places, &findings, system, &verdict, options.seed);
     let places = places.map_or_else(Vec::new, |places| led(places).of_gap(detected));
-    let mut found_forms = match &verdict {
+    let found_forms = match &verdict {
         Verdict::OutsideLibrary(_) => forms
             .unwrap_or_else(|| leading_forms(problem, analysis, &outside, (scale, options.seed))),
         _ => vec![],
     };
-    // What may have no size describes nothing.
-    found_forms.retain(FoundForm::has_a_size);
     Ok(Diagnosis {
         flights: system.data.flights.len(),
         segments: system.data.segments.len(),
@@ -381,9 +379,11 @@ fn percent(mean_square: f64) -> f64 {
 /// What is reported of a cause outside the library.
 fn outside_library(
     outside: &Outside,
-    forms: Vec<FoundForm>,
+    mut forms: Vec<FoundForm>,
     references: EffectReferences,
 ) -> OutsideLibrary {
+    // What may have no size describes nothing.
+    forms.retain(FoundForm::has_a_size);
     let form = forms.first().and_then(FoundForm::applied);
     OutsideLibrary {
         probability: outside.probability,

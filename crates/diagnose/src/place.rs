@@ -10,4 +10,4 @@ pub(crate) mod named;
 mod null;
 pub(crate) mod regions;
 pub(crate) mod segment_gaps;
-mod told;
+pub(crate) mod told;

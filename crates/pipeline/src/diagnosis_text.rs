@@ -3,7 +3,7 @@
 //! Limits are stated where they hold: what cannot be distinguished, what was not testable, how much is left. An effect is named
 //! by what it does *and* by its id, so that a reader without the library's table knows what is meant.
 
-use diagnose::{Diagnosis, Slice, Verdict};
+use diagnose::{Diagnosis, OutsideLibrary, Slice, Verdict};
 use flight::effect::EffectId;
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
@@ -156,10 +156,13 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
                 };
                 return words.to_owned();
             }
+            let words = region_words(&place.region);
+            // "After a date" is a place by itself.
+            let is_date = words.starts_with("after ") || words.starts_with("before ");
+            let at = if is_date { "" } else { "at " };
             format!(
-                "{} at {}: {:+.2} % there ({:+.2} to {:+.2}), {}, p {:.3}.",
+                "{} {at}{words}: {:+.2} % there ({:+.2} to {:+.2}), {}, p {:.3}.",
                 if rank == 0 { "It lies" } else { "And" },
-                region_words(&place.region),
                 not_minus_zero(place.mean_gap_percent, 2),
                 not_minus_zero(place.ci95[0], 2),
                 not_minus_zero(place.ci95[1], 2),
@@ -217,11 +220,22 @@ fn unnamed(diagnosis: &Diagnosis) -> Vec<String> {
         ));
     }
     lines.extend(made_up_of(diagnosis));
-    for (found, words) in outside.forms.iter().zip(["Described best by", "Next best"]) {
-        lines.push(format!("{words} {}.", form_words(found)));
-    }
+    lines.extend(described(outside));
     lines.push("Nothing is applied. Look at what these flights have in common there, or record more signals.".to_owned());
     lines
+}
+
+/// The forms that describe a gap, best first; where the best makes unseen flights no better, that none does.
+pub fn described(outside: &OutsideLibrary) -> Vec<String> {
+    let Some(best) = outside.forms.first() else { return vec![] };
+    if best.closure.is_some_and(|closure| closure.share <= 0.0) {
+        return vec![format!(
+            "No form that was tried describes it; the nearest: {}.",
+            form_words(best)
+        )];
+    }
+    let told = outside.forms.iter().zip(["Described best by", "Next best"]);
+    told.map(|(found, words)| format!("{words} {}.", form_words(found))).collect()
 }
 
 /// What makes up a gap that no one or two effects carry, all of them at once; `None` where none may well make the most of it.

@@ -1,10 +1,14 @@
-//! What an effect, a column, a set of criteria or a verdict is, from the library's own entries.
+//! What an effect, a column, a set of criteria, a verdict or a figure of an output is, from the library's own entries.
 
 use std::fmt::Write;
 
 use flight::column::Column;
 use flight::effect::{EffectEntry, EffectId, EffectSign, HiddenParameter, TypicalSize};
 use segmenter::TrimCriteria;
+
+mod outputs;
+
+use outputs::OUTPUTS;
 
 /// Verdicts of a diagnosis.
 const VERDICTS: [(&str, &str); 4] = [
@@ -40,6 +44,7 @@ pub fn explain(topic: &str) -> Result<String, String> {
         .or_else(|| column_of(topic).map(column))
         .or_else(|| TrimCriteria::preset(topic).map(|found| criteria(topic, &found)))
         .or_else(|| verdict(topic))
+        .or_else(|| outputs::explain(topic))
         .ok_or_else(|| unknown(topic))
 }
 
@@ -60,6 +65,10 @@ pub fn book() -> String {
     append_part("Columns of a report", columns, &mut text);
     append_part("Trim criteria", sets, &mut text);
     append_part("Verdicts", verdicts, &mut text);
+    let outputs = OUTPUTS
+        .iter()
+        .filter_map(|one| outputs::explain(one.name).map(|text| (one.name.to_owned(), text)));
+    append_part("Columns and figures of outputs", outputs, &mut text);
     text
 }
 
@@ -67,7 +76,10 @@ pub fn book() -> String {
 pub fn topics() -> Vec<String> {
     let effects = EffectId::library(2).into_iter().map(|id| id.to_string());
     let columns = Column::ALL.into_iter().map(Column::name);
-    let others = TrimCriteria::PRESETS.into_iter().chain(VERDICTS.map(|(name, _)| name));
+    let others = TrimCriteria::PRESETS
+        .into_iter()
+        .chain(VERDICTS.map(|(name, _)| name))
+        .chain(OUTPUTS.iter().map(|one| one.name));
     effects.chain(columns).chain(others.map(str::to_owned)).collect()
 }
 
@@ -88,11 +100,12 @@ pub fn overview() -> String {
     };
     format!(
         "cruisefit explain TOPIC, where TOPIC is\n\nan effect:\n {}\n\na column of a report:\n {}\n\ntrim criteria:\n {}\n\n\
-         a verdict:\n {}\n",
+         a verdict:\n {}\n\na column or figure of an output:\n {}\n",
         list(EffectId::ALL.iter().map(|id| id.entry().name.to_owned()).collect()),
         list(Column::ALL.into_iter().map(Column::name).collect()),
         list(TrimCriteria::PRESETS.map(str::to_owned).to_vec()),
-        list(VERDICTS.map(|(name, _)| name.to_owned()).to_vec())
+        list(VERDICTS.map(|(name, _)| name.to_owned()).to_vec()),
+        list(OUTPUTS.iter().map(|one| one.name.to_owned()).collect())
     )
 }
 
@@ -207,7 +220,7 @@ fn unknown(topic: &str) -> String {
         || "; cruisefit explain lists them".to_owned(),
         |name| format!("; did you mean {name}?"),
     );
-    format!("{topic:?} is no effect, column, criteria or verdict{meant}")
+    format!("{topic:?} is no effect, column, criteria, verdict or figure{meant}")
 }
 
 #[cfg(test)]

@@ -127,7 +127,7 @@ pub(crate) fn diagnose(
     })
 }
 
-/// What an effect, a column, a set of criteria or a verdict is; without a topic all of their names.
+/// What an effect, a column, a set of criteria, a verdict or a figure of an output is; without a topic all of their names.
 #[pyfunction]
 #[pyo3(signature = (topic))]
 pub(crate) fn explain(topic: Option<&str>) -> PyResult<String> {

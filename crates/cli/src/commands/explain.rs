@@ -1,4 +1,4 @@
-//! `cruisefit explain`: what an effect, a column, a set of criteria or a verdict is.
+//! `cruisefit explain`: what an effect, a column, a set of criteria, a verdict or a figure of an output is.
 
 use pipeline::topics::{book, explain, overview, topics};
 

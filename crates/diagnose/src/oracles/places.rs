@@ -5,8 +5,8 @@ use effects::Variable;
 
 use crate::hypotheses::design::Design;
 use crate::place::acceleration::expected_errors_removed;
-use crate::place::find::gaps;
 use crate::place::named::NamedGap;
+use crate::place::told::gaps;
 use crate::search::system::WhitenedSystem;
 
 /// A segment of weight w counts w times in the search for places, with what is expected of the error of its acceleration:

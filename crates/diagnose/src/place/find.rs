@@ -17,7 +17,7 @@ use crate::place::likelihood::Noise;
 use crate::place::named::NamedGap;
 use crate::place::null::Null;
 use crate::place::regions::{BinnedRegion, Search, Series};
-use crate::place::told::{Gaps, Told};
+use crate::place::told::{Gaps, Told, engines_apart, gaps};
 use crate::search::analyse::Analysis;
 use crate::search::system::WhitenedSystem;
 use crate::signals::channels::MAXIMUM_CHANNELS;
@@ -208,42 +208,6 @@ fn null_of(
         null.add(search, &sums);
     }
     (null, variances)
-}
-
-/// ln of each engine's fuel flow less the mean of all, from the contrasts between the first k engines and the next; one
-/// value more than contrasts.
-///
-/// ```text
-/// c_k = (m_k − l_(k+1))·√(2k/(k + 1)),  m_k the mean of the first k;  m_n = 0
-/// ```
-pub(super) fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
-    let mut apart = [0.0; MAXIMUM_CHANNELS];
-    let mut mean = 0.0;
-    for k in (1..=contrasts.len()).rev() {
-        let difference = contrasts[k - 1] / (2.0 * k as f64 / (k + 1) as f64).sqrt();
-        // The mean of k + 1 is that of k less difference/(k + 1).
-        mean += difference / (k + 1) as f64;
-        apart[k] = mean - difference;
-    }
-    apart[0] = mean;
-    apart
-}
-
-pub(crate) fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
-    let data = system.data;
-    let contrasts = data.channels.contrasts;
-    let total = data.segments.iter().map(|row| row.residual[0]).collect();
-    let mut apart = vec![
-        Vec::with_capacity(data.segments.len());
-        if contrasts > 0 { contrasts + 1 } else { 0 }
-    ];
-    for row in &data.segments {
-        let of_segment = engines_apart(&row.residual[1..=contrasts]);
-        for (series, value) in apart.iter_mut().zip(of_segment) {
-            series.push(value);
-        }
-    }
-    Gaps { total, apart }
 }
 
 fn statistics(search: &Search<'_>, null: &Null, noise: &Noise<'_>, gaps: &Gaps) -> Vec<f64> {

@@ -8,9 +8,8 @@ use effects::Variable;
 use crate::output::Slice;
 use crate::output::region::{Condition, Edge};
 use crate::place::binned_variable::{BinnedVariable, places};
-use crate::place::find::gaps;
 use crate::place::regions::{BinnedRegion, intervals};
-use crate::place::told::Told;
+use crate::place::told::{Told, gaps};
 use crate::search::system::WhitenedSystem;
 use crate::thresholds::{
     FEWEST_FLIGHTS_OF_A_REGION, LEVEL_LIKE, REGION_P_VALUE, REGION_SHARES, SMALLEST_GAP_PERCENT,

@@ -8,7 +8,7 @@ use crate::library::dates::DateGrid;
 use crate::output::addition::Addition;
 use crate::output::note::LeftOutReason;
 use crate::output::region::Region;
-use crate::place::find::engines_apart;
+use crate::place::told::engines_apart;
 use crate::residuals::rows::SegmentRow;
 use crate::residuals::segments::PreparedFlights;
 use crate::signals::references::DiagnoseError;

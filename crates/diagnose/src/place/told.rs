@@ -7,6 +7,7 @@ use crate::output::region::{Condition, Region};
 use crate::place::binned_variable::BinnedVariable;
 use crate::place::regions::{BinnedRegion, Series};
 use crate::search::system::WhitenedSystem;
+use crate::signals::channels::MAXIMUM_CHANNELS;
 use crate::thresholds::LEAST_SHARE;
 
 /// Stream of random numbers: resamples of flights behind intervals.
@@ -19,6 +20,43 @@ pub(crate) struct Gaps {
     pub(crate) total: Vec<f64>,
     /// Of each engine, less the mean of all engines.
     pub(crate) apart: Vec<Vec<f64>>,
+}
+
+/// ln of each engine's fuel flow less the mean of all, from the contrasts between the first k engines and the next; one
+/// value more than contrasts.
+///
+/// ```text
+/// c_k = (m_k − l_(k+1))·√(2k/(k + 1)),  m_k the mean of the first k;  m_n = 0
+/// ```
+pub(crate) fn engines_apart(contrasts: &[f64]) -> [f64; MAXIMUM_CHANNELS] {
+    let mut apart = [0.0; MAXIMUM_CHANNELS];
+    let mut mean = 0.0;
+    for k in (1..=contrasts.len()).rev() {
+        let difference = contrasts[k - 1] / (2.0 * k as f64 / (k + 1) as f64).sqrt();
+        // The mean of k + 1 is that of k less difference/(k + 1).
+        mean += difference / (k + 1) as f64;
+        apart[k] = mean - difference;
+    }
+    apart[0] = mean;
+    apart
+}
+
+/// The gap of every segment.
+pub(crate) fn gaps(system: &WhitenedSystem<'_>) -> Gaps {
+    let data = system.data;
+    let contrasts = data.channels.contrasts;
+    let total = data.segments.iter().map(|row| row.residual[0]).collect();
+    let mut apart = vec![
+        Vec::with_capacity(data.segments.len());
+        if contrasts > 0 { contrasts + 1 } else { 0 }
+    ];
+    for row in &data.segments {
+        let of_segment = engines_apart(&row.residual[1..=contrasts]);
+        for (series, value) in apart.iter_mut().zip(of_segment) {
+            series.push(value);
+        }
+    }
+    Gaps { total, apart }
 }
 
 /// What describes a region.

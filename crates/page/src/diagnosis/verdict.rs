@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use diagnose::{Diagnosis, Magnitude, Verdict};
 use flight::effect::EffectId;
 use maud::{Markup, html};
+use pipeline::diagnosis_text::described;
 use pipeline::diagnosis_words::{
-    NOT_RULED_OUT, advice, are_few, form_words, near_and_far, others_of_class, outside_words,
-    region_words, silent_words, told_size,
+    NOT_RULED_OUT, advice, are_few, near_and_far, others_of_class, outside_words, region_words,
+    silent_words, told_size,
 };
 
 use super::Tail;
@@ -109,9 +110,7 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
             }
             Verdict::OutsideLibrary(unexplained) => {
                 "Probability " (format!("{:.2}", unexplained.probability)) " that the cause is outside the library. "
-                @for (found, words) in diagnosis.outside.forms.iter().zip(["Described best by ", "Next best "]) {
-                    (words) (form_words(found)) ". "
-                }
+                @for sentence in described(&diagnosis.outside) { (sentence) " " }
             }
             _ => {}
         }

@@ -113,20 +113,25 @@ impl Part<'_> {
                 line: Some(self.recording.lines.at(*row)),
             });
         }
-        let rows = self.recording.time_s.len();
-        if self.level_rows < rows {
-            let last_line = self.recording.lines.at(self.rows.at(self.rows.len() - 1));
-            let message = format!(
-                "level cruise: {} of {rows} rows{}, to line {last_line}; the rest is climb, descent or too short",
-                self.level_rows,
-                if self.level_parts > 1 {
-                    format!(" in {} level parts", self.level_parts)
-                } else {
-                    String::new()
-                }
-            );
-            findings.push(note(Severity::Note, "mapped-cruise-cut", message));
-        }
         findings
+            .extend(self.cut().map(|message| note(Severity::Note, "mapped-cruise-cut", message)));
+        findings
+    }
+
+    /// What of the recording is level cruise, where it is not all.
+    fn cut(&self) -> Option<String> {
+        let rows = self.recording.time_s.len();
+        if self.level_rows >= rows {
+            return None;
+        }
+        let last_line = self.recording.lines.at(self.rows.at(self.rows.len() - 1));
+        let parts = match self.level_parts {
+            0 | 1 => String::new(),
+            parts => format!(" in {parts} level parts"),
+        };
+        Some(format!(
+            "level cruise: {} of {rows} rows{parts}, to line {last_line}; the rest is climb, descent or too short",
+            self.level_rows
+        ))
     }
 }
