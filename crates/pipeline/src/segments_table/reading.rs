@@ -12,7 +12,7 @@ pub fn is_table(bytes: &[u8]) -> bool {
     bytes.starts_with(b"tail,flight,start,time_s,samples,")
 }
 
-/// Reads a table of segments back, as [`table`] wrote it. A model's predictions are left out: they are computed again.
+/// Reads a table of segments back, as [`table`](super::table) wrote it. A model's predictions are left out: they are computed again.
 ///
 /// # Errors
 /// A missing column, or a field that is not what its column holds, with line and column name.
