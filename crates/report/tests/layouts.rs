@@ -299,3 +299,22 @@ fn titles_thousands_and_days_are_found() {
     );
     assert!((report.columns().static_air_temperature_k.as_ref().unwrap()[0] - 218.8).abs() < 0.2);
 }
+
+/// A column in which nothing is recorded is no source: calibrated airspeed is not taken where it is empty, and a slow one is held.
+#[test]
+fn empty_columns_are_no_sources() {
+    let of = |speed: &dyn Fn(usize) -> &'static str| {
+        let rows = (0..40).map(|row| {
+            format!("2024-03-01T10:{row:02}:00Z,35000,{},-54.4,470,2400,64000\n", speed(row))
+        });
+        let text =
+            format!("utc,alt_ft,cas_kt,sat_degc,gs_kt,ff_kg_h,gw_kg\n{}", rows.collect::<String>());
+        first_mapping(text.as_bytes()).unwrap()
+    };
+    let empty = of(&|_| "");
+    assert!(empty.contains("\"MACH\": FromTrueAirspeed,"), "{empty}");
+    let slow = of(&|row| if row % 4 == 0 { "265" } else { "" });
+    let source = "FromCalibratedAirspeed(column: \"cas_kt\", unit: \"kt\", hold_s: 120),";
+    assert!(slow.contains(source), "{slow}");
+    Mapping::from_ron(&slow).unwrap();
+}

@@ -1,9 +1,10 @@
 //! The mapping file as it is written: RON into plain data; only the form is checked.
 
-use core::fmt;
-
 use serde::Deserialize;
-use serde::de::{Deserializer, MapAccess, Visitor};
+
+mod quantities;
+
+use quantities::Quantities;
 
 impl MappingFile {
     /// The mapping for a recording with these column names: alternatives (`a|b`) and wildcards (`Eng*1*FF`) become the
@@ -317,6 +318,10 @@ pub(super) enum QuantitySource {
         unit: String,
         #[serde(default = "one")]
         scale: f64,
+        #[serde(default)]
+        hold_s: Option<f64>,
+        #[serde(default)]
+        interpolate_s: Option<f64>,
     },
     /// Mach number from true airspeed and static air temperature.
     FromTrueAirspeed,
@@ -349,37 +354,6 @@ pub(super) struct CruiseFile {
     pub(super) band_ft: f64,
     pub(super) minimum_duration_s: f64,
     pub(super) trim_s: f64,
-}
-
-/// A RON map by name that refuses a repeated name; `BTreeMap` would silently keep the last.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Quantities(pub(super) Vec<(String, QuantitySource)>);
-
-impl<'de> Deserialize<'de> for Quantities {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(QuantitiesVisitor)
-    }
-}
-
-struct QuantitiesVisitor;
-
-impl<'de> Visitor<'de> for QuantitiesVisitor {
-    type Value = Quantities;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a map from the names of report columns to where they come from")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Quantities, A::Error> {
-        let mut quantities: Vec<(String, QuantitySource)> = Vec::new();
-        while let Some((name, source)) = map.next_entry::<String, QuantitySource>()? {
-            if quantities.iter().any(|(other, _)| *other == name) {
-                return Err(serde::de::Error::custom(format_args!("{name} appears twice")));
-            }
-            quantities.push((name, source));
-        }
-        Ok(Quantities(quantities))
-    }
 }
 
 const fn comma() -> char {

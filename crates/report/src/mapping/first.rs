@@ -111,8 +111,10 @@ impl Columns {
         for (quantity, names) in ENGINE_NAMES {
             let mut found = false;
             for engine in 1..=4_u8 {
-                let column =
-                    self.names.iter().position(|name| engine_of(name, names) == Some(engine));
+                let is_of_engine = |&column: &usize| {
+                    engine_of(&self.names[column], names) == Some(engine) && !self.is_empty(column)
+                };
+                let column = (0..self.names.len()).find(is_of_engine);
                 let Some(column) = column else { break };
                 found = true;
                 let (unit, is_guess) = self.engine_unit(quantity, column);

@@ -81,9 +81,18 @@ impl Columns {
         text
     }
 
-    /// The column of the first of the rule's names that is there.
+    /// The column of the first of the rule's names that is there and not empty.
     pub(super) fn find(&self, rule: &Rule) -> Option<usize> {
-        rule.names.iter().find_map(|wanted| self.names.iter().position(|name| name.is(wanted)))
+        let found = |wanted: &&str| {
+            (0..self.names.len())
+                .find(|&column| self.names[column].is(wanted) && !self.is_empty(column))
+        };
+        rule.names.iter().find_map(found)
+    }
+
+    /// Whether no row has anything in a column.
+    pub(super) fn is_empty(&self, column: usize) -> bool {
+        !self.rows.is_empty() && self.texts_of(column).all(str::is_empty)
     }
 
     pub(super) fn texts_of(&self, column: usize) -> impl Iterator<Item = &str> {

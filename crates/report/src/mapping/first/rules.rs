@@ -50,7 +50,7 @@ pub(super) const ORDINARY: [Rule; 13] = [
         Kind::Temperature,
     ),
     rule("TAT", &["totalairtemperature", "tat"], Kind::Temperature),
-    rule("MACH", &["machnumber", "mach", "machno", "m"], Kind::Mach),
+    rule("MACH", &["machnumber", "mach", "machno", "mn", "m"], Kind::Mach),
     rule("VTAS", &["trueairspeed", "trueairspd", "tas", "vtas", "airspeedtrue"], Kind::Speed),
     rule("GSPD", &["groundspeed", "groundspd", "grndspd", "gndspd", "gspd", "gs"], Kind::Speed),
     rule("ROLL", &["rollangle", "roll", "bank", "bankangle"], Kind::Angle),

@@ -65,10 +65,20 @@ impl Sources {
                 conversion.minus = Some(self.inputs.place(minus, true));
                 self.recorded.push((quantity, conversion));
             }
-            (Column::Mach, QuantitySource::FromCalibratedAirspeed { column, unit, scale }) => {
+            (
+                Column::Mach,
+                QuantitySource::FromCalibratedAirspeed {
+                    column,
+                    unit,
+                    scale,
+                    hold_s,
+                    interpolate_s,
+                },
+            ) => {
                 // Calibrated airspeed is not a column of the report, but is given in the units of true airspeed.
                 let conversion =
                     self.inputs.conversion(Column::TrueAirspeed, column, &unit, scale)?;
+                self.inputs.0[conversion.input].fill = fill(hold_s, interpolate_s)?;
                 self.mach = Some(MachSource::CalibratedAirspeed(conversion));
             }
             (Column::Mach, QuantitySource::FromTrueAirspeed) => {
