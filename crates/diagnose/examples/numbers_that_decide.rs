@@ -72,7 +72,7 @@ const OTHERS: &[Part] = &[
     ("Form of effects on drag", "effects/src/drag.rs", "", DRAG),
     ("Form of effects on engines", "effects/src/engine.rs", "", ENGINE),
     ("Form of effects: drag divergence", "flight/src/effect/airframe.rs", "", DIVERGENCE),
-    ("What a diagnosis says in words", "pipeline/src/diagnosis_text/named.rs", "", WORDS),
+    ("What a diagnosis says in words", "pipeline/src/diagnosis_words/limits.rs", "", WORDS),
 ];
 
 const BAYES: &[Row] = &[

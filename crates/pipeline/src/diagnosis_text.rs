@@ -9,13 +9,14 @@ use flight::effect::EffectId;
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
 use crate::diagnosis_months::MonthGap;
 use crate::diagnosis_words::{
-    advice, form_words, left_out_words, outside_words, region_words, silent_words,
+    LEAST_TOLD, OTHERS_TOLD, advice, form_words, left_out_words, outside_words, region_words,
+    silent_words,
 };
 use crate::summary::{counted, not_minus_zero};
 
 mod named;
 
-use named::{LEAST_TOLD, OTHERS_TOLD, named};
+use named::named;
 
 /// Effects whose smallest visible size is printed where nothing was found: one of each kind that a person would think of.
 const TOLD_WHEN_SILENT: [EffectId; 6] = [

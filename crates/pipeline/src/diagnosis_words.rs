@@ -12,10 +12,14 @@ use flight::effect::EffectId;
 use crate::statistics::NORMAL_95;
 use crate::summary::counted;
 
+mod consequence;
 mod form;
+mod limits;
 mod region;
 
+pub use consequence::follows;
 pub use form::{applied_form_words, form_name, form_parameters, form_words};
+pub(crate) use limits::{LEAST_TOLD, OTHERS_TOLD, PROBABLE, SEPARATIONS_TOLD, TOLD_APART};
 pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
 /// What a verdict of no gap means: noise, or more than noise that is no effect.
@@ -37,16 +41,15 @@ pub fn advice(diagnosis: &Diagnosis) -> String {
         Verdict::InsufficientData(reason) => {
             format!("Too little data: {}.", insufficient_words(*reason))
         }
-        Verdict::OutsideLibrary(unexplained) => unexplained_words(diagnosis, unexplained),
+        Verdict::OutsideLibrary(unexplained) => unexplained_words(unexplained),
         Verdict::Effects(found) => found_words(diagnosis, found),
     }
 }
 
-fn unexplained_words(diagnosis: &Diagnosis, unexplained: &Unexplained) -> String {
-    let mut words = format!(
-        "{}. Apply nothing: look at what these flights have in common where it lies, or record more signals.",
-        outside_words(&diagnosis.outside)
-    );
+fn unexplained_words(unexplained: &Unexplained) -> String {
+    let mut words =
+        "Apply nothing: look at what these flights have in common where it lies, or record more signals."
+            .to_owned();
     if let Some(share) = unexplained.nearest_closes {
         let _ = write!(
             words,
@@ -73,6 +76,11 @@ fn found_words(diagnosis: &Diagnosis, found: &Found) -> String {
         }
         _ => format!("One of {}: {}.", joined(&found.class, ", "), undecided(found)),
     };
+    if found.probability >= PROBABLE
+        && let Some(follows) = follows(found)
+    {
+        let _ = write!(words, " {follows}");
+    }
     if let Some(Rest { kind, variable }) = found.rest {
         let variable = variable_or_none(variable);
         let _ = match kind {

@@ -1,43 +1,14 @@
 //! What is said of effects that explain a gap.
 
 use diagnose::{Closure, Diagnosis, Found, Magnitude};
-use flight::effect::{EffectGroup, EffectId};
+use flight::effect::EffectId;
 
 use super::digits;
 use crate::diagnosis_words::{
-    NOT_RULED_OUT, are_few, distances_words, joined, measurement_words, near_and_far,
-    others_of_class, told_size, variable_words,
+    LEAST_TOLD, NOT_RULED_OUT, OTHERS_TOLD, PROBABLE, SEPARATIONS_TOLD, TOLD_APART, are_few,
+    distances_words, follows, joined, measurement_words, near_and_far, others_of_class, told_size,
+    variable_words,
 };
-
-/// Number of causes other than the verdict's that are printed, and their least probability. Our choice: a dozen lines in all.
-pub(super) const OTHERS_TOLD: usize = 3;
-pub(super) const LEAST_TOLD: f64 = 0.02;
-/// Measurements or flights that are printed. Our choice: the best two.
-const SEPARATIONS_TOLD: usize = 2;
-/// Distance, in standard deviations, that the second of them brings about at least. Our choice: below it two effects are of one class.
-const TOLD_APART: f64 = 3.0;
-/// Probability below which no cause is printed as one. Our choice: more probable than not.
-const PROBABLE: f64 = 0.5;
-
-/// What follows from an effect of this group for predictions.
-const fn consequence(group: EffectGroup) -> &'static str {
-    match group {
-        EffectGroup::Airframe => "It belongs to the airframe: predictions change with it.",
-        EffectGroup::Engine => {
-            "It belongs to the engines: predictions change with it, the drag table does not."
-        }
-        EffectGroup::Mass => {
-            "It is an error of the load sheet or the fuel count: recordings are corrected, predictions stay."
-        }
-        EffectGroup::Sensor => {
-            "It is an error of the recording: recordings are corrected, predictions stay."
-        }
-        EffectGroup::Environment => {
-            "It belongs to the air and the Earth: predictions change with it."
-        }
-        EffectGroup::Event => "Ask what was done to the aircraft on that date.",
-    }
-}
 
 /// A guide whose drag is off, and what acts in addition.
 fn table_off(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
@@ -195,20 +166,6 @@ fn to_be_sure(found: &Found) -> Vec<String> {
         told.push(measurement);
     }
     lines
-}
-
-/// What follows from the verdict; not before it is clear whether the recording errs or the aircraft.
-fn follows(found: &Found) -> Option<String> {
-    let first = found.effects.first()?;
-    let mut ids = found.effects.iter().chain(&found.class);
-    if ids.all(|id| id.is_of_recordings() == first.is_of_recordings()) {
-        return Some(consequence(first.entry().group).to_owned());
-    }
-    Some(
-        "Errors of the recording and changes of the aircraft are both possible: only the latter change predictions. Find \
-         out which before you apply one."
-            .to_owned(),
-    )
 }
 
 /// Other causes that the data leave open, besides those that were told.
