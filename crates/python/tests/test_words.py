@@ -46,7 +46,10 @@ def test_advice_names_an_effect_in_words(learnt):
     assert two.verdict.advice.startswith("One of these: the fuel-flow meter of engine 2 reads high (fuel_flow_gain_2); ")
     gauges = ("effects:", "columns: (fuel_quantity: On),\n    effects:")
     (one,) = learnt.diagnose(later(gauges=gauges)).diagnoses
-    assert one.verdict.advice == "Engine 2 burns more (tsfc_engine_2)."
+    assert one.verdict.advice == (
+        "Engine 2 burns more (tsfc_engine_2). "
+        "It belongs to the engines: predictions change with it, the drag table does not."
+    )
 
 
 def test_of_too_little_data_no_gap_has_a_number(learnt):
