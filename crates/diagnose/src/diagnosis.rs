@@ -402,10 +402,10 @@ fn detectable(
     advisor: &Advisor<'_>,
 ) -> Vec<Detectable> {
     let id = |effect: usize| library.effects[effect].id;
+    let [.., (most, _)] = PRIOR_SCALES;
     (0..library.effects.len())
         .map(|effect| {
             let smallest = distances.smallest_detectable(effect);
-            let [.., (most, _)] = PRIOR_SCALES;
             let largest = most * library.effects[effect].typical;
             let class = classes.iter().find(|class| class.contains(&effect));
             Detectable {

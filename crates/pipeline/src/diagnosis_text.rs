@@ -3,7 +3,7 @@
 //! Limits are stated where they hold: what cannot be distinguished, what was not testable, how much is left. An effect is named
 //! by what it does *and* by its id, so that a reader without the library's table knows what is meant.
 
-use diagnose::{Diagnosis, OutsideLibrary, Slice, Verdict};
+use diagnose::{Diagnosis, OutsideLibrary, Slice, Variable, Verdict};
 use flight::effect::EffectId;
 
 use crate::diagnosed_tail::{Compared, DiagnosedTail};
@@ -157,13 +157,14 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
                 };
                 return words.to_owned();
             }
-            let words = region_words(&place.region);
             // "After a date" is a place by itself.
-            let is_date = words.starts_with("after ") || words.starts_with("before ");
+            let first = place.region.conditions.first().map(|condition| condition.variable);
+            let is_date = place.region.engine.is_none() && first == Some(Variable::Date);
             let at = if is_date { "" } else { "at " };
             format!(
-                "{} {at}{words}: {:+.2} % there ({:+.2} to {:+.2}), {}, p {:.3}.",
+                "{} {at}{}: {:+.2} % there ({:+.2} to {:+.2}), {}, p {:.3}.",
                 if rank == 0 { "It lies" } else { "And" },
+                region_words(&place.region),
                 not_minus_zero(place.mean_gap_percent, 2),
                 not_minus_zero(place.ci95[0], 2),
                 not_minus_zero(place.ci95[1], 2),

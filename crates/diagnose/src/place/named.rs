@@ -57,12 +57,7 @@ impl NamedGap {
         let places = places(&system.data.segments, system.design.references());
         let gaps = gaps(system);
         let told = Told { system, places: &places, gaps: &gaps, variances };
-        let step = self.step().filter(|_| {
-            self.drivers.iter().any(|(driver, p)| *driver == Variable::Date && *p <= REGION_P_VALUE)
-        });
-        if let Some(from) = step
-            && let Some(place) = self.of_step(from, &told, seed)
-        {
+        if let Some(place) = self.of_step(&told, seed) {
             return Some(place);
         }
         let mut best: Option<Fit> = None;
@@ -87,8 +82,12 @@ impl NamedGap {
         self.gap[from..].iter().all(|gap| *gap != 0.0).then_some(from)
     }
 
-    /// The segments from a step on; flights are in order.
-    fn of_step(&self, from: usize, told: &Told<'_>, seed: u64) -> Option<Slice> {
+    /// The segments from a step on, where the date is sure enough; flights are in order.
+    fn of_step(&self, told: &Told<'_>, seed: u64) -> Option<Slice> {
+        let from = self.step()?;
+        let of_date =
+            |(driver, p): &&(Variable, f64)| *driver == Variable::Date && *p <= REGION_P_VALUE;
+        let (_, p_value) = *self.drivers.iter().find(of_date)?;
         let segments = &told.system.data.segments;
         let (before, first) = (segments[from - 1].point.date_s, segments[from].point.date_s);
         let members: Vec<usize> = (from..self.gap.len()).collect();
@@ -97,7 +96,6 @@ impl NamedGap {
         }
         let edge = Edge { value: first, flown_below: before };
         let condition = Condition { variable: Variable::Date, from: Some(edge), to: None };
-        let p_value = self.drivers.iter().find(|(driver, _)| *driver == Variable::Date)?.1;
         Some(told.slice_of((None, vec![condition]), &members, p_value, seed))
     }
 

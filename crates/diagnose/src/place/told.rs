@@ -148,8 +148,8 @@ impl Told<'_> {
 
     /// Whether a place holds next to nothing of the explainable gap, where there is any.
     pub(crate) fn holds_nothing(&self, members: &[usize]) -> bool {
-        let all: Vec<usize> = (0..self.gaps.total.len()).collect();
-        self.share(None, &all) > 0.0 && self.share(None, members) < LEAST_SHARE
+        let share = self.gaps.share_of_any(None, members, self.variances);
+        share.is_some_and(|share| share < LEAST_SHARE)
     }
 
     /// Share of the explainable gap; an engine's is what it has in it. 0 where there is no more than noise.
@@ -177,15 +177,25 @@ impl Gaps {
         inside.abs() * beyond as f64 >= outside.abs() * within as f64
     }
 
-    /// Share of the explainable gap.
+    /// Share of the explainable gap; 0 where there is none.
     fn share(&self, engine: Option<usize>, members: &[usize], variances: &[f64]) -> f64 {
+        self.share_of_any(engine, members, variances).unwrap_or(0.0)
+    }
+
+    /// The same; `None` where there is no more than noise.
+    fn share_of_any(
+        &self,
+        engine: Option<usize>,
+        members: &[usize],
+        variances: &[f64],
+    ) -> Option<f64> {
         let of = |segment: usize, engine: Option<usize>| {
             self.total[segment] * self.value(engine, segment) - variances[segment]
         };
         let whole: f64 = (0..self.total.len()).map(|segment| of(segment, None)).sum();
         let inside: f64 = members.iter().map(|&segment| of(segment, engine)).sum();
         let engines = engine.map_or(1.0, |_| self.apart.len() as f64);
-        if whole > 0.0 { inside / engines / whole } else { 0.0 }
+        (whole > 0.0).then(|| inside / engines / whole)
     }
 }
 

@@ -1,6 +1,19 @@
 use super::*;
 use crate::output::region::{Condition, Region};
 
+/// A place with a condition on each of some variables.
+fn slice(variables: &[Variable], segments: usize) -> Slice {
+    let condition = |&variable: &Variable| Condition { variable, from: None, to: None };
+    Slice {
+        region: Region { engine: None, conditions: variables.iter().map(condition).collect() },
+        segments,
+        mean_gap_percent: 1.0,
+        ci95: [0.5, 1.5],
+        share_of_gap: 1.0,
+        p_value: 0.01,
+    }
+}
+
 #[test]
 fn engines_apart_by_hand() {
     // Two: ln(Wf1/Wf2) = 0.02 is ±0.01. Four: l = (0.03, −0.01, −0.01, −0.01) has mean 0; contrasts (l1 − l2)·1,
@@ -17,31 +30,17 @@ fn engines_apart_by_hand() {
 /// A place by a name comes first, after everywhere where it is of a level; not where a variable that drives it leads.
 #[test]
 fn a_name_leads_unless_its_variable_does() {
-    let slice = |variables: &[Variable]| Slice {
-        region: Region {
-            engine: None,
-            conditions: variables
-                .iter()
-                .map(|&variable| Condition { variable, from: None, to: None })
-                .collect(),
-        },
-        segments: 1,
-        mean_gap_percent: 1.0,
-        ci95: [0.5, 1.5],
-        share_of_gap: 1.0,
-        p_value: 0.01,
-    };
     let led = |regions: &[&[Variable]], is_level: bool| {
         let mut found = FoundPlaces {
-            regions: regions.iter().map(|variables| slice(variables)).collect(),
-            everywhere: Some(slice(&[])),
+            regions: regions.iter().map(|variables| slice(variables, 1)).collect(),
+            everywhere: Some(slice(&[], 1)),
             variances: vec![],
         };
         let gap = NamedGap {
             gap: vec![1.0, if is_level { 1.0 } else { -1.0 }],
             drivers: vec![(Variable::Mach, 0.0), (Variable::Mass, 0.0)],
         };
-        found.lead_with(slice(&[Variable::Mach]), &gap);
+        found.lead_with(slice(&[Variable::Mach], 1), &gap);
         let places = found.of_gap(true);
         places.iter().map(|p| p.region.conditions.first().map(|c| c.variable)).collect::<Vec<_>>()
     };
@@ -59,20 +58,6 @@ fn a_name_leads_unless_its_variable_does() {
 /// A step replaces a bin of dates that leads, and no other place; what is not zero before is no step.
 #[test]
 fn a_step_leads_with_its_own_date() {
-    let slice = |variables: &[Variable], segments: usize| Slice {
-        region: Region {
-            engine: None,
-            conditions: variables
-                .iter()
-                .map(|&variable| Condition { variable, from: None, to: None })
-                .collect(),
-        },
-        segments,
-        mean_gap_percent: 1.0,
-        ci95: [0.5, 1.5],
-        share_of_gap: 1.0,
-        p_value: 0.01,
-    };
     let led = |first: &[Variable], gap: &[f64]| {
         let mut found =
             FoundPlaces { regions: vec![slice(first, 7)], everywhere: None, variances: vec![] };
