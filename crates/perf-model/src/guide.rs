@@ -158,8 +158,12 @@ fn read(text: &[u8], engines: Option<u8>) -> Result<Guide, CsvError> {
 
 /// A pressure altitude as its column has it: in feet, or in flight levels.
 pub(crate) fn pressure_altitude_in(column: &Column, value: f64) -> PressureAltitude {
-    let feet_per_unit = if column.name == FLIGHT_LEVEL.name { 100.0 } else { 1.0 };
-    PressureAltitude::feet(feet_per_unit * value)
+    PressureAltitude::feet(feet_per_unit(column) * value)
+}
+
+/// Feet in a unit of a column of pressure altitude.
+pub(crate) fn feet_per_unit(column: &Column) -> f64 {
+    if column.name == FLIGHT_LEVEL.name { 100.0 } else { 1.0 }
 }
 
 /// Where a file has its columns, and which of each meaning.

@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 
 use flight::Timestamp;
-use units::{Angle, Mach, TemperatureDifference};
+use units::{Angle, Mach, PressureAltitude, TemperatureDifference};
 
 use super::{COLUMNS, Columns, FlightPoint};
 use crate::LevelFlights;
 use crate::columns::{CG_PERCENT_MAC, ISA_DEVIATION_C, LATITUDE_DEG, MACH, TRUE_HEADING_DEG};
 use crate::csv_text::{Column, CsvError, CsvErrorReason, CsvText, within};
-use crate::guide::{fuel_flow_in, mass_in, pressure_altitude_in};
+use crate::guide::{feet_per_unit, fuel_flow_in, mass_in, pressure_altitude_in};
 
 /// The columns of a table of flight points, found by name as in [`FlightPoints::from_csv`](super::FlightPoints::from_csv).
 #[derive(Debug)]
@@ -101,6 +101,7 @@ impl PointTable {
         };
         let (mass, mass_column) = columns.mass;
         let (altitude, altitude_column) = columns.pressure_altitude;
+        let feet = feet_per_unit(altitude_column);
         let mass_kg = required(mass, mass_column, &|v| mass_in(mass_column, v).to_kilograms())?;
         let isa_deviation_k = match columns.isa_deviation {
             Some(index) => required(index, &ISA_DEVIATION_C, &|value| {
@@ -121,7 +122,7 @@ impl PointTable {
         Some(LevelColumns {
             mass_kg,
             pressure_altitude_m: required(altitude, altitude_column, &|value| {
-                pressure_altitude_in(altitude_column, value).to_meters()
+                PressureAltitude::feet(feet * value).to_meters()
             })?,
             mach: required(columns.mach, &MACH, &|value| value)?,
             isa_deviation_k,
