@@ -4,12 +4,11 @@ use core::fmt;
 use core::str::FromStr;
 
 use flight::Timestamp;
+use units::convert::SECONDS_PER_DAY;
 
 use crate::history::{Change, History};
 use crate::levels::Estimate;
 use crate::series::Series;
-
-const SECONDS_A_DAY: f64 = 86_400.0;
 
 /// A rule: `deviation=PCT`, `trend=PCT_A_YEAR`, `change=PCT` or `change=PCT/DAYSd`.
 ///
@@ -51,8 +50,8 @@ pub struct Alert {
     pub rule: AlertRule,
     /// What it looked at: %, of a trend % a year.
     pub size: Estimate,
-    /// Since when: the change itself, or the last change before the level or the trend; the first flight where none was
-    /// found.
+    /// Since when: the change itself; of the level the last change before it, or the first flight where none was found; of the
+    /// trend, which all pieces between changes share, the first flight.
     pub since: Timestamp,
 }
 
@@ -123,7 +122,7 @@ impl AlertRule {
             Self::Change { percent, days } => {
                 let recent = |change: &&Change| {
                     let age = last.time().duration_since(flights[change.first_flight].time());
-                    days.is_none_or(|days| age.as_secs_f64() <= days * SECONDS_A_DAY)
+                    days.is_none_or(|days| age.as_secs_f64() <= days * SECONDS_PER_DAY)
                 };
                 let changes = history.changes.iter().filter(recent);
                 changes

@@ -207,33 +207,34 @@ impl<'a> Asked<'a> {
         known
     }
 
-    /// Probability of at least one change before one of these flights [monitoring.18].
+    /// Probability of at least one change before one of these flights [monitoring.18]. In logarithms: of many events, or many
+    /// years, it is certain beforehand that something changes to the last bit of a number.
     fn probability(&self, seen: &ChangeFilter, flights: Range<usize>) -> f64 {
-        let without = self.filter(&flights).log_density();
-        let before = self.probability_before(flights);
-        let log_none = (-before).ln_1p() + without - seen.log_density();
-        let odds = -log_none.min(0.0).exp_m1() / log_none.exp();
-        let believed = odds_of(self.beliefs.change_at_most) / odds_of(before);
-        1.0 - 1.0 / (1.0 + odds * believed.min(1.0))
+        let ln_unchanged = self.ln_unchanged_before(flights.clone());
+        let ln_evidence = seen.log_density() - self.filter(&flights).log_density();
+        let ln_none = (ln_unchanged - ln_evidence).min(0.0);
+        let ln_change = (-ln_none.exp_m1()).ln();
+        let at_most = self.beliefs.change_at_most;
+        // Odds, as they are believed beforehand and as they are believed at most: what is larger is left out.
+        let as_believed = ln_change - ln_none;
+        let from_the_most = ln_change + ln_evidence + at_most.ln()
+            - (-at_most).ln_1p()
+            - (-ln_unchanged.exp_m1()).ln();
+        1.0 / (1.0 + (-as_believed.min(from_the_most)).exp())
     }
 
-    /// Probability that something changes before one of these flights, before any flight is seen.
-    fn probability_before(&self, flights: Range<usize>) -> f64 {
+    /// ln of the probability that nothing changes before any of these flights, before any flight is seen.
+    fn ln_unchanged_before(&self, flights: Range<usize>) -> f64 {
         let years = |flight: usize| self.series.years(self.series.flights()[flight].time());
-        let stays = |flight: usize| {
-            let changes = if self.events.contains(&flight) {
+        let changes = |flight: usize| {
+            if self.events.contains(&flight) {
                 self.beliefs.change_at_event
             } else {
                 self.beliefs.change_within(years(flight) - years(flight - 1))
-            };
-            1.0 - changes
+            }
         };
-        1.0 - flights.filter(|flight| *flight > 0).map(stays).product::<f64>()
+        flights.filter(|flight| *flight > 0).map(|flight| (-changes(flight)).ln_1p()).sum()
     }
-}
-
-fn odds_of(probability: f64) -> f64 {
-    probability / (1.0 - probability)
 }
 
 /// A change within whose interval an event lies is that event's: the nearest one.

@@ -27,7 +27,8 @@ impl Estimate {
     }
 }
 
-/// Half width of a two-sided 95 % interval of a normal distribution in standard deviations, as tables have it.
+/// Half width of a two-sided 95 % interval of a normal distribution, in standard deviations; two decimals, as tables and
+/// text books have it, so that intervals can be checked by hand.
 pub const NORMAL_95: f64 = 1.96;
 
 /// A trend common to all pieces and the level of each.

@@ -3,10 +3,10 @@
 use core::num::NonZeroU32;
 
 use flight::Timestamp;
+use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 
-/// Days of a Julian year, by which trends are per year.
-pub const DAYS_A_YEAR: f64 = 365.25;
-const SECONDS_A_YEAR: f64 = DAYS_A_YEAR * 86_400.0;
+/// A Julian year, by which trends are per year.
+const SECONDS_A_YEAR: f64 = DAYS_PER_YEAR * SECONDS_PER_DAY;
 
 /// What one flight shows: the mean of its segments' deviations, and how much they scatter.
 ///

@@ -1,7 +1,7 @@
 //! Every number that decides in this crate, once, with its reason. All of them are beliefs of before the flights were seen;
 //! none was fitted to a fleet.
 
-use crate::series::DAYS_A_YEAR;
+use units::convert::{DAYS_PER_YEAR, SECONDS_PER_DAY};
 
 /// What is believed of a tail's changes before its flights are seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +61,7 @@ impl ChangeBeliefs {
 }
 
 /// A minute in years.
-const MINUTE_YEARS: f64 = 1.0 / (DAYS_A_YEAR * 24.0 * 60.0);
+const MINUTE_YEARS: f64 = 60.0 / (DAYS_PER_YEAR * SECONDS_PER_DAY);
 
 /// A change is reported where it is more probable than not.
 pub const REPORTED_PROBABILITY: f64 = 0.5;

@@ -154,6 +154,24 @@ fn months_alone_make_no_change_probable() {
     assert!((odds(engine) * 2.0 / evidence - 1.0).abs() < 1e-6, "one of two");
 }
 
+/// Where an event is recorded before every flight, nothing is surer beforehand than that something changed: to the last bit of
+/// a number it is certain. A step is found all the same. Oracle: the odds of one event, which no number of further ones changes
+/// by more than what they believe beforehand.
+#[test]
+fn many_events_hide_no_change() {
+    let mut noise = normal(12);
+    let flights =
+        (0..160).map(|at| f64::from(u8::from(at >= 80)) * 3.0 + 0.4 * noise.next().unwrap());
+    let series = daily(flights);
+    for events in [0, 40, 60, 159] {
+        let events: Vec<Timestamp> = (160 - events..160).map(day).collect();
+        let found = history(&series, &events);
+        let step = found.changes.iter().find(|change| change.first_flight == 80);
+        let step = step.unwrap_or_else(|| panic!("{} events: {:?}", events.len(), found.changes));
+        assert!(step.probability > 0.99, "{} events: {step:?}", events.len());
+    }
+}
+
 #[test]
 fn an_event_takes_the_change_that_it_explains() {
     let noise: Vec<f64> = normal(6).take(100).collect();

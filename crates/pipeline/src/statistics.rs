@@ -3,9 +3,8 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Half width of a two-sided 95 % interval of a normal distribution, in standard deviations; two decimals, as tables and
-/// text books have it, so that intervals can be checked by hand.
-pub const NORMAL_95: f64 = 1.96;
+/// As monitoring has it.
+pub use monitor::NORMAL_95;
 
 /// Mean, standard deviation (n − 1), largest absolute value and number of errors, all in per cent.
 ///
