@@ -265,7 +265,8 @@ pub(super) enum MassSource {
         zero_fuel_weight: WithUnit,
         fuel_on_board: WithUnit,
     },
-    /// The same where the load sheet is in columns: that of a flight's first row is used.
+    /// The same where the load sheet is in columns: that of a recording's first row is used, with what was burnt until then where
+    /// the column falls.
     LoadSheet { fuel_used: Amount, zero_fuel_weight: Amount, fuel_on_board: Amount },
     /// Gross mass is zero-fuel weight and what the tanks hold.
     ZeroFuelAndTanks {
@@ -274,7 +275,7 @@ pub(super) enum MassSource {
         unit: String,
         largest_rise_kg: f64,
     },
-    /// Gross mass at the first row less the integral of fuel flow.
+    /// Gross mass at the recording's first row less the integral of fuel flow.
     StartMass { gross_weight: Amount },
 }
 

@@ -21,7 +21,7 @@ impl Part<'_> {
                 self.load_of_gross_mass(&masses_kg, zero_fuel_mass, *largest_rise_kg)
             }
             MassPlan::ZeroFuelAndTanks { zero_fuel_mass, tanks, largest_rise_kg } => {
-                let zero_fuel_mass = self.mass_of(zero_fuel_mass)?;
+                let zero_fuel_mass = self.mass_of(zero_fuel_mass, |_| 0.0)?;
                 let mut values = vec![zero_fuel_mass.to_kilograms(); self.rows.len()];
                 for tank in tanks {
                     for (value, fuel_kg) in values.iter_mut().zip(self.convert(tank)) {
@@ -34,8 +34,9 @@ impl Part<'_> {
             }
             MassPlan::StartMass { gross_mass } => self.load_of_integrated_flow(gross_mass),
             MassPlan::FuelUsed { fuel_used, zero_fuel_mass, fuel_on_board } => {
-                let zero_fuel_mass = self.mass_of(zero_fuel_mass)?;
-                let fuel_on_board = self.mass_of(fuel_on_board)?;
+                let used_kg = |row| fuel_used.apply(&self.recording.numbers, row);
+                let zero_fuel_mass = self.mass_of(zero_fuel_mass, |_| 0.0)?;
+                let fuel_on_board = self.mass_of(fuel_on_board, used_kg)?;
                 let series = Series::new(self.convert(fuel_used), fuel_used.input);
                 let maximum = Some(fuel_on_board.to_kilograms());
                 self.check_range(Column::FuelUsed, &series, maximum)?;
@@ -50,13 +51,20 @@ impl Part<'_> {
         }
     }
 
-    /// A mass of the load sheet, at the report's first row.
-    fn mass_of(&self, load: &LoadSource) -> Result<Mass, Refusal> {
+    /// A mass of the load sheet: in a column that of the recording's first row. A column that falls is no load sheet, which stays as
+    /// it was sent, but what there is at each row (the tanks' contents, gross mass): it lacks the fuel burnt until then.
+    fn mass_of(&self, load: &LoadSource, burnt_kg: impl Fn(usize) -> f64) -> Result<Mass, Refusal> {
         let conversion = match load {
             LoadSource::Known(mass) => return Ok(*mass),
             LoadSource::Column(conversion) => conversion,
         };
-        let value = conversion.apply(&self.recording.numbers, self.rows.at(0));
+        let at = |row: usize| conversion.apply(&self.recording.numbers, row);
+        let sent = |row: &usize| at(*row).is_finite() && burnt_kg(*row).is_finite();
+        let rows = 0..self.recording.time_s.len();
+        let first = rows.clone().find(sent).unwrap_or(self.rows.at(0));
+        let last = rows.rev().find(sent).unwrap_or(first);
+        let falls = at(last) < at(first) - FUEL_USED_STEP_KG;
+        let value = at(first) + if falls { burnt_kg(first) } else { 0.0 };
         if value > 0.0 {
             return Ok(Mass::kilograms(value));
         }
@@ -93,7 +101,7 @@ impl Part<'_> {
             burnt_kg += 0.5 * (flow_kg_s(row) + flow_kg_s(row + 1)) * (pair[1] - pair[0]);
             burnt_by_row_kg.push(burnt_kg);
         }
-        let start_kg = self.mass_of(gross_mass)?.to_kilograms();
+        let start_kg = self.mass_of(gross_mass, |row| burnt_by_row_kg[row])?.to_kilograms();
         let last_kg = burnt_by_row_kg[self.rows.at(self.rows.len() - 1)];
         let zero_fuel_kg = start_kg - last_kg;
         if zero_fuel_kg <= 0.0 || last_kg <= 0.0 {

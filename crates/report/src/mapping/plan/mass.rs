@@ -68,11 +68,11 @@ pub(super) fn mass_plan(source: MassSource, inputs: &mut Inputs) -> Result<MassP
     })
 }
 
-/// A mass of the load sheet. A column holds for the whole flight: the recorder may send it once.
 fn largest_rise(kg: f64) -> Result<f64, MappingError> {
     Ok(check_within("largest rise of gross mass", "kg", kg, 0.0, 1e5)?)
 }
 
+/// A mass of the load sheet. A column holds for the whole flight: the recorder may send it once.
 fn load(amount: Amount, what: &'static str, inputs: &mut Inputs) -> Result<Load, MappingError> {
     Ok(match amount {
         Amount::Value(value, unit) => Load::Known(mass(&WithUnit(value, unit), what)?),
