@@ -21,7 +21,9 @@ pub(crate) struct Shrinkage {
     pub(crate) before: Vec<f64>,
     pub(crate) after: Vec<f64>,
     pub(crate) floor: Vec<f64>,
-    pub(crate) segments: Vec<f64>,
+    /// Sum of the segments' weights in these squares.
+    pub(crate) weights: Vec<f64>,
+    segments: Vec<usize>,
     /// What is left of the gap, segment by segment.
     pub(crate) left: Vec<f64>,
     seed: u64,
@@ -40,18 +42,19 @@ impl Shrinkage {
             before: vec![],
             after: vec![],
             floor: vec![],
-            segments: vec![],
+            weights: vec![],
+            segments: data.flights.iter().map(|flight| flight.segments.len()).collect(),
             left: Vec::with_capacity(data.segments.len()),
             seed,
         };
         for (index, flight) in data.flights.iter().enumerate() {
-            let (mut before, mut after, mut floor, mut count) = (0.0, 0.0, 0.0, 0.0);
+            let (mut before, mut after, mut floor, mut weights) = (0.0, 0.0, 0.0, 0.0);
             for segment in flight.segments.clone() {
                 let row = &data.segments[segment];
                 let gap = row.residual[0];
                 let left = gap - change(index, segment);
                 let weight = row.weight * row.weight;
-                count += weight;
+                weights += weight;
                 before += weight * gap * gap;
                 after += weight * left * left;
                 found.left.push(left);
@@ -62,41 +65,35 @@ impl Shrinkage {
             found.before.push(before);
             found.after.push(after);
             found.floor.push(floor);
-            found.segments.push(count);
+            found.weights.push(weights);
         }
         found
     }
 
-    fn total(values: &[f64], segments: &[f64]) -> f64 {
-        let count: f64 = segments.iter().sum();
-        values.iter().sum::<f64>() / count
+    fn mean(&self, sums: &[f64]) -> f64 {
+        sums.iter().sum::<f64>() / self.weights.iter().sum::<f64>()
     }
 
     pub(crate) fn before(&self) -> f64 {
-        Self::total(&self.before, &self.segments)
+        self.mean(&self.before)
     }
 
     pub(crate) fn after(&self) -> f64 {
-        Self::total(&self.after, &self.segments)
+        self.mean(&self.after)
     }
 
     pub(crate) fn floor(&self) -> f64 {
-        Self::total(&self.floor, &self.segments)
+        self.mean(&self.floor)
     }
 
     /// Root mean squares of every flight, %.
     pub(crate) fn by_flight(&self) -> Vec<HeldOutFlight> {
-        let flights = self.segments.iter().enumerate();
+        let flights = self.segments.iter().zip(&self.weights).enumerate();
         flights
-            .map(|(flight, &segments)| {
-                let rms = |squares: &[f64]| 100.0 * (squares[flight] / segments).sqrt();
+            .map(|(flight, (&segments, &weights))| {
+                let rms = |squares: &[f64]| 100.0 * (squares[flight] / weights).sqrt();
                 HeldOutFlight {
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_sign_loss,
-                        reason = "a count, kept as a number for sums"
-                    )]
-                    segments: segments as usize,
+                    segments,
                     before_rms_percent: rms(&self.before),
                     after_rms_percent: rms(&self.after),
                     noise_rms_percent: rms(&self.floor),
@@ -158,9 +155,9 @@ impl Shrinkage {
     /// ```
     pub(crate) fn leaves_less_than(&self, other: &Self) -> bool {
         let differences = other.after.iter().zip(&self.after).map(|(other, own)| other - own);
-        let groups: Vec<(f64, f64)> = differences.zip(self.segments.iter().copied()).collect();
+        let groups: Vec<(f64, f64)> = differences.zip(self.weights.iter().copied()).collect();
         let mut stream = RandomStream::new(self.seed, COMPARISON_STREAM);
-        interval_95(&groups, &mut stream, |sum, segments| sum / segments)[0] > 0.0
+        interval_95(&groups, &mut stream, |sum, weights| sum / weights)[0] > 0.0
     }
 }
 
@@ -261,7 +258,8 @@ mod tests {
             before: before.to_vec(),
             after: after.to_vec(),
             floor: floor.to_vec(),
-            segments: vec![1.0; before.len()],
+            weights: vec![1.0; before.len()],
+            segments: vec![1; before.len()],
             left: vec![],
             seed: 7,
         }

@@ -112,15 +112,11 @@ pub(crate) fn gap_of(
     let square = own.before();
     // Interval of the mean square by flight, then its root.
     let flights = own.before.len() as f64;
-    let spread: f64 = own
-        .before
-        .iter()
-        .zip(&own.segments)
-        .map(|(sum, n)| (sum - square * n).powi(2))
-        .sum::<f64>()
-        * flights
-        / (flights - 1.0).max(1.0);
-    let half = NORMAL_95 * spread.sqrt() / count;
+    let spread: f64 =
+        own.before.iter().zip(&own.weights).map(|(sum, n)| (sum - square * n).powi(2)).sum::<f64>()
+            * flights
+            / (flights - 1.0).max(1.0);
+    let half = NORMAL_95 * spread.sqrt() / own.weights.iter().sum::<f64>();
     // The largest deviation any effect makes of noise alone, with as many looks as columns (Bonferroni).
     let plain = analysis
         .backgrounds

@@ -33,8 +33,7 @@ pub(crate) fn too_little(data: &PreparedFlights<'_>, library: &Library) -> Optio
     let conditions = [
         spread(&|p| p.mach) > LEAST_SPREADS[0],
         spread(&|p| p.pressure_altitude_m) > LEAST_SPREADS[1],
-        spread(&|p| p.mass_kg / p.mass_kg.max(1.0)) > 0.0
-            || spread(&|p| p.mass_kg) > LEAST_SPREADS[2],
+        spread(&|p| p.mass_kg) > LEAST_SPREADS[2],
         spread(&|p| p.static_air_temperature_k) > LEAST_SPREADS[3],
     ];
     if conditions.iter().filter(|varied| **varied).count() < 2 {
