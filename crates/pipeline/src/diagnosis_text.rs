@@ -162,17 +162,22 @@ fn places(diagnosis: &Diagnosis) -> Vec<String> {
             let is_date = place.region.engine.is_none() && first == Some(Variable::Date);
             let at = if is_date { "" } else { "at " };
             format!(
-                "{} {at}{}: {:+.2} % there ({:+.2} to {:+.2}), {}, p {:.3}.",
+                "{} {at}{}: {:+.2} % there ({:+.2} to {:+.2}), {}, p {}.",
                 if rank == 0 { "It lies" } else { "And" },
                 region_words(&place.region),
                 not_minus_zero(place.mean_gap_percent, 2),
                 not_minus_zero(place.ci95[0], 2),
                 not_minus_zero(place.ci95[1], 2),
                 share_words(place),
-                place.p_value
+                p_words(place.p_value)
             )
         })
         .collect()
+}
+
+/// A p-value with three decimals, of which 0.000 would claim more than any number of draws shows.
+fn p_words(p_value: f64) -> String {
+    if p_value < 0.0005 { "below 0.001".to_owned() } else { format!("{p_value:.3}") }
 }
 
 /// How much of the gap lies there.

@@ -352,8 +352,10 @@ fn no_effect_words(probability: f64) -> &'static str {
     const SURE: f64 = 0.9;
     if probability >= SURE {
         "A real gap that no effect of the library explains"
-    } else {
+    } else if probability > 0.5 {
         "A real gap, and more probably than not no effect of the library explains it"
+    } else {
+        "A real gap, and no effect of the library is more probable than not"
     }
 }
 

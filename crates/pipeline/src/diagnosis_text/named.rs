@@ -122,7 +122,9 @@ fn closes(diagnosis: &Diagnosis, found: &Found) -> String {
         return "It is another on every flight: added to the model it makes no prediction better, only the stated interval wider."
             .to_owned();
     }
-    let after = diagnosis.causes.iter().find_map(|cause| cause.rms_after_percent);
+    // That of what is named alone: another cause may be of the most probable set, and the one that was judged.
+    let own = diagnosis.causes.iter().find(|cause| Some(&cause.effect) == found.effects.first());
+    let after = own.and_then(|cause| cause.rms_after_percent);
     match (after, found.closure) {
         (Some(after), Some(Closure { share, ci95: [low, high] })) => format!(
             "Added to the model it leaves {after:.2} % on flights that it was not fitted to: {:.0} % of what can be \
