@@ -151,6 +151,17 @@ pub(crate) enum Failure {
     },
 }
 
+/// A file that cannot be used and costs itself alone: what is not done without it, and why.
+pub(crate) fn refused_of(failure: Failure, what: &str) -> RefusedReport {
+    let (path, reason) = match failure {
+        Failure::BadFile { path, reason, .. } | Failure::Unreadable { path, reason } => {
+            (path, reason)
+        }
+        other => (String::new(), other.to_string()),
+    };
+    RefusedReport::whole(path.into(), format!("{what}: {reason}"))
+}
+
 impl Failure {
     /// An unreadable path; of one that does not exist, with the name beside it that was probably meant.
     pub(crate) fn unreadable(path: &Path, reason: impl Display) -> Self {

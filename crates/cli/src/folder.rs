@@ -25,7 +25,9 @@ use pipeline::learnt_flights::KnownFlight;
 use crate::failure::{Failure, show};
 use crate::files::{TEMPORARY, steps};
 use contents::flights_of;
-pub(crate) use contents::{deviations_of, is_superseded, models_of, stored_of, warn_of_strangers};
+pub(crate) use contents::{
+    ModelsFound, deviations_of, is_superseded, models_of, stored_of, warn_of_strangers,
+};
 use lock::{Busy, Lock};
 pub(crate) use restart::keep_aside;
 use state::{FileState, State, TailState};
@@ -79,7 +81,11 @@ impl Folder {
     /// # Errors
     /// A folder that cannot be written, that another process is writing, or whose state is damaged.
     pub(crate) fn open(path: &Path, beginning: Beginning, busy: Busy) -> Result<Self, Failure> {
-        let path = restart::tidy(path)?;
+        let mut path = restart::tidy(path)?;
+        // Behind a link the target is replaced: whoever reads it elsewhere sees the new folder.
+        if path.is_symlink() {
+            path = path.canonicalize().map_err(|error| Failure::unwritable(&path, error))?;
+        }
         let failed = |error: std::io::Error| Failure::unwritable(&path, error);
         let made = !path.exists();
         std::fs::create_dir_all(&path).map_err(failed)?;
@@ -200,11 +206,16 @@ impl Folder {
     /// A file that cannot be written; the folder then is as it was.
     pub(crate) fn commit(mut self, tails: BTreeMap<String, TailState>) -> Result<(), Failure> {
         if tails == self.state.tails && self.older.is_empty() && self.replaces.is_none() {
-            // Only files that are no state (summary, page) are new.
+            // Only files that are no state (summary, page) are new, or of the state ones that were damaged.
             let waiting = self.waiting();
-            return self
-                .move_files(&waiting)
-                .map_err(|error| Failure::unwritable(&self.path, error));
+            let publish = || -> std::io::Result<()> {
+                let [of_state @ .., _pages] = FOLDERS;
+                if of_state.iter().any(|name| waiting.join(name).is_dir()) {
+                    steps::sync_below(&self.path)?;
+                }
+                self.move_files(&waiting)
+            };
+            return publish().map_err(|error| Failure::unwritable(&self.path, error));
         }
         let state = State { generation: self.state.generation + 1, tails };
         let text =

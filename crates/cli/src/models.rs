@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::failure::{Failure, show};
 use crate::files::outputs::check_replaceable;
 use crate::files::{read_text, write_atomically};
+use crate::folder::ModelsFound;
 use pipeline::model_file::ModelFile;
 use pipeline::models::Models;
 
@@ -16,7 +17,10 @@ pub(crate) fn read_model(path: &Path) -> Result<ModelFile, Failure> {
     if !path.is_dir() {
         return model_of_text(path, &read_text(path)?);
     }
-    let mut models = models_of(path)?;
+    let ModelsFound { mut models, damaged } = models_of(path)?;
+    if let Some((_, failure)) = damaged.into_iter().next() {
+        return Err(failure);
+    }
     match models.pop() {
         Some((_, model)) if models.is_empty() => Ok(model),
         Some((last, _)) => {
@@ -91,17 +95,28 @@ pub(crate) fn check_model_replaceable(
 /// # Errors
 /// A file that cannot be read or is not a model; two that claim the same tail, or, both without a tail, the same type.
 pub(crate) fn read_models(arguments: &[PathBuf]) -> Result<Models, Failure> {
-    let mut models = Vec::new();
+    let mut found = ModelsFound::default();
     for argument in arguments {
-        models.extend(models_of(argument)?);
+        let ModelsFound { models, damaged } = models_of(argument)?;
+        found.models.extend(models);
+        found.damaged.extend(damaged);
     }
-    Models::new(models).map_err(|same| Failure::bad_file(&same.path, &same))
+    // A tail costs itself, unless there is nothing else.
+    if found.models.is_empty()
+        && let Some((_, failure)) = found.damaged.pop()
+    {
+        return Err(failure);
+    }
+    let models = Models::new(found.models).map_err(|same| Failure::bad_file(&same.path, &same))?;
+    let damaged = found.damaged.into_iter().map(|(tail, failure)| (tail, failure.to_string()));
+    Ok(models.with_damaged(damaged.collect()))
 }
 
 /// The models behind an argument: a file, a folder that `adapt` wrote (or its folder of models), any other folder.
-fn models_of(argument: &Path) -> Result<Vec<(PathBuf, ModelFile)>, Failure> {
+fn models_of(argument: &Path) -> Result<ModelsFound, Failure> {
+    let whole = |models| ModelsFound { models, damaged: Vec::new() };
     if !argument.is_dir() {
-        return Ok(vec![(argument.to_owned(), read_model(argument)?)]);
+        return Ok(whole(vec![(argument.to_owned(), read_model(argument)?)]));
     }
     let above = argument.file_name().filter(|name| *name == "models").and(argument.parent());
     for folder in std::iter::once(argument).chain(above) {
@@ -115,7 +130,7 @@ fn models_of(argument: &Path) -> Result<Vec<(PathBuf, ModelFile)>, Failure> {
         let model = read_model(&path)?;
         Ok((path, model))
     });
-    models.collect()
+    models.collect::<Result<_, _>>().map(whole)
 }
 
 fn files_of(argument: &Path) -> Result<Vec<PathBuf>, Failure> {

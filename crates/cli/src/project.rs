@@ -64,7 +64,7 @@ pub(crate) fn with_project(arguments: Vec<OsString>) -> Result<Vec<OsString>, Fa
     for (name, values) in &entries {
         // A table of flight points has columns of its own: a project's mapping is for recordings.
         let is_for_points = *name == "mapping" && command.get_name() == "predict";
-        if is_given(name) || !has_option(&command, name) || is_for_points {
+        if is_given(name) || !takes(&command, name, values.len()) || is_for_points {
             continue;
         }
         used.push(*name);
@@ -116,13 +116,18 @@ fn project_file(arguments: Vec<OsString>) -> Result<(Option<PathBuf>, Vec<OsStri
 fn command_of(arguments: &[OsString]) -> Option<clap::Command> {
     let all = Cli::command();
     let found = arguments.iter().skip(1).find_map(|one| all.find_subcommand(one));
-    let mut found = found?.clone();
+    // `help` takes the name of a command and nothing of a project.
+    let mut found = found.filter(|command| command.get_name() != "help")?.clone();
     found.build();
     Some(found)
 }
 
-fn has_option(command: &clap::Command, name: &str) -> bool {
-    name == "threads" || command.get_arguments().any(|one| one.get_long() == Some(name))
+/// Whether a command takes so many values of an option.
+fn takes(command: &clap::Command, name: &str, values: usize) -> bool {
+    let option = || command.get_arguments().find(|one| one.get_long() == Some(name));
+    name == "threads"
+        || option()
+            .is_some_and(|one| values <= 1 || matches!(one.get_action(), clap::ArgAction::Append))
 }
 
 /// A value as the command line would have it: files beside the project file.

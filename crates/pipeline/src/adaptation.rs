@@ -133,7 +133,8 @@ const fn learns_in_any_order(start: &Start<'_>) -> bool {
 /// The figures of a tail.
 pub fn result_of(stored: StoredTail, flights_new: usize, notes: Vec<String>) -> TailResult {
     let StoredTail { model, segments, flights, curve, predicted } = stored;
-    let tail = model.tail().unwrap_or_default().to_owned();
+    // Not the tail whose diagnosis was applied: what a tail has learnt is its own.
+    let tail = model.learnt.as_ref().map(|learnt| learnt.tail.clone()).unwrap_or_default();
     let counts = TailCounts {
         flights: flights.len(),
         flights_new,
@@ -251,10 +252,11 @@ impl Work {
         replaced: &[usize],
     ) -> Result<Option<StoredTail>, LearningError> {
         let Some(stored) = stored else { return Ok(None) };
-        let mut slots: Vec<Option<Material>> =
-            materials(stored.flights, stored.segments).into_iter().map(Some).collect();
+        // In the place of each flight, or of those that replace it.
+        let mut slots: Vec<Vec<Material>> =
+            materials(stored.flights, stored.segments).into_iter().map(|one| vec![one]).collect();
         for index in replaced {
-            slots[*index] = None;
+            slots[*index].clear();
         }
         let mut paths = Vec::new();
         let mut last = Vec::new();
@@ -263,7 +265,7 @@ impl Work {
             let material = Material { known: known_of(&flight), segments: flight.reduced.segments };
             paths.push(flight.path);
             match replaces {
-                Some(index) => slots[index] = Some(material),
+                Some(index) => slots[index].push(material),
                 None => last.push(material),
             }
         }

@@ -11,6 +11,9 @@ use units::convert::SECONDS_PER_DAY;
 /// one.
 pub const MOST_DAYS_AHEAD_OF_THE_CLOCK: f64 = 1.0;
 
+/// Years from which digital recordings with every column can come.
+pub(crate) const YEARS_OF_FLIGHTS: std::ops::Range<i32> = 1975..2100;
+
 /// How long after START a segment may lie, days. The longest scheduled flights last less than one; a TIME column that
 /// counts from another instant than START (seconds since 1970, for example) is off by years.
 pub const MOST_DAYS_AFTER_START: f64 = 3.0;
@@ -31,6 +34,12 @@ pub enum ImpossibleDate {
         /// The clock.
         now: Timestamp,
     },
+    /// START is in a year in which no aircraft recorded such reports.
+    #[error("found START {start}, expected a year from {} on", YEARS_OF_FLIGHTS.start)]
+    LongAgo {
+        /// START of the flight.
+        start: Timestamp,
+    },
     /// START is possible and TIME is not.
     #[error(
         "found TIME {days:.1} days after START {start}, expected at most {MOST_DAYS_AFTER_START}: TIME is counted in seconds from START"
@@ -46,7 +55,7 @@ pub enum ImpossibleDate {
 /// Whether a flight can have been flown when its report says.
 ///
 /// # Errors
-/// [`ImpossibleDate`] for a START in the future, or a segment or the end of the flight long after START: a flight that lasted
+/// [`ImpossibleDate`] for a START in the future or before there were such reports, or a segment or the end of the flight long after START: a flight that lasted
 /// for years would overlap every later one.
 pub fn possible(
     identity: &FlightIdentity,
@@ -58,12 +67,20 @@ pub fn possible(
     if days_between(now, start) > MOST_DAYS_AHEAD_OF_THE_CLOCK {
         return Err(ImpossibleDate::Future { start, now });
     }
+    if year_of(start) < YEARS_OF_FLIGHTS.start {
+        return Err(ImpossibleDate::LongAgo { start });
+    }
     let last_s = segments.iter().map(|segment| segment.means.time_s).fold(0.0, f64::max);
     let days = (last_s / SECONDS_PER_DAY).max(days_between(start, end));
     if days > MOST_DAYS_AFTER_START {
         return Err(ImpossibleDate::LongAfterStart { start, days });
     }
     Ok(())
+}
+
+/// The year of an instant. RFC 3339 begins with it; years BC are outside what an instant of a report can be.
+pub(crate) fn year_of(instant: Timestamp) -> i32 {
+    instant.to_string().split('-').next().and_then(|year| year.parse().ok()).unwrap_or(0)
 }
 
 /// The date that a flight is taken to have been flown on, where its own stands alone: the nearest one that two other

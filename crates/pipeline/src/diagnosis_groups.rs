@@ -78,14 +78,7 @@ pub fn group<'a>(models: &'a Models, reading: &mut Reading, asked: &RunOptions) 
     let mut groups: BTreeMap<String, Group<'a>> = BTreeMap::new();
     let mut flights = std::mem::take(&mut reading.flights);
     flights.sort_by(FlightRead::order);
-    for flight in flights {
-        let model = match models.for_flight(&flight) {
-            Ok(model) => model,
-            Err(reason) => {
-                reading.refused.push(RefusedReport::whole(flight.path, reason));
-                continue;
-            }
-        };
+    for (model, flight) in models.for_flights(flights, &mut reading.refused) {
         if has_learnt(model, &flight) {
             let finding = format!(
                 "tail {} flight {} of {} is in the model's ledger: what it has learnt hides the gap",

@@ -1,6 +1,6 @@
 //! What a flight is to flights that are known: new, the same, another version of one, or the same hours again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{DefaultHasher, Hasher};
 use std::time::Duration;
 
@@ -14,6 +14,8 @@ use crate::reading::FlightRead;
 #[derive(Clone, Debug, Default)]
 pub struct KnownFlights {
     flights: Vec<KnownFlight>,
+    /// Which of them are known no more: another version has taken their place.
+    replaced: BTreeSet<usize>,
     by_identity: BTreeMap<(Timestamp, String), usize>,
     by_segments: BTreeMap<u64, usize>,
     longest: Duration,
@@ -32,6 +34,19 @@ pub enum Relation {
     SameHours(usize),
     /// The same samples at another time.
     SameSamples(usize),
+}
+
+impl Relation {
+    /// The number of the known flight.
+    pub const fn known(self) -> Option<usize> {
+        match self {
+            Self::New => None,
+            Self::Same(index)
+            | Self::OtherContent(index)
+            | Self::SameHours(index)
+            | Self::SameSamples(index) => Some(index),
+        }
+    }
 }
 
 impl KnownFlights {
@@ -59,7 +74,10 @@ impl KnownFlights {
     pub fn add(&mut self, flight: &FlightRead) {
         let index = self.flights.len();
         if let Some(mark) = mark(&flight.reduced.segments) {
-            self.by_segments.entry(mark).or_insert(index);
+            let first = self.by_segments.entry(mark).or_insert(index);
+            if self.replaced.contains(first) {
+                *first = index;
+            }
         }
         self.push(KnownFlight {
             entry: entry_of(flight),
@@ -74,7 +92,12 @@ impl KnownFlights {
         self.flights.push(flight);
     }
 
-    /// The flights.
+    /// From now on a flight is known no more: another version takes its place. Its number stays.
+    pub fn replace(&mut self, index: usize) {
+        self.replaced.insert(index);
+    }
+
+    /// The flights, those that were replaced among them.
     pub fn flights(&self) -> &[KnownFlight] {
         &self.flights
     }
@@ -84,32 +107,46 @@ impl KnownFlights {
         self.by_identity.get(&(start, flight.to_owned())).map(|index| &self.flights[*index])
     }
 
-    /// What a flight is to them.
+    /// What a flight is to them: of several the first of this order.
     pub fn relation(&self, flight: &FlightRead) -> Relation {
+        self.relations(flight).into_iter().next().unwrap_or(Relation::New)
+    }
+
+    /// What a flight is to all of them to which it is something: one that is known has no further ones.
+    pub fn relations(&self, flight: &FlightRead) -> Vec<Relation> {
         let identity = &flight.reduced.identity;
         let start = identity.start;
-        if let Some(index) = self.by_identity.get(&(start, identity.flight.clone())) {
-            return if flight.has_content(&self.flights[*index].entry.content) {
-                Relation::Same(*index)
-            } else {
-                Relation::OtherContent(*index)
-            };
+        let known = |index: &&usize| !self.replaced.contains(index);
+        let mut found = Vec::new();
+        let own = self.by_identity.get(&(start, identity.flight.clone())).filter(known);
+        if let Some(&index) = own {
+            if flight.has_content(&self.flights[index].entry.content) {
+                return vec![Relation::Same(index)];
+            }
+            found.push(Relation::OtherContent(index));
         }
         // Whoever overlaps it began before its end, and not longer before it than the longest flight lasts.
         let earliest = start.checked_sub(self.longest).unwrap_or(Timestamp::MIN);
         let from = (earliest, String::new());
-        for ((begun, _), index) in self.by_identity.range(from..) {
-            if *begun >= flight.end {
-                break;
-            }
-            if self.flights[*index].overlaps(start, flight.end) {
-                return Relation::SameHours(*index);
-            }
-        }
-        match mark(&flight.reduced.segments).and_then(|mark| self.by_segments.get(&mark)) {
-            Some(index) => Relation::SameSamples(*index),
-            None => Relation::New,
-        }
+        let begun_before_its_end = self
+            .by_identity
+            .range(from..)
+            .take_while(|((begun, _), _)| *begun < flight.end)
+            .map(|(_, index)| index);
+        found.extend(
+            begun_before_its_end
+                .filter(known)
+                .filter(|index| {
+                    own != Some(index) && self.flights[**index].overlaps(start, flight.end)
+                })
+                .map(|&index| Relation::SameHours(index)),
+        );
+        let same_samples = mark(&flight.reduced.segments)
+            .and_then(|mark| self.by_segments.get(&mark))
+            .filter(known)
+            .filter(|index| found.iter().all(|relation| relation.known() != Some(**index)));
+        found.extend(same_samples.map(|&index| Relation::SameSamples(index)));
+        found
     }
 
     /// Why a flight of this relation is not used; `None` where it is new, or a copy that nobody needs to hear of.

@@ -1,10 +1,14 @@
 //! Which model a report uses: that of its tail, otherwise that of its type.
 
+mod of_one_tail;
+
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::model_file::ModelFile;
 use crate::reading::FlightRead;
+
+pub use of_one_tail::{OfOneModel, ReportsByModel};
 
 /// The type of a flight whose source states none: it uses the model of its tail, or the only one there is.
 pub const TYPE_NOT_STATED: &str = "";
@@ -20,14 +24,12 @@ pub enum NoModel {
         /// Engines of the aircraft.
         expected: usize,
     },
-    /// The tail has a model, which is of another type.
-    #[error(
-        "found aircraft type {found:?}, expected {expected:?}, the type of tail {tail}'s model"
-    )]
+    /// The tail is of another type: by its model, or by its other reports.
+    #[error("found aircraft type {found:?}, expected {expected:?}, the type of tail {tail}")]
     TypeOfTail {
         /// Type in the report.
         found: String,
-        /// Type of the model.
+        /// Type of the tail.
         expected: String,
         /// The tail.
         tail: String,
@@ -41,6 +43,24 @@ pub enum NoModel {
         tail: String,
         /// Its type.
         aircraft_type: String,
+    },
+    /// The tail's own model cannot be read.
+    #[error("tail {tail} has no model: {reason}")]
+    Damaged {
+        /// The tail.
+        tail: String,
+        /// What is wrong with its file.
+        reason: String,
+    },
+    /// Effects were applied to the model that are another tail's.
+    #[error(
+        "the model has effects of tail {of} applied to it, which are not tail {tail}'s: use the model before they were applied"
+    )]
+    EffectsOfOtherTail {
+        /// Tail in the report.
+        tail: String,
+        /// Tail whose diagnosis was applied.
+        of: String,
     },
     /// No type, and several models.
     #[error(
@@ -83,7 +103,11 @@ pub struct SameClaim {
 
 /// The models of a run, each with its file, or what its caller calls it.
 #[derive(Clone, Debug)]
-pub struct Models(Vec<(PathBuf, ModelFile)>);
+pub struct Models {
+    models: Vec<(PathBuf, ModelFile)>,
+    /// Tails whose models cannot be read, and why.
+    damaged: BTreeMap<String, String>,
+}
 
 impl Models {
     /// Models of which no two claim the same tail or type.
@@ -102,7 +126,13 @@ impl Models {
             claims.insert(key, models.len());
             models.push((path, model));
         }
-        Ok(Self(models))
+        Ok(Self { models, damaged: BTreeMap::new() })
+    }
+
+    /// With tails whose models cannot be read, each with the reason: no other model stands in for theirs.
+    #[must_use]
+    pub fn with_damaged(self, damaged: BTreeMap<String, String>) -> Self {
+        Self { damaged, ..self }
     }
 
     /// The model for a flight: that of its tail, otherwise that of its type; with as many engines as the report has.
@@ -116,8 +146,23 @@ impl Models {
         Ok(model)
     }
 
+    /// The model that a tail of this type begins to learn with: as [`for_report`](Self::for_report), without effects of another
+    /// tail.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn to_begin_with(&self, tail: &str, aircraft_type: &str) -> Result<&ModelFile, NoModel> {
+        let model = self.for_report(tail, aircraft_type)?;
+        match model.tail_of_effects().filter(|of| *of != tail) {
+            Some(of) => {
+                Err(NoModel::EffectsOfOtherTail { tail: tail.to_owned(), of: of.to_owned() })
+            }
+            None => Ok(model),
+        }
+    }
+
     fn first_type(&self) -> &str {
-        self.0.first().map_or("", |(_, model)| model.initial.aircraft().type_code())
+        self.models.first().map_or("", |(_, model)| model.initial.aircraft().type_code())
     }
 
     /// The model for a report of this tail and type.
@@ -129,7 +174,10 @@ impl Models {
             aircraft_type == TYPE_NOT_STATED
                 || model.initial.aircraft().type_code() == aircraft_type
         };
-        let all = || self.0.iter().map(|(_, model)| model);
+        if let Some(reason) = self.damaged.get(tail) {
+            return Err(NoModel::Damaged { tail: tail.to_owned(), reason: reason.clone() });
+        }
+        let all = || self.models.iter().map(|(_, model)| model);
         if let Some(model) = all().find(|model| tail_of(model) == Some(tail)) {
             return if of_type(&model) {
                 Ok(model)

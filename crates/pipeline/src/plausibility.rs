@@ -7,13 +7,21 @@ use crate::evaluation::evaluate;
 use crate::models::Models;
 use crate::summary::{RefusedSummary, ReportsSummary};
 use effects::ExtendedModel;
-use flight::Severity;
+use flight::{Segment, Severity};
 use lut::Table;
 
 use crate::reading::{FlightRead, Reading, RefusedReport};
 
-/// A model and the table of it that flights are compared with.
-pub type Book<'m> = (&'m ExtendedModel, &'m Table);
+/// What the flights of a tail are compared with.
+#[derive(Clone, Copy, Debug)]
+pub struct Book<'m> {
+    /// Its model.
+    pub model: &'m ExtendedModel,
+    /// The drag table of it.
+    pub table: &'m Table,
+    /// Segments that the tail has learnt, where flights are to be learnt in addition: what it is known to be off its book is no slip.
+    pub learnt: Option<&'m [Segment]>,
+}
 
 /// All that is wrong with what was read, also against the models of the flights where there are some. `now_s` as for
 /// [`findings`].
@@ -26,7 +34,7 @@ pub fn check_document(
     if let Some(models) = models {
         let book_of = |flight: &FlightRead| {
             let model = models.for_flight(flight).ok()?;
-            Some((&model.initial, model.drag_coefficient()))
+            Some(Book { model: &model.initial, table: model.drag_coefficient(), learnt: None })
         };
         findings.extend(against_book(&reading.flights, book_of));
     }
@@ -56,21 +64,62 @@ pub fn against_book<'m>(
     flights: &[FlightRead],
     model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
 ) -> Vec<DataFinding> {
-    let mut tails: BTreeMap<&str, Vec<&FlightRead>> = BTreeMap::new();
+    judged(flights, model_of).into_iter().map(|judged| judged.finding).collect()
+}
+
+/// A finding against a book.
+struct Judged {
+    finding: DataFinding,
+    /// Whether the flights are a slip (units, mapping, another aircraft), which is not to be learnt.
+    is_slip: bool,
+}
+
+fn judged<'m>(
+    flights: &[FlightRead],
+    model_of: impl Fn(&FlightRead) -> Option<Book<'m>>,
+) -> Vec<Judged> {
+    let mut tails: BTreeMap<&str, Vec<(Book<'m>, &FlightRead)>> = BTreeMap::new();
     for flight in flights {
-        tails.entry(&flight.reduced.identity.tail).or_default().push(flight);
+        // What has no model, or another than the rest of its tail, is refused for that.
+        let Some(book) = model_of(flight) else { continue };
+        let of_tail = tails.entry(&flight.reduced.identity.tail).or_default();
+        if of_tail.first().is_none_or(|(first, _)| std::ptr::eq(first.model, book.model)) {
+            of_tail.push((book, flight));
+        }
     }
-    let mut findings = Vec::new();
+    let mut all = Vec::new();
     for (tail, mut of_tail) in tails {
-        let Some((model, table)) = of_tail.first().and_then(|flight| model_of(flight)) else {
-            continue;
-        };
-        of_tail.sort_by(|one, other| one.order(other));
-        let segments = of_tail.iter().flat_map(|flight| &flight.reduced.segments);
-        let evaluated = evaluate(model, table, segments);
-        findings.extend(book::against_book(tail, &evaluated));
+        let Some(&(book, _)) = of_tail.first() else { continue };
+        of_tail.sort_by(|(_, one), (_, other)| one.order(other));
+        let segments = of_tail.iter().flat_map(|(_, flight)| &flight.reduced.segments);
+        let found = book::against_book(tail, &evaluate(book.model, book.table, segments));
+        // All that was learnt is evaluated only where something is off.
+        if !found.is_empty() {
+            all.extend(in_the_light_of(&book, found, of_tail.len()));
+        }
     }
-    findings
+    all
+}
+
+/// What so many flights of a tail show, given what it has learnt before.
+fn in_the_light_of(book: &Book<'_>, found: Vec<DataFinding>, flights: usize) -> Vec<Judged> {
+    let learnt = book.learnt.map(|learnt| evaluate(book.model, book.table, learnt));
+    let is_known_inside = learnt.as_ref().is_none_or(|learnt| learnt.iter().any(Option::is_some));
+    let learnt = learnt.unwrap_or_default();
+    let judge = |finding: DataFinding| {
+        let is_slip = match finding.code {
+            book::DEVIATION if book::is_as_far_off(&finding, &learnt) => return None,
+            book::DEVIATION => true,
+            // One or two flights of a known aircraft may lie where it seldom is; nothing is learnt of them.
+            book::OUTSIDE => {
+                finding.severity >= Severity::Serious
+                    && (flights >= book::FLIGHTS_OUTSIDE || !is_known_inside)
+            }
+            _ => false,
+        };
+        Some(Judged { finding, is_slip })
+    };
+    found.into_iter().filter_map(judge).collect()
 }
 
 /// What happens to a tail that is absurdly far off its book.
@@ -91,8 +140,8 @@ pub fn set_aside_absurd<'m>(
     absurd: Absurd,
 ) -> String {
     let mut serious = findings(&reading.flights, None);
-    let of_book = against_book(&reading.flights, model_of);
-    serious.extend(of_book.iter().cloned());
+    let of_book = judged(&reading.flights, model_of);
+    serious.extend(of_book.iter().map(|judged| judged.finding.clone()));
     serious.retain(|finding| finding.severity >= Severity::Serious);
     let told = if serious.is_empty() { String::new() } else { crate::check::to_text(&serious) };
     if absurd == Absurd::Accept {
@@ -100,15 +149,8 @@ pub fn set_aside_absurd<'m>(
     }
     let refused: BTreeMap<String, String> = of_book
         .into_iter()
-        .filter(|finding| {
-            let flights = || reading.flights.iter().map(|flight| &flight.reduced.identity.tail);
-            finding.code == book::DEVIATION
-                || finding.code == book::OUTSIDE
-                    && finding.severity >= Severity::Serious
-                    && flights().filter(|tail| **tail == finding.tail).count()
-                        >= book::FLIGHTS_OUTSIDE
-        })
-        .map(|finding| {
+        .filter(|judged| judged.is_slip)
+        .map(|Judged { finding, .. }| {
             let reason = format!(
                 "{}: {}; likely {}; --accept uses it nevertheless",
                 finding.tail, finding.message, finding.likely_cause

@@ -15,8 +15,8 @@ use pipeline::evaluation::TailResult;
 use pipeline::known_flights::KnownFlights;
 use pipeline::merging::{self, Part};
 use pipeline::model_file::ModelFile;
-use pipeline::models::{Models, check_engines};
-use pipeline::plausibility::{self, Absurd};
+use pipeline::models::{Models, ReportsByModel, check_engines};
+use pipeline::plausibility::{self, Absurd, Book};
 use pipeline::reading::{FlightRead, Reading, RefusedReport};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -72,15 +72,12 @@ pub(crate) fn evaluate(
         let reading = flights.distinct();
         let mut refused = reading.refused.clone();
         let mut by_tail: BTreeMap<String, (&ModelFile, Vec<FlightRead>)> = BTreeMap::new();
-        for flight in &reading.flights {
-            match models.for_flight(flight) {
-                Ok(model) => by_tail
-                    .entry(flight.reduced.identity.tail.clone())
-                    .or_insert_with(|| (model, Vec::new()))
-                    .1
-                    .push(flight.clone()),
-                Err(reason) => refused.push(RefusedReport::whole(flight.path.clone(), reason)),
-            }
+        for (model, flight) in models.for_flights(reading.flights.clone(), &mut refused) {
+            by_tail
+                .entry(flight.reduced.identity.tail.clone())
+                .or_insert_with(|| (model, Vec::new()))
+                .1
+                .push(flight);
         }
         let read = by_tail.values().map(|(_, flights)| flights.len()).sum();
         let tails = by_tail
@@ -194,16 +191,12 @@ fn adapt_all(
     caller: &Caller,
 ) -> Result<Adapted, Failure> {
     let mut reports = Reports { refused: flights.reading.refused.clone(), ..Reports::default() };
-    let mut starts = Starts::new(models, how.law, &flights.criteria);
-    let mut by_tail: BTreeMap<String, (Start<'_>, Vec<FlightRead>)> = BTreeMap::new();
+    let mut starts = Starts::new(how.law, &flights.criteria);
+    let mut by_tail: BTreeMap<String, ReportsByModel<'_, FlightRead>> = BTreeMap::new();
     for flight in &flights.reading.flights {
         let tail = &flight.reduced.identity.tail;
-        match starts.start(tail, &flight.reduced.aircraft_type) {
-            Ok(start) => by_tail
-                .entry(tail.clone())
-                .or_insert_with(|| (start, Vec::new()))
-                .1
-                .push(flight.clone()),
+        match models.to_begin_with(tail, &flight.reduced.aircraft_type) {
+            Ok(model) => by_tail.entry(tail.clone()).or_default().add(model, flight.clone()),
             Err(reason) => reports.refused.push(RefusedReport::whole(flight.path.clone(), reason)),
         }
     }
@@ -211,8 +204,16 @@ fn adapt_all(
     let mut stored: BTreeMap<String, Tail> =
         begun.into_iter().map(|tail| (tail.result.tail.clone(), tail)).collect();
     let mut jobs = Vec::new();
-    for (tail, (start, flights)) in by_tail {
-        let stored = match stored.remove(&tail) {
+    for (tail, by_model) in by_tail {
+        let known = stored.remove(&tail);
+        let begun = known.as_ref().map(|known| known.begun.as_str());
+        let is_known = |model| begun == Some(starts.of_model(model).begun.as_str());
+        let Some(one) = by_model.of_one(&tail, is_known) else { continue };
+        let (start, flights) = (starts.of_model(one.model), one.reports);
+        reports.refused.extend(
+            one.strays.into_iter().map(|(flight, why)| RefusedReport::whole(flight.path, why)),
+        );
+        let stored = match known {
             None => None,
             Some(known) => {
                 check_begun_alike(&tail, &known, &start)?;
@@ -280,12 +281,17 @@ fn learn(job: Job<'_>, how: &How) -> Result<Outcome, Failure> {
         }
     }
     refuse_impossible(&mut reading, Timestamp::now());
-    let book = (&start.model.initial, start.model.initial.drag_table());
+    let model = &start.model.initial;
+    let learnt = stored.as_ref().map_or(&[][..], |(stored, _)| &stored.segments);
+    let book = Book { model, table: model.drag_table(), learnt: Some(learnt) };
     let findings = plausibility::set_aside_absurd(&mut reading, |_| Some(book), how.absurd);
     let mut sorting = Sorting::new(&tail, known);
     sorting.contradictions = how.contradictions;
     sorting.older = how.older;
     sorting.already_known = known_already.len();
+    for flight in &known_already {
+        sorting.is_at_hand(flight.reduced.identity.start, &flight.reduced.identity.flight);
+    }
     sorting.refused = reading.refused;
     let costs = CriteriaCosts::of_flights(&reading.flights);
     for flight in reading.flights {

@@ -12,7 +12,7 @@ use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::fleet_diagnosis::{DiagnosedFleet, diagnose_fleets, fleet_text};
 use pipeline::gaps_table;
-use pipeline::plausibility;
+use pipeline::plausibility::{self, Book};
 use pipeline::reading::FlightRead;
 use pipeline::summary::{RefusedSummary, ReportsSummary};
 use pyo3::prelude::*;
@@ -87,7 +87,7 @@ pub(crate) fn diagnose(
         let mut reading = flights.distinct().clone();
         let book_of = |flight: &FlightRead| {
             let model = models.for_flight(flight).ok()?;
-            Some((&model.initial, model.drag_coefficient()))
+            Some(Book { model: &model.initial, table: model.drag_coefficient(), learnt: None })
         };
         let findings = plausibility::set_aside_absurd(&mut reading, book_of, absurd);
         let groups = group(&models, &mut reading, &asked);

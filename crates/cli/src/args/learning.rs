@@ -71,7 +71,7 @@ pub(crate) struct AdaptArgs {
     /// Start over: an existing folder is kept under another name
     #[arg(long)]
     pub(crate) restart: bool,
-    /// Also learn tails that are more than 15 % off the book on average
+    /// Also learn tails that are more than 15 % off the book, and off what they are known to burn, on average
     #[arg(long)]
     pub(crate) accept: bool,
     /// Wait while another process writes the folder, instead of refusing

@@ -11,6 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use pipeline::adaptation::{LawAsked, Start, Starts};
 use pipeline::distinct::warn_of_copies;
+use pipeline::models::{Models, ReportsByModel};
 use pipeline::reading::Checks;
 use rayon::prelude::*;
 
@@ -53,14 +54,13 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     bar.finish();
     refused.extend(inputs.refused);
     let law = law_of(arguments);
-    let mut starts = Starts::new(&models, law, &arguments.reports.criteria.name);
-    let tails = choose(tails, &mut starts, &mut refused);
-    check_refused(&refused, files, arguments.reports.strict, tails.is_empty())?;
+    let by_model = with_models(tails, &models, &mut refused);
+    check_refused(&refused, files, arguments.reports.strict, by_model.is_empty())?;
     let beginning = if arguments.restart { Beginning::Restart } else { Beginning::Continue };
     let mut folder = Folder::open(&arguments.output, beginning, Busy::from_option(arguments.wait))?;
-    for (tail, (start, _)) in &tails {
-        check_begun_alike(arguments, &folder, tail, start)?;
-    }
+    let mut starts = Starts::new(law, &arguments.reports.criteria.name);
+    let tails = choose(by_model, &mut starts, &folder, &mut refused);
+    let tails = begun_alike(tails, arguments, &folder, &mut refused)?;
     let mut all: BTreeSet<String> = folder.tails();
     all.extend(tails.keys().cloned());
     crate::folder::names::check(&arguments.output, &all)?;
@@ -110,32 +110,81 @@ pub(crate) fn run(arguments: &AdaptArgs, progress: Progress) -> Result<Outcome, 
     Ok(Outcome { refused, ..Outcome::with_json(text, summary.to_json()) })
 }
 
+type ByModel<'a> = BTreeMap<String, ReportsByModel<'a, Head>>;
 type Chosen<'a> = BTreeMap<String, (Start<'a>, Vec<Head>)>;
 
-/// The state that each tail starts from; a report without a model is refused.
-fn choose<'a>(
+/// The model of each report; one without a model is refused.
+fn with_models<'a>(
     tails: BTreeMap<String, Vec<Head>>,
-    starts: &mut Starts<'a>,
+    models: &'a Models,
     refused: &mut Vec<RefusedReport>,
-) -> Chosen<'a> {
-    let mut chosen = Chosen::new();
+) -> ByModel<'a> {
+    let mut by_model = ByModel::new();
     for (tail, heads) in tails {
-        let mut start = None;
-        let mut kept = Vec::with_capacity(heads.len());
         for head in heads {
-            match starts.start(&tail, &head.aircraft_type) {
-                Ok(found) => {
-                    start.get_or_insert(found);
-                    kept.push(head);
-                }
+            match models.to_begin_with(&tail, &head.aircraft_type) {
+                Ok(model) => by_model.entry(tail.clone()).or_default().add(model, head),
                 Err(reason) => refused.push(RefusedReport::whole(head.path.into(), reason)),
             }
         }
-        if let Some(start) = start {
-            chosen.insert(tail, (start, kept));
-        }
+    }
+    by_model
+}
+
+/// The state that each tail starts from; a report of another type than the tail's is refused.
+fn choose<'a>(
+    by_model: ByModel<'a>,
+    starts: &mut Starts<'a>,
+    folder: &Folder,
+    refused: &mut Vec<RefusedReport>,
+) -> Chosen<'a> {
+    let mut chosen = Chosen::new();
+    for (tail, reports) in by_model {
+        let begun = folder.state_of(&tail).map(|state| state.begun.as_str());
+        let is_known = |model| begun == Some(starts.of_model(model).begun.as_str());
+        let Some(one) = reports.of_one(&tail, is_known) else { continue };
+        let strays = one.strays.into_iter();
+        refused.extend(strays.map(|(head, reason)| RefusedReport::whole(head.path.into(), reason)));
+        chosen.insert(tail, (starts.of_model(one.model), one.reports));
     }
     chosen
+}
+
+/// The tails that go on from what the folder has of them: those that it does not hold, or that were begun with the same. The
+/// reports of the others are refused, tail by tail.
+///
+/// # Errors
+/// What every known tail was begun with otherwise: then it is the run that asks for something else.
+fn begun_alike<'a>(
+    tails: Chosen<'a>,
+    arguments: &AdaptArgs,
+    folder: &Folder,
+    refused: &mut Vec<RefusedReport>,
+) -> Result<Chosen<'a>, Failure> {
+    let known = tails.keys().filter(|tail| folder.holds(tail)).count();
+    let mut otherwise = BTreeMap::new();
+    for (tail, (start, _)) in &tails {
+        if let Some((what, difference)) = difference(folder, tail, start)? {
+            otherwise.insert(tail.clone(), (what, difference));
+        }
+    }
+    if otherwise.len() == known
+        && let Some((tail, (what, difference))) = otherwise.pop_first()
+    {
+        let folder = show(&arguments.output);
+        let difference = format!("{difference} (tail {tail})");
+        return Err(Failure::BegunOtherwise { folder, what, difference });
+    }
+    let (others, alike): (Chosen<'_>, Chosen<'_>) =
+        tails.into_iter().partition(|(tail, _)| otherwise.contains_key(tail));
+    for (tail, (_, heads)) in others {
+        let Some((what, difference)) = otherwise.remove(&tail) else { continue };
+        let reason = format!("tail {tail} was begun with another {what}: {difference}");
+        refused.extend(
+            heads.into_iter().map(|head| RefusedReport::whole(head.path.into(), reason.clone())),
+        );
+    }
+    Ok(alike)
 }
 
 /// Learns every tail. Many tails are learnt side by side, each by one thread; a tail with a large share of all reports
@@ -166,24 +215,18 @@ const fn law_of(arguments: &AdaptArgs) -> LawAsked {
     }
 }
 
-/// A tail that the folder holds must have been begun with the same.
-fn check_begun_alike(
-    arguments: &AdaptArgs,
+/// What a tail that the folder holds was begun with otherwise, and both values.
+fn difference(
     folder: &Folder,
     tail: &str,
     start: &Start<'_>,
-) -> Result<(), Failure> {
+) -> Result<Option<(&'static str, String)>, Failure> {
     if !folder.holds(tail) || folder.state_of(tail).is_some_and(|s| s.begun == start.begun) {
-        return Ok(());
+        return Ok(None);
     }
     // A damaged tail is refused when its flights are.
-    let Ok(stored) = folder.load(tail) else { return Ok(()) };
-    match start.difference(tail, &stored.model).map_err(|error| tail::not_correctable(&error))? {
-        None => Ok(()),
-        Some((what, difference)) => {
-            Err(Failure::BegunOtherwise { folder: show(&arguments.output), what, difference })
-        }
-    }
+    let Ok(stored) = folder.load(tail) else { return Ok(None) };
+    start.difference(tail, &stored.model).map_err(|error| tail::not_correctable(&error))
 }
 
 fn check_threshold(arguments: &AdaptArgs) -> Result<(), Failure> {

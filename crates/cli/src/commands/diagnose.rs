@@ -30,7 +30,7 @@ use pipeline::diagnosis_groups::{Group, NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
 use pipeline::distinct::distinct;
 use pipeline::gaps_table;
-use pipeline::plausibility::{self, Absurd};
+use pipeline::plausibility::{self, Absurd, Book};
 use pipeline::reading::Checks;
 use pipeline::summary::{RefusedSummary, ReportsSummary, counted};
 
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let files = reading.files();
     let book_of = |flight: &FlightRead| {
         let model = models.for_flight(flight).ok()?;
-        Some((&model.initial, model.drag_coefficient()))
+        Some(Book { model: &model.initial, table: model.drag_coefficient(), learnt: None })
     };
     let absurd = if arguments.accept { Absurd::Accept } else { Absurd::Refuse };
     tell_serious(&plausibility::set_aside_absurd(&mut reading, book_of, absurd));

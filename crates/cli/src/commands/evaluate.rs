@@ -66,15 +66,12 @@ pub(crate) fn evaluate(
     let files = reading.files();
     let mut refused = reading.refused;
     let mut by_tail: BTreeMap<String, (ModelFile, Vec<FlightRead>)> = BTreeMap::new();
-    for flight in reading.flights {
-        match models.for_flight(&flight) {
-            Ok(model) => by_tail
-                .entry(flight.reduced.identity.tail.clone())
-                .or_insert_with(|| (model.clone(), Vec::new()))
-                .1
-                .push(flight),
-            Err(reason) => refused.push(RefusedReport::whole(flight.path, reason)),
-        }
+    for (model, flight) in models.for_flights(reading.flights, &mut refused) {
+        by_tail
+            .entry(flight.reduced.identity.tail.clone())
+            .or_insert_with(|| (model.clone(), Vec::new()))
+            .1
+            .push(flight);
     }
     refused.sort_by(|one, other| one.path.cmp(&other.path));
     check_refused(&refused, files, arguments.reports.strict, by_tail.is_empty())?;

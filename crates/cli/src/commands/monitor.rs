@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use crate::args::MonitorArgs;
 use crate::columns;
-use crate::commands::{Ending, Outcome, events_of, warn_of_events};
-use crate::failure::{Failure, show};
+use crate::commands::{Ending, Outcome, check_refused, events_of, warn_of_events};
+use crate::failure::{Failure, RefusedReport, refused_of, show};
 use crate::files::{make_folder, write_atomically, write_streamed};
 use crate::progress::Progress;
 use crate::terminal::neutral;
@@ -47,14 +47,15 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
         None => Vec::new(),
     };
     let causes = arguments.diagnosis.as_deref().map(Causes::read).transpose()?;
-    let read = loop {
+    let (read, refused) = loop {
         let tails = Tails::of(&arguments.folder)?;
-        match monitor_all(&tails, &events, &options, progress) {
-            // Another process stored a newer generation in the meantime.
-            Err(_) if tails.is_out_of_date() => {}
-            other => break other?,
+        let found = monitor_all(&tails, &events, &options, progress)?;
+        // Otherwise another process stored a newer generation in the meantime.
+        if found.1.is_empty() || !tails.is_out_of_date() {
+            break found;
         }
     };
+    check_refused(&refused, read.len() + refused.len(), false, read.is_empty())?;
     let mut documents = Vec::with_capacity(read.len());
     let mut alerts = Vec::new();
     for (tail, fired) in read {
@@ -82,7 +83,7 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
     let ending = if document.alerts.is_empty() { Ending::Done } else { Ending::Alerts };
     // Of a large fleet the document is hundreds of megabytes.
     let json = arguments.json.json.then(|| document.to_json());
-    Ok(Outcome { json, ending, ..Outcome::text(printed) })
+    Ok(Outcome { json, ending, refused, ..Outcome::text(printed) })
 }
 
 fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Result<(), Failure> {
@@ -109,27 +110,38 @@ fn write(folder: &Path, document: &MonitorDocument, options: &[String]) -> Resul
 
 type Found = (TailDocument, Vec<AlertDocument>);
 
+/// Every tail that has something to monitor, and those that are damaged: a tail costs itself, not the fleet.
 fn monitor_all(
     tails: &Tails,
     events: &[Event],
     options: &MonitorOptions,
     progress: Progress,
-) -> Result<Vec<Found>, Failure> {
+) -> Result<(Vec<Found>, Vec<RefusedReport>), Failure> {
     let places = tails.places()?;
     let bar = progress.bar(places.len(), "reading tails");
     // One tail at a time on each thread: memory does not grow with the fleet's segments.
-    let read = places
+    let read: Vec<Result<Option<Found>, RefusedReport>> = places
         .par_iter()
         .map(|place| {
-            let (tail, deviations) = tails.deviations(place, options)?;
-            let found = monitor_tail(&tail, &deviations, events, options)
-                .map_err(|error| Failure::bad_file(tails.folder(), error));
+            let found = tails.deviations(place, options).and_then(|(tail, deviations)| {
+                monitor_tail(&tail, &deviations, events, options)
+                    .map_err(|error| Failure::bad_file(tails.folder(), error))
+            });
             bar.step();
-            found
+            found.map_err(|failure| {
+                refused_of(failure, &format!("{} is not monitored", place.told()))
+            })
         })
-        .collect::<Result<Vec<_>, Failure>>()?;
+        .collect();
     bar.finish();
-    Ok(read.into_iter().flatten().collect())
+    let (mut found, mut refused) = (Vec::new(), Vec::new());
+    for one in read {
+        match one {
+            Ok(tail) => found.extend(tail),
+            Err(damaged) => refused.push(damaged),
+        }
+    }
+    Ok((found, refused))
 }
 
 fn monitor_tail(

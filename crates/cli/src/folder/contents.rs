@@ -14,28 +14,34 @@ use super::state::{self, DeviationsState, State, TailState};
 use crate::failure::Failure;
 use crate::files::TEMPORARY;
 
+/// Models of a folder, and the tails of which they are damaged, with the reason of each.
+#[derive(Debug, Default)]
+pub(crate) struct ModelsFound {
+    pub(crate) models: Vec<(PathBuf, ModelFile)>,
+    pub(crate) damaged: Vec<(String, Failure)>,
+}
+
 /// Models of a folder that has a state, in the order of tails, for commands that only read.
 ///
 /// # Errors
-/// A file that is damaged.
-pub(crate) fn models_of(folder: &Path) -> Result<Option<Vec<(PathBuf, ModelFile)>>, Failure> {
+/// A state that is damaged.
+pub(crate) fn models_of(folder: &Path) -> Result<Option<ModelsFound>, Failure> {
     loop {
         let Some(state) = state::read(folder)? else { return Ok(None) };
         warn_of_strangers(folder, &state);
-        let models = state
-            .tails
-            .values()
-            .map(|tail| {
-                let path = folder.join(&tail.model.file);
-                let bytes = state::bytes_of(&state, folder, &tail.model)?;
-                Ok((path.clone(), crate::models::model_of_bytes(&path, &bytes)?))
-            })
-            .collect::<Result<Vec<_>, Failure>>();
-        match models {
-            Ok(models) => return Ok(Some(models)),
-            // Another process may have stored a newer generation in the meantime.
-            Err(_) if is_superseded(folder, &state) => {}
-            Err(failure) => return Err(failure),
+        let mut found = ModelsFound::default();
+        for (tail, entry) in &state.tails {
+            let path = folder.join(&entry.model.file);
+            let model = state::bytes_of(&state, folder, &entry.model)
+                .and_then(|bytes| crate::models::model_of_bytes(&path, &bytes));
+            match model {
+                Ok(model) => found.models.push((path, model)),
+                Err(failure) => found.damaged.push((tail.clone(), failure)),
+            }
+        }
+        // Otherwise another process may have stored a newer generation in the meantime.
+        if found.damaged.is_empty() || !is_superseded(folder, &state) {
+            return Ok(Some(found));
         }
     }
 }

@@ -50,7 +50,8 @@ pub(crate) fn bytes_of(state: &State, folder: &Path, file: &FileState) -> Result
         path: crate::failure::show(&path),
         reason: "its SHA-256 is not that of STATE.ron: it was changed or damaged".to_owned(),
         help: Some(
-            "take it from a backup, or adapt again from the reports into another folder".to_owned(),
+            "take it from a backup, or adapt with --relearn and all reports of the tail: it is then learnt anew"
+                .to_owned(),
         ),
     })
 }

@@ -135,6 +135,11 @@ fn an_engine_effect_is_applied_and_adapt_leaves_drag_alone() {
     assert_eq!(verdict(&again)["kind"], "no_gap");
     assert!(bytes_below(&at("twice")).is_empty());
 
+    // Another tail of the type has no share in it.
+    adapt(&extended, &at("not_its_own"), &[at("flown/NEW")], &[])
+        .expect(2)
+        .says("effects of tail WORN applied to it, which are not tail NEW's");
+
     // Adapted without the effect, the engine's wear is charged to drag; with it, drag is left alone.
     adapt(&initial, &at("charged"), std::slice::from_ref(&worn), &[]).expect(0);
     adapt(&extended, &at("alone"), std::slice::from_ref(&worn), &[])

@@ -40,3 +40,4 @@ mod state;
 mod support;
 mod terminal;
 mod trial;
+mod versions;

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use crate::checksum::sha256;
 use crate::learning::{self, LawChoice, LearningError};
 use crate::model_file::{ModelFile, PaperSettings};
-use crate::models::{Models, NoModel};
 
 /// The law that tails are to learn by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +72,6 @@ impl Start<'_> {
 /// What the tails of a run begin with.
 #[derive(Debug)]
 pub struct Starts<'a> {
-    models: &'a Models,
     law: LawAsked,
     criteria: &'a str,
     /// SHA-256 of what the tails of a model begin with, by the model's place in memory.
@@ -81,17 +79,13 @@ pub struct Starts<'a> {
 }
 
 impl<'a> Starts<'a> {
-    /// Of these models, law and trim criteria (the name of a preset).
-    pub const fn new(models: &'a Models, law: LawAsked, criteria: &'a str) -> Self {
-        Self { models, law, criteria, begun: BTreeMap::new() }
+    /// By this law and these trim criteria (the name of a preset).
+    pub const fn new(law: LawAsked, criteria: &'a str) -> Self {
+        Self { law, criteria, begun: BTreeMap::new() }
     }
 
-    /// What a report of this tail and type begins with.
-    ///
-    /// # Errors
-    /// Why there is no model.
-    pub fn start(&mut self, tail: &str, aircraft_type: &str) -> Result<Start<'a>, NoModel> {
-        let model = self.models.for_report(tail, aircraft_type)?;
+    /// What the reports of a model begin with.
+    pub fn of_model(&mut self, model: &'a ModelFile) -> Start<'a> {
         let law = match self.law {
             LawAsked::Bayes => LawChoice::Bayes(model.settings.bayes),
             LawAsked::Paper { threshold_percent } => LawChoice::Paper(PaperSettings {
@@ -105,7 +99,7 @@ impl<'a> Starts<'a> {
             .entry(std::ptr::from_ref(model))
             .or_insert_with(|| begun_of(model, &law, criteria))
             .clone();
-        Ok(Start { model, law, criteria, begun })
+        Start { model, law, criteria, begun }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Which of a tail's reports are learnt: those that are neither known nor contradict what is known.
 
+use std::collections::BTreeSet;
+
 use flight::Timestamp;
 
 use crate::known_flights::{KnownFlights, Relation};
@@ -35,10 +37,12 @@ pub struct Sorting {
     pub contradictions: Contradictions,
     /// What happens to a flight older than the newest stored one.
     pub older: OlderFlights,
-    /// Flights to learn; with the number of the stored flight that each replaces first.
+    /// Flights to learn; with the number of the stored flight that each replaces, of several the first.
     pub new: Vec<(FlightRead, Option<usize>)>,
     /// Numbers of stored flights that are replaced.
     pub replaced: Vec<usize>,
+    /// START and name of stored flights whose reports are at hand as they were learnt.
+    at_hand: BTreeSet<(Timestamp, String)>,
     /// What is not learnt.
     pub refused: Vec<RefusedReport>,
     /// Flights that were known before.
@@ -65,6 +69,7 @@ impl Sorting {
             older: OlderFlights::Learn,
             new: Vec::new(),
             replaced: Vec::new(),
+            at_hand: BTreeSet::new(),
             refused: Vec::new(),
             already_known: 0,
             copies: 0,
@@ -74,36 +79,67 @@ impl Sorting {
         }
     }
 
+    /// Says of a stored flight that its report is at hand as it was learnt: no other version of it is right as well.
+    pub fn is_at_hand(&mut self, start: Timestamp, flight: &str) {
+        self.at_hand.insert((start, flight.to_owned()));
+    }
+
     /// Sorts the next report, in the order of flying.
     pub fn sort(&mut self, flight: FlightRead) {
-        match self.known.relation(&flight) {
-            Relation::New => {
-                if self.is_accepted_by_age(&flight) {
-                    self.accept(flight, None);
-                }
-            }
-            Relation::Same(index) if index < self.stored && !self.replaced.contains(&index) => {
-                self.already_known += 1;
-            }
-            Relation::Same(index) => self.copy(&flight, index),
-            relation @ (Relation::OtherContent(index)
-            | Relation::SameHours(index)
-            | Relation::SameSamples(index)) => {
-                if self.contradictions == Contradictions::Relearn
-                    && index < self.stored
-                    && !self.replaced.contains(&index)
-                {
-                    self.replaced.push(index);
-                    self.accept(flight, Some(index));
-                } else {
-                    let mut reason = self.known.objection(relation, &flight).unwrap_or_default();
-                    if index < self.stored {
-                        reason.push_str(" (--relearn learns this one in its place)");
-                    }
-                    self.refused.push(RefusedReport::whole(flight.path, reason));
-                }
-            }
+        let relations = self.known.relations(&flight);
+        match relations[..] {
+            [] => match self.in_hours_of_replaced(&flight) {
+                Some(index) => self.accept(flight, Some(index)),
+                None if self.is_accepted_by_age(&flight) => self.accept(flight, None),
+                None => {}
+            },
+            [Relation::Same(index), ..] if index < self.stored => self.already_known += 1,
+            [Relation::Same(index), ..] => self.copy(&flight, index),
+            _ => match self.objection(&relations, &flight) {
+                Some(reason) => self.refused.push(RefusedReport::whole(flight.path, reason)),
+                None => self.accept_in_place_of(flight, &relations),
+            },
         }
+    }
+
+    /// The replaced flight in whose hours another one lies, which takes its place as well.
+    fn in_hours_of_replaced(&self, flight: &FlightRead) -> Option<usize> {
+        let start = flight.reduced.identity.start;
+        let known = self.known.flights();
+        self.replaced.iter().copied().find(|index| known[*index].overlaps(start, flight.end))
+    }
+
+    /// Why a flight that contradicts known ones does not take their place; `None` where it does.
+    fn objection(&self, relations: &[Relation], flight: &FlightRead) -> Option<String> {
+        let stored =
+            |relation: &Relation| relation.known().is_some_and(|index| index < self.stored);
+        let told = |relation: Relation| self.known.objection(relation, flight).unwrap_or_default();
+        if let Some(relation) = relations.iter().find(|relation| !stored(relation)) {
+            return Some(told(*relation));
+        }
+        let first = *relations.first()?;
+        if self.contradictions == Contradictions::Refuse {
+            return Some(told(first) + " (--relearn learns this one in its place)");
+        }
+        let known = self.known.flights();
+        let is_at_hand = |relation: &&Relation| {
+            let flight = relation.known().map(|index| &known[index]);
+            flight.is_some_and(|one| self.at_hand.contains(&(one.start, one.entry.flight.clone())))
+        };
+        let at_hand = relations.iter().find(is_at_hand)?;
+        Some(
+            told(*at_hand)
+                + ", whose report is among these as it was learnt: leave one of the two out",
+        )
+    }
+
+    fn accept_in_place_of(&mut self, flight: FlightRead, relations: &[Relation]) {
+        let replaced: Vec<usize> = relations.iter().filter_map(|one| one.known()).collect();
+        for index in &replaced {
+            self.known.replace(*index);
+        }
+        self.replaced.extend(&replaced);
+        self.accept(flight, replaced.first().copied());
     }
 
     fn accept(&mut self, flight: FlightRead, replaces: Option<usize>) {

@@ -34,10 +34,24 @@ pub fn against_book(tail: &str, evaluated: &[Option<Evaluated>]) -> Vec<DataFind
         .collect()
 }
 
+/// Whether flights are as far off the book, within [`PLAUSIBLE_PERCENT`], as all that was learnt of the tail before: then it is the
+/// aircraft, or a book that somebody has accepted for it.
+#[must_use]
+pub fn is_as_far_off(found: &DataFinding, learnt: &[Option<Evaluated>]) -> bool {
+    let errors = learnt.iter().flatten().filter_map(|segment| segment.error_percent);
+    off_the_book(errors).is_some_and(|known| (found.size - known).abs() <= PLAUSIBLE_PERCENT)
+}
+
+/// Mean deviation of recorded fuel flow from the book, %.
+///
+/// Errors of predictions are shares of what was recorded, which no single segment makes large; the book is the whole here, or a flow
+/// that is halved would be −100 %.
+fn off_the_book(errors: impl Iterator<Item = f64>) -> Option<f64> {
+    Some(100.0 * (1.0 / (1.0 - mean(errors)? / 100.0) - 1.0))
+}
+
 fn deviation(tail: &str, errors: &[f64], lift: Option<f64>) -> Option<DataFinding> {
-    // Errors of predictions are shares of what was recorded, which no single segment makes large; the book is the whole here, or
-    // a flow that is halved would be −100 %.
-    let percent = 100.0 * (1.0 / (1.0 - mean(errors.iter().copied())? / 100.0) - 1.0);
+    let percent = off_the_book(errors.iter().copied())?;
     if percent.abs() <= PLAUSIBLE_PERCENT {
         return None;
     }

@@ -3,6 +3,7 @@
 use flight::{Report, Severity};
 
 use super::{Draft, mean};
+use crate::dates::{YEARS_OF_FLIGHTS, year_of};
 
 /// Lower heating values of jet fuel, MJ/kg: ASTM D1655 asks for 42.8 and more, measured batches reach 43.7.
 const LOWER_HEATING_VALUE_MJ_KG: (f64, f64) = (42.0, 44.5);
@@ -15,9 +16,6 @@ const FUEL_PER_ZERO_FUEL_MASS: f64 = 1.1;
 /// Fuel burnt in an hour per gross mass. g·TSFC·D/L: 14 mg/(N s) at a lift-to-drag ratio of 21 is 0.024; 24 at 9 is
 /// 0.094.
 const HOURLY_FUEL_PER_MASS: (f64, f64) = (0.020, 0.105);
-/// Years from which digital recordings with every column can come.
-const FIRST_YEAR: i32 = 1975;
-const LAST_YEAR: i32 = 2100;
 
 pub(super) fn check(report: &Report, flow_kg_s: &[f64]) -> Vec<Draft> {
     [heating_value(report), masses(report, flow_kg_s), date(report), duration(report)]
@@ -124,10 +122,8 @@ fn masses(report: &Report, flow_kg_s: &[f64]) -> Option<Draft> {
 
 fn date(report: &Report) -> Option<Draft> {
     let start = report.header().identity.start;
-    // RFC 3339 begins with the year; BC years are outside what an instant of a report can be.
-    let year: i32 =
-        start.to_string().split('-').next().and_then(|year| year.parse().ok()).unwrap_or(0);
-    if (FIRST_YEAR..LAST_YEAR).contains(&year) {
+    let year = year_of(start);
+    if YEARS_OF_FLIGHTS.contains(&year) {
         return None;
     }
     Some(Draft {

@@ -132,9 +132,14 @@ impl ModelFile {
 
     /// The tail that the model is of: whose diagnosis was applied to it, else whose flights it has learnt.
     pub fn tail(&self) -> Option<&str> {
-        let applied = self.applied.last().map(|record| record.diagnosis.tail.as_str());
         let learnt = self.learnt.as_ref().map(|learnt| learnt.tail.as_str());
-        applied.filter(|tail| *tail != POOL).or(learnt)
+        self.tail_of_effects().or(learnt)
+    }
+
+    /// The tail whose diagnosis was applied to it last; `None` without one, or where that was of a pool of tails.
+    pub fn tail_of_effects(&self) -> Option<&str> {
+        let applied = self.applied.last().map(|record| record.diagnosis.tail.as_str());
+        applied.filter(|tail| *tail != POOL)
     }
 
     /// What it has learnt, and the effects that it contains: "law bayes, 30 flights of N750CF learnt".

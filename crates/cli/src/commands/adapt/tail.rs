@@ -1,8 +1,11 @@
 //! One tail: its reports are read and sorted, its model learns, its files are written to the waiting room.
 
+mod known;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use flight::Segment;
 use pipeline::adaptation::{
     self, Contradictions, OlderFlights, RemainderChoice, Sorting, Start, StoredTail,
     refuse_impossible, result_of,
@@ -11,22 +14,23 @@ use pipeline::criteria_costs::CriteriaCosts;
 use pipeline::evaluation::TailResult;
 use pipeline::known_flights::KnownFlights;
 use pipeline::learning::LearningError;
-use pipeline::learnt_flights::{self, KnownFlight};
+use pipeline::learnt_flights;
 use pipeline::models::check_engines;
 use pipeline::monitoring::{flights_of, flights_to_csv};
-use pipeline::plausibility::{self, Absurd};
+use pipeline::plausibility::{self, Absurd, Book};
 use pipeline::segments_table;
 use rayon::prelude::*;
 
 use super::Run;
 use crate::commands::tell_serious;
-use crate::failure::{Failure, RefusedReport};
+use crate::failure::{Failure, RefusedReport, refused_of};
 use crate::files::file_stem_of_tail;
 use crate::folder::Folder;
 use crate::folder::state::{DeviationsState, TailState};
 use crate::reading::heads::Head;
 use crate::reading::{Buffers, FlightRead, Reading, Source};
 use crate::terminal::neutral;
+use known::{CopyOf, Known, without_copies};
 
 /// So many reports of a tail are read before the first of them is learnt.
 pub(super) const READ_AT_A_TIME: usize = 64;
@@ -87,16 +91,19 @@ impl Run<'_> {
         side_by_side: bool,
     ) -> Result<TailOutcome, Failure> {
         let paths: Vec<Box<Path>> = heads.iter().map(|head| head.path.clone()).collect();
-        let attempt = self.folder.flights(tail).and_then(|known| {
-            let (new, refused, already_known) = unknown(heads, &known, buffers);
-            let (new, copies) = without_copies(new, buffers);
-            let stored = match (self.folder.holds(tail), new.is_empty()) {
-                (true, false) => Some(self.folder.load(tail)?),
-                _ => None,
-            };
-            Ok((known, new, (refused, already_known, copies), stored))
+        // Of a damaged tail everything is read once more, if that is asked for.
+        let all = self.arguments.relearn.then(|| heads.clone());
+        let attempt = self.known(tail, heads, buffers).or_else(|failure| {
+            match all.filter(|all| self.holds_whole(tail, all)) {
+                Some(all) => {
+                    tracing::warn!("{failure}; tail {tail} is learnt anew from its reports");
+                    let (new, copies) = without_copies(all, buffers);
+                    Ok(Known { new, copies, ..Known::default() })
+                }
+                None => Err(failure),
+            }
         });
-        let (known, new, (refused, already_known, copies), stored) = match attempt {
+        let Known { flights: known, new, refused, known_again, copies, stored } = match attempt {
             Ok(found) => found,
             // A damaged tail costs itself, not the batch.
             Err(failure) => {
@@ -122,10 +129,15 @@ impl Run<'_> {
             sorting.contradictions = Contradictions::Relearn;
         }
         sorting.refused = refused;
-        sorting.already_known = already_known;
-        let reading = self.plausible(tail, start, &new, buffers, side_by_side);
+        sorting.already_known = known_again.len();
+        for (start, flight) in &known_again {
+            sorting.is_at_hand(*start, flight);
+        }
+        let reading = self.read(tail, start, &new, buffers, side_by_side);
+        let learnt = stored.as_ref().map_or(&[][..], |stored| &stored.segments);
+        let reading = self.plausible(reading, start, learnt);
         sorting.refused.extend(reading.refused);
-        let usable = already_known + reading.flights.len();
+        let usable = known_again.len() + reading.flights.len();
         let costs = CriteriaCosts::of_flights(&reading.flights);
         for flight in reading.flights {
             sorting.sort(flight);
@@ -145,8 +157,8 @@ impl Run<'_> {
         Ok(outcome)
     }
 
-    /// Reads a tail's reports and sets aside those that its model is not for, or whose dates or figures cannot be right.
-    fn plausible(
+    /// Reads a tail's reports and sets aside those that its model is not for.
+    fn read(
         &self,
         tail: &str,
         start: &Start<'_>,
@@ -171,8 +183,14 @@ impl Run<'_> {
                 }
             }
         }
+        reading
+    }
+
+    /// Sets aside flights whose dates or figures cannot be right, as the tail is known by what it has learnt.
+    fn plausible(&self, mut reading: Reading, start: &Start<'_>, learnt: &[Segment]) -> Reading {
         refuse_impossible(&mut reading, flight::Timestamp::now());
-        let book = (&start.model.initial, start.model.initial.drag_table());
+        let model = &start.model.initial;
+        let book = Book { model, table: model.drag_table(), learnt: Some(learnt) };
         let absurd = if self.arguments.accept { Absurd::Accept } else { Absurd::Refuse };
         tell_serious(&plausibility::set_aside_absurd(&mut reading, |_| Some(book), absurd));
         reading
@@ -223,13 +241,8 @@ impl Run<'_> {
             Ok(stored) => stored,
             // Damage is told in the night in which it is found, whatever is new.
             Err(failure) => {
-                let (path, reason) = match failure {
-                    Failure::BadFile { path, reason, .. }
-                    | Failure::Unreadable { path, reason } => (path, reason),
-                    other => (tail.to_owned(), other.to_string()),
-                };
-                let reason = format!("tail {tail} is not on the page: {reason}");
-                let refused = vec![RefusedReport::whole(path.into(), reason)];
+                let what = format!("tail {tail} is not on the page");
+                let refused = vec![refused_of(failure, &what)];
                 return Ok(TailOutcome { refused, ..self.untouched(tail) });
             }
         };
@@ -286,65 +299,6 @@ impl Run<'_> {
         )?;
         Ok(None)
     }
-}
-
-/// Reports of flights that are not known, or known with other content; and how many are known.
-fn unknown(
-    heads: Vec<Head>,
-    known: &[KnownFlight],
-    buffers: &mut Buffers,
-) -> (Vec<Head>, Vec<RefusedReport>, usize) {
-    if known.is_empty() {
-        return (heads, Vec::new(), 0);
-    }
-    let known = KnownFlights::new(known.to_vec());
-    let mut new = Vec::new();
-    let mut refused = Vec::new();
-    let mut already_known = 0;
-    for head in heads {
-        let Some(flight) = known.find(head.start, &head.flight) else {
-            new.push(head);
-            continue;
-        };
-        let same = match &head.read {
-            Some(read) => Ok(read.has_content(&flight.entry.content)),
-            None => buffers.content_of(&head.path).map(|content| content == flight.entry.content),
-        };
-        match same {
-            Ok(true) => already_known += 1,
-            Ok(false) => new.push(head),
-            Err(refusal) => refused.push(refusal),
-        }
-    }
-    (new, refused, already_known)
-}
-
-/// A report that holds what another report of the batch holds, and that other report.
-type CopyOf = (Box<Path>, Box<Path>);
-
-/// Reports without those that are byte for byte another one's copies: however many there are, each flight is read once.
-/// What cannot be read stays, and is refused where it is read.
-fn without_copies(heads: Vec<Head>, buffers: &mut Buffers) -> (Vec<Head>, Vec<CopyOf>) {
-    let is_one_flight =
-        |one: &Head, other: &Head| one.start == other.start && one.flight == other.flight;
-    let mut copies = Vec::new();
-    let mut is_copy = Vec::with_capacity(heads.len());
-    for of_flight in heads.chunk_by(is_one_flight) {
-        let mut contents: Vec<(String, &Path)> = Vec::new();
-        for head in of_flight {
-            let of_file = of_flight.len() > 1 && head.read.is_none();
-            let content = of_file.then(|| buffers.content_of(&head.path).ok()).flatten();
-            let original = contents.iter().find(|(known, _)| Some(known) == content.as_ref());
-            is_copy.push(original.is_some());
-            if let Some((_, original)) = original {
-                copies.push((head.path.clone(), Box::from(*original)));
-            } else if let Some(content) = content {
-                contents.push((content, &head.path));
-            }
-        }
-    }
-    let kept = heads.into_iter().zip(is_copy).filter(|(_, is_copy)| !is_copy);
-    (kept.map(|(head, _)| head).collect(), copies)
 }
 
 /// Path of a tail's own page below the folder.

@@ -28,6 +28,16 @@ pub(crate) enum Place<'a> {
     Model(PathBuf),
 }
 
+impl Place<'_> {
+    /// The tail, in words.
+    pub(crate) fn told(&self) -> String {
+        match self {
+            Self::State(_, tail, _) => format!("tail {tail}"),
+            Self::Model(_) => "this tail".to_owned(),
+        }
+    }
+}
+
 impl Tails {
     /// Looks what a folder holds.
     ///
