@@ -266,10 +266,10 @@ fn conclude(
     let leading = leading_columns(library, &analysis.models);
     let distances = Distances::from_gram(system.gram(None), system.design, leading)
         .ok_or(DiagnoseError::Degenerate)?;
-    let posteriors = dominant(system, analysis, library);
     let best = &analysis.models[0].0;
     let scale = noise_scale(analysis, best, system.gram(None).rows);
     let own = in_sample(problem, &best.hypothesis.columns, &best.sizes, scale, options.seed);
+    let posteriors = dominant(system, analysis, library, &own);
     let mut gap = gap_of(system, analysis, &own, scale);
     let exceeds = exceeds_uncertainty(&gap, unknown_square(system));
     let real = exceeds || is_real(analysis, &outside);

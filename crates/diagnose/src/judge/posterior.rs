@@ -15,7 +15,10 @@ use crate::priors::FLAT_RANGE;
 use crate::search::analyse::Analysis;
 use crate::search::outside::Outside;
 use crate::search::system::WhitenedSystem;
-use crate::thresholds::{FEWEST_CAUSES, LEAST_LISTED, LISTED_PROBABILITY, SCATTER_INTERVAL};
+use crate::thresholds::{
+    FEWEST_CAUSES, LEAST_LISTED, LEAST_MADE_SMALLER, LISTED_PROBABILITY, SCATTER_INTERVAL,
+    SMALLEST_GAP,
+};
 
 /// An effect with its posterior.
 #[derive(Clone, Debug)]
@@ -54,18 +57,64 @@ pub(crate) fn mean_square(system: &WhitenedSystem<'_>, column: usize) -> f64 {
     sum / segments.len() as f64
 }
 
-/// Probability of each effect to be the larger one of what acts, over models.
+/// How much effects have to make a gap smaller to be its cause.
+struct Explainable {
+    /// Mean square over fuel flow and the split between engines.
+    least: f64,
+}
+
+impl Explainable {
+    /// `None` where the gap is too small to ask.
+    fn new(own: &Shrinkage) -> Option<Self> {
+        let (before, floor) = (own.before(), own.floor());
+        let explainable = before - floor;
+        (explainable > SMALLEST_GAP * floor)
+            .then_some(Self { least: LEAST_MADE_SMALLER * explainable })
+    }
+
+    /// Whether a model's effects make the gap so much smaller. In a model with a background of small effects or a smooth function
+    /// that explains the gap, they need not: an effect that only mends where that fits badly is no cause, however surely it acts.
+    ///
+    /// ```text
+    /// Σ_channels mean(r² − (r − Σ θ·s)²) + τ² ≥ 0.1·(rms²_before − floor²)                        [diagnosis.60]
+    /// ```
+    fn is_explained(&self, system: &WhitenedSystem<'_>, scored: &ScoredHypothesis) -> bool {
+        let data = system.data;
+        let scatter = scored.hypothesis.flight_scatter_percent.map_or(0.0, |tau| tau / 100.0);
+        let named = || scored.hypothesis.columns.iter().zip(&scored.sizes);
+        let smaller: f64 = data
+            .segments
+            .iter()
+            .flat_map(|row| (0..=data.channels.contrasts).map(move |channel| (row, channel)))
+            .map(|(row, channel)| {
+                let of = |(&column, size): (&usize, &f64)| size * row.signatures[column][channel];
+                let (gap, change) = (row.residual[channel], named().map(of).sum::<f64>());
+                change * (2.0 * gap - change)
+            })
+            .sum();
+        smaller / data.segments.len() as f64 + scatter * scatter >= self.least
+    }
+}
+
+/// Probability of each effect to be the larger one of what acts, over models whose effects make the gap smaller.
 pub(crate) fn dominant(
     system: &WhitenedSystem<'_>,
     analysis: &Analysis,
     library: &Library,
+    own: &Shrinkage,
 ) -> Vec<Posterior> {
+    // What acts beside a guide's table is small next to it.
+    let explainable = Explainable::new(own).filter(|_| !system.is_book());
     let mean_squares: Vec<f64> =
         (0..library.columns.len()).map(|column| mean_square(system, column)).collect();
     // One entry per effect, flight-to-flight scatter last.
     let mut found: Vec<Option<Posterior>> = vec![None; library.effects.len() + 1];
     let flats = flat_probabilities(analysis, &mean_squares);
     for ((scored, probability), flat) in analysis.models.iter().zip(flats) {
+        let is_cause = |explainable: &Explainable| explainable.is_explained(system, scored);
+        if *probability > LEAST_LISTED && !explainable.as_ref().is_none_or(is_cause) {
+            continue;
+        }
         let mut shares: Vec<(f64, Option<usize>, usize)> = scored
             .hypothesis
             .columns
