@@ -1,5 +1,7 @@
 //! The gap month by month: whether it is still there, and whether what is named holds in the newest month.
 
+use std::collections::BTreeMap;
+
 use diagnose::SegmentGap;
 use flight::Timestamp;
 use monitor::Month;
@@ -26,12 +28,17 @@ pub struct MonthGap {
     pub after_ci95: Option<[f64; 2]>,
 }
 
-/// The months in which a tail flew, in order.
+/// The months in which a tail flew, in order; a flight is of the month of its first segment.
 #[must_use]
 pub fn months(segments: &[SegmentGap]) -> Vec<MonthGap> {
+    let mut begun: BTreeMap<usize, f64> = BTreeMap::new();
+    for segment in segments {
+        let first = begun.entry(segment.flight).or_insert(segment.date_s);
+        *first = first.min(segment.date_s);
+    }
     let month_of = |segment: &SegmentGap| {
         #[expect(clippy::cast_possible_truncation, reason = "seconds, far below 2^53")]
-        let time = Timestamp::from_second(segment.date_s as i64).ok()?;
+        let time = Timestamp::from_second(*begun.get(&segment.flight)? as i64).ok()?;
         Some(Month::from_timestamp(time))
     };
     let mut known: Vec<(Month, &SegmentGap)> =
@@ -111,6 +118,18 @@ mod tests {
         assert_eq!(january.after_ci95, Some([0.5, 0.5]));
         let february = &found[1];
         assert_eq!((february.after_percent, february.ci95), (Some(-0.25), None));
+    }
+
+    #[test]
+    fn a_flight_over_the_end_of_a_month_is_of_the_month_in_which_it_began() {
+        let found = months(&[
+            segment(0, "2026-02-01T00:30:00Z", 2.0, &[]),
+            segment(0, "2026-01-31T23:30:00Z", 1.0, &[]),
+            segment(1, "2026-02-01T08:00:00Z", 3.0, &[]),
+        ]);
+        let told: Vec<_> =
+            found.iter().map(|of| (of.month.as_str(), of.flights, of.segments)).collect();
+        assert_eq!(told, [("2026-01", 1, 2), ("2026-02", 1, 1)]);
     }
 
     #[test]
