@@ -1,5 +1,6 @@
 //! Sizes of each effect found, tail by tail.
 
+use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_document::MagnitudeRecord;
 use pipeline::fleet_diagnosis::{FleetTailRecord, size_words};
@@ -35,7 +36,7 @@ pub(super) fn panels(fleet: &Fleet<'_>) -> Markup {
                     (Key::Line, "mean after", "what all share"),
                 ]))
                 @for (place, effect) in fleet.effects.iter().take(MOST_PANELS).enumerate() {
-                    p.panel { (named(effect.id, effect.sign())) }
+                    p.panel { (title(effect)) }
                     div.scroll { (panel(fleet, effect, place)) }
                 }
                 @if fleet.effects.len() > MOST_PANELS {
@@ -49,10 +50,16 @@ pub(super) fn panels(fleet: &Fleet<'_>) -> Markup {
     }
 }
 
-impl Found<'_> {
-    /// A number of the sign that most of what was found has.
-    fn sign(&self) -> f64 {
-        self.findings.iter().map(|found| found.magnitude.value.signum()).sum()
+/// The effect in words at the sign of what was found; both where both were, each with its side of zero.
+fn title(effect: &Found<'_>) -> Markup {
+    let values = || effect.findings.iter().map(|found| found.magnitude.value);
+    let both = values().any(|value| value > 0.0) && values().any(|value| value < 0.0);
+    match EffectId::from_name(effect.id).filter(|_| both) {
+        Some(id) => html! {
+            b { "Above zero: " (id.phrase(1.0)) "; below: " (id.phrase(-1.0)) } " "
+            span.id { "(" (effect.id) ")" }
+        },
+        None => named(effect.id, values().sum()),
     }
 }
 

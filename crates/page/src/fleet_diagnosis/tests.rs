@@ -133,6 +133,22 @@ fn those_with_findings_come_first() {
     assert_eq!(rows.len(), 12);
 }
 
+/// One engine burns more on a tail and less on another: each is said at its own sign, and the chart says both.
+#[test]
+fn both_signs_of_an_effect_are_said_apart() {
+    let mut record = fleet(&names(12));
+    record.findings.retain(|found| found.tail.as_deref() != Some("T-010"));
+    record.findings.push(finding(Some("T-001"), 1, -2.0, &["tail", "sensor"]));
+    let page = page(&[record]);
+    let line = |words: &str| page.split(words).nth(1).unwrap().split("</div>").next().unwrap();
+    let (high, low) = (line("<b>SAT reads high</b>"), line("<b>SAT reads low</b>"));
+    assert!(high.contains("T-000") && !high.contains("T-001"), "{high}");
+    assert!(low.contains("T-001") && !low.contains("T-000"), "{low}");
+    assert!(page.contains("Above zero: SAT reads high; below: SAT reads low"), "{page}");
+    // Each may be a sensor: that none is off is not said beside it.
+    assert!(page.contains("None for certain") && !page.contains("None is found to be off"));
+}
+
 #[test]
 fn two_hundred_tails_can_be_mailed() {
     let mut names = names(200);

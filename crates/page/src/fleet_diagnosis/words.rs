@@ -6,7 +6,9 @@ use std::fmt::Write;
 use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_document::{SeparationRecord, TailDiagnosis};
-use pipeline::fleet_diagnosis::{FleetFindingRecord, TEACH_IT_FIRST, nothing_shared, size_words};
+use pipeline::fleet_diagnosis::{
+    FleetFindingRecord, FleetRecord, TEACH_IT_FIRST, nothing_shared, size_words,
+};
 
 use super::{Fleet, Found, Whose};
 use crate::text::{capitalised, counted};
@@ -33,7 +35,10 @@ pub(super) fn card(fleet: &Fleet<'_>) -> Markup {
             dt { "Which tails differ" }
             dd { @if aircraft.is_empty() { b { "None." } } @for line in &aircraft { (line) } }
             dt { "Which sensors" }
-            dd { @if sensors.is_empty() { b { "None is found to be off." } } @for line in &sensors { (line) } }
+            dd {
+                @if sensors.is_empty() { b { (no_sensor_for_certain(record)) } }
+                @for line in &sensors { (line) }
+            }
             dt { "How sure" } dd { (how_sure(fleet)) }
             dt { "What to do" } dd { (what_to_do(fleet)) }
             @if !record.left_out.is_empty() {
@@ -55,6 +60,17 @@ pub(super) fn unit_words<'a>(effect: &str, unit: &'a str) -> &'a str {
     EffectId::from_name(effect).map_or(unit, |id| id.unit_words())
 }
 
+/// Where no sensor is found to be off for certain, some of what differs may be one.
+fn no_sensor_for_certain(record: &FleetRecord) -> &'static str {
+    let is_open =
+        |found: &FleetFindingRecord| found.tail.is_some() && Whose::of(found) == Whose::Open;
+    if record.findings.iter().any(is_open) {
+        "None for certain; above it is said where a sensor may be what differs."
+    } else {
+        "None is found to be off."
+    }
+}
+
 fn shared(found: &FleetFindingRecord) -> Markup {
     let magnitude = &found.magnitude;
     html! { div {
@@ -72,19 +88,19 @@ fn or_others(found: &FleetFindingRecord) -> Markup {
     }
 }
 
-/// A line for each effect found on tails that are of such a kind; those that differ most first.
+/// A line for each effect and sign found on tails that are of such a kind, those that differ most first: one engine burns more
+/// on a tail, less on another.
 fn of_tails(fleet: &Fleet<'_>, is_such: impl Fn(Whose) -> bool) -> Vec<Markup> {
-    let line = |effect: &Found<'_>| {
-        let mut found: Vec<&FleetFindingRecord> = effect
-            .findings
-            .iter()
-            .filter(|found| found.tail.is_some() && is_such(Whose::of(found)))
-            .copied()
-            .collect();
+    let line = |(effect, sign): (&Found<'_>, f64)| {
+        let is_of = |found: &FleetFindingRecord| {
+            let of_sign = found.magnitude.value.is_sign_negative() == sign.is_sign_negative();
+            found.tail.is_some() && of_sign && is_such(Whose::of(found))
+        };
+        let mut found: Vec<&FleetFindingRecord> =
+            effect.findings.iter().filter(|found| is_of(found)).copied().collect();
         found.sort_by(|one, other| {
             other.magnitude.value.abs().total_cmp(&one.magnitude.value.abs())
         });
-        let sign = found.iter().map(|found| found.magnitude.value.signum()).sum();
         let told: Vec<String> =
             found.iter().take(TAILS_NAMED).map(|found| tail_words(found)).collect();
         let more = found.len().saturating_sub(TAILS_NAMED);
@@ -96,7 +112,8 @@ fn of_tails(fleet: &Fleet<'_>, is_such: impl Fn(Whose) -> bool) -> Vec<Markup> {
             } }
         })
     };
-    fleet.effects.iter().filter_map(line).collect()
+    let signs = fleet.effects.iter().flat_map(|effect| [(effect, 1.0), (effect, -1.0)]);
+    signs.filter_map(line).collect()
 }
 
 /// "F-3 +2.9 ± 0.4 K (the aircraft or a sensor)".
@@ -144,8 +161,9 @@ fn how_sure(fleet: &Fleet<'_>) -> String {
 fn what_to_do(fleet: &Fleet<'_>) -> Markup {
     let findings = &fleet.record.findings;
     let clear = |found: &&FleetFindingRecord| found.class.len() == 1;
-    let sensors =
-        findings.iter().any(|found| found.tail.is_some() && Whose::of(found) != Whose::Aircraft);
+    let on_tails = || findings.iter().filter(|found| found.tail.is_some()).map(Whose::of);
+    let sensors = on_tails().any(|whose| whose == Whose::Sensor);
+    let perhaps = on_tails().any(|whose| whose == Whose::Open);
     html! {
         @if !fleet.record.taught {
             div { (TEACH_IT_FIRST) }
@@ -160,6 +178,8 @@ fn what_to_do(fleet: &Fleet<'_>) -> Markup {
         }
         @if sensors {
             div { "Have the sensors named checked before the aircraft is blamed: a sensor's error changes what is recorded, not what is burnt." }
+        } @else if perhaps {
+            div { "Where it is the aircraft or a sensor, have the sensor checked first: its error changes what is recorded, not what is burnt." }
         }
         @if findings.iter().any(|found| found.class.len() > 1) {
             div { "What cannot be told apart is not applied; below is what would tell it." }
