@@ -1,7 +1,5 @@
 //! The document of a run, where one is asked for.
 
-use std::path::Path;
-
 use pipeline::summary::RefusedSummary;
 
 use crate::args::JsonWanted;
@@ -33,23 +31,18 @@ pub(crate) fn check(wanted: JsonWanted<'_>) -> Result<(), Failure> {
     }
 }
 
-/// Prints or writes the document of a run.
+/// Prints or writes the document of a run, and whether it got there: what the command wrote stays where standard output is full.
 ///
 /// # Errors
-/// A file, or standard output, that cannot be written.
-pub(crate) fn deliver(wanted: JsonWanted<'_>, outcome: &Outcome) -> Result<(), Failure> {
+/// A file that cannot be written.
+pub(crate) fn deliver(wanted: JsonWanted<'_>, outcome: &Outcome) -> Result<bool, Failure> {
     if wanted == JsonWanted::No {
-        return Ok(());
+        return Ok(true);
     }
     let document = harmless(&outcome.json.clone().unwrap_or_else(|| of_text(outcome)));
     match wanted {
-        JsonWanted::File(path) => write_atomically(path, &document),
-        _ => terminal::print_data(&document)
-            .or_else(|error| match error.kind() {
-                std::io::ErrorKind::BrokenPipe => Ok(()),
-                _ => Err(error),
-            })
-            .map_err(|error| Failure::unwritable(Path::new("standard output"), error)),
+        JsonWanted::File(path) => write_atomically(path, &document).map(|()| true),
+        _ => Ok(terminal::print_document(&document)),
     }
 }
 

@@ -52,7 +52,7 @@ pub fn read_columnar(bytes: &[u8]) {
 pub fn run() -> ExitCode {
     let arguments = match project::with_project(std::env::args_os().collect()) {
         Ok(arguments) => arguments,
-        Err(failure) => return ExitCode::from(print_result(Err(failure), Told::All)),
+        Err(failure) => return ExitCode::from(print_result(Err(failure), Told::All, true)),
     };
     // Never taken apart: that would be a tenth of a start.
     let grammar = Box::leak(Box::new(args::help::command_for(&arguments)));
@@ -66,8 +66,8 @@ pub fn run() -> ExitCode {
     let result = threads::in_pool(cli.common.threads, || {
         json::check(wanted)?;
         let outcome = run_command(&cli.command, progress)?;
-        json::deliver(wanted, &outcome)?;
-        Ok(outcome)
+        let is_delivered = json::deliver(wanted, &outcome)?;
+        Ok((outcome, is_delivered))
     });
     files::standard_input::forget();
     let told = match (cli.common.quiet, cli.command.prints_results()) {
@@ -78,7 +78,8 @@ pub fn run() -> ExitCode {
     if !cli.common.quiet {
         terminal::tell(&warnings.take());
     }
-    ExitCode::from(print_result(result, told))
+    let is_delivered = result.as_ref().map_or(true, |(_, is_delivered)| *is_delivered);
+    ExitCode::from(print_result(result.map(|(outcome, _)| outcome), told, is_delivered))
 }
 
 /// What a run tells when it is done.
@@ -150,11 +151,12 @@ fn start_logging(common: &args::Common) -> Warnings {
     warnings
 }
 
-/// Results to standard output, refusals and reasons to standard error; returns the exit status.
-fn print_result(result: Result<Outcome, Failure>, told: Told) -> u8 {
+/// Results to standard output, refusals and reasons to standard error; returns the exit status. A document may not have been
+/// delivered before.
+fn print_result(result: Result<Outcome, Failure>, told: Told, is_delivered: bool) -> u8 {
     let failure = match result {
         Ok(Outcome { text, refused, ending, .. }) => {
-            let is_delivered = told != Told::All || terminal::print(&text);
+            let is_delivered = is_delivered && (told != Told::All || terminal::print(&text));
             terminal::tell_refused(&refused);
             match ending {
                 Ending::Done if refused.is_empty() && is_delivered => return DONE,

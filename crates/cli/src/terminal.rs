@@ -93,7 +93,16 @@ fn width() -> usize {
 pub(crate) fn print(text: &str) -> bool {
     let dressed = Terminal::of_run().out.dress(text);
     let mut to = std::io::stdout();
-    match to.write_all(dressed.as_bytes()).and_then(|()| to.flush()) {
+    is_delivered(to.write_all(dressed.as_bytes()).and_then(|()| to.flush()))
+}
+
+/// The same of a document for programs.
+pub(crate) fn print_document(bytes: &[u8]) -> bool {
+    is_delivered(print_data(bytes).and_then(|()| std::io::stdout().flush()))
+}
+
+fn is_delivered(written: std::io::Result<()>) -> bool {
+    match written {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             tell(&format!("standard output cannot be written: {error}\n"));
             false

@@ -251,4 +251,10 @@ fn full_standard_streams_end_no_run() {
     assert_eq!(undelivered.status.code(), Some(1));
     let said = String::from_utf8_lossy(&undelivered.stderr).into_owned();
     assert!(said.contains("standard output cannot be written"), "{said}");
+    // A document is delivered as little, and what was done is done.
+    let document = run(&["effects", "--json"]).stdout(full()).output().unwrap();
+    assert_eq!(document.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&document.stderr).into_owned();
+    assert!(said.contains("standard output cannot be written"), "{said}");
+    assert!(!said.contains("nothing was changed"), "{said}");
 }
