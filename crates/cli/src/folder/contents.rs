@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use flight::Timestamp;
 use pipeline::adaptation::StoredTail;
 use pipeline::learnt_flights::{self, KnownFlight};
 use pipeline::model_file::ModelFile;
@@ -51,7 +50,7 @@ pub(crate) fn is_superseded(folder: &Path, state: &State) -> bool {
     state::read(folder).is_ok_and(|now| now.is_some_and(|now| now != *state))
 }
 
-/// What each flight of a tail shows, if there is an instant of those that began at or after it.
+/// What each flight of a tail shows.
 ///
 /// # Errors
 /// A file that is damaged.
@@ -59,11 +58,9 @@ pub(crate) fn deviations_of(
     state: &State,
     folder: &Path,
     of: &DeviationsState,
-    since: Option<Timestamp>,
 ) -> Result<Vec<MonitoredFlight>, Failure> {
     let bytes = state::bytes_of(state, folder, &of.file)?;
-    read_flights(&bytes, since)
-        .map_err(|reason| Failure::bad_file(&folder.join(&of.file.file), reason))
+    read_flights(&bytes).map_err(|reason| Failure::bad_file(&folder.join(&of.file.file), reason))
 }
 
 /// A tail's model, segments and flights.
@@ -84,7 +81,7 @@ pub(super) fn stored_tail(
     let segments = segments_table::read(&bytes).map_err(|error| Failure::bad_file(&path, error))?;
     let flights = flights_of(folder, state, tail, entry)?;
     let curve = match &entry.deviations {
-        Some(of) => match deviations_of(state, folder, of, None) {
+        Some(of) => match deviations_of(state, folder, of) {
             Ok(flights) => Some(curve_of_flights(&flights)),
             // Nothing is lost with it: all that it holds follows from model and segments.
             Err(failure) => {

@@ -73,12 +73,14 @@ impl TailDeviations {
         Self::of_flights(of_type, &result.model.told(), flights)
     }
 
-    /// Only the flights that began at or after an instant, if there is one.
+    /// Only the flights that began at or after an instant, if there is one; at the conditions of all flights all the same, so that
+    /// no level moves with the window.
     #[must_use]
     pub fn since(mut self, instant: Option<Timestamp>) -> Self {
-        let Some(instant) = instant else { return self };
-        self.flights.retain(|flight| flight.start >= instant);
-        Self::of_flights(&self.aircraft_type, &self.model, self.flights)
+        if let Some(instant) = instant {
+            self.flights.retain(|flight| flight.start >= instant);
+        }
+        self
     }
 
     /// The flights of a tail of this type, whose model has learnt so much in words.

@@ -68,15 +68,11 @@ fn deviation(
     columns.number(format!("{name}_scatter_percent2"), number(|shown| shown.scatter_percent2()));
 }
 
-/// The flights of a table, if there is an instant only those that began at or after it: earlier ones cost no more than their
-/// bytes.
+/// The flights of a table.
 ///
 /// # Errors
 /// What a field holds that it cannot, with its line.
-pub fn read_flights(
-    bytes: &[u8],
-    since: Option<Timestamp>,
-) -> Result<Vec<MonitoredFlight>, String> {
+pub fn read_flights(bytes: &[u8]) -> Result<Vec<MonitoredFlight>, String> {
     let mut reader = csv::ReaderBuilder::new().from_reader(bytes);
     let columns = reader.headers().map_err(|error| error.to_string())?.len();
     let engines = columns.saturating_sub(COLUMNS) / OF_A_DEVIATION;
@@ -86,12 +82,12 @@ pub fn read_flights(
     let mut flights = Vec::new();
     let mut record = csv::StringRecord::new();
     while reader.read_record(&mut record).map_err(|error| error.to_string())? {
-        let flight = Row { record: &record }.flight(engines, since).map_err(|field| {
+        let flight = Row { record: &record }.flight(engines).map_err(|field| {
             let line = record.position().map_or(0, csv::Position::line);
             let found = record.get(field).unwrap_or_default();
             format!("line {line}, field {}: found {found:?}", field + 1)
         })?;
-        flights.extend(flight);
+        flights.push(flight);
     }
     Ok(flights)
 }
@@ -102,20 +98,13 @@ struct Row<'r> {
 }
 
 impl Row<'_> {
-    fn flight(
-        &self,
-        engines: usize,
-        since: Option<Timestamp>,
-    ) -> Result<Option<MonitoredFlight>, usize> {
+    fn flight(&self, engines: usize) -> Result<MonitoredFlight, usize> {
         let start: Timestamp = self.text(1).parse().map_err(|_| 1_usize)?;
-        if since.is_some_and(|since| start < since) {
-            return Ok(None);
-        }
         let mut own = Vec::with_capacity(engines);
         for engine in 0..engines {
             own.extend(self.deviation(COLUMNS + OF_A_DEVIATION * engine, start)?);
         }
-        Ok(Some(MonitoredFlight {
+        Ok(MonitoredFlight {
             flight: csv_cell::read(self.text(0)).into_owned(),
             start,
             segments: self.count(2)?,
@@ -140,7 +129,7 @@ impl Row<'_> {
                 initial_fuel_flow_kg_s: self.number(21)?,
                 segments: self.count(22)?,
             },
-        }))
+        })
     }
 
     fn text(&self, field: usize) -> &str {
@@ -205,13 +194,9 @@ mod tests {
         for engines in [0, 2, 4] {
             let flights = [flight("a, \"b\"", engines), flight("=1+1", engines)];
             let csv = flights_to_csv(&flights);
-            assert_eq!(read_flights(&csv, None).unwrap(), flights, "{engines} engines");
-            let start = flights[0].start;
-            assert_eq!(read_flights(&csv, Some(start)).unwrap().len(), 2);
-            let later = start + jiff::SignedDuration::from_secs(1);
-            assert_eq!(read_flights(&csv, Some(later)).unwrap(), []);
+            assert_eq!(read_flights(&csv).unwrap(), flights, "{engines} engines");
         }
-        assert_eq!(read_flights(&flights_to_csv(&[]), None).unwrap(), []);
+        assert_eq!(read_flights(&flights_to_csv(&[])).unwrap(), []);
     }
 
     #[test]
@@ -222,10 +207,10 @@ mod tests {
             (",1234.5,", ",inf,", "line 2, field 16: found \"inf\""),
             ("2024-03-01T10:00:00Z", "noon", "line 2, field 2: found \"noon\""),
         ] {
-            let error = read_flights(csv.replacen(from, to, 1).as_bytes(), None).unwrap_err();
+            let error = read_flights(csv.replacen(from, to, 1).as_bytes()).unwrap_err();
             assert!(error.contains(place), "{error}");
         }
-        let error = read_flights(csv.replace(",mach,", ",").as_bytes(), None).unwrap_err();
+        let error = read_flights(csv.replace(",mach,", ",").as_bytes()).unwrap_err();
         assert!(error.contains("28 columns"), "{error}");
     }
 }

@@ -108,14 +108,15 @@ impl Tails {
         options: &MonitorOptions,
     ) -> Result<TailDeviations, Failure> {
         if let Some(of) = &entry.deviations {
-            match deviations_of(state, &self.folder, of, options.since) {
+            match deviations_of(state, &self.folder, of) {
                 Ok(mut flights) => {
                     if options.before_learning == BeforeLearning::LeaveOut {
                         for flight in &mut flights {
                             flight.before_learning = None;
                         }
                     }
-                    return Ok(TailDeviations::of_flights(&of.aircraft_type, &of.model, flights));
+                    return Ok(TailDeviations::of_flights(&of.aircraft_type, &of.model, flights)
+                        .since(options.since));
                 }
                 Err(failure) if self.is_out_of_date() => return Err(failure),
                 // All that it holds follows from model and segments, more slowly.
