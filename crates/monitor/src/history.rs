@@ -252,12 +252,13 @@ fn belong(change: &mut Change, events: &[usize]) {
 
 fn effect(event: usize, at_flight: &[usize], measured: &Levels) -> EventEffect {
     let first_flight = at_flight[event];
+    let place = measured.boundaries().iter().position(|boundary| *boundary == first_flight);
     let others = at_flight.iter().enumerate();
+    // Without a flight before and one after nothing is measured, and nothing together.
     let together_with = others
-        .filter(|(other, flight)| *other != event && **flight == first_flight)
+        .filter(|(other, flight)| place.is_some() && *other != event && **flight == first_flight)
         .map(|(other, _)| other)
         .collect();
-    let place = measured.boundaries().iter().position(|boundary| *boundary == first_flight);
     EventEffect {
         event,
         first_flight,
