@@ -276,7 +276,9 @@ fn how_to_read(adapted: bool) -> Markup {
                  (load sheet, heating value, sensors) does not average out within it: the interval counts flights, not segments."
             }
             dt { "fuel factor" }
-            dd { "By how many per cent predicted fuel flow has to be raised to be the recorded one: 1/(1 − deviation) − 1." }
+            dd { "By how many per cent predicted fuel flow has to be raised to be the recorded one: 1/(1 − deviation) − 1. It is of all flights at the \
+                conditions flown; " code { "monitor" } " gives that of the level now, at the tail's mean conditions, which is another \
+                where the tail has changed or flies other routes." }
             dt { "segment" }
             dd { "A stabilised piece of cruise, and the mean state over it." }
             @if adapted {

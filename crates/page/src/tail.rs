@@ -92,18 +92,17 @@ fn verdict(result: &TailResult, view: &TailView) -> Markup {
                 b {
                     @if within { "It burns what " (model) " predicts, as far as these flights tell" }
                     @else {
-                        "It burns " (format!("{:.2}", mean.abs())) " % " @if mean > 0.0 { "more" } @else { "less" }
-                        " than " (model) " predicts"
+                        "It burns " (format!("{:.2}", fuel_factor_percent(mean).abs())) " % "
+                        @if mean > 0.0 { "more" } @else { "less" } " than " (model) " predicts"
                     }
-                }
-                @if let Some(half) = half {
-                    " (" (signed(Some(mean - half))) " to " (signed(Some(mean + half))) " %, 95 %)"
                 }
                 ": fuel factor " (signed(Some(fuel_factor_percent(mean)))) " %"
                 @if let Some(half) = half {
                     " (" (signed(Some(fuel_factor_percent(mean - half)))) " to "
-                    (signed(Some(fuel_factor_percent(mean + half)))) " %)"
+                    (signed(Some(fuel_factor_percent(mean + half)))) " %, 95 %)"
                 }
+                ", mean of all flights. As an error, in % of recorded fuel flow: " (signed(Some(mean)))
+                @if let Some(half) = half { " ± " (plain(Some(half))) }
                 "."
                 @if let Some(period) = view.period() { " Flown " (period) "." }
             }

@@ -95,6 +95,12 @@ fn numbers_are_those_of_the_document() {
         assert!(page.contains(&format!("data-v=\"{std}\">{std:.2}</td>")), "{when} {std}");
     }
     assert!(page.contains(&format!("{} flights", json["tails"][0]["flights"])));
+    // An error e is a share of what was recorded; what is said of the prediction is e/(100 − e) of it.
+    let error = errors["before"]["mean"].as_f64().unwrap();
+    let of_predicted = 100.0 * error / (100.0 - error);
+    assert!((of_predicted - error).abs() > 0.01, "the two differ: {error}");
+    assert!(page.contains(&format!("It burns {of_predicted:.2} % more than")), "{of_predicted}");
+    assert!(page.contains(&format!("in % of recorded fuel flow: {error:+.2}")), "{error}");
 }
 
 #[test]
