@@ -6,6 +6,7 @@ use diagnose::Verdict;
 use maud::{Markup, html};
 use pipeline::diagnosed_tail::DiagnosedTail;
 use pipeline::diagnosis_figures::DiagnosisFigures;
+use pipeline::fleet_diagnosis::{FleetRecord, of_tail_words};
 use pipeline::summary::{ReportsSummary, counted};
 
 use crate::chart::dates;
@@ -29,12 +30,13 @@ const FEWEST_POINTS: usize = 100;
 const POINTS_OF_PAGE: usize = 20_000;
 
 /// The page of diagnoses: the counts of the reports behind them, each diagnosis with what its charts are drawn from (in the
-/// same order), and the options of the run in words.
+/// same order), the fleets that the tails were compared in (none where they were not), and the options of the run in words.
 #[must_use]
 pub fn diagnosis(
     reports: &ReportsSummary,
     diagnoses: &[DiagnosedTail],
     figures: &[DiagnosisFigures],
+    fleets: &[FleetRecord],
     options: &[String],
 ) -> String {
     let tails: Vec<Tail<'_>> = diagnoses
@@ -45,6 +47,7 @@ pub fn diagnosis(
             id: anchor(number),
             diagnosed,
             figures,
+            of_fleet: of_tail_words(fleets, diagnosed.name()),
             detail: if diagnoses.len() > TAILS_IN_FULL { Detail::Brief } else { Detail::Full },
             most_points: (POINTS_OF_PAGE / diagnoses.len()).clamp(FEWEST_POINTS, MOST_POINTS),
         })
@@ -87,6 +90,8 @@ struct Tail<'a> {
     id: String,
     diagnosed: &'a DiagnosedTail,
     figures: &'a DiagnosisFigures,
+    /// What the comparison with its type says of it.
+    of_fleet: Option<String>,
     /// Whether it has all charts and tables.
     detail: Detail,
     /// Segments drawn in a chart at most.
@@ -149,7 +154,7 @@ fn left_out(tail: &Tail<'_>) -> Markup {
 fn folded(tail: &Tail<'_>) -> Markup {
     html! {
         details.tail {
-            summary { h3 { (tail.diagnosed.name()) } " " span { (verdict::short(&tail.diagnosed.diagnosis)) } }
+            summary { h3 { (tail.diagnosed.name()) } " " span { (verdict::short_of(tail)) } }
             // The anchor is inside: following a link to it unfolds the section.
             div id=(tail.id) { (section(tail)) }
         }
@@ -165,7 +170,7 @@ fn section(tail: &Tail<'_>) -> Markup {
                 @if let Some(period) = tail.period() { ", " (period) }
                 ". " (figures.aircraft) " (" (figures.type_code) "); model: " (figures.model) "."
             }
-            (verdict::card(diagnosis))
+            (verdict::card(diagnosis, tail.of_fleet.as_deref()))
             @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) && !figures.segments.is_empty() {
                 (figures::figures(tail))
                 (causes::causes(diagnosis))

@@ -19,7 +19,8 @@ mod region;
 
 pub use consequence::follows;
 pub use form::{applied_form_words, form_name, form_parameters, form_words};
-pub(crate) use limits::{LEAST_TOLD, OTHERS_TOLD, PROBABLE, SEPARATIONS_TOLD, TOLD_APART};
+pub(crate) use limits::{LEAST_TOLD, OTHERS_TOLD, SEPARATIONS_TOLD, TOLD_APART};
+pub use limits::{NO_CAUSE_STANDS_OUT, is_open, stands_out};
 pub use region::{ENGINE_BOUNDS, bounds_name, region_words};
 
 /// What a verdict of no gap means: noise, or more than noise that is no effect.
@@ -76,7 +77,7 @@ fn found_words(diagnosis: &Diagnosis, found: &Found) -> String {
         }
         _ => format!("One of {}: {}.", joined(&found.class, ", "), undecided(found)),
     };
-    if found.probability >= PROBABLE
+    if stands_out(found.probability)
         && let Some(follows) = follows(found)
     {
         let _ = write!(words, " {follows}");
@@ -114,7 +115,7 @@ fn title(diagnosis: &Diagnosis, id: EffectId) -> String {
     format!("{} ({id})", id.phrase(size))
 }
 
-fn capital(words: &str) -> String {
+pub(crate) fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| {
         first.to_uppercase().collect::<String>() + letters.as_str()

@@ -21,7 +21,7 @@ mod text;
 
 pub use document::{FleetEffectRecord, FleetFindingRecord, FleetRecord, FleetTailRecord};
 pub use tables::fleet_table;
-pub use text::{TEACH_IT_FIRST, fleet_text, nothing_shared, size_words};
+pub use text::{TEACH_IT_FIRST, fleet_text, nothing_shared, of_tail_words, size_words};
 
 /// The diagnosis of all tails of a type.
 #[derive(Clone, Debug)]

@@ -10,7 +10,7 @@ use pipeline::diagnosis_document::{DiagnosisDocument, TailDiagnosis};
 use pipeline::diagnosis_figures::DiagnosisFigures;
 use pipeline::diagnosis_groups::{NoSuchEffect, effects_named, group};
 use pipeline::diagnosis_text;
-use pipeline::fleet_diagnosis::{DiagnosedFleet, diagnose_fleets, fleet_text};
+use pipeline::fleet_diagnosis::{DiagnosedFleet, FleetRecord, diagnose_fleets, fleet_text};
 use pipeline::gaps_table;
 use pipeline::plausibility::{self, Book};
 use pipeline::reading::FlightRead;
@@ -159,7 +159,8 @@ impl Diagnosed {
     /// `diagnosis.html`.
     fn page(&self) -> String {
         let words = self.asked.in_words(&self.criteria);
-        page::diagnosis(&self.reports, &self.diagnoses, &self.figures, &words)
+        let fleets: Vec<FleetRecord> = self.fleets.iter().map(FleetRecord::from).collect();
+        page::diagnosis(&self.reports, &self.diagnoses, &self.figures, &fleets, &words)
     }
 
     /// Charts of these tails' diagnoses as SVG, of these names or all; of all tails without any.

@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &DiagnoseArgs, progress: Progress) -> Result<Outcom
     let json = document.to_json().map_err(|error| Failure::unwritable(&path, error))?;
     write_atomically(&path, json.as_bytes())?;
     let options = asked.in_words(&arguments.reports.criteria.name);
-    let html = page::diagnosis(&reports, &diagnoses, &figures, &options);
+    let html = page::diagnosis(&reports, &diagnoses, &figures, document.fleets(), &options);
     write_atomically(&arguments.output.join("diagnosis.html"), neutral(&html).as_bytes())?;
     crate::columns::write(
         &gaps_table::table(&diagnoses, &figures),

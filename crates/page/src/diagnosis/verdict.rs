@@ -7,8 +7,8 @@ use flight::effect::EffectId;
 use maud::{Markup, html};
 use pipeline::diagnosis_text::described;
 use pipeline::diagnosis_words::{
-    NOT_RULED_OUT, advice, are_few, near_and_far, others_of_class, outside_words, region_words,
-    silent_words, told_size,
+    NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, advice, are_few, is_open, near_and_far, others_of_class,
+    outside_words, region_words, silent_words, told_size,
 };
 
 use super::Tail;
@@ -29,12 +29,15 @@ pub(super) fn effect(diagnosis: &Diagnosis, id: EffectId) -> Markup {
     html! { (id.phrase(size)) " " span.id { "(" (id) ")" } }
 }
 
-/// The answer, in a box.
-pub(super) fn card(diagnosis: &Diagnosis) -> Markup {
+/// The answer, in a box, with what the comparison with its type says of the tail.
+pub(super) fn card(diagnosis: &Diagnosis, of_fleet: Option<&str>) -> Markup {
     let gap = &diagnosis.gap;
     html! {
         dl.verdict.gap[gap.detected] {
             dt { "What" } dd { (what(diagnosis)) }
+            @if let Some(words) = of_fleet {
+                dt { "In its fleet" } dd { (words) " See " a href="fleet.html" { "fleet.html" } "." }
+            }
             @if let Some(place) = diagnosis.r#where.first() {
                 dt { "Where" }
                 dd {
@@ -52,7 +55,11 @@ pub(super) fn card(diagnosis: &Diagnosis) -> Markup {
             @if !matches!(diagnosis.verdict, Verdict::InsufficientData(_)) {
                 dt { "How sure" } dd { (how_sure(diagnosis)) }
             }
-            dt { "What to do" } dd { (advice(diagnosis)) }
+            dt { "What to do" }
+            dd {
+                @if of_fleet.is_some() && matches!(diagnosis.verdict, Verdict::NoGap) { "What its fleet's page says of it. By itself: " }
+                (advice(diagnosis))
+            }
         }
     }
 }
@@ -66,13 +73,14 @@ fn what(diagnosis: &Diagnosis) -> Markup {
             b { (outside_words(&diagnosis.outside)) } "."
         },
         Verdict::Effects(found) => html! {
+            @let open = is_open(&diagnosis.verdict);
+            @if open { b { (capitalised(NO_CAUSE_STANDS_OUT)) "." } " The most probable, not to be acted on: " }
             @for (place, id) in found.effects.iter().enumerate() {
                 @let size = size_words(diagnosis, *id);
                 @if place > 0 { ", together with " }
-                b {
-                    @let phrase = id.phrase(size.as_ref().map_or(1.0, |(size, _)| *size));
-                    @if place == 0 { (capitalised(&phrase)) } @else { (phrase) }
-                }
+                @let phrase = id.phrase(size.as_ref().map_or(1.0, |(size, _)| *size));
+                @if open { (phrase) }
+                @else { b { @if place == 0 { (capitalised(&phrase)) } @else { (phrase) } } }
                 " " span.id { "(" (id) ")" }
                 @if let Some((_, words)) = size { ": " (words) }
             }
@@ -94,7 +102,6 @@ fn how_sure(diagnosis: &Diagnosis) -> Markup {
                 @let others = others_of_class(found);
                 @let few = are_few(&others);
                 "Probability " (format!("{:.2}", found.probability)) @if few { " of the first" }
-                @if found.probability < 0.5 { ": no cause stands out, do not act on it" }
                 ". "
                 // Of a few the answer itself says that they are open, and advice says why.
                 @let [near, far] = near_and_far(found);
@@ -160,7 +167,7 @@ fn in_short(tails: &[Tail<'_>]) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for tail in tails {
         let kind = match &tail.diagnosed.diagnosis.verdict {
-            Verdict::Effects(found) => {
+            Verdict::Effects(found) if !is_open(&tail.diagnosed.diagnosis.verdict) => {
                 let diagnosis = &tail.diagnosed.diagnosis;
                 let size = |id| size_words(diagnosis, id).map_or(1.0, |(size, _)| size);
                 let named = found.effects.iter().map(|id| id.phrase(size(*id)));
@@ -186,7 +193,7 @@ fn index_row(tail: &Tail<'_>) -> Markup {
     html! {
         tr {
             th scope="row" { a href=(format!("#{}", tail.id)) { (tail.diagnosed.name()) } }
-            td style="text-align:left" { (short(diagnosis)) }
+            td style="text-align:left" { (short_of(tail)) }
             td { @if let Some(found) = diagnosis.verdict.found() { (format!("{:.2}", found.probability)) } @else { "–" } }
             @if is_computed {
                 td data-v=(gap.mean_percent) { (signed(Some(gap.mean_percent))) }
@@ -198,11 +205,18 @@ fn index_row(tail: &Tail<'_>) -> Markup {
     }
 }
 
-pub(super) fn short(diagnosis: &Diagnosis) -> String {
+/// A tail in a line: its verdict, and whether more was found where it was compared with its type.
+pub(super) fn short_of(tail: &Tail<'_>) -> String {
+    let verdict = short(&tail.diagnosed.diagnosis);
+    if tail.of_fleet.is_some() { format!("{verdict}; a finding in its fleet") } else { verdict }
+}
+
+fn short(diagnosis: &Diagnosis) -> String {
     match &diagnosis.verdict {
         Verdict::NoGap => "no gap".to_owned(),
         Verdict::InsufficientData(_) => "too little data".to_owned(),
         Verdict::OutsideLibrary(_) => "outside the library".to_owned(),
+        verdict @ Verdict::Effects(_) if is_open(verdict) => NO_CAUSE_STANDS_OUT.to_owned(),
         Verdict::Effects(found) => {
             let told = found.effects.iter().map(|id| {
                 let (size, words) = size_words(diagnosis, *id).unwrap_or((1.0, String::new()));
@@ -210,5 +224,97 @@ pub(super) fn short(diagnosis: &Diagnosis) -> String {
             });
             told.collect::<Vec<_>>().join("; ")
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use diagnose::{Cause, Found, Gap, OutsideLibrary};
+    use flight::effect::HiddenParameter;
+
+    use super::*;
+
+    /// Engine 2 burns more, with this probability.
+    fn diagnosis(probability: f64) -> Diagnosis {
+        let effect = EffectId::TsfcEngine(2);
+        Diagnosis {
+            flights: 20,
+            segments: 200,
+            gap: Gap {
+                mean_percent: 1.0,
+                rms_percent: 1.2,
+                rms_ci95: [1.0, 1.4],
+                noise_floor_rms_percent: 0.5,
+                floor_by_replicates_rms_percent: None,
+                floor_by_held_out_fit_rms_percent: None,
+                detected: true,
+                p_value: 0.001,
+            },
+            r#where: Vec::new(),
+            causes: vec![Cause {
+                effect,
+                probability,
+                probability_flat: probability,
+                class: vec![effect],
+                magnitude: Magnitude { value: 1.86, ci95: [1.2, 2.5] },
+                rms_after_percent: None,
+                closure: None,
+                hidden: HiddenParameter::None,
+            }],
+            contributions: Vec::new(),
+            not_testable: Vec::new(),
+            verdict: Verdict::Effects(Found {
+                effects: vec![effect],
+                class: vec![effect],
+                credible: Vec::new(),
+                probability,
+                beside: Vec::new(),
+                closure: None,
+                rest: None,
+                separations: Vec::new(),
+            }),
+            addition: None,
+            detectable: Vec::new(),
+            outside: OutsideLibrary {
+                probability: 0.0,
+                variable: None,
+                acts_on: None,
+                forms: Vec::new(),
+                addition: None,
+            },
+            held_out: Vec::new(),
+            left_out: BTreeMap::new(),
+            outliers: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_cause_that_does_not_stand_out_is_no_headline() {
+        let open = diagnosis(0.17);
+        let told = card(&open, None).into_string();
+        assert!(
+            told.contains("<b>No cause stands out.</b> The most probable, not to be acted on"),
+            "{told}"
+        );
+        assert!(!told.contains("<b>Engine 2") && told.contains("Probability 0.17"), "{told}");
+        assert_eq!(short(&open), "no cause stands out");
+        let sure = diagnosis(0.83);
+        let told = card(&sure, None).into_string();
+        assert!(
+            told.contains("<b>Engine 2 burns more</b>") && !told.contains("No cause"),
+            "{told}"
+        );
+        assert!(short(&sure).starts_with("engine 2 burns more: "), "{}", short(&sure));
+    }
+
+    #[test]
+    fn what_the_fleet_says_of_a_tail_is_pointed_to() {
+        let told = card(&diagnosis(0.83), Some("It differs from its type by: …."));
+        let told = told.into_string();
+        assert!(
+            told.contains("It differs from its type by: …. See <a href=\"fleet.html\">"),
+            "{told}"
+        );
     }
 }

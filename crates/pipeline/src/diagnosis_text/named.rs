@@ -5,9 +5,9 @@ use flight::effect::EffectId;
 
 use super::digits;
 use crate::diagnosis_words::{
-    LEAST_TOLD, NOT_RULED_OUT, OTHERS_TOLD, PROBABLE, SEPARATIONS_TOLD, TOLD_APART, are_few,
-    distances_words, follows, joined, measurement_words, near_and_far, others_of_class, told_size,
-    variable_words,
+    LEAST_TOLD, NO_CAUSE_STANDS_OUT, NOT_RULED_OUT, OTHERS_TOLD, SEPARATIONS_TOLD, TOLD_APART,
+    are_few, capital, distances_words, follows, is_open, joined, measurement_words, near_and_far,
+    others_of_class, told_size, variable_words,
 };
 
 /// A guide whose drag is off, and what acts in addition.
@@ -59,7 +59,7 @@ pub(super) fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
     if diagnosis.verdict.is_of_table() {
         return table_off(diagnosis, found);
     }
-    let open = found.probability < PROBABLE;
+    let open = is_open(&diagnosis.verdict);
     let others = others_of_class(found);
     let few = are_few(&others);
     let mut lines = Vec::new();
@@ -67,7 +67,8 @@ pub(super) fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
         let what = effect_told(diagnosis, *id);
         lines.push(if place == 0 && open {
             format!(
-                "No cause stands out. The most probable is {what}, probability {:.2}: do not act on it.",
+                "{}. The most probable is {what}, probability {:.2}: do not act on it.",
+                capital(NO_CAUSE_STANDS_OUT),
                 found.probability
             )
         } else if place == 0 && few {
@@ -80,7 +81,11 @@ pub(super) fn named(diagnosis: &Diagnosis, found: &Found) -> Vec<String> {
                     "between which these flights do not decide"
                 },
                 found.probability,
-                others.iter().map(|id| with_probability(diagnosis, *id)).collect::<Vec<_>>().join(", ")
+                others
+                    .iter()
+                    .map(|id| with_probability(diagnosis, *id))
+                    .collect::<Vec<_>>()
+                    .join(", ")
             )
         } else if place == 0 {
             format!("Cause: {what}, probability {:.2}.", found.probability)

@@ -3,8 +3,9 @@
 use core::fmt::Write;
 
 use diagnose::{FleetFinding, FleetLevel, Magnitude, ModelOf};
+use flight::effect::EffectId;
 
-use super::DiagnosedFleet;
+use super::{DiagnosedFleet, FleetRecord};
 use crate::summary::{aligned, counted};
 
 /// Most effects that the table of tails has columns for, the most frequent ones: what a terminal of usual width holds.
@@ -22,6 +23,34 @@ pub const fn nothing_shared(taught: bool) -> &'static str {
     } else {
         "Nothing that an error of the model's table would not explain."
     }
+}
+
+/// What the comparison with its type says of a tail, in a sentence, from a document; `None` where nothing was found on it.
+#[must_use]
+pub fn of_tail_words(fleets: &[FleetRecord], tail: &str) -> Option<String> {
+    let findings = fleets.iter().flat_map(|fleet| &fleet.findings);
+    let told: Vec<String> = findings
+        .filter(|found| found.tail.as_deref() == Some(tail))
+        .map(|found| {
+            let magnitude = &found.magnitude;
+            let (phrase, unit) = EffectId::from_name(&found.effect).map_or_else(
+                || (String::new(), magnitude.unit.as_str()),
+                |id| (format!("{}, ", id.phrase(magnitude.value)), id.unit_words()),
+            );
+            let whose = match (found.levels.len(), found.level.as_str()) {
+                (2.., _) => ", the aircraft or a sensor",
+                (_, "sensor") => ", a sensor",
+                _ => "",
+            };
+            format!(
+                "{phrase}{} {} {unit} (probability {:.2}{whose})",
+                found.effect,
+                size_words(magnitude.value, magnitude.ci95),
+                found.probability
+            )
+        })
+        .collect();
+    (!told.is_empty()).then(|| format!("It differs from its type by: {}.", told.join("; ")))
 }
 
 /// What was found, and a table of the tails on which something was.

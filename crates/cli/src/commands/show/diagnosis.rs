@@ -2,9 +2,13 @@
 
 use std::fmt::Write;
 
+use pipeline::diagnosis_words::{NO_CAUSE_STANDS_OUT, stands_out};
+use pipeline::fleet_diagnosis::{FleetRecord, of_tail_words};
 use pipeline::summary::{aligned, counted};
 use serde_json::Value;
 
+/// A guide that is off is named otherwise: the table is learnt first, whatever its probability.
+const DRAG_TABLE: &str = "drag_table";
 /// Causes that are listed; the others are in the document.
 const CAUSES: usize = 6;
 /// Regions that are listed.
@@ -14,8 +18,11 @@ const REGIONS: usize = 3;
 pub(super) fn text(document: &Value) -> String {
     let mut text = String::new();
     let diagnoses = document["diagnoses"].as_array().map_or(&[][..], Vec::as_slice);
+    // Documents of another program may have others; what cannot be read is not told.
+    let fleets: Vec<FleetRecord> =
+        serde_json::from_value(document["fleets"].clone()).unwrap_or_default();
     for diagnosis in diagnoses {
-        append(diagnosis, &mut text);
+        append(diagnosis, &fleets, &mut text);
         text.push('\n');
     }
     let _ = writeln!(
@@ -31,7 +38,7 @@ pub(super) fn text(document: &Value) -> String {
     text
 }
 
-fn append(diagnosis: &Value, text: &mut String) {
+fn append(diagnosis: &Value, fleets: &[FleetRecord], text: &mut String) {
     let compared = &diagnosis["compared"];
     let count =
         |value: &Value| value.as_u64().and_then(|count| usize::try_from(count).ok()).unwrap_or(0);
@@ -72,13 +79,30 @@ fn append(diagnosis: &Value, text: &mut String) {
         );
     }
     let verdict = &diagnosis["verdict"];
-    let effects = listed(&verdict["effects"]);
-    let named = if effects.is_empty() { String::new() } else { format!(", {effects}") };
-    let _ = writeln!(text, "  Verdict: {}{named}", words(&verdict["kind"]));
+    let _ = writeln!(text, "  Verdict: {}", verdict_words(verdict));
+    if let Some(told) = of_tail_words(fleets, &words(&diagnosis["tail"])) {
+        let _ = writeln!(text, "  In its fleet: {told}");
+    }
     if let Some(advice) = verdict["advice"].as_str().filter(|advice| !advice.is_empty()) {
         let _ = writeln!(text, "  To do: {advice}");
     }
     append_causes(diagnosis, text);
+}
+
+/// The kind with the effects named; where none of them stands out, that first.
+fn verdict_words(verdict: &Value) -> String {
+    let effects = listed(&verdict["effects"]);
+    let probability = verdict["probability"].as_f64().filter(|_| !effects.is_empty());
+    match probability {
+        Some(probability) if !stands_out(probability) && effects != DRAG_TABLE => format!(
+            "{NO_CAUSE_STANDS_OUT}; the most probable, not to be acted on: {effects}, probability {probability:.2}"
+        ),
+        Some(probability) => {
+            format!("{}, {effects}, probability {probability:.2}", words(&verdict["kind"]))
+        }
+        None if effects.is_empty() => words(&verdict["kind"]),
+        None => format!("{}, {effects}", words(&verdict["kind"])),
+    }
 }
 
 fn append_causes(diagnosis: &Value, text: &mut String) {
@@ -142,5 +166,31 @@ mod tests {
         assert!(shown.starts_with("T-1: 1 flight from – to –, 0 segments"), "{shown}");
         assert!(shown.contains("Verdict: –"), "{shown}");
         assert!(text(&serde_json::json!({})).starts_with("0 diagnoses"));
+    }
+    /// The same words as on the terminal of diagnose; what the comparison with its type found of a tail is said with it.
+    #[test]
+    fn an_open_verdict_and_what_a_fleet_says_are_told() {
+        let verdict = |probability: f64, effects: &[&str]| serde_json::json!({ "kind": "effects", "effects": effects, "probability": probability });
+        let told = verdict_words(&verdict(0.17, &["tsfc_engine_2"]));
+        assert!(told.starts_with("no cause stands out; the most probable, not to be"), "{told}");
+        assert_eq!(
+            verdict_words(&verdict(0.83, &["drag_factor"])),
+            "effects, drag_factor, probability 0.83"
+        );
+        let magnitude = serde_json::json!({ "value": -1.63, "unit": "%", "ci95": [-2.28, -0.98] });
+        let found = serde_json::json!({ "level": "tail", "levels": ["tail", "sensor"], "tail": "T-1",
+            "effect": "tsfc_engine_2", "class": ["tsfc_engine_2"], "probability": 0.997, "effect_probability": 0.5,
+            "magnitude": magnitude });
+        let fleet = serde_json::json!({ "aircraft_type": "C750", "model_of": "tail", "findings": [found],
+            "false_share": 0.0, "spread_of_typical": 0.1, "smooth_discrepancy_percent": 0.2, "effects": [],
+            "tails": [], "left_out": [] });
+        let silent = serde_json::json!({ "kind": "no_gap", "effects": [], "probability": 0.0 });
+        let shown = text(&serde_json::json!({ "fleets": [fleet], "diagnoses": [
+            { "tail": "T-1", "verdict": silent }, { "tail": "T-2", "verdict": silent }
+        ] }));
+        let told = "In its fleet: It differs from its type by: engine 2 burns less, tsfc_engine_2 -1.63 ± 0.65 % \
+                    (probability 1.00, the aircraft or a sensor).";
+        assert_eq!(shown.matches("In its fleet").count(), 1, "{shown}");
+        assert!(shown.contains(told), "{shown}");
     }
 }
