@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use flight::Timestamp;
 use maud::{Markup, html};
-use pipeline::monitoring::{Figure, MonitorDocument, TailDocument};
+use pipeline::monitoring::{Figure, MonitorDocument, TailDocument, monitored_fuel_factor_percent};
 
 use crate::chart::{Axis, Chart, Key, Mark, dates, legend, thinned};
 use crate::frame::framed;
@@ -30,9 +30,15 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
     let body = html! {
         p.run { (head(document, options)) }
         p.note {
-            "Deviation: 100 ln(recorded/predicted) fuel flow by the initial model, at each tail's mean conditions; positive, \
-             the aircraft burns more. ± is half a 95 % interval. DSR: deviation of specific range, negative is worse. \
-             Factor: mean of three months' fuel factors, rounded up to 0.1 %."
+            "Deviations, levels, trends and steps in tables and charts: 100 ln(recorded/predicted) fuel flow by the initial model, \
+             at each tail's mean conditions; positive, the aircraft burns more. Factors, and what is said in sentences: per cent of \
+             what is predicted, 100 (recorded/predicted − 1), which is " (signed(Some(monitored_fuel_factor_percent(10.0)))) " at a \
+             deviation of +10. ± is half a 95 % interval. DSR: deviation of specific range, negative is worse."
+        }
+        p.note {
+            "Level, factor and kg/flight are of now, the last flight; the factor, to plan with, is that of the level, rounded up to \
+             0.1 %. The report page of " code { "adapt" } " states the mean over all flights at the conditions flown, which is another \
+             figure where a tail has changed or flies other routes."
         }
         @if !document.alerts.is_empty() { (alerts(document)) }
         section {
@@ -44,7 +50,7 @@ pub fn monitoring(document: &MonitorDocument, options: &[String]) -> String {
             h2 { "Tails" }
             @for (place, (id, tail)) in tails.iter().enumerate() {
                 details.tail id=(format!("tail-{id}")) open[place == 0] {
-                    summary { h3 { (tail.tail) } span { (figure(&tail.deviation_percent)) " %" } }
+                    summary { h3 { (tail.tail) } span { "level " (figure(&tail.deviation_percent)) " %" } }
                     div {
                         (in_words(tail, document))
                         (chart(tail, *id, most)) (changes(tail)) (months(tail))
@@ -113,6 +119,7 @@ fn alerts(document: &MonitorDocument) -> Markup {
                         b { (alert.tail) } ": " (figure(&alert.size)) " " (alert.unit) " since " (day(&alert.since))
                         " (" code { (alert.rule) } ")"
                         @if !alert.likely_causes.is_empty() { "; likely " (alert.likely_causes.join(", ")) }
+                        @else if let Some(reason) = &alert.no_likely_cause { "; no likely cause: " (reason) }
                     }
                 }
             }
@@ -138,9 +145,9 @@ fn table(tails: &[(usize, &TailDocument)]) -> Markup {
         table.fleet.sort.data data-name="monitor" {
             thead {
                 tr {
-                    th scope="col" { "tail" } th scope="col" { "flights" } th scope="col" { "level, %" }
-                    th scope="col" { "trend, %/year" } th scope="col" { "DSR, %" } th scope="col" { "factor, %" }
-                    th scope="col" { "kg/flight" } th scope="col" { "last change" }
+                    th scope="col" { "tail" } th scope="col" { "flights" } th scope="col" { "level now, %" }
+                    th scope="col" { "factor now, %" } th scope="col" { "kg/flight now" } th scope="col" { "DSR, all flights, %" }
+                    th scope="col" { "trend, %/year" } th scope="col" { "last change" }
                 }
             }
             tbody {
@@ -149,10 +156,10 @@ fn table(tails: &[(usize, &TailDocument)]) -> Markup {
                         th scope="row" { a href=(format!("#tail-{id}")) { (tail.tail) } }
                         td data-v=(tail.flights.len()) { (tail.flights.len()) }
                         td data-v=(tail.deviation_percent.value) { (figure(&tail.deviation_percent)) }
-                        td data-v=(tail.trend_percent_per_year.value) { (figure(&tail.trend_percent_per_year)) }
-                        td data-v=(tail.airbus.specific_range_deviation_percent) { (signed(Some(tail.airbus.specific_range_deviation_percent))) }
-                        td data-v=(tail.airbus.retained_fuel_factor_percent) { (signed_tenths(tail.airbus.retained_fuel_factor_percent)) }
+                        td data-v=(tail.airbus.fuel_factor_percent.value) { (signed_tenths(tail.airbus.entered_fuel_factor_percent())) }
                         td data-v=(tail.cost.fuel_kg_per_flight) { (signed_tenths(tail.cost.fuel_kg_per_flight)) }
+                        td data-v=(tail.airbus.specific_range_deviation_percent) { (signed(Some(tail.airbus.specific_range_deviation_percent))) }
+                        td data-v=(tail.trend_percent_per_year.value) { (figure(&tail.trend_percent_per_year)) }
                         td {
                             @match tail.changes.iter().rfind(|change| change.engine.is_none()) {
                                 Some(change) => { (day(&change.since)) ": " (signed(Some(change.step_percent.value))) " %" }
@@ -238,6 +245,12 @@ fn pieces<'a>(course: &'a [(f64, f64)], changes: &[f64]) -> Vec<&'a [(f64, f64)]
 
 fn changes(tail: &TailDocument) -> Markup {
     html! {
+        @if tail.flights_without_engines > 0 {
+            p.note {
+                (tail.flights_without_engines) " of " (counted(tail.flights.len(), "flight"))
+                " without fuel flow of each engine: in the series of no engine."
+            }
+        }
         @if !tail.changes.is_empty() || !tail.events.is_empty() {
             ul {
                 @for change in &tail.changes {
@@ -273,7 +286,7 @@ fn months(tail: &TailDocument) -> Markup {
                     tr {
                         th scope="col" { "month" } th scope="col" { "flights" } th scope="col" { "deviation, %" }
                         th scope="col" { "before learning, %" } th scope="col" { "DSR, %" } th scope="col" { "fuel factor, %" }
-                        th scope="col" { "retained, %" }
+                        th scope="col" { "mean of 3 months, rounded up, %" }
                     }
                 }
                 tbody {

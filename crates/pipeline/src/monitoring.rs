@@ -13,6 +13,7 @@ mod tables;
 mod tail;
 mod text;
 
+pub use ::monitor::airbus::monitored_fuel_factor_percent;
 pub use deviations::{BeforeLearning, TailDeviations};
 pub use document::{
     AirbusTerms, AlertDocument, ChangeDocument, CostDocument, EventDocument, Figure, FleetDocument,

@@ -1,10 +1,11 @@
 //! From segments with a planted change to what `monitor` states.
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
 
+use monitor::FlightDeviation;
 use pipeline::model_file::{GuideRecord, LawSettings, ModelFile};
 use pipeline::monitoring::{
-    BeforeLearning, Event, MonitorDocument, MonitorOptions, MonitoredTail, Rows, TailDeviations,
-    TailDocument, tables, text,
+    BeforeLearning, Event, MeanConditions, MonitorDocument, MonitorOptions, MonitoredFlight,
+    MonitoredTail, Rows, TailDeviations, TailDocument, tables, text,
 };
 use test_support::fleet::{Background, Setup, exact_model, fly};
 
@@ -104,4 +105,155 @@ fn the_text_fits_a_terminal_and_tables_have_a_row_each() {
     assert!(document.fleet[0].between_tails_percent.abs() < 1e-12);
     let mean = document.fleet[0].deviation_percent.value;
     assert!((mean - document.tails[0].deviation_percent.value).abs() < 1e-9);
+}
+
+/// A flight a day from this one on, 100·ln(recorded/predicted) by the learnt model as given, and of two engines where they are.
+fn flight(start: &str, percent: f64, engines: Option<[f64; 2]>) -> MonitoredFlight {
+    let start = start.parse().unwrap();
+    let shown = |mean: f64| {
+        FlightDeviation::of_segments(start, &[mean - 0.1, mean, mean + 0.1, mean + 0.1, mean - 0.1])
+    };
+    MonitoredFlight {
+        flight: start.to_string(),
+        start,
+        segments: 5,
+        outside_table: 0,
+        initial: shown(percent),
+        learnt: shown(percent),
+        before_learning: None,
+        engines: engines.into_iter().flatten().filter_map(shown).collect(),
+        learnt_over_initial_percent: 0.0,
+        cruise_fuel_kg: 1000.0,
+        conditions: MeanConditions { segments: 5, ..MeanConditions::default() },
+    }
+}
+
+fn document(
+    flights: Vec<MonitoredFlight>,
+    events: &[Event],
+    options: &MonitorOptions,
+) -> TailDocument {
+    let deviations = TailDeviations::of_flights("C750", "law", flights).since(options.since);
+    MonitoredTail::new("T-1", &deviations, events).unwrap().unwrap().document(options)
+}
+
+/// Scatter of a flight, ± 0.4 %, without a pattern.
+fn scatter(k: usize) -> f64 {
+    [0.1, -0.4, 0.3, 0.0, -0.2, 0.4, -0.1, -0.3, 0.2, 0.0][k % 10]
+}
+
+/// Oracle: 100·(e^{d/100} − 1) of the level; a last month of one flight that is 2 % lower decides nothing.
+#[test]
+fn what_to_plan_with_follows_from_the_level_and_not_from_one_flight() {
+    let months = ["2018-02", "2018-03", "2018-04", "2018-05", "2018-06", "2018-07"];
+    let mut flights: Vec<MonitoredFlight> = months
+        .iter()
+        .flat_map(|month| [5, 20].map(|day| format!("{month}-{day:02}T08:00:00Z")))
+        .enumerate()
+        .map(|(k, start)| flight(&start, 9.6 + scatter(k), None))
+        .collect();
+    flights.push(flight("2019-01-10T08:00:00Z", 7.6, None));
+    let options =
+        MonitorOptions { basic_performance_factor_percent: Some(1.0), ..Default::default() };
+    let tail = document(flights, &[], &options);
+    let (level, factor) = (tail.deviation_percent, tail.airbus.fuel_factor_percent);
+    let of = |percent: f64| 100.0 * ((percent / 100.0).exp() - 1.0);
+    assert!((factor.value - of(level.value)).abs() < 1e-9, "{factor:?}");
+    assert!((factor.ci95[1] - of(level.ci95[1])).abs() < 1e-9, "{factor:?}");
+    let retained = tail.airbus.retained_fuel_factor_percent;
+    assert!(factor.value > retained + 1.0, "{factor:?} {retained}");
+    assert!((retained - 7.9).abs() < 1e-9, "as Airbus has it: {retained}");
+    let entered = tail.airbus.entered_fuel_factor_percent();
+    assert!((0.0..0.1).contains(&(entered - factor.value)), "{entered}");
+    assert!((tail.airbus.performance_factor_percent.unwrap() - 1.0 - entered).abs() < 1e-9);
+    let printed = text(&MonitorDocument::new(vec![tail], Vec::new()), Rows::Tails);
+    let told =
+        format!("T-1: PERF FACTOR {:+.1} %, basic +1.0 and factor {entered:+.1}", 1.0 + entered);
+    assert!(printed.contains(&told), "{printed}");
+}
+
+/// A recorder that sent one flight's total alone once took every engine's series of the tail with it.
+#[test]
+fn a_flight_without_flow_of_each_engine_is_left_out_of_the_engines_alone() {
+    let flights: Vec<MonitoredFlight> = (0..60)
+        .map(|k| {
+            let start = format!("2018-{:02}-{:02}T08:00:00Z", 3 + k / 28, 1 + k % 28);
+            let step = if k < 30 { 0.0 } else { 3.0 };
+            let engines = [scatter(k), scatter(k) + step];
+            flight(&start, scatter(k) + 0.5 * step, (k != 10).then_some(engines))
+        })
+        .collect();
+    let tail = document(flights, &[], &MonitorOptions::default());
+    assert_eq!(tail.flights_without_engines, 1);
+    let since: Vec<&String> =
+        tail.changes.iter().filter(|c| c.engine == Some(2)).map(|change| &change.since).collect();
+    assert_eq!(since, [&tail.flights[30].start]);
+    assert!(tail.changes.iter().all(|change| change.engine != Some(1)));
+    let engines = |k: usize| tail.flights[k].engines_percent.clone();
+    assert!(engines(10).is_empty(), "{:?}", engines(10));
+    assert!(
+        (engines(9)[1] - scatter(9)).abs() < 1e-9
+            && (engines(40)[1] - 3.0 - scatter(40)).abs() < 1e-9
+    );
+    assert!(tail.months.iter().all(|month| month.engines_percent.len() == 2));
+    let printed = text(&MonitorDocument::new(vec![tail], Vec::new()), Rows::Tails);
+    assert!(printed.contains("T-1: 1 of 60 flights without fuel flow of each engine"), "{printed}");
+}
+
+/// The learnt model holds 2 % more than the initial one on early routes, 6 % on late ones; by it nothing changes.
+#[test]
+fn a_window_does_not_move_the_level() {
+    let flights = || -> Vec<MonitoredFlight> {
+        (0..40)
+            .map(|k| {
+                let start = format!("2018-{:02}-{:02}T08:00:00Z", 3 + k / 20, 1 + k % 20);
+                let learnt_over_initial_percent = if k < 20 { 2.0 } else { 6.0 };
+                MonitoredFlight { learnt_over_initial_percent, ..flight(&start, scatter(k), None) }
+            })
+            .collect()
+    };
+    let all = document(flights(), &[], &MonitorOptions::default());
+    let since = Some("2018-04-01T00:00:00Z".parse().unwrap());
+    let window = document(flights(), &[], &MonitorOptions { since, ..Default::default() });
+    assert_eq!((all.flights.len(), window.flights.len()), (40, 20));
+    assert_eq!(window.reference, all.reference);
+    for (one, other) in window.flights.iter().zip(&all.flights[20..]) {
+        assert_eq!(one.deviation_percent.value.to_bits(), other.deviation_percent.value.to_bits());
+    }
+    assert!((window.deviation_percent.value - 4.0).abs() < 0.3, "{:?}", window.deviation_percent);
+}
+
+#[test]
+fn events_that_no_flights_surround_are_measured_neither_alone_nor_together() {
+    let flights: Vec<MonitoredFlight> = (0..20)
+        .map(|k| flight(&format!("2018-03-{:02}T08:00:00Z", 1 + k), scatter(k), None))
+        .collect();
+    let event = |time: &str, kind: &str| Event {
+        time: time.parse().unwrap(),
+        tail: "T-1".to_owned(),
+        kind: kind.to_owned(),
+        note: String::new(),
+    };
+    let events = [
+        event("2017-01-01T00:00:00Z", "weighing"),
+        event("2017-02-01T00:00:00Z", "wash"),
+        event("2019-01-13T00:00:00Z", "retrofit"),
+        event("2019-07-22T00:00:00Z", "wash"),
+    ];
+    let tail = document(flights, &events, &MonitorOptions::default());
+    assert_eq!(tail.events.len(), 4);
+    for event in &tail.events {
+        assert!(event.effect_percent.is_none() && event.together_with.is_empty(), "{event:?}");
+    }
+}
+
+#[test]
+fn a_document_reads_back() {
+    let document = MonitorDocument::new(vec![changed(&["wash"])], Vec::new());
+    let json = String::from_utf8(document.to_json()).unwrap();
+    let read = MonitorDocument::from_json(&json).unwrap();
+    for rows in [Rows::Tails, Rows::Months] {
+        assert_eq!(text(&read, rows), text(&document, rows));
+    }
+    assert!(MonitorDocument::from_json("{\"schema\": 1}").is_err());
 }

@@ -33,7 +33,7 @@ pub(crate) struct MonitorArgs {
     /// interval does not hold 0
     #[arg(long, value_name = "RULE")]
     pub(crate) alert: Vec<monitor::AlertRule>,
-    /// Newest diagnosis.json, or its folder: alerts name the causes that it names
+    /// Newest diagnosis.json, or its folder: alerts name the causes that stand out there
     #[arg(long, value_name = "DIAGNOSIS")]
     pub(crate) diagnosis: Option<PathBuf>,
     /// kg of CO₂ from a kg of fuel, to print CO₂ a year
@@ -45,7 +45,7 @@ pub(crate) struct MonitorArgs {
     /// Flights a year [default: as many as were recorded]
     #[arg(long, value_name = "N", value_parser = positive)]
     pub(crate) flights_per_year: Option<f64>,
-    /// Basic factor of the flight management system, %: adds the PERF FACTOR, basic plus monitored
+    /// Basic factor of the flight management system, %: adds the PERF FACTOR, basic plus that of the present level
     #[arg(long, value_name = "PCT", allow_negative_numbers = true)]
     pub(crate) basic_perf_factor: Option<f64>,
     /// Leave out the deviation by the model before it learnt each flight, for which a model whose folder an older program wrote

@@ -1,9 +1,13 @@
-//! A tail of `monitor.html` in plain words: what its fuel flow does, and what to do about it.
+//! A tail of `monitor.html` in plain words: what its fuel flow does, and what to do about it. Sentences have per cent of what is
+//! predicted; the figures that they are made from are logarithms.
 
-use pipeline::monitoring::{AlertDocument, ChangeDocument, Figure, FleetDocument, TailDocument};
+use pipeline::monitoring::{
+    AirbusTerms, AlertDocument, ChangeDocument, Figure, FleetDocument, TailDocument,
+    monitored_fuel_factor_percent,
+};
 
 use super::{day, figure};
-use crate::text::signed_tenths;
+use crate::text::{signed, signed_tenths};
 
 /// Whether the tail burns more or less than its initial model predicts.
 pub(super) fn burns_otherwise(tail: &TailDocument) -> bool {
@@ -15,14 +19,15 @@ pub(super) fn found(tail: &TailDocument) -> String {
     let level = &tail.deviation_percent;
     let level = if burns_otherwise(tail) {
         format!(
-            "Burns {} % {} than its initial model predicts",
-            size(level),
-            more_or_less(level.value)
+            "Burns {} % {} than its initial model predicts (level {})",
+            size(&of_predicted(level)),
+            more_or_less(level.value),
+            figure(level)
         )
     } else {
-        format!("Burns what its initial model predicts ({} %)", figure(level))
+        format!("Burns what its initial model predicts ({} %)", figure(&of_predicted(level)))
     };
-    let trend = &tail.trend_percent_per_year;
+    let trend = &of_predicted(&tail.trend_percent_per_year);
     if differs_from_zero(trend) {
         format!("{level}, and {} % {} each year.", size(trend), more_or_less(trend.value))
     } else {
@@ -39,7 +44,7 @@ pub(super) fn shared(tail: &TailDocument, fleets: &[FleetDocument]) -> Option<St
         format!(
             "The {} tails of its type burn {} % {} in the mean: that part is the model's rather than the aircraft's.",
             fleet.tails,
-            size(level),
+            size(&of_predicted(level)),
             more_or_less(level.value)
         )
     })
@@ -63,21 +68,26 @@ pub(super) fn advice(tail: &TailDocument, alerts: &[AlertDocument]) -> Vec<Strin
     }
     if burns_otherwise(tail) {
         told.push(cause(tail, alerts));
-        let factor = &tail.airbus;
-        told.push(match factor.performance_factor_percent {
-            Some(percent) => {
-                format!("Until then: FMS PERF FACTOR {} %.", signed_tenths(percent))
-            }
-            None => format!(
-                "Until then, plan with a fuel factor of {} %.",
-                signed_tenths(factor.retained_fuel_factor_percent)
-            ),
-        });
+        told.push(plan_with(&tail.airbus));
     }
     if told.is_empty() {
         told.push("Nothing to do.".to_owned());
     }
     told
+}
+
+/// The factor of the level with its interval, as it is entered: rounded up.
+fn plan_with(factor: &AirbusTerms) -> String {
+    let [low, high] = factor.fuel_factor_percent.ci95;
+    let interval = format!("95 % interval {} to {} %", signed(Some(low)), signed(Some(high)));
+    let entered = signed_tenths(factor.entered_fuel_factor_percent());
+    match factor.performance_factor_percent {
+        Some(percent) => format!(
+            "Until then: FMS PERF FACTOR {} %, with a fuel factor of {entered} % ({interval}).",
+            signed_tenths(percent)
+        ),
+        None => format!("Until then, plan with a fuel factor of {entered} % ({interval})."),
+    }
 }
 
 fn look_up(change: &ChangeDocument) -> String {
@@ -86,20 +96,26 @@ fn look_up(change: &ChangeDocument) -> String {
         "Look up what was done between {} and {}: the fuel flow{of} changed by {} %, and no event states why.",
         day(&change.since_ci95[0]),
         day(&change.since_ci95[1]),
-        figure(&change.step_percent)
+        figure(&of_predicted(&change.step_percent))
     )
 }
 
 /// Where the cause is named, or how to find it.
 fn cause(tail: &TailDocument, alerts: &[AlertDocument]) -> String {
-    let named = alerts
-        .iter()
-        .find(|alert| alert.tail == tail.tail && !alert.likely_causes.is_empty())
-        .map(|alert| alert.likely_causes.join(", "));
-    match named {
-        Some(causes) => format!("The newest diagnosis says {causes}: its page says what to do."),
+    let of_tail = || alerts.iter().filter(|alert| alert.tail == tail.tail);
+    if let Some(alert) = of_tail().find(|alert| !alert.likely_causes.is_empty()) {
+        let causes = alert.likely_causes.join(", ");
+        return format!("The newest diagnosis says {causes}: its page says what to do.");
+    }
+    match of_tail().find_map(|alert| alert.no_likely_cause.as_ref()) {
+        Some(reason) => format!("The newest diagnosis names no cause: {reason}."),
         None => "Find the cause: cruisefit diagnose with this tail's reports.".to_owned(),
     }
+}
+
+/// 100 ln(recorded/predicted) as per cent of what is predicted; a trend or a step, of what was burnt before it.
+fn of_predicted(figure: &Figure) -> Figure {
+    figure.map(monitored_fuel_factor_percent)
 }
 
 fn differs_from_zero(figure: &Figure) -> bool {
@@ -133,7 +149,7 @@ mod tests {
             "trend_percent_per_year": figure(trend.0, trend.1),
             "within_flight_percent": 0.0, "between_flights_percent": 0.0, "correlation": 0.0,
             "airbus": { "specific_range_deviation_percent": 0.0, "specific_range_deviation_std_percent": null,
-                "readings": 1, "monitored_fuel_factor_percent": figure(1.2, 0.2),
+                "readings": 1, "fuel_factor_percent": figure(1.2072, 0.2012), "monitored_fuel_factor_percent": figure(1.2, 0.2),
                 "retained_fuel_factor_percent": 1.3, "performance_factor_percent": null },
             "cost": { "flights_per_year": null, "fuel_kg_per_flight": 1.0, "fuel_kg_per_year": null,
                 "co2_kg_per_year": null, "price_per_year": null },
@@ -170,11 +186,40 @@ mod tests {
             months: Vec::new(),
         };
         let told = shared(&tail, &[fleet(8, 8.0)]).unwrap();
-        assert!(told.starts_with("The 8 tails of its type burn 8.00 ± 0.50 % more"), "{told}");
+        assert!(told.starts_with("The 8 tails of its type burn 8.33 ± 0.54 % more"), "{told}");
         // A tail alone, a fleet that burns as predicted, one that burns less: no part of this is shared.
         for other in [fleet(1, 9.2), fleet(8, 0.3), fleet(8, -1.0)] {
             assert_eq!(shared(&tail, &[other]), None);
         }
+    }
+
+    /// By hand: e^0.0961 = 1.100869, e^0.1032 = 1.108713; 9.61 alone would be the share of neither flow.
+    #[test]
+    fn what_is_said_is_per_cent_of_what_is_predicted() {
+        let tail = tail((9.61, 0.71), (0.0, 1.0), &serde_json::json!([]));
+        assert!(
+            found(&tail).starts_with(
+                "Burns 10.09 ± 0.78 % more than its initial model predicts (level +9.61 ± 0.71);"
+            ),
+            "{}",
+            found(&tail)
+        );
+    }
+
+    #[test]
+    fn a_diagnosis_that_names_none_says_why() {
+        let tail = tail((1.2, 0.2), (0.0, 1.0), &serde_json::json!([]));
+        let alert = AlertDocument {
+            tail: "N1".to_owned(),
+            rule: "deviation=1".to_owned(),
+            size: tail.deviation_percent,
+            unit: "%".to_owned(),
+            since: tail.from.clone(),
+            likely_causes: Vec::new(),
+            no_likely_cause: Some("no cause stands out".to_owned()),
+        };
+        let told = advice(&tail, &[alert]);
+        assert_eq!(told[0], "The newest diagnosis names no cause: no cause stands out.");
     }
 
     #[test]
@@ -187,13 +232,17 @@ mod tests {
         let tail = tail((1.2, 0.2), (0.5, 0.1), &serde_json::json!(changes));
         assert_eq!(
             found(&tail),
-            "Burns 1.20 ± 0.20 % more than its initial model predicts, and 0.50 ± 0.10 % more each year."
+            "Burns 1.21 ± 0.20 % more than its initial model predicts (level +1.20 ± 0.20), and 0.50 ± 0.10 % more each year."
         );
         let told = advice(&tail, &[]);
         assert_eq!(told.len(), 4, "{told:?}");
         assert!(told[0].contains("2026-02-05") && told[0].contains("engine 2"), "{told:?}");
         assert!(told[2].starts_with("Find the cause"), "{told:?}");
-        assert!(told[3].ends_with("a fuel factor of +1.3 %."), "{told:?}");
+        assert!(
+            told[3]
+                .ends_with("plan with a fuel factor of +1.3 % (95 % interval +1.01 to +1.41 %)."),
+            "{told:?}"
+        );
     }
 
     #[test]
@@ -203,12 +252,13 @@ mod tests {
             tail: name.to_owned(),
             rule: "deviation=1".to_owned(),
             size: tail.deviation_percent,
-            unit: "%",
+            unit: "%".to_owned(),
             since: tail.from.clone(),
             likely_causes: vec![format!("cause_of_{name}")],
+            no_likely_cause: None,
         };
         let told = advice(&tail, &[alert("N2"), alert("N1")]);
         assert!(told[0].contains("cause_of_N1"), "{told:?}");
-        assert!(found(&tail).starts_with("Burns 1.20 ± 0.20 % less"), "{}", found(&tail));
+        assert!(found(&tail).starts_with("Burns 1.19 ± 0.20 % less"), "{}", found(&tail));
     }
 }

@@ -1,6 +1,6 @@
 //! What `monitor` found, as types that become JSON, tables and text.
 
-use monitor::{Estimate, FleetMean, fleet_mean};
+use monitor::{Estimate, FleetMean, airbus, fleet_mean};
 use serde::{Deserialize, Serialize};
 
 use super::flights::MeanConditions;
@@ -9,7 +9,7 @@ use super::flights::MeanConditions;
 pub const SCHEMA: &str = "cruisefit.monitor/1";
 
 /// A value with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
     /// The value.
     pub value: f64,
@@ -86,6 +86,9 @@ pub struct TailDocument {
     pub cost: CostDocument,
     /// Changes, of all engines together and engine by engine.
     pub changes: Vec<ChangeDocument>,
+    /// Flights without fuel flow of each engine, where others have it: they are in the series of no engine.
+    #[serde(default)]
+    pub flights_without_engines: usize,
     /// Recorded events.
     pub events: Vec<EventDocument>,
     /// Months.
@@ -103,12 +106,24 @@ pub struct AirbusTerms {
     pub specific_range_deviation_std_percent: Option<f64>,
     /// Number of readings: flights.
     pub readings: usize,
+    /// What to plan with: by how much predicted fuel flow is to be raised at the level of the last flight; 0 in documents of
+    /// older programs.
+    #[serde(default)]
+    pub fuel_factor_percent: Figure,
     /// Monitored fuel factor of the last month.
     pub monitored_fuel_factor_percent: Figure,
     /// Mean of the last three months, rounded up to a tenth.
     pub retained_fuel_factor_percent: f64,
-    /// Basic factor plus the retained one, where the basic factor is given.
+    /// Basic factor plus the one to plan with, rounded up to a tenth, where the basic factor is given.
     pub performance_factor_percent: Option<f64>,
+}
+
+impl AirbusTerms {
+    /// The factor to plan with as it is entered: rounded up to a tenth, so that no fuel is missing.
+    #[must_use]
+    pub fn entered_fuel_factor_percent(&self) -> f64 {
+        airbus::rounded_up_to_a_tenth(self.fuel_factor_percent.value)
+    }
 }
 
 /// What a deviation costs.
@@ -245,7 +260,7 @@ pub struct FleetMonthDocument {
 }
 
 /// A rule that fired.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AlertDocument {
     /// Tail.
     pub tail: String,
@@ -254,11 +269,14 @@ pub struct AlertDocument {
     /// What it looked at.
     pub size: Figure,
     /// Unit of the size.
-    pub unit: &'static str,
+    pub unit: String,
     /// Since when.
     pub since: String,
-    /// Effects that the newest diagnosis of the tail names, where one is given.
+    /// Effects that the newest diagnosis of the tail names, where one is given and a cause stands out there.
     pub likely_causes: Vec<String>,
+    /// Why that diagnosis names none, in words for a person.
+    #[serde(skip)]
+    pub no_likely_cause: Option<String>,
 }
 
 impl MonitorDocument {
@@ -270,6 +288,20 @@ impl MonitorDocument {
         types.dedup();
         let fleet = types.into_iter().filter_map(|of_type| fleet(of_type, &tails)).collect();
         Self { schema: SCHEMA, tails, fleet, alerts }
+    }
+
+    /// The document that [`to_json`](Self::to_json) wrote; fleets are formed anew from its tails.
+    ///
+    /// # Errors
+    /// Text that is not such a document.
+    pub fn from_json(text: &str) -> Result<Self, serde_json::Error> {
+        let mut read: Written = serde_json::from_str(text)?;
+        for tail in &mut read.tails {
+            // Documents of older programs do not have it.
+            tail.airbus.fuel_factor_percent =
+                tail.deviation_percent.map(airbus::monitored_fuel_factor_percent);
+        }
+        Ok(Self::new(read.tails, read.alerts))
     }
 
     /// As JSON, with a final line end.
@@ -289,6 +321,13 @@ impl MonitorDocument {
         serde_json::to_writer_pretty(&mut *to, self)?;
         to.write_all(b"\n")
     }
+}
+
+/// What is read of a document.
+#[derive(Deserialize)]
+struct Written {
+    tails: Vec<TailDocument>,
+    alerts: Vec<AlertDocument>,
 }
 
 fn fleet(aircraft_type: &str, tails: &[TailDocument]) -> Option<FleetDocument> {

@@ -75,6 +75,10 @@ fn tails(document: &MonitorDocument) -> Columns {
     columns.text("tail", rows.iter().map(|tail| tail.tail.clone()));
     columns.text("aircraft_type", rows.iter().map(|tail| tail.aircraft_type.clone()));
     columns.count("flights", rows.iter().map(|tail| tail.flights.len() as u64));
+    columns.count(
+        "flights_without_engines",
+        rows.iter().map(|tail| tail.flights_without_engines as u64),
+    );
     columns.text("from", rows.iter().map(|tail| tail.from.clone()));
     columns.text("to", rows.iter().map(|tail| tail.to.clone()));
     figure(&mut columns, "deviation_percent", rows, |tail| Some(tail.deviation_percent));
@@ -92,6 +96,7 @@ fn tails(document: &MonitorDocument) -> Columns {
         "specific_range_deviation_std_percent",
         number(|t| t.airbus.specific_range_deviation_std_percent),
     );
+    figure(&mut columns, "fuel_factor_percent", rows, |tail| Some(tail.airbus.fuel_factor_percent));
     columns.number(
         "monitored_fuel_factor_percent",
         number(|t| Some(t.airbus.monitored_fuel_factor_percent.value)),
@@ -235,7 +240,7 @@ fn alerts(document: &MonitorDocument) -> Columns {
     columns.text("tail", rows.iter().map(|alert| alert.tail.clone()));
     columns.text("rule", rows.iter().map(|alert| alert.rule.clone()));
     figure(&mut columns, "size", rows, |alert| Some(alert.size));
-    columns.text("unit", rows.iter().map(|alert| alert.unit.to_owned()));
+    columns.text("unit", rows.iter().map(|alert| alert.unit.clone()));
     columns.text("since", rows.iter().map(|alert| alert.since.clone()));
     columns.text("likely_causes", rows.iter().map(|alert| alert.likely_causes.join(" ")));
     columns

@@ -77,7 +77,44 @@ pub struct MonitoredTail<'a> {
     history: History,
     /// Deviations with the flights' weights; what changed is read from the normalised ones.
     before_learning: Option<(Series, Vec<f64>)>,
-    engines: Vec<(Series, History)>,
+    engines: EngineSeries,
+}
+
+/// The series of engines that are recorded apart.
+#[derive(Clone, Debug, Default)]
+struct EngineSeries {
+    /// The flights in which they are, by their places among all, in order.
+    flights: Vec<usize>,
+    /// One series for each engine.
+    of_each: Vec<(Series, History)>,
+}
+
+impl EngineSeries {
+    /// Which of its flights are among these of all.
+    fn range(&self, of_all: &Range<usize>) -> Range<usize> {
+        let place = |flight: usize| self.flights.partition_point(|known| *known < flight);
+        place(of_all.start)..place(of_all.end)
+    }
+}
+
+/// Engine by engine, what the flights show in which each is recorded: the others have only the flow of all together.
+fn engines_of(
+    all: &[&MonitoredFlight],
+    level_percent: f64,
+    events: &[Timestamp],
+) -> Result<EngineSeries, SeriesError> {
+    let count = all.iter().map(|flight| flight.engines.len()).max().unwrap_or(0);
+    let beliefs = ChangeBeliefs::of_2026().of_an_engine(count);
+    let flights: Vec<usize> =
+        (0..all.len()).filter(|&place| all[place].engines.len() == count && count > 0).collect();
+    let mut of_each = Vec::with_capacity(count);
+    for engine in 0..count {
+        let shown = flights.iter().map(|&place| all[place].engines[engine].raised(level_percent));
+        let series = Series::new(shown.collect())?;
+        let history = History::fit(&series, events, &beliefs);
+        of_each.extend(history.map(|history| (series, history)));
+    }
+    Ok(EngineSeries { flights, of_each })
 }
 
 impl<'a> MonitoredTail<'a> {
@@ -95,34 +132,19 @@ impl<'a> MonitoredTail<'a> {
         let times: Vec<Timestamp> = events.iter().map(|event| event.time).collect();
         let flights: Vec<&MonitoredFlight> =
             deviations.flights.iter().filter(|flight| flight.learnt.is_some()).collect();
-        let series = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>| {
-            let shown: Option<Vec<FlightDeviation>> =
-                flights.iter().map(|flight| of(flight)).collect();
-            shown.map(Series::new).transpose()
-        };
-        let read = |of: &dyn Fn(&MonitoredFlight) -> Option<FlightDeviation>,
-                    beliefs: &ChangeBeliefs| {
-            let Some(series) = series(of)? else { return Ok(None) };
-            Ok(History::fit(&series, &times, beliefs).map(|history| (series, history)))
-        };
-        let normalised =
-            |of: Option<FlightDeviation>| of.map(|of| of.raised(deviations.level_percent));
-        let Some((series_of_all, history)) = read(&|flight| normalised(flight.learnt), &beliefs)?
-        else {
+        let level = deviations.level_percent;
+        let learnt = flights.iter().filter_map(|flight| Some(flight.learnt?.raised(level)));
+        let series_of_all = Series::new(learnt.collect())?;
+        let Some(history) = History::fit(&series_of_all, &times, &beliefs) else {
             return Ok(None);
         };
-        let before_learning =
-            series(&|flight| Some(flight.before_learning?.deviation))?.map(|series| {
-                let weights = Noise::estimate(&series).weights(&series);
-                (series, weights)
-            });
-        let count = flights.iter().map(|flight| flight.engines.len()).min().unwrap_or(0);
-        let of_one = beliefs.of_an_engine(count);
-        let mut engines = Vec::with_capacity(count);
-        for engine in 0..count {
-            let of = |flight: &MonitoredFlight| normalised(flight.engines.get(engine).copied());
-            engines.extend(read(&of, &of_one)?);
-        }
+        let known: Option<Vec<FlightDeviation>> =
+            flights.iter().map(|flight| Some(flight.before_learning?.deviation)).collect();
+        let before_learning = known.map(Series::new).transpose()?.map(|series| {
+            let weights = Noise::estimate(&series).weights(&series);
+            (series, weights)
+        });
+        let engines = engines_of(&flights, level, &times)?;
         let reference = deviations.reference;
         Ok(Some(Self {
             tail,
@@ -145,7 +167,7 @@ impl<'a> MonitoredTail<'a> {
         let level = self.history.levels.last_level_percent(&self.series);
         let noise = &self.history.noise;
         let mut changes = self.changes(None, &self.series, &self.history);
-        for (engine, (series, history)) in self.engines.iter().enumerate() {
+        for (engine, (series, history)) in self.engines.of_each.iter().enumerate() {
             changes.extend(self.changes(Some(engine + 1), series, history));
         }
         let date = |flight: Option<&&MonitoredFlight>| {
@@ -164,9 +186,13 @@ impl<'a> MonitoredTail<'a> {
             within_flight_percent: noise.within_flight_percent,
             between_flights_percent: noise.between_flights_percent,
             correlation: noise.correlation,
-            airbus: self.airbus(&months, options),
+            airbus: self.airbus(level.into(), &months, options),
             cost: self.cost(level, options),
             changes,
+            flights_without_engines: match self.engines.flights.len() {
+                0 => 0,
+                recorded => self.flights.len() - recorded,
+            },
             events: self.event_documents(),
             flights: (0..self.flights.len()).map(|index| self.flight(index)).collect(),
             months,
@@ -185,9 +211,11 @@ impl<'a> MonitoredTail<'a> {
                 unit: match alert.rule {
                     AlertRule::Trend { .. } => "%/year",
                     AlertRule::Deviation { .. } | AlertRule::Change { .. } => "%",
-                },
+                }
+                .to_owned(),
                 since: alert.since.to_string(),
                 likely_causes: Vec::new(),
+                no_likely_cause: None,
             })
             .collect()
     }
@@ -215,8 +243,9 @@ impl<'a> MonitoredTail<'a> {
             let deviation_percent = Figure::from(mean);
             let monitored = deviation_percent.map(airbus::monitored_fuel_factor_percent);
             factors.push((month, monitored.value));
-            let engines = self.engines.iter().filter_map(|(series, history)| {
-                history.mean_percent(series, flights.clone()).map(Figure::from)
+            let recorded = self.engines.range(&flights);
+            let engines = self.engines.of_each.iter().filter_map(|(series, history)| {
+                history.mean_percent(series, recorded.clone()).map(Figure::from)
             });
             let segments = self.series.flights()[flights.clone()].iter();
             documents.push(MonthDocument {
@@ -239,7 +268,14 @@ impl<'a> MonitoredTail<'a> {
         documents
     }
 
-    fn airbus(&self, months: &[MonthDocument], options: &MonitorOptions) -> AirbusTerms {
+    /// The factor to plan with is that of the level, which every flight since the last change has a share in: a month may be one
+    /// flight.
+    fn airbus(
+        &self,
+        level_percent: Figure,
+        months: &[MonthDocument],
+        options: &MonitorOptions,
+    ) -> AirbusTerms {
         let each: Vec<f64> = self
             .series
             .flights()
@@ -248,19 +284,20 @@ impl<'a> MonitoredTail<'a> {
             .collect();
         let statistics = ErrorStatistics::from_errors(&each);
         let last = months.last();
-        let retained = last.map_or(0.0, |month| month.retained_fuel_factor_percent);
+        let fuel_factor = level_percent.map(airbus::monitored_fuel_factor_percent);
+        let entered = airbus::rounded_up_to_a_tenth(fuel_factor.value);
         AirbusTerms {
             specific_range_deviation_percent: statistics.mean.unwrap_or(0.0),
             specific_range_deviation_std_percent: statistics.std,
             readings: statistics.n,
+            fuel_factor_percent: fuel_factor,
             monitored_fuel_factor_percent: last
-                .map_or(Figure { value: 0.0, ci95: [0.0; 2] }, |month| {
-                    month.monitored_fuel_factor_percent
-                }),
-            retained_fuel_factor_percent: retained,
+                .map_or_else(Figure::default, |month| month.monitored_fuel_factor_percent),
+            retained_fuel_factor_percent: last
+                .map_or(0.0, |month| month.retained_fuel_factor_percent),
             performance_factor_percent: options
                 .basic_performance_factor_percent
-                .map(|basic| airbus::performance_factor_percent(basic, retained)),
+                .map(|basic| airbus::performance_factor_percent(basic, entered)),
         }
     }
 
@@ -334,6 +371,7 @@ impl<'a> MonitoredTail<'a> {
         let variance = self.history.noise.flight_variance_percent2(shown.segments());
         let years = self.series.years(flight.start);
         let of = |deviation: Option<FlightDeviation>| deviation.map(|d| d.deviation_percent());
+        let recorded = self.engines.range(&(index..index + 1));
         FlightDocument {
             flight: flight.flight.clone(),
             start: flight.start.to_string(),
@@ -348,8 +386,10 @@ impl<'a> MonitoredTail<'a> {
             specific_range_deviation_percent: airbus::specific_range_deviation_percent(percent),
             engines_percent: self
                 .engines
+                .of_each
                 .iter()
-                .map(|(series, _)| series.flights()[index].deviation_percent())
+                .flat_map(|(series, _)| &series.flights()[recorded.clone()])
+                .map(FlightDeviation::deviation_percent)
                 .collect(),
             excess_fuel_kg: excess_fuel_kg(flight.cruise_fuel_kg, percent),
         }

@@ -18,11 +18,15 @@ pub enum Rows {
 #[must_use]
 pub fn text(document: &MonitorDocument, rows: Rows) -> String {
     let mut text =
-        "Fuel flow against the initial model, at each tail's mean conditions, %\n".to_owned();
+        "Deviation of fuel flow from the initial model, 100 ln(recorded/predicted), %\n".to_owned();
     text.push_str(&match rows {
         Rows::Tails => tails(document),
         Rows::Months => months(document),
     });
+    for tail in &document.tails {
+        append_performance_factor(tail, &mut text);
+        append_cost(tail, &mut text);
+    }
     for fleet in document.fleet.iter().filter(|fleet| fleet.tails > 1) {
         let _ = writeln!(
             text,
@@ -38,10 +42,12 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
         append_changes(tail, &mut text);
     }
     for alert in &document.alerts {
-        let causes = if alert.likely_causes.is_empty() {
-            String::new()
-        } else {
-            format!("\n  likely: {}", alert.likely_causes.join(", "))
+        let causes = match &alert.no_likely_cause {
+            _ if !alert.likely_causes.is_empty() => {
+                format!("\n  likely: {}", alert.likely_causes.join(", "))
+            }
+            Some(reason) => format!("\n  no likely cause: {reason}"),
+            None => String::new(),
         };
         let _ = writeln!(
             text,
@@ -53,17 +59,27 @@ pub fn text(document: &MonitorDocument, rows: Rows) -> String {
             alert.rule,
         );
     }
-    text.push_str(LEGEND);
+    text.push_str(SIGNS);
+    text.push_str(match rows {
+        Rows::Tails => {
+            "now: at the last flight. all: mean and standard deviation of all flights.\n\
+             Factor: of the level, to plan with, per cent of predicted, rounded up to 0.1.\n"
+        }
+        Rows::Months => "Factor: mean of three months' fuel factors, rounded up to 0.1 %.\n",
+    });
+    text.push_str(
+        "A change has the 95 % interval of its date and the probability p of a change.\n",
+    );
     text
 }
 
-const LEGEND: &str = "Positive: burns more than predicted; ± is half a 95 % interval.\n\
-     DSR: deviation of specific range, negative is worse.\n\
-     Factor: mean of three months' fuel factors, rounded up to 0.1 %.\n\
-     A change has the 95 % interval of its date and the probability p of a change.\n";
+const SIGNS: &str = "At each tail's mean conditions; positive: burns more than predicted;\n\
+     ± is half a 95 % interval. DSR: deviation of specific range, negative is worse.\n";
 
 fn tails(document: &MonitorDocument) -> String {
-    let head = ["tail", "flights", "level", "trend/year", "DSR", "std", "factor", "kg/flight"];
+    // What is of the last flight comes first, then what is of all of them.
+    let head =
+        ["tail", "flights", "now: level", "factor", "kg/flight", "all: DSR", "std", "trend/year"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for tail in &document.tails {
         let airbus = &tail.airbus;
@@ -71,20 +87,30 @@ fn tails(document: &MonitorDocument) -> String {
             tail.tail.clone(),
             tail.flights.len().to_string(),
             signed(&tail.deviation_percent),
-            signed(&tail.trend_percent_per_year),
+            plain(airbus.entered_fuel_factor_percent(), 1),
+            plain(tail.cost.fuel_kg_per_flight, 0),
             plain(airbus.specific_range_deviation_percent, 2),
             airbus
                 .specific_range_deviation_std_percent
                 .map_or_else(|| "–".to_owned(), |std| format!("{std:.2}")),
-            plain(airbus.retained_fuel_factor_percent, 1),
-            plain(tail.cost.fuel_kg_per_flight, 0),
+            signed(&tail.trend_percent_per_year),
         ]);
     }
-    let mut text = aligned(&rows);
-    for tail in &document.tails {
-        append_cost(tail, &mut text);
-    }
-    text
+    aligned(&rows)
+}
+
+/// Where the basic factor is given.
+fn append_performance_factor(tail: &TailDocument, text: &mut String) {
+    let Some(percent) = tail.airbus.performance_factor_percent else { return };
+    let factor = tail.airbus.entered_fuel_factor_percent();
+    let _ = writeln!(
+        text,
+        "{}: PERF FACTOR {} %, basic {} and factor {}",
+        tail.tail,
+        plain(percent, 1),
+        plain(percent - factor, 1),
+        plain(factor, 1)
+    );
 }
 
 fn append_cost(tail: &TailDocument, text: &mut String) {
@@ -99,12 +125,14 @@ fn append_cost(tail: &TailDocument, text: &mut String) {
     .collect();
     // Fuel a year alone follows from the table; it is printed where it was asked for what follows from it.
     if figures.len() > 1 {
-        let _ = writeln!(text, "{}: {} a year", tail.tail, figures.join(", "));
+        let _ =
+            writeln!(text, "{}: {} a year, by the present level", tail.tail, figures.join(", "));
     }
 }
 
 fn months(document: &MonitorDocument) -> String {
-    let head = ["tail", "month", "flights", "deviation", "before learning", "DSR", "factor"];
+    let head =
+        ["tail", "month", "flights", "deviation", "before learning", "DSR", "3-month factor"];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for tail in &document.tails {
         for month in &tail.months {
@@ -123,6 +151,15 @@ fn months(document: &MonitorDocument) -> String {
 }
 
 fn append_changes(tail: &TailDocument, text: &mut String) {
+    if tail.flights_without_engines > 0 {
+        let _ = writeln!(
+            text,
+            "{}: {} of {} without fuel flow of each engine:\n  they are in the series of no engine",
+            tail.tail,
+            tail.flights_without_engines,
+            counted(tail.flights.len(), "flight"),
+        );
+    }
     for change in &tail.changes {
         let engine = change.engine.map_or_else(String::new, |engine| format!(" engine {engine}"));
         let _ = writeln!(

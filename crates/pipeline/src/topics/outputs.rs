@@ -15,7 +15,7 @@ const fn output(name: &'static str, unit: &'static str, words: &'static str) -> 
 }
 
 /// Those whose name does not say all, by command.
-pub(super) const OUTPUTS: [Output; 34] = [
+pub(super) const OUTPUTS: [Output; 35] = [
     output("acceleration_m_s2", "m/s²", "Segments: mean rate of change of ground speed."),
     output("temperature_assumed", "0, 1", "Segments: 1 where SAT was assumed and not recorded."),
     output(
@@ -150,6 +150,11 @@ pub(super) const OUTPUTS: [Output; 34] = [
         "monitor: DSR, the deviation of specific range: negative, worse than the book.",
     ),
     output(
+        "fuel_factor_percent",
+        "%",
+        "monitor: what to plan with, by how much predicted fuel flow is to be raised at the present level.",
+    ),
+    output(
         "monitored_fuel_factor_percent",
         "%",
         "monitor: how much more fuel is burnt than predicted, mean of a month.",
@@ -157,12 +162,13 @@ pub(super) const OUTPUTS: [Output; 34] = [
     output(
         "retained_fuel_factor_percent",
         "%",
-        "monitor: mean of the last three calendar months, rounded up to 0.1 %.",
+        "monitor: mean of the monthly factors of the last three calendar months, rounded up to 0.1 %.",
     ),
     output(
         "performance_factor_percent",
         "%",
-        "monitor: PERF FACTOR of the flight management system: its basic factor plus that retained.",
+        "monitor: PERF FACTOR of the flight management system: its basic factor plus fuel_factor_percent,\n\
+         rounded up to 0.1 %.",
     ),
     output("since_ci95", "-", "monitor: the first flights between which a change lies with 95 %."),
     output("step_percent", "%", "monitor: size of a change: positive, more is burnt afterwards."),
