@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &MonitorArgs, progress: Progress) -> Result<Outcome
     warn_of_events(&events, |tail| documents.iter().any(|known| known.tail == tail));
     if let Some(causes) = &causes {
         for alert in &mut alerts {
-            alert.likely_causes = causes.of_tail(&alert.tail);
+            causes.explain(alert);
         }
     }
     let document = MonitorDocument::new(documents, alerts);

@@ -91,7 +91,7 @@ fn alerts_set_the_exit_status_and_name_likely_causes() {
     let adapted = adapted(folder.path());
     let diagnosis = folder.path().join("diagnosis.json");
     let text = r#"{"diagnoses": [{"tail": "SIM-01", "verdict": {"kind": "effects", "effects": ["drag_factor"],
-        "class": ["drag_factor", "tsfc_factor"], "closure": 0.9}}]}"#;
+        "class": ["drag_factor", "tsfc_factor"], "probability": 0.83, "closure": 0.9}}]}"#;
     std::fs::write(&diagnosis, text).unwrap();
     let more = ["--alert", "deviation=1", "--diagnosis", diagnosis.to_str().unwrap()];
     let printed = monitor(&adapted, &more).expect(3).stdout;
@@ -105,6 +105,67 @@ fn alerts_set_the_exit_status_and_name_likely_causes() {
     none.expect(0).says("no segment is inside the table since 2029-01-01T00:00:00Z");
     let header = std::fs::read_to_string(output.join("flights.csv")).unwrap();
     assert!(header.starts_with("tail,flight,start,") && header.lines().count() == 1, "{header}");
+}
+
+/// A verdict that advises not to act names nothing, and one that names no effect is no cause.
+#[test]
+fn what_does_not_stand_out_is_no_likely_cause() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let (diagnosis, output) = (folder.path().join("diagnosis.json"), folder.path().join("out"));
+    let open = r#""effects", "effects": ["drag_factor"], "class": ["drag_factor", "isobaric_slope"], "probability": 0.17"#;
+    for (verdict, reason) in [
+        (open, "no cause stands out, the most probable has 0.17"),
+        (r#""no_gap", "effects": [], "class": [], "probability": 0.0"#, "no gap is seen"),
+        (r#""outside_library", "effects": [], "class": [], "probability": 0.0"#, "no effect of"),
+    ] {
+        let text =
+            format!(r#"{{"diagnoses": [{{"tail": "SIM-01", "verdict": {{"kind": {verdict}}}}}]}}"#);
+        std::fs::write(&diagnosis, text).unwrap();
+        let more = ["--alert", "deviation=1", "--diagnosis", diagnosis.to_str().unwrap()];
+        let printed = monitor(&adapted, &[&more[..], &["-o", output.to_str().unwrap()]].concat());
+        let printed = printed.expect(3).stdout;
+        assert!(printed.contains(&format!("no likely cause: {reason}")), "{printed}");
+        assert!(!printed.contains("  likely: "), "{printed}");
+        assert_eq!(csv_columns(&output.join("alerts.csv"))["likely_causes"], [""]);
+        let page = std::fs::read_to_string(output.join("monitor.html")).unwrap();
+        assert!(page.contains(reason) && !page.contains("isobaric_slope"), "{verdict}");
+    }
+}
+
+/// All that is said of what to plan with is one factor, that of the level.
+#[test]
+fn terminal_page_and_tables_have_one_factor() {
+    let folder = tempfile::tempdir().unwrap();
+    let adapted = adapted(folder.path());
+    let output = folder.path().join("out");
+    let more = ["--basic-perf-factor", "1.5", "-o", output.to_str().unwrap()];
+    let printed = monitor(&adapted, &more).expect(0).stdout;
+    let tails = csv_columns(&output.join("tails.csv"));
+    let number = |name: &str| numbers(&tails[name])[0];
+    let level = number("deviation_percent");
+    let factor = number("fuel_factor_percent");
+    assert!((factor - 100.0 * ((level / 100.0).exp() - 1.0)).abs() < 1e-9, "{factor} {level}");
+    let entered = (10.0 * factor).ceil() / 10.0;
+    let told = format!("PERF FACTOR {:+.1} %, basic +1.5 and factor {entered:+.1}", entered + 1.5);
+    assert!(printed.contains(&told), "{printed}");
+    assert!((number("performance_factor_percent") - entered - 1.5).abs() < 1e-9);
+    let page = std::fs::read_to_string(output.join("monitor.html")).unwrap();
+    assert!(page.contains(&format!("a fuel factor of {entered:+.1} %")), "{told}");
+    // What a flight and a year cost is of the level too: 100·excess/burnt = 100·(1 − e^(−d/100)).
+    let per_flight = number("excess_fuel_kg_per_flight");
+    let burnt = per_flight / (1.0 - (-level / 100.0).exp());
+    let document: Value =
+        serde_json::from_slice(&std::fs::read(output.join("monitor.json")).unwrap()).unwrap();
+    let flights = document["tails"][0]["flights"].as_array().unwrap();
+    let mean = flights.iter().map(|flight| {
+        let percent = flight["deviation_percent"]["value"].as_f64().unwrap();
+        flight["excess_fuel_kg"].as_f64().unwrap() / (1.0 - (-percent / 100.0).exp())
+    });
+    assert!((burnt - mean.sum::<f64>() / flights.len() as f64).abs() < 1e-6, "{burnt}");
+    // And what is shown of such a folder is what was printed.
+    let shown = cruisefit(&["show".as_ref(), output.as_os_str()]).expect(0).stdout;
+    assert!(printed.starts_with(&shown), "{shown}");
 }
 
 #[test]

@@ -1,7 +1,10 @@
-//! Likely causes of an alert: what the newest `diagnosis.json` names.
+//! Likely causes of an alert: what the newest `diagnosis.json` names, where a cause stands out there.
 
 use std::path::Path;
 
+use pipeline::diagnosis_document::VerdictKind;
+use pipeline::diagnosis_words::{NO_CAUSE_STANDS_OUT, stands_out};
+use pipeline::monitoring::AlertDocument;
 use serde::Deserialize;
 
 use crate::failure::Failure;
@@ -21,11 +24,13 @@ struct TailDiagnosis {
 
 #[derive(Debug, Deserialize)]
 struct Verdict {
-    kind: String,
+    kind: VerdictKind,
     #[serde(default)]
     effects: Vec<String>,
     #[serde(default)]
     class: Vec<String>,
+    #[serde(default)]
+    probability: f64,
 }
 
 /// The diagnoses of a file.
@@ -44,21 +49,40 @@ impl Causes {
         Ok(Self(file.diagnoses))
     }
 
-    /// The class of effects that the diagnosis of a tail names, the named ones first; its kind of verdict where it names
-    /// none; nothing where the tail was not diagnosed.
-    pub(crate) fn of_tail(&self, tail: &str) -> Vec<String> {
+    /// Puts the likely causes of its tail into an alert: the class of effects that the diagnosis names, the named ones first,
+    /// where it advises to act on one; else why it names none.
+    pub(crate) fn explain(&self, alert: &mut AlertDocument) {
+        match self.of_tail(&alert.tail) {
+            Ok(causes) => alert.likely_causes = causes,
+            Err(reason) => alert.no_likely_cause = Some(reason),
+        }
+    }
+
+    fn of_tail(&self, tail: &str) -> Result<Vec<String>, String> {
         let Some(found) = self.0.iter().find(|diagnosis| diagnosis.tail == tail) else {
-            return Vec::new();
+            return Err("this tail was not diagnosed".to_owned());
         };
-        let mut named = found.verdict.effects.clone();
-        for effect in &found.verdict.class {
-            if !named.contains(effect) {
-                named.push(effect.clone());
+        let verdict = &found.verdict;
+        match verdict.kind {
+            VerdictKind::Effects if stands_out(verdict.probability) => {
+                let mut named = verdict.effects.clone();
+                for effect in &verdict.class {
+                    if !named.contains(effect) {
+                        named.push(effect.clone());
+                    }
+                }
+                Ok(named)
             }
+            VerdictKind::Effects => Err(format!(
+                "{NO_CAUSE_STANDS_OUT}, the most probable has {:.2}",
+                verdict.probability
+            )),
+            // It may have been of another model, one that has learnt the deviation.
+            VerdictKind::NoGap => Err("no gap is seen by the model that was diagnosed".to_owned()),
+            VerdictKind::OutsideLibrary => {
+                Err("no effect of the library explains the gap".to_owned())
+            }
+            VerdictKind::InsufficientData => Err("too little data for a diagnosis".to_owned()),
         }
-        if named.is_empty() {
-            named.push(found.verdict.kind.clone());
-        }
-        named
     }
 }
