@@ -2,6 +2,7 @@
 
 mod diagnosis;
 mod report;
+mod state;
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,8 +13,10 @@ use crate::args::ShowArgs;
 use crate::commands::Outcome;
 use crate::failure::{Failure, RefusedReport};
 use crate::files::standard_input;
+use crate::folder::state::NAME;
 use crate::models::model_of_bytes;
 use pipeline::model_file::{AppliedRecord, LawState, Learnt, ModelFile};
+use pipeline::monitoring::{self, MonitorDocument, Rows, SCHEMA as MONITOR};
 use pipeline::summary::{SCHEMA as SUMMARY, Summary, aligned};
 
 /// What a gzip file begins with (RFC 1952, section 2.3.1).
@@ -42,13 +45,19 @@ pub(crate) fn run(arguments: &ShowArgs) -> Result<Outcome, Failure> {
     if beginning.starts_with('{') {
         return document(&path, &text);
     }
+    if path.file_name().is_some_and(|name| name == NAME) {
+        return state::outcome(&path, &text);
+    }
     let model = model_of_bytes(&path, text.as_bytes())?;
     Ok(Outcome::with_json(words(&model), format!("{:#}\n", figures(&model))))
 }
 
-/// The file of a folder that is shown: what a diagnosis, an adaptation or a run of trials left there.
+/// What commands leave in their folders, the first found is shown.
+const INSIDE: [&str; 4] = ["diagnosis.json", "summary.json", "trials.json", "monitor.json"];
+
+/// The file of a folder that is shown: what a diagnosis, an adaptation, a run of trials or `monitor` left there.
 fn file_of(path: &Path) -> PathBuf {
-    let inside = ["diagnosis.json", "summary.json", "trials.json"].map(|name| path.join(name));
+    let inside = INSIDE.map(|name| path.join(name));
     inside.into_iter().find(|file| file.is_file()).unwrap_or_else(|| path.to_owned())
 }
 
@@ -56,7 +65,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, Failure> {
     if path.is_dir() {
         return Err(Failure::bad_file(
             path,
-            "a folder without diagnosis.json, summary.json or trials.json",
+            "a folder without diagnosis.json, summary.json, trials.json or monitor.json",
         ));
     }
     standard_input::file(path)
@@ -72,6 +81,11 @@ fn document(path: &Path, text: &str) -> Result<Outcome, Failure> {
         Some("cruisefit.diagnosis/1") => diagnosis::text(&document),
         Some(SUMMARY) => {
             Summary::from_json(text).map_err(|error| Failure::bad_file(path, error))?.to_text()
+        }
+        Some(MONITOR) => {
+            let document =
+                MonitorDocument::from_json(text).map_err(|error| Failure::bad_file(path, error))?;
+            monitoring::text(&document, Rows::Tails)
         }
         Some(other) => format!("A document of schema {other}, as it is:\n{document:#}\n"),
         None => {

@@ -57,6 +57,25 @@ fn start(model: &Path, output: &Path, reports: &[PathBuf], more: &[&str]) -> Chi
         .unwrap()
 }
 
+/// Its checksum is not that of a model: read as one, every healthy state was called damaged.
+#[test]
+fn the_state_of_a_folder_is_shown_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = initial_model(folder.path());
+    let output = folder.path().join("out");
+    adapt(&model, &output, &[fixture("reports")], &[]).expect(0);
+    let state = output.join("STATE.ron");
+    let shown = cruisefit(&["show".as_ref(), state.as_os_str()]).expect(0).stdout;
+    assert!(
+        shown.starts_with("State of a folder that adapt keeps: generation 1, 1 tail, "),
+        "{shown}"
+    );
+    assert!(shown.contains("models/SIM-01.ron"), "{shown}");
+    let changed = std::fs::read_to_string(&state).unwrap().replacen("SIM-01", "SIM-02", 1);
+    std::fs::write(&state, changed).unwrap();
+    cruisefit(&["show".as_ref(), state.as_os_str()]).expect(2).says("STATE.ron");
+}
+
 #[test]
 fn processes_at_once_lose_nothing() {
     let scratch = tempfile::tempdir().unwrap();
