@@ -18,8 +18,7 @@ use pyo3_arrow::input::AnyRecordBatch;
 use crate::failure::{Failure, chain};
 use crate::flights::{batches_of, python_table};
 use crate::plots::{chosen, drawn};
-use crate::points;
-use crate::tables::plain;
+use crate::points::{self, Points, Returned};
 use crate::work::run;
 
 /// A model file.
@@ -78,33 +77,33 @@ impl Model {
         Ok(self.file.to_text().map_err(Failure::internal)?)
     }
 
-    /// The table with its predictions, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`;
-    /// `stated`: whether standard deviations are, and columns of the prediction, all without them.
+    /// The predictions at a table's rows, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`;
+    /// `stated`: whether standard deviations are, columns of the prediction, all without them, and whether the columns that were
+    /// given come before them.
     fn predict(
         &self,
         py: Python<'_>,
         table: AnyRecordBatch,
         predicts: &str,
-        stated: (bool, Option<Vec<String>>),
+        stated: (bool, Option<Vec<String>>, bool),
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Prediction> {
         let predicts = predicts_of(predicts)?;
-        let (deviations, columns) = stated;
+        let (deviations, columns, with_given) = stated;
+        let returned = if with_given { Returned::WithGiven } else { Returned::PredictionAlone };
         let columns = columns.map(|names| columns_of(&names)).transpose()?;
-        let schema = table.schema()?;
-        let batches = batches_of(table)?;
+        let given = Points { schema: table.schema()?, batches: batches_of(table)? };
         let file = Arc::clone(&self.file);
-        let (batches, refused) = run(py, threads, move |caller| {
+        let (found, refused) = run(py, threads, move |caller| {
             let predictor = Predictor::new(&file, predicts).map_err(Failure::input)?;
             let predictor = if deviations { predictor } else { predictor.without_deviations() };
             let predictor = match &columns {
                 Some(columns) => predictor.with_columns(columns),
                 None => predictor,
             };
-            points::predict(&predictor, &plain(batches)?, caller)
+            points::predict(&predictor, given, returned, caller)
         })?;
-        let schema = batches.first().map_or(schema, arrow_array::RecordBatch::schema);
-        Ok((PyTable::try_new(batches, schema)?, refused))
+        Ok((PyTable::try_new(found.batches, found.schema)?, refused))
     }
 
     /// Charts of the model as SVG, of these names or all.

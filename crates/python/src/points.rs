@@ -1,18 +1,20 @@
 //! Predictions at the flight points of an Arrow table.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
-use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch};
-use arrow_schema::{DataType, Field, Schema};
+use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, RecordBatchOptions};
+use arrow_schema::{DataType, Field, Schema, SchemaRef};
 use perf_model::{FlightPoint, PointCell, PointTable};
 use pipeline::prediction::{PredictedPoints, Predictor, measured_kg_s};
 use rayon::prelude::*;
 
 use crate::failure::Failure;
-use crate::tables::{Reader, Value};
+use crate::tables::{Reader, Value, plain};
 use crate::work::Caller;
 
 /// Rows that a thread predicts before it asks whether the caller still waits. Our choice: some 50 ms of work.
@@ -21,99 +23,156 @@ const ROWS_AT_ONCE: usize = 1 << 16;
 /// A row (from 1) without a prediction, and the reason.
 pub(crate) type Unpredicted = (u64, String);
 
-/// The table with the columns of the prediction, and the rows (from 1) that have none, with reasons.
+/// Flight points.
+#[derive(Clone, Debug)]
+pub(crate) struct Points {
+    pub(crate) schema: SchemaRef,
+    pub(crate) batches: Vec<RecordBatch>,
+}
+
+/// Which columns a table of predictions has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Returned {
+    /// Those that were given, as they were given, then those of the prediction.
+    WithGiven,
+    /// Those of the prediction alone, for a library that adds them to its own table.
+    PredictionAlone,
+}
+
+/// The columns of the prediction, and the rows (from 1) that have none, with reasons. A table without rows has the same
+/// columns, without rows.
 ///
 /// # Errors
 /// A table whose columns or cells are not those of flight points.
 pub(crate) fn predict(
     predictor: &Predictor<'_>,
-    batches: &[RecordBatch],
+    given: Points,
+    returned: Returned,
     caller: &Caller,
-) -> Result<(Vec<RecordBatch>, Vec<Unpredicted>), Failure> {
-    let Some(first) = batches.first() else {
-        return Err(Failure::input("a table without rows"));
-    };
-    let names = first.schema().fields().iter().map(|field| field.name().clone()).collect();
+) -> Result<(Points, Vec<Unpredicted>), Failure> {
+    let names = given.schema.fields().iter().map(|field| field.name().clone()).collect();
     let points = PointTable::new(names).map_err(|error| Failure::table(&error))?;
-    // Whether the error of the prediction is a column must not depend on where a table is cut.
-    let measured = points.measured_fuel_flow().is_some_and(|column| {
-        batches.iter().any(|batch| batch.column(column).null_count() < batch.num_rows())
-    });
+    let read = plain(given.batches.clone())?;
     let mut cuts = Vec::new();
     let mut rows = 0;
-    for batch in batches {
+    for (batch, read) in given.batches.iter().zip(&read) {
         for from in (0..batch.num_rows()).step_by(ROWS_AT_ONCE) {
             let length = ROWS_AT_ONCE.min(batch.num_rows() - from);
-            cuts.push((rows + from, batch.slice(from, length)));
+            let (given, read) = (batch.slice(from, length), read.slice(from, length));
+            cuts.push(Cut { before: rows + from, given, read });
         }
         rows += batch.num_rows();
     }
+    if cuts.is_empty() {
+        let given = RecordBatch::new_empty(Arc::clone(&given.schema));
+        let read = plain(vec![given.clone()])?;
+        cuts.extend(read.into_iter().map(|read| Cut { before: 0, given: given.clone(), read }));
+    }
+    // Whether the error of the prediction is a column must not depend on where a table is cut.
+    let any_measured = points.measured_fuel_flow().is_some_and(|column| {
+        rows == 0 || read.iter().any(|batch| has_values(batch.column(column)))
+    });
+    let at = At { predictor, points: &points, any_measured };
     let predicted = cuts
         .into_par_iter()
-        .map(|(before, batch)| {
+        .map(|cut| {
             caller.still_waits()?;
-            predict_batch(predictor, &points, before, batch, measured)
+            at.cut(cut, returned)
         })
         .collect::<Result<Vec<_>, Failure>>()?;
     let (batches, refused): (Vec<_>, Vec<_>) = predicted.into_iter().unzip();
-    Ok((batches, refused.into_iter().flatten().collect()))
+    let schema = batches.first().map_or(given.schema, RecordBatch::schema);
+    Ok((Points { schema, batches }, refused.into_iter().flatten().collect()))
 }
 
-type Predicted = (RecordBatch, Vec<Unpredicted>);
-
-fn predict_batch(
-    predictor: &Predictor<'_>,
-    points: &PointTable,
+/// Rows that follow each other.
+struct Cut {
+    /// Rows of the table before it.
     before: usize,
-    batch: RecordBatch,
+    /// As they were given.
+    given: RecordBatch,
+    /// The same with encoded columns decoded.
+    read: RecordBatch,
+}
+
+/// How rows are predicted.
+struct At<'a> {
+    predictor: &'a Predictor<'a>,
+    points: &'a PointTable,
     any_measured: bool,
-) -> Result<Predicted, Failure> {
-    let at_once = points.level_columns(|column| numbers(batch.column(column)));
-    let predicted = match at_once.filter(|_| predictor.predicts_columns()) {
-        Some(columns) => {
-            let measured = columns.measured_fuel_flow_kg_s().filter(|_| any_measured);
-            predictor.at_level_flights(columns.flights(), measured)
+}
+
+impl At<'_> {
+    fn cut(
+        &self,
+        cut: Cut,
+        returned: Returned,
+    ) -> Result<(RecordBatch, Vec<Unpredicted>), Failure> {
+        let Cut { before, given, read } = cut;
+        let at_once = self.points.level_columns(|column| numbers(read.column(column)));
+        let predicted = match at_once.filter(|_| self.predictor.predicts_columns()) {
+            Some(columns) => {
+                let measured = columns.measured_fuel_flow_kg_s().filter(|_| self.any_measured);
+                self.predictor.at_level_flights(columns.flights(), measured)
+            }
+            None => self.rows(before, &read)?,
+        };
+        let PredictedPoints { columns, refused } = predicted;
+        let (mut fields, mut arrays, mut metadata) = (Vec::new(), Vec::new(), HashMap::new());
+        if returned == Returned::WithGiven {
+            let schema = given.schema();
+            fields.extend(schema.fields().iter().cloned());
+            arrays.extend_from_slice(given.columns());
+            metadata.clone_from(schema.metadata());
         }
-        None => predict_rows(predictor, points, before, &batch, any_measured)?,
-    };
-    let PredictedPoints { columns, refused } = predicted;
-    let mut fields: Vec<Arc<Field>> = batch.schema().fields().iter().cloned().collect();
-    let mut arrays = batch.columns().to_vec();
-    for (name, values) in columns {
-        // Nulls or not, the column has one type in every part of the table.
-        fields.push(Arc::new(Field::new(name, DataType::Float64, true)));
-        arrays.push(Arc::new(with_nulls(values)));
+        for (name, values) in columns {
+            // Nulls or not, the column has one type in every part of the table.
+            fields.push(Arc::new(Field::new(name, DataType::Float64, true)));
+            arrays.push(Arc::new(with_nulls(values)));
+        }
+        let schema = Schema::new_with_metadata(fields, metadata);
+        // Where no column is wanted, the number of rows is not theirs.
+        let rows = RecordBatchOptions::new().with_row_count(Some(given.num_rows()));
+        let batch = RecordBatch::try_new_with_options(Arc::new(schema), arrays, &rows)
+            .map_err(Failure::internal)?;
+        let numbered = |(place, reason)| ((before + place + 1) as u64, reason);
+        Ok((batch, refused.into_iter().map(numbered).collect()))
     }
-    let batch =
-        RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays).map_err(Failure::internal)?;
-    let numbered = |(place, reason)| ((before + place + 1) as u64, reason);
-    Ok((batch, refused.into_iter().map(numbered).collect()))
+
+    /// Predictions at rows that are looked at cell by cell.
+    fn rows(&self, before: usize, batch: &RecordBatch) -> Result<PredictedPoints, Failure> {
+        let schema = batch.schema();
+        let columns = schema.fields().iter().zip(batch.columns());
+        // Of a column without a meaning no cell is asked for, whatever its type.
+        let readers: Vec<_> =
+            columns.map(|(field, array)| Reader::new(field.name(), array)).collect();
+        let unread = RefCell::new(None);
+        let rows = (0..batch.num_rows()).map(|row| {
+            let number = (before + row + 1) as u64;
+            let point = self.points.point(number, |column| match &readers[column] {
+                Ok(reader) => cell(reader.value(row)),
+                Err(failure) => {
+                    unread.replace(Some(failure.clone()));
+                    PointCell::Missing
+                }
+            });
+            match unread.take() {
+                Some(failure) => Err(failure),
+                None => point.map_err(|error| Failure::table(&error)),
+            }
+        });
+        let rows = rows.collect::<Result<Vec<FlightPoint>, Failure>>()?;
+        let measured = self.any_measured.then(|| measured_kg_s(&rows));
+        Ok(self.predictor.at_points(&rows, measured.as_deref()))
+    }
 }
 
-/// Predictions at rows that are looked at cell by cell.
-fn predict_rows(
-    predictor: &Predictor<'_>,
-    points: &PointTable,
-    before: usize,
-    batch: &RecordBatch,
-    any_measured: bool,
-) -> Result<PredictedPoints, Failure> {
-    let schema = batch.schema();
-    let readers = schema
-        .fields()
-        .iter()
-        .zip(batch.columns())
-        .map(|(field, array)| Reader::new(field.name(), array))
-        .collect::<Result<Vec<_>, _>>()?;
-    let rows = (0..batch.num_rows()).map(|row| {
-        let number = (before + row + 1) as u64;
-        points
-            .point(number, |column| cell(readers[column].value(row)))
-            .map_err(|error| Failure::table(&error))
-    });
-    let rows = rows.collect::<Result<Vec<FlightPoint>, Failure>>()?;
-    let measured = any_measured.then(|| measured_kg_s(&rows));
-    Ok(predictor.at_points(&rows, measured.as_deref()))
+/// Whether a column has any value.
+fn has_values(array: &ArrayRef) -> bool {
+    match numbers(array) {
+        Some(values) => values.iter().any(|value| !value.is_nan()),
+        None => array.logical_null_count() < array.len(),
+    }
 }
 
 /// The values of an array of numbers, NaN for nulls; `None` for other arrays.

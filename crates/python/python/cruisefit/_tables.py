@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
 from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
     from ._native import ArrowStream
 
-__all__ = ["Table", "as_stream", "is_table", "like"]
+__all__ = ["Table", "as_points", "as_stream", "is_frame", "is_table", "like", "with_columns"]
 
 # A table of pyarrow, polars, pandas, DuckDB or any other library; none of them is required to be installed.
 Table = Any
@@ -26,11 +27,16 @@ def is_table(value: object) -> bool:
 
 
 def as_stream(value: Table) -> ArrowStream:
-    """A table as the native half takes it; data of pyarrow, polars and DuckDB are not copied.
+    """A table as the native half takes it; data of pyarrow, polars and DuckDB are not copied. Of the index of a pandas frame,
+    levels that have a name are columns: a time often is.
 
     Raises:
         TypeError: The value is no table.
     """
+    if _is_frame_of(value, "pandas"):
+        known = [None, *value.columns]
+        levels = [level for level, name in enumerate(value.index.names) if name not in known]
+        return _without_index(value.reset_index(levels) if levels else value)
     if isinstance(value, dict):
         return cast("ArrowStream", _module("pyarrow").table(value))
     if hasattr(value, "__arrow_c_stream__") or hasattr(value, "__arrow_c_array__"):
@@ -42,6 +48,45 @@ def as_stream(value: Table) -> ArrowStream:
         f"found {type(value).__name__}, expected a table with the Arrow C interface "
         f"(pyarrow, polars, pandas 2.2 or later, DuckDB){collect}"
     )
+
+
+def is_frame(value: Table) -> bool:
+    """Whether a table is a frame of pandas or polars, to which a result adds its columns."""
+    return _is_frame_of(value, "pandas") or _is_frame_of(value, "polars")
+
+
+def as_points(value: Table) -> ArrowStream:
+    """Flight points as the native half takes them: of a frame, which is kept aside, neither its index nor its columns whose
+    names begin with ``X-``, which have no meaning and may be of any type.
+
+    Raises:
+        TypeError: The value is no table.
+    """
+    if not is_frame(value):
+        return as_stream(value)
+    places = [place for place, name in enumerate(value.columns) if not str(name).startswith("X-")]
+    if _is_frame_of(value, "pandas"):
+        return _without_index(value.iloc[:, places])
+    return cast("ArrowStream", value[:, places])
+
+
+def with_columns(frame: Table, added: ArrowStream) -> Table:
+    """A frame with further columns, in its own library: its own columns keep their types and, of pandas, it keeps its index."""
+    if _is_frame_of(frame, "polars"):
+        return frame.hstack(_module("polars").DataFrame(added))
+    columns = _module("pyarrow").table(added).to_pandas()
+    # As arrays: their rows are those of the frame, whatever its index calls them.
+    return frame.assign(**{name: columns[name].to_numpy() for name in columns.columns})
+
+
+def _is_frame_of(value: object, library: str) -> bool:
+    """Whether a value is a frame of a library; one that was not imported has made none."""
+    module = sys.modules.get(library)
+    return module is not None and isinstance(value, module.DataFrame)
+
+
+def _without_index(frame: Table) -> ArrowStream:
+    return cast("ArrowStream", _module("pyarrow").Table.from_pandas(frame, preserve_index=False))
 
 
 def like(stream: ArrowStream, given: object = None) -> Table:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._pages import Chart, TailChart, names_of, read_text, write_bytes
-from ._tables import Table, as_stream, like
+from ._tables import Table, as_points, is_frame, like, with_columns
 from .errors import InputError, PredictionWarning, expected, warn
 from .segments import Segments
 
@@ -114,7 +114,8 @@ class Model:
             threads: Threads to use; all processors without it.
 
         Returns:
-            The same rows and columns (not copied) and ``fuel_flow_kg_s`` (all engines), ``fuel_flow_std_kg_s`` (null by law
+            The same rows and columns (of the same types, not copied; a frame of pandas is copied and keeps its index) and
+            ``fuel_flow_kg_s`` (all engines), ``fuel_flow_std_kg_s`` (null by law
             ``paper``), ``specific_range_m_kg``, ``lift_coefficient``, ``drag_coefficient``, ``extrapolated`` (1 outside the
             guide's range), with measured fuel flow ``error_percent`` = 100 (measured − predicted)/measured, and where more
             than the table was learnt ``remainder_percent`` and ``beyond_flights`` (1 beyond what was flown). Results are null
@@ -124,9 +125,10 @@ class Model:
             InputError: A column is missing or unknown, or a value is outside its limits, with row and column; or ``columns`` has a
                 name that no column of predictions has.
         """
-        stated = (deviations, None if columns is None else list(columns))
+        adds_columns = is_frame(points)
+        stated = (deviations, None if columns is None else names_of(columns), not adds_columns)
         table, refused = self._native.predict(
-            as_stream(points), "table" if table_only else "whole", stated, threads
+            as_points(points), "table" if table_only else "whole", stated, threads
         )
         if refused:
             row, reason = refused[0]
@@ -134,7 +136,7 @@ class Model:
             if strict:
                 raise InputError(message, line=row)
             warnings.warn(message, PredictionWarning, stacklevel=2)
-        return like(table, points)
+        return with_columns(points, table) if adds_columns else like(table, points)
 
     def adapt(
         self,
