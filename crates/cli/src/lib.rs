@@ -8,7 +8,6 @@
 
 mod args;
 mod arrow_batches;
-mod cells;
 mod columns;
 mod commands;
 mod criteria;

@@ -3,6 +3,7 @@
 //! A mapping file (RON) states which column of a delimited text holds which quantity in which unit, what is derived,
 //! and which parts of the recording are level cruise. `docs/src/guides/mapping.md` describes it.
 
+mod cell_texts;
 mod converter;
 mod derive;
 mod file;
@@ -21,6 +22,7 @@ use units::OutOfDomain;
 
 use crate::cruise_text::Parsed;
 use crate::refusal::Refusal;
+pub use cell_texts::{date_text, text_runs, time_of_day_text};
 pub use converter::Converter;
 use file::MappingFile;
 pub use first::first_mapping;

@@ -4,11 +4,10 @@ use core::ops::Range;
 use std::collections::BTreeMap;
 use std::io::Read;
 
-use report::mapping::{BatchColumn, NO_INSTANT};
+use report::mapping::{BatchColumn, NO_INSTANT, date_text, text_runs, time_of_day_text};
 
 use super::fields::{Field, Kind, Number};
 use super::flatbuffer::{Table, Vector};
-use crate::cells::{date, runs, time_of_day};
 
 /// Largest buffer that is unpacked, bytes.
 const MOST_BYTES: u64 = 1 << 31;
@@ -137,11 +136,11 @@ impl Column {
             Kind::Instant(each) => BatchColumn::Instants(self.nanoseconds(rows, each)?),
             Kind::LocalTime(each) => BatchColumn::LocalTimes(self.nanoseconds(rows, each)?),
             Kind::TimeOfDay(each, width) => {
-                texts_of(self.counts(rows, width)?, |count| time_of_day(count, each))
+                texts_of(self.counts(rows, width)?, |count| time_of_day_text(count, each))
             }
-            Kind::Date(4) => texts_of(self.counts(rows, 4)?, |days| date(days * 86_400)),
-            Kind::Date(_) => texts_of(self.counts(rows, 8)?, |count| date(count / 1000)),
-            Kind::Text(_) | Kind::View => BatchColumn::Texts(runs(self.texts(rows)?)),
+            Kind::Date(4) => texts_of(self.counts(rows, 4)?, |days| date_text(days * 86_400)),
+            Kind::Date(_) => texts_of(self.counts(rows, 8)?, |count| date_text(count / 1000)),
+            Kind::Text(_) | Kind::View => BatchColumn::Texts(text_runs(self.texts(rows)?)),
             Kind::Dictionary { index, number, .. } => {
                 let texts = dictionaries.get(&number)?;
                 let is_signed = matches!(index, Number::Signed(_));
@@ -153,7 +152,7 @@ impl Column {
                     texts.get(usize::try_from(place).ok()?).cloned()
                 };
                 let texts: Option<Vec<String>> = rows.map(text).collect();
-                BatchColumn::Texts(runs(texts?))
+                BatchColumn::Texts(text_runs(texts?))
             }
             Kind::Other => return None,
         })
@@ -254,5 +253,5 @@ fn integer(bytes: &[u8], row: usize, width: usize, is_signed: bool) -> Option<i6
 
 fn texts_of(counts: Vec<Option<i64>>, text: impl Fn(i64) -> String) -> BatchColumn {
     let texts = counts.into_iter().map(|count| count.map_or_else(String::new, &text));
-    BatchColumn::Texts(runs(texts))
+    BatchColumn::Texts(text_runs(texts))
 }

@@ -3,10 +3,9 @@
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType, DoubleType, Int96};
 use parquet::errors::ParquetError;
-use report::mapping::{BatchColumn, NO_INSTANT};
+use report::mapping::{BatchColumn, NO_INSTANT, date_text, text_runs, time_of_day_text};
 
 use super::Kind;
-use crate::cells::{date, runs, time_of_day};
 
 const DAY_S: i64 = 86_400;
 
@@ -67,7 +66,7 @@ fn counts<T: DataType>(
     let text = |text: fn(i64, i64) -> String, each: i64| {
         let cells =
             cells.iter().map(|cell| cell.map_or_else(String::new, |count| text(count, each)));
-        BatchColumn::Texts(runs(cells))
+        BatchColumn::Texts(text_runs(cells))
     };
     Ok(match kind {
         #[expect(clippy::cast_precision_loss, reason = "counts of recorders are below 2^53")]
@@ -76,8 +75,8 @@ fn counts<T: DataType>(
         ),
         Kind::Instant(each) => BatchColumn::Instants(times(each, &cells)),
         Kind::LocalTime(each) => BatchColumn::LocalTimes(times(each, &cells)),
-        Kind::Date => text(|days, day_s| date(days.saturating_mul(day_s)), DAY_S),
-        Kind::Time(each) => text(time_of_day, each),
+        Kind::Date => text(|days, day_s| date_text(days.saturating_mul(day_s)), DAY_S),
+        Kind::Time(each) => text(time_of_day_text, each),
         Kind::Text => BatchColumn::Texts(Vec::new()),
     })
 }
