@@ -1,5 +1,6 @@
 //! Reports and recordings reduced to flights with their stabilised segments.
 
+use std::borrow::Cow;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
@@ -8,19 +9,23 @@ use arrow_array::RecordBatch;
 use pipeline::columns::Columns;
 use pipeline::distinct::distinct;
 use pipeline::flights_table;
-use pipeline::reading::{FileRead, FlightRead, FlightReader, Reading, RefusedReport};
+use pipeline::reading::recordings::{self, Mapped};
+use pipeline::reading::{Checks, FileRead, FlightRead, FlightReader, Reading, RefusedReport};
 use pipeline::segments_table::{self, SegmentRow};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3_arrow::PyTable;
 use pyo3_arrow::input::AnyRecordBatch;
 use rayon::prelude::*;
-use report::mapping::Mapping;
+use report::MAXIMUM_TEXT_BYTES;
+use report::mapping::{Mapping, PRESETS};
 use segmenter::TrimCriteria;
 
+use crate::columnar::is_columnar;
 use crate::failure::Failure;
 use crate::recorded_rows;
-use crate::tables::{Zoneless, plain, to_batch, to_csv};
+use crate::recording::{Opening, Place, in_parallel};
+use crate::tables::{Whose, plain, to_batch, to_csv};
 use crate::warned::Warnings;
 use crate::work::{Caller, run};
 
@@ -60,34 +65,37 @@ impl Source {
         Ok(Self { mapping, criteria: found, criteria_name: criteria })
     }
 
-    /// Reads files.
+    /// Reads files; `columnar` opens those of Parquet and Arrow.
     fn files(
         &self,
         py: Python<'_>,
         paths: Vec<PathBuf>,
+        columnar: Py<PyAny>,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
         let reading = self.clone();
         run(py, threads, move |caller| {
-            let read = read_all(caller, &paths, |path, reader| match std::fs::read(path) {
-                Ok(bytes) => reading.read_one(reader, path, &bytes),
-                Err(error) => (Vec::new(), vec![RefusedReport::whole(path.clone(), error)]),
+            let opening = Opening { columnar, caller: caller.clone() };
+            let read = read_all(caller, &paths, |path, reader| {
+                reading.read_one(reader, path, Place::File(path), &opening)
             })?;
             Ok(reading.flights(read))
         })
     }
 
-    /// Reads contents in memory under the names given.
+    /// Reads contents in memory under the names given; `columnar` opens those of Parquet and Arrow.
     fn contents(
         &self,
         py: Python<'_>,
         reports: Vec<(PathBuf, PyBackedBytes)>,
+        columnar: Py<PyAny>,
         threads: Option<NonZeroUsize>,
     ) -> PyResult<Flights> {
         let reading = self.clone();
         run(py, threads, move |caller| {
+            let opening = Opening { columnar, caller: caller.clone() };
             let read = read_all(caller, &reports, |(name, bytes), reader| {
-                reading.read_one(reader, name, bytes)
+                reading.read_one(reader, name, Place::Bytes(bytes), &opening)
             })?;
             Ok(reading.flights(read))
         })
@@ -115,8 +123,26 @@ impl Source {
 }
 
 impl Source {
-    fn read_one(&self, reader: &mut FlightReader, path: &Path, bytes: &[u8]) -> FileRead {
-        reader.read(path, bytes, self.mapping.as_ref(), &self.criteria)
+    /// What `name` calls: a report or a table of segments or, with the mapping, a recording.
+    fn read_one(
+        &self,
+        reader: &mut FlightReader,
+        name: &Path,
+        place: Place<'_>,
+        opening: &Opening,
+    ) -> FileRead {
+        let read = match &self.mapping {
+            Some(mapping) => opening.open(place).map(|mut source| {
+                let (criteria, checks) = (&self.criteria, Checks::Made);
+                let mapped = Mapped { path: name, mapping, criteria, checks };
+                recordings::read(&mapped, &mut source, &in_parallel)
+            }),
+            None => unmapped(place, opening)
+                .map(|bytes| reader.read(name, &bytes, None, &self.criteria)),
+        };
+        read.unwrap_or_else(|reason| {
+            (Vec::new(), vec![RefusedReport::whole(name.to_owned(), reason)])
+        })
     }
 
     fn flights(&self, read: Vec<FileRead>) -> Flights {
@@ -127,6 +153,27 @@ impl Source {
         }
         Flights::new(reading, self.criteria_name.clone())
     }
+}
+
+/// The bytes of a report or of a table of segments; of one in Parquet, its rows as text.
+fn unmapped<'p>(place: Place<'p>, opening: &Opening) -> Result<Cow<'p, [u8]>, String> {
+    let bytes: Cow<'p, [u8]> = match place {
+        Place::File(path) => std::fs::read(path).map_err(|error| error.to_string())?.into(),
+        Place::Bytes(bytes) => Cow::Borrowed(bytes),
+    };
+    if !is_columnar(&bytes) {
+        return Ok(bytes);
+    }
+    let text = opening.open(place)?.beginning(MAXIMUM_TEXT_BYTES);
+    let text = text.map_err(|refusal| refusal.to_string())?;
+    if text.len() >= MAXIMUM_TEXT_BYTES {
+        let limit = MAXIMUM_TEXT_BYTES >> 20;
+        return Err(format!("more than {limit} MiB as text, the most that is read"));
+    }
+    if !segments_table::is_table(&text) {
+        return Err("no table of segments: a recording needs mapping=".to_owned());
+    }
+    Ok(text.into())
 }
 
 /// One after the other in each thread, results in the order given.
@@ -147,6 +194,11 @@ fn read_all<T: Sync>(
 fn mapping_of(text: &str) -> Result<Mapping, Failure> {
     if let Some(preset) = Mapping::preset(text) {
         return Ok(preset);
+    }
+    if !text.contains('(') {
+        let known = PRESETS.map(|(name, _)| name).join(", ");
+        let expected = format!("a mapping file, its text, or a preset: {known}");
+        return Err(Failure::input(format!("mapping: found {text:?}, expected {expected}")));
     }
     Mapping::from_ron(text).map_err(|error| Failure::input(crate::failure::chain(&error)))
 }
@@ -170,7 +222,7 @@ impl Flights {
     fn from_state(py: Python<'_>, table: AnyRecordBatch, criteria: String) -> PyResult<Self> {
         let batches = batches_of(table)?;
         let flights = run(py, NonZeroUsize::new(1), move |_| {
-            let text = to_csv(&plain(batches)?, Zoneless::Utc)?;
+            let text = to_csv(&plain(batches)?, Whose::Ours)?;
             flights_table::read(&text).map_err(Failure::input)
         })?;
         Ok(Self::new(Reading { flights, ..Reading::default() }, criteria))
@@ -186,7 +238,7 @@ impl Flights {
     ) -> PyResult<Self> {
         let batches = batches_of(table)?;
         let flights = run(py, NonZeroUsize::new(1), move |_| {
-            let text = to_csv(&plain(batches)?, Zoneless::Utc)?;
+            let text = to_csv(&plain(batches)?, Whose::Ours)?;
             let segments = segments_table::read(&text).map_err(Failure::input)?;
             Ok(flights_table::from_segments(segments, &aircraft_type))
         })?;
@@ -251,6 +303,23 @@ impl Flights {
     /// What was refused: reports that cannot be read, and flights that contradict another one.
     fn refused(&self) -> Vec<RefusedRow> {
         refused_rows(&self.distinct().refused)
+    }
+
+    /// What of that is known without a comparison of flights.
+    fn refused_as_read(&self) -> Vec<RefusedRow> {
+        refused_rows(&self.reading.refused)
+    }
+
+    /// The same flights, of whose reading this was refused.
+    fn with_refused(&self, refused: Vec<RefusedRow>) -> Self {
+        let refused = refused.into_iter().map(|(path, line, column, reason)| RefusedReport {
+            path: PathBuf::from(path),
+            line,
+            column,
+            reason,
+        });
+        let reading = Reading { refused: refused.collect(), ..self.reading.as_ref().clone() };
+        Self::new(reading, self.criteria.clone())
     }
 
     /// Trim criteria by which the segments were found.

@@ -23,6 +23,7 @@ compile_error!("a panic must become an exception of Python: build the wheel with
 mod adapted;
 mod adapting;
 mod checked;
+mod columnar;
 mod diagnosed;
 mod failure;
 mod flights;
@@ -30,6 +31,7 @@ mod model;
 mod plots;
 mod points;
 mod recorded_rows;
+mod recording;
 mod simulated;
 mod starting;
 mod tables;
@@ -56,7 +58,7 @@ mod _native {
     #[pymodule_export]
     use crate::simulated::{Simulated, simulate};
     #[pymodule_export]
-    use crate::starting::{mapping_of_bytes, mapping_of_table, public_guide, public_types};
+    use crate::starting::{mapping_of_content, mapping_of_table, public_guide, public_types};
 
     use pyo3::prelude::*;
 

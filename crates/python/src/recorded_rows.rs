@@ -5,12 +5,13 @@ use std::path::Path;
 
 use arrow_array::{Array, ArrayRef, RecordBatch};
 use arrow_schema::DataType;
-use pipeline::reading::recordings::{self, Mapped, Workers};
+use pipeline::reading::recordings::{self, Mapped};
 use pipeline::reading::{Checks, FileRead};
-use report::mapping::{Cells, Lines, Mapping, Pieces, TableRows};
+use report::mapping::{Cells, Lines, Mapping, Pieces, Stream, TableRows};
 use segmenter::TrimCriteria;
 
 use crate::failure::Failure;
+use crate::recording::in_parallel;
 use crate::tables::{Reader, Value, header, line};
 use crate::work::Caller;
 
@@ -19,36 +20,42 @@ const ROWS_AT_ONCE: usize = 1 << 15;
 /// Above this not every whole number is a double.
 const LARGEST_EXACT: i128 = 1 << 53;
 
-/// The flights in a table of plain columns.
+/// The flights in a table of plain columns, of which those that the mapping does not name may be of any type.
 ///
 /// # Errors
-/// A column of a type that a recording cannot have; an interrupted caller.
+/// A column that the mapping names, of a type that a recording cannot have; an interrupted caller.
 pub(crate) fn read(
     name: &Path,
     batches: Vec<RecordBatch>,
     (mapping, criteria): (&Mapping, &TrimCriteria),
     caller: &Caller,
 ) -> Result<FileRead, Failure> {
+    let mapping = mapping.comma_separated();
+    let needed = batches.first().map(|batch| needed(batch, &mapping)).unwrap_or_default();
     for batch in &batches {
-        readers(batch)?;
+        for place in &needed {
+            Reader::new(batch.schema().field(*place).name(), batch.column(*place))?;
+        }
     }
     let names = batches.first().map(header).unwrap_or_default();
-    let mapping = mapping.comma_separated();
     let waiting = caller.clone();
     let rows = batches.into_iter().flat_map(stretches).take_while(move |_| {
         // What is read of an interrupted call is dropped.
         waiting.still_waits().is_ok()
     });
-    let pieces = Pieces::of_table(names, rows.map(rows_of));
+    let pieces = Pieces::of_table(names, rows.map(move |batch| rows_of(batch, &needed)));
     let mapped = Mapped { path: name, mapping: &mapping, criteria, checks: Checks::Made };
     let read = recordings::read_pieces(&mapped, Ok(pieces), &in_parallel);
     caller.still_waits()?;
     Ok(read)
 }
 
-fn in_parallel(work: &(dyn Fn() + Sync), run: &mut dyn FnMut(&Workers<'_>)) {
-    let count = rayon::current_num_threads();
-    rayon::in_place_scope(|scope| run(&Workers { count, call: &|| scope.spawn(|_| work()) }));
+/// The places of the columns that a mapping names; none where it names one that is not there, which is refused when the table is
+/// read.
+fn needed(batch: &RecordBatch, mapping: &Mapping) -> Vec<usize> {
+    let names: Vec<String> =
+        batch.schema().fields().iter().map(|field| field.name().clone()).collect();
+    Stream::begin_table(mapping, &names, None).map(|stream| stream.needed()).unwrap_or_default()
 }
 
 fn stretches(batch: RecordBatch) -> impl Iterator<Item = RecordBatch> {
@@ -57,18 +64,16 @@ fn stretches(batch: RecordBatch) -> impl Iterator<Item = RecordBatch> {
         .map(move |from| batch.slice(from, ROWS_AT_ONCE.min(batch.num_rows() - from)))
 }
 
-fn readers(batch: &RecordBatch) -> Result<Vec<Reader<'_>>, Failure> {
-    let schema = batch.schema();
-    let columns = schema.fields().iter().zip(batch.columns());
-    columns.map(|(field, array)| Reader::new(field.name(), array)).collect()
-}
-
-fn rows_of(batch: RecordBatch) -> TableRows {
-    let columns = batch.columns().iter().map(cells).collect();
+fn rows_of(batch: RecordBatch, needed: &[usize]) -> TableRows {
+    let cells_of = |(place, array)| {
+        if needed.contains(&place) { cells(array) } else { Cells::AsText }
+    };
+    let columns = batch.columns().iter().enumerate().map(cells_of).collect();
     let rows = batch.num_rows();
     let text = Lines::new(move |row| {
-        // The types of all batches were looked at before.
-        readers(&batch).map(|readers| line(&readers, row)).unwrap_or_default()
+        let readers: Vec<Reader<'_>> =
+            batch.columns().iter().map(|array| Reader::of_any(array)).collect();
+        line(&readers, row)
     });
     TableRows { columns, rows, text }
 }
@@ -104,7 +109,8 @@ fn local_time(value: Value<'_>) -> Option<flight::Timestamp> {
 fn number(value: Value<'_>) -> Option<f64> {
     match value {
         Value::Missing => Some(f64::NAN),
-        Value::Number(value) => value.is_finite().then_some(value),
+        // NaN is a number that is not there.
+        Value::Number(value) => (!value.is_infinite()).then_some(value),
         Value::Whole(value) => (value.abs() <= LARGEST_EXACT).then_some(value as f64),
         Value::Text(_) | Value::Instant(_) | Value::Local(_) => None,
     }

@@ -1,6 +1,7 @@
 //! What one begins with: a first mapping of a recording, and the public model of a type where there is no guide.
 
 use std::num::NonZeroUsize;
+use std::path::Path;
 
 use arrow_array::RecordBatch;
 use perf_model::poll_schumann;
@@ -8,27 +9,40 @@ use pipeline::public_guide::aircraft_text;
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3_arrow::input::AnyRecordBatch;
+use report::Refusal;
 use report::mapping::first_mapping;
 
 use crate::failure::Failure;
 use crate::flights::batches_of;
-use crate::tables::{Zoneless, plain, to_csv};
+use crate::recording::{Opening, Place};
+use crate::tables::{Whose, plain, to_csv};
 use crate::work::run;
 
 /// Rows of a table that a first mapping is made of: as many as tell how a column's values go. Our choice.
 const ROWS_FOR_A_MAPPING: usize = 50_000;
 
+/// So much of a recording's text is looked at, bytes: as much as `cruisefit mapping` looks at, so that both make the same.
+const LOOKED_AT_BYTES: usize = 16 << 20;
+
 /// Type code, name, and the type codes that it also stands for.
 type PublicType = (String, String, Vec<String>);
 
-/// A first mapping for a recording, from its bytes.
+/// A first mapping for a recording: the file of this name, or these bytes.
 #[pyfunction]
-pub(crate) fn mapping_of_bytes(
+pub(crate) fn mapping_of_content(
     py: Python<'_>,
     name: String,
-    content: PyBackedBytes,
+    content: Option<PyBackedBytes>,
+    columnar: Py<PyAny>,
 ) -> PyResult<String> {
-    run(py, NonZeroUsize::new(1), move |_| mapping_of(&content, name))
+    run(py, NonZeroUsize::new(1), move |caller| {
+        let opening = Opening { columnar, caller: caller.clone() };
+        let place = content.as_ref().map_or(Place::File(Path::new(&name)), Place::Bytes);
+        let unread = |reason: String| Failure::input(reason).in_file(name.clone());
+        let beginning = opening.open(place).map_err(unread)?.beginning(LOOKED_AT_BYTES);
+        let beginning = beginning.map_err(|refusal| refused(&refusal, name.clone()))?;
+        mapping_of(&beginning, name)
+    })
 }
 
 /// A first mapping for a recording whose samples are the rows of a table.
@@ -49,16 +63,18 @@ pub(crate) fn mapping_of_table(
                 batch.slice(0, rows)
             })
             .collect();
-        mapping_of(&to_csv(&plain(first)?, Zoneless::Local)?, name)
+        mapping_of(&to_csv(&plain(first)?, Whose::Recorders)?, name)
     })
 }
 
 fn mapping_of(content: &[u8], name: String) -> Result<String, Failure> {
-    first_mapping(content).map_err(|refusal| {
-        Failure::input(format!("found {}, expected {}", refusal.found, refusal.kind))
-            .in_file(name)
-            .at_line(refusal.line as u64)
-    })
+    first_mapping(content).map_err(|refusal| refused(&refusal, name))
+}
+
+fn refused(refusal: &Refusal, name: String) -> Failure {
+    Failure::input(format!("found {}, expected {}", refusal.found, refusal.kind))
+        .in_file(name)
+        .at_line(refusal.line as u64)
 }
 
 /// The types that have a public model.

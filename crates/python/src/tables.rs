@@ -144,6 +144,11 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// A reader of an array of any type: where it is none of those, no row has a value.
+    pub(crate) fn of_any(array: &'a dyn Array) -> Self {
+        Self::new("", array).unwrap_or(Self { array, numbers: None })
+    }
+
     /// The value of a row.
     pub(crate) fn value(&self, row: usize) -> Value<'a> {
         if self.array.is_null(row) {
@@ -181,7 +186,7 @@ impl<'a> Reader<'a> {
                 Value::Instant(time) if zone.is_none() => Value::Local(time),
                 instant => instant,
             },
-            // `new` lets no other type pass; a column of nulls has no value.
+            // A column of nulls, or of a type that is not read.
             _ => Value::Missing,
         }
     }
@@ -209,21 +214,22 @@ fn instant(found: Option<Timestamp>) -> Value<'static> {
     found.map_or(Value::Text("an instant outside the years -9999 to 9999"), Value::Instant)
 }
 
-/// What a time stamp without a zone is.
+/// Whose a table is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Zoneless {
-    /// An instant in UTC: of tables of our own.
-    Utc,
-    /// A time on a clock that only the mapping of the recording knows: its text has no offset.
-    Local,
+pub(crate) enum Whose {
+    /// Our own: each column has a text, and a time stamp without a zone is an instant in UTC.
+    Ours,
+    /// A recorder's: a time stamp without a zone is a time on a clock that only the mapping knows, so that its text has no
+    /// offset, and a column of a type that is not read is one that nobody asks for.
+    Recorders,
 }
 
 /// A table as comma-separated text with a header. A number is its shortest decimals that read back to the same bits; a
-/// null is an empty field.
+/// null and NaN are empty fields.
 ///
 /// # Errors
 /// A column of a type that has no text.
-pub(crate) fn to_csv(batches: &[RecordBatch], zoneless: Zoneless) -> Result<Vec<u8>, Failure> {
+pub(crate) fn to_csv(batches: &[RecordBatch], whose: Whose) -> Result<Vec<u8>, Failure> {
     let mut text = String::new();
     for (place, batch) in batches.iter().enumerate() {
         let schema = batch.schema();
@@ -235,10 +241,13 @@ pub(crate) fn to_csv(batches: &[RecordBatch], zoneless: Zoneless) -> Result<Vec<
             .fields()
             .iter()
             .zip(batch.columns())
-            .map(|(field, array)| Reader::new(field.name(), array))
+            .map(|(field, array)| match whose {
+                Whose::Ours => Reader::new(field.name(), array),
+                Whose::Recorders => Ok(Reader::of_any(array)),
+            })
             .collect::<Result<Vec<_>, _>>()?;
         for row in 0..batch.num_rows() {
-            append_line(&mut text, &readers, row, zoneless);
+            append_line(&mut text, &readers, row, whose);
             text.push('\n');
         }
     }
@@ -260,11 +269,11 @@ pub(crate) fn header(batch: &RecordBatch) -> String {
 /// The line of a row of a recording.
 pub(crate) fn line(readers: &[Reader<'_>], row: usize) -> String {
     let mut text = String::new();
-    append_line(&mut text, readers, row, Zoneless::Local);
+    append_line(&mut text, readers, row, Whose::Recorders);
     text
 }
 
-fn append_line(text: &mut String, readers: &[Reader<'_>], row: usize, zoneless: Zoneless) {
+fn append_line(text: &mut String, readers: &[Reader<'_>], row: usize, whose: Whose) {
     for (column, reader) in readers.iter().enumerate() {
         if column > 0 {
             text.push(',');
@@ -272,7 +281,7 @@ fn append_line(text: &mut String, readers: &[Reader<'_>], row: usize, zoneless: 
         append(
             text,
             match reader.value(row) {
-                Value::Local(time) if zoneless == Zoneless::Utc => Value::Instant(time),
+                Value::Local(time) if whose == Whose::Ours => Value::Instant(time),
                 value => value,
             },
         );
@@ -283,6 +292,8 @@ fn append(text: &mut String, value: Value<'_>) {
     // Writing to a string cannot fail.
     let _ = match value {
         Value::Missing => Ok(()),
+        // As a library without nulls writes "not available".
+        Value::Number(value) if value.is_nan() => Ok(()),
         Value::Number(value) => write!(text, "{value}"),
         Value::Whole(value) => write!(text, "{value}"),
         Value::Instant(value) => write!(text, "{value}"),

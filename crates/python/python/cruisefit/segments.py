@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _native
+from ._columnar import ENDINGS as _COLUMNAR_ENDINGS, Content, opened, require_pyarrow
 from ._pages import read_text
 from ._tables import Table, as_stream, is_table, like
 from .errors import InputError, expected, found_and_expected, in_python, warn_of_refused
@@ -27,7 +28,7 @@ Report = Union[str, "os.PathLike[str]", bytes, tuple[str, bytes]]
 """A path (file, folder or glob), the bytes of a report, or its name and bytes."""
 
 _REPORT_ENDINGS = (".txt", ".rpt", ".gz")
-_RECORDING_ENDINGS = (".csv", ".gz")
+_RECORDING_ENDINGS = (".csv", ".gz", ".zst", *_COLUMNAR_ENDINGS)
 
 
 @dataclass(frozen=True)
@@ -145,7 +146,17 @@ class Segments:
         return cls(_native.Flights.from_segments(as_stream(table), aircraft_type, criteria))
 
     def __add__(self, other: Segments) -> Segments:
-        flights = self._flights.and_([flights_of(other)])
+        """Flights of both, each once.
+
+        Raises:
+            InputError: Their segments were found by other trim criteria, by which a model would not continue.
+        """
+        others = flights_of(other)
+        if other.criteria != self.criteria:
+            raise InputError(
+                f"criteria: found segments by {self.criteria!r} and by {other.criteria!r}, expected the same of both"
+            )
+        flights = self._flights.and_([others])
         flights.look_through()
         return Segments(flights)
 
@@ -162,7 +173,7 @@ class Segments:
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled, (self.state(), self.criteria)
+        return _unpickled, (self.state(), self.criteria, self._flights.refused_as_read())
 
 
 def flights_of(segments: Segments) -> _native.Flights:
@@ -175,8 +186,10 @@ def flights_of(segments: Segments) -> _native.Flights:
     return segments._flights
 
 
-def _unpickled(state: Table, criteria: str) -> Segments:
-    return Segments.from_state(state, criteria)
+def _unpickled(
+    state: Table, criteria: str, refused: Sequence[tuple[str, int | None, int | None, str]]
+) -> Segments:
+    return Segments(Segments.from_state(state, criteria)._flights.with_refused(refused))
 
 
 def segment(
@@ -190,9 +203,11 @@ def segment(
     """Finds the stabilised segments of reports or recordings; needs no model.
 
     Args:
-        reports: Paths (files; folders, searched for .txt, .rpt and .gz, with a mapping .csv and .gz; globs), bytes, or pairs
-            of name and bytes; one or several. With a mapping also a table (Arrow C interface) whose rows are samples and
-            whose columns the mapping names.
+        reports: Paths (files; folders, searched for .txt, .rpt and .gz, with a mapping for recordings; globs), bytes, or pairs
+            of name and bytes; one or several. Recordings are delimited text, plain or packed (.csv, .gz, .zst), Parquet
+            (.parquet) and Arrow (.arrow, .arrows, .feather, .ipc); the last two need pyarrow. They are read piece by piece, so
+            that they may be of any length. With a mapping also a table (Arrow C interface) whose rows are samples and whose
+            columns the mapping names; its other columns may be of any type. A null and NaN are values that are missing.
         mapping: Mapping file (RON), its text, or the name of a preset, for recordings of another layout.
         criteria: Trim criteria that decide which samples are steady, one of :data:`PRESETS`. Source: Ghazi et al. 2020,
             table 4, the first; Airbus, Getting to Grips with Aircraft Performance Monitoring, report <02>, the second.
@@ -206,28 +221,45 @@ def segment(
     Raises:
         InputError: No report at all, unknown criteria, or a mapping that is none.
         FileNotFoundError: A path, or a pattern, that matches nothing.
+        ModuleNotFoundError: A Parquet or Arrow file without pyarrow.
     """
     reading = _native.Source(criteria, None if mapping is None else _mapping(mapping))
     if is_table(reports):
         return _looked_through(reading.rows(name, as_stream(reports), threads))
-    several: Iterable[Any] = (
-        reports
-        if isinstance(reports, Iterable) and not isinstance(reports, (str, bytes, tuple))
-        else [reports]
-    )
+    one_alone = (str, bytes, bytearray, memoryview, tuple)
+    # A file that is open gives its lines one by one, none of which is a report.
+    is_list = isinstance(reports, Iterable) and not isinstance(reports, one_alone) and not hasattr(reports, "read")
+    several: Iterable[Any] = reports if is_list else [reports]
     paths: set[Path] = set()
     contents: list[tuple[str, bytes]] = []
+    searched: list[Path] = []
+    skipped = 0
     for one in several:
-        if isinstance(one, bytes):
-            contents.append((f"report {len(contents) + 1}", one))
+        if isinstance(one, (bytes, bytearray, memoryview)):
+            contents.append((f"report {len(contents) + 1}", bytes(one)))
         elif isinstance(one, tuple):
             contents.append(one)
+        elif not isinstance(one, (str, os.PathLike)):
+            collect = "; collect() it first" if hasattr(one, "collect") else ""
+            one_by_one = "; a table is read by itself, and Segments are added up" if is_table(one) else ""
+            raise TypeError(
+                f"found {type(one).__name__}, expected a path, bytes, or a name and bytes{collect}{one_by_one}"
+            )
         else:
-            paths.update(_files(Path(one), _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS))
+            searched.append(Path(one))
+            found, others = _files(Path(one), _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS)
+            paths.update(found)
+            skipped += others
     if not paths and not contents:
-        raise InputError("found no cruise report, expected one or more")
-    read = reading.files(sorted(paths), threads)
-    return _looked_through(read.and_([reading.contents(contents, threads)]) if contents else read)
+        where = f" in {', '.join(map(str, searched))}" if searched else ""
+        others_skipped = f"; files skipped for their endings: {skipped}" if skipped else ""
+        raise InputError(f"found no cruise report{where}, expected one or more{others_skipped}")
+    of_files: Iterable[tuple[str, Content]] = ((str(path), path) for path in sorted(paths))
+    require_pyarrow([*of_files, *contents])
+    read = reading.files(sorted(paths), opened, threads)
+    if contents:
+        read = read.and_([reading.contents(contents, opened, threads)])
+    return _looked_through(read)
 
 
 def _looked_through(flights: _native.Flights) -> Segments:
@@ -242,19 +274,25 @@ def mapping(recording: str | os.PathLike[str] | bytes | Table, *, name: str = "t
     are guesses to check; the text, corrected, is what :func:`segment` takes as ``mapping``.
 
     Args:
-        recording: A delimited text (path or bytes, plain or gzip), or a table whose rows are samples, of which the first
-            50 000 are looked at.
+        recording: A recording as :func:`segment` reads it (path or bytes), or a table whose rows are samples, of which the
+            first 50 000 are looked at.
         name: What errors call a table or bytes.
 
     Raises:
-        InputError: The recording has no line of column names.
+        InputError: The recording has no line of column names, or cannot be read.
+        FileNotFoundError: There is no such file.
+        ModuleNotFoundError: A Parquet or Arrow file without pyarrow.
     """
     if isinstance(recording, bytes):
-        return _native.mapping_of_bytes(name, recording)
+        require_pyarrow([(name, recording)])
+        return _native.mapping_of_content(name, recording, opened)
     if is_table(recording):
         return _native.mapping_of_table(name, as_stream(recording))
     path = Path(recording)
-    return _native.mapping_of_bytes(str(path), path.read_bytes())
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: no such file")
+    require_pyarrow([(str(path), path)])
+    return _native.mapping_of_content(str(path), None, opened)
 
 
 class Check:
@@ -294,29 +332,35 @@ def check(segments: Segments, models: Model | Sequence[Model] = ()) -> Check:
     Raises:
         InputError: Two models claim the same tail or type.
     """
-    from .model import natives_of
+    from .model import Model, natives_of
 
-    return Check(*_native.check(natives_of(models), flights_of(segments)))
+    of_models = natives_of(models) if isinstance(models, Model) or models else []
+    return Check(*_native.check(of_models, flights_of(segments)))
 
 
 def _mapping(mapping: str | os.PathLike[str]) -> str:
     """The text of a mapping file; a text and the name of a preset as they are."""
     text = os.fspath(mapping)
-    if "(" in text and "\n" in text:
-        return text
+    if "(" in text and ("\n" in text or text.rstrip().endswith(")")):
+        # What is written on one line may be longer than the name of a file can be.
+        if "\n" in text or len(text) > 255 or not Path(text).exists():
+            return text
     path = Path(text)
     return read_text(path) if path.suffix or path.exists() else text
 
 
-def _files(path: Path, endings: tuple[str, ...]) -> list[Path]:
+def _files(path: Path, endings: tuple[str, ...]) -> tuple[list[Path], int]:
+    """The files that a path stands for, and how many others of its folders were skipped."""
     if path.is_dir():
-        files = (file for file in path.rglob("*") if file.is_file())
-        return [file for file in files if file.suffix.lower() in endings]
+        files = [file for file in path.rglob("*") if file.is_file()]
+        known = [file for file in files if file.suffix.lower() in endings]
+        return known, len(files) - len(known)
     if path.exists():
-        return [path]
+        return [path], 0
     if not any(character in str(path) for character in "*?["):
         raise FileNotFoundError(f"{path}: no such file or folder")
     matches = [Path(match) for match in glob.glob(str(path))]
     if not matches:
         raise FileNotFoundError(f"{path}: the pattern matches no file")
-    return [file for match in matches for file in _files(match, endings)]
+    found = [_files(match, endings) for match in matches]
+    return [file for files, _ in found for file in files], sum(others for _, others in found)
