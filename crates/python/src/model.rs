@@ -30,7 +30,8 @@ pub(crate) struct Model {
     pub(crate) name: PathBuf,
 }
 
-type Prediction = (PyTable, Vec<(u64, String)>);
+/// The table, how many rows have no prediction, and the first of them (from 1) with the reason.
+type Prediction = (PyTable, usize, Option<(u64, String)>);
 
 #[pymethods]
 impl Model {
@@ -77,7 +78,7 @@ impl Model {
         Ok(self.file.to_text().map_err(Failure::internal)?)
     }
 
-    /// The predictions at a table's rows, and the rows (from 1) without one, with reasons. `predicts`: `whole` or `table`;
+    /// The predictions at a table's rows, and which rows have none. `predicts`: `whole` or `table`;
     /// `stated`: whether standard deviations are, columns of the prediction, all without them, and whether the columns that were
     /// given come before them.
     fn predict(
@@ -101,9 +102,12 @@ impl Model {
                 Some(columns) => predictor.with_columns(columns),
                 None => predictor,
             };
-            points::predict(&predictor, given, returned, caller)
+            let asks_error =
+                columns.is_some_and(|columns| columns.contains(&PredictedColumn::ErrorPercent));
+            points::predict(&predictor, given, (returned, asks_error), caller)
         })?;
-        Ok((PyTable::try_new(found.batches, found.schema)?, refused))
+        let table = PyTable::try_new(found.batches, found.schema)?;
+        Ok((table, refused.rows, refused.first))
     }
 
     /// Charts of the model as SVG, of these names or all.

@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
@@ -20,8 +19,14 @@ use crate::work::Caller;
 /// Rows that a thread predicts before it asks whether the caller still waits. Our choice: some 50 ms of work.
 const ROWS_AT_ONCE: usize = 1 << 16;
 
-/// A row (from 1) without a prediction, and the reason.
-pub(crate) type Unpredicted = (u64, String);
+/// Rows without a prediction.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Unpredicted {
+    /// How many.
+    pub(crate) rows: usize,
+    /// The first of them (from 1), and the reason.
+    pub(crate) first: Option<(u64, String)>,
+}
 
 /// Flight points.
 #[derive(Clone, Debug)]
@@ -39,17 +44,18 @@ pub(crate) enum Returned {
     PredictionAlone,
 }
 
-/// The columns of the prediction, and the rows (from 1) that have none, with reasons. A table without rows has the same
-/// columns, without rows.
+/// The columns of the prediction, and the rows that have none. A table without rows has the same columns, without rows; the
+/// error of the prediction is one of them where the table has measured fuel flows, whether or not there is a value, or where it
+/// is asked for by its name (`asks_error`).
 ///
 /// # Errors
 /// A table whose columns or cells are not those of flight points.
 pub(crate) fn predict(
     predictor: &Predictor<'_>,
     given: Points,
-    returned: Returned,
+    (returned, asks_error): (Returned, bool),
     caller: &Caller,
-) -> Result<(Points, Vec<Unpredicted>), Failure> {
+) -> Result<(Points, Unpredicted), Failure> {
     let names = given.schema.fields().iter().map(|field| field.name().clone()).collect();
     let points = PointTable::new(names).map_err(|error| Failure::table(&error))?;
     let read = plain(given.batches.clone())?;
@@ -68,11 +74,9 @@ pub(crate) fn predict(
         let read = plain(vec![given.clone()])?;
         cuts.extend(read.into_iter().map(|read| Cut { before: 0, given: given.clone(), read }));
     }
-    // Whether the error of the prediction is a column must not depend on where a table is cut.
-    let any_measured = points.measured_fuel_flow().is_some_and(|column| {
-        rows == 0 || read.iter().any(|batch| has_values(batch.column(column)))
-    });
-    let at = At { predictor, points: &points, any_measured };
+    // Which columns there are must depend neither on the values in a table nor on where it is cut.
+    let states_error = asks_error || points.measured_fuel_flow().is_some();
+    let at = At { predictor, points: &points, states_error };
     let predicted = cuts
         .into_par_iter()
         .map(|cut| {
@@ -80,9 +84,15 @@ pub(crate) fn predict(
             at.cut(cut, returned)
         })
         .collect::<Result<Vec<_>, Failure>>()?;
-    let (batches, refused): (Vec<_>, Vec<_>) = predicted.into_iter().unzip();
+    let mut unpredicted = Unpredicted::default();
+    let mut batches = Vec::with_capacity(predicted.len());
+    for (batch, found) in predicted {
+        batches.push(batch);
+        unpredicted.rows += found.rows;
+        unpredicted.first = unpredicted.first.or(found.first);
+    }
     let schema = batches.first().map_or(given.schema, RecordBatch::schema);
-    Ok((Points { schema, batches }, refused.into_iter().flatten().collect()))
+    Ok((Points { schema, batches }, unpredicted))
 }
 
 /// Rows that follow each other.
@@ -99,31 +109,37 @@ struct Cut {
 struct At<'a> {
     predictor: &'a Predictor<'a>,
     points: &'a PointTable,
-    any_measured: bool,
+    states_error: bool,
 }
 
 impl At<'_> {
-    fn cut(
-        &self,
-        cut: Cut,
-        returned: Returned,
-    ) -> Result<(RecordBatch, Vec<Unpredicted>), Failure> {
+    fn cut(&self, cut: Cut, returned: Returned) -> Result<(RecordBatch, Unpredicted), Failure> {
         let Cut { before, given, read } = cut;
         let at_once = self.points.level_columns(|column| numbers(read.column(column)));
         let predicted = match at_once.filter(|_| self.predictor.predicts_columns()) {
             Some(columns) => {
-                let measured = columns.measured_fuel_flow_kg_s().filter(|_| self.any_measured);
+                let none;
+                let measured = match columns.measured_fuel_flow_kg_s() {
+                    None if self.states_error => {
+                        none = vec![f64::NAN; read.num_rows()];
+                        Some(&none[..])
+                    }
+                    measured => measured,
+                };
                 self.predictor.at_level_flights(columns.flights(), measured)
             }
             None => self.rows(before, &read)?,
         };
         let PredictedPoints { columns, refused } = predicted;
-        let (mut fields, mut arrays, mut metadata) = (Vec::new(), Vec::new(), HashMap::new());
-        if returned == Returned::WithGiven {
-            let schema = given.schema();
-            fields.extend(schema.fields().iter().cloned());
-            arrays.extend_from_slice(given.columns());
-            metadata.clone_from(schema.metadata());
+        let (mut fields, mut arrays) = (Vec::new(), Vec::new());
+        let mut metadata = given.schema().metadata().clone();
+        match returned {
+            Returned::WithGiven => {
+                fields.extend(given.schema().fields().iter().cloned());
+                arrays.extend_from_slice(given.columns());
+            }
+            // Such as how pandas finds the index among its columns.
+            Returned::PredictionAlone => metadata.clear(),
         }
         for (name, values) in columns {
             // Nulls or not, the column has one type in every part of the table.
@@ -136,7 +152,8 @@ impl At<'_> {
         let batch = RecordBatch::try_new_with_options(Arc::new(schema), arrays, &rows)
             .map_err(Failure::internal)?;
         let numbered = |(place, reason)| ((before + place + 1) as u64, reason);
-        Ok((batch, refused.into_iter().map(numbered).collect()))
+        let rows = refused.len();
+        Ok((batch, Unpredicted { rows, first: refused.into_iter().next().map(numbered) }))
     }
 
     /// Predictions at rows that are looked at cell by cell.
@@ -162,16 +179,8 @@ impl At<'_> {
             }
         });
         let rows = rows.collect::<Result<Vec<FlightPoint>, Failure>>()?;
-        let measured = self.any_measured.then(|| measured_kg_s(&rows));
+        let measured = self.states_error.then(|| measured_kg_s(&rows));
         Ok(self.predictor.at_points(&rows, measured.as_deref()))
-    }
-}
-
-/// Whether a column has any value.
-fn has_values(array: &ArrayRef) -> bool {
-    match numbers(array) {
-        Some(values) => values.iter().any(|value| !value.is_nan()),
-        None => array.logical_null_count() < array.len(),
     }
 }
 

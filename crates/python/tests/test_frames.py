@@ -91,6 +91,22 @@ def test_a_table_without_rows_has_the_error_where_fuel_flow_is_measured(initial)
     assert initial.predict(measured.clear()).schema == initial.predict(measured).schema
 
 
+def test_the_columns_of_a_prediction_do_not_depend_on_values(initial):
+    """So that parts of a table can be put together again."""
+    parts = [{**POINTS, "fuel_flow_kg_h": [flow] * 6} for flow in (720.0, None, float("nan"))]
+    predicted = [
+        initial.predict(frame(part))
+        for part in parts
+        for frame in (pl.DataFrame, lambda part: pl.DataFrame(part, schema_overrides={"fuel_flow_kg_h": pl.Float64}))
+    ]
+    assert all(table.columns == [*POINTS, "fuel_flow_kg_h", *RESULTS, "error_percent"] for table in predicted)
+    assert [table["error_percent"].null_count() for table in predicted] == [0, 0, 6, 6, 6, 6]
+    # By name it is there too, of whatever nobody measured.
+    asked = initial.predict(pl.DataFrame(POINTS), columns="error_percent")
+    assert asked.columns == [*POINTS, "error_percent"] and asked["error_percent"].null_count() == 6
+    assert initial.predict({**POINTS, "anti_ice": [0] * 6}, columns=["error_percent"]).column("error_percent").null_count == 6
+
+
 def test_types_that_came_in_go_out(initial, flow_of_mach):
     """Also where the library that computes does not have the type, or decodes it to read it."""
     numbers = [2**60 + 1, 2**60 + 3, None, 5, 6, 7]

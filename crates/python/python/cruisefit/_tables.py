@@ -37,6 +37,8 @@ def as_stream(value: Table) -> ArrowStream:
         known = [None, *value.columns]
         levels = [level for level, name in enumerate(value.index.names) if name not in known]
         return _without_index(value.reset_index(levels) if levels else value)
+    if _is_frame_of(value, "polars"):
+        return _of_polars(value)
     if isinstance(value, dict):
         return cast("ArrowStream", _module("pyarrow").table(value))
     if hasattr(value, "__arrow_c_stream__") or hasattr(value, "__arrow_c_array__"):
@@ -67,7 +69,7 @@ def as_points(value: Table) -> ArrowStream:
     places = [place for place, name in enumerate(value.columns) if not str(name).startswith("X-")]
     if _is_frame_of(value, "pandas"):
         return _without_index(value.iloc[:, places])
-    return cast("ArrowStream", value[:, places])
+    return _of_polars(value[:, places])
 
 
 def with_columns(frame: Table, added: ArrowStream) -> Table:
@@ -83,6 +85,13 @@ def _is_frame_of(value: object, library: str) -> bool:
     """Whether a value is a frame of a library; one that was not imported has made none."""
     module = sys.modules.get(library)
     return module is not None and isinstance(value, module.DataFrame)
+
+
+def _of_polars(frame: Table) -> ArrowStream:
+    polars = _module("polars")
+    if polars.Null in frame.dtypes:  # what polars passes on for it is not what the Arrow C interface has
+        frame = frame.with_columns(polars.col(polars.Null).cast(polars.Float64))
+    return cast("ArrowStream", frame)
 
 
 def _without_index(frame: Table) -> ArrowStream:

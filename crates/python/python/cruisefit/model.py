@@ -117,8 +117,8 @@ class Model:
             The same rows and columns (of the same types, not copied; a frame of pandas is copied and keeps its index) and
             ``fuel_flow_kg_s`` (all engines), ``fuel_flow_std_kg_s`` (null by law
             ``paper``), ``specific_range_m_kg``, ``lift_coefficient``, ``drag_coefficient``, ``extrapolated`` (1 outside the
-            guide's range), with measured fuel flow ``error_percent`` = 100 (measured − predicted)/measured, and where more
-            than the table was learnt ``remainder_percent`` and ``beyond_flights`` (1 beyond what was flown). Results are null
+            guide's range), where measured fuel flow is a column ``error_percent`` = 100 (measured − predicted)/measured, and
+            where more than the table was learnt ``remainder_percent`` and ``beyond_flights`` (1 beyond what was flown). Results are null
             where the point is outside the model's table, and a :class:`PredictionWarning` says how many are.
 
         Raises:
@@ -127,12 +127,12 @@ class Model:
         """
         adds_columns = is_frame(points)
         stated = (deviations, None if columns is None else names_of(columns), not adds_columns)
-        table, refused = self._native.predict(
+        table, without, first = self._native.predict(
             as_points(points), "table" if table_only else "whole", stated, threads
         )
-        if refused:
-            row, reason = refused[0]
-            message = f"{len(refused)} points have no prediction; the first is row {row}: {reason}"
+        if first is not None:
+            row, reason = first
+            message = f"{without} points have no prediction; the first is row {row}: {reason}"
             if strict:
                 raise InputError(message, line=row)
             warnings.warn(message, PredictionWarning, stacklevel=2)
@@ -275,7 +275,7 @@ def natives_of(models: Model | Sequence[Model]) -> list[_native.Model]:
     """One model or several, as the native half takes them.
 
     Raises:
-        InputError: Something else.
+        InputError: Something else, or none.
     """
     several = [models] if isinstance(models, Model) else models
     if isinstance(several, (str, bytes, os.PathLike)) or not isinstance(several, Iterable):
@@ -283,6 +283,8 @@ def natives_of(models: Model | Sequence[Model]) -> list[_native.Model]:
     several = list(several)
     for one in several:
         expected(one, Model, "Model.load reads the file of one")
+    if not several:
+        raise InputError("models: found none, expected one or more")
     return [one._native for one in several]
 
 
