@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import sys
+import warnings
 
 import pytest
 from conftest import FIXTURES
@@ -89,6 +90,38 @@ def test_segments_are_those_of_one_machine(flights, reports):
     assert len(rows) == len(alone)
     for ours, theirs in zip(sorted(rows, key=key), sorted(alone, key=key), strict=True):
         assert {name: ours[name] for name in theirs} == theirs
+
+
+def test_copies_and_contradictions_do_not_depend_on_partitions(session, reports):
+    """Eight reports, each twice under two names, and one that says something else of a flight; no path of one of them."""
+    copies = [(f"copy of {name}", content) for name, content, *_ in reports]
+    name, content = reports[0][0], reports[0][1]
+    altered = content[:-200] if isinstance(content, str) else bytes(content[:-200])
+    altered = altered[: altered.rindex("\n" if isinstance(altered, str) else b"\n") + 1]
+    rows = [tuple(report[:2]) for report in reports] + copies + [(f"other {name}", altered)]
+    rows = [(name, content.encode() if isinstance(content, str) else content) for name, content in rows]
+    alone = cruisefit.segment(rows)
+    rows[3] = (None, rows[3][1])
+    found = set()
+    for partitions in (1, 7):
+        frame = session.createDataFrame(rows, "name string, content binary").repartition(partitions)
+        read = cruisefit.spark.flights(frame, report="content", path="name").cache()
+        assert read.count() == len(rows)
+        found.add((cruisefit.spark.segment(read).count(), cruisefit.spark.refused(read).count()))
+    assert found == {(len(alone), 0)}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", cruisefit.DataWarning)
+        cruisefit.spark.segment(read)
+
+
+def test_a_tail_that_never_had_a_model_keeps_its_reason(flights, model):
+    folder = FIXTURES / "global5000"
+    other = cruisefit.Model.initial(folder / "AIRCRAFT.ron", folder / "guide.csv")
+    without = cruisefit.spark.adapt(flights, [other])
+    again = cruisefit.spark.adapt(flights.where("tail = 'nobody'"), [model], begun=without).collect()
+    assert len(again) == 3 and all("aircraft type" in row.error for row in again)
+    diagnosed = cruisefit.spark.diagnose(flights, without).collect()
+    assert len(diagnosed) == 3 and {row.error for row in diagnosed} == {"the tail has no model"}
 
 
 def test_models_are_those_of_one_machine(adapted, model, reports):

@@ -24,11 +24,12 @@ import pyarrow as pa
 from pyspark.sql import functions as F
 from pyspark.sql.pandas.types import from_arrow_schema
 
-from . import adaptation, diagnosis
+from . import _native, adaptation, diagnosis
+from ._columnar import opened
 from ._pages import read_text
 from .errors import InputError
 from .model import Model
-from .segments import PRESETS, Segments, segment as read_segments
+from .segments import PRESETS, Segments, refused_of, segment as read_segments
 
 if TYPE_CHECKING:
     from pyspark.sql import DataFrame
@@ -106,13 +107,14 @@ def flights(
     mapping: str | os.PathLike[str] | None = None,
     criteria: str = PRESETS[0],
 ) -> DataFrame:
-    """Reads reports: one row per flight, or per report that was refused.
+    """Reads reports: one row per flight, or per report that was refused. Flights are not compared here: of copies and of
+    reports that contradict each other all are rows, which :func:`segment`, :func:`adapt` and the others use once.
 
     Args:
         reports: A row per report.
         report: Name of the binary column that holds a report, plain or gzip.
-        path: Name of a column that says what a report is called; without it, it is called by the hash of its bytes. Two
-            reports of one flight are told apart by it.
+        path: Name of a column that says what a report is called; without it, or where it is null, it is called by the hash of
+            its bytes. Two reports of one flight are told apart by it.
         mapping: Mapping file on the driver, or name of a preset, for recordings of another layout.
         criteria: Trim criteria, one of :data:`cruisefit.PRESETS`.
 
@@ -122,8 +124,10 @@ def flights(
         a refused report ``refused`` (the reason), ``refused_line``, ``refused_column``, the others null.
     """
     rule = _mapping_text(mapping)
-    name = F.col(path) if path else F.concat(F.lit("sha256:"), F.sha2(F.col(report), 256))
-    rows = reports.select(name.cast("string").alias("path"), F.col(report).alias("report"))
+    name = F.concat(F.lit("sha256:"), F.sha2(F.col(report), 256))
+    if path:
+        name = F.coalesce(F.col(path).cast("string"), name)
+    rows = reports.select(name.alias("path"), F.col(report).alias("report"))
 
     def read(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
         for batch in batches:
@@ -179,8 +183,8 @@ def refused(flights: DataFrame) -> DataFrame:
 
 
 def segment(reports: DataFrame, **options: Any) -> DataFrame:
-    """Stabilised segments: one row per segment, with the columns of :class:`cruisefit.Segments` for four engines. Reports that
-    were refused have no segment: see :func:`refused`.
+    """Stabilised segments: one row per segment, with the columns of :class:`cruisefit.Segments` for four engines; each flight is
+    used once, and one that contradicts another is left out. Reports that were refused have no segment: see :func:`refused`.
 
     Args:
         reports: Reports, or the result of :func:`flights`.
@@ -189,12 +193,12 @@ def segment(reports: DataFrame, **options: Any) -> DataFrame:
     read = _as_flights(reports, options)
     schema = _segments_schema()
 
-    def rows(batches: Iterator[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
-        for batch in batches:
-            found = _segments_of(pa.Table.from_batches([batch]))
-            yield from _in_schema(found.table(), schema).to_batches()
+    def rows(table: pa.Table) -> pa.Table:
+        return _in_schema(_segments_of(table).table(), schema)
 
-    return read.where(F.col("refused").isNull()).mapInArrow(rows, from_arrow_schema(schema))
+    # By tail, since whether a flight is used once must not depend on how rows are distributed.
+    flown = read.where(F.col("refused").isNull())
+    return flown.groupBy("tail").applyInArrow(rows, from_arrow_schema(schema))
 
 
 def adapt(
@@ -242,6 +246,10 @@ def adapt(
             before = _stored(row)
             if table.num_rows == 0:
                 return _adapted_row(before)
+        elif table.num_rows == 0:
+            # A tail that has no model yet, and no flight that it could learn.
+            reason = known.column("error")[0].as_py() if known is not None and known.num_rows else None
+            return {"error": reason or "nothing learnt: no flight"}
         adapted = adaptation.adapt(
             _segments_of(table),
             models,
@@ -268,7 +276,7 @@ def adapt(
     return begun.groupBy("tail").cogroup(read.groupBy("tail")).applyInArrow(continued, schema)
 
 
-def evaluate(reports: DataFrame, models: Sequence[Model] | DataFrame, **options: Any) -> DataFrame:
+def evaluate(reports: DataFrame, models: Model | Sequence[Model] | DataFrame, **options: Any) -> DataFrame:
     """The fuel-flow error of models as they are: one row per tail (``tail``, ``summary``, ``error``).
 
     Args:
@@ -332,7 +340,7 @@ def fleet(
 
 def diagnose(
     reports: DataFrame,
-    models: Sequence[Model] | DataFrame,
+    models: Model | Sequence[Model] | DataFrame,
     *,
     effects: Sequence[str] = (),
     without: Sequence[str] = (),
@@ -386,15 +394,15 @@ def diagnose(
 
 def _by_tail(
     reports: DataFrame,
-    models: Sequence[Model] | DataFrame,
+    models: Model | Sequence[Model] | DataFrame,
     schema: pa.Schema,
     one: Callable[[pa.Table, Sequence[Model]], dict[str, Any]],
     options: dict[str, Any],
 ) -> DataFrame:
     """One row per tail, by models of the driver or by the models that the tails have learnt."""
     read = _as_flights(reports, options).where(F.col("refused").isNull())
-    if isinstance(models, Sequence):
-        given = models
+    if isinstance(models, (Model, Sequence)):
+        given = [models] if isinstance(models, Model) else models
 
         def grouped(key: tuple[Any, ...], table: pa.Table) -> pa.Table:
             return _row_or_error(schema, key[0].as_py(), lambda: one(table, given))
@@ -403,6 +411,8 @@ def _by_tail(
 
     def of_tail(known: pa.Table, table: pa.Table) -> dict[str, Any]:
         own = [row for row in known.to_pylist() if row["model"] is not None]
+        if not own:
+            return {"error": "the tail has no model"}
         return one(table, [Model.from_text(row["model"], row["tail"]) for row in own])
 
     def cogrouped(key: tuple[Any, ...], known: pa.Table, table: pa.Table) -> pa.Table:
@@ -472,7 +482,8 @@ def _rows_of(
     rows: list[dict[str, Any]] = [
         {"path": path, "refused": "found null, expected a report"} for path in without_content
     ]
-    for one in read.refused if read is not None else []:
+    # Of the reading alone: which flights contradict each other is found where all of a tail are together.
+    for one in refused_of(read._flights.refused_as_read()) if read is not None else []:
         rows.append(
             {
                 "path": one.path,
@@ -548,7 +559,7 @@ def _in_schema(table: pa.Table, schema: pa.Schema) -> pa.Table:
 
 def _segments_schema() -> pa.Schema:
     """The columns of a table of segments, with those of four engines."""
-    plain = read_segments(("no report", b"")).table().schema
+    plain = Segments(_native.Source(PRESETS[0], None).contents([], opened, 1)).table().schema
     per_engine = [
         pa.field(name.format(engine), pa.float64())
         for name in _PER_ENGINE
