@@ -12,6 +12,8 @@ import threading
 import time
 import warnings
 
+import pandas as pd
+import polars as pl
 import pyarrow as pa
 import pytest
 from conftest import FIXTURES
@@ -204,6 +206,11 @@ def test_a_prediction_has_the_columns_that_are_wanted(initial, segments):
 def test_pickles(initial, segments):
     assert pickle.loads(pickle.dumps(initial)).to_text() == initial.to_text()
     assert pickle.loads(pickle.dumps(segments)).to_csv() == segments.to_csv()
+    with pytest.warns(cruisefit.DataWarning):
+        poisoned = segments + cruisefit.segment([("bad.txt", b"nonsense")])
+    again = pickle.loads(pickle.dumps(poisoned))
+    assert again.refused == poisoned.refused and len(again.refused) == 1
+    assert repr(again) == repr(poisoned)
     adapted = initial.adapt(segments)
     again = pickle.loads(pickle.dumps(adapted))
     assert {t: m.to_text() for t, m in again.models.items()} == {
@@ -251,3 +258,51 @@ def test_warnings_do_not_depend_on_threads():
         return [str(warning.message) for warning in caught]
 
     assert said(1) == said(4) != []
+
+
+def test_what_is_no_report_is_named(initial, segments, tmp_path):
+    """Types that a call does not take, in words, before anything is read."""
+    rule = "(format: 1)"
+    for wrong, words in (
+        ([pd.DataFrame(), pd.DataFrame()], "found DataFrame, .*a table is read by itself"),
+        (pl.LazyFrame({"a": [1]}), r"found LazyFrame, .*collect\(\) it first"),
+        (open(__file__, "rb"), "found BufferedReader, expected a path"),
+        (None, "found NoneType, expected a path"),
+    ):
+        with pytest.raises(TypeError, match=words):
+            cruisefit.segment(wrong)
+        if hasattr(wrong, "close"):
+            wrong.close()
+    text = REPORT.read_bytes()
+    for kind in (bytes, bytearray, memoryview):
+        assert len(cruisefit.segment(kind(text)).flights) == 1
+    # A mapping may be on one line, of any length; a preset's name may be misspelt.
+    with pytest.raises(cruisefit.InputError, match="aircraft"):
+        cruisefit.segment(pd.DataFrame(), mapping=rule)
+    with pytest.raises(cruisefit.InputError, match="preset: traffic-a320, "):
+        cruisefit.segment(pd.DataFrame(), mapping="trafic-a320")
+    (tmp_path / "M.ron").write_bytes(b"PAR1\xff\xfe")
+    with pytest.raises(cruisefit.InputError, match="M.ron: found byte 0xff, expected text in UTF-8"):
+        cruisefit.Model.load(tmp_path / "M.ron")
+    for call in (cruisefit.adapt, cruisefit.evaluate, cruisefit.diagnose):
+        with pytest.raises(cruisefit.InputError, match="models: found none"):
+            call(segments, [])
+    with pytest.raises(cruisefit.InputError, match="found str, expected Adaptation"):
+        cruisefit.adapt(segments, initial, begun="adapted")
+    with pytest.raises(cruisefit.InputError, match="tsfc_engine_9"):
+        cruisefit.diagnose(segments, initial, effects="tsfc_engine_9")
+
+
+def test_segments_by_other_criteria_are_not_added(segments):
+    """A model would state criteria that were not used, and could not be continued with either."""
+    other = cruisefit.segment(FIXTURES / "ghazi-2020" / "reports", criteria="airbus-report-02")
+    with pytest.raises(cruisefit.InputError, match="'ghazi-2020-table-4' and by 'airbus-report-02'"):
+        segments + other
+
+
+def test_many_points_without_a_prediction_are_counted(initial):
+    """The first is named; a list of them all would hold the interpreter's lock."""
+    rows = 200_000
+    points = pa.table({"mass_kg": [15000.0] * rows, "pressure_altitude_ft": [43000.0] * rows, "mach": [0.82, 0.2] * (rows // 2)})
+    with pytest.warns(cruisefit.PredictionWarning, match="100000 points have no prediction; the first is row 2: "):
+        initial.predict(points)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Literal
 
 from . import _native
-from .errors import warn
+from .errors import InputError, warn
 
 __all__ = ["Chart", "DiagnosisChart", "TailChart", "framed", "names_of", "read_text", "write_bytes"]
 
@@ -67,8 +67,16 @@ def framed(page: str, height_px: int = 600) -> str:
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
-    """The text of a file (UTF-8)."""
-    return Path(path).read_text(encoding="utf-8")
+    """The text of a file (UTF-8).
+
+    Raises:
+        InputError: It is no text.
+    """
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        found = f"byte 0x{error.object[error.start]:02x}"
+        raise InputError(f"found {found}, expected text in UTF-8", file=os.fspath(path)) from None
 
 
 def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:

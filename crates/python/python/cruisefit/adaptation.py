@@ -13,7 +13,7 @@ from . import _native
 from ._folder import folder_lock
 from ._pages import Chart, TailChart, framed, names_of, read_text, write_bytes
 from ._tables import Table, like
-from .errors import InputError, in_python, warn, warn_of_refused
+from .errors import InputError, expected, in_python, warn, warn_of_refused
 from .model import Model, natives_of
 from .segments import Refused, Segments, flights_of, refused_of
 
@@ -212,7 +212,7 @@ class Adaptation(_Run):
         """
         asked: dict[str, object] = {
             "events": events if events is None or isinstance(events, bytes) else Path(events).read_bytes(),
-            "rules": list(alert),
+            "rules": names_of(alert),
             "co2_kg_per_kg": co2_kg_per_kg,
             "fuel_price": fuel_price_per_kg,
             "flights_per_year": flights_per_year,
@@ -334,12 +334,24 @@ def adapt(
             natives_of(models),
             flights_of(segments),
             options,
-            None if begun is None else begun._native,
+            begun_of(begun),
         )
     )
     warn_of_findings(adapted.findings)
     warn_of_new(segments, adapted.refused, len(adapted.tails))
     return adapted
+
+
+def begun_of(begun: Adaptation | None) -> _native.Adapted | None:
+    """What is continued, as the native half takes it.
+
+    Raises:
+        InputError: Something else.
+    """
+    if begun is None:
+        return None
+    expected(begun, Adaptation, "Adaptation.read reads a folder")
+    return begun._native
 
 
 def warn_of_new(segments: Segments, refused: Sequence[Refused], left: int) -> None:

@@ -310,8 +310,8 @@ def diagnose(
         InputError: An effect that the library does not have, or two models that claim the same tail or type.
     """
     asked: dict[str, object] = {
-        "effects": list(effects),
-        "without": list(without),
+        "effects": names_of(effects),
+        "without": names_of(without),
         "pool": pool,
         "fleet": fleet,
         "table_only": table_only,
