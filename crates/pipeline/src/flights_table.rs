@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
+use std::slice;
 use std::sync::Arc;
 
 use diagnose::GaugeBurn;
@@ -75,13 +76,18 @@ pub fn read(bytes: &[u8]) -> Result<Vec<FlightRead>, FlightsTableError> {
     Ok(flights)
 }
 
-/// Flights of aircraft of one type from segments alone: a flight's content, samples and end are those of its segments.
+/// Flights of aircraft of one type from segments alone, in any order: a flight's content, samples and end are those of its
+/// segments. A row that is a copy of another is used once: exports may overlap.
 pub fn from_segments(segments: Vec<Segment>, aircraft_type: &str) -> Vec<FlightRead> {
     let mut by_flight: BTreeMap<Arc<FlightIdentity>, Vec<Segment>> = BTreeMap::new();
     for segment in segments {
         by_flight.entry(Arc::clone(&segment.identity)).or_default().push(segment);
     }
+    let mut copies = 0;
     let flights = by_flight.into_iter().map(|(identity, segments)| {
+        let rows = segments.len();
+        let segments = each_once(segments);
+        copies += rows - segments.len();
         let last_s = segments.iter().map(|segment| segment.means.time_s).fold(0.0, f64::max);
         let content = sha256(segments_text(&segments).as_bytes());
         FlightRead {
@@ -102,7 +108,24 @@ pub fn from_segments(segments: Vec<Segment>, aircraft_type: &str) -> Vec<FlightR
             },
         }
     });
-    flights.collect()
+    let flights = flights.collect();
+    match copies {
+        0 => {}
+        1 => tracing::warn!("1 row of a table of segments is a copy of another and used once"),
+        n => tracing::warn!("{n} rows of a table of segments are copies of others and used once"),
+    }
+    flights
+}
+
+/// The segments of a flight in the order of flying, each once.
+fn each_once(mut segments: Vec<Segment>) -> Vec<Segment> {
+    segments.sort_by(|one, other| one.means.time_s.total_cmp(&other.means.time_s));
+    segments.dedup_by(|one, other| {
+        // Rows are compared as they are written, where one number that is missing equals another.
+        one.means.time_s.total_cmp(&other.means.time_s).is_eq()
+            && segments_text(slice::from_ref(one)) == segments_text(slice::from_ref(other))
+    });
+    segments
 }
 
 /// The check of a flight whose report is not at hand: nothing was found, and no other flight is a copy of it.
