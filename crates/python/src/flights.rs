@@ -203,9 +203,13 @@ fn mapping_of(text: &str) -> Result<Mapping, Failure> {
     Mapping::from_ron(text).map_err(|error| Failure::input(crate::failure::chain(&error)))
 }
 
-/// The batches of a table in memory.
+/// The batches of a table in memory; of one without rows an empty batch, which has its columns.
 pub(crate) fn batches_of(table: AnyRecordBatch) -> PyResult<Vec<RecordBatch>> {
-    Ok(table.into_table()?.into_inner().0)
+    let (mut batches, schema) = table.into_table()?.into_inner();
+    if batches.is_empty() {
+        batches.push(RecordBatch::new_empty(schema));
+    }
+    Ok(batches)
 }
 
 /// Columns as a table that Python can take.

@@ -1,14 +1,14 @@
 //! Predictions at the flight points of an Arrow table.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
 use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, RecordBatchOptions};
 use arrow_schema::{DataType, Field, Schema, SchemaRef};
-use perf_model::{FlightPoint, PointCell, PointTable};
+use perf_model::{CsvError, PointCell, PointTable};
 use pipeline::prediction::{PredictedPoints, Predictor, measured_kg_s};
 use rayon::prelude::*;
 
@@ -70,9 +70,8 @@ pub(crate) fn predict(
         rows += batch.num_rows();
     }
     if cuts.is_empty() {
-        let given = RecordBatch::new_empty(Arc::clone(&given.schema));
-        let read = plain(vec![given.clone()])?;
-        cuts.extend(read.into_iter().map(|read| Cut { before: 0, given: given.clone(), read }));
+        let empty = given.batches.iter().cloned().zip(read).take(1);
+        cuts.extend(empty.map(|(given, read)| Cut { before: 0, given, read }));
     }
     // Which columns there are must depend neither on the values in a table nor on where it is cut.
     let states_error = asks_error || points.measured_fuel_flow().is_some();
@@ -163,25 +162,68 @@ impl At<'_> {
         // Of a column without a meaning no cell is asked for, whatever its type.
         let readers: Vec<_> =
             columns.map(|(field, array)| Reader::new(field.name(), array)).collect();
-        let unread = RefCell::new(None);
-        let rows = (0..batch.num_rows()).map(|row| {
-            let number = (before + row + 1) as u64;
-            let point = self.points.point(number, |column| match &readers[column] {
-                Ok(reader) => cell(reader.value(row)),
-                Err(failure) => {
-                    unread.replace(Some(failure.clone()));
-                    PointCell::Missing
-                }
+        let (mut points, mut places, mut without) = (Vec::new(), Vec::new(), Vec::new());
+        for row in 0..batch.num_rows() {
+            let asked = Cell::new(None);
+            let point = self.points.point((before + row + 1) as u64, |column| {
+                asked.set(Some(column));
+                readers[column]
+                    .as_ref()
+                    .map_or(PointCell::Missing, |reader| cell(reader.value(row)))
             });
-            match unread.take() {
-                Some(failure) => Err(failure),
-                None => point.map_err(|error| Failure::table(&error)),
+            // The cell that was asked for last is the one that is wrong.
+            let last = asked.get().map(|column| &readers[column]);
+            match (point, last) {
+                (_, Some(Err(failure))) => return Err(failure.clone()),
+                (Ok(point), _) => {
+                    points.push(point);
+                    places.push(row);
+                }
+                (Err(error), Some(Ok(reader))) if is_missing(reader.value(row)) => {
+                    without.push((row, missing(&error)));
+                }
+                (Err(error), _) => return Err(Failure::table(&error)),
             }
-        });
-        let rows = rows.collect::<Result<Vec<FlightPoint>, Failure>>()?;
-        let measured = self.states_error.then(|| measured_kg_s(&rows));
-        Ok(self.predictor.at_points(&rows, measured.as_deref()))
+        }
+        let measured = self.states_error.then(|| measured_kg_s(&points));
+        let found = self.predictor.at_points(&points, measured.as_deref());
+        Ok(if without.is_empty() { found } else { spread(found, &places, without) })
     }
+}
+
+/// Why a point is none.
+fn missing(error: &CsvError) -> String {
+    let column = error.column.as_ref().map_or("a column", |column| column.name.as_str());
+    format!("{column}: no value")
+}
+
+const fn is_missing(value: Value<'_>) -> bool {
+    match value {
+        Value::Missing => true,
+        Value::Number(value) => value.is_nan(),
+        _ => false,
+    }
+}
+
+/// The predictions of points among rows of which others are no points.
+fn spread(
+    found: PredictedPoints,
+    places: &[usize],
+    without: Vec<(usize, String)>,
+) -> PredictedPoints {
+    let rows = places.len() + without.len();
+    let columns = found.columns.into_iter().map(|(name, values)| {
+        let mut column = vec![f64::NAN; rows];
+        for (place, value) in places.iter().zip(values) {
+            column[*place] = value;
+        }
+        (name, column)
+    });
+    let mut refused: Vec<_> =
+        found.refused.into_iter().map(|(point, reason)| (places[point], reason)).collect();
+    refused.extend(without);
+    refused.sort_by_key(|(place, _)| *place);
+    PredictedPoints { columns: columns.collect(), refused }
 }
 
 /// The values of an array of numbers, NaN for nulls; `None` for other arrays.

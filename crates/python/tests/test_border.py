@@ -276,6 +276,8 @@ def test_what_is_no_report_is_named(initial, segments, tmp_path):
     text = REPORT.read_bytes()
     for kind in (bytes, bytearray, memoryview):
         assert len(cruisefit.segment(kind(text)).flights) == 1
+        assert cruisefit.segment(("a.txt", kind(text))).flights.column("path").to_pylist() == ["a.txt"]
+    assert len(cruisefit.segment((REPORT, str(REPORT.parent))).flights) == len(segments.flights)
     # A mapping may be on one line, of any length; a preset's name may be misspelt.
     with pytest.raises(cruisefit.InputError, match="aircraft"):
         cruisefit.segment(pd.DataFrame(), mapping=rule)

@@ -81,6 +81,30 @@ def test_points_outside_the_table_are_null_and_said(initial):
     assert caught.value.line == 2
 
 
+@pytest.mark.parametrize("column", sorted(ROWS))
+@pytest.mark.parametrize("further", [{}, {"anti_ice": [1, 0, None]}, {"fuel_flow_kg_h": [700.0, 710.0, 720.0]}])
+def test_a_missing_value_costs_its_row(initial, column, further):
+    """As a point outside the table does; a value that is there and absurd is an error of the table."""
+    whole = initial.predict({**ROWS, **further})
+    for nothing in (None, float("nan")):
+        table = pl.DataFrame({**ROWS, **further, column: [ROWS[column][0], nothing, ROWS[column][2]]})
+        with pytest.warns(cruisefit.PredictionWarning, match=f"1 points .* row 2: {column}: no value"):
+            predicted = initial.predict(table)
+        flow = predicted["fuel_flow_kg_s"].to_list()
+        assert flow[1] is None and predicted["fuel_flow_kg_s"].null_count() == 1
+        assert [flow[0], flow[2]] == pytest.approx(fuel_flow(whole)[::2], rel=1e-12)
+        if "fuel_flow_kg_h" in further:
+            assert predicted["error_percent"].null_count() == 1
+        with pytest.raises(cruisefit.InputError, match="no value") as caught:
+            initial.predict(table, strict=True)
+        assert caught.value.line == 2
+    with pytest.raises(cruisefit.InputError, match="found"):
+        initial.predict({**ROWS, **further, column: [ROWS[column][0], 1e9, ROWS[column][2]]})
+    gone = pl.DataFrame({**ROWS, **further, column: [None] * 3}, schema_overrides={column: pl.Float64})
+    with pytest.warns(cruisefit.PredictionWarning, match="3 points"):
+        assert initial.predict(gone)["fuel_flow_kg_s"].null_count() == 3
+
+
 TYPES = {
     "float64": lambda v: pa.array(v, pa.float64()),
     "text": lambda v: pa.array([repr(x) for x in v], pa.string()),
@@ -126,6 +150,26 @@ def test_segments_are_a_table(segments):
     assert duckdb.sql("select count(*) from rows").fetchall() == [(len(segments),)]
     again = cruisefit.Segments.from_table(rows, "C750")
     assert again.to_csv() == segments.to_csv()
+
+
+def test_rows_of_a_table_of_segments_are_used_once_in_any_order(initial, segments, tmp_path):
+    """Two exports that overlap, rows as a database gives them; from memory and from a file."""
+    rows = segments.table(pl.DataFrame())
+    expected = initial.adapt(cruisefit.Segments.from_table(rows, "C750")).model().to_text()
+    shuffled = rows.sample(fraction=1.0, shuffle=True, seed=1)
+    assert initial.adapt(cruisefit.Segments.from_table(shuffled, "C750")).model().to_text() == expected
+    overlapping = pl.concat([rows, shuffled.head(20)])
+    with pytest.warns(cruisefit.DataWarning, match="20 rows of a table of segments are copies of others"):
+        again = cruisefit.Segments.from_table(overlapping, "C750")
+    assert again.to_csv() == segments.to_csv()
+    overlapping.write_csv(tmp_path / "S.csv")
+    with pytest.warns(cruisefit.DataWarning, match="20 rows"):
+        assert cruisefit.segment(tmp_path / "S.csv").to_csv() == segments.to_csv()
+    # Rows of one instant that differ are no copies, and a table without rows has its columns.
+    other = rows.head(1).with_columns(pl.col("mass_kg") + 1.0)
+    assert len(cruisefit.Segments.from_table(pl.concat([rows, other]), "C750")) == len(rows) + 1
+    for empty in (rows.clear(), rows.to_arrow().slice(0, 0), rows.to_pandas().head(0)):
+        assert len(cruisefit.Segments.from_table(empty, "C750")) == 0
 
 
 def test_a_recording_as_rows_of_a_table():

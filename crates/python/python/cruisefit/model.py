@@ -119,7 +119,8 @@ class Model:
             ``paper``), ``specific_range_m_kg``, ``lift_coefficient``, ``drag_coefficient``, ``extrapolated`` (1 outside the
             guide's range), where measured fuel flow is a column ``error_percent`` = 100 (measured − predicted)/measured, and
             where more than the table was learnt ``remainder_percent`` and ``beyond_flights`` (1 beyond what was flown). Results are null
-            where the point is outside the model's table, and a :class:`PredictionWarning` says how many are.
+            where the point is outside the model's table or lacks a value that it needs (null or NaN), and a
+            :class:`PredictionWarning` says how many are.
 
         Raises:
             InputError: A column is missing or unknown, or a value is outside its limits, with row and column; or ``columns`` has a

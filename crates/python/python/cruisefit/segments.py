@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _native
-from ._columnar import ENDINGS as _COLUMNAR_ENDINGS, Content, opened, require_pyarrow
+from ._columnar import ENDINGS as _COLUMNAR_ENDINGS, opened, require_pyarrow
 from ._pages import read_text
 from ._tables import Table, as_stream, is_table, like
 from .errors import InputError, expected, found_and_expected, in_python, warn_of_refused
@@ -27,6 +27,7 @@ PRESETS = ("ghazi-2020-table-4", "airbus-report-02", "airbus-report-02-short")
 Report = Union[str, "os.PathLike[str]", bytes, tuple[str, bytes]]
 """A path (file, folder or glob), the bytes of a report, or its name and bytes."""
 
+_BINARY = (bytes, bytearray, memoryview)
 _REPORT_ENDINGS = (".txt", ".rpt", ".gz")
 _RECORDING_ENDINGS = (".csv", ".gz", ".zst", *_COLUMNAR_ENDINGS)
 
@@ -226,40 +227,55 @@ def segment(
     reading = _native.Source(criteria, None if mapping is None else _mapping(mapping))
     if is_table(reports):
         return _looked_through(reading.rows(name, as_stream(reports), threads))
-    one_alone = (str, bytes, bytearray, memoryview, tuple)
-    # A file that is open gives its lines one by one, none of which is a report.
-    is_list = isinstance(reports, Iterable) and not isinstance(reports, one_alone) and not hasattr(reports, "read")
-    several: Iterable[Any] = reports if is_list else [reports]
+    paths, contents = _found(reports, _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS)
+    require_pyarrow([*((str(path), path) for path in paths), *contents])
+    read = reading.files(paths, opened, threads)
+    if contents:
+        read = read.and_([reading.contents(contents, opened, threads)])
+    return _looked_through(read)
+
+
+def _found(reports: Any, endings: tuple[str, ...]) -> tuple[list[Path], list[tuple[str, bytes]]]:
+    """The files that were named, in order, each once, and what is in memory with its names.
+
+    Raises:
+        InputError: There is neither.
+        TypeError: Something that is no report.
+    """
     paths: set[Path] = set()
     contents: list[tuple[str, bytes]] = []
     searched: list[Path] = []
     skipped = 0
-    for one in several:
-        if isinstance(one, (bytes, bytearray, memoryview)):
+    for one in _several(reports):
+        if isinstance(one, _BINARY):
             contents.append((f"report {len(contents) + 1}", bytes(one)))
         elif isinstance(one, tuple):
-            contents.append(one)
-        elif not isinstance(one, (str, os.PathLike)):
+            name, content = one
+            contents.append((name, bytes(content) if isinstance(content, _BINARY) else content))
+        elif isinstance(one, (str, os.PathLike)):
+            searched.append(Path(one))
+            found, others = _files(Path(one), endings)
+            paths.update(found)
+            skipped += others
+        else:
             collect = "; collect() it first" if hasattr(one, "collect") else ""
             one_by_one = "; a table is read by itself, and Segments are added up" if is_table(one) else ""
             raise TypeError(
                 f"found {type(one).__name__}, expected a path, bytes, or a name and bytes{collect}{one_by_one}"
             )
-        else:
-            searched.append(Path(one))
-            found, others = _files(Path(one), _RECORDING_ENDINGS if mapping else _REPORT_ENDINGS)
-            paths.update(found)
-            skipped += others
     if not paths and not contents:
         where = f" in {', '.join(map(str, searched))}" if searched else ""
         others_skipped = f"; files skipped for their endings: {skipped}" if skipped else ""
         raise InputError(f"found no cruise report{where}, expected one or more{others_skipped}")
-    of_files: Iterable[tuple[str, Content]] = ((str(path), path) for path in sorted(paths))
-    require_pyarrow([*of_files, *contents])
-    read = reading.files(sorted(paths), opened, threads)
-    if contents:
-        read = read.and_([reading.contents(contents, opened, threads)])
-    return _looked_through(read)
+    return sorted(paths), contents
+
+
+def _several(reports: Any) -> Iterable[Any]:
+    """One report or several, one by one."""
+    is_named = isinstance(reports, tuple) and len(reports) == 2 and isinstance(reports[1], _BINARY)
+    # A file that is open gives its lines one by one, none of which is a report.
+    is_one = is_named or isinstance(reports, (str, *_BINARY)) or hasattr(reports, "read")
+    return [reports] if is_one or not isinstance(reports, Iterable) else reports
 
 
 def _looked_through(flights: _native.Flights) -> Segments:
