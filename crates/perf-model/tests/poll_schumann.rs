@@ -4,7 +4,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot continue must stop")]
 
-use perf_model::poll_schumann::{self, cruise, find, guide, synonyms, types};
+use perf_model::poll_schumann::{self, cruise, find, guide, represented, types};
 use perf_model::{Aircraft, Guide, initial_model};
 use units::{Mach, Mass, PressureAltitude, TemperatureDifference};
 
@@ -41,14 +41,34 @@ fn agrees_with_pycontrails_to_a_millionth() {
 }
 
 #[test]
-fn every_type_and_synonym_is_found() {
+fn every_type_and_represented_one_is_found() {
     assert_eq!(types().len(), 68);
-    assert_eq!(synonyms().count(), 103);
-    for (synonym, by) in synonyms() {
-        assert_eq!(find(synonym).unwrap().type_code, by, "{synonym}");
+    assert_eq!(represented().count(), 35);
+    for one in represented() {
+        assert_eq!(find(one.type_code).unwrap().type_code, one.by, "{}", one.type_code);
+        assert!(types().iter().all(|own| !own.is_of(one.type_code)), "{}", one.type_code);
     }
     assert_eq!(find("a320").unwrap().variant, "A320-200");
     assert!(find("C172").is_none());
+}
+
+/// Numbers of engines as in ICAO Doc 8643: a C-17 and a Nimrod have four, a 727 three. A type with another number than the one
+/// that represents it has no guide; any other says whose it is.
+#[test]
+fn a_type_with_another_number_of_engines_has_no_guide() {
+    let made = |code: &str| guide::guide(code, find(code).unwrap());
+    for code in ["C17", "B701", "E3TF", "BLCF", "P1", "NIM", "IL62", "C141", "B721", "SLCH"] {
+        let refused = made(code).unwrap_err();
+        assert!(matches!(refused, guide::PublicGuideError::Engines { .. }), "{code}: {refused}");
+        assert!(types().iter().all(|one| one.stands_for().all(|also| also != code)), "{code}");
+    }
+    let refused = made("C17").unwrap_err().to_string();
+    assert!(refused.starts_with("C17 has 4 engines and B764, the type that represents it, has 2"));
+    for (code, engines) in [("B722", 3), ("R721", 3), ("B74S", 4), ("C5", 4), ("P8", 2)] {
+        assert_eq!(made(code).unwrap().aircraft.engines, engines, "{code}");
+    }
+    assert_eq!(made("P8").unwrap().aircraft.name, "Boeing B737-800 (B738), for P8, public model");
+    assert!(find("A20N").unwrap().stands_for().eq(["A19N", "C919", "MC23"]));
 }
 
 /// The initial model of each guide is within the model's stated accuracy of the model, root mean square.

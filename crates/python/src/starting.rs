@@ -80,17 +80,12 @@ fn refused(refusal: &Refusal, name: String) -> Failure {
 /// The types that have a public model.
 #[pyfunction]
 pub(crate) fn public_types() -> Vec<PublicType> {
-    let also = |code: &str| {
-        poll_schumann::synonyms()
-            .filter(|(_, by)| *by == code)
-            .map(|(synonym, _)| synonym.to_owned())
-            .collect()
-    };
     poll_schumann::types()
         .iter()
         .map(|parameters| {
             let name = format!("{} {}", parameters.manufacturer, parameters.variant);
-            (parameters.type_code.clone(), name, also(&parameters.type_code))
+            let also = parameters.stands_for().map(str::to_owned).collect();
+            (parameters.type_code.clone(), name, also)
         })
         .collect()
 }

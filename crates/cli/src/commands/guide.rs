@@ -1,11 +1,10 @@
 //! `cruisefit guide`: aircraft file and guide of a public model of the type.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
 use perf_model::poll_schumann::{self, Parameters, STATED_ACCURACY_PERCENT, guide::PublicGuide};
-use pipeline::public_guide::{aircraft_text, is_public};
+use pipeline::public_guide::{accuracy, aircraft_text, is_public};
 
 use crate::args::GuideArgs;
 use crate::commands::Outcome;
@@ -50,18 +49,19 @@ pub(crate) fn run(arguments: &GuideArgs) -> Result<Outcome, Failure> {
 
 fn text(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> String {
     let mut text = format!("{} ({})", guide.aircraft.name, guide.aircraft.type_code);
-    if parameters.type_code != guide.aircraft.type_code {
+    if !parameters.is_of(&guide.aircraft.type_code) {
         let _ = write!(text, ", represented by {}", parameters.type_code);
     }
     let _ = write!(
         text,
-        ": {} points.\n\
-         Source: Poll and Schumann, The Aeronautical Journal 125 (1284), 2021. Its authors expect fuel burn within {STATED_ACCURACY_PERCENT} % \
-         in the majority of cases; engine option and age of a tail are not in it.\n\
+        ": {} points, {} engines.\n\
+         Source: Poll and Schumann, The Aeronautical Journal 125 (1284), 2021. {}; engine option and age of a tail are not in it.\n\
          The TSFC law misses the model's engine by {:.1} % (root mean square).\n\
          Written to {folder}: AIRCRAFT.ron, guide.csv. Next:\n    \
          cruisefit init --aircraft {folder}/AIRCRAFT.ron --guide {folder}/guide.csv -o MODEL.ron\n",
         guide.points.len(),
+        parameters.engines,
+        accuracy(guide, parameters),
         guide.tsfc_residual_percent,
         folder = show(folder)
     );
@@ -74,7 +74,8 @@ fn figures(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> serde
         "type": guide.aircraft.type_code,
         "represented_by": parameters.type_code,
         "guide_points": guide.points.len(),
-        "stated_accuracy_percent": STATED_ACCURACY_PERCENT,
+        "engines": parameters.engines,
+        "stated_accuracy_percent": parameters.is_of(&guide.aircraft.type_code).then_some(STATED_ACCURACY_PERCENT),
         "tsfc_residual_rms_percent": guide.tsfc_residual_percent,
         "written": [show(&folder.join("AIRCRAFT.ron")), show(&folder.join("guide.csv"))],
     })
@@ -82,7 +83,6 @@ fn figures(guide: &PublicGuide, parameters: &Parameters, folder: &Path) -> serde
 
 /// The types of the list.
 fn types() -> serde_json::Value {
-    let represented = represented();
     let types: Vec<serde_json::Value> = poll_schumann::types()
         .iter()
         .map(|one| {
@@ -90,20 +90,12 @@ fn types() -> serde_json::Value {
                 "type": one.type_code,
                 "manufacturer": one.manufacturer,
                 "variant": one.variant,
-                "also": represented.get(one.type_code.as_str()).cloned().unwrap_or_default(),
+                "engines": one.engines,
+                "also": one.stands_for().collect::<Vec<_>>(),
             })
         })
         .collect();
     serde_json::json!({ "types": types })
-}
-
-/// The types that each type stands for.
-fn represented() -> BTreeMap<&'static str, Vec<&'static str>> {
-    let mut represented: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for (synonym, by) in poll_schumann::synonyms() {
-        represented.entry(by).or_default().push(synonym);
-    }
-    represented
 }
 
 fn meant(code: &str) -> String {
@@ -113,16 +105,13 @@ fn meant(code: &str) -> String {
 }
 
 fn list() -> String {
-    let represented = represented();
     let mut text = String::new();
     for parameters in poll_schumann::types() {
-        let _ = write!(
-            text,
-            "{}  {} {}",
-            parameters.type_code, parameters.manufacturer, parameters.variant
-        );
-        if let Some(synonyms) = represented.get(parameters.type_code.as_str()) {
-            let _ = write!(text, "; also {}", synonyms.join(", "));
+        let Parameters { type_code, manufacturer, variant, .. } = parameters;
+        let _ = write!(text, "{type_code}  {manufacturer} {variant}");
+        let also: Vec<&str> = parameters.stands_for().collect();
+        if !also.is_empty() {
+            let _ = write!(text, "; also {}", also.join(", "));
         }
         text.push('\n');
     }

@@ -35,10 +35,32 @@ fn a_type_is_enough_to_begin() {
 fn the_list_and_an_unknown_type() {
     let text = cruisefit(&["guide", "--list"]).expect(0).stdout;
     assert_eq!(text.lines().count(), 68);
-    assert!(text.contains("A20N  Airbus A320-NEO; also A19N"), "{text}");
+    assert!(text.contains("A20N  Airbus A320-NEO; also A19N, C919, MC23"), "{text}");
     cruisefit(&["guide", "--type", "C172", "-o", "nowhere"])
         .expect(2)
         .says("no public model of C172");
+}
+
+/// A P-8 is represented by a 737-800, which has as many engines; a C-17 by a 767, which has not.
+#[test]
+fn a_represented_type_is_said_to_be_another_aircraft() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("p8");
+    let guide = |code: &str| {
+        cruisefit(&[
+            "guide".as_ref(),
+            "--type".as_ref(),
+            code.as_ref(),
+            "-o".as_ref(),
+            output.as_os_str(),
+        ])
+    };
+    let text = guide("p8").expect(0).stdout;
+    let whose = "a model of B738, with its wing, masses and 2 engines, and not of P8";
+    assert!(text.contains(whose) && text.contains("nobody states"), "{text}");
+    let aircraft = std::fs::read_to_string(output.join("AIRCRAFT.ron")).unwrap();
+    assert!(aircraft.contains(whose) && aircraft.contains("(B738), for P8"), "{aircraft}");
+    guide("C17").expect(2).says("C17 has 4 engines and B764, the type that represents it, has 2");
 }
 
 #[test]

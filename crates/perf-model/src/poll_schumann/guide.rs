@@ -9,7 +9,7 @@ use units::convert::{
 };
 use units::{Mach, Mass, OutOfDomain, PressureAltitude, TemperatureDifference};
 
-use super::{Cruise, LOWER_HEATING_VALUE_MJ_KG, Parameters, cruise};
+use super::{Cruise, LOWER_HEATING_VALUE_MJ_KG, Parameters, cruise, represented};
 use crate::aircraft::{AircraftFile, AxisFile, SensorDeviations, TableFile, TsfcFile};
 
 /// Shares of the way from empty to maximum take-off mass.
@@ -54,15 +54,54 @@ pub struct PublicPoint {
     pub cruise: Cruise,
 }
 
-/// The guide of a type. `type_code` is what its reports say, which may be a synonym of the type with parameters.
+/// Why a type has no guide.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PublicGuideError {
+    /// The type that represents it has another number of engines: it is another aircraft, and the reports of one would be
+    /// refused by the model of the other.
+    #[error(
+        "{type_code} has {engines} engines and {by}, the type that represents it, has {engines_of_it}: it is no model of {type_code}; ask for {by} if that aircraft is wanted"
+    )]
+    Engines {
+        /// The type.
+        type_code: String,
+        /// Its number of engines.
+        engines: u8,
+        /// The type that represents it.
+        by: String,
+        /// That one's number of engines.
+        engines_of_it: u8,
+    },
+    /// A type's own limits are outside the model's domain.
+    #[error(transparent)]
+    Domain(#[from] OutOfDomain),
+}
+
+/// The guide of a type. `type_code` is what its reports say, which may be a type that the one with parameters represents: the
+/// guide is of that one then, and the aircraft's name says so.
 ///
 /// # Errors
-/// [`OutOfDomain`] where a type's own limits are outside the model's domain.
-pub fn guide(type_code: &str, parameters: &Parameters) -> Result<PublicGuide, OutOfDomain> {
+/// [`PublicGuideError`] where the type that represents it is known to have another number of engines, or has limits outside the
+/// model's domain.
+pub fn guide(type_code: &str, parameters: &Parameters) -> Result<PublicGuide, PublicGuideError> {
+    let by = &parameters.type_code;
+    let other = represented().find(|one| {
+        one.type_code.eq_ignore_ascii_case(type_code) && one.engines != parameters.engines
+    });
+    if let Some(other) = other {
+        return Err(PublicGuideError::Engines {
+            type_code: type_code.to_owned(),
+            engines: other.engines,
+            by: by.clone(),
+            engines_of_it: parameters.engines,
+        });
+    }
     let points = points(parameters)?;
     let (tsfc, tsfc_residual_percent) = tsfc_law(&points)?;
+    let whose = if parameters.is_of(type_code) { "" } else { &format!(" ({by}), for {type_code}") };
     let aircraft = AircraftFile {
-        name: format!("{} {}, public model", parameters.manufacturer, parameters.variant),
+        name: format!("{} {}{whose}, public model", parameters.manufacturer, parameters.variant),
         type_code: type_code.to_owned(),
         engines: parameters.engines,
         wing_area_m2: parameters.wing_area_m2,

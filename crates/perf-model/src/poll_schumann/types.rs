@@ -69,21 +69,49 @@ pub fn types() -> &'static [Parameters] {
     &PARSED
 }
 
+impl Parameters {
+    /// Whether the parameters are of this designator itself, and not of a type that represents it.
+    #[must_use]
+    pub fn is_of(&self, type_code: &str) -> bool {
+        self.type_code.eq_ignore_ascii_case(type_code)
+    }
+
+    /// The other designators that the type may stand for: those that it represents and that have its number of engines.
+    pub fn stands_for(&self) -> impl Iterator<Item = &'static str> {
+        represented()
+            .filter(|one| self.is_of(one.by) && one.engines == self.engines)
+            .map(|one| one.type_code)
+    }
+}
+
+/// A designator without parameters of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Represented {
+    /// The designator.
+    pub type_code: &'static str,
+    /// The type whose parameters stand for it.
+    pub by: &'static str,
+    /// Its own number of engines, which that type's need not be.
+    pub engines: u8,
+}
+
 /// Designators without parameters of their own, each with the type that represents it.
-pub fn synonyms() -> impl Iterator<Item = (&'static str, &'static str)> {
-    SYNONYMS.lines().skip(1).filter_map(|line| line.split_once(','))
+pub fn represented() -> impl Iterator<Item = Represented> {
+    SYNONYMS.lines().skip(1).filter_map(|line| {
+        let (type_code, rest) = line.split_once(',')?;
+        let (by, engines) = rest.split_once(',')?;
+        Some(Represented { type_code, by, engines: engines.parse().ok()? })
+    })
 }
 
 /// The parameters of a type designator, of its own or of the type that represents it; upper and lower case are the same.
 #[must_use]
 pub fn find(type_code: &str) -> Option<&'static Parameters> {
-    let own = |code: &str| {
-        types().iter().find(|parameters| parameters.type_code.eq_ignore_ascii_case(code))
-    };
+    let own = |code: &str| types().iter().find(|parameters| parameters.is_of(code));
     own(type_code).or_else(|| {
-        synonyms()
-            .find(|(synonym, _)| synonym.eq_ignore_ascii_case(type_code))
-            .and_then(|(_, represented_by)| own(represented_by))
+        represented()
+            .find(|one| one.type_code.eq_ignore_ascii_case(type_code))
+            .and_then(|one| own(one.by))
     })
 }
 
