@@ -21,6 +21,7 @@ use crate::{Aircraft, Guide, GuidePoint, PerformanceModel, forces};
 mod amplification;
 mod error;
 mod findings;
+mod odd_row;
 
 pub use error::{InitialModelError, Undetermined};
 
@@ -195,7 +196,7 @@ pub fn initial_model(
         pressure_altitudes,
         extrapolated_nodes,
     };
-    let findings = findings::of_guide(aircraft, guide, &rows, &fit);
+    let findings = findings::of_guide(aircraft, guide, (&rows, &residuals_percent), &fit);
     Ok(InitialModel { model, fit, findings })
 }
 

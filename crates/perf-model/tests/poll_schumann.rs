@@ -91,6 +91,38 @@ fn every_type_gives_a_guide_that_init_takes_without_a_serious_finding() {
         assert!(made.tsfc_residual_percent < 5.0, "{code}: {}", made.tsfc_residual_percent);
         for finding in &initial.findings {
             assert!(finding.severity < flight::Severity::Serious, "{code}: {}", finding.message);
+            // The best of them fly at 23 times their drag, and no row was typed.
+            let is_slip = ["guide-lift-to-drag", "guide-odd-row"].contains(&finding.code);
+            assert!(!is_slip, "{code}: {}", finding.message);
+        }
+    }
+}
+
+/// A row that is mistyped is found where the polynomial follows the guide and at the end of a drag rise where it does not: of
+/// these five guides the last row at the highest Mach number lies 6 to 8 % off the polynomial.
+#[test]
+fn a_mistyped_row_is_found_in_a_drag_rise_too() {
+    for (code, end_of_rise) in
+        [("B734", 204), ("CRJ9", 107), ("E170", 307), ("E75S", 387), ("RJ1H", 290)]
+    {
+        let made = guide::guide(code, find(code).unwrap()).unwrap();
+        let aircraft = Aircraft::new(made.aircraft.clone()).unwrap();
+        let csv = made.to_csv();
+        for line in [60, end_of_rise] {
+            let lines: Vec<String> = csv
+                .lines()
+                .enumerate()
+                .map(|(at, text)| match text.rsplit_once(',') {
+                    Some((others, flow)) if at + 1 == line => {
+                        format!("{others},{}", 1.12 * flow.parse::<f64>().unwrap())
+                    }
+                    _ => text.to_owned(),
+                })
+                .collect();
+            let typed = Guide::from_csv(lines.join("\n").as_bytes()).unwrap();
+            let initial = initial_model(&aircraft, &typed).unwrap();
+            let odd = initial.findings.iter().find(|one| one.code == "guide-odd-row").unwrap();
+            assert_eq!(odd.line, Some(line), "{code}: {}", odd.message);
         }
     }
 }

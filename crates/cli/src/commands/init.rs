@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &InitArgs) -> Result<Outcome, Failure> {
     for finding in &initial.findings {
         let word = severity(finding);
         let line = finding.line.map_or_else(String::new, |line| format!("line {line}: "));
-        let _ = writeln!(text, "{word}: {line}{}.", finding.message.trim_end_matches('?'));
+        let _ = writeln!(text, "{word}: {line}{}.", finding.message);
     }
     let _ = writeln!(text, "Written to {}", show(&arguments.output));
     Ok(Outcome::with_figures(text, figures(&model, &initial, arguments)))

@@ -2,6 +2,7 @@
 
 use flight::{Finding, Severity};
 
+use super::odd_row::odd_row;
 use super::{GuideFit, GuideObservation};
 use crate::{Aircraft, Guide, poll_schumann};
 
@@ -11,14 +12,20 @@ const THIN_AMPLIFICATION: f64 = 5.0;
 /// Residual above which the polynomial, or the TSFC law behind it, does not follow the guide, %. A quadratic polynomial
 /// misses a drag rise by 1 to 3 %.
 const LARGE_RESIDUAL_PERCENT: f64 = 5.0;
-/// A row with a residual of this many times the root mean square is probably mistyped.
+/// A row with a residual of this many times the root mean square is probably mistyped, unless the rows about it rise with it.
 const ODD_ROW_FACTOR: f64 = 5.0;
+/// Residual within which a row is as guides are rounded, %.
+const ROUNDING_PERCENT: f64 = 1.0;
 
-/// Lift-to-drag ratios of aircraft in cruise: 9 for a light jet, 21 for the best airliner. A flow halved or a mass in lb
-/// under kg doubles it.
+/// Lift-to-drag ratios that an aircraft in cruise may have. A flow halved or a mass in lb under kg doubles it.
 const LIFT_TO_DRAG: (f64, f64) = (6.0, 24.0);
-/// Beyond these a light jet or a sailplane-like wing is possible, a wrong unit more likely.
-const USUAL_LIFT_TO_DRAG: (f64, f64) = (9.0, 21.0);
+/// Beyond these a light jet or a sailplane-like wing is possible, a wrong unit more likely: 9 for a light jet, 23.2 for the
+/// best airliner of today.
+///
+/// # Source
+/// Parameters of the 68 types of Poll and Schumann's model ([`poll_schumann`]): (η L/D) over η of the design point is 14.9 to
+/// 23.2. A320 17 to 18, 787 21 to 21.4, A350 21.9 and 22.4, A330neo 22.6 and 23.2.
+const USUAL_LIFT_TO_DRAG: (f64, f64) = (9.0, 23.2);
 /// Lift coefficients of cruise, the median of a guide.
 const LIFT_COEFFICIENT: (f64, f64) = (0.15, 0.75);
 /// Mean deviation from the public model of the type worth a word, %: two such models differ by up to 15 %.
@@ -30,7 +37,7 @@ const PUBLIC_SERIOUS_PERCENT: f64 = 30.0;
 pub(super) fn of_guide(
     aircraft: &Aircraft,
     guide: &Guide,
-    rows: &[GuideObservation],
+    (rows, residuals_percent): (&[GuideObservation], &[f64]),
     fit: &GuideFit,
 ) -> Vec<Finding> {
     let mut findings: Vec<Finding> =
@@ -38,7 +45,9 @@ pub(super) fn of_guide(
             .into_iter()
             .flatten()
             .collect();
-    findings.extend(from_fit(fit, guide, aircraft.grid().nodes()));
+    findings.extend(from_fit(fit, guide));
+    findings.extend(mistyped(aircraft, guide, (rows, residuals_percent), fit));
+    findings.extend(extrapolated(fit, aircraft.grid().nodes()));
     findings
 }
 
@@ -93,9 +102,12 @@ fn lift_coefficient(rows: &[GuideObservation]) -> Option<Finding> {
     ))
 }
 
-/// Against the public model, for a type that has one.
+/// Against the public model, for a type that has one: of a type that another one represents nobody states how near it is.
 fn against_public(aircraft: &Aircraft, guide: &Guide) -> Option<Finding> {
     let parameters = poll_schumann::find(aircraft.type_code())?;
+    if !parameters.is_of(aircraft.type_code()) {
+        return None;
+    }
     let percent = poll_schumann::mean_deviation_percent(parameters, guide)?;
     if percent.abs() < PUBLIC_WARNING_PERCENT {
         return None;
@@ -112,72 +124,75 @@ fn against_public(aircraft: &Aircraft, guide: &Guide) -> Option<Finding> {
     ))
 }
 
-fn from_fit(fit: &GuideFit, guide: &Guide, nodes: usize) -> Vec<Finding> {
+fn from_fit(fit: &GuideFit, guide: &Guide) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut find = |severity, code, message, line| {
-        findings.push(Finding { severity, code, message, line });
-    };
+    let mut warn = |code, message| findings.push(finding(Severity::Warning, code, message));
     if let (1, Some(point)) = (fit.pressure_altitudes, guide.points().first()) {
-        find(
-            Severity::Warning,
+        warn(
             "guide-one-pressure-altitude",
             format!(
                 "the guide has one pressure altitude only ({:.0} ft): drag at other altitudes rests on the TSFC law alone",
                 point.pressure_altitude.to_feet()
             ),
-            None,
         );
     }
     if fit.amplification > THIN_AMPLIFICATION {
-        find(
-            Severity::Warning,
+        warn(
             "guide-thin",
             format!(
                 "an error of 1 % in the guide's rows grows to {:.0} % somewhere in its range: it has few weights or speeds",
                 fit.amplification
             ),
-            None,
         );
     }
     if fit.residual_rms_percent > LARGE_RESIDUAL_PERCENT {
-        find(
-            Severity::Warning,
+        warn(
             "guide-fit-residual",
             format!(
                 "the polynomial misses the guide by {:.1} % (root mean square): check the TSFC constants and the units",
                 fit.residual_rms_percent
             ),
-            None,
-        );
-    }
-    let (line, percent) = fit.worst_row;
-    if percent.abs() > ODD_ROW_FACTOR * fit.residual_rms_percent && percent.abs() > 1.0 {
-        find(
-            Severity::Warning,
-            "guide-odd-row",
-            format!(
-                "this row lies {percent:+.1} % off the polynomial, the rows together {:.1} %: mistyped?",
-                fit.residual_rms_percent
-            ),
-            usize::try_from(line).ok(),
-        );
-    }
-    if fit.extrapolated_nodes > 0 {
-        let severity =
-            if fit.extrapolated_nodes == nodes { Severity::Warning } else { Severity::Note };
-        find(
-            severity,
-            "guide-extrapolated-nodes",
-            format!(
-                "{} of {nodes} nodes lie outside the guide's range (lift coefficient {:.3} to {:.3}, Mach number {:.3} to {:.3}): the polynomial is extrapolated there",
-                fit.extrapolated_nodes,
-                fit.lift_coefficients.0,
-                fit.lift_coefficients.1,
-                fit.machs.0,
-                fit.machs.1
-            ),
-            None,
         );
     }
     findings
+}
+
+/// A row that is far off the polynomial, though the rows about it are not.
+fn mistyped(
+    aircraft: &Aircraft,
+    guide: &Guide,
+    (rows, residuals_percent): (&[GuideObservation], &[f64]),
+    fit: &GuideFit,
+) -> Option<Finding> {
+    let least = (ODD_ROW_FACTOR * fit.residual_rms_percent).max(ROUNDING_PERCENT);
+    let index = odd_row(aircraft.polynomial(), rows, residuals_percent, least)?;
+    Some(Finding {
+        severity: Severity::Warning,
+        code: "guide-odd-row",
+        message: format!(
+            "this row lies {:+.1} % off the polynomial, the rows together {:.1} %, and the rows about it do not: probably mistyped",
+            residuals_percent.get(index)?,
+            fit.residual_rms_percent
+        ),
+        line: guide.points().get(index).and_then(|point| usize::try_from(point.line).ok()),
+    })
+}
+
+fn extrapolated(fit: &GuideFit, nodes: usize) -> Option<Finding> {
+    if fit.extrapolated_nodes == 0 {
+        return None;
+    }
+    let severity = if fit.extrapolated_nodes == nodes { Severity::Warning } else { Severity::Note };
+    Some(finding(
+        severity,
+        "guide-extrapolated-nodes",
+        format!(
+            "{} of {nodes} nodes lie outside the guide's range (lift coefficient {:.3} to {:.3}, Mach number {:.3} to {:.3}): the polynomial is extrapolated there",
+            fit.extrapolated_nodes,
+            fit.lift_coefficients.0,
+            fit.lift_coefficients.1,
+            fit.machs.0,
+            fit.machs.1
+        ),
+    ))
 }
