@@ -1,7 +1,7 @@
 //! What a model remembers of clean flights: how far its initial drag table is off, a smooth remainder, the N2 deck, the split
 //! between engines, effects that the fleet shows at all times, and how large the noise is. One posterior over all of it.
 
-use effects::{BetweenNodes, EffectReferences, Response};
+use effects::{BetweenNodes, EffectReferences, Response, Variable};
 use faer::Mat;
 use serde::{Deserialize, Serialize};
 
@@ -295,6 +295,13 @@ impl Baseline {
     pub(crate) fn is_beyond_flights(&self, response: &Response) -> bool {
         let of = |one: &Smooth| flown(one.variable(), response, &self.parts.references);
         self.parts.smooth.iter().any(|one| one.is_beyond(of(one)))
+    }
+
+    /// The smallest and the largest value of a variable that the learnt flights flew; `None` of a variable that the remainder is no
+    /// function of.
+    #[must_use]
+    pub fn flown(&self, variable: Variable) -> Option<(f64, f64)> {
+        self.parts.smooth.iter().find(|one| one.variable() == variable).map(Smooth::flown)
     }
 
     /// Prior variance of one smooth function.

@@ -19,7 +19,7 @@ use adapt::paper::State as PaperState;
 use diagnose::Baseline;
 use effects::ExtendedModel;
 use lut::Table;
-use perf_model::{Guide, InitialModel};
+use perf_model::{Guide, GuidePoint, InitialModel};
 use serde::{Deserialize, Serialize};
 
 use crate::condition_means::ConditionMeans;
@@ -56,6 +56,12 @@ pub struct GuideRecord {
     pub lift_coefficient: (f64, f64),
     /// Smallest and largest Mach number.
     pub mach: (f64, f64),
+    /// Smallest and largest gross mass; `None` in files of programs that did not keep it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_kg: Option<(f64, f64)>,
+    /// Lowest and highest pressure altitude; `None` in files of programs that did not keep it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_altitude_m: Option<(f64, f64)>,
     /// Root mean square of the fit's residuals in drag coefficient.
     pub residual_rms: f64,
     /// Condition number of the fit's design.
@@ -201,6 +207,12 @@ pub struct LedgerEntry {
     pub outside_table: u64,
 }
 
+/// Smallest and largest value of a guide's rows; `None` of a guide without any.
+fn range(guide: &Guide, of: impl Fn(&GuidePoint) -> f64) -> Option<(f64, f64)> {
+    let values = || guide.points().iter().map(&of);
+    values().reduce(f64::min).zip(values().reduce(f64::max))
+}
+
 impl ModelFile {
     /// The model file of a fresh initial model, with the laws' published settings.
     pub fn from_initial(initial: &InitialModel, guide: &Guide) -> Self {
@@ -210,6 +222,8 @@ impl ModelFile {
                 points: guide.points().len() as u64,
                 lift_coefficient: initial.fit.lift_coefficients,
                 mach: initial.fit.machs,
+                mass_kg: range(guide, |point| point.mass.to_kilograms()),
+                pressure_altitude_m: range(guide, |point| point.pressure_altitude.to_meters()),
                 residual_rms: initial.fit.residual_rms,
                 condition_number: initial.fit.condition_number,
             },

@@ -8,13 +8,14 @@
 //! Drag between the nodes is read from the smooth surface through them ([`lut::SmoothCell`]): of a bilinear surface the
 //! optimum is almost always on a grid line, whatever the aircraft.
 
+mod choices;
 mod condition;
 mod document;
 mod fuel;
 mod speeds;
 mod text;
 
-pub use condition::{BestLevel, ConditionOptimum, LevelOptimum, SpeedOptimum, at};
+pub use condition::{BestLevel, ConditionOptimum, LevelOptimum, NoSaving, SpeedOptimum, at};
 pub use document::{OptimumDocument, SCHEMA, columns};
 pub use fuel::{Informed, OptimumModel};
 pub use speeds::{Edge, Kind};
@@ -69,25 +70,60 @@ pub struct Question {
     pub cost_index: Option<CostIndex>,
 }
 
-/// Levels from 25,000 to 43,000 ft, every 1,000 ft: a model knows no ceiling.
+/// Highest of the usual levels where nothing is known of an aircraft's, ft. Our choice.
+const HIGHEST_USUAL_FT: f64 = 43_000.0;
+/// Usual levels below the highest, every 1,000 ft. Our choice.
+const LEVELS_BELOW: u32 = 18;
+
+/// The highest pressure altitude of a model's guide, or that its flights flew; `None` where the model's file keeps neither.
 #[must_use]
-pub fn usual_levels() -> Vec<PressureAltitude> {
-    (25..=43_u32).map(|thousands| PressureAltitude::feet(1000.0 * f64::from(thousands))).collect()
+pub fn highest_known_level(model: &ModelFile) -> Option<PressureAltitude> {
+    let guide_m = model.guide.pressure_altitude_m.map(|(_, high)| high);
+    let flown_m = model
+        .learnt
+        .as_ref()
+        .and_then(|learnt| learnt.baseline.as_ref()?.flown(effects::Variable::PressureAltitude))
+        .map(|(_, high)| high);
+    let highest_m = [guide_m, flown_m].into_iter().flatten().reduce(f64::max)?;
+    Some(PressureAltitude::meters(highest_m))
 }
 
-/// Five masses, 15 % about the mean mass of the flights that a model has learnt; without any, about the mass that the
-/// middle of the guide's lift coefficients and Mach numbers carries at 37,000 ft. Rounded to 100 kg.
+/// Nineteen levels, every 1,000 ft, up to the highest of guide and flights: no model knows a ceiling. Up to 43,000 ft where its
+/// file keeps neither.
+#[must_use]
+pub fn usual_levels(model: &ModelFile) -> Vec<PressureAltitude> {
+    let highest_ft = highest_known_level(model).map_or(HIGHEST_USUAL_FT, PressureAltitude::to_feet);
+    // A level in feet has gained digits in metres.
+    let highest_thousand = ((highest_ft + 0.5) / 1000.0).floor();
+    (0..=LEVELS_BELOW)
+        .rev()
+        .map(|below| PressureAltitude::feet(1000.0 * (highest_thousand - f64::from(below))))
+        .filter(|level| level.to_feet() > 0.0)
+        .collect()
+}
+
+/// Shares of the guide's range of masses, from its lightest to its heaviest.
+const SHARES_OF_GUIDE: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+
+/// Five masses. Of a model that has learnt flights, within 15 % about their mean mass. Without any, about the middle of the guide's
+/// masses and within them; where the model's file does not keep these, about the mass that the middle of the guide's lift
+/// coefficients and Mach numbers carries at 37,000 ft. Rounded to 100 kg.
 ///
 /// `None` where a model's guide has no such middle, which no model file has.
 #[must_use]
 pub fn usual_masses(model: &ModelFile) -> Option<Vec<Mass>> {
+    let rounded = |kg: f64| Mass::kilograms((kg / 100.0).round() * 100.0);
     let flown = model.learnt.as_ref().and_then(|learnt| learnt.references.mean("mass_kg"));
-    let middle_kg = match flown {
-        Some(mean) => mean,
-        None => mass_of_guide_kg(model)?,
+    let middle_kg = match (flown, model.guide.mass_kg) {
+        (Some(mean), _) => mean,
+        (None, Some((low, high))) => {
+            let masses = SHARES_OF_GUIDE.map(|share| rounded(low + share * (high - low)));
+            return Some(masses.to_vec());
+        }
+        (None, None) => mass_of_guide_kg(model)?,
     };
     let around = [0.85, 0.925, 1.0, 1.075, 1.15];
-    Some(around.map(|share| Mass::kilograms((share * middle_kg / 100.0).round() * 100.0)).to_vec())
+    Some(around.map(|share| rounded(share * middle_kg)).to_vec())
 }
 
 fn mass_of_guide_kg(model: &ModelFile) -> Option<f64> {

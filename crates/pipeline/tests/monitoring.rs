@@ -17,6 +17,8 @@ fn model() -> ModelFile {
             points: 0,
             lift_coefficient: (0.1, 0.7),
             mach: (0.5, 0.9),
+            mass_kg: None,
+            pressure_altitude_m: None,
             residual_rms: 0.0,
             condition_number: 1.0,
         },

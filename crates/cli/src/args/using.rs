@@ -124,7 +124,8 @@ pub(crate) struct OptimumArgs {
     /// Cost index, in kilograms of fuel per minute (Airbus); one of Boeing's, 100 lb/h, is 0.756
     #[arg(long, value_name = "N", value_parser = cost_index)]
     pub(crate) cost_index: Option<f64>,
-    /// Gross masses, kg [default: five about the mean of the learnt flights, or about the guide's middle]
+    /// Gross masses, kg [default: five about the mean of the learnt flights, or across those of
+    /// the guide]
     #[arg(long, value_name = "KG,…", value_delimiter = ',')]
     pub(crate) mass_kg: Vec<f64>,
     /// Deviations from the ISA, degrees Celsius
@@ -145,8 +146,8 @@ pub(crate) struct OptimumArgs {
         allow_negative_numbers = true
     )]
     pub(crate) tailwind: Vec<f64>,
-    /// Pressure altitudes to choose from, ft [default: 25000 to 43000, every 1000]; thrust,
-    /// buffet and ceiling are not known to a model
+    /// Pressure altitudes to choose from, ft [default: every 1000 up to the highest of guide and
+    /// flights]; thrust, buffet and ceiling are not known to a model
     #[arg(long, value_name = "FT,…", value_delimiter = ',')]
     pub(crate) levels: Vec<f64>,
     /// File to write, .csv, .parquet or .json; may be given several times

@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
         given => positive("--mass-kg", given)?.into_iter().map(Mass::kilograms).collect(),
     };
     let mut levels = match &arguments.levels[..] {
-        [] => optimum::usual_levels(),
+        [] => optimum::usual_levels(&file),
         given => {
             within("--levels", given, LEVELS_FT)?.into_iter().map(PressureAltitude::feet).collect()
         }
@@ -69,7 +69,8 @@ pub(crate) fn run(arguments: &OptimumArgs) -> Result<Outcome, Failure> {
     for path in &arguments.output {
         write(path, &OptimumDocument::new(&file, cost_index, &conditions), &conditions)?;
     }
-    let mut text = optimum::table(&conditions);
+    let highest = optimum::highest_known_level(&file).map(PressureAltitude::to_feet);
+    let mut text = optimum::table(&conditions, highest);
     if file.learnt.is_none() {
         text.push_str("The model has learnt nothing: it is the book itself.\n");
     } else if file.posterior().is_none() {

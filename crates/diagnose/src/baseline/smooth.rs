@@ -142,6 +142,13 @@ impl Smooth {
         self.text.at(value)
     }
 
+    /// The smallest and the largest value that was flown.
+    pub(crate) fn flown(&self) -> (f64, f64) {
+        let ((first, last), distance) = (self.text.knots, self.text.distance());
+        let value = |z: f64| self.text.middle + z * self.text.length;
+        (value(first + distance), value(last - distance))
+    }
+
     /// Whether a value lies beyond those that were flown.
     pub(crate) fn is_beyond(&self, value: f64) -> bool {
         self.text.beyond(self.at(value)) > BEYOND_BY_ROUNDING

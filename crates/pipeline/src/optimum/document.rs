@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::condition::{ConditionOptimum, LevelOptimum, SpeedOptimum};
-use super::{CostIndex, Edge, Informed};
+use super::{CostIndex, Edge, Informed, NoSaving};
 use crate::columns::Columns;
 use crate::model_file::ModelFile;
 
@@ -87,11 +87,15 @@ pub fn columns(conditions: &[ConditionOptimum]) -> Columns {
     columns.text("informed_by", rows.iter().map(|row| informed(row.2.informed_by).to_owned()));
     columns.number("fuel_flow_kg_h", number(|speed| Some(speed.fuel_flow_kg_h)));
     columns.number("ground_range_m_kg", number(|speed| Some(speed.ground_range_m_kg)));
-    columns.number("book_mach", number(|speed| Some(speed.book_mach)));
+    columns.number("book_mach", number(|speed| speed.book_mach));
     columns.text("book_at_edge", rows.iter().map(|row| edge(row.2.book_edge).to_owned()));
     columns.number("saving_kg_h", number(|speed| speed.saving_kg_h));
     columns.number("saving_ci95_low", number(|speed| speed.saving_ci95.map(|[low, _]| low)));
     columns.number("saving_ci95_high", number(|speed| speed.saving_ci95.map(|[_, high]| high)));
+    columns.text(
+        "no_saving",
+        rows.iter().map(|row| row.2.no_saving.map_or("", NoSaving::id).to_owned()),
+    );
     columns
 }
 

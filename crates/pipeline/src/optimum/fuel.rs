@@ -47,6 +47,10 @@ pub(super) struct CurvePoint {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Curve {
     pub(super) points: Vec<CurvePoint>,
+    /// All of them.
+    pub(super) any: Vec<usize>,
+    /// Those that the guide informs: elsewhere the initial table is an extrapolation, and nobody's book.
+    pub(super) in_book: Vec<usize>,
     /// Fuel flow of all engines at each point, kg/s, by the model.
     pub(super) own_kg_s: Vec<f64>,
     /// By the book.
@@ -124,6 +128,10 @@ impl OptimumModel {
         let book_kg_s = by(&self.book, &plain);
         if !(own_kg_s > 0.0 && book_kg_s > 0.0) {
             return None;
+        }
+        curve.any.push(curve.points.len());
+        if informed != Informed::Flights {
+            curve.in_book.push(curve.points.len());
         }
         curve.points.push(CurvePoint {
             mach_thousandths,

@@ -43,18 +43,19 @@ pub enum Edge {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {
     pub(super) kind: Kind,
+    /// The wind that is flown in.
     tailwind_m_s: f64,
     time_as_fuel_kg_s: f64,
 }
 
 impl Aim {
-    /// An aim in a tailwind. Long range is a rule about still air.
+    /// An aim in a tailwind.
     pub(super) fn new(kind: Kind, tailwind_m_s: f64, cost_index: CostIndex) -> Self {
-        match kind {
-            Kind::MaximumRange => Self { kind, tailwind_m_s, time_as_fuel_kg_s: 0.0 },
-            Kind::LongRange => Self { kind, tailwind_m_s: 0.0, time_as_fuel_kg_s: 0.0 },
-            Kind::CostIndex => Self { kind, tailwind_m_s, time_as_fuel_kg_s: cost_index.kg_s() },
-        }
+        let time_as_fuel_kg_s = match kind {
+            Kind::MaximumRange | Kind::LongRange => 0.0,
+            Kind::CostIndex => cost_index.kg_s(),
+        };
+        Self { kind, tailwind_m_s, time_as_fuel_kg_s }
     }
 
     /// Cost of a distance in kilograms of fuel per meter; infinite where the wind is stronger than the aircraft.
@@ -63,58 +64,74 @@ impl Aim {
     /// c = (Wf + C)/(V + w)                                                                   [optimum.2]
     /// ```
     ///
-    /// with C the cost index as a fuel flow and w the tailwind.
+    /// with C the cost index as a fuel flow and w the tailwind that the choice is for: long range is a rule about still
+    /// air, whatever wind it is then flown in.
     ///
     /// # Source
     /// Airbus, *Getting to grips with the cost index*, 1998: direct operating cost over the specific distance.
     pub(super) fn cost_kg_m(self, point: &CurvePoint, fuel_flow_kg_s: f64) -> f64 {
-        let ground_speed_m_s = self.ground_speed_m_s(point);
-        if ground_speed_m_s > 0.0 {
-            (fuel_flow_kg_s + self.time_as_fuel_kg_s) / ground_speed_m_s
+        let speed_m_s = match self.kind {
+            Kind::LongRange => point.true_airspeed_m_s,
+            Kind::MaximumRange | Kind::CostIndex => self.ground_speed_m_s(point),
+        };
+        if speed_m_s > 0.0 {
+            (fuel_flow_kg_s + self.time_as_fuel_kg_s) / speed_m_s
         } else {
             f64::INFINITY
         }
     }
 
+    /// Speed over ground in the wind that is flown in: V + w.
     pub(super) fn ground_speed_m_s(self, point: &CurvePoint) -> f64 {
         point.true_airspeed_m_s + self.tailwind_m_s
     }
 
-    /// The point that is chosen on a curve; `None` on an empty one, or against too strong a wind.
-    pub(super) fn choose(self, points: &[CurvePoint], fuel_flow_kg_s: &[f64]) -> Option<usize> {
-        let costs: Vec<f64> = points
-            .iter()
-            .zip(fuel_flow_kg_s)
-            .map(|(point, flow)| self.cost_kg_m(point, *flow))
-            .collect();
+    /// The point that is chosen among some points of a curve, given in ascending order; `None` among none, or against too strong a
+    /// wind.
+    pub(super) fn choose(
+        self,
+        points: &[CurvePoint],
+        among: &[usize],
+        fuel_flow_kg_s: &[f64],
+    ) -> Option<Choice> {
+        let costs: Vec<f64> =
+            among.iter().map(|at| self.cost_kg_m(&points[*at], fuel_flow_kg_s[*at])).collect();
         let least = (0..costs.len())
             .filter(|at| costs[*at].is_finite() && costs[*at] > 0.0)
             .min_by(|one, other| costs[*one].total_cmp(&costs[*other]))?;
+        let joins = |low: usize| {
+            among.get(low + 1).is_some_and(|next| {
+                points[*next].mach_thousandths == points[among[low]].mach_thousandths + 1
+            })
+        };
+        let edge = |at: usize| {
+            if at == 0 || !joins(at - 1) {
+                Some(Edge::Lowest)
+            } else if !joins(at) {
+                Some(Edge::Highest)
+            } else {
+                None
+            }
+        };
         if self.kind != Kind::LongRange {
-            return Some(least);
+            return Some(Choice { at: among[least], edge: edge(least) });
         }
-        // Costs are the inverse of specific range: up to 1/0.99 of the least.
+        // Costs are the inverse of specific range: up to 1/0.99 of the least. Where that is at an edge the greatest specific range
+        // may be beyond, and 99 % of it elsewhere.
         let most = costs[least] / LONG_RANGE_SHARE;
-        let above = (least + 1..costs.len()).take_while(|at| {
-            costs[*at] <= most
-                && points[*at].mach_thousandths == points[*at - 1].mach_thousandths + 1
-        });
-        above.last().or(Some(least))
+        let above = (least + 1..costs.len()).take_while(|at| costs[*at] <= most && joins(*at - 1));
+        let long = above.last().unwrap_or(least);
+        let choice = Choice { at: among[long], edge: edge(least).or(edge(long)) };
+        // Against a wind that is stronger than the aircraft there is no long range either.
+        Some(choice).filter(|choice| self.ground_speed_m_s(&points[choice.at]) > 0.0)
     }
 }
 
-/// Whether a point is at an edge of what is informed.
-pub(super) fn edge(points: &[CurvePoint], at: usize) -> Option<Edge> {
-    let joins = |low: usize| {
-        points
-            .get(low + 1)
-            .is_some_and(|next| next.mach_thousandths == points[low].mach_thousandths + 1)
-    };
-    if at == 0 || !joins(at - 1) {
-        Some(Edge::Lowest)
-    } else if !joins(at) {
-        Some(Edge::Highest)
-    } else {
-        None
-    }
+/// A point of a curve that is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Choice {
+    /// Index of the point.
+    pub(super) at: usize,
+    /// The edge of what could be chosen at which it lies, or of long range the greatest specific range behind it.
+    pub(super) edge: Option<Edge>,
 }
