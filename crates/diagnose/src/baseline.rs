@@ -316,6 +316,13 @@ impl Baseline {
         }
     }
 
+    /// The same of a table that is smooth between its nodes.
+    pub(crate) fn write_smooth_drag(&self, response: &Response, into: &mut [f64]) {
+        if let Some(table) = &self.table {
+            table.write_smooth(response, into);
+        }
+    }
+
     pub(crate) fn prior_deviation(&self, index: usize) -> f64 {
         let layout = self.layout();
         if index == 0 {

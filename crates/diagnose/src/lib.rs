@@ -155,7 +155,7 @@ pub use output::{
 pub use place::members::region_members;
 pub use place::segment_gaps::{SegmentGap, Shown, segment_gaps};
 pub use residuals::level::{LevelAnswers, LevelQuestion, WholeModelOfLevels};
-pub use residuals::whole::{WholeModel, WholePrediction};
+pub use residuals::whole::{SmoothPrediction, WholeModel, WholePrediction};
 pub use signals::noise::NoiseFactors;
 pub use signals::record::{FlightRecord, GaugeBurn};
 pub use signals::references::{DiagnoseError, references_of};

@@ -50,6 +50,11 @@ impl SmoothCell {
         Ok(found)
     }
 
+    /// Each node that takes part, and its weight.
+    pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.nodes.into_iter().zip(self.weights)
+    }
+
     /// The value there of a surface with these values at the grid's nodes, in node order.
     ///
     /// # Panics

@@ -199,4 +199,4 @@ fn imagined_segment(
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use effects::{EffectModel, EffectPoint, ExtendedModel, Response};
 use faer::Mat;
-use lut::{Cell, Grid, Outside};
+use lut::{Cell, Grid, Outside, SmoothCell};
 
 use crate::math::cholesky::Cholesky;
 use crate::signals::record::FlightRecord;
@@ -258,6 +258,20 @@ impl TableUncertainty {
         };
         for (slot, loading) in into.iter_mut().zip(self.loadings(&cell)) {
             *slot = loading;
+        }
+    }
+
+    /// The same with the weights of the smooth surface through the nodes.
+    pub(crate) fn write_smooth(&self, response: &Response, into: &mut [f64]) {
+        into.fill(0.0);
+        let Ok(cell) = SmoothCell::locate(&self.grid, response.lift_coefficient, response.mach)
+        else {
+            return;
+        };
+        for (node, weight) in cell.parts() {
+            for (slot, loading) in into.iter_mut().zip(self.row(node)) {
+                *slot += weight * loading;
+            }
         }
     }
 

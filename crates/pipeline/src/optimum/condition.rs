@@ -119,7 +119,7 @@ pub struct BestLevel {
 /// The optima of a mass and day, one for each wind.
 #[must_use]
 pub fn at(
-    model: &OptimumModel,
+    model: &OptimumModel<'_>,
     condition: MassAndDay,
     question: &Question,
 ) -> Vec<ConditionOptimum> {

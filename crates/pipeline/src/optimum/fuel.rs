@@ -1,9 +1,10 @@
 //! Fuel flow over Mach number at a level: by the model, by the book, and by models drawn from what is known.
 
+use diagnose::WholeModel;
 use effects::ExtendedModel;
 use lut::{Outside, SmoothCell, Table};
-use perf_model::FlightPoint;
 use perf_model::model::NODE_WEIGHT_THRESHOLD;
+use perf_model::{FlightPoint, Prediction};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -12,6 +13,7 @@ use units::{Mach, PressureAltitude};
 
 use super::MassAndDay;
 use crate::model_file::ModelFile;
+use crate::whole_model::Predicts;
 
 /// What informs a model at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -26,12 +28,22 @@ pub enum Informed {
 }
 
 /// A model and the book, ready for many points.
-#[derive(Clone, Debug)]
-pub struct OptimumModel {
+#[derive(Debug)]
+pub struct OptimumModel<'a> {
     own: ExtendedModel,
     book: Table,
-    drawn: Vec<Table>,
+    learnt: Learnt<'a>,
     informed_by_flights: Vec<bool>,
+}
+
+/// What a model has learnt, and models drawn from how well it knows it.
+#[derive(Debug)]
+enum Learnt<'a> {
+    /// No more than a table, and tables drawn from what is known of it.
+    Table(Vec<Table>),
+    /// More than a table; for each drawn model standard normal numbers, one for each loading and the last for where nothing was
+    /// flown.
+    Whole(Box<WholeModel<'a>>, Vec<Vec<f64>>),
 }
 
 /// One Mach number of a curve.
@@ -59,32 +71,34 @@ pub(super) struct Curve {
     pub(super) drawn_kg_s: Vec<Vec<f64>>,
 }
 
-impl OptimumModel {
+impl<'a> OptimumModel<'a> {
     /// A model as it stands, and `draws` models drawn from what it knows (none by law `paper`, which does not say how well
     /// it knows, or where nothing was learnt).
     ///
     /// # Errors
     /// As for [`ModelFile::current`].
     pub fn new(
-        model: &ModelFile,
+        model: &'a ModelFile,
         draws: usize,
         seed: u64,
     ) -> Result<Self, effects::EffectModelError> {
         let nodes = model.grid().nodes();
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let drawn = model.posterior().map_or_else(Vec::new, |posterior| {
-            let mut numbers = || (0..nodes).map(|_| StandardNormal.sample(&mut random)).collect();
-            (0..draws)
-                .map(|_| {
-                    let numbers: Vec<f64> = numbers();
-                    posterior.drawn(&numbers)
-                })
-                .collect()
-        });
+        let mut numbers = |count: usize| -> Vec<f64> {
+            (0..count).map(|_| StandardNormal.sample(&mut random)).collect()
+        };
+        let learnt = if let Some(whole) = model.whole(Predicts::WholeModel) {
+            let count = whole.directions() + 1;
+            Learnt::Whole(Box::new(whole), (0..draws).map(|_| numbers(count)).collect())
+        } else {
+            Learnt::Table(model.posterior().map_or_else(Vec::new, |posterior| {
+                (0..draws).map(|_| posterior.drawn(&numbers(nodes))).collect()
+            }))
+        };
         Ok(Self {
             own: model.current()?,
             book: model.initial.drag_table().clone(),
-            drawn,
+            learnt,
             informed_by_flights: model
                 .learnt
                 .as_ref()
@@ -92,11 +106,17 @@ impl OptimumModel {
         })
     }
 
+    const fn draws(&self) -> usize {
+        match &self.learnt {
+            Learnt::Table(drawn) => drawn.len(),
+            Learnt::Whole(_, drawn) => drawn.len(),
+        }
+    }
+
     /// Fuel flow at a level, over every thousandth of a Mach number at which the model is informed.
     pub(super) fn curve(&self, condition: MassAndDay, level: PressureAltitude) -> Curve {
         let axis = self.book.grid().y();
-        let mut curve =
-            Curve { drawn_kg_s: vec![Vec::new(); self.drawn.len()], ..Curve::default() };
+        let mut curve = Curve { drawn_kg_s: vec![Vec::new(); self.draws()], ..Curve::default() };
         for mach_thousandths in thousandths(axis.first(), axis.last()) {
             let mach = Mach::new(f64::from(mach_thousandths) / 1000.0);
             let mut point = FlightPoint::new(condition.mass, level, mach);
@@ -108,24 +128,19 @@ impl OptimumModel {
 
     /// Adds a point to a curve, unless the model is not informed there.
     ///
-    /// Fuel flow is what the model predicts, moved from the bilinear drag coefficient to the smooth one:
+    /// Fuel flow is what the model predicts with all that it has learnt, with a drag table that is smooth between its nodes. Of a
+    /// model that is no more than a table:
     ///
     /// ```text
     /// Wf = Ŵf + (CD_smooth − CD_bilinear)·∂Ŵf/∂CD                                              [optimum.1]
     /// ```
     fn add(&self, curve: &mut Curve, mach_thousandths: u32, point: &FlightPoint) -> Option<()> {
         let plain = self.own.base().predict(point).ok()?;
-        let own = if self.own.effects().is_some() { self.own.predict(point).ok()? } else { plain };
         let mach = point.mach.value();
         let informed = self.informed(plain.lift_coefficient, mach)?;
         let cell = SmoothCell::locate(self.book.grid(), plain.lift_coefficient, mach).ok()?;
-        let by = |table: &Table, prediction: &perf_model::Prediction| {
-            prediction.fuel_flow_total.to_kilograms_per_second()
-                + (cell.value_of(table) - plain.drag_coefficient)
-                    * prediction.fuel_flow_per_drag_coefficient_kg_s
-        };
-        let own_kg_s = by(self.own.drag_table(), &own);
-        let book_kg_s = by(&self.book, &plain);
+        let book_kg_s = by_table(&self.book, &cell, &plain);
+        let (own_kg_s, drawn_kg_s) = self.own_kg_s(point, &cell, plain)?;
         if !(own_kg_s > 0.0 && book_kg_s > 0.0) {
             return None;
         }
@@ -140,10 +155,41 @@ impl OptimumModel {
         });
         curve.own_kg_s.push(own_kg_s);
         curve.book_kg_s.push(book_kg_s);
-        for (drawn, table) in curve.drawn_kg_s.iter_mut().zip(&self.drawn) {
-            drawn.push(by(table, &own));
+        for (drawn, flow) in curve.drawn_kg_s.iter_mut().zip(drawn_kg_s) {
+            drawn.push(flow);
         }
         Some(())
+    }
+
+    /// Fuel flow by the model, and by each drawn model; `plain` is what its table predicts without the effects that it contains.
+    fn own_kg_s(
+        &self,
+        point: &FlightPoint,
+        cell: &SmoothCell,
+        plain: Prediction,
+    ) -> Option<(f64, Vec<f64>)> {
+        match &self.learnt {
+            Learnt::Table(drawn) => {
+                let own = match self.own.effects() {
+                    Some(_) => self.own.predict(point).ok()?,
+                    None => plain,
+                };
+                let drawn = drawn.iter().map(|table| by_table(table, cell, &own)).collect();
+                Some((by_table(self.own.drag_table(), cell, &own), drawn))
+            }
+            Learnt::Whole(whole, draws) => {
+                let found = whole.smooth_of_point(point).ok()?;
+                let own_kg_s = found.ln_fuel_flow.exp();
+                // Where nothing was flown a model errs alike everywhere.
+                let mut leans = found.loadings;
+                leans.push(found.unflown.sqrt());
+                let drawn = draws.iter().map(|numbers| {
+                    let ln: f64 = leans.iter().zip(numbers).map(|(lean, one)| lean * one).sum();
+                    own_kg_s * ln.exp()
+                });
+                Some((own_kg_s, drawn.collect()))
+            }
+        }
     }
 
     /// What informs the model at a point; `None` where nothing does.
@@ -162,6 +208,13 @@ impl OptimumModel {
             (false, false) => None,
         }
     }
+}
+
+/// What is predicted, moved to the smooth surface of a table.
+fn by_table(table: &Table, cell: &SmoothCell, prediction: &Prediction) -> f64 {
+    prediction.fuel_flow_total.to_kilograms_per_second()
+        + (cell.value_of(table) - prediction.drag_coefficient)
+            * prediction.fuel_flow_per_drag_coefficient_kg_s
 }
 
 /// Every thousandth from the first to the last Mach number of a table.

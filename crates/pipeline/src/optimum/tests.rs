@@ -220,3 +220,44 @@ fn usual_masses_and_levels_are_those_of_the_guide() {
     assert!(text.contains("Thrust, buffet and ceiling are not known"), "{text}");
     assert!(text.contains("have a point above FL 350"), "{text}");
 }
+
+/// A model that has learnt more than a table: fuel flow is what `predict` states of it, but for drag that is smooth between the
+/// nodes, and the optimum is that of brute force over predictions. Drawn models scatter about it as it states that it knows.
+#[test]
+fn the_optimum_of_a_whole_model_is_that_of_its_predictions() {
+    let file = crate::prediction::tests::whole();
+    let predictor =
+        crate::prediction::Predictor::new(&file, crate::whole_model::Predicts::WholeModel).unwrap();
+    let whole = file.whole(crate::whole_model::Predicts::WholeModel).unwrap();
+    let model = OptimumModel::new(&file, DRAWS, 1).unwrap();
+    let condition = MassAndDay {
+        mass: Mass::kilograms(32_000.0),
+        isa_deviation: TemperatureDifference::kelvin(0.0),
+    };
+    let level = PressureAltitude::feet(41_000.0);
+    let at_mach =
+        |mach: f64| perf_model::FlightPoint::new(condition.mass, level, units::Mach::new(mach));
+    let curve = model.curve(condition, level);
+    let mut remainder: f64 = 0.0;
+    for (at, point) in curve.points.iter().enumerate().step_by(10) {
+        let flight_point = at_mach(f64::from(point.mach_thousandths) / 1000.0);
+        let predicted = predictor.at(&flight_point).unwrap();
+        let kg_s = predicted.prediction.fuel_flow_total.to_kilograms_per_second();
+        assert!((curve.own_kg_s[at] / kg_s - 1.0).abs() < 5e-3, "{}", curve.own_kg_s[at] / kg_s);
+        remainder = remainder.max(predicted.beside_table.unwrap().ln_fuel_flow.abs());
+        let deviation = whole.of_point(&flight_point).unwrap().of_model().sqrt();
+        let squares = curve.drawn_kg_s.iter().map(|drawn| (drawn[at] / curve.own_kg_s[at]).ln());
+        let found = (squares.map(|ln| ln * ln).sum::<f64>() / DRAWS as f64).sqrt();
+        assert!((found / deviation - 1.0).abs() < 0.25, "{found} {deviation}");
+    }
+    assert!(remainder > 5e-4, "without a remainder nothing is tested: {remainder}");
+
+    let asked = Question { levels: vec![level], ..question(&[0.0], None) };
+    let found = &at(&model, condition, &asked)[0].levels[0].speeds[0];
+    let range = |mach: f64| {
+        predictor.at(&at_mach(mach)).unwrap().prediction.specific_range.to_meters_per_kilogram()
+    };
+    let most = curve.points.iter().map(|point| range(f64::from(point.mach_thousandths) / 1000.0));
+    let most = most.fold(0.0, f64::max);
+    assert!(range(found.mach) > 0.999 * most, "{} {most}", range(found.mach));
+}

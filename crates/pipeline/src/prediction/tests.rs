@@ -35,7 +35,7 @@ fn points() -> Vec<FlightPoint> {
 }
 
 /// The model of law `bayes` with what its flights show beyond its table.
-fn whole() -> ModelFile {
+pub(crate) fn whole() -> ModelFile {
     whole_and_segments().0
 }
 
